@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace montecarta {
+
+/// What a draw is for. Two places never share a purpose; the world's purposes never depend on the filter.
+/// The numbers are part of every result: append, never renumber.
+enum class Draw : std::uint8_t {
+  world_control = 0,      ///< noise on the control (measured-control) or on the motion (matched)
+  world_detection = 1,    ///< noise on range and bearing, index = landmark
+  world_miss = 2,         ///< whether a landmark is missed, index = landmark
+  world_clutter = 3,      ///< number and place of false alarms
+  world_landmark = 4,     ///< random maps
+  motion_sample = 16,     ///< FastSLAM 1 motion noise, index = particle
+  pose_proposal = 17,     ///< FastSLAM 2 draw from the proposal, index = particle
+  resampling = 18,        ///< index = 0 (systematic) or particle
+  evolution = 19,         ///< differential evolution
+  analysis_bootstrap = 32,
+  test = 255,
+};
+
+/// Who a stream of numbers belongs to.
+struct StreamIdentity {
+  std::uint64_t seed = 0;   ///< of the study
+  std::uint64_t run = 0;    ///< < 2^32
+  std::uint32_t step = 0;
+  std::uint32_t index = 0;  ///< particle, landmark, ...
+  Draw purpose = Draw::test;
+};
+
+/// A stream of random numbers that is a pure function of its identity (Philox4x32-10). Copyable, 48 bytes.
+class RngStream {
+ public:
+  explicit RngStream(const StreamIdentity& identity);
+
+  /// 64 uniform bits.
+  std::uint64_t bits();
+  /// Uniform in (0, 1), 52 bits, never 0 or 1.
+  double uniform();
+  /// Uniform in {0, ..., count - 1}, without bias; count >= 1.
+  std::uint32_t below(std::uint32_t count);
+  /// Standard normal (Box-Muller, both of a pair are used, in order).
+  double normal();
+
+ private:
+  std::array<std::uint32_t, 2> key_;
+  std::array<std::uint32_t, 4> counter_;
+  std::array<std::uint64_t, 2> block_{};
+  int left_ = 0;
+  double spare_ = 0.0;
+  bool has_spare_ = false;
+};
+
+}  // namespace montecarta

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+
+namespace montecarta {
+
+enum class Backend { tbb, openmp, serial };
+
+/// How a loop over independent bodies is spread over threads. Bodies write disjoint memory and are not
+/// ordered, so results do not depend on the backend or the number of threads.
+class Parallel {
+ public:
+  /// `threads` >= 1; serial ignores it.
+  Parallel(Backend backend, int threads) : backend_(backend), threads_(threads) {}
+  static const Parallel& serial();
+
+  Backend backend() const { return backend_; }
+  int threads() const { return backend_ == Backend::serial ? 1 : threads_; }
+
+  /// Calls body(i) once for every i in [0, count). The first exception thrown by a body is rethrown.
+  template <class Body>
+  void for_each(std::size_t count, const Body& body) const {
+    if (threads() == 1 || count < 2) {
+      for (std::size_t i = 0; i < count; ++i) body(i);
+      return;
+    }
+    spread(count, [](const void* erased, std::size_t i) { (*static_cast<const Body*>(erased))(i); },
+           &body);
+  }
+
+ private:
+  void spread(std::size_t count, void (*call)(const void*, std::size_t), const void* body) const;
+
+  Backend backend_;
+  int threads_;
+};
+
+}  // namespace montecarta
