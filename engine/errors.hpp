@@ -13,7 +13,8 @@ class StudyError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Something failed while running that is not the user's input: a full disk, a file that vanished (exit code 1).
+/// Something failed while running that is not the user's input: a full disk, a file that vanished
+/// (exit code 1).
 class RunError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

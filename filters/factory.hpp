@@ -38,8 +38,8 @@ struct FilterOption {
   enum class Kind { number, integer, choice };
   std::string name;
   Kind kind = Kind::number;
-  std::string fallback;              ///< default value, as text
-  double least = 0.0;                ///< of numbers and integers, inclusive
+  std::string fallback;  ///< default value, as text
+  double least = 0.0;    ///< of numbers and integers, inclusive
   double most = 0.0;
   std::vector<std::string> choices;  ///< of Kind::choice
   std::string meaning;               ///< one line, with unit and equation
@@ -48,7 +48,8 @@ struct FilterOption {
 /// Values of a filter's options, checked against their FilterOption beforehand.
 class FilterOptions {
  public:
-  explicit FilterOptions(std::map<std::string, std::string, std::less<>> values) : values_(std::move(values)) {}
+  explicit FilterOptions(std::map<std::string, std::string, std::less<>> values)
+      : values_(std::move(values)) {}
   double number(std::string_view name) const;
   std::size_t integer(std::string_view name) const;
   const std::string& choice(std::string_view name) const;
@@ -67,12 +68,12 @@ struct FilterSetup {
 
 /// A filter by name: one line in the table of factory.cpp.
 struct FilterKind {
-  std::string name;                  ///< as users type it
-  std::string long_name;             ///< for legends
-  std::string source;                ///< paper and equation
-  bool has_particles = true;         ///< whether it takes the option `particles` (always listed first)
-  bool has_mixture = false;          ///< whether estimate() carries a mixture
-  std::vector<FilterOption> options; ///< in the order in which they are documented
+  std::string name;           ///< as users type it
+  std::string long_name;      ///< for legends
+  std::string source;         ///< paper and equation
+  bool has_particles = true;  ///< whether it takes the option `particles` (always listed first)
+  bool has_mixture = false;   ///< whether estimate() carries a mixture
+  std::vector<FilterOption> options;  ///< in the order in which they are documented
   std::function<std::unique_ptr<SlamFilter>(const FilterSetup&)> make;
 };
 

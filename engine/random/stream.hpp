@@ -6,32 +6,33 @@
 
 namespace montecarta {
 
-/// What a draw is for. Two places never share a purpose; the world's purposes never depend on the filter.
-/// The numbers are part of every result: append, never renumber.
+/// What a draw is for. Two places never share a purpose; the world's purposes never depend on the
+/// filter. The numbers are part of every result: append, never renumber.
 enum class Draw : std::uint8_t {
-  world_control = 0,      ///< noise on the control (measured-control) or on the motion (matched)
-  world_detection = 1,    ///< noise on range and bearing, index = landmark
-  world_miss = 2,         ///< whether a landmark is missed, index = landmark
-  world_clutter = 3,      ///< number and place of false alarms
-  world_landmark = 4,     ///< random maps
-  motion_sample = 16,     ///< FastSLAM 1 motion noise, index = particle
-  pose_proposal = 17,     ///< FastSLAM 2 draw from the proposal, index = particle
-  resampling = 18,        ///< index = 0 (systematic) or particle
-  evolution = 19,         ///< differential evolution
+  world_control = 0,    ///< noise on the control (measured-control) or on the motion (matched)
+  world_detection = 1,  ///< noise on range and bearing, index = landmark
+  world_miss = 2,       ///< whether a landmark is missed, index = landmark
+  world_clutter = 3,    ///< number and place of false alarms
+  world_landmark = 4,   ///< random maps
+  motion_sample = 16,   ///< FastSLAM 1 motion noise, index = particle
+  pose_proposal = 17,   ///< FastSLAM 2 draw from the proposal, index = particle
+  resampling = 18,      ///< index = 0 (systematic) or particle
+  evolution = 19,       ///< differential evolution
   analysis_bootstrap = 32,
   test = 255,
 };
 
 /// Who a stream of numbers belongs to.
 struct StreamIdentity {
-  std::uint64_t seed = 0;   ///< of the study
-  std::uint64_t run = 0;    ///< < 2^32
+  std::uint64_t seed = 0;  ///< of the study
+  std::uint64_t run = 0;   ///< < 2^32
   std::uint32_t step = 0;
   std::uint32_t index = 0;  ///< particle, landmark, ...
   Draw purpose = Draw::test;
 };
 
-/// A stream of random numbers that is a pure function of its identity (Philox4x32-10). Copyable, 48 bytes.
+/// A stream of random numbers that is a pure function of its identity (Philox4x32-10). Copyable, 48
+/// bytes.
 class RngStream {
  public:
   explicit RngStream(const StreamIdentity& identity);

@@ -10,29 +10,40 @@
 namespace montecarta {
 
 /// What a study may ask to be stored (study file: record.columns). The per-scan diagnostics
-/// (ess, resampled, log_likelihood, nis, nis_dof, numerical_faults) and pose_mean are always stored.
+/// (ess, resampled, log_likelihood, nis, nis_dof, numerical_faults) and pose_mean are always
+/// stored.
 struct ColumnSelection {
-  bool covariance = true;  ///< pose_covariance; pose_mean_mixture, pose_covariance_mixture where there is one
-  bool ancestry = true;    ///< ancestor
-  bool particles = false;  ///< particle_pose, log_weight
-  bool map = false;        ///< map_mean, map_covariance, map_seen, at every scan
-  bool scans_only = false; ///< record.rate = scan: rows of `time` only where a scan was taken
+  bool covariance =
+      true;  ///< pose_covariance; pose_mean_mixture, pose_covariance_mixture where there is one
+  bool ancestry = true;     ///< ancestor
+  bool particles = false;   ///< particle_pose, log_weight
+  bool map = false;         ///< map_mean, map_covariance, map_seen, at every scan
+  bool scans_only = false;  ///< record.rate = scan: rows of `time` only where a scan was taken
 };
 
 enum class Element : std::uint8_t { f64, u8, u16, u32, u64 };
 std::size_t size_of(Element element);
 
 /// Axes behind the first one, which is always `run`.
-enum class Axis : std::uint8_t { time, scan, particle, landmark, component, component_column, coordinate, coordinate_column };
+enum class Axis : std::uint8_t {
+  time,
+  scan,
+  particle,
+  landmark,
+  component,
+  component_column,
+  coordinate,
+  coordinate_column
+};
 std::string_view name_of(Axis axis);
 
 /// One dataset of a cell; the shape is that of one run.
 struct Column {
-  std::string name;                ///< as in the file, e.g. "pose_mean"
+  std::string name;  ///< as in the file, e.g. "pose_mean"
   Element element = Element::f64;
   std::vector<Axis> axes;
   std::vector<std::size_t> shape;  ///< as many as axes; empty = one value a run
-  std::string units;               ///< UDUNITS style: "m", "rad", "1"; "m, m, rad" where components differ
+  std::string units;  ///< UDUNITS style: "m", "rad", "1"; "m, m, rad" where components differ
   std::string long_name;
 
   std::size_t elements() const;

@@ -30,7 +30,8 @@ struct StoredCell {
 /// Every member throws RunError naming file and dataset when the file cannot be read.
 class ResultFile {
  public:
-  /// Throws StudyError where `path` is missing, no HDF5 file, or no montecarta result of a known major version.
+  /// Throws StudyError where `path` is missing, no HDF5 file, or no montecarta result of a known
+  /// major version.
   explicit ResultFile(const std::filesystem::path& path);
   ~ResultFile();
   ResultFile(ResultFile&&) noexcept;
@@ -39,28 +40,33 @@ class ResultFile {
   const std::filesystem::path& path() const;
   const std::string& study_name() const;
   const std::string& title() const;
-  const std::string& study_text() const;    ///< resolved study file
+  const std::string& study_text() const;  ///< resolved study file
   const std::string& study_sha256() const;
   std::uint64_t seed() const;
-  std::uint64_t study_runs() const;         ///< of the whole study; this file may hold fewer
-  const std::vector<std::uint64_t>& runs() const;            ///< run numbers held, the `run` scale
-  const std::vector<double>& times() const;                  ///< [s] rows of `time`
-  const std::vector<std::uint32_t>& scan_rows() const;       ///< row of `time` at which each scan was taken
-  const std::vector<double>& scan_times() const;             ///< [s]
+  std::uint64_t study_runs() const;                ///< of the whole study; this file may hold fewer
+  const std::vector<std::uint64_t>& runs() const;  ///< run numbers held, the `run` scale
+  const std::vector<double>& times() const;        ///< [s] rows of `time`
+  const std::vector<std::uint32_t>& scan_rows()
+      const;                                      ///< row of `time` at which each scan was taken
+  const std::vector<double>& scan_times() const;  ///< [s]
   const std::vector<std::pair<double, double>>& landmarks() const;  ///< [m] true positions
   const std::vector<std::pair<double, double>>& waypoints() const;  ///< [m]
   const std::vector<std::pair<std::string, std::string>>& scenario() const;
   const std::vector<std::pair<std::string, std::string>>& provenance() const;
   const std::vector<StoredCell>& cells() const;
 
-  std::vector<RunStatus> status(const StoredCell& cell) const;          ///< one per run held
+  std::vector<RunStatus> status(const StoredCell& cell) const;  ///< one per run held
   std::vector<std::string> failure_reasons(const StoredCell& cell) const;
   std::vector<std::uint32_t> failure_steps(const StoredCell& cell) const;
-  std::vector<double> cpu_seconds(const StoredCell& cell) const;        ///< filter only; NaN where missing
+  std::vector<double> cpu_seconds(
+      const StoredCell& cell) const;  ///< filter only; NaN where missing
 
-  /// Copies {axes of the column} of run index `i` (0-based in this file), converted to double. `out` must fit.
-  void read(const StoredCell& cell, std::string_view column, std::size_t i, std::span<double> out) const;
-  void read(const StoredCell& cell, std::string_view column, std::size_t i, std::span<std::uint32_t> out) const;
+  /// Copies {axes of the column} of run index `i` (0-based in this file), converted to double.
+  /// `out` must fit.
+  void read(const StoredCell& cell, std::string_view column, std::size_t i,
+            std::span<double> out) const;
+  void read(const StoredCell& cell, std::string_view column, std::size_t i,
+            std::span<std::uint32_t> out) const;
   /// {time, 3} of run index i.
   void read_truth(std::size_t i, std::span<double> out) const;
 

@@ -4,6 +4,7 @@
 #include "engine/runs/pose.hpp"
 
 #include <Eigen/Core>
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -22,7 +23,8 @@ struct Detection {
   static constexpr std::int32_t kClutter = -1;  ///< identity of a false alarm
   double range = 0.0;                           ///< [m]
   double bearing = 0.0;                         ///< [rad], relative to the heading
-  std::int32_t identity = kClutter;  ///< landmark of the world; a filter may use it only with known association
+  std::int32_t identity =
+      kClutter;  ///< landmark of the world; a filter may use it only with known association
 };
 
 /// All detections of one instant, in increasing identity; may be empty.
@@ -30,24 +32,27 @@ using Scan = std::span<const Detection>;
 
 /// What all runs of a study share: when steps and scans happen and what there is to map.
 struct Itinerary {
-  std::vector<double> step_time;          ///< [s] at the end of each control step, one per step
-  std::vector<std::uint32_t> scan_step;   ///< for each scan the index of the step after which it is taken
-  std::vector<Eigen::Vector2d> landmarks; ///< [m] true positions, by identity; empty where unknown
-  std::vector<Eigen::Vector2d> waypoints; ///< [m] for figures only; may be empty
-  Pose start;                             ///< pose before the first step, known to the filter exactly
+  std::vector<double> step_time;  ///< [s] at the end of each control step, one per step
+  std::vector<std::uint32_t>
+      scan_step;  ///< for each scan the index of the step after which it is taken
+  std::vector<Eigen::Vector2d> landmarks;  ///< [m] true positions, by identity; empty where unknown
+  std::vector<Eigen::Vector2d> waypoints;  ///< [m] for figures only; may be empty
+  Pose start;  ///< pose before the first step, known to the filter exactly
 
   std::size_t steps() const { return step_time.size(); }
   std::size_t scans() const { return scan_step.size(); }
   /// Length of step k [s].
-  double duration(std::size_t k) const { return k == 0 ? step_time[0] : step_time[k] - step_time[k - 1]; }
+  double duration(std::size_t k) const {
+    return k == 0 ? step_time[0] : step_time[k] - step_time[k - 1];
+  }
 };
 
 /// One run's input and the truth it is judged by. Buffers keep their memory from run to run.
 struct Drive {
-  std::vector<Control> controls;           ///< one per step, as given to the filter
-  std::vector<Pose> truth;                 ///< one per step, after the step
-  std::vector<Detection> detections;       ///< of all scans, one after the other
-  std::vector<std::uint32_t> scan_begin;   ///< scans() + 1 offsets into `detections`
+  std::vector<Control> controls;          ///< one per step, as given to the filter
+  std::vector<Pose> truth;                ///< one per step, after the step
+  std::vector<Detection> detections;      ///< of all scans, one after the other
+  std::vector<std::uint32_t> scan_begin;  ///< scans() + 1 offsets into `detections`
 
   Scan scan(std::size_t s) const {
     return Scan(detections).subspan(scan_begin[s], scan_begin[s + 1] - scan_begin[s]);

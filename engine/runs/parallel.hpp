@@ -7,8 +7,8 @@ namespace montecarta {
 
 enum class Backend { tbb, openmp, serial };
 
-/// How a loop over independent bodies is spread over threads. Bodies write disjoint memory and are not
-/// ordered, so results do not depend on the backend or the number of threads.
+/// How a loop over independent bodies is spread over threads. Bodies write disjoint memory and are
+/// not ordered, so results do not depend on the backend or the number of threads.
 class Parallel {
  public:
   /// `threads` >= 1; serial ignores it.
@@ -18,15 +18,17 @@ class Parallel {
   Backend backend() const { return backend_; }
   int threads() const { return backend_ == Backend::serial ? 1 : threads_; }
 
-  /// Calls body(i) once for every i in [0, count). The first exception thrown by a body is rethrown.
+  /// Calls body(i) once for every i in [0, count). The first exception thrown by a body is
+  /// rethrown.
   template <class Body>
   void for_each(std::size_t count, const Body& body) const {
     if (threads() == 1 || count < 2) {
       for (std::size_t i = 0; i < count; ++i) body(i);
       return;
     }
-    spread(count, [](const void* erased, std::size_t i) { (*static_cast<const Body*>(erased))(i); },
-           &body);
+    spread(
+        count, [](const void* erased, std::size_t i) { (*static_cast<const Body*>(erased))(i); },
+        &body);
   }
 
  private:

@@ -16,7 +16,7 @@ namespace montecarta {
 
 /// One filter in one setting, repeated in runs: one curve of a figure.
 struct Cell {
-  std::string label;          ///< unique in the study, made of what distinguishes it, e.g. "fastslam2_m100"
+  std::string label;  ///< unique in the study, made of what distinguishes it, e.g. "fastslam2_m100"
   std::string filter;         ///< name as users type it, e.g. "fastslam2"
   std::string long_name;      ///< e.g. "FastSLAM II, 100 particles"
   std::size_t particles = 0;  ///< 0: not a particle filter
@@ -26,19 +26,21 @@ struct Cell {
   std::function<std::unique_ptr<SlamFilter>()> make_filter;   ///< callable from any thread
 };
 
-/// A study made ready to run: what experiments hand to the engine. Results are a pure function of it.
+/// A study made ready to run: what experiments hand to the engine. Results are a pure function of
+/// it.
 struct StudyPlan {
   std::string name;
-  std::string title;                     ///< one line for figures and the file's title attribute
+  std::string title;  ///< one line for figures and the file's title attribute
   std::uint64_t seed = 0;
-  std::uint64_t runs = 0;                ///< of the whole study
-  std::uint64_t first_run = 0;           ///< this file holds runs [first_run, last_run)
+  std::uint64_t runs = 0;       ///< of the whole study
+  std::uint64_t first_run = 0;  ///< this file holds runs [first_run, last_run)
   std::uint64_t last_run = 0;
   std::vector<Cell> cells;
   ColumnSelection columns;
   std::shared_ptr<const DriveSource> drives;
   std::vector<std::pair<std::string, std::string>> scenario;  ///< resolved settings, for the file
-  std::string resolved_text;             ///< the study file with everything filled in; its SHA-256 names the study
+  std::string
+      resolved_text;  ///< the study file with everything filled in; its SHA-256 names the study
 
   std::uint64_t runs_here() const { return last_run - first_run; }
 };

@@ -6,6 +6,7 @@
 #include "engine/runs/step_context.hpp"
 
 #include <Eigen/Core>
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -21,8 +22,9 @@ struct PoseMoments {
 
 /// What a filter believes now (SPEC 19).
 struct PoseEstimate {
-  PoseMoments spread;                  ///< of the weighted particles; of the Gaussian for a Kalman filter
-  std::optional<PoseMoments> mixture;  ///< spread plus each particle's own covariance, before sampling
+  PoseMoments spread;  ///< of the weighted particles; of the Gaussian for a Kalman filter
+  std::optional<PoseMoments>
+      mixture;  ///< spread plus each particle's own covariance, before sampling
 };
 
 /// What a filter says of its last update; a value that does not apply stays NaN or zero.
@@ -32,29 +34,34 @@ struct ScanReport {
   double log_likelihood = 0.0;  ///< log p(scan | past scans), sum over matched detections
   double nis = 0.0;             ///< normalised innovation squared, sum over matched detections
   std::uint32_t nis_dof = 0;    ///< its degrees of freedom
-  std::uint32_t numerical_faults = 0;  ///< factorisations that failed and were answered by a fallback
+  std::uint32_t numerical_faults =
+      0;  ///< factorisations that failed and were answered by a fallback
 };
 
 /// Where a filter writes its particles; an empty span means that nobody wants that column.
 struct ParticleColumns {
-  std::span<double> pose;             ///< {particle, 3} row by row [m, m, rad]
-  std::span<double> log_weight;       ///< {particle}, normalised
-  std::span<std::uint32_t> ancestor;  ///< {particle}, index of the parent among the particles one scan ago
+  std::span<double> pose;        ///< {particle, 3} row by row [m, m, rad]
+  std::span<double> log_weight;  ///< {particle}, normalised
+  std::span<std::uint32_t>
+      ancestor;  ///< {particle}, index of the parent among the particles one scan ago
 };
 
-/// One landmark as the filter reports it: identity of the world with known association, else order of birth.
+/// One landmark as the filter reports it: identity of the world with known association, else order
+/// of birth.
 struct LandmarkEstimate {
   Eigen::Vector2d mean;        ///< [m]
   Eigen::Matrix2d covariance;  ///< [m^2]
 };
 
-/// The seam between engine and filters: estimation only, no threads, no files, no clock, no global generator.
-/// The engine calls start(); then for every step predict(), and update() where the step ends with a scan.
-/// A filter may throw; the run then is stored as failed with the step and the exception's text.
+/// The seam between engine and filters: estimation only, no threads, no files, no clock, no global
+/// generator. The engine calls start(); then for every step predict(), and update() where the step
+/// ends with a scan. A filter may throw; the run then is stored as failed with the step and the
+/// exception's text.
 class SlamFilter {
  public:
   virtual ~SlamFilter() = default;
-  /// Forgets everything: the vehicle stands at `start`, no landmarks. Must leave nothing of an earlier run.
+  /// Forgets everything: the vehicle stands at `start`, no landmarks. Must leave nothing of an
+  /// earlier run.
   virtual void start(const Pose& start) = 0;
   /// The vehicle drove `control` for `duration` [s].
   virtual void predict(const StepContext& context, const Control& control, double duration) = 0;
@@ -64,7 +71,8 @@ class SlamFilter {
   virtual PoseEstimate estimate() const = 0;
   /// Of the last update().
   virtual const ScanReport& report() const = 0;
-  /// The particles of the last update(), after weighing and drawing, before resampling. A Kalman filter has none.
+  /// The particles of the last update(), after weighing and drawing, before resampling. A Kalman
+  /// filter has none.
   virtual void particles(const ParticleColumns& columns) const { (void)columns; }
   /// The map after the last update(), at most `landmarks.size()` of them; nullopt = never seen.
   virtual void map(std::span<std::optional<LandmarkEstimate>> landmarks) const = 0;

@@ -9,7 +9,8 @@
 
 namespace montecarta {
 
-/// What the engine lends a filter for one step: its place in the study, random streams, and threads.
+/// What the engine lends a filter for one step: its place in the study, random streams, and
+/// threads.
 class StepContext {
  public:
   StepContext(std::uint64_t seed, std::uint64_t run, std::uint32_t step, const Parallel& parallel)
@@ -17,7 +18,8 @@ class StepContext {
 
   std::uint64_t run() const { return run_; }
   std::uint32_t step() const { return step_; }
-  /// The numbers of (study seed, run, step, purpose, index): the same wherever and whenever asked for.
+  /// The numbers of (study seed, run, step, purpose, index): the same wherever and whenever asked
+  /// for.
   RngStream stream(Draw purpose, std::uint32_t index) const {
     return RngStream({seed_, run_, step_, index, purpose});
   }

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/random/stream.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/numbers/angle.hpp"
+#include "engine/random/philox.hpp"
+
+#include <bit>
+#include <cmath>
+
+namespace montecarta {
+
+RngStream::RngStream(const StreamIdentity& identity)
+    : key_{static_cast<std::uint32_t>(identity.seed),
+           static_cast<std::uint32_t>(identity.seed >> 32)},
+      counter_{identity.index, identity.step, static_cast<std::uint32_t>(identity.run),
+               static_cast<std::uint32_t>(identity.purpose) << kPurposeShift} {
+  expect(identity.run <= 0xffffffffU, "a run number needs more than 32 bits");
+}
+
+std::uint64_t RngStream::bits() {
+  if (left_ == 0) {
+    const auto words =
+        philox<std::uint64_t>({counter_[0], counter_[1], counter_[2], counter_[3]}, key_);
+    block_ = {words[0] | (words[1] << 32), words[2] | (words[3] << 32)};
+    left_ = 2;
+    counter_[3] = (counter_[3] & ~kBlockMask) | ((counter_[3] + 1) & kBlockMask);
+    expect((counter_[3] & kBlockMask) != 0, "a random stream ran out of numbers");
+  }
+  return block_[static_cast<std::size_t>(2 - left_--)];
+}
+
+double RngStream::uniform() {
+  const double in_one_two = std::bit_cast<double>((bits() >> 12) | 0x3ff0000000000000U);
+  return in_one_two - (1.0 - 0x1p-53);
+}
+
+std::uint32_t RngStream::below(std::uint32_t count) {
+  // Lemire's method: the biased tail of the product is drawn again.
+  const std::uint32_t tail = (0U - count) % count;
+  for (;;) {
+    const std::uint64_t product = (bits() >> 32) * count;
+    if (static_cast<std::uint32_t>(product) >= tail)
+      return static_cast<std::uint32_t>(product >> 32);
+  }
+}
+
+double RngStream::normal() {
+  if (has_spare_) {
+    has_spare_ = false;
+    return spare_;
+  }
+  const double radius = std::sqrt(-2.0 * std::log(uniform()));
+  const double angle = kTwoPi * uniform();
+  spare_ = radius * std::sin(angle);
+  has_spare_ = true;
+  return radius * std::cos(angle);
+}
+
+}  // namespace montecarta
