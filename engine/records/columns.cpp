@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/records/columns.hpp"
+
+#include "engine/errors.hpp"
+
+#include <functional>
+#include <numeric>
+
+namespace montecarta {
+
+std::size_t size_of(Element element) {
+  switch (element) {
+    case Element::u8:
+      return 1;
+    case Element::u16:
+      return 2;
+    case Element::u32:
+      return 4;
+    case Element::f64:
+    case Element::u64:
+      return 8;
+  }
+  expect(false, "an element of unknown type");
+  return 0;
+}
+
+std::string_view name_of(Axis axis) {
+  switch (axis) {
+    case Axis::time:
+      return "time";
+    case Axis::scan:
+      return "scan";
+    case Axis::particle:
+      return "particle";
+    case Axis::landmark:
+      return "landmark";
+    case Axis::component:
+      return "component";
+    case Axis::component_column:
+      return "component_column";
+    case Axis::coordinate:
+      return "coordinate";
+    case Axis::coordinate_column:
+      return "coordinate_column";
+  }
+  expect(false, "an axis without a name");
+  return {};
+}
+
+std::size_t Column::elements() const {
+  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
+}
+
+}  // namespace montecarta

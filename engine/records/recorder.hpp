@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/records/run_record.hpp"
+#include "engine/runs/slam_filter.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// Watches a filter and copies what the layout asks for into a record: predict(), then update() and
+/// after_scan() where the step ends with a scan, then after_step(). A column nobody asked for is
+/// never computed. One per worker and cell; allocates nothing after construction. The record must
+/// outlive it.
+class Recorder {
+ public:
+  explicit Recorder(RunRecord& record);
+
+  /// Row `step` of the columns over time. Nothing where rows are scans.
+  void after_step(const SlamFilter& filter, std::size_t step);
+  /// Row `scan` of the columns over scans (and over time, where rows are scans).
+  void after_scan(const SlamFilter& filter, std::size_t scan);
+
+ private:
+  struct Columns {
+    std::span<double> pose_mean, pose_covariance, pose_mean_mixture, pose_covariance_mixture;
+    std::span<double> ess, log_likelihood, nis, particle_pose, log_weight, map_mean, map_covariance;
+    std::span<std::uint8_t> resampled, map_seen;
+    std::span<std::uint32_t> nis_dof, numerical_faults, ancestor_wide;
+    std::span<std::uint16_t> ancestor_narrow;
+  };
+
+  void record_pose(const SlamFilter& filter, std::size_t row);
+  void record_report(const ScanReport& report, std::size_t scan);
+  void record_particles(const SlamFilter& filter, std::size_t scan);
+  void record_map(const SlamFilter& filter, std::size_t scan);
+
+  const RecordLayout* layout_;
+  Columns columns_;
+  std::vector<std::uint32_t> ancestors_;  ///< of one scan, before narrowing to 16 bits
+  std::vector<std::optional<LandmarkEstimate>> landmarks_;  ///< of one scan
+};
+
+}  // namespace montecarta

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/records/run_record.hpp"
+#include "engine/runs/drive.hpp"
+#include "engine/runs/plan.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace montecarta {
+
+/// What to do where a result of that name is already there.
+enum class Existing { refuse, replace };
+
+/// Facts about how a file was made: (name, value), in order; become attributes of /provenance.
+using Provenance = std::vector<std::pair<std::string, std::string>>;
+
+/// Writes the result file of a plan. Work in progress lies in OUT.h5.part, which any HDF5 reader
+/// opens at any moment; finish() gives it its final name. Runs go straight from the caller's thread
+/// to their place in the file, the status byte last, so there is no queue, and `kill -9` loses only
+/// runs in flight. `run_index` counts from 0 within this file: run number plan.first_run +
+/// run_index. Throws StudyError where the user must act before running (result exists, other study,
+/// path), RunError where the disk fails.
+class ResultWriter {
+ public:
+  /// Lays out a new file. `existing` also says what happens to an unfinished OUT.h5.part. An OUT.h5
+  /// to be replaced stays untouched until finish().
+  static ResultWriter create(const std::filesystem::path& path, const StudyPlan& plan,
+                             const Provenance& provenance, Existing existing);
+  /// Goes on with OUT.h5.part, or finds OUT.h5 finished with nothing missing, or begins where there
+  /// is neither. Stored runs whose fingerprint does not fit (a power cut) count as missing again.
+  static ResultWriter resume(const std::filesystem::path& path, const StudyPlan& plan,
+                             const Provenance& provenance);
+  ~ResultWriter();
+  ResultWriter(ResultWriter&&) noexcept;
+  ResultWriter& operator=(ResultWriter&&) noexcept;
+
+  /// Whether this run of this cell is in the file. Thread-safe.
+  RunStatus status(std::size_t cell, std::size_t run_index) const;
+  /// What a user should hear about a resumption ("3 runs were damaged ..."), one sentence each.
+  const std::vector<std::string>& notes() const;
+
+  /// Stores the true path of a run, once; call it for every drive made, before write().
+  /// Thread-safe.
+  void write_truth(std::size_t run_index, const Drive& drive);
+  /// Stores a finished run (complete or failed), once. Thread-safe for different (cell, run).
+  void write(std::size_t cell, std::size_t run_index, const RunRecord& record);
+  /// Adds to the wall time of all sittings [s] in /timing.
+  void note_wall_seconds(double seconds);
+
+  /// Flushes what is written to the disk; the file stays OUT.h5.part, to be resumed. Call before an
+  /// early exit.
+  void suspend();
+  /// Every run is there: flushes, renames OUT.h5.part to OUT.h5. Throws std::logic_error where one
+  /// is missing.
+  void finish();
+
+ private:
+  struct Work;
+  explicit ResultWriter(std::unique_ptr<Work> work);
+  std::unique_ptr<Work> work_;
+};
+
+}  // namespace montecarta

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/records/record_layout.hpp"
+#include "engine/records/result_file.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace montecarta {
+
+/// Memory of one run of one cell. Made once by each worker and cleared from run to run; never
+/// allocates after construction unless a run fails. The layout must outlive it.
+class RunRecord {
+ public:
+  explicit RunRecord(const RecordLayout& layout);
+
+  /// Forgets the run: numbers become NaN, counts and flags 0, status missing.
+  void clear();
+  /// The run went through. `cpu_seconds`: thread CPU time of the filter alone.
+  void mark_complete(double cpu_seconds);
+  /// The run ended at `step` (0-based) for `reason`; a longer reason than the file holds is cut at
+  /// a character.
+  void mark_failed(std::uint32_t step, std::string_view reason, double cpu_seconds);
+
+  const RecordLayout& layout() const { return *layout_; }
+  RunStatus status() const { return status_; }
+  std::uint32_t failure_step() const { return failure_step_; }
+  const std::string& failure_reason() const { return failure_reason_; }
+  double cpu_seconds() const { return cpu_seconds_; }
+
+  /// Column `c` of the layout as it goes to the file, row by row in the machine's byte order.
+  std::span<const std::byte> bytes(std::size_t c) const;
+  /// The same as elements of `T`, whose size must be the column's.
+  template <class T>
+  std::span<T> column(std::size_t c) {
+    const Column& described = layout_->columns()[c];
+    expect_element(described, sizeof(T));
+    return {reinterpret_cast<T*>(memory_.data() + layout_->offset(c)), described.elements()};
+  }
+  /// XXH3 of all that goes to /cells: columns, status, failure step and reason. Tells torn data
+  /// from whole.
+  std::uint64_t fingerprint() const;
+
+ private:
+  static void expect_element(const Column& column, std::size_t size);
+
+  const RecordLayout* layout_;
+  std::vector<std::byte> memory_;
+  RunStatus status_ = RunStatus::missing;
+  std::uint32_t failure_step_ = 0;
+  std::string failure_reason_;
+  double cpu_seconds_ = std::numeric_limits<double>::quiet_NaN();
+};
+
+}  // namespace montecarta
