@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The laws of the house that a compiler does not enforce: who may include whom, sizes, licence
+// lines.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+using Lines = std::vector<std::string>;
+using Tree = std::map<std::string, Lines>;  // path from the top, with '/', and what stands there
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::vector<std::string> kRooms = {"analysis",    "cluster", "engine",
+                                         "experiments", "filters", "tests"};
+
+Lines read_lines(const fs::path& path) {
+  std::ifstream file(path);
+  Lines lines;
+  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  return lines;
+}
+
+std::string room_of(const std::string& path) { return path.substr(0, path.find('/')); }
+
+bool is_cpp(const std::string& path) { return path.ends_with(".cpp") || path.ends_with(".hpp"); }
+
+bool is_script(const Lines& lines) { return !lines.empty() && lines[0].starts_with("#!"); }
+
+bool is_source(const std::string& path, const Lines& lines) {
+  return is_cpp(path) || path.ends_with("CMakeLists.txt") || path.ends_with(".py") ||
+         is_script(lines);
+}
+
+/// Every source file below the rooms of the house.
+Tree read_house(const fs::path& top) {
+  Tree tree;
+  for (const std::string& room : kRooms) {
+    for (const auto& entry : fs::recursive_directory_iterator(top / room)) {
+      if (!entry.is_regular_file()) continue;
+      const std::string path = fs::relative(entry.path(), top).generic_string();
+      Lines lines = read_lines(entry.path());
+      if (is_source(path, lines)) tree.emplace(path, std::move(lines));
+    }
+  }
+  return tree;
+}
+
+const Tree& house() {
+  static const Tree tree = read_house(MONTECARTA_SOURCE_DIR);
+  return tree;
+}
+
+/// What a file includes, as written between the quotes or angle brackets.
+std::vector<std::string> includes_of(const Lines& lines) {
+  static const std::regex include(R"rx(^\s*#\s*include\s*[<"]([^>"]+)[>"])rx");
+  std::vector<std::string> names;
+  std::smatch match;
+  for (const std::string& line : lines) {
+    if (std::regex_search(line, match, include)) names.push_back(match[1]);
+  }
+  return names;
+}
+
+/// "path:line: what" for every line of C++ outside tests that `broken` finds fault with.
+std::vector<std::string> faults(const Tree& tree, const std::string& what,
+                                const std::function<bool(const std::string&)>& broken) {
+  std::vector<std::string> found;
+  for (const auto& [path, lines] : tree) {
+    if (!is_cpp(path) || room_of(path) == "tests") continue;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      if (broken(lines[i])) found.push_back(path + ":" + std::to_string(i + 1) + ": " + what);
+    }
+  }
+  return found;
+}
+
+std::vector<std::string> forbidden_includes(const Tree& tree) {
+  const std::map<std::string, std::set<std::string>> allowed = {
+      {"engine", {"engine"}},
+      {"filters", {"engine", "filters"}},
+      {"analysis", {"engine", "analysis"}},
+      {"experiments", {"engine", "filters", "analysis", "experiments"}},
+      {"tests", {"engine", "filters", "analysis", "experiments", "tests"}}};
+  std::vector<std::string> found;
+  for (const auto& [path, lines] : tree) {
+    if (!is_cpp(path)) continue;
+    for (const std::string& name : includes_of(lines)) {
+      const bool ours = std::ranges::count(kRooms, room_of(name)) > 0;
+      if (name.starts_with(".") || (ours && !allowed.at(room_of(path)).contains(room_of(name)))) {
+        found.push_back(path + " includes " + name);
+      }
+    }
+  }
+  return found;
+}
+
+/// Files outside tests that include a header of which `prefix` is the beginning.
+std::vector<std::string> users_of(const Tree& tree, const std::string& prefix) {
+  std::vector<std::string> users;
+  for (const auto& [path, lines] : tree) {
+    if (!is_cpp(path) || room_of(path) == "tests") continue;
+    const auto names = includes_of(lines);
+    const auto starts = [&](const std::string& name) { return name.starts_with(prefix); };
+    if (std::ranges::any_of(names, starts)) users.push_back(path);
+  }
+  return users;
+}
+
+std::vector<std::string> too_long(const Tree& tree, std::size_t limit) {
+  std::vector<std::string> found;
+  for (const auto& [path, lines] : tree) {
+    if (lines.size() > limit) found.push_back(path);
+  }
+  return found;
+}
+
+std::vector<std::string> without_licence(const Tree& tree) {
+  std::vector<std::string> found;
+  for (const auto& [path, lines] : tree) {
+    const std::size_t at = is_script(lines) ? 1 : 0;
+    if (lines.size() <= at || !lines[at].ends_with("SPDX-License-Identifier: BSD-3-Clause")) {
+      found.push_back(path);
+    }
+  }
+  return found;
+}
+
+/// What lies at the top and belongs neither there nor to a build or a result of the user's.
+std::vector<std::string> strays(const std::vector<std::string>& names) {
+  static const std::regex belongs(
+      R"(CMakeLists\.txt|CMakePresets\.json|CMakeUserPresets\.json|README\.md|LICENSE|\..*)"
+      R"(|build.*|.*\.h5|.*\.h5\.part(\.new)?|first_study_report)");
+  std::vector<std::string> found;
+  for (const std::string& name : names) {
+    const bool is_room = std::ranges::count(kRooms, name) > 0;
+    if (!is_room && !std::regex_match(name, belongs)) found.push_back(name);
+  }
+  return found;
+}
+
+TEST(House, ARoomIncludesOnlyWhatStandsBelowIt) {
+  EXPECT_THAT(forbidden_includes(house()), IsEmpty());
+}
+
+TEST(House, LibrariesAreMetInOneOrTwoFiles) {
+  for (const char* header :
+       {"hdf5", "tbb/", "oneapi/", "omp.h", "boost/program_options", "matio"}) {
+    const auto users = users_of(house(), header);
+    EXPECT_LE(users.size(), 2u) << header << ": " << testing::PrintToString(users);
+  }
+}
+
+TEST(House, NoFileIsLongerThan300Lines) { EXPECT_THAT(too_long(house(), 300), IsEmpty()); }
+
+TEST(House, EverySourceNamesItsLicence) { EXPECT_THAT(without_licence(house()), IsEmpty()); }
+
+TEST(House, NothingElseLiesAtTheTop) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(MONTECARTA_SOURCE_DIR)) {
+    names.push_back(entry.path().filename().string());
+  }
+  EXPECT_THAT(strays(names), IsEmpty());
+}
+
+TEST(House, RandomNumbersComeFromStreamsOnly) {
+  static const std::regex other(
+      R"(std::(normal_distribution|uniform_\w+_distribution|random_device|mt19937)|\brand\()");
+  const auto broken = [](const std::string& line) { return std::regex_search(line, other); };
+  EXPECT_THAT(faults(house(), "not an RngStream", broken), IsEmpty());
+}
+
+TEST(House, NothingIsInvertedAndNothingIsLeftToDo) {
+  static const std::regex other(R"(\.inverse\(\)|\b(TODO|FIXME|XXX)\b)");
+  const auto broken = [](const std::string& line) { return std::regex_search(line, other); };
+  EXPECT_THAT(faults(house(), "inverse() or left to do", broken), IsEmpty());
+}
+
+TEST(House, TheTreeThatIsReadIsWhole) {
+  EXPECT_TRUE(house().contains("engine/errors.hpp"));
+  EXPECT_TRUE(house().contains("tests/house_test.cpp"));
+  EXPECT_TRUE(house().contains("tests/run"));
+  EXPECT_TRUE(house().contains("filters/CMakeLists.txt"));
+}
+
+// The laws above can fail: a house where each is broken once.
+TEST(House, BrokenLawsAreSeen) {
+  const Tree broken = {
+      {"engine/a.cpp", {"#include \"filters/factory.hpp\"", "#include <hdf5.h>", "rand();"}},
+      {"analysis/b.hpp", Lines(301, "#include <experiments/study.hpp>")},
+      {"tests/run", {"#!/bin/bash", "true"}}};
+  EXPECT_THAT(forbidden_includes(broken), testing::Contains(HasSubstr("engine/a.cpp")));
+  EXPECT_THAT(forbidden_includes(broken), testing::Contains(HasSubstr("analysis/b.hpp")));
+  EXPECT_THAT(users_of(broken, "hdf5"), ElementsAre("engine/a.cpp"));
+  EXPECT_THAT(too_long(broken, 300), ElementsAre("analysis/b.hpp"));
+  EXPECT_THAT(without_licence(broken), ElementsAre("analysis/b.hpp", "engine/a.cpp", "tests/run"));
+  EXPECT_THAT(strays({"engine", "notes.txt", "build-dev"}), ElementsAre("notes.txt"));
+  const auto uses_rand = [](const std::string& line) { return line.starts_with("rand"); };
+  EXPECT_THAT(faults(broken, "not ours", uses_rand), ElementsAre("engine/a.cpp:3: not ours"));
+}
+
+}  // namespace
