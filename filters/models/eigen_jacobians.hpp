@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/models/ackermann.hpp"
+#include "filters/models/range_bearing.hpp"
+
+#include <Eigen/Core>
+
+namespace montecarta {
+
+/// The models' derivatives as the matrices of SPEC 2.1 and 3, for code that is not per particle.
+using Matrix32 = Eigen::Matrix<double, 3, 2>;
+using Matrix23 = Eigen::Matrix<double, 2, 3>;
+
+/// Fx: pose after by pose before.
+inline Eigen::Matrix3d pose_jacobian(const MotionJacobians<double>& j) {
+  Eigen::Matrix3d F;
+  F << 1.0, 0.0, j.x_heading, 0.0, 1.0, j.y_heading, 0.0, 0.0, 1.0;
+  return F;
+}
+
+/// Fu: pose after by (speed, steer).
+inline Matrix32 control_jacobian(const MotionJacobians<double>& j) {
+  Matrix32 F;
+  F << j.x_speed, j.x_steer, j.y_speed, j.y_steer, j.heading_speed, j.heading_steer;
+  return F;
+}
+
+/// Hx: (range, bearing) by pose.
+inline Matrix23 pose_jacobian(const LinearisedSight<double>& s) {
+  Matrix23 H;
+  H << -s.range_x, -s.range_y, 0.0, -s.bearing_x, -s.bearing_y, -1.0;
+  return H;
+}
+
+/// Hf: (range, bearing) by landmark.
+inline Eigen::Matrix2d landmark_jacobian(const LinearisedSight<double>& s) {
+  Eigen::Matrix2d H;
+  H << s.range_x, s.range_y, s.bearing_x, s.bearing_y;
+  return H;
+}
+
+/// Gx: landmark by pose.
+inline Matrix23 pose_jacobian(const LinearisedPlace<double>& p) {
+  Matrix23 G;
+  G << 1.0, 0.0, p.x_bearing, 0.0, 1.0, p.y_bearing;
+  return G;
+}
+
+/// Gz: landmark by (range, bearing).
+inline Eigen::Matrix2d sight_jacobian(const LinearisedPlace<double>& p) {
+  Eigen::Matrix2d G;
+  G << p.x_range, p.x_bearing, p.y_range, p.y_bearing;
+  return G;
+}
+
+inline Eigen::Vector2d to_vector(const RangeBearing<double>& sight) {
+  return {sight.range, sight.bearing};
+}
+inline Eigen::Vector2d to_vector(const Point& point) { return {point.x, point.y}; }
+
+}  // namespace montecarta

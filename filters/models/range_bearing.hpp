@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/numbers/angle.hpp"
+#include "engine/runs/drive.hpp"
+#include "engine/runs/pose.hpp"
+#include "filters/models/direction.hpp"
+
+#include <cmath>
+
+namespace montecarta {
+
+/// A place in the map frame; `Real` is double or Lanes.
+template <class Real>
+struct BasicPoint {
+  Real x{};  ///< [m]
+  Real y{};  ///< [m]
+};
+using Point = BasicPoint<double>;
+
+/// A landmark seen from a pose, or the difference of two such sights.
+template <class Real>
+struct RangeBearing {
+  Real range{};    ///< [m]
+  Real bearing{};  ///< [rad] relative to the heading, in (-pi, pi]
+};
+
+/// What the sensor should see, with derivatives (SPEC 3). Hf = [range_x range_y; bearing_x
+/// bearing_y] by the landmark; Hx = [-Hf, (0, -1)'] by the pose.
+template <class Real>
+struct LinearisedSight {
+  RangeBearing<Real> sight;
+  Real range_x;    ///< [1]
+  Real range_y;    ///< [1]
+  Real bearing_x;  ///< [rad/m]
+  Real bearing_y;  ///< [rad/m]
+};
+
+/// Where a detection places a landmark, with derivatives (SPEC 3). Gz = [x_range x_bearing; y_range
+/// y_bearing] by the detection; Gx = [1 0 x_bearing; 0 1 y_bearing] by the pose.
+template <class Real>
+struct LinearisedPlace {
+  BasicPoint<Real> point;
+  Real x_range;    ///< [1]
+  Real x_bearing;  ///< [m/rad]
+  Real y_range;    ///< [1]
+  Real y_bearing;  ///< [m/rad]
+};
+
+/// Nearer than this [m] a bearing has no derivative: the caller must leave the detection out (SPEC
+/// 3).
+inline constexpr double kLeastDistance = 1e-6;
+
+/// h(x, f): the sight of `landmark` from `pose`.
+template <class Real>
+RangeBearing<Real> predicted_sight(const BasicPose<Real>& pose, const BasicPoint<Real>& landmark) {
+  using std::atan2;
+  using std::sqrt;
+  const Real dx = landmark.x - pose.x;
+  const Real dy = landmark.y - pose.y;
+  return {sqrt(Real(dx * dx + dy * dy)), wrap(Real(Real(atan2(dy, dx)) - pose.heading))};
+}
+
+/// h(x, f) with its derivatives; they mean nothing where too_near().
+template <class Real>
+LinearisedSight<Real> linearised_sight(const BasicPose<Real>& pose,
+                                       const BasicPoint<Real>& landmark) {
+  const RangeBearing<Real> sight = predicted_sight(pose, landmark);
+  const Real per_range = Real(1.0) / sight.range;
+  const Real ux = (landmark.x - pose.x) * per_range;
+  const Real uy = (landmark.y - pose.y) * per_range;
+  return {sight, ux, uy, -(uy * per_range), ux * per_range};
+}
+
+/// Whether (per lane) a landmark is too near for the derivatives.
+template <class Real>
+auto too_near(const RangeBearing<Real>& predicted) {
+  return predicted.range < Real(kLeastDistance);
+}
+
+/// detected boxminus predicted: the innovation, bearing wrapped.
+template <class Real>
+RangeBearing<Real> residual(const RangeBearing<Real>& detected,
+                            const RangeBearing<Real>& predicted) {
+  return {detected.range - predicted.range, wrap(Real(detected.bearing - predicted.bearing))};
+}
+
+/// The measured part of a detection, the same in all lanes.
+template <class Real = double>
+RangeBearing<Real> sight_of(const Detection& detection) {
+  return {Real(detection.range), Real(detection.bearing)};
+}
+
+/// g(x, z): where a landmark stands that is seen so from `pose`, with derivatives.
+template <class Real>
+LinearisedPlace<Real> linearised_place(const BasicPose<Real>& pose,
+                                       const RangeBearing<Real>& sight) {
+  const Direction<Real> ray = direction_of(Real(pose.heading + sight.bearing));
+  const Real along_x = sight.range * ray.cosine;
+  const Real along_y = sight.range * ray.sine;
+  return {{pose.x + along_x, pose.y + along_y}, ray.cosine, -along_y, ray.sine, along_x};
+}
+
+}  // namespace montecarta

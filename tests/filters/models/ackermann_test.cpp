@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/models/ackermann.hpp"
+
+#include "engine/random/stream.hpp"
+#include "filters/models/eigen_jacobians.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+namespace montecarta {
+namespace {
+
+constexpr double kDuration = 0.025;
+constexpr double kWheelbase = 4.0;
+
+struct Case {
+  Pose pose;
+  Control control;
+};
+
+Case random_case(RngStream& draw) {
+  return {{10.0 * draw.normal(), 10.0 * draw.normal(), wrap(7.0 * draw.normal())},
+          {3.0 * draw.normal(), 0.3 * draw.normal()}};
+}
+
+Pose moved(const Case& c) { return move(c.pose, c.control, kDuration, kWheelbase); }
+
+/// Central difference of move() by the value `at` points to.
+Eigen::Vector3d slope(Case c, double& (*at)(Case&)) {
+  const double middle = at(c);
+  const double h = 1e-5;
+  at(c) = middle + h;
+  const Pose ahead = moved(c);
+  at(c) = middle - h;
+  return boxminus(ahead, moved(c)) / (2.0 * h);
+}
+
+TEST(Ackermann, JacobiansEqualCentralDifferences) {
+  RngStream draw({.seed = 21, .purpose = Draw::test});
+  for (int n = 0; n < 200; ++n) {
+    const Case c = random_case(draw);
+    const auto j = linearised_move(c.pose, c.control, kDuration, kWheelbase).jacobians;
+    Eigen::Matrix<double, 3, 5> expected;
+    expected << slope(c, [](Case& v) -> double& { return v.pose.x; }),
+        slope(c, [](Case& v) -> double& { return v.pose.y; }),
+        slope(c, [](Case& v) -> double& { return v.pose.heading; }),
+        slope(c, [](Case& v) -> double& { return v.control.speed; }),
+        slope(c, [](Case& v) -> double& { return v.control.steer; });
+    EXPECT_TRUE(pose_jacobian(j).isApprox(expected.leftCols<3>(), 1e-8)) << "case " << n;
+    EXPECT_LT((control_jacobian(j) - expected.rightCols<2>()).norm(), 1e-8) << "case " << n;
+  }
+}
+
+TEST(Ackermann, LinearisedMoveGoesWhereMoveGoes) {
+  RngStream draw({.seed = 22, .purpose = Draw::test});
+  for (int n = 0; n < 200; ++n) {
+    const Case c = random_case(draw);
+    const Pose there = linearised_move(c.pose, c.control, kDuration, kWheelbase).pose;
+    EXPECT_LT(boxminus(there, moved(c)).norm(), 1e-14) << "case " << n;
+  }
+}
+
+TEST(Ackermann, TurningAndShiftingTheWorldTurnsAndShiftsTheMove) {
+  RngStream draw({.seed = 23, .purpose = Draw::test});
+  for (int n = 0; n < 200; ++n) {
+    const Case c = random_case(draw);
+    const double turn = 3.0 * draw.normal();
+    const auto in_other_world = [turn](const Pose& p) -> Pose {
+      return {p.x * std::cos(turn) - p.y * std::sin(turn) + 5.0,
+              p.x * std::sin(turn) + p.y * std::cos(turn) - 2.0, wrap(p.heading + turn)};
+    };
+    const Pose expected = in_other_world(moved(c));
+    EXPECT_LT(boxminus(moved({in_other_world(c.pose), c.control}), expected).norm(), 1e-12);
+  }
+}
+
+TEST(Ackermann, DrivesSidewaysByTheSineOfCourse) {
+  // Ankishan eq. (38) prints cos in both rows; with heading 90 degrees that would stand still in y.
+  const Pose there = move(Pose{0.0, 0.0, kPi / 2.0}, Control{2.0, 0.0}, 0.5, kWheelbase);
+  EXPECT_NEAR(there.x, 0.0, 1e-15);
+  EXPECT_NEAR(there.y, 1.0, 1e-15);
+}
+
+/// Standard deviations [m, m, ~rad] along the principal axes after `steps` straight steps, largest
+/// first.
+Eigen::Vector3d deviations_after(int steps) {
+  const Eigen::DiagonalMatrix<double, 2> Q(0.2 * 0.2, std::pow(2.0 * kPi / 180.0, 2));
+  Pose pose;
+  Eigen::Matrix3d P = Eigen::Matrix3d::Zero();
+  for (int k = 0; k < steps; ++k) {
+    const auto step = linearised_move(pose, Control{3.0, 0.0}, kDuration, kWheelbase);
+    const Eigen::Matrix3d Fx = pose_jacobian(step.jacobians);
+    const Matrix32 Fu = control_jacobian(step.jacobians);
+    P = Fx * P * Fx.transpose() + Fu * Q * Fu.transpose();
+    pose = step.pose;
+  }
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(P)
+      .eigenvalues()
+      .reverse()
+      .cwiseMax(0.0)
+      .cwiseSqrt();
+}
+
+TEST(Ackermann, NoiseOfEightStepsIsAsThinAsMeasured) {
+  const Eigen::Vector3d after_8 = deviations_after(8);
+  EXPECT_NEAR(after_8(0), 14.1e-3, 0.05e-3);
+  EXPECT_NEAR(after_8(1), 8.1e-3, 0.05e-3);
+  EXPECT_NEAR(after_8(2), 0.073e-3, 0.0005e-3);
+  EXPECT_NEAR(deviations_after(2)(2), 8.3e-6, 0.05e-6);
+  EXPECT_LT(deviations_after(1)(2), 1e-9);
+}
+
+}  // namespace
+}  // namespace montecarta
