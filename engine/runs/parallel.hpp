@@ -2,17 +2,21 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 
 namespace montecarta {
 
 enum class Backend { tbb, openmp, serial };
 
 /// How a loop over independent bodies is spread over threads. Bodies write disjoint memory and are
-/// not ordered, so results do not depend on the backend or the number of threads.
+/// not ordered, so results do not depend on the backend or the number of threads. Copies share one
+/// pool, and a loop inside a body of another uses the same threads: never more than `threads()` are
+/// at work.
 class Parallel {
  public:
   /// `threads` >= 1; serial ignores it.
-  Parallel(Backend backend, int threads) : backend_(backend), threads_(threads) {}
+  Parallel(Backend backend, int threads);
+  /// For loops that stay on the calling thread.
   static const Parallel& serial();
 
   Backend backend() const { return backend_; }
@@ -32,10 +36,12 @@ class Parallel {
   }
 
  private:
+  struct Pool;
   void spread(std::size_t count, void (*call)(const void*, std::size_t), const void* body) const;
 
   Backend backend_;
   int threads_;
+  std::shared_ptr<Pool> pool_;  ///< of TBB; null where the calling thread or OpenMP does the work
 };
 
 }  // namespace montecarta
