@@ -2,19 +2,18 @@
 #include "engine/random/stream.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/numbers/angle.hpp"
+#include "engine/random/normals.hpp"
 #include "engine/random/philox.hpp"
 
 #include <bit>
-#include <cmath>
 
 namespace montecarta {
 
-RngStream::RngStream(const StreamIdentity& identity)
+RngStream::RngStream(const StreamIdentity& identity, std::uint32_t block)
     : key_{static_cast<std::uint32_t>(identity.seed),
            static_cast<std::uint32_t>(identity.seed >> 32)},
       counter_{identity.index, identity.step, static_cast<std::uint32_t>(identity.run),
-               static_cast<std::uint32_t>(identity.purpose) << kPurposeShift} {
+               static_cast<std::uint32_t>(identity.purpose) << kPurposeShift | block} {
   expect(identity.run <= 0xffffffffU, "a run number needs more than 32 bits");
 }
 
@@ -50,11 +49,11 @@ double RngStream::normal() {
     has_spare_ = false;
     return spare_;
   }
-  const double radius = std::sqrt(-2.0 * std::log(uniform()));
-  const double angle = kTwoPi * uniform();
-  spare_ = radius * std::sin(angle);
+  const double first = uniform();
+  const auto [normal, spare] = box_muller<double>({first, uniform()});
+  spare_ = spare;
   has_spare_ = true;
-  return radius * std::cos(angle);
+  return normal;
 }
 
 }  // namespace montecarta

@@ -35,7 +35,8 @@ struct StreamIdentity {
 /// bytes.
 class RngStream {
  public:
-  explicit RngStream(const StreamIdentity& identity);
+  /// Starts at number 2 `block` of the stream; block < 2^24.
+  explicit RngStream(const StreamIdentity& identity, std::uint32_t block = 0);
 
   /// 64 uniform bits.
   std::uint64_t bits();

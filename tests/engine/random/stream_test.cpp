@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/random/stream.hpp"
 
+#include "engine/random/normals.hpp"
 #include "engine/random/philox.hpp"
 
 #include <Random123/philox.h>
@@ -66,6 +67,23 @@ TEST(RngStream, NormalHasTheRightMoments) {
   EXPECT_NEAR(sums[1] / n, 1.0, 5 * std::sqrt(2.0) / root);
   EXPECT_NEAR(sums[2] / n, 0.0, 5 * std::sqrt(15.0) / root);
   EXPECT_NEAR(sums[3] / n, 3.0, 5 * std::sqrt(96.0) / root);
+}
+
+TEST(Normals, LanesEqualTheScalarStreams) {
+  for (std::uint32_t step = 0; step < 200; ++step) {
+    const StreamIdentity identity{0x123456789abcdefU, 5, step, 8 * step, Draw::pose_proposal};
+    const Pair<Lanes> uniforms = uniform_pairs(identity, 1, Lanes());
+    const Pair<Lanes> normals = normal_pairs<Lanes>(identity, 1);
+    for (std::uint32_t i = 0; i < Lanes::kSize; ++i) {
+      RngStream draw({identity.seed, 5, step, 8 * step + i, Draw::pose_proposal});
+      draw.normal(), draw.normal();
+      RngStream same = draw;
+      EXPECT_EQ(uniforms.first.get(i), same.uniform());
+      EXPECT_EQ(uniforms.second.get(i), same.uniform());
+      EXPECT_NEAR(normals.first.get(i), draw.normal(), 1e-14);
+      EXPECT_NEAR(normals.second.get(i), draw.normal(), 1e-14);
+    }
+  }
 }
 
 TEST(RngStream, UniformIsFlatAndOpen) {

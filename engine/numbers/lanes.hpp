@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <xsimd/xsimd.hpp>
+
+#include <array>
+#include <cstddef>
+
+namespace montecarta {
+
+/// Which lanes a condition holds for.
+struct LaneMask;
+
+/// Eight doubles that are computed together, one for each of eight particles: the `Real` of
+/// production. A value type with the arithmetic of double; comparisons give a LaneMask and branches
+/// become select().
+struct alignas(64) Lanes {
+  using Register = xsimd::batch<double>;
+  static constexpr std::size_t kSize = 8;
+  static constexpr std::size_t kRegisters = kSize / Register::size;
+  static_assert(kRegisters * Register::size == kSize);
+
+  std::array<Register, kRegisters> part;
+
+  Lanes() = default;
+  Lanes(double value) { part.fill(Register(value)); }  // NOLINT: a number is the same in every lane
+
+  /// Eight doubles from memory aligned to 64 bytes.
+  static Lanes load(const double* memory) {
+    Lanes lanes;
+    for (std::size_t k = 0; k < kRegisters; ++k) {
+      lanes.part[k] = Register::load_aligned(memory + k * Register::size);
+    }
+    return lanes;
+  }
+  void store(double* memory) const {
+    for (std::size_t k = 0; k < kRegisters; ++k) part[k].store_aligned(memory + k * Register::size);
+  }
+  double get(std::size_t lane) const {
+    return part[lane / Register::size].get(lane % Register::size);
+  }
+};
+
+struct LaneMask {
+  using Register = xsimd::batch_bool<double>;
+  std::array<Register, Lanes::kRegisters> part;
+};
+
+/// Applies `function` register by register.
+template <class Function, class... Arguments>
+[[gnu::always_inline]] inline auto by_register(const Function& function,
+                                               const Arguments&... arguments) {
+  using Register = decltype(function(arguments.part[0]...));
+  using Result = std::conditional_t<std::is_same_v<Register, Lanes::Register>, Lanes, LaneMask>;
+  Result result;
+  for (std::size_t k = 0; k < Lanes::kRegisters; ++k)
+    result.part[k] = function(arguments.part[k]...);
+  return result;
+}
+
+#define MONTECARTA_LANE_OPERATOR(op, Result)                                         \
+  [[gnu::always_inline]] inline Result operator op(const Lanes& a, const Lanes& b) { \
+    return by_register([](const auto& x, const auto& y) { return x op y; }, a, b);   \
+  }
+MONTECARTA_LANE_OPERATOR(+, Lanes)
+MONTECARTA_LANE_OPERATOR(-, Lanes)
+MONTECARTA_LANE_OPERATOR(*, Lanes)
+MONTECARTA_LANE_OPERATOR(/, Lanes)
+MONTECARTA_LANE_OPERATOR(<, LaneMask)
+MONTECARTA_LANE_OPERATOR(<=, LaneMask)
+MONTECARTA_LANE_OPERATOR(>, LaneMask)
+MONTECARTA_LANE_OPERATOR(>=, LaneMask)
+MONTECARTA_LANE_OPERATOR(==, LaneMask)
+#undef MONTECARTA_LANE_OPERATOR
+
+inline Lanes operator-(const Lanes& a) {
+  return by_register([](const auto& x) { return -x; }, a);
+}
+inline Lanes& operator+=(Lanes& a, const Lanes& b) { return a = a + b; }
+inline Lanes& operator-=(Lanes& a, const Lanes& b) { return a = a - b; }
+inline Lanes& operator*=(Lanes& a, const Lanes& b) { return a = a * b; }
+inline LaneMask operator&&(const LaneMask& a, const LaneMask& b) {
+  return by_register([](const auto& x, const auto& y) { return x && y; }, a, b);
+}
+inline LaneMask operator!(const LaneMask& a) {
+  return by_register([](const auto& x) { return !x; }, a);
+}
+/// a where the mask holds, else b.
+[[gnu::always_inline]] inline Lanes select(const LaneMask& mask, const Lanes& a, const Lanes& b) {
+  return by_register(
+      [](const auto& m, const auto& x, const auto& y) { return xsimd::select(m, x, y); }, mask, a,
+      b);
+}
+inline bool any(const LaneMask& mask) {
+  bool found = false;
+  for (const auto& part : mask.part) found = found || xsimd::any(part);
+  return found;
+}
+
+}  // namespace montecarta

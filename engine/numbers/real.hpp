@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/numbers/angle.hpp"
+#include "engine/numbers/lanes.hpp"
+#include "engine/numbers/lanes_trigonometry.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+/// The functions that per-particle arithmetic is written in, for `Real` = double and `Real` = Lanes
+/// alike. Every lane is a function of that lane alone, so a result never depends on which particles
+/// share a register.
+namespace montecarta {
+
+template <class Real>
+inline constexpr std::size_t kLanesOf = 1;
+template <>
+inline constexpr std::size_t kLanesOf<Lanes> = Lanes::kSize;
+
+using std::atan2;
+using std::cos;
+using std::exp;
+using std::log;
+using std::sin;
+using std::sqrt;
+
+inline double select(bool mask, double a, double b) { return mask ? a : b; }
+inline bool any(bool mask) { return mask; }
+
+inline double load(const double* memory, double /*like*/) { return *memory; }
+inline Lanes load(const double* memory, const Lanes& /*like*/) { return Lanes::load(memory); }
+/// `kLanesOf<Real>` consecutive doubles, aligned for Real.
+template <class Real>
+Real load_real(const double* memory) {
+  return load(memory, Real());
+}
+inline void store(double* memory, double value) { *memory = value; }
+inline void store(double* memory, const Lanes& value) { value.store(memory); }
+
+inline double get(double value, std::size_t) { return value; }
+inline double get(const Lanes& value, std::size_t lane) { return value.get(lane); }
+inline void set(double& value, std::size_t, double number) { value = number; }
+inline void set(Lanes& value, std::size_t lane, double number) {
+  reinterpret_cast<double*>(value.part.data())[lane] = number;
+}
+
+template <class Real>
+struct SinCos {
+  Real sine, cosine;
+};
+inline SinCos<double> sincos(double angle) { return {std::sin(angle), std::cos(angle)}; }
+[[gnu::always_inline]] inline SinCos<Lanes> sincos(const Lanes& angle) {
+  SinCos<Lanes> result;
+  for (std::size_t k = 0; k < Lanes::kRegisters; ++k) {
+    register_math::sincos(angle.part[k], result.sine.part[k], result.cosine.part[k]);
+  }
+  return result;
+}
+[[gnu::always_inline]] inline Lanes atan2(const Lanes& y, const Lanes& x) {
+  return by_register([](const auto& b, const auto& a) { return register_math::atan2(b, a); }, y, x);
+}
+inline Lanes sin(const Lanes& angle) { return sincos(angle).sine; }
+inline Lanes cos(const Lanes& angle) { return sincos(angle).cosine; }
+inline Lanes log(const Lanes& a) {
+  return by_register([](const auto& x) { return xsimd::log(x); }, a);
+}
+
+inline Lanes sqrt(const Lanes& a) {
+  return by_register([](const auto& x) { return xsimd::sqrt(x); }, a);
+}
+inline Lanes exp(const Lanes& a) {
+  return by_register([](const auto& x) { return xsimd::exp(x); }, a);
+}
+inline Lanes max(const Lanes& a, const Lanes& b) {
+  return by_register([](const auto& x, const auto& y) { return xsimd::max(x, y); }, a, b);
+}
+inline double max(double a, double b) { return a < b ? b : a; }
+
+/// Like wrap(double), but lanes that are in range already may change in the last bit at the border.
+inline Lanes wrap(const Lanes& angle) {
+  return by_register(
+      [](const auto& x) {
+        using Register = Lanes::Register;
+        const Register turns = xsimd::nearbyint(x * Register(1.0 / kTwoPi));
+        return xsimd::fnma(turns, Register(kTwoPi), x);
+      },
+      angle);
+}
+
+}  // namespace montecarta

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/numbers/real.hpp"
+#include "engine/random/philox.hpp"
+#include "engine/random/stream.hpp"
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <immintrin.h>
+
+namespace montecarta {
+
+/// One 32-bit word in each 64-bit lane of a register.
+struct WordRegister {
+  using Batch = xsimd::batch<std::uint64_t>;
+  Batch lanes;
+};
+
+/// The exact product lane by lane; the library multiplies 64-bit lanes in full, at three times the
+/// price.
+inline Halves<WordRegister> multiply_words(const WordRegister& a, std::uint32_t b) {
+  using Batch = WordRegister::Batch;
+#if defined(__AVX512F__)
+  const Batch product(_mm512_mul_epu32(a.lanes.data, _mm512_set1_epi64(b)));
+#elif defined(__AVX2__)
+  const Batch product(_mm256_mul_epu32(a.lanes.data, _mm256_set1_epi64x(b)));
+#else
+  const Batch product = a.lanes * Batch(std::uint64_t{b});
+#endif
+  return {{product >> 32}, {product & Batch(std::uint64_t{0xffffffffU})}};
+}
+inline WordRegister operator^(const WordRegister& a, const WordRegister& b) {
+  return {a.lanes ^ b.lanes};
+}
+inline WordRegister operator^(const WordRegister& a, std::uint32_t b) {
+  return {a.lanes ^ WordRegister::Batch(std::uint64_t{b})};
+}
+
+/// Two independent numbers for each lane.
+template <class Real>
+struct Pair {
+  Real first, second;
+};
+
+/// Two standard normals out of two uniforms in (0, 1) (Box and Muller 1958).
+template <class Real>
+Pair<Real> box_muller(const Pair<Real>& uniform) {
+  const Real radius = sqrt(-2.0 * log(uniform.first));
+  const SinCos<Real> angle = sincos(kTwoPi * uniform.second);
+  return {radius * angle.cosine, radius * angle.sine};
+}
+
+/// Uniforms 2 block and 2 block + 1 of the streams of indices identity.index, identity.index + 1,
+/// ..., one for each lane: the same bits as RngStream(identity).uniform().
+inline Pair<Lanes> uniform_pairs(const StreamIdentity& identity, std::uint32_t block,
+                                 const Lanes& /*like*/) {
+  using Batch = WordRegister::Batch;
+  const auto same = [](std::uint64_t word) { return WordRegister{Batch(word)}; };
+  const auto uniform = [](const WordRegister& low, const WordRegister& high) {
+    const Batch bits = (low.lanes | (high.lanes << 32)) >> 12;
+    return xsimd::bitwise_cast<Lanes::Register>(bits | Batch(std::uint64_t{0x3ff0000000000000U})) -
+           Lanes::Register(1.0 - 0x1p-53);
+  };
+  Pair<Lanes> pair{};
+  for (std::size_t k = 0; k < Lanes::kRegisters; ++k) {
+    alignas(64) std::array<std::uint64_t, Batch::size> index{};
+    for (std::size_t i = 0; i < index.size(); ++i) index[i] = identity.index + k * Batch::size + i;
+    const auto words = philox<WordRegister>(
+        {WordRegister{Batch::load_aligned(index.data())}, same(identity.step), same(identity.run),
+         same(static_cast<std::uint32_t>(identity.purpose) << kPurposeShift | block)},
+        {static_cast<std::uint32_t>(identity.seed),
+         static_cast<std::uint32_t>(identity.seed >> 32)});
+    pair.first.part[k] = uniform(words[0], words[1]);
+    pair.second.part[k] = uniform(words[2], words[3]);
+  }
+  return pair;
+}
+
+inline Pair<double> uniform_pairs(const StreamIdentity& identity, std::uint32_t block,
+                                  double /*like*/) {
+  RngStream draw(identity, block);
+  const double first = draw.uniform();
+  return {first, draw.uniform()};
+}
+
+/// Normals 2 block and 2 block + 1 of the streams of `kLanesOf<Real>` consecutive indices.
+template <class Real>
+Pair<Real> normal_pairs(const StreamIdentity& identity, std::uint32_t block) {
+  return box_muller(uniform_pairs(identity, block, Real()));
+}
+
+}  // namespace montecarta

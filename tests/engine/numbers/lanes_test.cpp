@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/numbers/real.hpp"
+#include "engine/random/stream.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace montecarta {
+namespace {
+
+constexpr double kUlp = 2.3e-16;
+
+/// Calls check(lanes, lane, number) for many random numbers in [-scale, scale].
+template <class Check>
+void for_random_lanes(double scale, Check check) {
+  RngStream draw({7, 0, 0, 0, Draw::test});
+  for (int round = 0; round < 20000; ++round) {
+    Lanes lanes(0.0);
+    for (std::size_t i = 0; i < Lanes::kSize; ++i)
+      set(lanes, i, scale * (2.0 * draw.uniform() - 1.0));
+    check(lanes);
+  }
+}
+
+TEST(Lanes, SineAndCosineEqualTheLibrary) {
+  for_random_lanes(20.0, [](const Lanes& angle) {
+    const auto [sine, cosine] = sincos(angle);
+    for (std::size_t i = 0; i < Lanes::kSize; ++i) {
+      ASSERT_NEAR(sine.get(i), std::sin(angle.get(i)), kUlp) << angle.get(i);
+      ASSERT_NEAR(cosine.get(i), std::cos(angle.get(i)), kUlp) << angle.get(i);
+    }
+  });
+}
+
+TEST(Lanes, ArcTangentEqualsTheLibraryInEveryQuadrant) {
+  for_random_lanes(1.0, [](const Lanes& y) {
+    Lanes x(0.0);
+    for (std::size_t i = 0; i < Lanes::kSize; ++i)
+      set(x, i, y.get((i + 1) % 8) * (i % 2 ? 1e3 : 1.0));
+    const Lanes angle = atan2(y, x);
+    for (std::size_t i = 0; i < Lanes::kSize; ++i) {
+      ASSERT_NEAR(angle.get(i), std::atan2(y.get(i), x.get(i)), 2 * kUlp * 2)
+          << y.get(i) << ' ' << x.get(i);
+    }
+  });
+}
+
+TEST(Lanes, ArcTangentOnTheAxes) {
+  const double cases[][2] = {{0, 1}, {0, -1}, {1, 0}, {-1, 0}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
+  for (const auto& [y, x] : cases)
+    EXPECT_NEAR(atan2(Lanes(y), Lanes(x)).get(0), std::atan2(y, x), kUlp);
+}
+
+TEST(Lanes, WrapEqualsTheScalarOne) {
+  for_random_lanes(30.0, [](const Lanes& angle) {
+    const Lanes wrapped = wrap(angle);
+    for (std::size_t i = 0; i < Lanes::kSize; ++i) {
+      ASSERT_NEAR(wrap(wrapped.get(i) - wrap(angle.get(i))), 0.0, 1e-14);
+      ASSERT_LE(std::abs(wrapped.get(i)), kPi + 1e-14);
+    }
+  });
+}
+
+TEST(Lanes, EveryLaneIsAFunctionOfItselfAlone) {
+  for_random_lanes(10.0, [](const Lanes& a) {
+    for (std::size_t i = 0; i < Lanes::kSize; ++i) {
+      const Lanes alone(a.get(i));
+      ASSERT_EQ(sin(a).get(i), sin(alone).get(0));
+      ASSERT_EQ(atan2(a, Lanes(3.0)).get(i), atan2(alone, Lanes(3.0)).get(0));
+      ASSERT_EQ(exp(a).get(i), exp(alone).get(0));
+      ASSERT_EQ(log(a * a).get(i), log(alone * alone).get(0));
+    }
+  });
+}
+
+TEST(Lanes, SelectTakesLaneByLane) {
+  Lanes a(0.0);
+  for (std::size_t i = 0; i < Lanes::kSize; ++i) set(a, i, static_cast<double>(i));
+  const Lanes chosen = select(a < Lanes(3.0), Lanes(-1.0), a);
+  for (std::size_t i = 0; i < Lanes::kSize; ++i) {
+    EXPECT_EQ(chosen.get(i), i < 3 ? -1.0 : static_cast<double>(i));
+  }
+}
+
+TEST(Wrap, KeepsItsContract) {
+  EXPECT_EQ(wrap(kPi), kPi);
+  EXPECT_EQ(wrap(-kPi), kPi);
+  for (double angle : {0.0, 3.2, -3.2, 1e3, -1e6, 1e18, 3 * kPi}) {
+    EXPECT_EQ(wrap(wrap(angle)), wrap(angle)) << angle;
+    EXPECT_GT(wrap(angle), -kPi);
+    EXPECT_LE(wrap(angle), kPi);
+  }
+}
+
+}  // namespace
+}  // namespace montecarta
