@@ -34,6 +34,7 @@ class Recorder {
     std::span<std::uint16_t> ancestor_narrow;
   };
 
+  void choose_ancestor(RunRecord& record);
   void record_pose(const SlamFilter& filter, std::size_t row);
   void record_report(const ScanReport& report, std::size_t scan);
   void record_particles(const SlamFilter& filter, std::size_t scan);

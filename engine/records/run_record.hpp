@@ -4,18 +4,21 @@
 #include "engine/records/record_layout.hpp"
 #include "engine/records/result_file.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
 namespace montecarta {
 
-/// Memory of one run of one cell. Made once by each worker and cleared from run to run; never
-/// allocates after construction unless a run fails. The layout must outlive it.
+/// Width of failure_reason in the file: fixed, so that a run's reason has its own place.
+inline constexpr std::size_t kFailureReasonBytes = 128;
+
+/// Memory of one run of one cell. Made once by each worker and cleared from run to run; allocates
+/// nothing after construction. The layout must outlive it.
 class RunRecord {
  public:
   explicit RunRecord(const RecordLayout& layout);
@@ -30,8 +33,10 @@ class RunRecord {
 
   const RecordLayout& layout() const { return *layout_; }
   RunStatus status() const { return status_; }
-  std::uint32_t failure_step() const { return failure_step_; }
-  const std::string& failure_reason() const { return failure_reason_; }
+  std::uint32_t failure_step() const { return outcome_.step; }
+  std::string_view failure_reason() const;
+  /// The reason as it goes to the file: zeros behind the text.
+  std::span<const char> failure_text() const { return outcome_.reason; }
   double cpu_seconds() const { return cpu_seconds_; }
 
   /// Column `c` of the layout as it goes to the file, row by row in the machine's byte order.
@@ -53,8 +58,10 @@ class RunRecord {
   const RecordLayout* layout_;
   std::vector<std::byte> memory_;
   RunStatus status_ = RunStatus::missing;
-  std::uint32_t failure_step_ = 0;
-  std::string failure_reason_;
+  struct Outcome {
+    std::uint32_t step = 0;
+    std::array<char, kFailureReasonBytes> reason{};
+  } outcome_;
   double cpu_seconds_ = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace montecarta {
+
+/// 64-bit XXH3 over bytes handed in piece by piece: tells torn data from whole, not a signature.
+class Fingerprint {
+ public:
+  Fingerprint();
+  ~Fingerprint();
+  Fingerprint(const Fingerprint&) = delete;
+  Fingerprint& operator=(const Fingerprint&) = delete;
+
+  void add(std::span<const std::byte> bytes);
+  /// Of everything added so far; never 0, which means "not there" in a file.
+  std::uint64_t value() const;
+
+ private:
+  alignas(64) std::byte state_[640];
+};
+
+}  // namespace montecarta

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/records/recorder.hpp"
+
+#include <algorithm>
+
+namespace montecarta {
+namespace {
+
+template <class T>
+std::span<T> column(RunRecord& record, std::string_view name) {
+  const auto c = record.layout().find(name);
+  return c ? record.column<T>(*c) : std::span<T>();
+}
+
+/// Row `row` of a column whose rows have `width` elements; empty where the column is.
+template <class T>
+std::span<T> row_of(std::span<T> column, std::size_t row, std::size_t width) {
+  return column.empty() ? column : column.subspan(row * width, width);
+}
+
+void copy(const Pose& pose, std::span<double> row) {
+  if (row.empty()) return;
+  row[0] = pose.x;
+  row[1] = pose.y;
+  row[2] = pose.heading;
+}
+
+template <int N>
+void copy(const Eigen::Matrix<double, N, N>& matrix, std::span<double> row) {
+  if (row.empty()) return;
+  Eigen::Map<Eigen::Matrix<double, N, N, Eigen::RowMajor>>(row.data()) = matrix;
+}
+
+}  // namespace
+
+Recorder::Recorder(RunRecord& record)
+    : layout_(&record.layout()), landmarks_(layout_->find("map_mean") ? layout_->landmarks() : 0) {
+  columns_.pose_mean = column<double>(record, "pose_mean");
+  columns_.pose_covariance = column<double>(record, "pose_covariance");
+  columns_.pose_mean_mixture = column<double>(record, "pose_mean_mixture");
+  columns_.pose_covariance_mixture = column<double>(record, "pose_covariance_mixture");
+  columns_.ess = column<double>(record, "ess");
+  columns_.resampled = column<std::uint8_t>(record, "resampled");
+  columns_.log_likelihood = column<double>(record, "log_likelihood");
+  columns_.nis = column<double>(record, "nis");
+  columns_.nis_dof = column<std::uint32_t>(record, "nis_dof");
+  columns_.numerical_faults = column<std::uint32_t>(record, "numerical_faults");
+  columns_.particle_pose = column<double>(record, "particle_pose");
+  columns_.log_weight = column<double>(record, "log_weight");
+  columns_.map_mean = column<double>(record, "map_mean");
+  columns_.map_covariance = column<double>(record, "map_covariance");
+  columns_.map_seen = column<std::uint8_t>(record, "map_seen");
+  choose_ancestor(record);
+}
+
+void Recorder::choose_ancestor(RunRecord& record) {
+  const auto ancestor = layout_->find("ancestor");
+  if (!ancestor) return;
+  if (layout_->columns()[*ancestor].element == Element::u32) {
+    columns_.ancestor_wide = record.column<std::uint32_t>(*ancestor);
+  } else {
+    columns_.ancestor_narrow = record.column<std::uint16_t>(*ancestor);
+    ancestors_.resize(layout_->particles());
+  }
+}
+
+void Recorder::after_step(const SlamFilter& filter, std::size_t step) {
+  if (!layout_->scans_only()) record_pose(filter, step);
+}
+
+void Recorder::after_scan(const SlamFilter& filter, std::size_t scan) {
+  if (layout_->scans_only()) record_pose(filter, scan);
+  record_report(filter.report(), scan);
+  record_particles(filter, scan);
+  record_map(filter, scan);
+}
+
+void Recorder::record_pose(const SlamFilter& filter, std::size_t row) {
+  const PoseEstimate estimate = filter.estimate();
+  copy(estimate.spread.mean, row_of(columns_.pose_mean, row, 3));
+  copy<3>(estimate.spread.covariance, row_of(columns_.pose_covariance, row, 9));
+  if (!estimate.mixture) return;
+  copy(estimate.mixture->mean, row_of(columns_.pose_mean_mixture, row, 3));
+  copy<3>(estimate.mixture->covariance, row_of(columns_.pose_covariance_mixture, row, 9));
+}
+
+void Recorder::record_report(const ScanReport& report, std::size_t scan) {
+  columns_.ess[scan] = report.ess;
+  columns_.resampled[scan] = report.resampled ? 1 : 0;
+  columns_.log_likelihood[scan] = report.log_likelihood;
+  columns_.nis[scan] = report.nis;
+  columns_.nis_dof[scan] = report.nis_dof;
+  columns_.numerical_faults[scan] = report.numerical_faults;
+}
+
+void Recorder::record_particles(const SlamFilter& filter, std::size_t scan) {
+  const std::size_t n = layout_->particles();
+  ParticleColumns wanted;
+  wanted.pose = row_of(columns_.particle_pose, scan, 3 * n);
+  wanted.log_weight = row_of(columns_.log_weight, scan, n);
+  wanted.ancestor = columns_.ancestor_narrow.empty() ? row_of(columns_.ancestor_wide, scan, n)
+                                                     : std::span(ancestors_);
+  if (wanted.pose.empty() && wanted.log_weight.empty() && wanted.ancestor.empty()) return;
+  filter.particles(wanted);
+  if (columns_.ancestor_narrow.empty()) return;
+  std::ranges::transform(ancestors_, row_of(columns_.ancestor_narrow, scan, n).begin(),
+                         [](std::uint32_t parent) { return static_cast<std::uint16_t>(parent); });
+}
+
+void Recorder::record_map(const SlamFilter& filter, std::size_t scan) {
+  if (landmarks_.empty()) return;
+  std::ranges::fill(landmarks_, std::nullopt);
+  filter.map(landmarks_);
+  for (std::size_t l = 0; l < landmarks_.size(); ++l) {
+    if (!landmarks_[l]) continue;
+    const std::size_t row = scan * landmarks_.size() + l;
+    columns_.map_seen[row] = 1;
+    columns_.map_mean[2 * row] = landmarks_[l]->mean.x();
+    columns_.map_mean[2 * row + 1] = landmarks_[l]->mean.y();
+    copy<2>(landmarks_[l]->covariance, row_of(columns_.map_covariance, row, 4));
+  }
+}
+
+}  // namespace montecarta
