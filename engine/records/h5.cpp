@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/records/h5.hpp"
+
+#include "engine/errors.hpp"
+
+#include <hdf5.h>
+
+#include <algorithm>
+
+namespace montecarta::h5 {
+namespace {
+
+constexpr hsize_t kPage = 4096;          // large datasets begin on a page, for pwrite's sake
+constexpr hsize_t kLarge = 1024 * 1024;  // [byte] what counts as large
+
+static_assert(sizeof(hid_t) == sizeof(std::int64_t));
+
+/// Errors become exceptions here; HDF5's own printed stacks would only frighten.
+void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+Handle file_access() {
+  Handle access(H5Pcreate(H5P_FILE_ACCESS));
+  H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
+  H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);
+  H5Pset_alignment(access.id(), kLarge, kPage);
+  H5Pset_file_locking(access.id(), false, true);
+  return access;
+}
+
+std::string name_of_file(hid_t id) {
+  std::string name(static_cast<std::size_t>(std::max<ssize_t>(H5Fget_name(id, nullptr, 0), 0)),
+                   '\0');
+  H5Fget_name(id, name.data(), name.size() + 1);
+  return name;
+}
+
+std::string name_in_file(hid_t id) {
+  std::string name(static_cast<std::size_t>(std::max<ssize_t>(H5Iget_name(id, nullptr, 0), 0)),
+                   '\0');
+  H5Iget_name(id, name.data(), name.size() + 1);
+  return name == "/" ? "" : name;
+}
+
+herr_t collect_name(hid_t, const char* name, const H5L_info_t*, void* names) {
+  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
+  return 0;
+}
+
+}  // namespace
+
+namespace detail {
+
+std::int64_t check(std::int64_t status, const char* what, const Handle& object,
+                   const std::string& name) {
+  if (status >= 0) return status;
+  const std::string within = name_in_file(object.id()) + (name.empty() ? "" : "/" + name);
+  throw RunError(
+      name_of_file(object.id()) + ": cannot " + what + " '" + within +
+      "' (the file is damaged, not of montecarta, or the disk failed): check it with 'h5ls -r'");
+}
+
+std::int64_t native_type(Element element) {
+  switch (element) {
+    case Element::f64:
+      return H5T_NATIVE_DOUBLE;
+    case Element::u8:
+      return H5T_NATIVE_UINT8;
+    case Element::u16:
+      return H5T_NATIVE_UINT16;
+    case Element::u32:
+      return H5T_NATIVE_UINT32;
+    case Element::u64:
+      return H5T_NATIVE_UINT64;
+  }
+  return H5I_INVALID_HID;
+}
+
+}  // namespace detail
+
+Handle::~Handle() {
+  if (id_ >= 0) H5Idec_ref(id_);
+}
+
+Handle create_file(const std::filesystem::path& path) {
+  silence();
+  Handle creation(H5Pcreate(H5P_FILE_CREATE));
+  H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  H5Pset_attr_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), file_access().id()));
+  if (file.id() < 0)
+    throw RunError(path.string() +
+                   ": cannot create it (HDF5 refused; the disk may be full): check the disk");
+  return file;
+}
+
+Handle open_file(const std::filesystem::path& path) {
+  silence();
+  Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, file_access().id()));
+  if (file.id() < 0)
+    throw StudyError(path.string() +
+                     ": not a readable HDF5 file (another kind, cut short, or damaged): "
+                     "give a file that 'montecarta run' wrote");
+  return file;
+}
+
+void close_file(Handle file) {
+  const std::string name = name_of_file(file.id());
+  const hid_t id = file.id();
+  H5Iinc_ref(id);
+  if (H5Fflush(id, H5F_SCOPE_LOCAL) < 0 || H5Fclose(id) < 0)
+    throw RunError(name +
+                   ": cannot write it out (the disk may be full): free space, then try again");
+}
+
+Handle create_group(const Handle& parent, const std::string& name) {
+  Handle creation(H5Pcreate(H5P_GROUP_CREATE));
+  H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  H5Pset_attr_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  const hid_t group =
+      H5Gcreate2(parent.id(), name.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT);
+  return Handle(detail::check(group, "create group", parent, name));
+}
+
+Handle open_group(const Handle& parent, const std::string& name) {
+  const hid_t group = H5Gopen2(parent.id(), name.c_str(), H5P_DEFAULT);
+  return Handle(detail::check(group, "open group", parent, name));
+}
+
+bool has(const Handle& parent, const std::string& name) {
+  return detail::check(H5Lexists(parent.id(), name.c_str(), H5P_DEFAULT), "look up", parent, name) >
+         0;
+}
+
+std::vector<std::string> members(const Handle& group) {
+  std::vector<std::string> names;
+  herr_t status =
+      H5Literate(group.id(), H5_INDEX_CRT_ORDER, H5_ITER_INC, nullptr, collect_name, &names);
+  if (status < 0) {  // a tool rewrote the file without keeping the order
+    names.clear();
+    status = H5Literate(group.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_name, &names);
+  }
+  detail::check(status, "list", group, "");
+  return names;
+}
+
+}  // namespace montecarta::h5
