@@ -64,24 +64,26 @@ void Recorder::choose_ancestor(RunRecord& record) {
   }
 }
 
-void Recorder::after_step(const SlamFilter& filter, std::size_t step) {
-  if (!layout_->scans_only()) record_pose(filter, step);
+const PoseEstimate* Recorder::after_step(const SlamFilter& filter, std::size_t step) {
+  return layout_->scans_only() ? nullptr : record_pose(filter, step);
 }
 
-void Recorder::after_scan(const SlamFilter& filter, std::size_t scan) {
-  if (layout_->scans_only()) record_pose(filter, scan);
+const PoseEstimate* Recorder::after_scan(const SlamFilter& filter, std::size_t scan) {
+  const PoseEstimate* recorded = layout_->scans_only() ? record_pose(filter, scan) : nullptr;
   record_report(filter.report(), scan);
   record_particles(filter, scan);
   record_map(filter, scan);
+  return recorded;
 }
 
-void Recorder::record_pose(const SlamFilter& filter, std::size_t row) {
-  const PoseEstimate estimate = filter.estimate();
-  copy(estimate.spread.mean, row_of(columns_.pose_mean, row, 3));
-  copy<3>(estimate.spread.covariance, row_of(columns_.pose_covariance, row, 9));
-  if (!estimate.mixture) return;
-  copy(estimate.mixture->mean, row_of(columns_.pose_mean_mixture, row, 3));
-  copy<3>(estimate.mixture->covariance, row_of(columns_.pose_covariance_mixture, row, 9));
+const PoseEstimate* Recorder::record_pose(const SlamFilter& filter, std::size_t row) {
+  estimate_ = filter.estimate();
+  copy(estimate_.spread.mean, row_of(columns_.pose_mean, row, 3));
+  copy<3>(estimate_.spread.covariance, row_of(columns_.pose_covariance, row, 9));
+  if (!estimate_.mixture) return &estimate_;
+  copy(estimate_.mixture->mean, row_of(columns_.pose_mean_mixture, row, 3));
+  copy<3>(estimate_.mixture->covariance, row_of(columns_.pose_covariance_mixture, row, 9));
+  return &estimate_;
 }
 
 void Recorder::record_report(const ScanReport& report, std::size_t scan) {

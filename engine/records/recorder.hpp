@@ -20,10 +20,13 @@ class Recorder {
  public:
   explicit Recorder(RunRecord& record);
 
-  /// Row `step` of the columns over time. Nothing where rows are scans.
-  void after_step(const SlamFilter& filter, std::size_t step);
-  /// Row `scan` of the columns over scans (and over time, where rows are scans).
-  void after_scan(const SlamFilter& filter, std::size_t scan);
+  /// Row `step` of the columns over time. Nothing where rows are scans. Returns the estimate it
+  /// recorded, nullptr where it recorded none, so that the caller can judge it without asking
+  /// twice.
+  const PoseEstimate* after_step(const SlamFilter& filter, std::size_t step);
+  /// Row `scan` of the columns over scans (and over time, where rows are scans). Returns as
+  /// after_step().
+  const PoseEstimate* after_scan(const SlamFilter& filter, std::size_t scan);
 
  private:
   struct Columns {
@@ -35,13 +38,14 @@ class Recorder {
   };
 
   void choose_ancestor(RunRecord& record);
-  void record_pose(const SlamFilter& filter, std::size_t row);
+  const PoseEstimate* record_pose(const SlamFilter& filter, std::size_t row);
   void record_report(const ScanReport& report, std::size_t scan);
   void record_particles(const SlamFilter& filter, std::size_t scan);
   void record_map(const SlamFilter& filter, std::size_t scan);
 
   const RecordLayout* layout_;
   Columns columns_;
+  PoseEstimate estimate_;                 ///< the last one recorded
   std::vector<std::uint32_t> ancestors_;  ///< of one scan, before narrowing to 16 bits
   std::vector<std::optional<LandmarkEstimate>> landmarks_;  ///< of one scan
 };

@@ -8,7 +8,14 @@
 
 namespace montecarta {
 
-RunRecord::RunRecord(const RecordLayout& layout) : layout_(&layout), memory_(layout.bytes()) {
+RunRecord::RunRecord(const RecordLayout& layout)
+    : layout_(&layout), own_memory_(layout.bytes()), memory_(own_memory_) {
+  clear();
+}
+
+RunRecord::RunRecord(const RecordLayout& layout, std::span<std::byte> memory)
+    : layout_(&layout), memory_(memory) {
+  expect(memory.size() >= layout.bytes(), "a record was lent too little memory");
   clear();
 }
 

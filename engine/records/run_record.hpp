@@ -17,11 +17,17 @@ namespace montecarta {
 /// Width of failure_reason in the file: fixed, so that a run's reason has its own place.
 inline constexpr std::size_t kFailureReasonBytes = 128;
 
-/// Memory of one run of one cell. Made once by each worker and cleared from run to run; allocates
-/// nothing after construction. The layout must outlive it.
+/// One run of one cell. Made once by each worker and cleared from run to run; allocates nothing
+/// after construction. The layout must outlive it.
 class RunRecord {
  public:
+  /// In memory of its own.
   explicit RunRecord(const RecordLayout& layout);
+  /// In memory that is lent, at least layout.bytes() aligned for doubles: a worker's records of all
+  /// cells share one piece. Whoever lent it in between must clear() first.
+  RunRecord(const RecordLayout& layout, std::span<std::byte> memory);
+  RunRecord(RunRecord&&) = default;
+  RunRecord& operator=(RunRecord&&) = default;
 
   /// Forgets the run: numbers become NaN, counts and flags 0, status missing.
   void clear();
@@ -56,7 +62,8 @@ class RunRecord {
   static void expect_element(const Column& column, std::size_t size);
 
   const RecordLayout* layout_;
-  std::vector<std::byte> memory_;
+  std::vector<std::byte> own_memory_;
+  std::span<std::byte> memory_;
   RunStatus status_ = RunStatus::missing;
   struct Outcome {
     std::uint32_t step = 0;
