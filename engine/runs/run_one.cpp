@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/runs/run_one.hpp"
+
+#include "engine/runs/cpu_clock.hpp"
+
+#include <cmath>
+#include <exception>
+#include <new>
+#include <string_view>
+
+namespace montecarta {
+namespace {
+
+bool is_finite(const Pose& pose) {
+  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.heading);
+}
+
+/// What of an estimate is not finite, in words; empty where all is well or nothing was estimated.
+std::string_view flaw_of(const PoseEstimate* estimate) {
+  if (estimate == nullptr) return {};
+  if (!is_finite(estimate->spread.mean)) return "estimated pose is not finite";
+  if (!estimate->spread.covariance.allFinite()) return "pose covariance is not finite";
+  if (!estimate->mixture) return {};
+  if (!is_finite(estimate->mixture->mean)) return "estimated pose (mixture) is not finite";
+  if (!estimate->mixture->covariance.allFinite()) return "pose covariance (mixture) is not finite";
+  return {};
+}
+
+/// The run as it goes from step to step; what it learns is told by `step` and `scan`.
+class Walk {
+ public:
+  Walk(const RunConditions& conditions, SlamFilter& filter, Recorder& recorder,
+       std::size_t particles)
+      : conditions_(conditions), filter_(filter), recorder_(recorder), particles_(particles) {}
+
+  void start() { filter_.start(conditions_.itinerary.start); }
+  bool arrived() const { return step_ == conditions_.itinerary.steps(); }
+  std::uint32_t step() const { return step_; }
+  void next() { ++step_; }
+
+  /// One step; returns what is wrong with its estimate, empty if nothing.
+  std::string_view take_step() {
+    const Itinerary& itinerary = conditions_.itinerary;
+    const StepContext context(conditions_.seed, conditions_.run, step_,
+                              conditions_.spare_threads.lend(particles_));
+    filter_.predict(context, conditions_.drive.controls[step_], itinerary.duration(step_));
+    while (scan_ < itinerary.scans() && itinerary.scan_step[scan_] == step_) {
+      filter_.update(context, conditions_.drive.scan(scan_));
+      const std::string_view flaw = flaw_of(recorder_.after_scan(filter_, scan_++));
+      if (!flaw.empty()) return flaw;
+    }
+    return flaw_of(recorder_.after_step(filter_, step_));
+  }
+
+ private:
+  const RunConditions& conditions_;
+  SlamFilter& filter_;
+  Recorder& recorder_;
+  std::size_t particles_;
+  std::uint32_t step_ = 0;
+  std::size_t scan_ = 0;
+};
+
+}  // namespace
+
+RunEnd run_one(const RunConditions& conditions, SlamFilter& filter, Recorder& recorder,
+               RunRecord& record) {
+  record.clear();
+  const CpuClock clock;
+  Walk walk(conditions, filter, recorder, record.layout().particles());
+  try {
+    for (walk.start(); !walk.arrived(); walk.next()) {
+      if (conditions.stop.made()) return RunEnd::dropped;
+      const std::string_view flaw = walk.take_step();
+      if (flaw.empty()) continue;
+      record.mark_failed(walk.step(), flaw, clock.seconds());
+      return RunEnd::recorded;
+    }
+    record.mark_complete(clock.seconds());
+  } catch (const std::bad_alloc&) {
+    throw;  // says something of the machine, not of the filter: no result of the study
+  } catch (const std::exception& error) {
+    record.mark_failed(walk.step(), error.what(), clock.seconds());
+  } catch (...) {
+    record.mark_failed(walk.step(), "an exception that is no std::exception", clock.seconds());
+  }
+  return RunEnd::recorded;
+}
+
+}  // namespace montecarta

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/runs/slam_filter.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace montecarta {
+
+/// What goes wrong with a scripted filter, in one run or in every run, at one step.
+struct Mishap {
+  enum class Kind { throws, pose_is_nan, covariance_is_infinite };
+  Kind kind = Kind::throws;
+  std::optional<std::uint64_t> run{};  ///< nullopt: every run
+  std::uint32_t step = 17;
+};
+
+/// A filter that estimates nothing: its particles wander by its own random streams, so that every
+/// column has something to say and each bit depends on (seed, run, step, particle) and on the drive
+/// it was given.
+class ScriptedFilter : public SlamFilter {
+ public:
+  struct Script {
+    std::size_t particles = 4;
+    std::size_t landmarks = 3;
+    std::optional<Mishap> mishap{};
+    std::chrono::microseconds pace{0};  ///< pause at every step
+  };
+
+  explicit ScriptedFilter(Script script) : script_(script), particles_(script.particles) {}
+
+  void start(const Pose& start) override {
+    std::ranges::fill(particles_, start);
+    report_ = {};
+    seen_ = 0;
+    broken_ = false;
+  }
+
+  void predict(const StepContext& context, const Control& control, double duration) override {
+    if (script_.pace.count() > 0) std::this_thread::sleep_for(script_.pace);
+    context.parallel_for(particles_.size(), [&](std::size_t i) {
+      RngStream draw = context.stream(Draw::motion_sample, static_cast<std::uint32_t>(i));
+      Pose& pose = particles_[i];
+      pose.heading = wrap(pose.heading + duration * (control.steer + 0.01 * draw.normal()));
+      pose.x += duration * control.speed * std::cos(pose.heading);
+      pose.y += duration * control.speed * std::sin(pose.heading) + 0.01 * draw.normal();
+    });
+    meet_mishap(context);
+  }
+
+  void update(const StepContext& context, Scan scan) override {
+    RngStream draw = context.stream(Draw::resampling, 0);
+    report_.ess = static_cast<double>(particles_.size()) * draw.uniform();
+    report_.resampled = draw.uniform() < 0.5;
+    report_.log_likelihood = draw.normal();
+    report_.nis = 0.0;
+    for (const Detection& detection : scan) report_.nis += detection.range;
+    report_.nis_dof = static_cast<std::uint32_t>(2 * scan.size());
+    seen_ = std::min(script_.landmarks, seen_ + scan.size());
+  }
+
+  PoseEstimate estimate() const override {
+    PoseEstimate estimate;
+    for (const Pose& pose : particles_) {
+      estimate.spread.mean.x += pose.x / static_cast<double>(particles_.size());
+      estimate.spread.mean.y += pose.y / static_cast<double>(particles_.size());
+    }
+    estimate.spread.mean.heading = particles_.front().heading;
+    estimate.spread.covariance = Eigen::Matrix3d::Identity();
+    if (broken_) break_estimate(estimate.spread);
+    estimate.mixture = estimate.spread;
+    return estimate;
+  }
+
+  const ScanReport& report() const override { return report_; }
+
+  void particles(const ParticleColumns& columns) const override {
+    for (std::size_t i = 0; i < particles_.size(); ++i) {
+      if (!columns.pose.empty()) {
+        columns.pose[3 * i] = particles_[i].x;
+        columns.pose[3 * i + 1] = particles_[i].y;
+        columns.pose[3 * i + 2] = particles_[i].heading;
+      }
+      if (!columns.log_weight.empty())
+        columns.log_weight[i] = -std::log(static_cast<double>(particles_.size()));
+      if (!columns.ancestor.empty())
+        columns.ancestor[i] = static_cast<std::uint32_t>(report_.resampled ? i / 2 : i);
+    }
+  }
+
+  void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override {
+    for (std::size_t l = 0; l < std::min(seen_, landmarks.size()); ++l)
+      landmarks[l] = {{particles_.front().x, static_cast<double>(l)}, Eigen::Matrix2d::Identity()};
+  }
+
+ private:
+  void meet_mishap(const StepContext& context) {
+    const auto& mishap = script_.mishap;
+    if (!mishap || context.step() != mishap->step) return;
+    if (mishap->run && *mishap->run != context.run()) return;
+    if (mishap->kind == Mishap::Kind::throws)
+      throw std::runtime_error("scripted mishap of run " + std::to_string(context.run()));
+    broken_ = true;
+  }
+
+  void break_estimate(PoseMoments& moments) const {
+    if (script_.mishap->kind == Mishap::Kind::pose_is_nan)
+      moments.mean.y = std::numeric_limits<double>::quiet_NaN();
+    else
+      moments.covariance(1, 1) = std::numeric_limits<double>::infinity();
+  }
+
+  Script script_;
+  std::vector<Pose> particles_;
+  ScanReport report_;
+  std::size_t seen_ = 0;
+  bool broken_ = false;
+};
+
+}  // namespace montecarta

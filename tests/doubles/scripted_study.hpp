@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/runs/plan.hpp"
+#include "tests/doubles/scripted_drives.hpp"
+#include "tests/doubles/scripted_filter.hpp"
+
+#include <string>
+#include <utility>
+
+namespace montecarta {
+
+/// A cell whose filter follows a script.
+inline Cell scripted_cell(std::string label, const ScriptedFilter::Script& script) {
+  Cell cell;
+  cell.label = std::move(label);
+  cell.filter = "scripted";
+  cell.long_name = "Scripted, " + std::to_string(script.particles) + " particles";
+  cell.particles = script.particles;
+  cell.mixture = true;
+  cell.landmarks = script.landmarks;
+  cell.settings = {{"particles", std::to_string(script.particles)}};
+  cell.make_filter = [script] { return std::make_unique<ScriptedFilter>(script); };
+  return cell;
+}
+
+/// A small study of scripted drives with every column; the caller adds cells.
+inline StudyPlan scripted_study(std::uint64_t runs, std::size_t steps) {
+  StudyPlan plan;
+  plan.name = "scripted";
+  plan.title = "A study that follows a script";
+  plan.seed = 7;
+  plan.runs = runs;
+  plan.last_run = runs;
+  plan.columns = {.particles = true, .map = true};
+  plan.drives = std::make_shared<ScriptedDrives>(steps, plan.seed);
+  plan.scenario = {{"kind", "scripted"}};
+  plan.resolved_text = "[study]\nname = scripted\nruns = " + std::to_string(runs) + "\n";
+  return plan;
+}
+
+}  // namespace montecarta
