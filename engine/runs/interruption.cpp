@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/runs/interruption.hpp"
+
+#include "engine/errors.hpp"
+
+#include <atomic>
+#include <unistd.h>
+
+namespace montecarta {
+namespace {
+
+// A signal handler can reach nothing but globals.
+std::atomic<int> received{0};
+std::atomic<bool> installed{false};
+static_assert(std::atomic<int>::is_always_lock_free, "a handler may not wait for a lock");
+
+extern "C" void note_signal(int signal) {
+  int none = 0;
+  if (!received.compare_exchange_strong(none, signal)) _exit(128 + signal);
+}
+
+}  // namespace
+
+Interruption::Interruption() {
+  expect(!installed.exchange(true), "two interruptions at once");
+  received = 0;
+  struct sigaction action {};
+  action.sa_handler = note_signal;
+  action.sa_flags = SA_RESTART;  // so that no read or write in flight is cut short
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, &before_int_);
+  sigaction(SIGTERM, &action, &before_term_);
+}
+
+Interruption::~Interruption() {
+  sigaction(SIGINT, &before_int_, nullptr);
+  sigaction(SIGTERM, &before_term_, nullptr);
+  installed = false;
+}
+
+int Interruption::signal() const { return received; }
+
+}  // namespace montecarta
