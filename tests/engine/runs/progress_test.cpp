@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/runs/progress.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdlib>
+#include <fcntl.h>
+#include <memory>
+#include <sys/ioctl.h>
+#include <thread>
+#include <unistd.h>
+
+namespace montecarta {
+namespace {
+
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+std::string text_of(std::FILE* file) {
+  std::rewind(file);
+  std::array<char, 4096> text{};
+  return {text.data(), std::fread(text.data(), 1, text.size(), file)};
+}
+
+/// What a study of `total` runs, all of which end one by one, shows in a file.
+std::string shown_of(ProgressStyle style, std::uint64_t total) {
+  const File file(std::tmpfile(), std::fclose);
+  Progress progress(style, {.total = total}, file.get());
+  for (std::uint64_t run = 0; run < total; ++run) {
+    progress.run_ended(run == 0 ? RunStatus::failed : RunStatus::complete);
+    progress.show();
+  }
+  progress.finish();
+  return text_of(file.get());
+}
+
+TEST(Progress, WritesAPlainLineAtEveryTenthOfTheStudy) {
+  const std::string shown = shown_of(ProgressStyle::automatic, 100);
+  EXPECT_EQ(std::ranges::count(shown, '\n'), 11);
+  EXPECT_THAT(shown, StartsWith(" 10 %  10/100 runs, 1 failed, "));
+  EXPECT_THAT(shown, HasSubstr("\n 50 %  50/100 runs"));
+  EXPECT_THAT(shown, testing::Not(HasSubstr("\r")));
+}
+
+TEST(Progress, IsSilentWhenNobodyWantsIt) { EXPECT_EQ(shown_of(ProgressStyle::none, 100), ""); }
+
+TEST(Progress, CountsFromManyThreads) {
+  Progress progress(ProgressStyle::none, {.done = 5, .failed = 1, .total = 4006, .earlier = 6});
+  const auto end_runs = [&] {
+    for (int i = 0; i < 1000; ++i) progress.run_ended(RunStatus::complete);
+    for (int i = 0; i < 1000; ++i) progress.run_ended(RunStatus::failed);
+  };
+  std::thread other(end_runs);
+  end_runs();
+  other.join();
+  EXPECT_EQ(progress.counts().done, 2005U);
+  EXPECT_EQ(progress.counts().failed, 2001U);
+}
+
+/// A terminal 30 characters wide, as the program sees one, and the other end of its line.
+class Terminal {
+ public:
+  Terminal() : outside_(posix_openpt(O_RDWR | O_NOCTTY)) {
+    grantpt(outside_);
+    unlockpt(outside_);
+    inside.reset(std::fopen(ptsname(outside_), "w"));
+    const winsize size{.ws_row = 24, .ws_col = 30, .ws_xpixel = 0, .ws_ypixel = 0};
+    ioctl(outside_, TIOCSWINSZ, &size);
+  }
+  ~Terminal() { close(outside_); }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  std::string seen() const {
+    std::array<char, 4096> text{};
+    const ssize_t length = read(outside_, text.data(), text.size());
+    return {text.data(), static_cast<std::size_t>(length)};
+  }
+  File inside{nullptr, std::fclose};
+
+ private:
+  int outside_;
+};
+
+TEST(Progress, RedrawsOneLineOnATerminalWithinItsWidth) {
+  ::setenv("TERM", "xterm", 1);
+  const Terminal terminal;
+  Progress progress(ProgressStyle::automatic, {.total = 1000}, terminal.inside.get());
+  for (int i = 0; i < 1000; ++i) {
+    progress.run_ended(RunStatus::complete);
+    progress.show();  // a thousand times within a tenth of a second: not drawn
+  }
+  progress.finish();
+  const std::string seen = terminal.seen();
+  EXPECT_THAT(seen, StartsWith("\r100 %  1000/1000 runs"));
+  EXPECT_THAT(seen, EndsWith("\x1b[K\r\n"));
+  EXPECT_EQ(std::ranges::count(seen, '\x1b'), 1) << seen;
+  EXPECT_EQ(seen.find('\x1b'), 1U + 29U) << "one column stays free";
+}
+
+}  // namespace
+}  // namespace montecarta
