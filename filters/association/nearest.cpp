@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/association/nearest.hpp"
+
+#include "engine/numbers/angle.hpp"
+
+#include <cmath>
+
+namespace montecarta {
+
+Pairing judge(const NearestSearch& search, const AssociationSettings& settings) {
+  if (search.least_cost < std::numeric_limits<double>::infinity()) {
+    return {Verdict::matched, search.landmark, search.least_cost};
+  }
+  if (search.least_distance > settings.new_gate) return {.verdict = Verdict::fresh};
+  return {.verdict = Verdict::ignored};
+}
+
+void exclude_rivals(std::span<Pairing> pairings) {
+  for (std::size_t later = 1; later < pairings.size(); ++later) {
+    if (pairings[later].verdict != Verdict::matched) continue;
+    for (std::size_t k = 0; k < later; ++k) {
+      Pairing& earlier = pairings[k];
+      if (earlier.verdict != Verdict::matched || earlier.landmark != pairings[later].landmark) {
+        continue;
+      }
+      Pairing& loser = pairings[later].cost < earlier.cost ? earlier : pairings[later];
+      loser.verdict = Verdict::ignored;
+      break;  // at most one earlier detection still held this landmark
+    }
+  }
+}
+
+double log_new_density(const AssociationSettings& settings, const Belief& belief) {
+  const double log_sqrt_det_s = std::log(2.0 * belief.sigma_range * belief.sigma_bearing);
+  return -0.5 * settings.gate - std::log(kTwoPi) - log_sqrt_det_s + settings.log_new_density_offset;
+}
+
+}  // namespace montecarta
