@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/factory.hpp"
 
+#include "filters/ekf_slam/ekf_slam.hpp"
+
 namespace montecarta {
 
-std::span<const FilterKind> filter_kinds() { return {}; }
+std::span<const FilterKind> filter_kinds() {
+  static const std::vector<FilterKind> kinds{
+      ekf_slam_kind(),
+  };
+  return kinds;
+}
 
 }  // namespace montecarta

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/ekf_slam/ekf_slam.hpp"
+
+#include "tests/filters/reference/textbook_ekf_slam.hpp"
+#include "tests/filters/small_world.hpp"
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+namespace montecarta {
+namespace {
+
+FilterSetup setup_for(std::size_t landmarks, Association kind = Association::known) {
+  FilterSetup setup{
+      .belief = {}, .association = {}, .options = FilterOptions({}), .landmarks = landmarks};
+  setup.association.kind = kind;
+  return setup;
+}
+
+/// The textbook filter behind the signature of a SlamFilter.
+struct TextbookRunner {
+  reference::TextbookEkfSlam filter{Belief{}};
+  void start(const Pose& pose) { filter.start(pose); }
+  void predict(const StepContext&, const Control& control, double duration) {
+    filter.predict(control, duration);
+  }
+  void update(const StepContext&, Scan scan) { filter.update(scan); }
+};
+
+double nees(const PoseMoments& moments, const Pose& truth) {
+  const Eigen::Vector3d error = boxminus(truth, moments.mean);
+  return error.dot(moments.covariance.ldlt().solve(error));
+}
+
+Pose turned(const Pose& pose, double turn) {
+  const Direction<double> u = direction_of(turn);
+  return {pose.x * u.cosine - pose.y * u.sine + 11.0, pose.x * u.sine + pose.y * u.cosine - 7.0,
+          wrap(pose.heading + turn)};
+}
+
+TEST(EkfSlam, EqualsTheTextbookFilter) {
+  const SmallWorld world = small_world({.seed = 5, .landmarks = 21, .scans = 250});
+  std::vector<Eigen::VectorXd> means;
+  std::vector<Eigen::MatrixXd> covariances;
+  TextbookRunner textbook;
+  drive_through(textbook, world, {}, [&](std::size_t) {
+    means.push_back(textbook.filter.mean);
+    covariances.push_back(textbook.filter.covariance);
+  });
+  const auto filter = make_ekf_slam(setup_for(21));
+  std::vector<std::optional<LandmarkEstimate>> map(21);
+  drive_through(*filter, world, {}, [&](std::size_t s) {
+    const PoseMoments& pose = filter->estimate().spread;
+    const Pose expected{means[s](0), means[s](1), means[s](2)};
+    EXPECT_LT(boxminus(pose.mean, expected).norm(), 1e-9) << "scan " << s;
+    EXPECT_LT((pose.covariance - covariances[s].topLeftCorner<3, 3>()).norm(), 1e-9);
+    filter->map(map);
+  });
+  for (std::int32_t k = 0; k < 21; ++k) {
+    const Eigen::Index row = textbook.filter.row_of(k);
+    ASSERT_EQ(row >= 0, map[static_cast<std::size_t>(k)].has_value()) << "landmark " << k;
+    if (row < 0) continue;
+    const LandmarkEstimate& landmark = *map[static_cast<std::size_t>(k)];
+    EXPECT_EQ(landmark.covariance, landmark.covariance.transpose());
+    EXPECT_LT((landmark.mean - textbook.filter.mean.segment<2>(row)).norm(), 1e-9);
+    EXPECT_LT((landmark.covariance - textbook.filter.covariance.block<2, 2>(row, row)).norm(),
+              1e-9);
+  }
+}
+
+TEST(EkfSlam, TurningAndShiftingTheWorldLeavesNeesUnchanged) {
+  const SmallWorld world = small_world({.seed = 6, .scans = 120});
+  const double turn = 2.5;
+  std::vector<PoseMoments> there;
+  const auto filter = make_ekf_slam(setup_for(20));
+  drive_through(*filter, world, turned({}, turn),
+                [&](std::size_t) { there.push_back(filter->estimate().spread); });
+  drive_through(*filter, world, {}, [&](std::size_t s) {
+    const PoseMoments here = filter->estimate().spread;
+    const Pose& truth = world.drive.truth[world.itinerary.scan_step[s]];
+    EXPECT_LT(boxminus(there[s].mean, turned(here.mean, turn)).norm(), 1e-9) << "scan " << s;
+    EXPECT_NEAR(nees(there[s], turned(truth, turn)), nees(here, truth), 1e-9 * nees(here, truth));
+  });
+}
+
+TEST(EkfSlam, ARestartLeavesNothingBehind) {
+  const SmallWorld world = small_world({.seed = 7});
+  const SmallWorld other = small_world({.seed = 8});
+  const auto filter = make_ekf_slam(setup_for(20));
+  std::vector<PoseMoments> first;
+  drive_through(*filter, world, {},
+                [&](std::size_t) { first.push_back(filter->estimate().spread); });
+  drive_through(*filter, other, {1.0, 2.0, 3.0}, [](std::size_t) {});
+  drive_through(*filter, world, {}, [&](std::size_t s) {
+    const PoseMoments again = filter->estimate().spread;
+    EXPECT_EQ(boxminus(again.mean, first[s].mean).norm(), 0.0) << "scan " << s;
+    EXPECT_EQ(again.covariance, first[s].covariance) << "scan " << s;
+  });
+}
+
+TEST(EkfSlam, RoomForLandmarksIsNoLimit) {
+  const SmallWorld world = small_world({.seed = 9, .landmarks = 37});
+  const auto roomy = make_ekf_slam(setup_for(37));
+  const auto tight = make_ekf_slam(setup_for(1));
+  std::vector<Pose> poses;
+  drive_through(*roomy, world, {},
+                [&](std::size_t) { poses.push_back(roomy->estimate().spread.mean); });
+  drive_through(*tight, world, {}, [&](std::size_t s) {
+    EXPECT_EQ(boxminus(tight->estimate().spread.mean, poses[s]).norm(), 0.0) << "scan " << s;
+  });
+}
+
+TEST(EkfSlam, NearestNeighbourFindsTheTrueLandmarksWhereTheyStandApart) {
+  SmallWorldSettings settings{.seed = 10, .landmarks = 8, .scans = 200};
+  settings.noise.sigma_steer = 0.01;
+  const SmallWorld world = small_world(settings);
+  FilterSetup setup = setup_for(8, Association::nearest);
+  setup.belief.sigma_steer = 0.01;
+  setup.association.gate = 25.0;  // nothing true is beyond it
+  const auto nearest = make_ekf_slam(setup);
+  setup.association.kind = Association::known;
+  const auto known = make_ekf_slam(setup);
+  std::vector<Pose> poses;
+  drive_through(*known, world, {},
+                [&](std::size_t) { poses.push_back(known->estimate().spread.mean); });
+  drive_through(*nearest, world, {}, [&](std::size_t s) {
+    EXPECT_LT(boxminus(nearest->estimate().spread.mean, poses[s]).norm(), 1e-12) << "scan " << s;
+  });
+}
+
+TEST(EkfSlam, TwoDetectionsNeverShareALandmark) {
+  const auto filter = make_ekf_slam(setup_for(1, Association::nearest));
+  const StepContext context(1, 0, 0, Parallel::serial());
+  const Detection alone{10.0, 0.3, 0};
+  const std::vector<Detection> rivals{{10.2, 0.3, 0}, {10.1, 0.3, 0}};
+  filter->start({});
+  filter->update(context, Scan(&alone, 1));
+  filter->update(context, rivals);
+  EXPECT_EQ(filter->report().nis_dof, 2u);
+  EXPECT_NEAR(filter->report().nis, 0.5, 1e-9);  // of the nearer: (0.1 m)^2 / (2 (0.1 m)^2)
+}
+
+TEST(EkfSlam, ReportsWhatItMatched) {
+  const SmallWorld world = small_world({.seed = 11});
+  const auto filter = make_ekf_slam(setup_for(20));
+  double nis = 0.0;
+  std::uint32_t dof = 0;
+  drive_through(*filter, world, {}, [&](std::size_t s) {
+    const ScanReport& report = filter->report();
+    EXPECT_LE(report.nis_dof, 2 * world.drive.scan(s).size());
+    EXPECT_EQ(report.numerical_faults, 0u);
+    EXPECT_TRUE(s > 0 || report.nis_dof == 0);
+    nis += report.nis;
+    dof += report.nis_dof;
+  });
+  // A chi-square sum of so many degrees of freedom has the standard deviation sqrt(2 dof): five of
+  // them.
+  EXPECT_NEAR(nis, dof, 5.0 * std::sqrt(2.0 * dof));
+}
+
+TEST(EkfSlam, LikelihoodIsTheGaussianOfTheInnovation) {
+  const auto filter = make_ekf_slam(setup_for(1));
+  const StepContext context(1, 0, 0, Parallel::serial());
+  const Detection first{10.0, 0.3, 0};
+  const Detection second{10.1, 0.31, 0};
+  filter->start({});
+  filter->update(context, Scan(&first, 1));
+  filter->update(context, Scan(&second, 1));
+  // Known pose: the landmark's covariance seen from where it was placed is R, so S = 2 R.
+  const Belief belief;
+  const double d2 =
+      std::pow(0.1 / belief.sigma_range, 2) / 2 + std::pow(0.01 / belief.sigma_bearing, 2) / 2;
+  EXPECT_NEAR(filter->report().nis, d2, 1e-12);
+  EXPECT_NEAR(filter->report().log_likelihood,
+              -0.5 * d2 - std::log(2.0 * M_PI * 2.0 * belief.sigma_range * belief.sigma_bearing),
+              1e-12);
+}
+
+TEST(EkfSlam, LeavesOutClutterAndLandmarksTooNearForABearing) {
+  const auto filter = make_ekf_slam(setup_for(2));
+  const StepContext context(1, 0, 0, Parallel::serial());
+  const std::vector<Detection> scan{{0.0, 0.0, 0}, {5.0, 0.1, Detection::kClutter}};
+  filter->start({});
+  filter->update(context, scan);  // gives birth to a landmark where the vehicle stands
+  filter->update(context, scan);
+  EXPECT_EQ(filter->report().nis_dof, 0u);
+  EXPECT_EQ(boxminus(filter->estimate().spread.mean, Pose{}).norm(), 0.0);
+  std::vector<std::optional<LandmarkEstimate>> map(2);
+  filter->map(map);
+  EXPECT_TRUE(map[0].has_value());
+  EXPECT_FALSE(map[1].has_value());
+}
+
+TEST(EkfSlam, CountsAnInnovationThatIsNotPositiveDefinite) {
+  FilterSetup setup = setup_for(1);
+  setup.belief.sigma_range = setup.belief.sigma_bearing = 0.0;
+  const auto filter = make_ekf_slam(setup);
+  const StepContext context(1, 0, 0, Parallel::serial());
+  const Detection detection{10.0, 0.3, 0};
+  filter->start({});
+  filter->update(context, Scan(&detection, 1));
+  filter->update(context, Scan(&detection, 1));
+  EXPECT_EQ(filter->report().numerical_faults, 1u);
+  EXPECT_EQ(filter->report().nis_dof, 0u);
+}
+
+}  // namespace
+}  // namespace montecarta

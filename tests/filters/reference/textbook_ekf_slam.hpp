@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/factory.hpp"
+#include "filters/models/eigen_jacobians.hpp"
+
+#include <Eigen/Dense>
+
+#include <vector>
+
+namespace montecarta::reference {
+
+/// EKF-SLAM with full matrices at every step, known association; as the textbook has it and as
+/// slow.
+class TextbookEkfSlam {
+ public:
+  explicit TextbookEkfSlam(const Belief& belief) : belief_(belief) {}
+
+  void start(const Pose& start) {
+    mean = Eigen::Vector3d(start.x, start.y, start.heading);
+    covariance = Eigen::MatrixXd::Zero(3, 3);
+    identities.clear();
+  }
+
+  void predict(const Control& control, double duration) {
+    const auto step = linearised_move(pose(), control, duration, belief_.wheelbase);
+    Eigen::MatrixXd F = Eigen::MatrixXd::Identity(mean.size(), mean.size());
+    F.topLeftCorner<3, 3>() = pose_jacobian(step.jacobians);
+    Eigen::MatrixXd G = Eigen::MatrixXd::Zero(mean.size(), 2);
+    G.topRows<3>() = control_jacobian(step.jacobians);
+    const Eigen::Vector2d Q(std::pow(belief_.sigma_speed, 2), std::pow(belief_.sigma_steer, 2));
+    mean.head<3>() << step.pose.x, step.pose.y, step.pose.heading;
+    covariance = (F * covariance * F.transpose() + G * Q.asDiagonal() * G.transpose()).eval();
+  }
+
+  void update(Scan scan) {
+    std::vector<Detection> fresh;
+    for (const Detection& detection : scan) {
+      const Eigen::Index row = row_of(detection.identity);
+      if (row < 0) {
+        fresh.push_back(detection);
+      } else {
+        absorb(detection, row);
+      }
+    }
+    for (const Detection& detection : fresh) append(detection);
+  }
+
+  Pose pose() const { return {mean(0), mean(1), mean(2)}; }
+  /// First of the two rows of a landmark, -1 where it is not in the map.
+  Eigen::Index row_of(std::int32_t identity) const {
+    for (std::size_t k = 0; k < identities.size(); ++k) {
+      if (identities[k] == identity) return 3 + 2 * static_cast<Eigen::Index>(k);
+    }
+    return -1;
+  }
+
+  Eigen::VectorXd mean;  ///< pose, then landmarks in order of birth
+  Eigen::MatrixXd covariance;
+  std::vector<std::int32_t> identities;
+
+ private:
+  Eigen::Matrix2d R() const {
+    return Eigen::Vector2d(std::pow(belief_.sigma_range, 2), std::pow(belief_.sigma_bearing, 2))
+        .asDiagonal();
+  }
+
+  void absorb(const Detection& detection, Eigen::Index row) {
+    const auto at = linearised_sight(pose(), Point{mean(row), mean(row + 1)});
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(2, mean.size());
+    H.leftCols<3>() = pose_jacobian(at);
+    H.middleCols<2>(row) = landmark_jacobian(at);
+    const Eigen::Matrix2d S = H * covariance * H.transpose() + R();
+    const Eigen::MatrixXd K = S.ldlt().solve(H * covariance).transpose();
+    mean += K * to_vector(residual(sight_of(detection), at.sight));
+    mean(2) = wrap(mean(2));
+    const Eigen::MatrixXd I_KH = Eigen::MatrixXd::Identity(mean.size(), mean.size()) - K * H;
+    covariance = (I_KH * covariance * I_KH.transpose() + K * R() * K.transpose()).eval();
+  }
+
+  void append(const Detection& detection) {
+    const auto placed = linearised_place(pose(), sight_of(detection));
+    const Eigen::Index n = mean.size();
+    Eigen::MatrixXd G = Eigen::MatrixXd::Zero(n + 2, n);
+    G.topRows(n).setIdentity();
+    G.bottomLeftCorner<2, 3>() = pose_jacobian(placed);
+    Eigen::MatrixXd grown = G * covariance * G.transpose();
+    const Eigen::Matrix2d Gz = sight_jacobian(placed);
+    grown.bottomRightCorner<2, 2>() += Gz * R() * Gz.transpose();
+    covariance = grown;
+    mean.conservativeResize(n + 2);
+    mean.tail<2>() = to_vector(placed.point);
+    identities.push_back(detection.identity);
+  }
+
+  Belief belief_;
+};
+
+}  // namespace montecarta::reference

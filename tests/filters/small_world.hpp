@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/random/stream.hpp"
+#include "engine/runs/drive.hpp"
+#include "engine/runs/parallel.hpp"
+#include "engine/runs/slam_filter.hpp"
+#include "filters/factory.hpp"
+#include "filters/models/ackermann.hpp"
+#include "filters/models/range_bearing.hpp"
+
+#include <cmath>
+
+namespace montecarta {
+
+/// A world for tests of filters: a vehicle on a circle of 27 m among landmarks, with noise on its
+/// motion.
+struct SmallWorld {
+  Itinerary itinerary;
+  Drive drive;
+  std::uint64_t seed = 1;
+};
+
+struct SmallWorldSettings {
+  std::uint64_t seed = 1;
+  std::size_t landmarks = 20;
+  std::size_t scans = 40;
+  std::size_t steps_per_scan = 8;
+  double max_range = 30.0;  ///< [m], in front only
+  Belief noise = {};        ///< of the truth
+};
+
+inline void place_landmarks(const SmallWorldSettings& settings, SmallWorld& world) {
+  for (std::uint32_t k = 0; k < settings.landmarks; ++k) {
+    RngStream draw({settings.seed, 0, 0, k, Draw::world_landmark});
+    const double angle = kTwoPi * draw.uniform();
+    const double radius = 10.0 + 30.0 * draw.uniform();
+    world.itinerary.landmarks.emplace_back(radius * std::cos(angle),
+                                           27.0 + radius * std::sin(angle));
+  }
+}
+
+inline void look_around(const SmallWorldSettings& settings, std::uint32_t step, const Pose& truth,
+                        SmallWorld& world) {
+  for (std::uint32_t k = 0; k < settings.landmarks; ++k) {
+    const Eigen::Vector2d& f = world.itinerary.landmarks[k];
+    const auto sight = predicted_sight(truth, Point{f.x(), f.y()});
+    if (sight.range >= settings.max_range || std::abs(sight.bearing) >= kPi / 2.0) continue;
+    RngStream draw({settings.seed, 0, step, k, Draw::world_detection});
+    const double range = sight.range + settings.noise.sigma_range * draw.normal();
+    const double bearing = wrap(sight.bearing + settings.noise.sigma_bearing * draw.normal());
+    world.drive.detections.push_back({range, bearing, static_cast<std::int32_t>(k)});
+  }
+  world.drive.scan_begin.push_back(static_cast<std::uint32_t>(world.drive.detections.size()));
+}
+
+inline SmallWorld small_world(const SmallWorldSettings& settings) {
+  SmallWorld world{.itinerary = {}, .drive = {}, .seed = settings.seed};
+  place_landmarks(settings, world);
+  world.drive.scan_begin.push_back(0);
+  Pose truth = world.itinerary.start;
+  const auto n_steps = static_cast<std::uint32_t>(settings.scans * settings.steps_per_scan);
+  for (std::uint32_t step = 0; step < n_steps; ++step) {
+    RngStream draw({settings.seed, 0, step, 0, Draw::world_control});
+    const Control control{3.0, 0.15};
+    const double speed = control.speed + settings.noise.sigma_speed * draw.normal();
+    const double steer = control.steer + settings.noise.sigma_steer * draw.normal();
+    truth = move(truth, speed, steer, 0.025, settings.noise.wheelbase);
+    world.itinerary.step_time.push_back(0.025 * (step + 1));
+    world.drive.controls.push_back(control);
+    world.drive.truth.push_back(truth);
+    if ((step + 1) % settings.steps_per_scan != 0) continue;
+    world.itinerary.scan_step.push_back(step);
+    look_around(settings, step, truth, world);
+  }
+  return world;
+}
+
+/// Drives `filter` through the world as the engine does; calls after_scan(scan number) behind every
+/// update.
+template <class Filter, class AfterScan>
+void drive_through(Filter& filter, const SmallWorld& world, const Pose& start,
+                   const AfterScan& after_scan) {
+  filter.start(start);
+  std::size_t scan = 0;
+  for (std::size_t step = 0; step < world.itinerary.steps(); ++step) {
+    const StepContext context(world.seed, 0, static_cast<std::uint32_t>(step), Parallel::serial());
+    filter.predict(context, world.drive.controls[step], world.itinerary.duration(step));
+    if (scan == world.itinerary.scans() || world.itinerary.scan_step[scan] != step) continue;
+    filter.update(context, world.drive.scan(scan));
+    after_scan(scan++);
+  }
+}
+
+}  // namespace montecarta
