@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/numbers/angle.hpp"
+#include "engine/runs/pose.hpp"
+
+#include <cstdint>
+
+namespace montecarta {
+
+/// Where the noise of the control goes (SPEC 1.3).
+enum class NoiseMode {
+  measured_control,  ///< the truth obeys the nominal control; the filter is given a noisy one
+  matched,           ///< the truth obeys a noisy control; the filter is given the nominal one
+};
+
+/// How a simulated vehicle drives through a world and what it sees (study file: [scenario]).
+struct Scenario {
+  NoiseMode noise = NoiseMode::measured_control;
+  std::uint32_t loops = 1;                       ///< times round the way-points
+  std::uint32_t steps_per_scan = 8;              ///< control_rate / scan_rate
+  double control_rate = 40.0;                    ///< [Hz]
+  double wheelbase = 4.0;                        ///< [m]
+  double speed = 3.0;                            ///< [m/s]
+  double sigma_speed = 0.3;                      ///< [m/s]
+  double sigma_steer = 3.0 * kPi / 180.0;        ///< [rad]
+  double sigma_range = 0.1;                      ///< [m]
+  double sigma_bearing = 1.0 * kPi / 180.0;      ///< [rad]
+  double max_range = 30.0;                       ///< [m]
+  double field_of_view = kPi;                    ///< [rad] full angle, centred ahead
+  double waypoint_radius = 1.0;                  ///< [m] nearer than this a way-point is reached
+  double steer_limit = 30.0 * kPi / 180.0;       ///< [rad]
+  double steer_rate_limit = 20.0 * kPi / 180.0;  ///< [rad/s]
+  double clutter_rate = 0.0;                     ///< mean false alarms a scan
+  double miss_probability = 0.0;                 ///< that a visible landmark is not detected
+  Pose start{};                                  ///< before the first step
+};
+
+}  // namespace montecarta

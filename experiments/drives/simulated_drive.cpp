@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/drives/simulated_drive.hpp"
+
+#include "engine/errors.hpp"
+#include "experiments/drives/waypoint_pilot.hpp"
+#include "experiments/text/numbers.hpp"
+#include "filters/models/ackermann.hpp"
+
+#include <cmath>
+
+namespace montecarta {
+namespace {
+
+/// How far [m] a vehicle may drive towards one way-point before it is clear that it circles around
+/// it.
+double patience(const Pose& pose, const Eigen::Vector2d& waypoint, const Scenario& scenario) {
+  const double distance = std::hypot(waypoint.x() - pose.x, waypoint.y() - pose.y);
+  const double turning_circle = kTwoPi * scenario.wheelbase / std::sin(scenario.steer_limit);
+  const double time_to_full_lock = scenario.steer_limit / scenario.steer_rate_limit;
+  return 3.0 * distance + 10.0 * (turning_circle + scenario.speed * time_to_full_lock);
+}
+
+[[noreturn]] void throw_unreachable(const World& world, std::size_t waypoint,
+                                    const Scenario& scenario) {
+  throw StudyError("world " + world.name + ": way-point " + std::to_string(waypoint + 1) +
+                   " is not reached within " + to_text(scenario.waypoint_radius) +
+                   " m (the vehicle circles around it): enlarge scenario.waypoint_radius or "
+                   "steer_rate_limit_deg, or move the way-point");
+}
+
+[[noreturn]] void throw_too_long(const World& world) {
+  throw StudyError(
+      "world " + world.name + ": a run has more than " + std::to_string(kMostSteps) +
+      " steps (no result file would hold it): use fewer scenario.loops or a lower control_rate");
+}
+
+}  // namespace
+
+SimulatedDrive::SimulatedDrive(World world, const Scenario& scenario, std::uint64_t seed)
+    : world_(std::move(world)), scenario_(scenario), seed_(seed), sensor_(scenario) {
+  drive_without_noise();
+  fill_itinerary();
+  see_along_the_way();
+}
+
+void SimulatedDrive::generate(std::uint64_t run, Drive& drive) const {
+  drive.controls.resize(itinerary_.steps());
+  drive.truth.resize(itinerary_.steps());
+  drive.detections.clear();
+  drive.detections.reserve(expected_detections());
+  drive.scan_begin.reserve(itinerary_.scans() + 1);
+  drive.scan_begin.assign(1, 0);
+  if (scenario_.noise == NoiseMode::matched) {
+    generate_matched(run, drive);
+  } else {
+    generate_measured(run, drive);
+  }
+}
+
+void SimulatedDrive::drive_without_noise() {
+  WaypointPilot pilot(world_.waypoints, scenario_);
+  const double step_length = scenario_.speed / scenario_.control_rate;
+  std::size_t target = pilot.next_waypoint();
+  Pose pose = scenario_.start;
+  double left = patience(pose, world_.waypoints[target], scenario_);
+  for (pilot.look_ahead(pose); pilot.loops_done() < scenario_.loops; pilot.look_ahead(pose)) {
+    if (pilot.next_waypoint() != target) {
+      target = pilot.next_waypoint();
+      left = patience(pose, world_.waypoints[target], scenario_);
+    }
+    if ((left -= step_length) < 0.0) throw_unreachable(world_, target, scenario_);
+    if (nominal_.size() == kMostSteps) throw_too_long(world_);
+    nominal_.push_back({scenario_.speed, pilot.steer(pose)});
+    pose = move(pose, nominal_.back(), 1.0 / scenario_.control_rate, scenario_.wheelbase);
+    path_.push_back(pose);
+  }
+}
+
+void SimulatedDrive::fill_itinerary() {
+  const std::size_t steps = nominal_.size();
+  itinerary_.step_time.reserve(steps);
+  for (std::size_t k = 0; k < steps; ++k) {
+    itinerary_.step_time.push_back(static_cast<double>(k + 1) / scenario_.control_rate);
+  }
+  const std::uint32_t every = scenario_.steps_per_scan;
+  for (std::size_t counter = every; counter <= steps; counter += every) {
+    itinerary_.scan_step.push_back(static_cast<std::uint32_t>(counter - 1));
+  }
+  itinerary_.landmarks = world_.landmarks;
+  itinerary_.waypoints = world_.waypoints;
+  itinerary_.start = scenario_.start;
+}
+
+void SimulatedDrive::see_along_the_way() {
+  sight_begin_.assign(1, 0);
+  for (const std::uint32_t step : itinerary_.scan_step) {
+    sensor_.see(path_[step], world_.landmarks,
+                [this](const Sight& sight) { sights_.push_back(sight); });
+    sight_begin_.push_back(static_cast<std::uint32_t>(sights_.size()));
+  }
+}
+
+void SimulatedDrive::generate_measured(std::uint64_t run, Drive& drive) const {
+  drive.truth = path_;
+  for (std::size_t k = 0; k < nominal_.size(); ++k) {
+    const Control error = noise(run, k);
+    drive.controls[k] = {nominal_[k].speed + error.speed, nominal_[k].steer + error.steer};
+  }
+  for (std::size_t s = 0; s < itinerary_.scans(); ++s) {
+    const StreamIdentity here = place(run, itinerary_.scan_step[s]);
+    for (std::size_t i = sight_begin_[s]; i < sight_begin_[s + 1]; ++i) {
+      sensor_.detect(sights_[i], here, drive.detections);
+    }
+    end_scan(here, drive);
+  }
+}
+
+void SimulatedDrive::generate_matched(std::uint64_t run, Drive& drive) const {
+  WaypointPilot pilot(world_.waypoints, scenario_);
+  Pose pose = scenario_.start;
+  for (std::size_t k = 0; k < itinerary_.steps(); ++k) {
+    pilot.look_ahead(pose);
+    const Control error = noise(run, k);
+    drive.controls[k] = {scenario_.speed, pilot.steer(pose)};
+    pose = move(pose, Control{scenario_.speed + error.speed, drive.controls[k].steer + error.steer},
+                1.0 / scenario_.control_rate, scenario_.wheelbase);
+    drive.truth[k] = pose;
+    if ((k + 1) % scenario_.steps_per_scan != 0) continue;
+    const StreamIdentity here = place(run, k);
+    sensor_.see(pose, world_.landmarks,
+                [&](const Sight& sight) { sensor_.detect(sight, here, drive.detections); });
+    end_scan(here, drive);
+  }
+}
+
+void SimulatedDrive::end_scan(const StreamIdentity& here, Drive& drive) const {
+  sensor_.add_clutter(here, drive.detections);
+  drive.scan_begin.push_back(static_cast<std::uint32_t>(drive.detections.size()));
+}
+
+/// Twice the mean and some: a path that noise moved sees a little more or less than the nominal
+/// one.
+std::size_t SimulatedDrive::expected_detections() const {
+  const double clutter = scenario_.clutter_rate * static_cast<double>(itinerary_.scans());
+  return 2 * (sights_.size() + static_cast<std::size_t>(clutter)) + 1000;
+}
+
+Control SimulatedDrive::noise(std::uint64_t run, std::size_t step) const {
+  StreamIdentity identity = place(run, step);
+  identity.purpose = Draw::world_control;
+  RngStream draw(identity);
+  const double speed = scenario_.sigma_speed * draw.normal();
+  return {speed, scenario_.sigma_steer * draw.normal()};
+}
+
+StreamIdentity SimulatedDrive::place(std::uint64_t run, std::size_t step) const {
+  return {.seed = seed_,
+          .run = run,
+          .step = static_cast<std::uint32_t>(step),
+          .index = 0,
+          .purpose = Draw::world_control};
+}
+
+}  // namespace montecarta

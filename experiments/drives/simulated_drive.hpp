@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/runs/drive.hpp"
+#include "experiments/drives/scenario.hpp"
+#include "experiments/drives/sensor.hpp"
+#include "experiments/worlds/world.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace montecarta {
+
+/// More steps than this in one run would not fit a result file; a study of so many is a slip of the
+/// pen.
+inline constexpr std::size_t kMostSteps = 20'000'000;
+
+/// A vehicle simulated along the way-points of a world (SPEC 1). Every run has the steps and scans
+/// of the noise-free drive; where noise moves the truth it drives on along the loop. The noise
+/// depends on (seed, run) only.
+class SimulatedDrive final : public DriveSource {
+ public:
+  /// Throws StudyError where a way-point cannot be reached or the drive is longer than kMostSteps.
+  SimulatedDrive(World world, const Scenario& scenario, std::uint64_t seed);
+  SimulatedDrive(const SimulatedDrive&) = delete;
+  SimulatedDrive& operator=(const SimulatedDrive&) = delete;
+
+  const Itinerary& itinerary() const override { return itinerary_; }
+  void generate(std::uint64_t run, Drive& drive) const override;
+
+ private:
+  void drive_without_noise();
+  void fill_itinerary();
+  void see_along_the_way();
+  void generate_measured(std::uint64_t run, Drive& drive) const;
+  void generate_matched(std::uint64_t run, Drive& drive) const;
+  void end_scan(const StreamIdentity& here, Drive& drive) const;
+  std::size_t expected_detections() const;
+  Control noise(std::uint64_t run, std::size_t step) const;
+  StreamIdentity place(std::uint64_t run, std::size_t step) const;
+
+  World world_;
+  Scenario scenario_;
+  std::uint64_t seed_;
+  Sensor sensor_;
+  Itinerary itinerary_;
+  std::vector<Control> nominal_;            ///< controls of the noise-free drive
+  std::vector<Pose> path_;                  ///< its poses after each step
+  std::vector<Sight> sights_;               ///< of all its scans
+  std::vector<std::uint32_t> sight_begin_;  ///< scans + 1 offsets into sights_
+};
+
+}  // namespace montecarta

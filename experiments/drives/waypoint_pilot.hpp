@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/runs/pose.hpp"
+#include "experiments/drives/scenario.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace montecarta {
+
+/// Steers from way-point to way-point, loop after loop (SPEC 1.1). `waypoints` and `scenario` must
+/// outlive it.
+class WaypointPilot {
+ public:
+  WaypointPilot(const std::vector<Eigen::Vector2d>& waypoints, const Scenario& scenario)
+      : waypoints_(&waypoints), scenario_(&scenario) {}
+
+  /// Notes whether the way-point ahead is reached at `pose`; at most one a step.
+  void look_ahead(const Pose& pose);
+  /// The steering angle [rad] for the next step from `pose`, rate and angle limited.
+  double steer(const Pose& pose);
+
+  std::uint32_t loops_done() const { return loops_done_; }
+  std::size_t next_waypoint() const { return next_; }
+
+ private:
+  const std::vector<Eigen::Vector2d>* waypoints_;
+  const Scenario* scenario_;
+  std::size_t next_ = 0;
+  std::uint32_t loops_done_ = 0;
+  double steer_ = 0.0;
+};
+
+}  // namespace montecarta

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/drives/simulated_drive.hpp"
+
+#include "engine/errors.hpp"
+#include "experiments/worlds/world_file.hpp"
+#include "filters/models/ackermann.hpp"
+
+#include <Eigen/Geometry>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+
+namespace montecarta {
+namespace {
+
+using testing::HasSubstr;
+
+Drive drive_of(const SimulatedDrive& source, std::uint64_t run) {
+  Drive drive;
+  source.generate(run, drive);
+  return drive;
+}
+
+bool same_numbers(const Drive& a, const Drive& b) {
+  const auto same_detection = [](const Detection& x, const Detection& y) {
+    return x.range == y.range && x.bearing == y.bearing && x.identity == y.identity;
+  };
+  const auto same_control = [](const Control& x, const Control& y) {
+    return x.speed == y.speed && x.steer == y.steer;
+  };
+  const auto same_pose = [](const Pose& x, const Pose& y) { return boxminus(x, y).isZero(0.0); };
+  return std::ranges::equal(a.detections, b.detections, same_detection) &&
+         std::ranges::equal(a.controls, b.controls, same_control) &&
+         std::ranges::equal(a.truth, b.truth, same_pose) && a.scan_begin == b.scan_begin;
+}
+
+struct SeenLandmarks {
+  double mean = 0.0;         ///< visible in a scan
+  double empty_share = 0.0;  ///< of scans
+  std::size_t different = 0;
+};
+
+SeenLandmarks seen_in(const Drive& drive) {
+  SeenLandmarks seen;
+  const std::size_t scans = drive.scan_begin.size() - 1;
+  std::set<std::int32_t> different;
+  for (const Detection& detection : drive.detections) different.insert(detection.identity);
+  for (std::size_t s = 0; s < scans; ++s)
+    seen.empty_share += drive.scan(s).empty() ? 1.0 / static_cast<double>(scans) : 0.0;
+  seen.mean = static_cast<double>(drive.detections.size()) / static_cast<double>(scans);
+  seen.different = different.size();
+  return seen;
+}
+
+TEST(SimulatedDrive, DrivesTheShippedWorldsAsTheyPromise) {
+  const SimulatedDrive web(find_world("web_loop"), Scenario{}, 1);
+  EXPECT_NEAR(static_cast<double>(web.itinerary().steps()) * 0.075, 640.0, 10.0);
+  EXPECT_NEAR(seen_in(drive_of(web, 0)).mean, 1.2, 0.2);
+  EXPECT_NEAR(seen_in(drive_of(web, 0)).empty_share, 0.2, 0.05);
+  const SimulatedDrive dense(find_world("dense_loop"), Scenario{}, 1);
+  EXPECT_NEAR(seen_in(drive_of(dense, 0)).mean, 5.2, 0.3);
+  const Scenario small{.wheelbase = 0.26, .speed = 0.8, .max_range = 5.0};
+  EXPECT_EQ(seen_in(drive_of(SimulatedDrive(find_world("small_loop"), small, 1), 0)).different, 15U)
+      << "reached with the default radius and steering rate, too";
+}
+
+TEST(SimulatedDrive, IsAFunctionOfSeedAndRunWhateverTheBuffersHeld) {
+  for (const NoiseMode noise : {NoiseMode::measured_control, NoiseMode::matched}) {
+    const Scenario scenario{.noise = noise, .clutter_rate = 0.5, .miss_probability = 0.2};
+    const SimulatedDrive source(find_world("web_loop"), scenario, 5);
+    Drive reused;
+    source.generate(3, reused);
+    source.generate(7, reused);
+    EXPECT_TRUE(
+        same_numbers(reused, drive_of(SimulatedDrive(find_world("web_loop"), scenario, 5), 7)));
+    EXPECT_FALSE(same_numbers(reused, drive_of(source, 8)));
+    EXPECT_FALSE(
+        same_numbers(reused, drive_of(SimulatedDrive(find_world("web_loop"), scenario, 6), 7)));
+  }
+}
+
+TEST(SimulatedDrive, ReturnsToTheSameMemory) {
+  const SimulatedDrive source(find_world("web_loop"),
+                              Scenario{.noise = NoiseMode::matched, .clutter_rate = 1.0}, 5);
+  Drive drive;
+  source.generate(0, drive);
+  const void* before[] = {drive.controls.data(), drive.truth.data(), drive.detections.data(),
+                          drive.scan_begin.data()};
+  for (std::uint64_t run = 1; run < 20; ++run) source.generate(run, drive);
+  const void* after[] = {drive.controls.data(), drive.truth.data(), drive.detections.data(),
+                         drive.scan_begin.data()};
+  EXPECT_THAT(after, testing::ElementsAreArray(before));
+}
+
+TEST(SimulatedDrive, SharesOneTruthWhereOnlyTheMeasuredControlIsNoisy) {
+  const SimulatedDrive source(find_world("web_loop"), Scenario{}, 5);
+  const Drive a = drive_of(source, 0);
+  const Drive b = drive_of(source, 1);
+  EXPECT_EQ(a.truth[5000].x, b.truth[5000].x);
+  EXPECT_EQ(a.scan_begin, b.scan_begin);
+  EXPECT_NE(a.controls[5000].steer, b.controls[5000].steer);
+}
+
+// Mean and standard deviation of (true control - given control) within 5 standard errors.
+TEST(SimulatedDrive, DrawsTheNoiseThatTheScenarioNames) {
+  const Scenario scenario{
+      .sigma_speed = 0.3, .sigma_steer = 0.05, .sigma_range = 0.2, .sigma_bearing = 0.02};
+  const Drive noisy = drive_of(SimulatedDrive(find_world("dense_loop"), scenario, 9), 0);
+  const Scenario silent{
+      .sigma_speed = 0.0, .sigma_steer = 0.0, .sigma_range = 0.0, .sigma_bearing = 0.0};
+  const Drive exact = drive_of(SimulatedDrive(find_world("dense_loop"), silent, 9), 0);
+  Eigen::Array4d sum = Eigen::Array4d::Zero();
+  Eigen::Array4d squares = Eigen::Array4d::Zero();
+  const std::size_t count = exact.detections.size();
+  ASSERT_EQ(noisy.detections.size(), count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Array4d error = {noisy.controls[i].speed - exact.controls[i].speed,
+                                  noisy.controls[i].steer - exact.controls[i].steer,
+                                  noisy.detections[i].range - exact.detections[i].range,
+                                  wrap(noisy.detections[i].bearing - exact.detections[i].bearing)};
+    sum += error;
+    squares += error * error;
+  }
+  const double n = static_cast<double>(count);
+  const Eigen::Array4d sigma = {0.3, 0.05, 0.2, 0.02};
+  EXPECT_TRUE(((sum / n).abs() < 5.0 * sigma / std::sqrt(n)).all()) << (sum / n).transpose();
+  EXPECT_TRUE((((squares / n).sqrt() / sigma - 1.0).abs() < 5.0 / std::sqrt(2.0 * n)).all())
+      << (squares / n).sqrt().transpose();
+}
+
+TEST(SimulatedDrive, MovesTheTruthByTheNoiseWhereMatched) {
+  const Scenario scenario{.noise = NoiseMode::matched, .sigma_speed = 0.3, .sigma_steer = 0.05};
+  const SimulatedDrive source(find_world("web_loop"), scenario, 9);
+  const Drive drive = drive_of(source, 4);
+  double squares = 0.0;
+  for (std::size_t k = 1; k < drive.truth.size(); ++k) {
+    EXPECT_EQ(drive.controls[k].speed, 3.0);
+    const double dx = drive.truth[k].x - drive.truth[k - 1].x;
+    const double dy = drive.truth[k].y - drive.truth[k - 1].y;
+    squares += std::pow(std::hypot(dx, dy) * 40.0 - 3.0, 2);
+  }
+  const double n = static_cast<double>(drive.truth.size() - 1);
+  EXPECT_NEAR(std::sqrt(squares / n), 0.3, 5.0 * 0.3 / std::sqrt(2.0 * n));
+  EXPECT_EQ(drive.truth.size(),
+            SimulatedDrive(find_world("web_loop"), Scenario{}, 9).itinerary().steps());
+}
+
+TEST(SimulatedDrive, TurnsWithTheWorld) {
+  const double turn = 1.1;
+  const Eigen::Vector2d shift(40.0, -7.0);
+  const Eigen::Matrix2d rotation = Eigen::Rotation2Dd(turn).toRotationMatrix();
+  World world = find_world("web_loop");
+  Scenario scenario{.noise = NoiseMode::matched, .sigma_speed = 0.1, .sigma_steer = 0.01};
+  const Drive straight = drive_of(SimulatedDrive(world, scenario, 2), 0);
+  for (auto& p : world.landmarks) p = rotation * p + shift;
+  for (auto& p : world.waypoints) p = rotation * p + shift;
+  scenario.start = {shift.x(), shift.y(), turn};
+  const Drive turned = drive_of(SimulatedDrive(world, scenario, 2), 0);
+  ASSERT_EQ(turned.scan_begin, straight.scan_begin);
+  for (std::size_t i = 0; i < straight.detections.size(); ++i) {
+    EXPECT_NEAR(turned.detections[i].range, straight.detections[i].range, 1e-6);
+    EXPECT_NEAR(wrap(turned.detections[i].bearing - straight.detections[i].bearing), 0.0, 1e-6);
+  }
+}
+
+TEST(SimulatedDrive, CountsScansInWholeNumbers) {
+  const World square{
+      .name = "square", .waypoints = {{10, 0}, {10, 10}, {0, 10}, {0, 0}}, .landmarks = {{5, 5}}};
+  const Scenario scenario{.loops = 400, .wheelbase = 1.0, .speed = 0.6};
+  const SimulatedDrive source(square, scenario, 1);
+  const Itinerary& itinerary = source.itinerary();
+  ASSERT_GT(itinerary.steps(), 1'000'000U);
+  const auto within = std::ranges::count_if(itinerary.scan_step,
+                                            [](std::uint32_t step) { return step < 1'000'000U; });
+  EXPECT_EQ(within, 125'000);
+  EXPECT_EQ(itinerary.scan_step[0], 7U);
+  EXPECT_DOUBLE_EQ(itinerary.step_time[999'999], 25'000.0);
+}
+
+TEST(SimulatedDrive, SaysWhichWaypointCannotBeReached) {
+  const World tight{.name = "tight", .waypoints = {{30, 0}, {30, 2}}, .landmarks = {{5, 5}}};
+  try {
+    const SimulatedDrive source(tight, Scenario{.waypoint_radius = 0.05}, 1);
+    ADD_FAILURE() << "reached in " << source.itinerary().steps() << " steps";
+  } catch (const StudyError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("is not reached within 0.05 m"));
+  }
+}
+
+/// The published map; empty where the data of the papers are not at hand.
+std::filesystem::path published_map() {
+  const char* named = std::getenv("MONTECARTA_DATA");
+  const std::filesystem::path folder =
+      named != nullptr ? named : std::filesystem::path(MONTECARTA_SOURCE_DIR) / "../shared/data";
+  const auto map = folder / "bailey/example_webmap.mat";
+  return std::filesystem::exists(map) ? map : std::filesystem::path();
+}
+
+// The facts of SPEC 1.2.
+TEST(SimulatedDrive, RepeatsThePublishedBenchmark) {
+  if (published_map().empty())
+    GTEST_SKIP() << "no bailey/example_webmap.mat: set MONTECARTA_DATA to the folder that holds it";
+  const World world = read_world_file(published_map());
+  const SimulatedDrive once(world, Scenario{}, 1);
+  EXPECT_EQ(once.itinerary().steps(), 8778U);
+  EXPECT_EQ(once.itinerary().scans(), 1097U);
+  const SeenLandmarks seen = seen_in(drive_of(once, 0));
+  EXPECT_NEAR(seen.mean, 1.07, 0.005);
+  EXPECT_NEAR(seen.empty_share, 0.24, 0.005);
+  EXPECT_EQ(seen.different, 30U);
+  const SimulatedDrive twice(world, Scenario{.loops = 2}, 1);
+  EXPECT_EQ(twice.itinerary().steps(), 17381U);
+  EXPECT_EQ(twice.itinerary().scans(), 2172U);
+}
+
+}  // namespace
+}  // namespace montecarta
