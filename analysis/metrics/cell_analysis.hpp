@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/metrics/consistency.hpp"
+#include "analysis/metrics/summary.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace montecarta {
+
+/// Which mean and covariance of a filter are judged (SPEC 19).
+enum class Moments {
+  mixture,  ///< spread of the particles plus each particle's own covariance, before sampling
+  spread    ///< of the weighted drawn particles; of the Gaussian for a Kalman filter
+};
+
+/// Which components of the pose error are judged.
+enum class ErrorBlock {
+  pose,      ///< x, y, heading
+  position,  ///< x, y, with the position block of the covariance
+  heading
+};
+
+/// A NEES series and what it says.
+struct NeesResult {
+  ErrorBlock block = ErrorBlock::pose;
+  Moments moments = Moments::spread;
+  NeesSeries series;
+  Consistency consistency;
+};
+
+/// Errors of the estimate over complete runs. Per run: over its scans. Over time: over runs.
+struct ErrorSummary {
+  Summary position_rmse;                   ///< [m]
+  Summary position_mse;                    ///< [m^2]
+  Summary position_mean;                   ///< [m] distance
+  Summary position_variance;               ///< [m^2] of the distance over time
+  Summary heading_rmse;                    ///< [rad]
+  Summary heading_mse;                     ///< [rad^2]
+  Summary heading_mean;                    ///< [rad] absolute
+  std::vector<double> position_over_time;  ///< [m] {scan} RMSE over runs
+  std::vector<double> heading_over_time;   ///< [rad] {scan} RMSE over runs
+};
+
+/// Effective number of particles and how often they are resampled.
+struct WeightSummary {
+  Summary ess;                        ///< mean over the scans of a run
+  Summary resampling_rate;            ///< share of scans that end with a resampling
+  std::vector<double> ess_over_time;  ///< {scan} mean over runs
+};
+
+/// Distinct ancestors of the particles of a scan (SPEC 18).
+struct DiversitySummary {
+  Summary last_resampling;  ///< parents in the last resampling, mean over the scans of a run
+  Summary lag;              ///< ancestors kDiversityLag ago, mean over the scans of a run
+  Summary root;             ///< ancestors at the start, mean over the scans of a run
+  Summary final_root;       ///< ancestors at the start of the particles of the last scan
+  std::vector<double> last_resampling_over_time;  ///< {scan} mean over runs, as the next two
+  std::vector<double> lag_over_time;
+  std::vector<double> root_over_time;
+};
+
+/// A run that ended early: a result like any other.
+struct FailedRun {
+  std::uint64_t run = 0;
+  std::uint32_t step = 0;  ///< 0-based
+  std::string reason;
+};
+
+/// All metrics of a cell. Errors, NEES, weights and diversity are over complete runs only.
+struct CellAnalysis {
+  std::string label;
+  std::string filter;
+  std::string long_name;
+  std::size_t particles = 0;  ///< 0: not a particle filter
+  std::size_t complete = 0;
+  std::size_t missing = 0;
+  std::vector<FailedRun> failures;
+  Moments leading = Moments::spread;  ///< of errors and verdict: mixture where stored
+  std::vector<NeesResult> nees;       ///< leading first; pose, position, heading; may be empty
+  ErrorSummary error;                 ///< of the leading mean
+  std::optional<WeightSummary> weights;
+  std::optional<DiversitySummary> diversity;
+  Summary cpu_seconds;       ///< filter only, of complete runs
+  Summary numerical_faults;  ///< factorisations answered by a fallback, per run
+
+  /// nullptr where it is not stored.
+  const NeesResult* find_nees(ErrorBlock block, Moments moments) const;
+  /// The verdict on the pose by the leading moments; untested where there is none.
+  Consistency consistency() const;
+};
+
+}  // namespace montecarta

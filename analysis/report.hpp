@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/records/result_file.hpp"
+#include "engine/runs/parallel.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+
+namespace montecarta {
+
+/// What to do with a report that is already there.
+enum class ExistingReport { refuse, replace };
+
+struct ReportOptions {
+  double level = 0.95;               ///< of the NEES bounds
+  std::optional<std::uint64_t> run;  ///< run number whose paths are drawn; default: first complete
+  ExistingReport existing = ExistingReport::refuse;
+  const Parallel* parallel = &Parallel::serial();
+};
+
+/// Writes index.html (self-contained), figures/*.svg and *.pdf, data/*.csv (each figure's numbers)
+/// and tables/*.csv, *.tex into `directory`, which is made where it is missing. Figures are drawn
+/// by gnuplot. Throws StudyError where a report is there already or gnuplot is missing, RunError
+/// where a file cannot be written or gnuplot fails.
+void write_report(const ResultFile& file, const std::filesystem::path& directory,
+                  const ReportOptions& options = {});
+
+}  // namespace montecarta
