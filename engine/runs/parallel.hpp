@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/runs/loop_seam.hpp"
+
 #include <cstddef>
 #include <memory>
 
@@ -30,9 +32,12 @@ class Parallel {
       for (std::size_t i = 0; i < count; ++i) body(i);
       return;
     }
-    spread(
-        count, [](const void* erased, std::size_t i) { (*static_cast<const Body*>(erased))(i); },
-        &body);
+    const LoopSeam seam(&body);
+    const auto call = [](const void* erased, std::size_t i) {
+      const LoopSeam::Call inside(erased);
+      (*static_cast<const Body*>(erased))(i);
+    };
+    spread(count, call, &body);
   }
 
  private:

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#ifdef MONTECARTA_THREAD_SANITIZER
+#include <sanitizer/tsan_interface.h>
+#endif
+
+namespace montecarta {
+
+/// Tells the thread sanitizer what libtbb and libgomp, which are built without it, keep from it: a
+/// loop's bodies begin after the loop does and end before it ends. Bodies stay unordered among each
+/// other, so races between them are found. Without the sanitizer all this is nothing.
+/// `body` is the loop's body, whose address tells one loop from another.
+#ifdef MONTECARTA_THREAD_SANITIZER
+
+class LoopSeam {
+ public:
+  explicit LoopSeam(const void* body) : body_(body) { __tsan_release(begin()); }
+  ~LoopSeam() { __tsan_acquire(end()); }
+  LoopSeam(const LoopSeam&) = delete;
+  LoopSeam& operator=(const LoopSeam&) = delete;
+
+  /// Around one call of the body.
+  class Call {
+   public:
+    explicit Call(const void* body) : body_(body) { __tsan_acquire(LoopSeam::begin(body_)); }
+    ~Call() { __tsan_release(LoopSeam::end(body_)); }
+    Call(const Call&) = delete;
+    Call& operator=(const Call&) = delete;
+
+   private:
+    const void* body_;
+  };
+
+ private:
+  void* begin() const { return begin(body_); }
+  void* end() const { return end(body_); }
+  static void* begin(const void* body) { return const_cast<void*>(body); }
+  static void* end(const void* body) { return static_cast<char*>(begin(body)) + 1; }
+
+  const void* body_;
+};
+
+#else
+
+struct LoopSeam {
+  explicit LoopSeam(const void* /*body*/) {}
+  struct Call {
+    explicit Call(const void* /*body*/) {}
+  };
+};
+
+#endif
+
+}  // namespace montecarta
