@@ -19,9 +19,11 @@ namespace {
 namespace fs = std::filesystem;
 using Lines = std::vector<std::string>;
 using Tree = std::map<std::string, Lines>;  // path from the top, with '/', and what stands there
+using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::StartsWith;
 
 const std::vector<std::string> kRooms = {"analysis",    "cluster", "engine",
                                          "experiments", "filters", "tests"};
@@ -156,11 +158,14 @@ TEST(House, ARoomIncludesOnlyWhatStandsBelowIt) {
 }
 
 TEST(House, LibrariesAreMetInOneOrTwoFiles) {
-  for (const char* header :
-       {"hdf5", "tbb/", "oneapi/", "omp.h", "boost/program_options", "matio"}) {
+  for (const char* header : {"tbb/", "oneapi/", "omp.h", "boost/program_options", "matio"}) {
     const auto users = users_of(house(), header);
     EXPECT_LE(users.size(), 2u) << header << ": " << testing::PrintToString(users);
   }
+}
+
+TEST(House, Hdf5IsMetInItsWrapperOnly) {
+  EXPECT_THAT(users_of(house(), "hdf5"), Each(StartsWith("engine/records/h5")));
 }
 
 TEST(House, NoFileIsLongerThan300Lines) { EXPECT_THAT(too_long(house(), 300), IsEmpty()); }
