@@ -19,10 +19,9 @@ std::optional<Clock::time_point> deadline_after(std::optional<double> seconds) {
 
 }  // namespace
 
-Watch::Watch(const Interruption& interruption, std::optional<double> time_budget, StopRequest& stop,
-             Progress& progress)
-    : interruption_(interruption),
-      deadline_(deadline_after(time_budget)),
+Watch::Watch(const Orders& orders, StopRequest& stop, Progress& progress)
+    : interruption_(orders.interruption),
+      deadline_(deadline_after(orders.time_budget)),
       stop_(stop),
       progress_(progress),
       thread_([this] { keep_watch(); }) {}

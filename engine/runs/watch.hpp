@@ -18,9 +18,14 @@ namespace montecarta {
 /// no clock and no terminal.
 class Watch {
  public:
-  /// `time_budget` [s] from construction. What is referred to must outlive the watch.
-  Watch(const Interruption& interruption, std::optional<double> time_budget, StopRequest& stop,
-        Progress& progress);
+  /// What may end a study early.
+  struct Orders {
+    const Interruption& interruption;
+    std::optional<double> time_budget;  ///< [s] from the construction of the watch
+  };
+
+  /// What is referred to must outlive the watch.
+  Watch(const Orders& orders, StopRequest& stop, Progress& progress);
   ~Watch();
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/runs/monte_carlo.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/runs/interruption.hpp"
+#include "engine/runs/watch.hpp"
+#include "engine/runs/worker.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+namespace montecarta {
+namespace {
+
+ResultWriter open_output(const StudyPlan& plan, const RunOptions& options) {
+  if (options.resume) return ResultWriter::resume(options.output, plan, options.provenance);
+  return ResultWriter::create(options.output, plan, options.provenance,
+                              options.force ? Existing::replace : Existing::refuse);
+}
+
+std::vector<RecordLayout> layouts_of(const StudyPlan& plan) {
+  std::vector<RecordLayout> layouts;
+  for (const Cell& cell : plan.cells)
+    layouts.emplace_back(cell, plan.columns, plan.drives->itinerary());
+  return layouts;
+}
+
+CellOutcome outcome_of(const StudyPlan& plan, std::size_t cell, const ResultWriter& writer) {
+  CellOutcome outcome{.label = plan.cells[cell].label};
+  for (std::size_t i = 0; i < plan.runs_here(); ++i) {
+    const RunStatus status = writer.status(cell, i);
+    if (status == RunStatus::complete) ++outcome.complete;
+    if (status == RunStatus::failed) ++outcome.failed;
+    if (status == RunStatus::missing) ++outcome.missing;
+  }
+  return outcome;
+}
+
+RunOutcome take_stock(const StudyPlan& plan, const ResultWriter& writer) {
+  RunOutcome outcome;
+  for (std::size_t c = 0; c < plan.cells.size(); ++c)
+    outcome.cells.push_back(outcome_of(plan, c, writer));
+  return outcome;
+}
+
+RunCounts counts_of(const RunOutcome& outcome) {
+  RunCounts counts;
+  for (const CellOutcome& cell : outcome.cells) {
+    counts.done += cell.complete;
+    counts.failed += cell.failed;
+    counts.total += cell.complete + cell.failed + cell.missing;
+  }
+  counts.earlier = counts.ended();
+  return counts;
+}
+
+/// How many runs to work at at once. OpenMP spreads either the runs or the loops inside them, so
+/// few large runs go one after the other, each on all threads; TBB does both at once.
+std::size_t workers_for(const StudyPlan& plan, const Parallel& parallel, std::uint64_t missing) {
+  const auto threads = static_cast<std::uint64_t>(parallel.threads());
+  const bool all_large = std::ranges::all_of(
+      plan.cells, [](const Cell& cell) { return cell.particles >= SpareThreads::kLeastParticles; });
+  if (parallel.backend() == Backend::openmp && all_large && 2 * missing <= threads) return 1;
+  return std::max<std::uint64_t>(1, std::min(threads, missing));
+}
+
+/// One worker's whole life. An exception ends the others too, before it goes to the caller.
+void man(Sitting& sitting) {
+  try {
+    Worker(sitting).work();
+  } catch (...) {
+    sitting.stop.make(StopReason::error);
+    throw;
+  }
+  sitting.spare_threads.gain_one();
+}
+
+class Stopwatch {
+ public:
+  /// [s] of wall time since construction.
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point begin_ = Clock::now();
+};
+
+/// Works until nothing is missing or somebody asks to stop.
+void sit(const StudyPlan& plan, const RunOptions& options, const RunOutcome& before,
+         ResultWriter& writer, StopRequest& stop, const Watch::Orders& orders) {
+  const std::vector<RecordLayout> layouts = layouts_of(plan);
+  const std::size_t n_workers = workers_for(plan, options.parallel, before.missing());
+  TaskList tasks(plan, writer);
+  SpareThreads spare(options.parallel, n_workers);
+  Progress progress(options.quiet ? ProgressStyle::none : options.progress, counts_of(before));
+  Sitting sitting{plan, layouts, writer, tasks, spare, stop, progress};
+  const Watch watch(orders, stop, progress);
+  options.parallel.for_each(n_workers, [&](std::size_t) { man(sitting); });
+}
+
+void close_output(ResultWriter& writer, const RunOutcome& outcome) {
+  writer.note_wall_seconds(outcome.seconds);
+  if (outcome.missing() == 0) return writer.finish();
+  expect(outcome.stopped != StopReason::complete, "runs are missing though nobody asked to stop");
+  writer.suspend();
+}
+
+void tell(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) std::fprintf(stderr, "%s\n", note.c_str());
+}
+
+}  // namespace
+
+RunOutcome run_study(const StudyPlan& plan, const RunOptions& options) {
+  const Stopwatch stopwatch;
+  const Interruption interruption;
+  ResultWriter writer = open_output(plan, options);
+  if (!options.quiet) tell(writer.notes());
+  const RunOutcome before = take_stock(plan, writer);
+  StopRequest stop;
+  if (before.missing() > 0) {
+    std::optional<double> left = options.time_budget;
+    if (left) *left -= stopwatch.seconds();
+    sit(plan, options, before, writer, stop, {interruption, left});
+  }
+  RunOutcome outcome = take_stock(plan, writer);
+  if (outcome.missing() > 0) outcome.stopped = stop.reason();
+  outcome.runs_here = before.missing() - outcome.missing();
+  outcome.seconds = stopwatch.seconds();
+  close_output(writer, outcome);
+  return outcome;
+}
+
+}  // namespace montecarta

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/records/result_writer.hpp"
+#include "engine/runs/parallel.hpp"
+#include "engine/runs/plan.hpp"
+#include "engine/runs/progress.hpp"
+#include "engine/runs/run_outcome.hpp"
+
+#include <filesystem>
+#include <optional>
+
+namespace montecarta {
+
+/// How a study is to be run; nothing here changes a bit of its results.
+struct RunOptions {
+  std::filesystem::path output;
+  Parallel parallel = Parallel::serial();
+  bool resume = false;                  ///< go on with an unfinished file
+  bool force = false;                   ///< replace a finished or unfinished one
+  std::optional<double> time_budget{};  ///< [s], then stop at a checkpoint
+  ProgressStyle progress = ProgressStyle::automatic;
+  bool quiet = false;       ///< neither progress nor notes on standard error
+  Provenance provenance{};  ///< how the file was made
+};
+
+/// Runs what is missing of the plan and stores it. Ends early on SIGINT, SIGTERM or when the time
+/// budget is used up; the file then can be resumed. Throws StudyError where the user must act
+/// first, RunError where the machine fails; what is stored by then can be resumed too.
+RunOutcome run_study(const StudyPlan& plan, const RunOptions& options);
+
+}  // namespace montecarta

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/runs/watch.hpp"
+
+#include <gtest/gtest.h>
+
+namespace montecarta {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Waits until somebody asks to stop, at most a second; says why.
+StopReason wait_for(const StopRequest& stop) {
+  const auto give_up = Clock::now() + std::chrono::seconds(1);
+  while (!stop.made() && Clock::now() < give_up) std::this_thread::yield();
+  return stop.reason();
+}
+
+class WatchTest : public testing::Test {
+ protected:
+  Interruption interruption;
+  StopRequest stop;
+  Progress progress{ProgressStyle::none, {}};
+};
+
+TEST_F(WatchTest, AsksToStopWhenASignalComes) {
+  const Watch watch({interruption, std::nullopt}, stop, progress);
+  EXPECT_FALSE(stop.made());
+  raise(SIGTERM);
+  EXPECT_EQ(wait_for(stop), StopReason::sigterm);
+}
+
+TEST_F(WatchTest, AsksToStopWhenTheBudgetIsUsedUp) {
+  const auto begin = Clock::now();
+  const Watch watch({interruption, 0.1}, stop, progress);
+  EXPECT_EQ(wait_for(stop), StopReason::time_budget);
+  EXPECT_GE(Clock::now() - begin, std::chrono::milliseconds(100));
+}
+
+TEST_F(WatchTest, TakesABudgetLongerThanTheClockCanCount) {
+  const Watch watch({interruption, 1e300}, stop, progress);
+  std::this_thread::sleep_for(std::chrono::milliseconds(60));
+  EXPECT_FALSE(stop.made());
+}
+
+TEST_F(WatchTest, EndsAtOnceWhenTheWorkIsDone) {
+  const auto begin = Clock::now();
+  for (int i = 0; i < 20; ++i) const Watch watch({interruption, std::nullopt}, stop, progress);
+  EXPECT_LT(Clock::now() - begin, std::chrono::milliseconds(500)) << "20 looks of 50 ms";
+}
+
+}  // namespace
+}  // namespace montecarta
