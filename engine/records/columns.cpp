@@ -47,6 +47,15 @@ std::string_view name_of(Axis axis) {
   return {};
 }
 
+std::optional<Axis> axis_named(std::string_view name) {
+  using enum Axis;
+  for (Axis axis : {time, scan, particle, landmark, component, component_column, coordinate,
+                    coordinate_column}) {
+    if (name_of(axis) == name) return axis;
+  }
+  return std::nullopt;
+}
+
 std::size_t Column::elements() const {
   return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
 }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,8 @@ enum class Axis : std::uint8_t {
   coordinate_column
 };
 std::string_view name_of(Axis axis);
+/// The axis of that name; nullopt where there is none.
+std::optional<Axis> axis_named(std::string_view name);
 
 /// One dataset of a cell; the shape is that of one run.
 struct Column {

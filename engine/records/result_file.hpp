@@ -2,6 +2,8 @@
 #pragma once
 
 #include "engine/records/columns.hpp"
+#include "engine/records/result_description.hpp"
+#include "engine/records/run_status.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -13,21 +15,11 @@
 
 namespace montecarta {
 
-enum class RunStatus : std::uint8_t { missing = 0, complete = 1, failed = 2 };
-
-/// A cell as a result file describes it.
-struct StoredCell {
-  std::string label;
-  std::string filter;
-  std::string long_name;
-  std::size_t particles = 0;
-  std::vector<std::pair<std::string, std::string>> settings;
-  std::vector<Column> columns;  ///< what was stored
-  bool has(std::string_view column) const;
-};
-
 /// A result file opened for reading: all that analysis knows of a study. Reads stream run by run.
-/// Every member throws RunError naming file and dataset when the file cannot be read.
+/// Reading needs no more memory than the caller's buffer. Two threads may read from one file object
+/// where the HDF5 library is built thread-safe, as Debian's is. Opens finished files and work in
+/// progress (OUT.h5.part). Every member throws RunError naming file and dataset when the file
+/// cannot be read.
 class ResultFile {
  public:
   /// Throws StudyError where `path` is missing, no HDF5 file, or no montecarta result of a known
@@ -38,6 +30,8 @@ class ResultFile {
   ResultFile& operator=(ResultFile&&) noexcept;
 
   const std::filesystem::path& path() const;
+  /// All of it in one piece; the members below name its parts.
+  const ResultDescription& description() const;
   const std::string& study_name() const;
   const std::string& title() const;
   const std::string& study_text() const;  ///< resolved study file
@@ -59,7 +53,9 @@ class ResultFile {
   std::vector<std::string> failure_reasons(const StoredCell& cell) const;
   std::vector<std::uint32_t> failure_steps(const StoredCell& cell) const;
   std::vector<double> cpu_seconds(
-      const StoredCell& cell) const;  ///< filter only; NaN where missing
+      const StoredCell& cell) const;  ///< [s] filter only; NaN where missing
+  double wall_seconds() const;        ///< [s] of all sittings
+  std::uint64_t bytes() const;        ///< size of the file
 
   /// Copies {axes of the column} of run index `i` (0-based in this file), converted to double.
   /// `out` must fit.
@@ -67,7 +63,7 @@ class ResultFile {
             std::span<double> out) const;
   void read(const StoredCell& cell, std::string_view column, std::size_t i,
             std::span<std::uint32_t> out) const;
-  /// {time, 3} of run index i.
+  /// {time, 3} of run index i; zeros where no cell of that run is complete or failed yet.
   void read_truth(std::size_t i, std::span<double> out) const;
 
  private:

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/records/record_layout.hpp"
-#include "engine/records/result_file.hpp"
+#include "engine/records/run_status.hpp"
 
 #include <array>
 #include <cstddef>

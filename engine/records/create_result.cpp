@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/errors.hpp"
+#include "engine/records/open_result.hpp"
+#include "engine/records/result_layout.hpp"
+
+#include <optional>
+#include <sstream>
+#include <system_error>
+
+namespace montecarta {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path with_suffix(fs::path path, const char* suffix) { return path += suffix; }
+
+void refuse_existing(const fs::path& path) {
+  if (is_there(path)) {
+    throw StudyError(path.string() +
+                     ": exists (nothing is overwritten unasked): add --force to replace it, or "
+                     "choose another path");
+  }
+  if (is_there(part_of(path))) {
+    throw StudyError(
+        part_of(path).string() +
+        ": holds unfinished work: continue it with --resume, or start afresh with --force");
+  }
+}
+
+std::string gigabytes(double bytes) {
+  std::ostringstream text;
+  text.precision(3);
+  text << bytes / 1e9 << " GB";
+  return text.str();
+}
+
+}  // namespace
+
+void expect_room(const fs::path& path, double bytes) {
+  std::error_code ignored;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const fs::space_info space = fs::space(folder, ignored);
+  if (ignored || bytes <= static_cast<double>(space.available)) return;
+  throw RunError(path.string() + ": " + gigabytes(bytes) + " are needed, " +
+                 gigabytes(static_cast<double>(space.available)) +
+                 " are free: free space, choose another disk, or store fewer runs or columns");
+}
+
+fs::path part_of(const fs::path& path) { return with_suffix(path, ".part"); }
+
+PosixFile lay_out_part(const fs::path& path, const ResultDescription& description,
+                       Existing existing) {
+  if (is_folder(path)) throw StudyError(path.string() + ": is a folder: name a file in it");
+  const fs::path part = part_of(path);
+  const fs::path fresh = with_suffix(part, ".new");
+  std::optional<PosixFile> replaced;  // its lock proves that nobody writes the work we replace
+  if (existing == Existing::replace && is_there(part))
+    replaced.emplace(part, PosixFile::Mode::write).lock();
+  PosixFile file(fresh, PosixFile::Mode::create);
+  file.lock();
+  try {
+    expect_room(path, description.bytes_per_run() * static_cast<double>(description.runs.size()));
+    lay_out(fresh, description);
+    file.sync();
+    file.rename(part, replaced ? PosixFile::Target::replace : PosixFile::Target::keep);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(fresh, ignored);
+    throw;
+  }
+  return file;
+}
+
+OpenResult create_result(const fs::path& path, const StudyPlan& plan, const Provenance& provenance,
+                         Existing existing) {
+  if (existing == Existing::refuse) refuse_existing(path);
+  const ResultDescription description = describe(plan, provenance);
+  OpenResult result{lay_out_part(path, description, existing), {}, {}, {}, {}};
+  result.slabs = find_slabs(result.file.path(), description);
+  result.status.assign(plan.cells.size(), std::vector<RunStatus>(plan.runs_here()));
+  result.truth_stored.assign(plan.runs_here(), false);
+  if (existing == Existing::replace) result.target = PosixFile::Target::replace;
+  return result;
+}
+
+}  // namespace montecarta

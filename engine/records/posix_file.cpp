@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/records/posix_file.hpp"
+
+#include "engine/errors.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fcntl.h>
+#include <string>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <utility>
+#include <vector>
+
+namespace montecarta {
+namespace {
+
+std::string reason(int error) { return " (" + std::string(std::strerror(error)) + ")"; }
+
+[[noreturn]] void fail_to_open(const std::filesystem::path& path, int error) {
+  std::string remedy = "choose another path";
+  if (error == ENOENT) remedy = "make the folder first, or check the spelling";
+  if (error == EACCES || error == EPERM || error == EROFS)
+    remedy = "choose a path where you may write, or change the permissions";
+  throw StudyError(path.string() + ": cannot open it" + reason(error) + ": " + remedy);
+}
+
+[[noreturn]] void fail_to_write(const std::filesystem::path& path, int error) {
+  std::string remedy = "check the disk, then continue with --resume";
+  if (error == ENOSPC || error == EDQUOT) remedy = "free space, then continue with --resume";
+  if (error == EFBIG)
+    remedy = "raise the limit on file sizes (ulimit -f), then continue with --resume";
+  throw RunError(path.string() + ": cannot write" + reason(error) + ": " + remedy +
+                 "; the runs stored so far are safe");
+}
+
+[[noreturn]] void fail_to_read(const std::filesystem::path& path, const std::string& why) {
+  throw RunError(path.string() + ": cannot read" + why + ": check the disk, or make the file anew");
+}
+
+off_t signed_offset(std::uint64_t offset) { return static_cast<off_t>(offset); }
+
+int flags_of(PosixFile::Mode mode) {
+  switch (mode) {
+    case PosixFile::Mode::read:
+      return O_RDONLY | O_CLOEXEC;
+    case PosixFile::Mode::write:
+      return O_RDWR | O_CLOEXEC;
+    case PosixFile::Mode::create:
+      return O_RDWR | O_CREAT | O_CLOEXEC;
+  }
+  return 0;
+}
+
+/// A new name lasts only when its folder is on the disk.
+void sync_folder_of(const std::filesystem::path& path) {
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;  // a folder one may write but not read: nothing to be done
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+}  // namespace
+
+PosixFile::PosixFile(std::filesystem::path path, Mode mode) : path_(std::move(path)) {
+  do {
+    descriptor_ = ::open(path_.c_str(), flags_of(mode), 0666);
+  } while (descriptor_ < 0 && errno == EINTR);
+  if (descriptor_ < 0) fail_to_open(path_, errno);
+}
+
+PosixFile::~PosixFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+PosixFile::PosixFile(PosixFile&& other) noexcept
+    : path_(std::move(other.path_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+PosixFile& PosixFile::operator=(PosixFile&& other) noexcept {
+  std::swap(path_, other.path_);
+  std::swap(descriptor_, other.descriptor_);
+  return *this;
+}
+
+std::uint64_t PosixFile::size() const {
+  struct stat status {};
+  if (::fstat(descriptor_, &status) != 0) fail_to_read(path_, reason(errno));
+  return static_cast<std::uint64_t>(status.st_size);
+}
+
+void PosixFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t done = ::pwrite(descriptor_, bytes.data(), bytes.size(), signed_offset(offset));
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) fail_to_write(path_, done == 0 ? ENOSPC : errno);
+    bytes = bytes.subspan(static_cast<std::size_t>(done));
+    offset += static_cast<std::uint64_t>(done);
+  }
+}
+
+void PosixFile::read_at(std::uint64_t offset, std::span<std::byte> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t done = ::pread(descriptor_, bytes.data(), bytes.size(), signed_offset(offset));
+    if (done < 0 && errno == EINTR) continue;
+    if (done < 0) fail_to_read(path_, reason(errno));
+    if (done == 0) fail_to_read(path_, " (the file was cut short)");
+    bytes = bytes.subspan(static_cast<std::size_t>(done));
+    offset += static_cast<std::uint64_t>(done);
+  }
+}
+
+void PosixFile::copy_at(std::uint64_t offset, const PosixFile& from, std::uint64_t from_offset,
+                        std::uint64_t count) const {
+  while (count > 0) {
+    off_t source = signed_offset(from_offset);
+    off_t sink = signed_offset(offset);
+    const ssize_t done = ::copy_file_range(from.descriptor_, &source, descriptor_, &sink, count, 0);
+    if (done < 0 && errno == EINTR) continue;
+    if (done < 0 && (errno == ENOSPC || errno == EDQUOT || errno == EFBIG))
+      fail_to_write(path_, errno);
+    if (done <= 0) return copy_through_memory(offset, from, from_offset, count);
+    offset += static_cast<std::uint64_t>(done);
+    from_offset += static_cast<std::uint64_t>(done);
+    count -= static_cast<std::uint64_t>(done);
+  }
+}
+
+void PosixFile::copy_through_memory(std::uint64_t offset, const PosixFile& from,
+                                    std::uint64_t from_offset, std::uint64_t count) const {
+  std::vector<std::byte> buffer(std::min<std::uint64_t>(count, 1U << 20U));
+  while (count > 0) {
+    const std::span<std::byte> piece(buffer.data(), std::min<std::uint64_t>(count, buffer.size()));
+    from.read_at(from_offset, piece);
+    write_at(offset, piece);
+    offset += piece.size();
+    from_offset += piece.size();
+    count -= piece.size();
+  }
+}
+
+void PosixFile::sync() const {
+  int status = 0;
+  do {
+    status = ::fsync(descriptor_);
+  } while (status != 0 && errno == EINTR);
+  if (status != 0) fail_to_write(path_, errno);
+}
+
+void PosixFile::lock() const {
+  // A lock of the open file description, not flock: HDF5 readers take flocks and would be kept out.
+  struct flock whole {};
+  whole.l_type = F_WRLCK;
+  whole.l_whence = SEEK_SET;
+  const bool refused =
+      ::fcntl(descriptor_, F_OFD_SETLK, &whole) != 0 && (errno == EAGAIN || errno == EACCES);
+  if (refused || !still_has_its_name()) {
+    throw StudyError(path_.string() +
+                     ": another montecarta process is writing it: wait for it, or choose another "
+                     "output path");
+  }
+}
+
+/// False where another process renamed or replaced the file between opening and locking it.
+bool PosixFile::still_has_its_name() const {
+  struct stat opened {};
+  struct stat named {};
+  return ::fstat(descriptor_, &opened) == 0 && ::stat(path_.c_str(), &named) == 0 &&
+         opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+}
+
+void PosixFile::rename(const std::filesystem::path& name, Target target) {
+  int status = -1;
+  if (target == Target::keep) {
+    status = ::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, name.c_str(), RENAME_NOREPLACE);
+    if (status != 0 && errno == EEXIST)
+      throw StudyError(name.string() +
+                       ": exists (made meanwhile by someone else): the result stays in " +
+                       path_.string() + "; move one of them");
+  }
+  if (status != 0) status = ::rename(path_.c_str(), name.c_str());
+  if (status != 0) fail_to_write(name, errno);
+  path_ = name;
+  sync_folder_of(path_);
+}
+
+}  // namespace montecarta

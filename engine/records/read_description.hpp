@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/records/h5.hpp"
+#include "engine/records/result_description.hpp"
+
+#include <filesystem>
+
+namespace montecarta {
+
+/// What an open result file says of itself. Throws StudyError where it is no montecarta result of a
+/// known major version, RunError where something that must be there cannot be read.
+ResultDescription read_description(const h5::Handle& file, const std::filesystem::path& path);
+
+}  // namespace montecarta

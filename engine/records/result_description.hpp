@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/records/columns.hpp"
+#include "engine/runs/plan.hpp"
+#include "engine/runs/pose.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace montecarta {
+
+/// (name, value), in order.
+using TextPairs = std::vector<std::pair<std::string, std::string>>;
+
+/// A cell as a result file describes it.
+struct StoredCell {
+  std::string label;
+  std::string filter;
+  std::string long_name;
+  std::size_t particles = 0;
+  TextPairs settings;
+  std::vector<Column> columns;  ///< what was stored
+  bool has(std::string_view column) const;
+};
+
+/// All that a result file says besides the numbers of its runs: from a plan it says how to lay a
+/// file out, from a file what lies in it.
+struct ResultDescription {
+  std::string study_name;
+  std::string title;
+  std::string study_text;    ///< resolved study file
+  std::string study_sha256;  ///< of study_text, hexadecimal: two files of one study agree in it
+  std::uint64_t seed = 0;
+  std::uint64_t study_runs = 0;                      ///< of the whole study
+  std::vector<std::uint64_t> runs;                   ///< numbers of the runs held here, increasing
+  std::vector<double> times;                         ///< [s] of the rows of `time`
+  std::vector<double> scan_times;                    ///< [s]
+  std::vector<std::uint32_t> scan_steps;             ///< step after which each scan is taken
+  std::vector<std::uint32_t> scan_rows;              ///< row of `time` at which each scan is taken
+  Pose start;                                        ///< before the first step
+  std::vector<std::pair<double, double>> landmarks;  ///< [m] true positions; empty where unknown
+  std::vector<std::pair<double, double>> waypoints;  ///< [m]; may be empty
+  TextPairs scenario;
+  TextPairs provenance;
+  std::vector<StoredCell> cells;
+
+  /// Bytes of the numbers of one run, over all cells and the truth.
+  double bytes_per_run() const;
+};
+
+/// What the file of a plan will say.
+ResultDescription describe(const StudyPlan& plan, const TextPairs& provenance);
+
+}  // namespace montecarta

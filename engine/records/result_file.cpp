@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/records/result_file.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/records/h5.hpp"
+#include "engine/records/read_description.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace montecarta {
+
+struct ResultFile::Contents {
+  std::filesystem::path path;
+  h5::Handle file;
+  ResultDescription description;
+  h5::Handle truth;
+  /// Every column of every cell, opened once.
+  std::map<std::string, std::map<std::string, h5::Handle, std::less<>>, std::less<>> columns;
+
+  explicit Contents(const std::filesystem::path& given)
+      : path(given),
+        file(h5::open_file(path)),
+        description(read_description(file, path)),
+        truth(h5::open_dataset(file, "truth/pose")) {
+    for (const StoredCell& cell : description.cells) {
+      for (const Column& column : cell.columns) {
+        columns[cell.label].emplace(
+            column.name, h5::open_dataset(file, "cells/" + cell.label + "/" + column.name));
+      }
+    }
+  }
+
+  const h5::Handle& column(const StoredCell& cell, std::string_view name) const {
+    const auto of_cell = columns.find(cell.label);
+    if (of_cell != columns.end()) {
+      const auto found = of_cell->second.find(name);
+      if (found != of_cell->second.end()) return found->second;
+    }
+    throw RunError(path.string() + ": cell '" + cell.label + "' has no column '" +
+                   std::string(name) +
+                   "' (record.columns did not ask for it): run the study again with it");
+  }
+
+  template <class T>
+  std::vector<T> per_run(const std::string& name, Element element) const {
+    std::vector<T> values(description.runs.size());
+    h5::read(h5::open_dataset(file, name), element, std::as_writable_bytes(std::span(values)));
+    return values;
+  }
+};
+
+namespace {
+
+const std::filesystem::path& existing(const std::filesystem::path& path) {
+  if (std::filesystem::exists(path)) return path;
+  auto part = path;
+  part += ".part";
+  const bool unfinished = std::filesystem::exists(part);
+  throw StudyError(path.string() + ": no such file" +
+                   (unfinished ? " (the work is unfinished): read " + part.string() +
+                                     ", or finish it with 'montecarta run --resume'"
+                               : ": check the spelling"));
+}
+
+}  // namespace
+
+ResultFile::ResultFile(const std::filesystem::path& path)
+    : contents_(std::make_unique<Contents>(existing(path))) {}
+ResultFile::~ResultFile() = default;
+ResultFile::ResultFile(ResultFile&&) noexcept = default;
+ResultFile& ResultFile::operator=(ResultFile&&) noexcept = default;
+
+const std::filesystem::path& ResultFile::path() const { return contents_->path; }
+const ResultDescription& ResultFile::description() const { return contents_->description; }
+const std::string& ResultFile::study_name() const { return description().study_name; }
+const std::string& ResultFile::title() const { return description().title; }
+const std::string& ResultFile::study_text() const { return description().study_text; }
+const std::string& ResultFile::study_sha256() const { return description().study_sha256; }
+std::uint64_t ResultFile::seed() const { return description().seed; }
+std::uint64_t ResultFile::study_runs() const { return description().study_runs; }
+const std::vector<std::uint64_t>& ResultFile::runs() const { return description().runs; }
+const std::vector<double>& ResultFile::times() const { return description().times; }
+const std::vector<std::uint32_t>& ResultFile::scan_rows() const { return description().scan_rows; }
+const std::vector<double>& ResultFile::scan_times() const { return description().scan_times; }
+const std::vector<std::pair<double, double>>& ResultFile::landmarks() const {
+  return description().landmarks;
+}
+const std::vector<std::pair<double, double>>& ResultFile::waypoints() const {
+  return description().waypoints;
+}
+const TextPairs& ResultFile::scenario() const { return description().scenario; }
+const TextPairs& ResultFile::provenance() const { return description().provenance; }
+const std::vector<StoredCell>& ResultFile::cells() const { return description().cells; }
+std::uint64_t ResultFile::bytes() const { return std::filesystem::file_size(path()); }
+
+std::vector<RunStatus> ResultFile::status(const StoredCell& cell) const {
+  const auto numbers =
+      contents_->per_run<std::uint8_t>("cells/" + cell.label + "/status", Element::u8);
+  std::vector<RunStatus> statuses;
+  for (std::uint8_t number : numbers) {
+    if (number > static_cast<std::uint8_t>(RunStatus::failed))
+      throw RunError(path().string() + ": a status of cell '" + cell.label +
+                     "' is none of 0, 1, 2 (the file is damaged): make it anew");
+    statuses.push_back(static_cast<RunStatus>(number));
+  }
+  return statuses;
+}
+
+std::vector<std::string> ResultFile::failure_reasons(const StoredCell& cell) const {
+  return h5::read_texts(
+      h5::open_dataset(contents_->file, "cells/" + cell.label + "/failure_reason"));
+}
+
+std::vector<std::uint32_t> ResultFile::failure_steps(const StoredCell& cell) const {
+  return contents_->per_run<std::uint32_t>("cells/" + cell.label + "/failure_step", Element::u32);
+}
+
+std::vector<double> ResultFile::cpu_seconds(const StoredCell& cell) const {
+  return contents_->per_run<double>("timing/" + cell.label + "/cpu_seconds", Element::f64);
+}
+
+double ResultFile::wall_seconds() const {
+  double seconds = 0.0;
+  h5::read(h5::open_dataset(contents_->file, "timing/wall_seconds"), Element::f64,
+           std::as_writable_bytes(std::span(&seconds, 1)));
+  return seconds;
+}
+
+void ResultFile::read(const StoredCell& cell, std::string_view column, std::size_t i,
+                      std::span<double> out) const {
+  h5::read_row(contents_->column(cell, column), i, Element::f64, std::as_writable_bytes(out));
+}
+
+void ResultFile::read(const StoredCell& cell, std::string_view column, std::size_t i,
+                      std::span<std::uint32_t> out) const {
+  h5::read_row(contents_->column(cell, column), i, Element::u32, std::as_writable_bytes(out));
+}
+
+void ResultFile::read_truth(std::size_t i, std::span<double> out) const {
+  h5::read_row(contents_->truth, i, Element::f64, std::as_writable_bytes(out));
+}
+
+}  // namespace montecarta

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/records/result_layout.hpp"
+
+#include "engine/records/h5.hpp"
+#include "engine/records/labelled_dataset.hpp"
+#include "engine/records/run_record.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace montecarta {
+namespace {
+
+using Points = std::vector<std::pair<double, double>>;
+
+void put_root(const h5::Handle& file, const ResultDescription& result) {
+  h5::put_text(file, "filetype", std::string(format::kFiletype));
+  h5::put_numbers(file, "format_version", std::array{format::kMajor, format::kMinor});
+  h5::put_text(file, "title", result.title);
+  h5::put_text(file, "study", result.study_name);
+  h5::put_numbers(file, "seed", std::array{result.seed});
+  h5::put_numbers(file, "runs", std::array{result.study_runs});
+}
+
+void add_scan_index(const h5::Handle& file, const std::string& name,
+                    const std::vector<std::uint32_t>& values, const std::string& long_name,
+                    const Scales& scales) {
+  const auto dataset =
+      add_dataset(file, name, Element::u32, {values.size()}, {"scan"}, {"1", long_name}, scales);
+  h5::write(dataset, Element::u32, values.data());
+}
+
+void add_axes(const h5::Handle& file, const ResultDescription& result, Scales& scales) {
+  add_scale(file, "run", result.runs, {"1", "number of the run in the study"}, scales);
+  add_scale(file, "time", result.times, {"s", "time of the estimate"}, scales);
+  add_scale(file, "scan", result.scan_times, {"s", "time of the scan"}, scales);
+  const std::vector<std::string> components = {"x", "y", "heading"};
+  const std::vector<std::string> coordinates = {"x", "y"};
+  add_scale(file, "component", components, {"1", "component of a pose"}, scales);
+  add_scale(file, "component_column", components, {"1", "component of a pose, second axis"},
+            scales);
+  add_scale(file, "coordinate", coordinates, {"1", "coordinate of a point"}, scales);
+  add_scale(file, "coordinate_column", coordinates, {"1", "coordinate of a point, second axis"},
+            scales);
+  add_scan_index(file, "scan_step", result.scan_steps, "control step after which the scan is taken",
+                 scales);
+  add_scan_index(file, "scan_row", result.scan_rows, "row of time at which the scan is taken",
+                 scales);
+}
+
+void add_points(const h5::Handle& group, const std::string& one, const Points& points,
+                const std::string& long_name, Scales& scales) {
+  static_assert(sizeof(Points::value_type) == 2 * sizeof(double));
+  if (points.empty()) return;
+  add_index_scale(group, one, points.size(), {"1", "identity of the " + one}, scales);
+  const auto dataset = add_dataset(group, one + "s", Element::f64, {points.size(), 2},
+                                   {one, "coordinate"}, {"m", long_name}, scales);
+  h5::write(dataset, Element::f64, points.data());
+}
+
+void add_scenario(const h5::Handle& file, const ResultDescription& result, Scales& scales) {
+  static_assert(sizeof(Pose) == 3 * sizeof(double));
+  const h5::Handle group = h5::create_group(file, "scenario");
+  for (const auto& [name, value] : result.scenario) h5::put_text(group, name, value);
+  const auto start = add_dataset(group, "start", Element::f64, {3}, {"component"},
+                                 {"m, m, rad", "pose before the first step"}, scales);
+  h5::write(start, Element::f64, &result.start);
+  add_points(group, "landmark", result.landmarks, "true position of the landmark", scales);
+  add_points(group, "waypoint", result.waypoints, "position of the way-point", scales);
+}
+
+/// Bookkeeping must not depend on what happens to lie in the new file.
+void write_zeros(const h5::Handle& dataset, Element element, std::size_t count) {
+  const std::vector<std::byte> zeros(count * size_of(element));
+  h5::write(dataset, element, zeros.data());
+}
+
+void add_truth(const h5::Handle& file, const ResultDescription& result, const Scales& scales) {
+  const h5::Handle group = h5::create_group(file, "truth");
+  add_dataset(group, "pose", Element::f64, {result.runs.size(), result.times.size(), 3},
+              {"run", "time", "component"}, {"m, m, rad", "true pose"}, scales);
+  const auto fingerprint =
+      add_dataset(group, "fingerprint", Element::u64, {result.runs.size()}, {"run"},
+                  {"1", "XXH3 of the run's pose, 0 where it is missing"}, scales);
+  write_zeros(fingerprint, Element::u64, result.runs.size());
+}
+
+/// Scales whose length differs from cell to cell live with the cell.
+void add_own_scale(const h5::Handle& group, const StoredCell& cell, Axis axis,
+                   const std::string& long_name, Scales& scales) {
+  for (const Column& column : cell.columns) {
+    const auto found = std::find(column.axes.begin(), column.axes.end(), axis);
+    if (found == column.axes.end()) continue;
+    const auto length = column.shape[static_cast<std::size_t>(found - column.axes.begin())];
+    return add_index_scale(group, std::string(name_of(axis)), length, {"1", long_name}, scales);
+  }
+}
+
+void add_bookkeeping(const h5::Handle& group, std::size_t runs, const Scales& scales) {
+  const auto status = add_dataset(group, "status", Element::u8, {runs}, {"run"},
+                                  {"1", "0 missing, 1 complete, 2 failed"}, scales);
+  write_zeros(status, Element::u8, runs);
+  add_text_dataset(group, "failure_reason", kFailureReasonBytes, {runs}, {"run"},
+                   {"1", "why a failed run ended"}, scales);
+  add_dataset(group, "failure_step", Element::u32, {runs}, {"run"},
+              {"1", "control step at which a failed run ended"}, scales);
+  const auto fingerprint = add_dataset(group, "fingerprint", Element::u64, {runs}, {"run"},
+                                       {"1", "XXH3 of all that is stored of the run"}, scales);
+  write_zeros(fingerprint, Element::u64, runs);
+}
+
+void add_column(const h5::Handle& group, const Column& column, std::size_t runs,
+                const Scales& scales) {
+  h5::Shape shape = {runs};
+  shape.insert(shape.end(), column.shape.begin(), column.shape.end());
+  std::vector<std::string> dimensions = {"run"};
+  for (Axis axis : column.axes) dimensions.emplace_back(name_of(axis));
+  add_dataset(group, column.name, column.element, shape, dimensions,
+              {column.units, column.long_name}, scales);
+}
+
+void add_cell(const h5::Handle& cells, const StoredCell& cell, std::size_t runs, Scales& scales) {
+  const h5::Handle group = h5::create_group(cells, cell.label);
+  h5::put_text(group, "filter", cell.filter);
+  h5::put_text(group, "long_name", cell.long_name);
+  h5::put_numbers(group, "particles", std::array{std::uint64_t{cell.particles}});
+  const h5::Handle settings = h5::create_group(group, "settings");
+  for (const auto& [name, value] : cell.settings) h5::put_text(settings, name, value);
+  add_own_scale(group, cell, Axis::particle, "index of the particle", scales);
+  add_own_scale(group, cell, Axis::landmark, "landmark: its identity, or order of birth", scales);
+  add_bookkeeping(group, runs, scales);
+  for (const Column& column : cell.columns) add_column(group, column, runs, scales);
+}
+
+void add_timing(const h5::Handle& file, const ResultDescription& result, const Scales& scales) {
+  const h5::Handle group = h5::create_group(file, "timing");
+  const double none = 0.0;
+  const auto wall = add_dataset(group, "wall_seconds", Element::f64, {}, {},
+                                {"s", "wall time of all sittings"}, scales);
+  h5::write(wall, Element::f64, &none);
+  const std::vector<double> unknown(result.runs.size(), std::numeric_limits<double>::quiet_NaN());
+  for (const StoredCell& cell : result.cells) {
+    const h5::Handle of_cell = h5::create_group(group, cell.label);
+    const auto cpu = add_dataset(of_cell, "cpu_seconds", Element::f64, {unknown.size()}, {"run"},
+                                 {"s", "thread CPU time of the filter"}, scales);
+    h5::write(cpu, Element::f64, unknown.data());
+  }
+}
+
+void add_provenance(const h5::Handle& file, const ResultDescription& result, Scales& scales) {
+  const h5::Handle group = h5::create_group(file, "provenance");
+  for (const auto& [name, value] : result.provenance) h5::put_text(group, name, value);
+  h5::put_text(group, "study_sha256", result.study_sha256);
+  const auto text = add_text_dataset(group, "study", result.study_text.size(), {}, {},
+                                     {"1", "study file with everything filled in"}, scales);
+  h5::write_texts(text, std::array{result.study_text});
+  add_index_scale(group, "sitting", format::kSittings, {"1", "start or resumption of the work"},
+                  scales);
+  const auto sittings =
+      add_text_dataset(group, "sittings", format::kSittingBytes, {format::kSittings}, {"sitting"},
+                       {"1", "what was different each time the work was resumed"}, scales);
+  h5::write_texts(sittings, std::vector<std::string>(format::kSittings));
+}
+
+}  // namespace
+
+void lay_out(const std::filesystem::path& path, const ResultDescription& result) {
+  h5::Handle file = h5::create_file(path);
+  Scales scales;
+  put_root(file, result);
+  add_axes(file, result, scales);
+  add_scenario(file, result, scales);
+  add_truth(file, result, scales);
+  const h5::Handle cells = h5::create_group(file, "cells");
+  for (const StoredCell& cell : result.cells) add_cell(cells, cell, result.runs.size(), scales);
+  add_timing(file, result, scales);
+  add_provenance(file, result, scales);
+  scales.clear();
+  h5::close_file(std::move(file));
+}
+
+}  // namespace montecarta

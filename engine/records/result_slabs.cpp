@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/records/result_slabs.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/records/fingerprint.hpp"
+#include "engine/records/h5.hpp"
+#include "engine/records/result_layout.hpp"
+#include "engine/records/run_record.hpp"
+
+#include <span>
+
+namespace montecarta {
+namespace {
+
+class SlabFinder {
+ public:
+  explicit SlabFinder(const std::filesystem::path& path)
+      : path_(path), file_(h5::open_file(path)) {}
+
+  Slab find(const std::string& name, std::uint64_t run_bytes) const {
+    const auto place = h5::place(h5::open_dataset(file_, name));
+    if (!place) {
+      throw StudyError(path_.string() + ": '" + name +
+                       "' is not in one piece (another program rewrote the file): "
+                       "use the file as montecarta wrote it");
+    }
+    return {*place, run_bytes};
+  }
+
+  CellSlabs find(const StoredCell& cell) const {
+    const std::string group = "cells/" + cell.label + "/";
+    CellSlabs slabs;
+    for (const Column& column : cell.columns)
+      slabs.columns.push_back(find(group + column.name, column.bytes()));
+    slabs.failure_reason = find(group + "failure_reason", kFailureReasonBytes);
+    slabs.failure_step = find(group + "failure_step", sizeof(std::uint32_t));
+    slabs.fingerprint = find(group + "fingerprint", sizeof(std::uint64_t));
+    slabs.cpu_seconds = find("timing/" + cell.label + "/cpu_seconds", sizeof(double));
+    slabs.status = find(group + "status", 1);
+    return slabs;
+  }
+
+ private:
+  const std::filesystem::path& path_;
+  h5::Handle file_;
+};
+
+void add_run(const PosixFile& file, const Slab& slab, std::size_t run_index,
+             std::vector<std::byte>& buffer, Fingerprint& fingerprint) {
+  buffer.resize(slab.run_bytes);
+  file.read_at(slab.at(run_index), buffer);
+  fingerprint.add(buffer);
+}
+
+std::uint64_t stored_fingerprint(const PosixFile& file, const Slab& slab, std::size_t run_index) {
+  std::uint64_t stored = 0;
+  file.read_at(slab.at(run_index), std::as_writable_bytes(std::span(&stored, 1)));
+  return stored;
+}
+
+}  // namespace
+
+ResultSlabs find_slabs(const std::filesystem::path& path, const ResultDescription& description) {
+  const SlabFinder finder(path);
+  ResultSlabs slabs;
+  slabs.truth = finder.find("truth/pose", description.times.size() * 3 * sizeof(double));
+  slabs.truth_fingerprint = finder.find("truth/fingerprint", sizeof(std::uint64_t));
+  slabs.wall_seconds = finder.find("timing/wall_seconds", sizeof(double));
+  slabs.sittings = finder.find("provenance/sittings", format::kSittingBytes);
+  for (const StoredCell& cell : description.cells) slabs.cells.push_back(finder.find(cell));
+  return slabs;
+}
+
+std::vector<RunStatus> read_statuses(const PosixFile& file, const CellSlabs& cell,
+                                     std::size_t runs) {
+  std::vector<RunStatus> statuses(runs);
+  file.read_at(cell.status.offset, std::as_writable_bytes(std::span(statuses)));
+  for (RunStatus status : statuses) {
+    if (status > RunStatus::failed)
+      throw RunError(file.path().string() +
+                     ": a status is none of 0, 1, 2 (the file is damaged): make it anew");
+  }
+  return statuses;
+}
+
+bool run_is_whole(const PosixFile& file, const CellSlabs& cell, std::size_t run_index,
+                  std::vector<std::byte>& buffer) {
+  Fingerprint fingerprint;
+  for (const Slab& column : cell.columns) add_run(file, column, run_index, buffer, fingerprint);
+  for (const Slab& slab : {cell.status, cell.failure_step, cell.failure_reason})
+    add_run(file, slab, run_index, buffer, fingerprint);
+  return fingerprint.value() == stored_fingerprint(file, cell.fingerprint, run_index);
+}
+
+bool truth_is_whole(const PosixFile& file, const ResultSlabs& slabs, std::size_t run_index,
+                    std::vector<std::byte>& buffer) {
+  Fingerprint fingerprint;
+  add_run(file, slabs.truth, run_index, buffer, fingerprint);
+  return fingerprint.value() == stored_fingerprint(file, slabs.truth_fingerprint, run_index);
+}
+
+}  // namespace montecarta

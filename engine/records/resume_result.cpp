@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/errors.hpp"
+#include "engine/records/h5.hpp"
+#include "engine/records/open_result.hpp"
+#include "engine/records/read_description.hpp"
+#include "engine/records/result_layout.hpp"
+
+#include <algorithm>
+
+namespace montecarta {
+namespace {
+
+namespace fs = std::filesystem;
+
+ResultDescription read_description_of(const fs::path& path) {
+  try {
+    return read_description(h5::open_file(path), path);
+  } catch (const std::runtime_error& error) {
+    throw StudyError(path.string() + ": cannot be resumed (" + error.what() +
+                     "): start afresh with --force");
+  }
+}
+
+std::string range(const ResultDescription& result) {
+  return std::to_string(result.runs.front()) + ":" + std::to_string(result.runs.back() + 1);
+}
+
+bool same_columns(const StoredCell& a, const StoredCell& b) {
+  return a.label == b.label &&
+         std::ranges::equal(a.columns, b.columns, [](const Column& x, const Column& y) {
+           return x.name == y.name && x.element == y.element && x.shape == y.shape;
+         });
+}
+
+void expect_same_study(const fs::path& path, const ResultDescription& planned,
+                       const ResultDescription& stored) {
+  if (stored.study_sha256 != planned.study_sha256) {
+    throw StudyError(
+        path.string() + ": belongs to another study ('" + stored.study_name + "', SHA-256 " +
+        stored.study_sha256.substr(0, 12) + ", not '" + planned.study_name + "', " +
+        planned.study_sha256.substr(0, 12) +
+        "): resume it with its own study file and the same --set, or choose another path");
+  }
+  if (stored.runs != planned.runs) {
+    throw StudyError(path.string() + ": holds runs " + range(stored) + " (asked for: " +
+                     range(planned) + "): give the same --runs or --shard as at the start");
+  }
+  if (!std::ranges::equal(stored.cells, planned.cells, same_columns) ||
+      stored.times != planned.times) {
+    throw StudyError(
+        path.string() +
+        ": is laid out differently from what this program would write (another version "
+        "of montecarta or of a world file began it): start afresh with --force");
+  }
+}
+
+void forget(OpenResult& result, std::size_t cell, std::size_t run_index) {
+  const std::byte missing{static_cast<std::uint8_t>(RunStatus::missing)};
+  result.status[cell][run_index] = RunStatus::missing;
+  result.file.write_at(result.slabs.cells[cell].status.at(run_index), std::span(&missing, 1));
+}
+
+/// Marks what is torn as missing; tells how many runs of cells that were.
+std::size_t forget_torn_runs(OpenResult& result) {
+  std::vector<std::byte> buffer;
+  std::size_t torn = 0;
+  for (std::size_t run = 0; run < result.truth_stored.size(); ++run) {
+    result.truth_stored[run] = truth_is_whole(result.file, result.slabs, run, buffer);
+    for (std::size_t cell = 0; cell < result.status.size(); ++cell) {
+      if (result.status[cell][run] == RunStatus::missing) continue;
+      if (result.truth_stored[run] &&
+          run_is_whole(result.file, result.slabs.cells[cell], run, buffer))
+        continue;
+      forget(result, cell, run);
+      ++torn;
+    }
+  }
+  return torn;
+}
+
+/// What differs from how the work was begun, "name=value" each, in one line.
+std::string differences(const TextPairs& begun, const Provenance& now) {
+  std::string line;
+  for (const auto& pair : now) {
+    if (std::ranges::find(begun, pair) == begun.end())
+      line += pair.first + "=" + pair.second + "; ";
+  }
+  return line.empty() ? "resumed" : line.substr(0, line.size() - 2);
+}
+
+/// Logs the resumption in the first free line; once all are used, in the last.
+void log_sitting(const OpenResult& result, std::string line) {
+  std::string all(format::kSittings * format::kSittingBytes, '\0');
+  result.file.read_at(result.slabs.sittings.offset, std::as_writable_bytes(std::span(all)));
+  std::size_t free = 0;
+  while (free + 1 < format::kSittings && all[free * format::kSittingBytes] != '\0') ++free;
+  line.resize(format::kSittingBytes, '\0');
+  result.file.write_at(result.slabs.sittings.at(free), std::as_bytes(std::span(line)));
+}
+
+void note_other_build(const TextPairs& begun, const Provenance& now,
+                      std::vector<std::string>& notes) {
+  for (const char* name : {"git", "compiler", "flags", "instruction_set"}) {
+    const auto named = [&](const auto& pair) { return pair.first == name; };
+    const auto then = std::ranges::find_if(begun, named);
+    const auto here = std::ranges::find_if(now, named);
+    if (then == begun.end() || here == now.end() || then->second == here->second) continue;
+    notes.push_back("the work was begun by another build (" + std::string(name) + ": " +
+                    then->second + ", now " + here->second +
+                    "): the last digits of its runs may differ from those computed now");
+  }
+}
+
+OpenResult open_existing(const fs::path& path, PosixFile::Mode mode,
+                         const ResultDescription& planned, ResultDescription& stored) {
+  OpenResult result{PosixFile(path, mode), {}, {}, {}, {}};
+  if (mode == PosixFile::Mode::write) result.file.lock();
+  stored = read_description_of(path);
+  expect_same_study(path, planned, stored);
+  result.slabs = find_slabs(path, stored);
+  for (const CellSlabs& cell : result.slabs.cells)
+    result.status.push_back(read_statuses(result.file, cell, stored.runs.size()));
+  result.truth_stored.assign(stored.runs.size(), true);
+  result.target = PosixFile::Target::replace;
+  return result;
+}
+
+}  // namespace
+
+OpenResult resume_result(const fs::path& path, const StudyPlan& plan,
+                         const Provenance& provenance) {
+  const bool begun = fs::exists(part_of(path));
+  if (!begun && !fs::exists(path)) return create_result(path, plan, provenance, Existing::refuse);
+  const ResultDescription planned = describe(plan, provenance);
+  ResultDescription stored;
+  if (!begun) {
+    OpenResult finished = open_existing(path, PosixFile::Mode::read, planned, stored);
+    finished.notes.push_back(path.string() + " is complete already");
+    return finished;
+  }
+  OpenResult result = open_existing(part_of(path), PosixFile::Mode::write, planned, stored);
+  const std::size_t torn = forget_torn_runs(result);
+  if (torn > 0) {
+    result.notes.push_back(std::to_string(torn) +
+                           " stored runs were damaged (a power cut?) and are computed again");
+  }
+  note_other_build(stored.provenance, provenance, result.notes);
+  log_sitting(result, differences(stored.provenance, provenance));
+  return result;
+}
+
+}  // namespace montecarta
