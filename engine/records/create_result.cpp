@@ -14,6 +14,17 @@ namespace fs = std::filesystem;
 
 fs::path with_suffix(fs::path path, const char* suffix) { return path += suffix; }
 
+// Where a folder may not be searched, opening the file says so better than these could.
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+bool is_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
 void refuse_existing(const fs::path& path) {
   if (is_there(path)) {
     throw StudyError(path.string() +

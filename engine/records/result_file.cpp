@@ -53,10 +53,11 @@ struct ResultFile::Contents {
 namespace {
 
 const std::filesystem::path& existing(const std::filesystem::path& path) {
-  if (std::filesystem::exists(path)) return path;
+  std::error_code unreadable;
+  if (std::filesystem::exists(path, unreadable)) return path;
   auto part = path;
   part += ".part";
-  const bool unfinished = std::filesystem::exists(part);
+  const bool unfinished = std::filesystem::exists(part, unreadable);
   throw StudyError(path.string() + ": no such file" +
                    (unfinished ? " (the work is unfinished): read " + part.string() +
                                      ", or finish it with 'montecarta run --resume'"

@@ -129,8 +129,10 @@ OpenResult open_existing(const fs::path& path, PosixFile::Mode mode,
 
 OpenResult resume_result(const fs::path& path, const StudyPlan& plan,
                          const Provenance& provenance) {
-  const bool begun = fs::exists(part_of(path));
-  if (!begun && !fs::exists(path)) return create_result(path, plan, provenance, Existing::refuse);
+  std::error_code unreadable;
+  const bool begun = fs::exists(part_of(path), unreadable);
+  if (!begun && !fs::exists(path, unreadable))
+    return create_result(path, plan, provenance, Existing::refuse);
   const ResultDescription planned = describe(plan, provenance);
   ResultDescription stored;
   if (!begun) {
