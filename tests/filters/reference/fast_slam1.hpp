@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tests/filters/reference/fast_slam.hpp"
+
+namespace montecarta::reference {
+
+/// FastSLAM I (SPEC 6): poses are drawn from the motion model at every step, and weighed by the
+/// scan.
+class FastSlam1 final : public FastSlam {
+ public:
+  using FastSlam::FastSlam;
+  PoseEstimate estimate() const override { return {drawn(), std::nullopt}; }
+
+ private:
+  void predict_particle(const StepContext& context, std::uint32_t i, Particle& p,
+                        const Control& control, double duration) override {
+    const Belief& belief = settings_.belief;
+    RngStream draw = context.stream(Draw::motion_sample, i);
+    const double speed = control.speed + belief.sigma_speed * draw.normal();
+    const double steer = control.steer + belief.sigma_steer * draw.normal();
+    const Pose moved = move(as_pose(p.pose), speed, steer, duration, belief.wheelbase);
+    p.pose = Eigen::Vector3d(moved.x, moved.y, moved.heading);
+  }
+
+  void weigh_and_draw(const StepContext&, std::uint32_t, Particle& p, Scan scan) override {
+    for (std::size_t k = 0; k < scan.size(); ++k) {
+      if (p.pairings[k].verdict != Verdict::matched) continue;
+      const auto seen = seen_from(p.pose, *p.map[p.pairings[k].landmark], scan[k], R_);
+      if (seen) p.log_weight += log_gaussian<2>(seen->nu, seen->S_f);
+    }
+  }
+};
+
+}  // namespace montecarta::reference

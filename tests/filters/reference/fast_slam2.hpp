@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tests/filters/reference/fast_slam.hpp"
+
+namespace montecarta::reference {
+
+/// The three forms of SPEC 7.2.
+enum class Weight { closed, ratio, batch };
+
+/// FastSLAM II (SPEC 7): the pose Gaussian is refined by the scan, weighed, and a pose drawn from
+/// it.
+class FastSlam2 final : public FastSlam {
+ public:
+  FastSlam2(const FastSlamSettings& settings, Weight weight)
+      : FastSlam(settings), weight_(weight) {}
+
+  /// Before the next step: the Gaussians before drawing. Afterwards: poses with the covariance
+  /// gathered since.
+  PoseEstimate estimate() const override {
+    return {drawn(), mixture_moments(
+                         particles_, [](const Particle& p) { return p.refined_pose; },
+                         [](const Particle& p) { return p.refined_covariance; })};
+  }
+
+ private:
+  void predict_particle(const StepContext&, std::uint32_t, Particle& p, const Control& control,
+                        double duration) override {
+    const auto step =
+        linearised_move(as_pose(p.pose), control, duration, settings_.belief.wheelbase);
+    const Eigen::Matrix3d Fx = pose_jacobian(step.jacobians);
+    const Matrix32 Fu = control_jacobian(step.jacobians);
+    p.covariance = (Fx * p.covariance * Fx.transpose() + Fu * Q_ * Fu.transpose()).eval();
+    p.pose = Eigen::Vector3d(step.pose.x, step.pose.y, step.pose.heading);
+    p.refined_pose = p.pose;
+    p.refined_covariance = p.covariance;
+  }
+
+  void weigh_and_draw(const StepContext& context, std::uint32_t i, Particle& p,
+                      Scan scan) override {
+    const Eigen::Vector3d predicted = p.pose;
+    const Eigen::Matrix3d P_predicted = p.covariance;
+    const double log_stacked = weight_ == Weight::batch ? log_batch(p, scan) : 0.0;
+    const double log_closed = refine(p, scan);
+    p.refined_pose = p.pose;
+    p.refined_covariance = p.covariance;
+    draw_pose(context.stream(Draw::pose_proposal, i), p);
+    switch (weight_) {
+      case Weight::closed:
+        p.log_weight += log_closed;
+        break;
+      case Weight::batch:
+        p.log_weight += log_stacked;
+        break;
+      case Weight::ratio:
+        p.log_weight += log_ratio(p, scan, predicted, P_predicted);
+        break;
+    }
+  }
+
+  /// SPEC 7.1: one detection after the other, each linearised where the last one led; returns the
+  /// closed form (c).
+  double refine(Particle& p, Scan scan) const {
+    double log_evidence = 0.0;
+    for (std::size_t k = 0; k < scan.size(); ++k) {
+      if (p.pairings[k].verdict != Verdict::matched) continue;
+      const auto seen = seen_from(p.pose, *p.map[p.pairings[k].landmark], scan[k], R_);
+      if (!seen) continue;
+      const Eigen::Matrix2d S_z = seen->Hx * p.covariance * seen->Hx.transpose() + seen->S_f;
+      const Matrix32 K = S_z.llt().solve(seen->Hx * p.covariance).transpose();
+      p.pose += K * seen->nu;
+      p.pose(2) = wrap(p.pose(2));
+      p.covariance -= (K * S_z * K.transpose()).eval();
+      log_evidence += log_gaussian<2>(seen->nu, S_z);
+    }
+    return log_evidence;
+  }
+
+  /// Form (b): the density of the stacked innovation, linearised at the predicted pose.
+  double log_batch(const Particle& p, Scan scan) const {
+    Eigen::MatrixXd H(2 * scan.size(), 3);
+    Eigen::VectorXd nu(2 * scan.size());
+    Eigen::MatrixXd S = Eigen::MatrixXd::Zero(H.rows(), H.rows());
+    Eigen::Index rows = 0;
+    for (std::size_t k = 0; k < scan.size(); ++k) {
+      if (p.pairings[k].verdict != Verdict::matched) continue;
+      const auto seen = seen_from(p.pose, *p.map[p.pairings[k].landmark], scan[k], R_);
+      if (!seen) continue;
+      H.middleRows<2>(rows) = seen->Hx;
+      nu.segment<2>(rows) = seen->nu;
+      S.block<2, 2>(rows, rows) = seen->S_f;
+      rows += 2;
+    }
+    if (rows == 0) return 0.0;
+    const Eigen::MatrixXd Hx = H.topRows(rows);
+    const Eigen::VectorXd v = nu.head(rows);
+    const Eigen::MatrixXd S_z = Hx * p.covariance * Hx.transpose() + S.topLeftCorner(rows, rows);
+    return log_gaussian<Eigen::Dynamic>(v, S_z);
+  }
+
+  /// x + chol(P) eps; the pose then is exact.
+  void draw_pose(RngStream draw, Particle& p) const {
+    Eigen::Vector3d eps;
+    for (int k = 0; k < 3; ++k) eps(k) = draw.normal();
+    p.pose += psd_chol(p.covariance) * eps;
+    p.pose(2) = wrap(p.pose(2));
+    p.covariance.setZero();
+  }
+
+  /// Form (r): likelihood at the drawn pose times prior over proposal there (Bailey et al. 2006).
+  double log_ratio(const Particle& p, Scan scan, const Eigen::Vector3d& predicted,
+                   const Eigen::Matrix3d& P_predicted) const {
+    double log_likelihood = 0.0;
+    bool matched = false;
+    for (std::size_t k = 0; k < scan.size(); ++k) {
+      if (p.pairings[k].verdict != Verdict::matched) continue;
+      const auto seen = seen_from(p.pose, *p.map[p.pairings[k].landmark], scan[k], R_);
+      if (!seen) continue;
+      log_likelihood += log_gaussian<2>(seen->nu, seen->S_f);
+      matched = true;
+    }
+    if (!matched) return 0.0;
+    const Eigen::Matrix3d floor = Eigen::Vector3d(1e-12, 1e-12, 1e-14).asDiagonal();
+    const Eigen::Vector3d from_prior = boxminus(as_pose(p.pose), as_pose(predicted));
+    const Eigen::Vector3d from_proposal = boxminus(as_pose(p.pose), as_pose(p.refined_pose));
+    return log_likelihood + log_gaussian<3>(from_prior, P_predicted + floor) -
+           log_gaussian<3>(from_proposal, p.refined_covariance + floor);
+  }
+
+  Weight weight_;
+};
+
+}  // namespace montecarta::reference
