@@ -22,6 +22,17 @@ inline bool same_bits(const std::vector<double>& a, const std::vector<double>& b
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
+/// What differs between the outcomes of run index `i` of `a` and `j` of `b`; empty if nothing.
+inline std::string difference_of_outcome(const ResultFile& a, const StoredCell& left, std::size_t i,
+                                         const ResultFile& b, const StoredCell& right,
+                                         std::size_t j) {
+  if (a.status(left)[i] != b.status(right)[j]) return left.label + "/status";
+  if (a.failure_steps(left)[i] != b.failure_steps(right)[j]) return left.label + "/failure_step";
+  if (a.failure_reasons(left)[i] != b.failure_reasons(right)[j])
+    return left.label + "/failure_reason";
+  return "";
+}
+
 /// What differs between run index `i` of `a` and `j` of `b` under /cells and /truth; empty if
 /// nothing.
 inline std::string difference_of_run(const ResultFile& a, std::size_t i, const ResultFile& b,
@@ -29,10 +40,8 @@ inline std::string difference_of_run(const ResultFile& a, std::size_t i, const R
   for (std::size_t c = 0; c < a.cells().size(); ++c) {
     const StoredCell& left = a.cells()[c];
     const StoredCell& right = b.cells()[c];
-    if (a.status(left)[i] != b.status(right)[j]) return left.label + "/status";
-    if (a.failure_steps(left)[i] != b.failure_steps(right)[j]) return left.label + "/failure_step";
-    if (a.failure_reasons(left)[i] != b.failure_reasons(right)[j])
-      return left.label + "/failure_reason";
+    const std::string outcome = difference_of_outcome(a, left, i, b, right, j);
+    if (!outcome.empty()) return outcome;
     for (const Column& column : left.columns)
       if (!same_bits(values_of(a, left, column, i), values_of(b, right, column, j)))
         return left.label + "/" + column.name;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/runs/plan.hpp"
+#include "engine/runs/spare_threads.hpp"
 #include "tests/doubles/scripted_drives.hpp"
 #include "tests/doubles/scripted_filter.hpp"
 
@@ -36,6 +37,14 @@ inline StudyPlan scripted_study(std::uint64_t runs, std::size_t steps) {
   plan.drives = std::make_shared<ScriptedDrives>(steps, plan.seed);
   plan.scenario = {{"kind", "scripted"}};
   plan.resolved_text = "[study]\nname = scripted\nruns = " + std::to_string(runs) + "\n";
+  return plan;
+}
+
+/// Two cells, of which one fails in run 3; the other is large enough for loops on spare threads.
+inline StudyPlan scripted_cells(std::uint64_t runs, std::chrono::microseconds pace = {}) {
+  StudyPlan plan = scripted_study(runs, 40);
+  plan.cells = {scripted_cell("small", {.particles = 5, .mishap = Mishap{.run = 3}, .pace = pace}),
+                scripted_cell("large", {.particles = SpareThreads::kLeastParticles, .pace = pace})};
   return plan;
 }
 

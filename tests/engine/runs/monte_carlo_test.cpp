@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/runs/monte_carlo.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/runs/spare_threads.hpp"
+#include "tests/doubles/same_results.hpp"
+#include "tests/doubles/scratch_folder.hpp"
+#include "tests/doubles/scripted_study.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <csignal>
+
+namespace montecarta {
+namespace {
+
+using testing::Each;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+class MonteCarlo : public testing::Test {
+ protected:
+  RunOptions options(const std::string& name) const {
+    return {.output = folder / name, .progress = ProgressStyle::none, .quiet = true};
+  }
+  ResultFile results_of(const StudyPlan& plan, const RunOptions& how) const {
+    run_study(plan, how);
+    return ResultFile(how.output);
+  }
+
+  const ScratchFolder folder;
+};
+
+TEST_F(MonteCarlo, StoresFailuresAndGoesOn) {
+  const StudyPlan plan = scripted_cells(6);
+  const RunOutcome outcome = run_study(plan, options("study.h5"));
+  EXPECT_EQ(outcome.stopped, StopReason::complete);
+  EXPECT_EQ(outcome.runs_here, 12U);
+  EXPECT_EQ(outcome.cells[0].complete, 5U);
+  EXPECT_EQ(outcome.cells[0].failed, 1U);
+  EXPECT_EQ(outcome.cells[1].complete, 6U);
+  EXPECT_EQ(exit_code(outcome, false), 3);
+
+  const ResultFile file(folder / "study.h5");
+  const StoredCell& small = file.cells()[0];
+  EXPECT_EQ(file.status(small)[3], RunStatus::failed);
+  EXPECT_EQ(file.failure_steps(small)[3], 17U);
+  EXPECT_EQ(file.failure_reasons(small)[3], "scripted mishap of run 3");
+  EXPECT_THAT(file.status(file.cells()[1]), Each(RunStatus::complete));
+}
+
+/// Law 1: same study, same bits, for any number of threads and every backend. With 3 runs and 8
+/// threads there are spare ones for the loops inside.
+TEST_F(MonteCarlo, GivesTheSameBitsOnAnyThreads) {
+  for (const std::uint64_t runs : {3, 12}) {
+    const StudyPlan plan = scripted_cells(runs);
+    const ResultFile serial = results_of(plan, options("serial" + std::to_string(runs)));
+    for (const Backend backend : {Backend::tbb, Backend::openmp})
+      for (const int threads : {1, 2, 8}) {
+        RunOptions how = options("parallel");
+        how.parallel = Parallel(backend, threads);
+        how.force = true;
+        EXPECT_EQ(difference(serial, results_of(plan, how)), "") << threads << " threads";
+      }
+  }
+}
+
+TEST_F(MonteCarlo, GivesTheSameBitsToARunAlone) {
+  StudyPlan plan = scripted_cells(6);
+  const ResultFile whole = results_of(plan, options("whole"));
+  for (const std::uint64_t run : {0, 3, 5}) {
+    plan.first_run = run;
+    plan.last_run = run + 1;
+    const ResultFile alone = results_of(plan, options("alone" + std::to_string(run)));
+    EXPECT_EQ(alone.runs(), std::vector<std::uint64_t>{run});
+    EXPECT_EQ(difference_of_run(whole, run, alone, 0), "");
+  }
+}
+
+/// Sends a signal to this process when the filter of run 2 begins.
+class SignallingFilter : public ScriptedFilter {
+ public:
+  SignallingFilter(Script script, std::shared_ptr<std::atomic<int>> signal)
+      : ScriptedFilter(script), signal_(std::move(signal)) {}
+  void predict(const StepContext& context, const Control& control, double duration) override {
+    if (context.run() == 2)
+      if (const int signal = signal_->exchange(0); signal != 0) raise(signal);
+    ScriptedFilter::predict(context, control, duration);
+  }
+
+ private:
+  std::shared_ptr<std::atomic<int>> signal_;
+};
+
+TEST_F(MonteCarlo, GivesTheSameBitsInterruptedAndResumed) {
+  StudyPlan plan = scripted_cells(12);
+  const ResultFile whole = results_of(plan, options("whole"));
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const auto pending = std::make_shared<std::atomic<int>>(signal);
+    const ScriptedFilter::Script slow{.particles = SpareThreads::kLeastParticles,
+                                      .pace = std::chrono::milliseconds(1)};
+    plan.cells[1].make_filter = [=] { return std::make_unique<SignallingFilter>(slow, pending); };
+    RunOptions how = options("interrupted" + std::to_string(signal));
+    how.parallel = Parallel(Backend::tbb, 2);
+    const RunOutcome first = run_study(plan, how);
+    EXPECT_EQ(exit_code(first, false), 128 + signal);
+    EXPECT_GT(first.runs_here, 0U);
+    EXPECT_GT(first.missing(), 0U);
+    EXPECT_FALSE(std::filesystem::exists(how.output));
+
+    how.resume = true;
+    const RunOutcome second = run_study(plan, how);
+    EXPECT_EQ(second.stopped, StopReason::complete);
+    EXPECT_EQ(second.runs_here, first.missing());
+    EXPECT_EQ(difference(whole, ResultFile(how.output)), "");
+  }
+}
+
+TEST_F(MonteCarlo, StopsAtTheTimeBudgetAndGoesOnLater) {
+  StudyPlan plan = scripted_study(12, 40);
+  plan.cells = {scripted_cell("slow", {.pace = std::chrono::milliseconds(1)})};
+  RunOptions how = options("study.h5");
+  how.time_budget = 0.2;
+  const RunOutcome first = run_study(plan, how);
+  EXPECT_EQ(first.stopped, StopReason::time_budget);
+  EXPECT_EQ(exit_code(first, false), 85);
+  EXPECT_GT(first.missing(), 0U);
+  how.time_budget.reset();
+  how.resume = true;
+  EXPECT_EQ(run_study(plan, how).runs_here, first.missing());
+}
+
+TEST_F(MonteCarlo, HasNothingToDoWhereNothingIsMissing) {
+  const StudyPlan plan = scripted_cells(4);
+  RunOptions how = options("study.h5");
+  run_study(plan, how);
+  how.resume = true;
+  const RunOutcome again = run_study(plan, how);
+  EXPECT_EQ(again.runs_here, 0U);
+  EXPECT_EQ(exit_code(again, false), 3) << "run 3 failed long ago";
+}
+
+TEST_F(MonteCarlo, OverwritesNothingUnasked) {
+  const StudyPlan plan = scripted_cells(2);
+  RunOptions how = options("study.h5");
+  run_study(plan, how);
+  EXPECT_THROW(run_study(plan, how), StudyError);
+  how.force = true;
+  EXPECT_EQ(run_study(plan, how).runs_here, 4U);
+}
+
+/// Drives that cannot be read from run 2 on.
+class TornDrives : public ScriptedDrives {
+ public:
+  using ScriptedDrives::ScriptedDrives;
+  void generate(std::uint64_t run, Drive& drive) const override {
+    if (run >= 2) throw RunError("drive.csv: cannot read (the disk is gone)");
+    ScriptedDrives::generate(run, drive);
+  }
+};
+
+TEST_F(MonteCarlo, EndsAllWorkersWhenOneMeetsAnError) {
+  for (const Backend backend : {Backend::tbb, Backend::openmp, Backend::serial}) {
+    StudyPlan plan = scripted_cells(1000);
+    plan.drives = std::make_shared<TornDrives>(40);
+    RunOptions how = options("study" + std::to_string(static_cast<int>(backend)));
+    how.parallel = Parallel(backend, 2);
+    EXPECT_THAT([&] { run_study(plan, how); },
+                ThrowsMessage<RunError>(HasSubstr("the disk is gone")));
+  }
+}
+
+}  // namespace
+}  // namespace montecarta
