@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/study/cell_spec.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+namespace montecarta {
+namespace {
+
+/// A value as part of a label: 0.75 -> 0p75, -1 -> m1.
+std::string label_part(std::string text) {
+  for (char& c : text) {
+    if (c == '-') c = 'm';
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = 'p';
+  }
+  return text;
+}
+
+/// Whether cells of the same filter differ in their option number `i`.
+bool distinguishes(const std::vector<CellSpec>& cells, const CellSpec& cell, std::size_t i) {
+  return std::ranges::any_of(cells, [&](const CellSpec& other) {
+    return other.filter == cell.filter && other.options[i].second != cell.options[i].second;
+  });
+}
+
+void describe(const std::vector<CellSpec>& cells, const CellSpec& cell, std::string& label,
+              std::string& distinction) {
+  label = cell.filter->name;
+  for (std::size_t i = 0; i < cell.options.size(); ++i) {
+    const auto& [key, value] = cell.options[i];
+    const bool particles = key == "particles";
+    if (!particles && !distinguishes(cells, cell, i)) continue;
+    label += particles ? "_m" + value : "_" + key + "_" + label_part(value);
+    distinction +=
+        (distinction.empty() ? "" : ", ") + (particles ? value + " particles" : key + " " + value);
+  }
+}
+
+}  // namespace
+
+void label_cells(std::vector<CellSpec>& cells) {
+  for (CellSpec& cell : cells) {
+    std::string label;
+    describe(cells, cell, label, cell.distinction);
+    if (cell.label.empty()) cell.label = label;
+  }
+}
+
+}  // namespace montecarta

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/study/cell_spec.hpp"
+
+#include "engine/errors.hpp"
+#include "experiments/study/setting.hpp"
+#include "experiments/text/words.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+
+namespace montecarta {
+namespace {
+
+/// The values that a line lists for each option, checked.
+using Lists = std::map<std::string, std::vector<std::string>>;
+
+const FilterKind& known_filter(const std::string& name, const std::string& place,
+                               std::span<const FilterKind> filters) {
+  std::vector<std::string> known;
+  for (const FilterKind& filter : filters) {
+    if (filter.name == name) return filter;
+    known.push_back(filter.name);
+  }
+  throw StudyError(place + ": unknown filter '" + name +
+                   "' (see montecarta list filters): " + nearest_spelling(name, known));
+}
+
+const FilterOption& known_option(const FilterKind& filter, const std::string& key,
+                                 const std::string& place) {
+  std::vector<std::string> known{"label"};
+  for (const FilterOption& option : filter.options) {
+    if (option.name == key) return option;
+    known.push_back(option.name);
+  }
+  throw StudyError(place + ": " + filter.name + " has no option '" + key +
+                   "' (nothing would come of it): " + nearest_spelling(key, known));
+}
+
+std::string checked_label(const std::string& label, const std::string& place) {
+  const auto allowed = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  const bool good = !label.empty() && std::isalpha(static_cast<unsigned char>(label[0])) != 0 &&
+                    std::ranges::all_of(label, allowed);
+  if (good) return label;
+  throw StudyError(place + ": label = '" + label +
+                   "' (a label is a letter, then letters, digits and _): choose another");
+}
+
+/// One word of a cell line behind the filter's name.
+void take_word(const std::string& word, const FilterKind& filter, CellSpec& cell, Lists& lists) {
+  const std::size_t equals = word.find('=');
+  if (equals == std::string::npos) {
+    throw StudyError(cell.place + ": stray text '" + word +
+                     "' (a cell is FILTER key=value ..., without spaces around "
+                     "= and ,): write it so");
+  }
+  const std::string key = word.substr(0, equals);
+  if (lists.contains(key) || (key == "label" && !cell.label.empty())) {
+    throw StudyError(cell.place + ": " + key + " is given twice: remove one of the two");
+  }
+  if (key == "label") {
+    cell.label = checked_label(word.substr(equals + 1), cell.place);
+    return;
+  }
+  const Setting setting = setting_of(known_option(filter, key, cell.place));
+  for (const std::string& value : split(word.substr(equals + 1), ',')) {
+    lists[key].push_back(checked_value(setting, value, cell.place));
+  }
+}
+
+/// All combinations, the last option varying fastest.
+std::vector<CellSpec> combinations(const CellSpec& line, Lists lists) {
+  std::vector<CellSpec> cells{line};
+  for (const FilterOption& option : line.filter->options) {
+    const auto& values = lists[option.name];
+    const std::vector<std::string> fallback{
+        values.empty() ? checked_value(setting_of(option), option.fallback, line.place) : ""};
+    std::vector<CellSpec> longer;
+    for (const CellSpec& cell : cells) {
+      for (const std::string& value : values.empty() ? fallback : values) {
+        longer.push_back(cell);
+        longer.back().options.emplace_back(option.name, value);
+      }
+    }
+    cells = std::move(longer);
+  }
+  return cells;
+}
+
+std::vector<CellSpec> read_line(const IniEntry& entry, std::span<const FilterKind> filters) {
+  const std::vector<std::string> words = words_of(entry.value);
+  if (words.empty()) {
+    throw StudyError(entry.place +
+                     ": cell names no filter (see montecarta list filters): write e.g. cell = " +
+                     filters.front().name);
+  }
+  CellSpec line{.label = {},
+                .filter = &known_filter(words[0], entry.place, filters),
+                .options = {},
+                .distinction = {},
+                .place = entry.place};
+  Lists lists;
+  for (std::size_t i = 1; i < words.size(); ++i) take_word(words[i], *line.filter, line, lists);
+  std::vector<CellSpec> cells = combinations(line, std::move(lists));
+  if (!line.label.empty() && cells.size() > 1) {
+    throw StudyError(entry.place + ": one label for " + std::to_string(cells.size()) +
+                     " cells (labels are unique): remove label or the lists");
+  }
+  return cells;
+}
+
+void refuse_equal_labels(const std::vector<CellSpec>& cells) {
+  std::map<std::string, std::string> places;
+  for (const CellSpec& cell : cells) {
+    const auto [first, fresh] = places.try_emplace(cell.label, cell.place);
+    if (fresh) continue;
+    throw StudyError(cell.place + ": cell " + cell.label + " is given twice (first at " +
+                     first->second + "): remove it, or change a setting or its label");
+  }
+}
+
+}  // namespace
+
+std::vector<CellSpec> read_cells(std::span<const IniEntry> entries, const std::string& name,
+                                 std::span<const FilterKind> filters) {
+  std::vector<CellSpec> cells;
+  for (const IniEntry& entry : entries) {
+    if (entry.section != "cells") continue;
+    if (entry.key != "cell") {
+      throw StudyError(entry.place + ": unknown key cells." + entry.key +
+                       " (a cell is cell = FILTER key=value ...): did you mean cell?");
+    }
+    for (CellSpec& cell : read_line(entry, filters)) cells.push_back(std::move(cell));
+  }
+  if (cells.empty()) {
+    throw StudyError(name + ": no cells (nothing to run): add [cells] with e.g. cell = ekf_slam");
+  }
+  label_cells(cells);
+  refuse_equal_labels(cells);
+  return cells;
+}
+
+std::string cell_line(const CellSpec& cell) {
+  std::string line = cell.filter->name + " label=" + cell.label;
+  for (const auto& [key, value] : cell.options) line += " " + key + "=" + value;
+  return line;
+}
+
+}  // namespace montecarta

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "experiments/study/ini_text.hpp"
+#include "filters/factory.hpp"
+
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace montecarta {
+
+/// One filter in one setting, as a study file asks for it.
+struct CellSpec {
+  std::string label;  ///< unique in the study; letters, digits and _
+  const FilterKind* filter = nullptr;
+  std::vector<std::pair<std::string, std::string>>
+      options;  ///< every one, in the filter's order, one spelling
+  std::string
+      distinction;    ///< what tells it from others of its filter, for legends: "100 particles"
+  std::string place;  ///< "file:line"
+};
+
+/// The cells of all `cell = FILTER key=value,... label=NAME` lines: one for every combination of
+/// listed values. Throws StudyError at unknown filters, options and values, and where two cells are
+/// the same.
+std::vector<CellSpec> read_cells(std::span<const IniEntry> entries, const std::string& name,
+                                 std::span<const FilterKind> filters);
+
+/// Gives every cell a label made of what distinguishes it, unless it has one.
+void label_cells(std::vector<CellSpec>& cells);
+
+/// The line that reads back as this cell: "fastslam2 label=fastslam2_m100 particles=100 ...".
+std::string cell_line(const CellSpec& cell);
+
+}  // namespace montecarta

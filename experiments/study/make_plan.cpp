@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/study/make_plan.hpp"
+
+#include "engine/errors.hpp"
+#include "experiments/drives/simulated_drive.hpp"
+#include "experiments/text/numbers.hpp"
+#include "experiments/text/words.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace montecarta {
+namespace {
+
+/// Scans happen at every so-many-th control step: a whole number, for an integer counter never
+/// drifts (SPEC 0).
+std::uint32_t steps_per_scan(const Settings& settings) {
+  const double ratio =
+      settings.number("scenario", "control_rate") / settings.number("scenario", "scan_rate");
+  const double whole = std::round(ratio);
+  if (whole >= 1.0 && std::abs(ratio - whole) <= 1e-9 * whole)
+    return static_cast<std::uint32_t>(whole);
+  throw StudyError(settings.place("scenario", "scan_rate") +
+                   ": scan_rate does not divide control_rate (" + to_text(ratio) +
+                   " steps a scan): choose rates whose ratio is a whole number");
+}
+
+Scenario scenario_of(const Settings& s) {
+  Scenario scenario;
+  const char* in = "scenario";
+  scenario.noise =
+      s.text(in, "noise") == "matched" ? NoiseMode::matched : NoiseMode::measured_control;
+  scenario.loops = static_cast<std::uint32_t>(s.count(in, "loops"));
+  scenario.steps_per_scan = steps_per_scan(s);
+  scenario.control_rate = s.number(in, "control_rate");
+  scenario.wheelbase = s.number(in, "wheelbase");
+  scenario.speed = s.number(in, "speed");
+  scenario.sigma_speed = s.number(in, "sigma_speed");
+  scenario.sigma_steer = s.radians(in, "sigma_steer_deg");
+  scenario.sigma_range = s.number(in, "sigma_range");
+  scenario.sigma_bearing = s.radians(in, "sigma_bearing_deg");
+  scenario.max_range = s.number(in, "max_range");
+  scenario.field_of_view = s.radians(in, "field_of_view_deg");
+  scenario.waypoint_radius = s.number(in, "waypoint_radius");
+  scenario.steer_limit = s.radians(in, "steer_limit_deg");
+  scenario.steer_rate_limit = s.radians(in, "steer_rate_limit_deg");
+  scenario.clutter_rate = s.number(in, "clutter_rate");
+  scenario.miss_probability = s.number(in, "miss_probability");
+  scenario.start = {s.number(in, "start_x"), s.number(in, "start_y"),
+                    wrap(s.radians(in, "start_heading_deg"))};
+  return scenario;
+}
+
+Belief belief_of(const Settings& s) {
+  const char* in = "belief";
+  return {.wheelbase = s.number(in, "wheelbase"),
+          .sigma_speed = s.number(in, "sigma_speed"),
+          .sigma_steer = s.radians(in, "sigma_steer_deg"),
+          .sigma_range = s.number(in, "sigma_range"),
+          .sigma_bearing = s.radians(in, "sigma_bearing_deg")};
+}
+
+/// The chi-square gate, 2 degrees of freedom, that accepts as often as k sigma of a normal: the
+/// quantile at p = erf(k / sqrt 2), which is -2 ln(1 - p).
+double gate_of(double sigmas) { return -2.0 * std::log(std::erfc(sigmas / std::sqrt(2.0))); }
+
+AssociationSettings association_of(const Settings& s) {
+  const char* in = "association";
+  AssociationSettings association;
+  association.kind = s.text(in, "kind") == "nearest" ? Association::nearest : Association::known;
+  association.gate = gate_of(s.number(in, "gate_sigma"));
+  association.new_gate = gate_of(s.number(in, "new_gate_sigma"));
+  association.log_new_density_offset = s.number(in, "log_new_density_offset");
+  if (association.new_gate < association.gate) {
+    throw StudyError(s.place(in, "new_gate_sigma") +
+                     ": new_gate_sigma is below gate_sigma (a detection would be old "
+                     "and new at once): enlarge new_gate_sigma");
+  }
+  return association;
+}
+
+ColumnSelection columns_of(const Settings& s) {
+  const std::vector<std::string> chosen = split(s.text("record", "columns"), ',');
+  const auto has = [&](const char* name) {
+    return std::ranges::find(chosen, name) != chosen.end();
+  };
+  return {.covariance = has("covariance"),
+          .ancestry = has("ancestry"),
+          .particles = has("particles"),
+          .map = has("map"),
+          .scans_only = s.text("record", "rate") == "scan"};
+}
+
+std::size_t particles_of(const CellSpec& spec) {
+  if (!spec.filter->has_particles) return 0;
+  const auto named = [](const auto& option) { return option.first == "particles"; };
+  return to_count(std::ranges::find_if(spec.options, named)->second).value();
+}
+
+Cell cell_of(const CellSpec& spec, const Study& study) {
+  std::map<std::string, std::string, std::less<>> values(spec.options.begin(), spec.options.end());
+  const FilterSetup setup{.belief = belief_of(study.settings),
+                          .association = association_of(study.settings),
+                          .options = FilterOptions(std::move(values)),
+                          .landmarks = study.world.landmarks.size()};
+  const FilterKind& filter = *spec.filter;
+  return {.label = spec.label,
+          .filter = filter.name,
+          .long_name = filter.long_name + (spec.distinction.empty() ? "" : ", " + spec.distinction),
+          .particles = particles_of(spec),
+          .mixture = filter.has_mixture,
+          .landmarks = setup.landmarks,
+          .settings = spec.options,
+          .make_filter = [make = filter.make, setup] { return make(setup); }};
+}
+
+/// The settings of the scenario as they are, those of other sections with the section's name before
+/// them.
+std::vector<std::pair<std::string, std::string>> scenario_facts(const Settings& settings) {
+  auto facts = settings.section("scenario");
+  for (const char* section : {"belief", "association"}) {
+    for (const auto& [key, value] : settings.section(section))
+      facts.emplace_back(std::string(section) + "." + key, value);
+  }
+  return facts;
+}
+
+}  // namespace
+
+StudyPlan make_plan(const Study& study, std::optional<RunRange> range) {
+  const Settings& settings = study.settings;
+  StudyPlan plan;
+  plan.name = settings.text("study", "name");
+  plan.title = settings.text("study", "title");
+  plan.seed = settings.count("study", "seed");
+  plan.runs = settings.count("study", "runs");
+  plan.first_run = range ? range->first : 0;
+  plan.last_run = range ? range->last : plan.runs;
+  for (const CellSpec& spec : study.cells) plan.cells.push_back(cell_of(spec, study));
+  plan.columns = columns_of(settings);
+  plan.drives = std::make_shared<SimulatedDrive>(study.world, scenario_of(settings), plan.seed);
+  plan.scenario = scenario_facts(settings);
+  plan.resolved_text = resolved_text(study);
+  return plan;
+}
+
+}  // namespace montecarta

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/study/inline_world.hpp"
+#include "experiments/study/study.hpp"
+
+namespace montecarta {
+
+std::string resolved_text(const Study& study) {
+  std::string text;
+  for (const std::string& section : study_sections()) {
+    text += "[" + section + "]\n";
+    for (const auto& [key, value] : study.settings.section(section))
+      text += key + " = " + value + "\n";
+    if (section == "cells") {
+      for (const CellSpec& cell : study.cells) text += "cell = " + cell_line(cell) + "\n";
+    }
+    if (section == "world") text += inline_world_text(study.world);
+  }
+  return text;
+}
+
+}  // namespace montecarta

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/study/settings.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/numbers/angle.hpp"
+#include "experiments/study/setting.hpp"
+#include "experiments/text/numbers.hpp"
+#include "experiments/text/words.hpp"
+
+namespace montecarta {
+namespace {
+
+const Setting& known_setting(const IniEntry& entry) {
+  std::vector<std::string> known;
+  for (const Setting& setting : study_settings()) {
+    if (setting.section != entry.section) continue;
+    if (setting.key == entry.key) return setting;
+    known.push_back(setting.key);
+  }
+  throw StudyError(entry.place + ": unknown key " + entry.section + "." + entry.key +
+                   " (nothing would come of it): " + nearest_spelling(entry.key, known));
+}
+
+}  // namespace
+
+Settings::Settings(std::span<const IniEntry> entries, const std::string& name) {
+  for (const IniEntry& entry : entries) {
+    if (entry.section != "cells" && entry.section != "world") take(entry);
+  }
+  fill_in(name);
+}
+
+void Settings::take(const IniEntry& entry) {
+  const Setting& setting = known_setting(entry);
+  const Value value{checked_value(setting, entry.value, entry.place), entry.place};
+  const auto [at, fresh] = values_.try_emplace({entry.section, entry.key}, value);
+  if (fresh) return;
+  throw StudyError(entry.place + ": " + entry.section + "." + entry.key +
+                   " is given twice (first at " + at->second.place + "): remove one of the two");
+}
+
+void Settings::fill_in(const std::string& name) {
+  for (const Setting& setting : study_settings()) {
+    if (values_.contains({setting.section, setting.key})) continue;
+    if (!setting.fallback) {
+      throw StudyError(name + ": " + setting.section + "." + setting.key + " is missing (" +
+                       setting.meaning + "): add " + setting.key + " = " + setting.example +
+                       " under [" + setting.section + "]");
+    }
+    const bool copied = *setting.fallback == "scenario";
+    const std::string& value = copied ? text("scenario", setting.key) : *setting.fallback;
+    const std::string place = name + ": " + setting.section + "." + setting.key + " (not given)";
+    values_[{setting.section, setting.key}] = {checked_value(setting, value, place), name};
+  }
+}
+
+const Settings::Value& Settings::at(std::string_view section, std::string_view key) const {
+  const auto found = values_.find({std::string(section), std::string(key)});
+  expect(found != values_.end(), "a setting is asked for that the table does not have");
+  return found->second;
+}
+
+const std::string& Settings::text(std::string_view section, std::string_view key) const {
+  return at(section, key).text;
+}
+
+double Settings::number(std::string_view section, std::string_view key) const {
+  return to_number(at(section, key).text).value();
+}
+
+std::uint64_t Settings::count(std::string_view section, std::string_view key) const {
+  return to_count(at(section, key).text).value();
+}
+
+double Settings::radians(std::string_view section, std::string_view key) const {
+  return number(section, key) / 180.0 * kPi;  // exact for 180
+}
+
+const std::string& Settings::place(std::string_view section, std::string_view key) const {
+  return at(section, key).place;
+}
+
+void Settings::replace(std::string_view section, std::string_view key, const std::string& value) {
+  values_.at({std::string(section), std::string(key)}).text = value;
+}
+
+std::vector<std::pair<std::string, std::string>> Settings::section(std::string_view name) const {
+  std::vector<std::pair<std::string, std::string>> pairs;
+  for (const Setting& setting : study_settings()) {
+    if (setting.section == name) pairs.emplace_back(setting.key, text(name, setting.key));
+  }
+  return pairs;
+}
+
+std::vector<std::string> study_sections() {
+  return {"study", "scenario", "belief", "association", "cells", "record", "world"};
+}
+
+}  // namespace montecarta

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "experiments/study/ini_text.hpp"
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace montecarta {
+
+/// The value of every setting of study_settings(), checked and in its one spelling.
+class Settings {
+ public:
+  /// Fills what `entries` leave open. Sections "cells" and "world" are no concern of it. Throws
+  /// StudyError at unknown and repeated keys, bad values, and where a required one is missing
+  /// (`name`: of the study file).
+  Settings(std::span<const IniEntry> entries, const std::string& name);
+
+  const std::string& text(std::string_view section, std::string_view key) const;
+  double number(std::string_view section, std::string_view key) const;
+  std::uint64_t count(std::string_view section, std::string_view key) const;
+  /// A setting in degrees, in radians.
+  double radians(std::string_view section, std::string_view key) const;
+  /// "file:line" where it was given, or the file where it was not.
+  const std::string& place(std::string_view section, std::string_view key) const;
+  void replace(std::string_view section, std::string_view key, const std::string& value);
+
+  /// (key, value) of a section in the order of the table.
+  std::vector<std::pair<std::string, std::string>> section(std::string_view name) const;
+
+ private:
+  struct Value {
+    std::string text;
+    std::string place;
+  };
+  using Name = std::pair<std::string, std::string>;
+  void take(const IniEntry& entry);
+  void fill_in(const std::string& name);
+  const Value& at(std::string_view section, std::string_view key) const;
+
+  std::map<Name, Value> values_;
+};
+
+/// Section names that a study file may have, in the order of the resolved text.
+std::vector<std::string> study_sections();
+
+}  // namespace montecarta

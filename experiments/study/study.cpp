@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/study/study.hpp"
+
+#include "engine/errors.hpp"
+#include "experiments/study/inline_world.hpp"
+#include "experiments/text/words.hpp"
+#include "experiments/worlds/world_file.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+namespace montecarta {
+namespace {
+
+void refuse_unknown_sections(const IniText& ini) {
+  const std::vector<std::string> known = study_sections();
+  for (const IniSection& section : ini.sections) {
+    if (std::ranges::find(known, section.name) != known.end()) continue;
+    throw StudyError(section.place + ": unknown section [" + section.name +
+                     "] (nothing would come of it): " + nearest_spelling(section.name, known));
+  }
+}
+
+IniEntry override_entry(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::size_t dot = text.find('.');
+  if (equals == std::string::npos || dot == std::string::npos || dot > equals) {
+    throw StudyError(
+        "--set " + text +
+        ": not understood (the form is section.key=value): write e.g. --set study.runs=10");
+  }
+  if (text.find_first_of("#\n\r") != std::string::npos) {
+    throw StudyError("--set " + text +
+                     ": the value holds # or a new line (no study file could): leave it out");
+  }
+  const std::string_view whole = text;
+  return {std::string(trimmed(whole.substr(0, dot))),
+          std::string(trimmed(whole.substr(dot + 1, equals - dot - 1))),
+          std::string(trimmed(whole.substr(equals + 1))), "--set " + text.substr(0, equals)};
+}
+
+/// An override takes the place of what the file says of that key; several overrides of one key are
+/// an error later.
+void apply(std::span<const std::string> overrides, IniText& ini) {
+  const std::size_t in_file = ini.entries.size();
+  for (const std::string& text : overrides) {
+    const IniEntry entry = override_entry(text);
+    ini.sections.push_back({entry.section, entry.place});
+    ini.entries.push_back(entry);
+  }
+  const auto overridden = [&](const IniEntry& old) {
+    return std::any_of(
+        ini.entries.begin() + static_cast<std::ptrdiff_t>(in_file), ini.entries.end(),
+        [&](const IniEntry& e) { return e.section == old.section && e.key == old.key; });
+  };
+  std::vector<IniEntry> kept;
+  for (std::size_t i = 0; i < ini.entries.size(); ++i) {
+    if (i >= in_file || !overridden(ini.entries[i])) kept.push_back(ini.entries[i]);
+  }
+  ini.entries = std::move(kept);
+}
+
+/// The world that is written out in the study, else the one that it names.
+World world_of(const IniText& ini, const Settings& settings, const std::filesystem::path& folder) {
+  const std::string& name = settings.text("scenario", "world");
+  const std::string& place = settings.place("scenario", "world");
+  if (has_inline_world(ini)) return read_inline_world(ini, name, place);
+  try {
+    return find_world(name, {folder});
+  } catch (const StudyError& error) {
+    throw StudyError(place + ": scenario.world = " + name + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+Study parse_study(const std::string& text, const std::string& name,
+                  const std::filesystem::path& folder, std::span<const std::string> overrides) {
+  IniText ini = read_ini(text, name);
+  apply(overrides, ini);
+  refuse_unknown_sections(ini);
+  Study study{Settings(ini.entries, name), read_cells(ini.entries, name, filter_kinds()), {}};
+  study.world = world_of(ini, study.settings, folder);
+  study.settings.replace("scenario", "world", study.world.name);
+  if (study.settings.text("study", "title").empty()) {
+    study.settings.replace("study", "title", study.settings.text("study", "name"));
+  }
+  return study;
+}
+
+Study read_study(const std::filesystem::path& path, std::span<const std::string> overrides) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  if (!file || std::filesystem::is_directory(path) || !(text << file.rdbuf())) {
+    throw StudyError(
+        path.string() +
+        ": cannot be read (missing, empty, or no permission): check the path of the study");
+  }
+  return parse_study(text.str(), path.string(), path.parent_path(), overrides);
+}
+
+}  // namespace montecarta

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "experiments/study/cell_spec.hpp"
+#include "experiments/study/settings.hpp"
+#include "experiments/worlds/world.hpp"
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// A study file understood: everything filled in and checked, nothing built yet.
+struct Study {
+  Settings settings;
+  std::vector<CellSpec> cells;
+  World world;
+};
+
+/// Reads a study file. `overrides` are "section.key=value" as given to --set; "cells.cell=..."
+/// replaces all cells. Throws StudyError naming file, line, key and reason.
+Study read_study(const std::filesystem::path& path, std::span<const std::string> overrides = {});
+
+/// Likewise from text; `name` stands before line numbers, `folder` is where relative world paths
+/// begin.
+Study parse_study(const std::string& text, const std::string& name,
+                  const std::filesystem::path& folder, std::span<const std::string> overrides = {});
+
+/// The study file with everything filled in, world included, in one order and spelling: reading it
+/// gives the same study and the same text, so that its SHA-256 names the study.
+std::string resolved_text(const Study& study);
+
+}  // namespace montecarta

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/study/cell_spec.hpp"
+
+#include "engine/errors.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace montecarta {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// Two filters that exist on paper only.
+std::vector<FilterKind> paper_filters() {
+  using Kind = FilterOption::Kind;
+  const FilterOption particles{"particles", Kind::integer, "100", 1, 1e6, {}, "how many"};
+  const FilterOption threshold{"threshold", Kind::number, "0.5", 0, 1, {}, "when to resample"};
+  const FilterOption weight{"weight", Kind::choice,        "closed",    0,
+                            0,        {"closed", "ratio"}, "which form"};
+  return {{"bold", "Bold filter", "", true, false, {particles, threshold, weight}, {}},
+          {"plain", "Plain filter", "", false, false, {threshold}, {}}};
+}
+
+std::vector<CellSpec> cells_of(const std::vector<FilterKind>& filters,
+                               const std::vector<std::string>& lines) {
+  std::vector<IniEntry> entries;
+  for (const std::string& line : lines)
+    entries.push_back({"cells", "cell", line, "x.ini:" + std::to_string(entries.size() + 1)});
+  return read_cells(entries, "x.ini", filters);
+}
+
+std::vector<std::string> labels_of(const std::vector<std::string>& lines) {
+  const auto filters = paper_filters();
+  std::vector<std::string> labels;
+  for (const CellSpec& cell : cells_of(filters, lines)) labels.push_back(cell.label);
+  return labels;
+}
+
+std::string complaint_about(const std::string& line) {
+  try {
+    labels_of({line});
+  } catch (const StudyError& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+TEST(Cells, AreLabelledByWhatDistinguishesThem) {
+  EXPECT_THAT(labels_of({"bold particles=100", "plain"}), ElementsAre("bold_m100", "plain"));
+  EXPECT_THAT(labels_of({"bold particles=30,100"}), ElementsAre("bold_m30", "bold_m100"));
+  EXPECT_THAT(labels_of({"bold weight=ratio"}), ElementsAre("bold_m100"));
+  EXPECT_THAT(labels_of({"bold weight=ratio,closed threshold=0.75"}),
+              ElementsAre("bold_m100_weight_ratio", "bold_m100_weight_closed"));
+  EXPECT_THAT(labels_of({"plain threshold=0.5,0.75"}),
+              ElementsAre("plain_threshold_0p5", "plain_threshold_0p75"));
+  EXPECT_THAT(labels_of({"bold label=mine", "bold particles=3"}), ElementsAre("mine", "bold_m3"));
+}
+
+TEST(Cells, AreTheProductOfTheirLists) {
+  EXPECT_THAT(labels_of({"bold particles=1,2 weight=closed,ratio"}),
+              ElementsAre("bold_m1_weight_closed", "bold_m1_weight_ratio", "bold_m2_weight_closed",
+                          "bold_m2_weight_ratio"));
+}
+
+TEST(Cells, FillInTheOptionsNotGiven) {
+  const auto filters = paper_filters();
+  const CellSpec cell = cells_of(filters, {"bold threshold=0.750"}).at(0);
+  EXPECT_EQ(cell_line(cell), "bold label=bold_m100 particles=100 threshold=0.75 weight=closed");
+  EXPECT_EQ(cell.distinction, "100 particles");
+}
+
+TEST(Cells, RefuseWhatAFilterDoesNotTake) {
+  EXPECT_THAT(complaint_about("bold particles=0"),
+              HasSubstr("particles = 0 (a whole number from 1 to"));
+  EXPECT_THAT(complaint_about("bold particles=3,-4"), HasSubstr("particles = -4"));
+  EXPECT_THAT(complaint_about("bold particles=3 particles=4"),
+              HasSubstr("particles is given twice"));
+  EXPECT_THAT(complaint_about("bold partcles=3"), HasSubstr("did you mean particles?"));
+  EXPECT_THAT(complaint_about("bold weight=clsed"), HasSubstr("did you mean closed?"));
+  EXPECT_THAT(complaint_about("bold threshold=nan"), HasSubstr("threshold = nan"));
+  EXPECT_THAT(complaint_about("bold particles=3, 4"), HasSubstr("x.ini:1"));
+  EXPECT_THAT(complaint_about("bold particles=3,3"), HasSubstr("bold_m3 is given twice"));
+  EXPECT_THAT(complaint_about("bold particles=3,4 label=a"), HasSubstr("one label for 2 cells"));
+}
+
+}  // namespace
+}  // namespace montecarta

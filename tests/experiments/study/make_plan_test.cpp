@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/study/make_plan.hpp"
+
+#include "tests/experiments/study/study_text.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace montecarta {
+namespace {
+
+using testing::HasSubstr;
+
+std::string plan_complaint(const std::string& text) {
+  try {
+    make_plan(parsed(text));
+  } catch (const StudyError& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+TEST(Plan, CarriesTheStudy) {
+  const StudyPlan plan = make_plan(parsed(kGoodStudy), RunRange{5, 9});
+  EXPECT_EQ(plan.name, "trial");
+  EXPECT_EQ(plan.runs, 20U);
+  EXPECT_EQ(plan.runs_here(), 4U);
+  ASSERT_EQ(plan.cells.size(), 1U);
+  EXPECT_EQ(plan.cells[0].landmarks, 35U);
+  EXPECT_NE(plan.cells[0].make_filter(), nullptr);
+  EXPECT_TRUE(plan.columns.covariance);
+  EXPECT_FALSE(plan.columns.map);
+  EXPECT_EQ(plan.drives->itinerary().landmarks.size(), 35U);
+}
+
+TEST(Plan, OfTheResolvedTextIsTheSame) {
+  const std::string text =
+      with("[cells]",
+           "sigma_range = 0.3\nmax_range = 20\n[record]\ncolumns = pose\nrate = scan\n[cells]");
+  const StudyPlan plan = make_plan(parsed(text));
+  const StudyPlan again = make_plan(parsed(plan.resolved_text));
+  EXPECT_EQ(again.resolved_text, plan.resolved_text);
+  EXPECT_EQ(again.scenario, plan.scenario);
+  EXPECT_EQ(again.cells[0].label, plan.cells[0].label);
+  EXPECT_EQ(again.cells[0].long_name, plan.cells[0].long_name);
+  EXPECT_TRUE(again.columns.scans_only);
+  Drive drive;
+  Drive drive_again;
+  plan.drives->generate(3, drive);
+  again.drives->generate(3, drive_again);
+  EXPECT_TRUE(std::ranges::equal(drive.detections, drive_again.detections,
+                                 [](const Detection& a, const Detection& b) {
+                                   return a.range == b.range && a.bearing == b.bearing;
+                                 }));
+}
+
+TEST(Plan, RefusesSettingsThatDoNotFitTogether) {
+  EXPECT_THAT(plan_complaint(with("[cells]", "scan_rate = 7\n[cells]")),
+              HasSubstr("trial.ini:6: scan_rate does not divide control_rate"));
+  EXPECT_THAT(plan_complaint(with("[cells]", "scan_rate = 80\n[cells]")),
+              HasSubstr("scan_rate does not divide"));
+  EXPECT_THAT(plan_complaint(with("[cells]", "[association]\nnew_gate_sigma = 1\n[cells]")),
+              HasSubstr("new_gate_sigma is below gate_sigma"));
+  EXPECT_THAT(plan_complaint(with("[cells]", "waypoint_radius = 0.001\n[cells]")),
+              HasSubstr("is not reached within 0.001 m"));
+}
+
+TEST(Plan, CanScanAsThePublicSimulatorDoes) {
+  const StudyPlan plan =
+      make_plan(parsed(with("[cells]", "scan_rate = 4.444444444444445\n[cells]")));
+  EXPECT_EQ(plan.drives->itinerary().scan_step[0], 8U) << "every ninth step (SPEC 0)";
+}
+
+}  // namespace
+}  // namespace montecarta

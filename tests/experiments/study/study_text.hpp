@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/errors.hpp"
+#include "experiments/study/study.hpp"
+
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// A small study that is right, for tests to change.
+inline const std::string kGoodStudy = R"([study]
+name = trial
+runs = 20
+[scenario]
+world = web_loop   # a shipped one
+[cells]
+cell = ekf_slam
+)";
+
+inline std::string with(const std::string& old, const std::string& fresh) {
+  std::string text = kGoodStudy;
+  return text.replace(text.find(old), old.size(), fresh);
+}
+
+inline Study parsed(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  return parse_study(text, "trial.ini", ".", overrides);
+}
+
+/// What parsing complains of; "nothing" where it does not.
+inline std::string complaint(const std::string& text,
+                             const std::vector<std::string>& overrides = {}) {
+  try {
+    parsed(text, overrides);
+  } catch (const StudyError& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+}  // namespace montecarta
