@@ -2,12 +2,15 @@
 #include "filters/factory.hpp"
 
 #include "filters/ekf_slam/ekf_slam.hpp"
+#include "filters/fastslam/fast_slam_filters.hpp"
 
 namespace montecarta {
 
 std::span<const FilterKind> filter_kinds() {
   static const std::vector<FilterKind> kinds{
       ekf_slam_kind(),
+      fastslam1_kind(),
+      fastslam2_kind(),
   };
   return kinds;
 }

@@ -46,13 +46,16 @@ inline void set(Lanes& value, std::size_t lane, double number) {
   reinterpret_cast<double*>(value.part.data())[lane] = number;
 }
 
+/// The unit vector at an angle.
 template <class Real>
-struct SinCos {
-  Real sine, cosine;
+struct Direction {
+  Real cosine;
+  Real sine;
 };
-inline SinCos<double> sincos(double angle) { return {std::sin(angle), std::cos(angle)}; }
-[[gnu::always_inline]] inline SinCos<Lanes> sincos(const Lanes& angle) {
-  SinCos<Lanes> result;
+/// The unit vector at `angle` [rad], |angle| < 1e5.
+inline Direction<double> direction_of(double angle) { return {std::cos(angle), std::sin(angle)}; }
+[[gnu::always_inline]] inline Direction<Lanes> direction_of(const Lanes& angle) {
+  Direction<Lanes> result;
   for (std::size_t k = 0; k < Lanes::kRegisters; ++k) {
     register_math::sincos(angle.part[k], result.sine.part[k], result.cosine.part[k]);
   }
@@ -61,8 +64,8 @@ inline SinCos<double> sincos(double angle) { return {std::sin(angle), std::cos(a
 [[gnu::always_inline]] inline Lanes atan2(const Lanes& y, const Lanes& x) {
   return by_register([](const auto& b, const auto& a) { return register_math::atan2(b, a); }, y, x);
 }
-inline Lanes sin(const Lanes& angle) { return sincos(angle).sine; }
-inline Lanes cos(const Lanes& angle) { return sincos(angle).cosine; }
+inline Lanes sin(const Lanes& angle) { return direction_of(angle).sine; }
+inline Lanes cos(const Lanes& angle) { return direction_of(angle).cosine; }
 inline Lanes log(const Lanes& a) {
   return by_register([](const auto& x) { return xsimd::log(x); }, a);
 }

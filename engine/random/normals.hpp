@@ -49,7 +49,7 @@ struct Pair {
 template <class Real>
 Pair<Real> box_muller(const Pair<Real>& uniform) {
   const Real radius = sqrt(-2.0 * log(uniform.first));
-  const SinCos<Real> angle = sincos(kTwoPi * uniform.second);
+  const Direction<Real> angle = direction_of(kTwoPi * uniform.second);
   return {radius * angle.cosine, radius * angle.sine};
 }
 

@@ -21,7 +21,10 @@ class StepContext {
   /// The numbers of (study seed, run, step, purpose, index): the same wherever and whenever asked
   /// for.
   RngStream stream(Draw purpose, std::uint32_t index) const {
-    return RngStream({seed_, run_, step_, index, purpose});
+    return RngStream(identity(purpose, index));
+  }
+  StreamIdentity identity(Draw purpose, std::uint32_t index) const {
+    return {seed_, run_, step_, index, purpose};
   }
   /// Calls body(i) for i in [0, count), perhaps at once; body i may write only what belongs to i.
   template <class Body>

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/numbers/angle.hpp"
+#include "engine/numbers/real.hpp"
 #include "engine/runs/drive.hpp"
 #include "engine/runs/pose.hpp"
-#include "filters/models/direction.hpp"
 
 namespace montecarta {
 

@@ -25,7 +25,7 @@ void for_random_lanes(double scale, Check check) {
 
 TEST(Lanes, SineAndCosineEqualTheLibrary) {
   for_random_lanes(20.0, [](const Lanes& angle) {
-    const auto [sine, cosine] = sincos(angle);
+    const auto [cosine, sine] = direction_of(angle);
     for (std::size_t i = 0; i < Lanes::kSize; ++i) {
       ASSERT_NEAR(sine.get(i), std::sin(angle.get(i)), kUlp) << angle.get(i);
       ASSERT_NEAR(cosine.get(i), std::cos(angle.get(i)), kUlp) << angle.get(i);

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/numbers/real.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// How many blocks of kLanesOf<Real> hold `particles`; the last block may have dead lanes.
+template <class Real>
+constexpr std::size_t blocks_for(std::size_t particles) {
+  return (particles + kLanesOf<Real> - 1) / kLanesOf<Real>;
+}
+
+/// A column of one Real per block seen as one double per particle (dead lanes at the end).
+template <class Real>
+std::span<double> scalars(std::vector<Real>& column) {
+  return {reinterpret_cast<double*>(column.data()), column.size() * kLanesOf<Real>};
+}
+template <class Real>
+std::span<const double> scalars(const std::vector<Real>& column) {
+  return {reinterpret_cast<const double*>(column.data()), column.size() * kLanesOf<Real>};
+}
+
+/// A struct of Reals seen as its numbers: field f of particle i lies at offset(i) + f *
+/// kLanesOf<Real>.
+template <class Real, class Block>
+struct BlockLayout {
+  static_assert(sizeof(Block) % sizeof(Real) == 0);
+  static constexpr std::size_t kFields = sizeof(Block) / sizeof(Real);
+  static constexpr std::size_t offset(std::size_t particle) {
+    constexpr std::size_t lanes = kLanesOf<Real>;
+    return particle / lanes * kFields * lanes + particle % lanes;
+  }
+};
+
+/// Block b of a population in which particle i is a copy of particle source[i] of `from`.
+template <class Real, class Block>
+Block gather_block(std::span<const Block> from, std::span<const std::uint32_t> source,
+                   std::size_t b) {
+  using Layout = BlockLayout<Real, Block>;
+  constexpr std::size_t lanes = kLanesOf<Real>;
+  const double* numbers = reinterpret_cast<const double*>(from.data());
+  Block block;
+  double* out = reinterpret_cast<double*>(&block);
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    const double* particle = numbers + Layout::offset(source[b * lanes + lane]);
+    for (std::size_t f = 0; f < Layout::kFields; ++f) out[f * lanes + lane] = particle[f * lanes];
+  }
+  return block;
+}
+
+/// `to` becomes the population in which particle i is a copy of particle source[i] of `from`.
+template <class Real, class Block>
+void gather(const std::vector<Block>& from, std::span<const std::uint32_t> source,
+            std::vector<Block>& to) {
+  for (std::size_t b = 0; b < to.size(); ++b) to[b] = gather_block<Real, Block>(from, source, b);
+}
+
+}  // namespace montecarta

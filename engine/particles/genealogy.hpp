@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// Who descends from whom since an earlier resampling, so that what a particle owns need not be
+/// copied at every resampling but only when it is looked at again ("lazy" copying).
+class Genealogy {
+ public:
+  /// `source.size()` particles; dead lanes included, each its own parent.
+  explicit Genealogy(std::size_t particles) : identity_(particles) {
+    std::iota(identity_.begin(), identity_.end(), 0U);
+  }
+
+  void clear() {
+    parents_.clear();
+    forgotten_ = 0;
+  }
+  /// Number of resamplings so far.
+  std::uint32_t generation() const {
+    return forgotten_ + static_cast<std::uint32_t>(parents_.size() / identity_.size());
+  }
+  void add(std::span<const std::uint32_t> parents) {
+    parents_.insert(parents_.end(), parents.begin(), parents.end());
+  }
+  /// Whether so much is remembered that all owners should catch up and forget() be called.
+  bool is_long() const { return parents_.size() / identity_.size() >= kLongest; }
+  void forget() {
+    forgotten_ = generation();
+    parents_.clear();
+  }
+
+  /// source[i] = the index at `since` of the ancestor of today's particle i; since >= the last
+  /// forget().
+  void trace(std::uint32_t since, std::span<std::uint32_t> source) const {
+    std::copy(identity_.begin(), identity_.end(), source.begin());
+    for (std::size_t g = generation() - forgotten_; g-- > since - forgotten_;) {
+      const std::uint32_t* parents = parents_.data() + g * identity_.size();
+      for (std::uint32_t& index : source) index = parents[index];
+    }
+  }
+
+ private:
+  static constexpr std::size_t kLongest = 256;
+  std::vector<std::uint32_t> identity_;
+  std::vector<std::uint32_t> parents_;  // one generation behind the other
+  std::uint32_t forgotten_ = 0;
+};
+
+}  // namespace montecarta

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/runs/step_context.hpp"
+
+#include <cstdint>
+#include <span>
+
+namespace montecarta {
+
+/// How parents are drawn (SPEC 18). All are unbiased: particle j has N w_j children on average.
+enum class Resampling { systematic, stratified, residual, multinomial };
+
+/// Draws the parent of every new particle: parents[i] in [0, weights.size()), non-decreasing but
+/// for residual. `weights` sum to one; as many parents as weights.
+void draw_parents(Resampling scheme, std::span<const double> weights, const StepContext& context,
+                  std::span<std::uint32_t> parents);
+
+}  // namespace montecarta

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/particles/weights.hpp"
+#include "engine/runs/slam_filter.hpp"
+#include "filters/fastslam/gaussians.hpp"
+#include "filters/fastslam/motion_increment.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <vector>
+
+namespace montecarta {
+
+/// Sum over the particles of weight times term(block), lane by lane and then in lane order.
+template <class Real, std::size_t N, class Terms>
+std::array<double, N> weighted_sums(const Weights<Real>& weights, const Terms& terms) {
+  std::array<Real, N> lanes;
+  lanes.fill(Real(0.0));
+  const std::vector<Real>& w = weights.linear();
+  for (std::size_t b = 0; b < w.size(); ++b) {
+    const std::array<Real, N> values = terms(b);
+    for (std::size_t k = 0; k < N; ++k) lanes[k] += w[b] * values[k];
+  }
+  std::array<double, N> sums{};
+  for (std::size_t k = 0; k < N; ++k) {
+    for (std::size_t lane = 0; lane < kLanesOf<Real>; ++lane) sums[k] += get(lanes[k], lane);
+  }
+  return sums;
+}
+
+/// The matrix out of (xx, xy, yy, xh, yh, hh).
+inline Eigen::Matrix3d symmetric(const std::array<double, 6>& C) {
+  Eigen::Matrix3d P;
+  P << C[0], C[1], C[3], C[1], C[2], C[4], C[3], C[4], C[5];
+  return P;
+}
+
+/// The pose of particle i out of a column of structs that hold a pose; `pose_of(block)`.
+template <class Real, class PoseOf>
+Pose pose_of_particle(const PoseOf& pose_of, std::size_t i) {
+  const BasicPose<Real> block = pose_of(i / kLanesOf<Real>);
+  const std::size_t lane = i % kLanesOf<Real>;
+  return {get(block.x, lane), get(block.y, lane), get(block.heading, lane)};
+}
+
+/// Weighted mean of poses: headings as differences from the heaviest particle's (SPEC 19).
+template <class Real, class PoseOf>
+Pose weighted_mean(const Weights<Real>& weights, const PoseOf& pose_of) {
+  const Pose reference = pose_of_particle<Real>(pose_of, weights.heaviest());
+  const auto sums = weighted_sums<Real, 3>(weights, [&](std::size_t b) {
+    const BasicPose<Real> p = pose_of(b);
+    return std::array<Real, 3>{p.x - reference.x, p.y - reference.y,
+                               wrap(p.heading - reference.heading)};
+  });
+  return {reference.x + sums[0], reference.y + sums[1], wrap(reference.heading + sums[2])};
+}
+
+/// Mean and spread of the drawn poses.
+template <class Real>
+PoseMoments spread_of(const Weights<Real>& weights, const std::vector<BasicPose<Real>>& poses) {
+  const Pose mean = weighted_mean<Real>(weights, [&](std::size_t b) { return poses[b]; });
+  const auto C = weighted_sums<Real, 6>(weights, [&](std::size_t b) {
+    const Real x = poses[b].x - mean.x, y = poses[b].y - mean.y;
+    const Real h = wrap(poses[b].heading - mean.heading);
+    return std::array<Real, 6>{x * x, x * y, y * y, x * h, y * h, h * h};
+  });
+  return {mean, symmetric(C)};
+}
+
+/// Mean and covariance of a mixture of Gaussians (SPEC 19).
+template <class Real>
+PoseMoments mixture_of(const Weights<Real>& weights,
+                       const std::vector<PoseGaussian<Real>>& gaussians) {
+  const Pose mean = weighted_mean<Real>(weights, [&](std::size_t b) { return gaussians[b].mean; });
+  const auto C = weighted_sums<Real, 6>(weights, [&](std::size_t b) {
+    const auto& [m, P] = gaussians[b];
+    const Real x = m.x - mean.x, y = m.y - mean.y, h = wrap(m.heading - mean.heading);
+    return std::array<Real, 6>{P.xx + x * x, P.xy + x * y, P.yy + y * y,
+                               P.xh + x * h, P.yh + y * h, P.hh + h * h};
+  });
+  return {mean, symmetric(C)};
+}
+
+/// What the particles together believe about one landmark; owner(block) = 1 for those that have it.
+/// Empty where none has. Mean and covariance of the mixture.
+template <class Real, class Owner>
+std::optional<LandmarkEstimate> mixture_of_landmarks(
+    const Weights<Real>& weights, const std::vector<LandmarkGaussian<Real>>& landmarks,
+    const Owner& owner) {
+  const auto first = weighted_sums<Real, 3>(weights, [&](std::size_t b) {
+    const Real own = owner(b);
+    return std::array<Real, 3>{own, own * landmarks[b].mean.x, own * landmarks[b].mean.y};
+  });
+  if (first[0] <= 0.0) return std::nullopt;
+  const Point mean{first[1] / first[0], first[2] / first[0]};
+  const auto C = weighted_sums<Real, 3>(weights, [&](std::size_t b) {
+    const Real own = owner(b);
+    const Real x = landmarks[b].mean.x - mean.x, y = landmarks[b].mean.y - mean.y;
+    const Symmetric2<Real>& P = landmarks[b].covariance;
+    return std::array<Real, 3>{own * (P.xx + x * x), own * (P.xy + x * y), own * (P.yy + y * y)};
+  });
+  const double w = first[0];
+  return LandmarkEstimate{{mean.x, mean.y},
+                          Eigen::Matrix2d{{C[0] / w, C[1] / w}, {C[1] / w, C[2] / w}}};
+}
+
+/// Second moments of a cloud of drawn poses from which its estimate after any common motion follows
+/// in closed form: between scans an estimate costs the same for 10 and for 10,000 particles. With v
+/// = (x, y, h, cos h, sin h), h the heading less its mean, the moved cloud is linear in v.
+class CloudMoments {
+ public:
+  CloudMoments() = default;
+
+  template <class Real>
+  CloudMoments(const Weights<Real>& weights, const std::vector<BasicPose<Real>>& poses)
+      : mean_(weighted_mean<Real>(weights, [&](std::size_t b) { return poses[b]; })) {
+    const auto terms = [&](std::size_t b) {
+      const Real x = poses[b].x - mean_.x, y = poses[b].y - mean_.y;
+      const Real h = wrap(poses[b].heading - mean_.heading);
+      const Direction<Real> d = direction_of(h);
+      const Real c = d.cosine - 1.0, s = d.sine;
+      return std::array<Real, 17>{c,     s,     x * x, x * y, x * h, x * c, x * s, y * y, y * h,
+                                  y * c, y * s, h * h, h * c, h * s, c * c, c * s, s * s};
+    };
+    const auto S = weighted_sums<Real, 17>(weights, terms);
+    cosine_ = S[0], sine_ = S[1];
+    for (int row = 0, k = 2; row < 5; ++row) {
+      for (int column = row; column < 5; ++column, ++k) {
+        second_(row, column) = second_(column, row) = S[static_cast<std::size_t>(k)];
+      }
+    }
+    const Eigen::Matrix<double, 5, 1> first{0.0, 0.0, 0.0, cosine_, sine_};
+    centred_ = second_ - first * first.transpose();
+  }
+
+  /// The estimate after the cloud moved by `increment`.
+  PoseEstimate moved_by(const MotionIncrement& increment) const;
+
+ private:
+  Pose mean_;
+  double cosine_ = 0.0;                                                       ///< mean of cos h - 1
+  double sine_ = 0.0;                                                         ///< mean of sin h
+  Eigen::Matrix<double, 5, 5> second_ = Eigen::Matrix<double, 5, 5>::Zero();  ///< E[v v']
+  Eigen::Matrix<double, 5, 5> centred_ = Eigen::Matrix<double, 5, 5>::Zero();  ///< Cov v
+};
+
+}  // namespace montecarta

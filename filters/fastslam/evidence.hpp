@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/numbers/real.hpp"
+
+namespace montecarta {
+
+/// What a sensor's noise is believed to be: variances of range [m^2] and bearing [rad^2].
+struct SensorNoise {
+  double range;
+  double bearing;
+};
+
+/// The product of densities N(innovation; S) of one particle's detections, with one logarithm for
+/// many.
+template <class Real>
+class Evidence {
+ public:
+  /// One detection: `squared` = innovation' S^-1 innovation, `determinant` = det S; (0, 1) =
+  /// nothing seen.
+  [[gnu::always_inline]] void add(const Real& squared, const Real& determinant, const Real& count) {
+    squared_ += squared;
+    determinant_ *= determinant;
+    count_ += count;
+    if (++since_logarithm_ == kBetweenLogarithms) take_logarithm();
+  }
+  /// Log of the product.
+  Real log_density() const {
+    return -0.5 * (squared_ + log_determinant_ + log(determinant_)) - kLogTwoPi * count_;
+  }
+
+ private:
+  static constexpr int kBetweenLogarithms = 16;  // determinants down to 1e-19 stay in range
+  static constexpr double kLogTwoPi = 1.8378770664093454836;
+
+  void take_logarithm() {
+    log_determinant_ += log(determinant_);
+    determinant_ = Real(1.0);
+    since_logarithm_ = 0;
+  }
+
+  Real squared_{0.0}, determinant_{1.0}, log_determinant_{0.0}, count_{0.0};
+  int since_logarithm_ = 0;
+};
+
+}  // namespace montecarta

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/particles/resampling.hpp"
+#include "engine/particles/weights.hpp"
+#include "engine/runs/slam_filter.hpp"
+#include "filters/factory.hpp"
+#include "filters/fastslam/cloud_moments.hpp"
+#include "filters/fastslam/innovation_sums.hpp"
+#include "filters/fastslam/particle_maps.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace montecarta {
+
+/// What every filter of the family can be told.
+struct FastSlamSettings {
+  std::size_t particles = 100;
+  Resampling resampling = Resampling::systematic;
+  double resample_below = 0.5;  ///< resample where ESS < this times particles (SPEC 18)
+};
+
+/// Rao-Blackwellised particle filter with one map per particle (SPEC 5). `Real`: double or Lanes.
+/// `Proposal` moves, weighs and draws poses and updates the maps of one block; `Associating`
+/// decides which landmark a detection is. Between update() and the next predict() the particles are
+/// weighed and drawn but not yet resampled: that is the state that is estimated and recorded.
+template <class Real, class Proposal, class Associating>
+class FastSlam final : public SlamFilter {
+ public:
+  FastSlam(const FastSlamSettings& settings, Proposal proposal, Associating association)
+      : settings_(settings),
+        proposal_(std::move(proposal)),
+        association_(std::move(association)),
+        weights_(settings.particles),
+        poses_(blocks_for<Real>(settings.particles)),
+        resampled_poses_(poses_.size()),
+        maps_(settings.particles),
+        parents_(poses_.size() * kLanesOf<Real>),
+        ancestors_(parents_.size()) {}
+
+  void start(const Pose& start) override {
+    weights_.make_equal();
+    maps_.clear();
+    association_.clear();
+    std::fill(poses_.begin(), poses_.end(), BasicPose<Real>{start.x, start.y, start.heading});
+    std::iota(ancestors_.begin(), ancestors_.end(), 0U);
+    proposal_.start(poses_);
+    report_ = {};
+    after_update_ = false;
+  }
+
+  void predict(const StepContext& context, const Control& control, double duration) override {
+    settle();
+    proposal_.predict(context, control, duration, weights_, poses_);
+  }
+
+  void update(const StepContext& context, Scan scan) override {
+    settle();
+    after_update_ = true;
+    association_.associate(context, scan, maps_,
+                           [&](std::size_t b) { return proposal_.predicted(poses_[b]); });
+    report_ = {.ess = weights_.effective()};
+    if (association_.found_nothing()) return;
+    weigh_and_draw(context);
+    add_new_landmarks();
+    decide_on_resampling(context);
+  }
+
+  PoseEstimate estimate() const override { return proposal_.estimate(weights_, poses_); }
+  const ScanReport& report() const override { return report_; }
+  void particles(const ParticleColumns& columns) const override;
+  void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override;
+
+ private:
+  static constexpr std::size_t kBlocksPerTask = 256 / kLanesOf<Real>;  // fewer particles do not pay
+
+  void weigh_and_draw(const StepContext& context) {
+    const std::size_t blocks = poses_.size();
+    const std::size_t tasks = (blocks + kBlocksPerTask - 1) / kBlocksPerTask;
+    innovations_.start(tasks, association_.matches());
+    matched_weights_.resize(association_.matches());
+    for (std::size_t k = 0; k < matched_weights_.size(); ++k) {
+      matched_weights_[k] = association_.matched_weight(k, weights_);
+    }
+    context.parallel_for(tasks, [&](std::size_t task) {
+      const std::size_t end = std::min(blocks, (task + 1) * kBlocksPerTask);
+      for (std::size_t b = task * kBlocksPerTask; b < end; ++b)
+        weigh_and_draw_block(context, task, b);
+    });
+    report_.log_likelihood = weights_.normalise();
+    report_.ess = weights_.effective();
+    proposal_.end_scan();
+  }
+
+  void weigh_and_draw_block(const StepContext& context, std::size_t task, std::size_t b) {
+    const Real weight = weights_.linear()[b];
+    const auto note = [&](std::size_t k, const Innovation<Real>& innovation, const auto& matched) {
+      innovations_.add(task, k, innovation, weight * as_number<Real>(matched));
+    };
+    const Real log_weight = proposal_.weigh_and_draw(context, association_, b, poses_[b], note);
+    weights_.multiply(b, log_weight + association_.unmatched_log_weight(b));
+  }
+
+  void add_new_landmarks() {
+    association_.add_new(maps_, [&](std::size_t b, const RangeBearing<Real>& seen) {
+      return proposal_.birth(poses_[b], seen);
+    });
+  }
+
+  void decide_on_resampling(const StepContext& context) {
+    report_innovations();
+    report_.resampled =
+        report_.ess < settings_.resample_below * static_cast<double>(settings_.particles);
+    if (!report_.resampled) return;
+    draw_parents(settings_.resampling, weights_.linear_scalars(), context,
+                 std::span(parents_).first(settings_.particles));
+    std::fill(parents_.begin() + static_cast<std::ptrdiff_t>(settings_.particles), parents_.end(),
+              0U);
+  }
+
+  void report_innovations();
+
+  /// Ends the time in which the particles of the last scan can be asked for: resampling takes
+  /// effect.
+  void settle() {
+    if (!std::exchange(after_update_, false)) return;
+    if (report_.resampled) {
+      gather<Real>(poses_, parents_, resampled_poses_);
+      std::swap(poses_, resampled_poses_);
+      maps_.resample(parents_);
+      association_.resample(parents_);
+      weights_.make_equal();
+      ancestors_ = parents_;
+    } else {
+      std::iota(ancestors_.begin(), ancestors_.end(), 0U);
+    }
+    proposal_.settle();
+  }
+
+  FastSlamSettings settings_;
+  Proposal proposal_;
+  Associating association_;
+  Weights<Real> weights_;
+  std::vector<BasicPose<Real>> poses_, resampled_poses_;
+  ParticleMaps<Real> maps_;
+  InnovationSums<Real> innovations_;
+  std::vector<double> matched_weights_;  ///< of each detection, before the scan
+  std::vector<std::uint32_t> parents_;  ///< of the resampling that is decided but not yet in effect
+  std::vector<std::uint32_t> ancestors_;  ///< one scan ago
+  ScanReport report_;
+  bool after_update_ = false;
+};
+
+}  // namespace montecarta
+
+#include "filters/fastslam/fast_slam_reports.hpp"

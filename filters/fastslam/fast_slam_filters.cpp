@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/fastslam/fast_slam_filters.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+namespace montecarta {
+namespace {
+
+const std::vector<std::string> kResamplings{"systematic", "stratified", "residual", "multinomial"};
+const std::vector<std::string> kWeightForms{"closed", "ratio", "batch"};
+
+/// The enumerator at the place of `choice` among `choices`.
+template <class Enumerator>
+Enumerator chosen(const std::string& choice, const std::vector<std::string>& choices) {
+  return static_cast<Enumerator>(std::find(choices.begin(), choices.end(), choice) -
+                                 choices.begin());
+}
+
+}  // namespace
+
+std::vector<FilterOption> fast_slam_options() {
+  return {
+      {"particles", FilterOption::Kind::integer, "100", 1, 1e6, {}, "number of particles"},
+      {"resampling", FilterOption::Kind::choice, "systematic", 0, 0, kResamplings,
+       "how parents are drawn (SPEC 18)"},
+      {"resample_below",
+       FilterOption::Kind::number,
+       "0.5",
+       0,
+       1,
+       {},
+       "resample where ESS < this times particles; Bailey's simulator has 0.75"},
+  };
+}
+
+FastSlamSettings fast_slam_settings(const FilterOptions& options) {
+  return {.particles = options.integer("particles"),
+          .resampling = chosen<Resampling>(options.choice("resampling"), kResamplings),
+          .resample_below = options.number("resample_below")};
+}
+
+WeightForm weight_form(const FilterOptions& options) {
+  return chosen<WeightForm>(options.choice("weights"), kWeightForms);
+}
+
+FilterKind fastslam1_kind() {
+  return {.name = "fastslam1",
+          .long_name = "FastSLAM I",
+          .source = "Montemerlo et al. 2002; SPEC 6",
+          .has_particles = true,
+          .has_mixture = false,
+          .options = fast_slam_options(),
+          .make = make_fastslam1<Lanes>};
+}
+
+FilterKind fastslam2_kind() {
+  std::vector<FilterOption> options = fast_slam_options();
+  options.push_back({"weights", FilterOption::Kind::choice, "closed", 0, 0, kWeightForms,
+                     "form of the importance weight (SPEC 7.2 c, r, b)"});
+  return {.name = "fastslam2",
+          .long_name = "FastSLAM II",
+          .source = "Montemerlo et al. 2003; SPEC 7",
+          .has_particles = true,
+          .has_mixture = true,
+          .options = std::move(options),
+          .make = make_fastslam2<Lanes>};
+}
+
+}  // namespace montecarta

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/factory.hpp"
+#include "filters/fastslam/fast_slam.hpp"
+#include "filters/fastslam/gaussian_proposal.hpp"
+#include "filters/fastslam/known_association.hpp"
+#include "filters/fastslam/motion_sampling.hpp"
+#include "filters/fastslam/nearest_association.hpp"
+
+#include <memory>
+#include <utility>
+
+namespace montecarta {
+
+/// FastSLAM with a proposal of the caller's making; the association is the setup's.
+template <class Real, class Proposal>
+std::unique_ptr<SlamFilter> make_fast_slam(const FilterSetup& setup,
+                                           const FastSlamSettings& settings, Proposal proposal) {
+  if (setup.association.kind == Association::known) {
+    using Filter = FastSlam<Real, Proposal, KnownAssociation<Real>>;
+    return std::make_unique<Filter>(settings, std::move(proposal),
+                                    KnownAssociation<Real>(setup.landmarks));
+  }
+  using Filter = FastSlam<Real, Proposal, NearestAssociation<Real>>;
+  return std::make_unique<Filter>(
+      settings, std::move(proposal),
+      NearestAssociation<Real>(settings.particles, setup.association, setup.belief));
+}
+
+/// The options that the whole family shares, in the order in which they are documented.
+std::vector<FilterOption> fast_slam_options();
+/// Reads them.
+FastSlamSettings fast_slam_settings(const FilterOptions& options);
+WeightForm weight_form(const FilterOptions& options);
+
+/// `Real` = double is the same filter one particle at a time, for tests.
+template <class Real>
+std::unique_ptr<SlamFilter> make_fastslam1(const FilterSetup& setup) {
+  return make_fast_slam<Real>(setup, fast_slam_settings(setup.options),
+                              MotionSampling<Real>(setup.belief));
+}
+template <class Real>
+std::unique_ptr<SlamFilter> make_fastslam2(const FilterSetup& setup) {
+  const FastSlamSettings settings = fast_slam_settings(setup.options);
+  return make_fast_slam<Real>(
+      setup, settings,
+      GaussianProposal<Real>(settings.particles, setup.belief, weight_form(setup.options)));
+}
+
+/// Lines for the table of factory.cpp.
+FilterKind fastslam1_kind();
+FilterKind fastslam2_kind();
+
+}  // namespace montecarta

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/numbers/real.hpp"
+#include "engine/runs/pose.hpp"
+#include "filters/models/range_bearing.hpp"
+
+namespace montecarta {
+
+/// Symmetric matrix over (x, y, heading).
+template <class Real>
+struct Symmetric3 {
+  Real xx{}, xy{}, yy{};  ///< [m^2]
+  Real xh{}, yh{};        ///< [m rad]
+  Real hh{};              ///< [rad^2]
+};
+
+/// Symmetric matrix over (x, y) [m^2].
+template <class Real>
+struct Symmetric2 {
+  Real xx{}, xy{}, yy{};
+};
+
+/// What one particle believes about its own pose since it was last drawn.
+template <class Real>
+struct PoseGaussian {
+  BasicPose<Real> mean{};
+  Symmetric3<Real> covariance{};
+};
+
+/// What one particle believes about one landmark.
+template <class Real>
+struct LandmarkGaussian {
+  BasicPoint<Real> mean{};
+  Symmetric2<Real> covariance{};
+};
+
+/// Column of three: (x, y, heading).
+template <class Real>
+struct Column3 {
+  Real x, y, h;
+};
+
+/// P minus gain times column transposed; symmetric where gain is a multiple of column.
+template <class Real>
+[[gnu::always_inline]] inline void subtract_outer(Symmetric3<Real>& P, const Column3<Real>& gain,
+                                                  const Column3<Real>& column) {
+  P.xx -= gain.x * column.x;
+  P.xy -= gain.x * column.y;
+  P.yy -= gain.y * column.y;
+  P.xh -= gain.x * column.h;
+  P.yh -= gain.y * column.h;
+  P.hh -= gain.h * column.h;
+}
+
+/// Lower triangular factor; a pivot that is zero but for rounding gives a zero column (SPEC 4).
+template <class Real>
+struct Cholesky3 {
+  Real xx, yx, yy, hx, hy, hh;
+
+  [[gnu::always_inline]] explicit Cholesky3(const Symmetric3<Real>& P) {
+    Real inverse;
+    pivot(P.xx, P.xx, xx, inverse);
+    yx = P.xy * inverse;
+    hx = P.xh * inverse;
+    pivot(P.yy - yx * yx, P.yy, yy, inverse);
+    hy = (P.yh - hx * yx) * inverse;
+    Real unused;
+    pivot(P.hh - hx * hx - hy * hy, P.hh, hh, unused);
+  }
+
+ private:
+  [[gnu::always_inline]] static void pivot(const Real& square, const Real& diagonal, Real& root,
+                                           Real& inverse) {
+    const auto positive = square > 1e-18 * (Real(1.0) + diagonal);
+    root = sqrt(select(positive, square, Real(0.0)));
+    inverse = select(positive, Real(1.0) / root, Real(0.0));
+  }
+};
+
+}  // namespace montecarta

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/runs/drive.hpp"
+#include "filters/fastslam/linearised.hpp"
+#include "filters/fastslam/particle_maps.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace montecarta {
+
+/// Detections carry the identity of their landmark, the same for all particles (SPEC 17); clutter
+/// is known to be clutter. Slots are given out in the order in which landmarks are first seen.
+template <class Real>
+class KnownAssociation {
+ public:
+  explicit KnownAssociation(std::size_t landmarks) : slot_of_(landmarks, kUnseen) {}
+
+  void clear() { std::fill(slot_of_.begin(), slot_of_.end(), kUnseen); }
+
+  /// Sorts the scan into known and new landmarks.
+  template <class Predicted>
+  void associate(const StepContext& /*context*/, Scan scan, ParticleMaps<Real>& maps,
+                 const Predicted& /*predicted*/) {
+    slots_.clear(), seen_.clear(), new_.clear();
+    for (const Detection& detection : scan) {
+      if (detection.identity == Detection::kClutter) continue;
+      const std::int32_t slot = slot_of_.at(static_cast<std::size_t>(detection.identity));
+      if (slot == kUnseen) {
+        new_.push_back(detection);
+      } else {
+        slots_.push_back(static_cast<std::uint32_t>(slot));
+        seen_.push_back(sight_of<Real>(detection));
+      }
+    }
+    maps.open(slots_, opened_);
+  }
+
+  bool found_nothing() const { return slots_.empty() && new_.empty(); }
+  std::size_t matches() const { return slots_.size(); }
+  /// How many detections particles matched, on weighted average.
+  double matched_weight(std::size_t /*k*/, const Weights<Real>& /*weights*/) const { return 1.0; }
+
+  /// visit(k, landmark, seen, mask) for every match of block b; the first visit of a scan.
+  template <class Visit>
+  [[gnu::always_inline]] void read(std::size_t b, const Visit& visit) const {
+    for (std::size_t k = 0; k < slots_.size(); ++k)
+      visit(k, opened_[k].fetch(b), seen_[k], Everywhere());
+  }
+  /// visit(k, landmark, seen, mask), which may change the landmark; after read().
+  template <class Visit>
+  [[gnu::always_inline]] void update(std::size_t b, const Visit& visit) const {
+    for (std::size_t k = 0; k < slots_.size(); ++k)
+      visit(k, opened_[k].at(b), seen_[k], Everywhere());
+  }
+  /// All particles explain the same detections, so there is nothing to make equal.
+  Real unmatched_log_weight(std::size_t /*b*/) const { return Real(0.0); }
+
+  /// Gives every new landmark a slot, filled by birth(block, seen).
+  template <class Birth>
+  void add_new(ParticleMaps<Real>& maps, const Birth& birth) {
+    for (const Detection& detection : new_) {
+      const std::uint32_t slot = maps.add();
+      slot_of_[static_cast<std::size_t>(detection.identity)] = static_cast<std::int32_t>(slot);
+      const auto blocks = maps.blocks_of(slot);
+      for (std::size_t b = 0; b < blocks.size(); ++b)
+        blocks[b] = birth(b, sight_of<Real>(detection));
+    }
+  }
+  void resample(std::span<const std::uint32_t> /*parents*/) {}
+
+  /// The slot of the landmark with this identity, or kUnseen.
+  std::int32_t slot_of(std::size_t identity) const {
+    return identity < slot_of_.size() ? slot_of_[identity] : kUnseen;
+  }
+  /// Whether (1 or 0) each particle of block b has the slot.
+  Real owners(std::uint32_t /*slot*/, std::size_t /*b*/) const { return Real(1.0); }
+
+  static constexpr std::int32_t kUnseen = -1;
+
+ private:
+  std::vector<std::int32_t> slot_of_;
+  std::vector<std::uint32_t> slots_;
+  std::vector<RangeBearing<Real>> seen_;
+  std::vector<Detection> new_;
+  std::vector<typename ParticleMaps<Real>::OpenSlot> opened_;
+};
+
+}  // namespace montecarta

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/fastslam/evidence.hpp"
+#include "filters/fastslam/gaussians.hpp"
+
+namespace montecarta {
+
+/// A landmark seen from a pose, in the frame of the line of sight: along it and across it.
+template <class Real>
+struct Sightline {
+  RangeBearing<Real> predicted;
+  Real ux, uy;     ///< unit vector towards the landmark
+  Real per_range;  ///< 1 / range [1/m]
+};
+
+template <class Real>
+[[gnu::always_inline]] inline Sightline<Real> sightline(const BasicPose<Real>& pose,
+                                                        const BasicPoint<Real>& landmark) {
+  const Real dx = landmark.x - pose.x;
+  const Real dy = landmark.y - pose.y;
+  const Real range = max(sqrt(dx * dx + dy * dy), Real(kLeastDistance));
+  const Real per_range = 1.0 / range;
+  return {{range, wrap(atan2(dy, dx) - pose.heading)}, dx * per_range, dy * per_range, per_range};
+}
+
+/// The landmark's covariance turned into the line of sight [m^2].
+template <class Real>
+struct Turned {
+  Real along, cross, across;
+};
+
+template <class Real>
+[[gnu::always_inline]] inline Turned<Real> turned(const Symmetric2<Real>& P,
+                                                  const Sightline<Real>& s) {
+  const Real along_x = P.xx * s.ux + P.xy * s.uy;
+  const Real along_y = P.xy * s.ux + P.yy * s.uy;
+  const Real across_x = P.xy * s.ux - P.xx * s.uy;
+  const Real across_y = P.yy * s.ux - P.xy * s.uy;
+  return {along_x * s.ux + along_y * s.uy, along_y * s.ux - along_x * s.uy,
+          across_y * s.ux - across_x * s.uy};
+}
+
+/// Every lane: the mask of a landmark that all particles agree on.
+struct Everywhere {};
+template <class Mask>
+[[gnu::always_inline]] inline Mask operator&&(Everywhere, const Mask& mask) {
+  return mask;
+}
+/// 1 for the lanes of a mask, else 0.
+template <class Real>
+Real as_number(Everywhere) {
+  return Real(1.0);
+}
+template <class Real, class Mask>
+Real as_number(const Mask& mask) {
+  return select(mask, Real(1.0), Real(0.0));
+}
+
+/// Nearer than kLeastDistance a bearing has no derivative: the detection is left out (SPEC 3).
+template <class Real>
+[[gnu::always_inline]] inline auto is_usable(const Sightline<Real>& s) {
+  return s.predicted.range > Real(kLeastDistance);
+}
+
+/// What a detection says of a pose Gaussian (SPEC 7.1): innovation, its covariance S, and P Hx'
+/// with Hx = [-ux -uy 0; uy/d -ux/d -1].
+template <class Real>
+struct Innovation {
+  RangeBearing<Real> value;
+  Real s_rr, s_rb, s_bb;
+  Column3<Real> range, bearing;
+
+  Real determinant() const { return s_rr * s_bb - s_rb * s_rb; }
+  /// value' S^-1 value
+  Real squared() const {
+    const Real& r = value.range;
+    const Real& b = value.bearing;
+    return (s_bb * r * r - 2.0 * s_rb * r * b + s_rr * b * b) / determinant();
+  }
+};
+
+template <class Real>
+[[gnu::always_inline]] inline Innovation<Real> innovation_of(const Symmetric3<Real>& P,
+                                                             const Sightline<Real>& s,
+                                                             const RangeBearing<Real>& value,
+                                                             const Symmetric2<Real>& map_covariance,
+                                                             const SensorNoise& noise) {
+  const Turned<Real> map = turned(map_covariance, s);
+  const Real cx = s.ux * s.per_range, cy = s.uy * s.per_range;
+  const Column3<Real> range{-(P.xx * s.ux + P.xy * s.uy), -(P.xy * s.ux + P.yy * s.uy),
+                            -(P.xh * s.ux + P.yh * s.uy)};
+  const Column3<Real> bearing{P.xx * cy - P.xy * cx - P.xh, P.xy * cy - P.yy * cx - P.yh,
+                              P.xh * cy - P.yh * cx - P.hh};
+  return {value,
+          noise.range + map.along - (s.ux * range.x + s.uy * range.y),
+          map.cross * s.per_range - (s.ux * bearing.x + s.uy * bearing.y),
+          noise.bearing + map.across * s.per_range * s.per_range + cy * bearing.x - cx * bearing.y -
+              bearing.h,
+          range,
+          bearing};
+}
+
+/// Absorbs one detection into a pose Gaussian by the extended Kalman filter (SPEC 7.1), with the
+/// model linearised on the sightline `s`. `matched`: which lanes saw it. The two components of the
+/// innovation are decorrelated first, so both are scalar updates.
+template <class Real, class Mask>
+[[gnu::always_inline]] inline Innovation<Real> absorb(PoseGaussian<Real>& pose,
+                                                      const Sightline<Real>& s,
+                                                      const RangeBearing<Real>& value,
+                                                      const Symmetric2<Real>& map_covariance,
+                                                      const SensorNoise& noise, const Mask& matched,
+                                                      Evidence<Real>& evidence) {
+  const auto use = matched && is_usable(s);
+  const Innovation<Real> v = innovation_of(pose.covariance, s, value, map_covariance, noise);
+  const Real determinant = v.determinant();
+  const Real inverse = select(use, 1.0 / (v.s_rr * determinant), Real(0.0));
+  const Real per_rr = determinant * inverse;
+  const Real per_bb = v.s_rr * v.s_rr * inverse;
+  const Real slope = v.s_rb * per_rr;
+  const Real& first = v.value.range;
+  const Real second = v.value.bearing - slope * first;
+  const Column3<Real> column{v.bearing.x - slope * v.range.x, v.bearing.y - slope * v.range.y,
+                             v.bearing.h - slope * v.range.h};
+  const Column3<Real> range_gain{v.range.x * per_rr, v.range.y * per_rr, v.range.h * per_rr};
+  const Column3<Real> gain{column.x * per_bb, column.y * per_bb, column.h * per_bb};
+  pose.mean.x += range_gain.x * first + gain.x * second;
+  pose.mean.y += range_gain.y * first + gain.y * second;
+  pose.mean.heading += range_gain.h * first + gain.h * second;
+  subtract_outer(pose.covariance, range_gain, v.range);
+  subtract_outer(pose.covariance, gain, column);
+  evidence.add(first * first * per_rr + second * second * per_bb,
+               select(use, determinant, Real(1.0)), select(use, Real(1.0), Real(0.0)));
+  return v;
+}
+
+/// absorb() with the model linearised at the refined pose: sequential refinement (SPEC 7.1).
+template <class Real, class Mask>
+[[gnu::always_inline]] inline Innovation<Real> refine_pose(PoseGaussian<Real>& pose,
+                                                           const LandmarkGaussian<Real>& landmark,
+                                                           const RangeBearing<Real>& seen,
+                                                           const SensorNoise& noise,
+                                                           const Mask& matched,
+                                                           Evidence<Real>& evidence) {
+  const Sightline<Real> s = sightline(pose.mean, landmark.mean);
+  return absorb(pose, s, residual(seen, s.predicted), landmark.covariance, noise, matched,
+                evidence);
+}
+
+/// absorb() with the model linearised at the predicted pose for all detections alike: the sequence
+/// then is the batch update with the stacked innovation, and its evidence N(nu; S) (SPEC 7.2 b).
+template <class Real, class Mask>
+[[gnu::always_inline]] inline void refine_pose_in_batch(
+    PoseGaussian<Real>& pose, const BasicPose<Real>& predicted,
+    const LandmarkGaussian<Real>& landmark, const RangeBearing<Real>& seen,
+    const SensorNoise& noise, const Mask& matched, Evidence<Real>& evidence) {
+  const Sightline<Real> s = sightline(predicted, landmark.mean);
+  RangeBearing<Real> innovation = residual(seen, s.predicted);
+  const Column3<Real> moved{pose.mean.x - predicted.x, pose.mean.y - predicted.y,
+                            pose.mean.heading - predicted.heading};
+  innovation.range += s.ux * moved.x + s.uy * moved.y;
+  innovation.bearing += (s.ux * moved.y - s.uy * moved.x) * s.per_range + moved.h;
+  absorb(pose, s, innovation, landmark.covariance, noise, matched, evidence);
+}
+
+/// Absorbs one detection into a landmark seen from an exactly known pose (SPEC 7.3). In the frame
+/// of the line of sight the noise is diagonal and P (P + R)^-1 R has no difference that could turn
+/// negative.
+template <class Real, class Mask>
+[[gnu::always_inline]] inline Innovation<Real> update_landmark(
+    LandmarkGaussian<Real>& landmark, const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
+    const SensorNoise& noise, const Mask& matched, Evidence<Real>& evidence) {
+  const Sightline<Real> s = sightline(pose, landmark.mean);
+  const auto use = matched && is_usable(s);
+  const Turned<Real> P = turned(landmark.covariance, s);
+  const Real range = s.predicted.range;
+  const Real across_noise = noise.bearing * range * range;
+  const RangeBearing<Real> innovation = residual(seen, s.predicted);
+  const Real across = innovation.bearing * range;
+
+  const Real s_along = P.along + noise.range;
+  const Real s_across = P.across + across_noise;
+  const Real determinant = s_along * s_across - P.cross * P.cross;
+  const Real inverse = select(use, 1.0 / determinant, Real(0.0));
+  const Real det_P = P.along * P.across - P.cross * P.cross;
+  // gain = P S^-1
+  const Real g_aa = (P.along * s_across - P.cross * P.cross) * inverse;
+  const Real g_cc = (P.across * s_along - P.cross * P.cross) * inverse;
+  const Real g_ac = P.cross * noise.range * inverse;
+  const Real g_ca = P.cross * across_noise * inverse;
+  const Real move_along = g_aa * innovation.range + g_ac * across;
+  const Real move_across = g_ca * innovation.range + g_cc * across;
+  landmark.mean.x += s.ux * move_along - s.uy * move_across;
+  landmark.mean.y += s.uy * move_along + s.ux * move_across;
+
+  // P+ = gain R
+  const Real along = (det_P + P.along * across_noise) * noise.range * inverse;
+  const Real cross = P.cross * noise.range * across_noise * inverse;
+  const Real across_after = (det_P + P.across * noise.range) * across_noise * inverse;
+  const Real along_x = s.ux * along - s.uy * cross, along_y = s.uy * along + s.ux * cross;
+  const Real across_x = s.ux * cross - s.uy * across_after,
+             across_y = s.uy * cross + s.ux * across_after;
+  Symmetric2<Real>& after = landmark.covariance;
+  after.xx = select(use, along_x * s.ux - across_x * s.uy, after.xx);
+  after.xy = select(use, along_y * s.ux - across_y * s.uy, after.xy);
+  after.yy = select(use, along_y * s.uy + across_y * s.ux, after.yy);
+  const Real squared = (s_across * innovation.range * innovation.range -
+                        2.0 * P.cross * innovation.range * across + s_along * across * across) *
+                       inverse;
+  evidence.add(squared, select(use, determinant * s.per_range * s.per_range, Real(1.0)),
+               select(use, Real(1.0), Real(0.0)));
+  return {innovation, s_along, P.cross * s.per_range, s_across * s.per_range * s.per_range, {}, {}};
+}
+
+/// A landmark seen for the first time from an exactly known pose: g(x, z) and Gz R Gz' (SPEC 7.3).
+template <class Real>
+LandmarkGaussian<Real> new_landmark(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
+                                    const SensorNoise& noise) {
+  const LinearisedPlace<Real> place = linearised_place(pose, seen);
+  const Real range = noise.range, bearing = noise.bearing;
+  return {place.point,
+          {place.x_range * place.x_range * range + place.x_bearing * place.x_bearing * bearing,
+           place.x_range * place.y_range * range + place.x_bearing * place.y_bearing * bearing,
+           place.y_range * place.y_range * range + place.y_bearing * place.y_bearing * bearing}};
+}
+
+}  // namespace montecarta

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/factory.hpp"
+#include "filters/fastslam/gaussians.hpp"
+#include "filters/models/eigen_jacobians.hpp"
+
+#include <Eigen/Core>
+
+namespace montecarta {
+
+/// The motion since poses were last drawn, in the frame of the drawn pose. The vehicle does not
+/// know where in the world it is, so this Gaussian is the same for every particle: it is predicted
+/// once for all of them and turned to each particle's heading only when it is needed. Exact: equal
+/// to one extended Kalman prediction (SPEC 2.1) per particle and step.
+class MotionIncrement {
+ public:
+  void restart() { *this = MotionIncrement(); }
+
+  /// One control step of `duration` [s].
+  void advance(const Control& control, double duration, const Belief& belief) {
+    const LinearisedMove<double> step = linearised_move(pose_, control, duration, belief.wheelbase);
+    const Eigen::Matrix3d F = pose_jacobian(step.jacobians);
+    Matrix32 G = control_jacobian(step.jacobians);
+    G.col(0) *= belief.sigma_speed;
+    G.col(1) *= belief.sigma_steer;
+    covariance_ = F * covariance_ * F.transpose() + G * G.transpose();
+    pose_ = step.pose;
+  }
+
+  const Pose& pose() const { return pose_; }
+  const Eigen::Matrix3d& covariance() const { return covariance_; }
+
+  /// What a particle that was at `origin` exactly believes now (SPEC 5: P_i accumulates from zero).
+  template <class Real>
+  [[gnu::always_inline]] PoseGaussian<Real> from(const BasicPose<Real>& origin) const {
+    const Direction<Real> d = direction_of(origin.heading);
+    const Real c = d.cosine, s = d.sine;
+    const Eigen::Matrix3d& C = covariance_;
+    const Real along_x = c * C(0, 0) - s * C(0, 1), along_y = c * C(0, 1) - s * C(1, 1);
+    const Real across_x = s * C(0, 0) + c * C(0, 1), across_y = s * C(0, 1) + c * C(1, 1);
+    return {{origin.x + c * pose_.x - s * pose_.y, origin.y + s * pose_.x + c * pose_.y,
+             wrap(origin.heading + pose_.heading)},
+            {.xx = along_x * c - along_y * s,
+             .xy = along_x * s + along_y * c,
+             .yy = across_x * s + across_y * c,
+             .xh = c * C(0, 2) - s * C(1, 2),
+             .yh = s * C(0, 2) + c * C(1, 2),
+             .hh = Real(C(2, 2))}};
+  }
+
+ private:
+  Pose pose_;
+  Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();
+};
+
+}  // namespace montecarta

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/random/normals.hpp"
+#include "filters/fastslam/cloud_moments.hpp"
+#include "filters/fastslam/linearised.hpp"
+#include "filters/models/ackermann.hpp"
+
+#include <vector>
+
+namespace montecarta {
+
+/// FastSLAM I (SPEC 6): every particle moves with control noise of its own at every step; the scan
+/// only weighs it.
+template <class Real>
+class MotionSampling {
+ public:
+  explicit MotionSampling(const Belief& belief)
+      : belief_(belief),
+        noise_{belief.sigma_range * belief.sigma_range,
+               belief.sigma_bearing * belief.sigma_bearing} {}
+
+  void start(const std::vector<BasicPose<Real>>& /*poses*/) {}
+
+  void predict(const StepContext& context, const Control& control, double duration,
+               const Weights<Real>& /*weights*/, std::vector<BasicPose<Real>>& poses) {
+    constexpr std::size_t kBlocksPerTask = 1024 / kLanesOf<Real>;
+    context.parallel_for(
+        (poses.size() + kBlocksPerTask - 1) / kBlocksPerTask, [&](std::size_t task) {
+          const std::size_t end = std::min(poses.size(), (task + 1) * kBlocksPerTask);
+          for (std::size_t b = task * kBlocksPerTask; b < end; ++b) {
+            poses[b] = moved(context, control, duration, b, poses[b]);
+          }
+        });
+  }
+  /// The pose is certain within a particle.
+  PoseGaussian<Real> predicted(const BasicPose<Real>& pose) const { return {pose, {}}; }
+
+  /// Weighs one block by the likelihood at its poses and updates its landmarks.
+  template <class Matches, class Note>
+  Real weigh_and_draw(const StepContext& /*context*/, const Matches& matches, std::size_t b,
+                      const BasicPose<Real>& pose, const Note& note) {
+    Evidence<Real> likelihood;
+    matches.read(b, [](auto&&...) {});
+    matches.update(b, [&](std::size_t k, auto& landmark, const auto& seen, const auto& mask) {
+      note(k, update_landmark(landmark, pose, seen, noise_, mask, likelihood), mask);
+    });
+    return likelihood.log_density();
+  }
+  LandmarkGaussian<Real> birth(const BasicPose<Real>& pose, const RangeBearing<Real>& seen) const {
+    return new_landmark(pose, seen, noise_);
+  }
+  void end_scan() {}
+  void settle() {}
+  PoseEstimate estimate(const Weights<Real>& weights,
+                        const std::vector<BasicPose<Real>>& poses) const {
+    return {spread_of(weights, poses), std::nullopt};
+  }
+
+ private:
+  BasicPose<Real> moved(const StepContext& context, const Control& control, double duration,
+                        std::size_t b, const BasicPose<Real>& pose) const {
+    const auto first = static_cast<std::uint32_t>(b * kLanesOf<Real>);
+    const auto [e0, e1] = normal_pairs<Real>(context.identity(Draw::motion_sample, first), 0);
+    const Real speed = control.speed + belief_.sigma_speed * e0;
+    const Real steer = control.steer + belief_.sigma_steer * e1;
+    return move(pose, speed, steer, duration, belief_.wheelbase);
+  }
+
+  Belief belief_;
+  SensorNoise noise_;
+};
+
+}  // namespace montecarta

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/particles/weights.hpp"
+#include "engine/runs/drive.hpp"
+#include "engine/runs/step_context.hpp"
+#include "filters/association/nearest.hpp"
+#include "filters/fastslam/linearised.hpp"
+#include "filters/fastslam/particle_maps.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+namespace montecarta {
+
+/// Every particle decides for itself which landmark of its own map a detection is (SPEC 17), with
+/// the covariance of its predicted pose in the innovation. Particle i owns slots 0 to count(i) - 1.
+template <class Real>
+class NearestAssociation {
+ public:
+  NearestAssociation(std::size_t particles, const AssociationSettings& settings,
+                     const Belief& belief)
+      : particles_(particles),
+        settings_(settings),
+        noise_{belief.sigma_range * belief.sigma_range,
+               belief.sigma_bearing * belief.sigma_bearing},
+        log_new_density_(log_new_density(settings, belief)),
+        counts_(blocks_for<Real>(particles), Real(0.0)),
+        resampled_counts_(counts_) {}
+
+  void clear() { std::fill(counts_.begin(), counts_.end(), Real(0.0)); }
+
+  /// Judges every detection by every particle's map; predicted(b) is the pose Gaussian of block b.
+  template <class Predicted>
+  void associate(const StepContext& context, Scan scan, ParticleMaps<Real>& maps,
+                 const Predicted& predicted) {
+    seen_.clear();
+    for (const Detection& detection : scan) seen_.push_back(sight_of<Real>(detection));
+    slots_.resize(maps.slots());
+    std::iota(slots_.begin(), slots_.end(), 0U);
+    maps.open(slots_, opened_);
+    pairings_.resize(maps.blocks() * kLanes * seen_.size());
+    context.parallel_for(maps.blocks(), [&](std::size_t b) { judge_block(b, predicted(b)); });
+  }
+
+  bool found_nothing() const {
+    for (std::size_t i = 0; i < particles_; ++i) {
+      for (const Pairing& pairing : pairings_of(i)) {
+        if (pairing.verdict != Verdict::ignored) return false;
+      }
+    }
+    return true;
+  }
+  std::size_t matches() const { return seen_.size(); }
+  /// The weight of the particles that matched detection k.
+  double matched_weight(std::size_t k, const Weights<Real>& weights) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < particles_; ++i) {
+      if (pairings_of(i)[k].verdict == Verdict::matched) sum += weights.linear_scalars()[i];
+    }
+    return sum;
+  }
+
+  template <class Visit>
+  void read(std::size_t b, const Visit& visit) const {
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      visit(k, collect(b, k), seen_[k], matched(b, k) > Real(0.5));
+    }
+  }
+  template <class Visit>
+  void update(std::size_t b, const Visit& visit) const {
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      LandmarkGaussian<Real> landmark = collect(b, k);
+      visit(k, landmark, seen_[k], matched(b, k) > Real(0.5));
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const Pairing& pairing = pairings_of(b * kLanes + lane)[k];
+        if (pairing.verdict == Verdict::matched)
+          copy_lane(landmark, opened_[pairing.landmark].at(b), lane);
+      }
+    }
+  }
+  /// log p0 for every detection that a particle cannot explain, so that all weigh by as many
+  /// factors.
+  Real unmatched_log_weight(std::size_t b) const {
+    Real sum(0.0);
+    for (std::size_t k = 0; k < seen_.size(); ++k) sum += log_new_density_ * (1.0 - matched(b, k));
+    return sum;
+  }
+
+  template <class Birth>
+  void add_new(ParticleMaps<Real>& maps, const Birth& birth) {
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      for (std::size_t b = 0; b < maps.blocks(); ++b) add_to_block(maps, b, k, birth);
+    }
+  }
+  void resample(std::span<const std::uint32_t> parents) {
+    gather<Real>(counts_, parents, resampled_counts_);
+    std::swap(counts_, resampled_counts_);
+  }
+  std::int32_t slot_of(std::size_t slot) const { return static_cast<std::int32_t>(slot); }
+  Real owners(std::uint32_t slot, std::size_t b) const {
+    return select(counts_[b] > Real(static_cast<double>(slot)), Real(1.0), Real(0.0));
+  }
+
+ private:
+  static constexpr std::size_t kLanes = kLanesOf<Real>;
+
+  std::span<Pairing> pairings_of(std::size_t particle) {
+    return std::span(pairings_).subspan(particle * seen_.size(), seen_.size());
+  }
+  std::span<const Pairing> pairings_of(std::size_t particle) const {
+    return std::span(pairings_).subspan(particle * seen_.size(), seen_.size());
+  }
+
+  void judge_block(std::size_t b, const PoseGaussian<Real>& pose) {
+    for (const auto& slot : opened_) slot.fetch(b);
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      std::array<NearestSearch, kLanes> search{};
+      for (std::size_t j = 0; j < opened_.size(); ++j) offer(b, j, seen_[k], pose, search);
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        pairings_of(b * kLanes + lane)[k] = judge(search[lane], settings_);
+      }
+    }
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+      exclude_rivals(pairings_of(b * kLanes + lane));
+  }
+
+  void offer(std::size_t b, std::size_t j, const RangeBearing<Real>& seen,
+             const PoseGaussian<Real>& pose, std::array<NearestSearch, kLanes>& search) const {
+    const LandmarkGaussian<Real>& landmark = opened_[j].at(b);
+    const Sightline<Real> s = sightline(pose.mean, landmark.mean);
+    const Innovation<Real> v =
+        innovation_of(pose.covariance, s, residual(seen, s.predicted), landmark.covariance, noise_);
+    const Real distance = v.squared();
+    const Real cost = distance + log(v.determinant());
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      if (static_cast<double>(j) >= get(counts_[b], lane)) continue;
+      search[lane].offer(static_cast<std::uint32_t>(j), get(distance, lane), get(cost, lane),
+                         settings_.gate);
+    }
+  }
+
+  /// 1 for the lanes that matched detection k, else 0.
+  Real matched(std::size_t b, std::size_t k) const {
+    Real flags(0.0);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      if (pairings_of(b * kLanes + lane)[k].verdict == Verdict::matched) set(flags, lane, 1.0);
+    }
+    return flags;
+  }
+
+  /// The landmark each lane matched with detection k; a lane without a match gets a harmless one.
+  LandmarkGaussian<Real> collect(std::size_t b, std::size_t k) const {
+    LandmarkGaussian<Real> landmark{};
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const Pairing& pairing = pairings_of(b * kLanes + lane)[k];
+      if (pairing.verdict == Verdict::matched)
+        copy_lane(opened_[pairing.landmark].at(b), landmark, lane);
+    }
+    return landmark;
+  }
+
+  static void copy_lane(const LandmarkGaussian<Real>& from, LandmarkGaussian<Real>& to,
+                        std::size_t lane) {
+    set(to.mean.x, lane, get(from.mean.x, lane));
+    set(to.mean.y, lane, get(from.mean.y, lane));
+    set(to.covariance.xx, lane, get(from.covariance.xx, lane));
+    set(to.covariance.xy, lane, get(from.covariance.xy, lane));
+    set(to.covariance.yy, lane, get(from.covariance.yy, lane));
+  }
+
+  template <class Birth>
+  void add_to_block(ParticleMaps<Real>& maps, std::size_t b, std::size_t k, const Birth& birth) {
+    const LandmarkGaussian<Real> born = birth(b, seen_[k]);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t particle = b * kLanes + lane;
+      if (particle >= particles_ || pairings_of(particle)[k].verdict != Verdict::fresh) continue;
+      const auto slot = static_cast<std::uint32_t>(get(counts_[b], lane));
+      if (slot >= settings_.most_landmarks) {
+        throw std::runtime_error("the map of a particle grew beyond " +
+                                 std::to_string(settings_.most_landmarks) + " landmarks");
+      }
+      if (slot == maps.slots()) maps.add();
+      copy_lane(born, maps.blocks_of(slot)[b], lane);
+      set(counts_[b], lane, slot + 1.0);
+    }
+  }
+
+  std::size_t particles_;
+  AssociationSettings settings_;
+  SensorNoise noise_;
+  double log_new_density_;
+  std::vector<Real> counts_, resampled_counts_;
+  std::vector<RangeBearing<Real>> seen_;
+  std::vector<std::uint32_t> slots_;
+  std::vector<Pairing> pairings_;  ///< {particle, detection}
+  std::vector<typename ParticleMaps<Real>::OpenSlot> opened_;
+};
+
+}  // namespace montecarta

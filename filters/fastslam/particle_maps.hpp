@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/particles/blocks.hpp"
+#include "engine/particles/genealogy.hpp"
+#include "filters/fastslam/gaussians.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace montecarta {
+
+/// Every particle's own map. Landmarks are kept in slots: slot j of all particles lies together, in
+/// blocks. After a resampling a slot is rearranged only when it is next opened.
+template <class Real>
+class ParticleMaps {
+ public:
+  using Landmark = LandmarkGaussian<Real>;
+
+  explicit ParticleMaps(std::size_t particles)
+      : blocks_(blocks_for<Real>(particles)), genealogy_(blocks_ * kLanesOf<Real>) {}
+
+  void clear() {
+    genealogy_.clear();
+    n_slots_ = 0;
+  }
+  std::size_t slots() const { return n_slots_; }
+  std::size_t blocks() const { return blocks_; }
+
+  /// A slot that is being read and written block by block; blocks may be visited in any order or at
+  /// once.
+  class OpenSlot {
+   public:
+    /// Block b, rearranged to today's particles on the first visit of the scan.
+    Landmark& fetch(std::size_t b) const {
+      if (!source_.empty()) to_[b] = gather_block<Real, Landmark>(from_, source_, b);
+      return to_[b];
+    }
+    /// Block b, once fetched.
+    Landmark& at(std::size_t b) const { return to_[b]; }
+
+   private:
+    friend class ParticleMaps;
+    std::span<const Landmark> from_;
+    std::span<const std::uint32_t> source_;
+    std::span<Landmark> to_;
+  };
+
+  /// Opens slots for one scan; every block of each must be fetched before close(). Slots must
+  /// differ.
+  void open(std::span<const std::uint32_t> slots, std::vector<OpenSlot>& opened) {
+    opened.resize(slots.size());
+    while (spares_.size() < slots.size()) spares_.emplace_back(blocks_);
+    while (sources_.size() < slots.size()) sources_.emplace_back(blocks_ * kLanesOf<Real>);
+    for (std::size_t k = 0; k < slots.size(); ++k) {
+      Slot& slot = slots_[slots[k]];
+      const bool is_current = slot.generation == genealogy_.generation();
+      if (!is_current) {
+        genealogy_.trace(slot.generation, sources_[k]);
+        std::swap(slot.blocks, spares_[k]);
+        slot.generation = genealogy_.generation();
+      }
+      opened[k].from_ = spares_[k];
+      opened[k].source_ = is_current ? std::span<const std::uint32_t>() : sources_[k];
+      opened[k].to_ = slot.blocks;
+    }
+  }
+
+  /// Adds an empty slot, current, for the caller to fill; returns its number.
+  std::uint32_t add() {
+    if (n_slots_ == slots_.size()) slots_.push_back({std::vector<Landmark>(blocks_), 0});
+    slots_[n_slots_].generation = genealogy_.generation();
+    return static_cast<std::uint32_t>(n_slots_++);
+  }
+  std::span<Landmark> blocks_of(std::uint32_t slot) { return slots_[slot].blocks; }
+
+  /// Particle i becomes a copy of particle parents[i] (dead lanes included).
+  void resample(std::span<const std::uint32_t> parents) {
+    genealogy_.add(parents);
+    if (!genealogy_.is_long()) return;
+    for (std::size_t j = 0; j < n_slots_; ++j) bring_up_to_date(slots_[j]);
+    genealogy_.forget();
+  }
+
+  /// Slot j with today's particles in order, brought into `blocks` without a trace.
+  void copy_slot(std::uint32_t j, std::vector<std::uint32_t>& source,
+                 std::vector<Landmark>& blocks) const {
+    source.resize(blocks_ * kLanesOf<Real>);
+    blocks.resize(blocks_);
+    genealogy_.trace(slots_[j].generation, source);
+    gather<Real>(slots_[j].blocks, source, blocks);
+  }
+
+ private:
+  struct Slot {
+    std::vector<Landmark> blocks;
+    std::uint32_t generation = 0;  ///< the resampling after which the blocks are in order
+  };
+
+  void bring_up_to_date(Slot& slot) {
+    if (spares_.empty()) spares_.emplace_back(blocks_);
+    if (sources_.empty()) sources_.emplace_back(blocks_ * kLanesOf<Real>);
+    genealogy_.trace(slot.generation, sources_[0]);
+    gather<Real>(slot.blocks, sources_[0], spares_[0]);
+    std::swap(slot.blocks, spares_[0]);
+    slot.generation = genealogy_.generation();
+  }
+
+  std::size_t blocks_;
+  std::size_t n_slots_ = 0;
+  Genealogy genealogy_;
+  std::vector<Slot> slots_;
+  std::vector<std::vector<Landmark>> spares_;
+  std::vector<std::vector<std::uint32_t>> sources_;
+};
+
+}  // namespace montecarta
