@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/fast_slam_filters.hpp"
+#include "tests/filters/reference/fast_slam1.hpp"
+#include "tests/filters/reference/fast_slam2.hpp"
 #include "tests/filters/small_world.hpp"
 
 #include <gtest/gtest.h>
@@ -38,6 +40,18 @@ std::unique_ptr<SlamFilter> make(const Variant& v, const SmallWorldSettings& wor
   return v.filter == "fastslam1" ? make_fastslam1<Real>(setup) : make_fastslam2<Real>(setup);
 }
 
+std::unique_ptr<SlamFilter> make_reference(const Variant& v, const SmallWorldSettings& world) {
+  const reference::FastSlamSettings settings{.particles = v.particles,
+                                             .belief = world.noise,
+                                             .association = {.kind = v.association},
+                                             .landmarks = world.landmarks};
+  if (v.filter == "fastslam1") return std::make_unique<reference::FastSlam1>(settings);
+  const auto weight = v.weights == "ratio"   ? reference::Weight::ratio
+                      : v.weights == "batch" ? reference::Weight::batch
+                                             : reference::Weight::closed;
+  return std::make_unique<reference::FastSlam2>(settings, weight);
+}
+
 void expect_near(const PoseMoments& a, const PoseMoments& b, double tolerance) {
   EXPECT_LT(boxminus(a.mean, b.mean).norm(), tolerance);
   EXPECT_LT((a.covariance - b.covariance).norm(), tolerance);
@@ -63,6 +77,49 @@ TEST_P(FastSlams, LanesEqualOneParticleAtATime) {
     EXPECT_NEAR(single->report().nis, reports[scan].nis, 1e-6 * (1 + reports[scan].nis));
     EXPECT_EQ(single->report().resampled, reports[scan].resampled);
   });
+}
+
+TEST_P(FastSlams, EqualsTheEigenReference) {
+  const SmallWorldSettings settings;
+  const SmallWorld world = small_world(settings);
+  const auto lanes = make<Lanes>(GetParam(), settings);
+  const auto plain = make_reference(GetParam(), settings);
+  std::vector<PoseEstimate> estimates;
+  std::vector<ScanReport> reports;
+  drive_through(*lanes, world, Pose(), [&](std::size_t) {
+    estimates.push_back(lanes->estimate());
+    reports.push_back(lanes->report());
+  });
+  drive_through(*plain, world, Pose(), [&](std::size_t scan) {
+    expect_near(plain->estimate().spread, estimates[scan].spread, 1e-8);
+    ASSERT_EQ(plain->estimate().mixture.has_value(), estimates[scan].mixture.has_value());
+    if (estimates[scan].mixture)
+      expect_near(*plain->estimate().mixture, *estimates[scan].mixture, 1e-8);
+    EXPECT_NEAR(plain->report().ess, reports[scan].ess, 1e-5);
+    EXPECT_NEAR(plain->report().log_likelihood, reports[scan].log_likelihood, 1e-5);
+    EXPECT_EQ(plain->report().resampled, reports[scan].resampled);
+  });
+}
+
+TEST_P(FastSlams, EstimatesBetweenScansAsTheReferenceDoes) {
+  const SmallWorldSettings settings{.scans = 12};
+  const SmallWorld world = small_world(settings);
+  const auto lanes = make<Lanes>(GetParam(), settings);
+  const auto plain = make_reference(GetParam(), settings);
+  lanes->start(Pose()), plain->start(Pose());
+  for (std::uint32_t step = 0, scan = 0; step < world.itinerary.steps(); ++step) {
+    const StepContext context(world.seed, 0, step, Parallel::serial());
+    for (SlamFilter* filter : {lanes.get(), plain.get()}) {
+      filter->predict(context, world.drive.controls[step], world.itinerary.duration(step));
+    }
+    expect_near(plain->estimate().spread, lanes->estimate().spread, 1e-9);
+    if (lanes->estimate().mixture)
+      expect_near(*plain->estimate().mixture, *lanes->estimate().mixture, 1e-9);
+    if (world.itinerary.scan_step[scan] != step) continue;
+    for (SlamFilter* filter : {lanes.get(), plain.get()})
+      filter->update(context, world.drive.scan(scan));
+    ++scan;
+  }
 }
 
 TEST_P(FastSlams, FollowsTheTruth) {
