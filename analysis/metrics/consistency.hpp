@@ -19,7 +19,7 @@ inline constexpr std::size_t kLastingScans = 25;
 struct NeesSeries {
   std::size_t dimension = 0;
   std::vector<double> average;      ///< {scan} over valid runs; NaN where there is none
-  std::vector<double> median;       ///< {scan} over valid runs, to 1 %
+  std::vector<double> median;       ///< {scan} over valid runs, to 3 %
   std::vector<std::uint32_t> runs;  ///< {scan} valid: complete, with a finite NEES
   std::vector<Interval> bounds;     ///< {scan} of the average, from `runs`
   std::uint64_t samples = 0;        ///< scans x complete runs

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/diversity.hpp"
+
+#include "engine/errors.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+namespace montecarta {
+namespace {
+
+/// Throws RunError where a parent does not exist.
+bool is_identity(std::span<const std::uint32_t> parents) {
+  bool identity = true;
+  for (std::size_t i = 0; i < parents.size(); ++i) {
+    if (parents[i] >= parents.size()) {
+      throw RunError("ancestor: parent " + std::to_string(parents[i]) + " of " +
+                     std::to_string(parents.size()) +
+                     " particles (the column is damaged): run the study again");
+    }
+    identity = identity && parents[i] == i;
+  }
+  return identity;
+}
+
+}  // namespace
+
+void DiversityCounter::find_resamplings(std::size_t scans) {
+  resampled_.resize(scans);
+  std::size_t latest = 0;
+  for (std::size_t s = 0; s < scans; ++s) {
+    if (!is_identity(parents(s))) latest = s + 1;
+    resampled_[s] = latest;
+  }
+}
+
+void DiversityCounter::make_distinct(std::vector<std::uint32_t>& indices) {
+  ++now_;
+  std::size_t kept = 0;
+  for (const std::uint32_t index : indices) {
+    if (stamp_[index] == now_) continue;
+    stamp_[index] = now_;
+    indices[kept++] = index;
+  }
+  indices.resize(kept);
+}
+
+/// Walks from resampling to resampling; between them everyone is their own parent.
+std::uint32_t DiversityCounter::ancestors_before(std::size_t first, std::size_t s) {
+  set_.resize(particles_);
+  std::iota(set_.begin(), set_.end(), 0u);
+  for (std::size_t next = resampled_[s]; next > first;) {
+    const Row row = parents(next - 1);
+    for (std::uint32_t& index : set_) index = row[index];
+    make_distinct(set_);
+    next = next > 1 ? resampled_[next - 2] : 0;
+  }
+  return static_cast<std::uint32_t>(set_.size());
+}
+
+void DiversityCounter::count_last_resampling() {
+  for (std::size_t s = 0; s < resampled_.size(); ++s) {
+    auto& distinct = result_.last_resampling[s];
+    if (resampled_[s] == s + 1) {
+      distinct = ancestors_before(s, s);
+    } else if (s > 0) {
+      distinct = result_.last_resampling[s - 1];
+    }
+  }
+}
+
+void DiversityCounter::count_lag(std::span<const double> times) {
+  std::size_t first = 0;  // the first scan later than kDiversityLag ago
+  for (std::size_t s = 0; s < times.size(); ++s) {
+    const std::size_t first_before = first;
+    while (times[first] <= times[s] - kDiversityLag + 1e-9) ++first;
+    const auto outside = [&](std::size_t f) { return f == 0 ? 0 : resampled_[f - 1]; };
+    const bool same =
+        s > 0 && resampled_[s] == resampled_[s - 1] && outside(first) == outside(first_before);
+    result_.lag[s] = same ? result_.lag[s - 1] : ancestors_before(first, s);
+  }
+}
+
+void DiversityCounter::count_root() {
+  root_.resize(particles_);
+  std::iota(root_.begin(), root_.end(), 0u);
+  for (std::size_t s = 0; s < resampled_.size(); ++s) {
+    if (resampled_[s] == s + 1) {
+      previous_ = root_;
+      for (std::size_t i = 0; i < particles_; ++i) root_[i] = previous_[parents(s)[i]];
+      set_ = root_;
+      make_distinct(set_);
+      result_.root[s] = static_cast<std::uint32_t>(set_.size());
+    } else if (s > 0) {
+      result_.root[s] = result_.root[s - 1];
+    }
+  }
+}
+
+const Diversity& DiversityCounter::count(Row ancestor, std::size_t particles,
+                                         std::span<const double> times) {
+  expect(ancestor.size() == times.size() * particles, "ancestors are {scan, particle}");
+  ancestor_ = ancestor;
+  particles_ = particles;
+  stamp_.resize(std::max(stamp_.size(), particles));
+  for (auto* column : {&result_.last_resampling, &result_.lag, &result_.root}) {
+    column->assign(times.size(), static_cast<std::uint32_t>(particles));
+  }
+  find_resamplings(times.size());
+  count_last_resampling();
+  count_lag(times);
+  count_root();
+  return result_;
+}
+
+}  // namespace montecarta

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// How far back the middle one of the three diversities looks [s] (SPEC 18).
+inline constexpr double kDiversityLag = 10.0;
+
+/// Distinct ancestors of the particles of every scan of one run.
+struct Diversity {
+  std::vector<std::uint32_t> last_resampling;  ///< parents in the last resampling before the scan
+  std::vector<std::uint32_t> lag;              ///< ancestors kDiversityLag earlier, or at the start
+  std::vector<std::uint32_t> root;             ///< ancestors at the start; never grows
+};
+
+/// Walks a genealogy. Keeps its memory from run to run.
+class DiversityCounter {
+ public:
+  /// `ancestor` {scan, particle}: index, among the particles one scan ago, of the parent. `times`
+  /// [s] of the scans.
+  const Diversity& count(std::span<const std::uint32_t> ancestor, std::size_t particles,
+                         std::span<const double> times);
+
+ private:
+  using Row = std::span<const std::uint32_t>;
+  /// Parents of all particles of scan `s`.
+  Row parents(std::size_t s) const { return ancestor_.subspan(s * particles_, particles_); }
+  void find_resamplings(std::size_t scans);
+  void count_last_resampling();
+  void count_lag(std::span<const double> times);
+  void count_root();
+  /// Keeps of `indices` each once.
+  void make_distinct(std::vector<std::uint32_t>& indices);
+  /// How many ancestors the particles of scan `s` had before scan `first`.
+  std::uint32_t ancestors_before(std::size_t first, std::size_t s);
+
+  Row ancestor_;
+  std::size_t particles_ = 0;
+  Diversity result_;
+  std::vector<std::size_t> resampled_;   ///< {scan} 1 + latest scan whose parents differ; 0: none
+  std::vector<std::uint32_t> set_;       ///< indices being walked back
+  std::vector<std::uint32_t> root_;      ///< {particle} ancestor at the start
+  std::vector<std::uint32_t> previous_;  ///< root_ one resampling earlier
+  std::vector<std::uint64_t> stamp_;     ///< {index} in which set it was last seen
+  std::uint64_t now_ = 0;                ///< stamp of the set being made
+};
+
+}  // namespace montecarta

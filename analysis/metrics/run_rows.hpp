@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace montecarta {
+
+/// Mean and covariance of the pose at every scan of one run, row by row; empty where not stored.
+struct MomentRows {
+  std::vector<double> mean;        ///< {scan, 3} [m, m, rad]
+  std::vector<double> covariance;  ///< {scan, 3, 3}
+};
+
+/// What analysis needs of one run, as plain arrays: where they come from does not matter. Columns
+/// that are not stored are empty.
+struct RunRows {
+  std::vector<double> truth;  ///< {scan, 3} [m, m, rad]
+  MomentRows spread;          ///< its mean is always there
+  MomentRows mixture;
+  std::vector<double> ess;                      ///< {scan}
+  std::vector<std::uint32_t> resampled;         ///< {scan} 0 or 1
+  std::vector<std::uint32_t> numerical_faults;  ///< {scan}
+  std::vector<std::uint32_t> ancestor;          ///< {scan, particle}
+  double cpu_seconds = 0.0;
+};
+
+}  // namespace montecarta

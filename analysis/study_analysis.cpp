@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/study_analysis.hpp"
+
+#include "analysis/metrics/cell_accumulator.hpp"
+#include "analysis/metrics/run_metrics.hpp"
+#include "analysis/run_reader.hpp"
+#include "engine/errors.hpp"
+
+#include <algorithm>
+#include <span>
+
+namespace montecarta {
+namespace {
+
+/// One run being read and measured while others are.
+struct Slot {
+  RunRows rows;
+  RunReader::Scratch scratch;
+  RunMetrics metrics;
+};
+
+/// Run indices in the file of the complete runs; counts and names the others in `cell`.
+std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell& stored,
+                                       CellAnalysis& cell) {
+  const auto status = file.status(stored);
+  const auto reasons = file.failure_reasons(stored);
+  const auto steps = file.failure_steps(stored);
+  std::vector<std::size_t> complete;
+  for (std::size_t i = 0; i < status.size(); ++i) {
+    if (status[i] == RunStatus::complete) complete.push_back(i);
+    if (status[i] == RunStatus::missing) ++cell.missing;
+    if (status[i] == RunStatus::failed) {
+      cell.failures.push_back({file.runs()[i], steps[i], reasons[i]});
+    }
+  }
+  return complete;
+}
+
+/// Measures runs at once, a slot each, and adds them up in order, whoever was first.
+void accumulate(const RunReader& reader, std::span<const std::size_t> runs, std::size_t particles,
+                std::span<const double> times, const Parallel& parallel, std::vector<Slot>& slots,
+                CellAccumulator& sums) {
+  for (std::size_t first = 0; first < runs.size(); first += slots.size()) {
+    const std::size_t here = std::min(slots.size(), runs.size() - first);
+    parallel.for_each(here, [&](std::size_t k) {
+      reader.read(runs[first + k], slots[k].rows, slots[k].scratch);
+      slots[k].metrics.measure(slots[k].rows, particles, times);
+    });
+    for (std::size_t k = 0; k < here; ++k) sums.add(slots[k].rows, slots[k].metrics);
+  }
+}
+
+CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& stored, double level,
+                          const Parallel& parallel, std::vector<Slot>& slots) {
+  CellAnalysis outcome;
+  const auto complete = complete_runs(file, stored, outcome);
+  CellAccumulator sums(file.scan_times(), level);
+  accumulate(RunReader(file, stored), complete, stored.particles, file.scan_times(), parallel,
+             slots, sums);
+  CellAnalysis cell = sums.result();
+  cell.label = stored.label;
+  cell.filter = stored.filter;
+  cell.long_name = stored.long_name;
+  cell.particles = stored.particles;
+  cell.missing = outcome.missing;
+  cell.failures = std::move(outcome.failures);
+  return cell;
+}
+
+}  // namespace
+
+bool StudyAnalysis::has_failures() const {
+  return std::ranges::any_of(cells, [](const CellAnalysis& c) { return !c.failures.empty(); });
+}
+
+StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& parallel) {
+  nees_bounds(1, 1, level);  // refuses a wrong level before the work
+  StudyAnalysis study;
+  study.file = file.path().filename().string();
+  study.study_name = file.study_name();
+  study.title = file.title();
+  study.study_sha256 = file.study_sha256();
+  study.seed = file.seed();
+  study.study_runs = file.study_runs();
+  study.runs_here = file.runs().size();
+  study.level = level;
+  study.times = file.scan_times();
+  study.duration = study.times.empty() ? 0.0 : study.times.back();
+  if (study.times.empty()) {
+    throw StudyError(file.path().string() +
+                     ": no scans (metrics are taken at scans): choose "
+                     "another file");
+  }
+  std::vector<Slot> slots(
+      parallel.threads() == 1 ? 1 : 4 * static_cast<std::size_t>(parallel.threads()));
+  for (const StoredCell& cell : file.cells()) {
+    study.cells.push_back(analyze_cell(file, cell, level, parallel, slots));
+  }
+  return study;
+}
+
+}  // namespace montecarta

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/nees.hpp"
+
+#include "analysis/metrics/summary.hpp"
+#include "engine/random/stream.hpp"
+#include "tests/analysis/synthetic_runs.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace montecarta {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+TEST(Nees, EqualsTheQuadraticFormOfEachBlock) {
+  RngStream draw({5, 0, 0, 0, Draw::test});
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Matrix3d root = Eigen::Matrix3d::NullaryExpr([&] { return draw.normal(); });
+    const Eigen::Matrix3d P = root * root.transpose() + 0.01 * Eigen::Matrix3d::Identity();
+    const Eigen::Vector3d e(draw.normal(), draw.normal(), draw.normal());
+    const Eigen::Matrix2d position = P.topLeftCorner<2, 2>();
+    const double expected = e.dot(P.llt().solve(e));
+    EXPECT_NEAR(nees<3>(e, P).value, expected, 1e-9 * expected) << i;
+    const double expected2 = e.head<2>().dot(position.llt().solve(e.head<2>()));
+    EXPECT_NEAR(nees<2>(e, P).value, expected2, 1e-9 * expected2) << i;
+    EXPECT_NEAR(nees<1>(e, P, 2).value, e(2) * e(2) / P(2, 2), 1e-9 * e(2) * e(2) / P(2, 2)) << i;
+    EXPECT_FALSE(nees<3>(e, P).floored);
+  }
+}
+
+// After eight noisy steps the deviations along the axes are 14 mm, 8 mm and 0.07 mm (SPEC 2.1).
+TEST(Nees, BelievesAThinCovariance) {
+  const Eigen::Vector3d axes(0.0141, 0.0081, 7.3e-5);
+  const Eigen::Matrix3d turn = Eigen::Quaterniond(0.9, 0.1, 0.3, 0.2).normalized().matrix();
+  const Eigen::Matrix3d P = turn * axes.cwiseAbs2().asDiagonal() * turn.transpose();
+  const Nees sample = nees<3>(turn * axes, P);
+  EXPECT_NEAR(sample.value, 3.0, 1e-6);
+  EXPECT_FALSE(sample.floored);
+}
+
+TEST(Nees, FloorsASingularCovarianceAndSaysSo) {
+  const Nees zero = nees<3>({1e-4, 0.0, 2e-5}, Eigen::Matrix3d::Zero());
+  EXPECT_TRUE(zero.floored);
+  EXPECT_NEAR(zero.value, 1.0 + 4.0, 1e-9);
+
+  const Eigen::Vector3d direction(1.0, 2.0, 0.1);
+  const Eigen::Matrix3d rank_one = direction * direction.transpose();
+  EXPECT_TRUE(nees<3>(direction, rank_one).floored);
+  EXPECT_NEAR(nees<3>(direction, rank_one).value, 1.0, 1e-3);
+  EXPECT_TRUE(nees<2>(direction, rank_one).floored);
+  EXPECT_FALSE(nees<1>(direction, rank_one, 2).floored);
+}
+
+TEST(Nees, IsUndefinedWhereANumberIsMissing) {
+  const Eigen::Matrix3d P = SyntheticStudy::covariance();
+  EXPECT_TRUE(std::isnan(nees<3>({kNaN, 0.0, 0.0}, P).value));
+  Eigen::Matrix3d broken = P;
+  broken(2, 2) = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(std::isnan(nees<3>({0.1, 0.1, 0.1}, broken).value));
+  EXPECT_NEAR(nees<2>({0.2, 0.0, 0.0}, broken).value, nees<2>({0.2, 0.0, 0.0}, P).value, 1e-12);
+}
+
+TEST(Nees, IsUndefinedWhereACovarianceIsIndefiniteBeyondTheFloor) {
+  const Eigen::Matrix3d P = Eigen::Vector3d(1.0, -1.0, 1.0).asDiagonal();
+  const Nees sample = nees<3>({0.1, 0.1, 0.1}, P);
+  EXPECT_TRUE(std::isnan(sample.value));
+  EXPECT_TRUE(sample.floored);
+}
+
+/// Mean NEES, with its standard error, of the covariance of `particles` equal draws of a Gaussian
+/// that the truth is one more draw of.
+Summary mean_nees_of_draws(int particles, int samples) {
+  RngStream draw({11, 0, 0, 0, Draw::test});
+  SummaryOf summary;
+  for (int i = 0; i < samples; ++i) {
+    const Eigen::Matrix3Xd poses =
+        Eigen::Matrix3Xd::NullaryExpr(3, particles, [&] { return draw.normal(); });
+    const Eigen::Vector3d mean = poses.rowwise().mean();
+    const Eigen::Matrix3Xd centred = poses.colwise() - mean;
+    const Eigen::Matrix3d P = centred * centred.transpose() / particles;
+    const Eigen::Vector3d truth(draw.normal(), draw.normal(), draw.normal());
+    summary.add(nees<3>(truth - mean, P).value);
+  }
+  return summary.result();
+}
+
+// SPEC 23.11: even a perfect filter of M particles has d (M + 1) / (M - d - 2) by the spread.
+TEST(Nees, OfAParticleCloudHasHotellingsMean) {
+  for (const int particles : {20, 30, 100}) {
+    const Summary found = mean_nees_of_draws(particles, 10'000);
+    const double expected = 3.0 * (particles + 1.0) / (particles - 5.0);
+    EXPECT_NEAR(found.mean, expected, 5.0 * found.standard_error()) << particles;
+    EXPECT_LT(found.standard_error(), 0.02 * expected);
+  }
+}
+
+}  // namespace
+}  // namespace montecarta

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/metrics/run_rows.hpp"
+#include "engine/numbers/angle.hpp"
+#include "engine/random/stream.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace montecarta {
+
+/// Runs whose errors are drawn, independently at each scan, from a known Gaussian.
+struct SyntheticStudy {
+  std::size_t scans = 400;
+  double scan_period = 0.2;                        ///< [s]
+  Eigen::Vector3d bias = Eigen::Vector3d::Zero();  ///< [m, m, rad] of the error
+  double inflation = 1.0;                          ///< of the errors' deviations
+  std::uint64_t seed = 1;
+
+  /// What the filter believes [m, m, rad]^2.
+  static Eigen::Matrix3d covariance() {
+    Eigen::Matrix3d P;
+    P << 0.04, 0.01, 0.002, 0.01, 0.09, -0.003, 0.002, -0.003, 0.0025;
+    return P;
+  }
+
+  std::vector<double> times() const {
+    std::vector<double> times(scans);
+    for (std::size_t s = 0; s < scans; ++s) times[s] = scan_period * static_cast<double>(s + 1);
+    return times;
+  }
+
+  RunRows run(std::uint64_t number) const {
+    RngStream draw({seed, number, 0, 0, Draw::test});
+    const Eigen::Matrix3d L = covariance().llt().matrixL();
+    RunRows rows;
+    for (std::size_t s = 0; s < scans; ++s) {
+      const double t = 0.2 * static_cast<double>(s);
+      const Eigen::Vector3d truth(3.0 * t, 10.0 * std::sin(0.1 * t), wrap(0.5 * t));
+      const Eigen::Vector3d noise(draw.normal(), draw.normal(), draw.normal());
+      Eigen::Vector3d mean = truth - bias - inflation * (L * noise);
+      mean(2) = wrap(mean(2));
+      rows.truth.insert(rows.truth.end(), truth.begin(), truth.end());
+      rows.spread.mean.insert(rows.spread.mean.end(), mean.begin(), mean.end());
+      const Eigen::Matrix3d P = covariance();  // symmetric: either order of storage
+      rows.spread.covariance.insert(rows.spread.covariance.end(), P.data(), P.data() + 9);
+    }
+    rows.numerical_faults.assign(scans, 0);
+    rows.cpu_seconds = 0.5;
+    return rows;
+  }
+};
+
+}  // namespace montecarta
