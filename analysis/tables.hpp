@@ -12,7 +12,8 @@ namespace montecarta {
 /// The table of a terminal: failed runs first, then one row a cell with its verdict.
 void print_tables(std::ostream& out, const StudyAnalysis& study);
 
-/// Writes cells.csv (one row a cell), failures.csv and, for each cell, series_<label>.csv (one row
+/// Writes failures.csv, cells.csv (one row a cell), consistency.csv (one row a cell and definition
+/// of error and covariance) and, for each cell, series_<label>.csv (one row
 /// a scan) into `directory`, which is made where it is missing. Throws RunError naming the file
 /// that cannot be written.
 void write_csv(const StudyAnalysis& study, const std::filesystem::path& directory);

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/tables.hpp"
+#include "analysis/tables/cell_series.hpp"
+#include "analysis/tables/verdict_table.hpp"
+#include "engine/records/h5.hpp"
+
+namespace montecarta {
+namespace {
+
+void write_number(const h5::Handle& group, const NamedNumber& number) {
+  const auto dataset = h5::create_dataset(group, number.name, Element::f64, {1});
+  h5::write(dataset, Element::f64, &number.value);
+  h5::put_text(dataset, "units", number.units);
+}
+
+void write_series(const h5::Handle& group, const NamedSeries& series, const h5::Handle& time) {
+  const auto dataset = h5::create_dataset(group, series.name, Element::f64, {series.values.size()});
+  h5::write(dataset, Element::f64, series.values.data());
+  h5::put_text(dataset, "units", series.units);
+  h5::attach_scale(dataset, time, 0);
+}
+
+void write_cell(const h5::Handle& cells, const CellAnalysis& cell, double level,
+                const h5::Handle& time) {
+  const auto group = h5::create_group(cells, cell.label);
+  h5::put_text(group, "filter", cell.filter);
+  h5::put_text(group, "long_name", cell.long_name);
+  h5::put_text(group, "verdict", in_words(cell.consistency()));
+  const auto numbers = h5::create_group(group, "numbers");
+  for (const NamedNumber& number : numbers_of(cell)) write_number(numbers, number);
+  const auto consistency = h5::create_group(group, "consistency");
+  for (const NeesResult& nees : cell.nees) {
+    const auto test =
+        h5::create_group(consistency, name_of(nees.block) + "_" + name_of(nees.moments));
+    h5::put_text(test, "verdict", in_words(nees.consistency));
+    for (const NamedNumber& number : numbers_of(cell, nees, level)) write_number(test, number);
+  }
+  const auto series = h5::create_group(group, "series");
+  for (const NamedSeries& one : series_of(cell)) write_series(series, one, time);
+}
+
+}  // namespace
+
+void write_analysis_file(const StudyAnalysis& study, const std::filesystem::path& path) {
+  auto file = h5::create_file(path);
+  h5::put_text(file, "filetype", "montecarta-analysis");
+  h5::put_text(file, "title", study.title);
+  h5::put_text(file, "study", study.study_name);
+  h5::put_text(file, "study_sha256", study.study_sha256);
+  h5::put_text(file, "results", study.file);
+  {
+    const auto time = h5::create_dataset(file, "time", Element::f64, {study.times.size()});
+    h5::write(time, Element::f64, study.times.data());
+    h5::put_text(time, "units", "s");
+    h5::make_scale(time, "time");
+    const auto cells = h5::create_group(file, "cells");
+    for (const CellAnalysis& cell : study.cells) write_cell(cells, cell, study.level, time);
+  }
+  h5::close_file(std::move(file));
+}
+
+}  // namespace montecarta

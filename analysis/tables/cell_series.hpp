@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/study_analysis.hpp"
+
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// A number of every scan, under the name it has in files.
+struct NamedSeries {
+  std::string name;   ///< e.g. "anees_pose_mixture"
+  std::string units;  ///< UDUNITS style, "1" where there is none
+  std::vector<double> values;
+};
+
+/// One number of a cell, under the name it has in files.
+struct NamedNumber {
+  std::string name;
+  std::string units;
+  double value = 0.0;
+};
+
+/// Everything a cell has over scans; what is not stored is absent.
+std::vector<NamedSeries> series_of(const CellAnalysis& cell);
+
+/// Everything a cell says in single numbers but its NEES tests: the same names for every cell, NaN
+/// where one does not apply.
+std::vector<NamedNumber> numbers_of(const CellAnalysis& cell);
+
+/// One NEES test in single numbers. The band is that of all complete runs.
+std::vector<NamedNumber> numbers_of(const CellAnalysis& cell, const NeesResult& nees, double level);
+
+}  // namespace montecarta

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/tables.hpp"
+#include "analysis/tables/cell_series.hpp"
+#include "analysis/tables/csv_file.hpp"
+#include "analysis/tables/number_text.hpp"
+#include "analysis/tables/verdict_table.hpp"
+
+namespace montecarta {
+namespace {
+
+/// The unit belongs to the name where there is one: position_rmse_mean [m].
+std::string heading(const std::string& name, const std::string& units) {
+  return units == "1" ? name : name + " [" + units + "]";
+}
+
+void append(std::vector<std::string>& headings, std::vector<std::string>& fields,
+            const std::vector<NamedNumber>& numbers) {
+  for (const NamedNumber& number : numbers) {
+    headings.push_back(heading(number.name, number.units));
+    fields.push_back(exact_text(number.value));
+  }
+}
+
+void write_cells(const StudyAnalysis& study, const std::filesystem::path& path) {
+  CsvFile file(path);
+  bool first = true;
+  for (const CellAnalysis& cell : study.cells) {
+    std::vector<std::string> headings = {"cell", "filter", "verdict"};
+    std::vector<std::string> fields = {cell.label, cell.filter, in_words(cell.consistency())};
+    append(headings, fields, numbers_of(cell));
+    if (first) file.row(headings);
+    file.row(fields);
+    first = false;
+  }
+  file.close();
+}
+
+void write_consistency(const StudyAnalysis& study, const std::filesystem::path& path) {
+  CsvFile file(path);
+  bool first = true;
+  for (const CellAnalysis& cell : study.cells) {
+    for (const NeesResult& nees : cell.nees) {
+      std::vector<std::string> headings = {"cell", "error", "covariance", "verdict"};
+      std::vector<std::string> fields = {cell.label, name_of(nees.block), name_of(nees.moments),
+                                         in_words(nees.consistency)};
+      append(headings, fields, numbers_of(cell, nees, study.level));
+      if (first) file.row(headings);
+      file.row(fields);
+      first = false;
+    }
+  }
+  file.close();
+}
+
+void write_table(const TextTable& table, const std::filesystem::path& path) {
+  CsvFile file(path);
+  std::vector<std::string> headings;
+  for (const auto& column : table.headings) headings.push_back(column.text);
+  file.row(headings);
+  for (const auto& row : table.rows) file.row(row);
+  file.close();
+}
+
+void write_series(const StudyAnalysis& study, const CellAnalysis& cell,
+                  const std::filesystem::path& path) {
+  const auto all = series_of(cell);
+  CsvFile file(path);
+  std::vector<std::string> headings = {"time [s]"};
+  for (const NamedSeries& series : all) headings.push_back(heading(series.name, series.units));
+  file.row(headings);
+  for (std::size_t s = 0; s < study.times.size() && !all.empty(); ++s) {
+    std::vector<double> numbers = {study.times[s]};
+    for (const NamedSeries& series : all) numbers.push_back(series.values[s]);
+    file.row(numbers);
+  }
+  file.close();
+}
+
+}  // namespace
+
+void write_csv(const StudyAnalysis& study, const std::filesystem::path& directory) {
+  make_directory(directory);
+  write_table(failure_table(study), directory / "failures.csv");
+  write_cells(study, directory / "cells.csv");
+  write_consistency(study, directory / "consistency.csv");
+  for (const CellAnalysis& cell : study.cells) {
+    write_series(study, cell, directory / ("series_" + cell.label + ".csv"));
+  }
+}
+
+}  // namespace montecarta

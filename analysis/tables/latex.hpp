@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/tables/verdict_table.hpp"
+
+#include <string>
+
+namespace montecarta {
+
+/// Plain text as LaTeX prints it: special characters escaped, +- set as a symbol.
+std::string latex_escape(const std::string& text);
+
+/// A tabular in booktabs style, without float or caption.
+std::string latex_tabular(const TextTable& table);
+
+}  // namespace montecarta

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/tables/number_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+namespace montecarta {
+namespace {
+
+std::string printed(const char* format, int precision, double value) {
+  std::array<char, 512> text{};
+  std::snprintf(text.data(), text.size(), format, precision, value);
+  return text.data();
+}
+
+/// Place of the first significant digit: 0 for 3.58, -2 for 0.012.
+int magnitude(double value) {
+  return value == 0.0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(value))));
+}
+
+}  // namespace
+
+std::string readable(double value, int digits) {
+  if (std::isnan(value)) return "-";
+  if (!std::isfinite(value) || std::abs(value) >= 1e6) return printed("%.*g", digits, value);
+  if (value != 0.0 && std::abs(value) < 1e-4) return printed("%.*g", digits, value);
+  return printed("%.*f", std::max(0, digits - 1 - magnitude(value)), value);
+}
+
+std::string with_error(double mean, double standard_error) {
+  if (std::isnan(mean) || std::isnan(standard_error) || standard_error == 0.0) {
+    return readable(mean);
+  }
+  if (std::abs(mean) >= 1e6) return readable(mean) + " +- " + readable(standard_error, 2);
+  const int decimals = std::clamp(1 - magnitude(standard_error), 0, 12);
+  return printed("%.*f", decimals, mean) + " +- " + printed("%.*f", decimals, standard_error);
+}
+
+std::string exact_text(double value) {
+  if (std::isnan(value)) return "nan";
+  std::array<char, 64> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+std::string percent(double share) {
+  return std::isnan(share) ? "-" : printed("%.*f", 1, 100.0 * share) + " %";
+}
+
+std::string level_text(double level) {
+  // 100 * 0.95 is not 95 in binary: six digits are more than anyone writes.
+  return printed("%.*g", 6, 100.0 * level) + " %";
+}
+
+}  // namespace montecarta

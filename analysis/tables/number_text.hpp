@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+namespace montecarta {
+
+/// A number for reading: `digits` significant, "-" where it is not a number. No exponent up to a
+/// million.
+std::string readable(double value, int digits = 3);
+
+/// A mean with its standard error, "3.58 +- 0.10": both to the second significant digit of the
+/// error. "-" where there is none; without error where it is of one run.
+std::string with_error(double mean, double standard_error);
+
+/// The shortest text that reads back as the same number; "nan", "inf".
+std::string exact_text(double value);
+
+/// A share as "94.6 %".
+std::string percent(double share);
+
+/// For instance "95 %" or "99.9 %".
+std::string level_text(double level);
+
+}  // namespace montecarta

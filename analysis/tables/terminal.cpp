@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/tables.hpp"
+#include "analysis/tables/verdict_table.hpp"
+
+#include <algorithm>
+#include <ostream>
+#include <sstream>
+
+namespace montecarta {
+namespace {
+
+constexpr std::size_t kTextWidth = 100;
+
+std::vector<std::size_t> widths_of(const TextTable& table) {
+  std::vector<std::size_t> widths;
+  for (const auto& heading : table.headings) widths.push_back(heading.text.size());
+  for (const auto& row : table.rows) {
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  return widths;
+}
+
+std::string padded(const std::string& text, std::size_t width, Align align) {
+  const std::string space(width - std::min(width, text.size()), ' ');
+  return align == Align::left ? text + space : space + text;
+}
+
+void print(std::ostream& out, const TextTable& table) {
+  const auto widths = widths_of(table);
+  const auto line = [&](const auto& text_of) {
+    std::string printed;
+    for (std::size_t c = 0; c < widths.size(); ++c) {
+      printed += padded(text_of(c), widths[c], table.headings[c].align) + "  ";
+    }
+    printed.erase(printed.find_last_not_of(' ') + 1);
+    out << printed << '\n';
+  };
+  line([&](std::size_t c) { return table.headings[c].text; });
+  line([&](std::size_t c) { return std::string(widths[c], '-'); });
+  for (const auto& row : table.rows) line([&](std::size_t c) { return row[c]; });
+}
+
+/// Breaks a sentence into lines.
+void print_wrapped(std::ostream& out, const std::string& sentence) {
+  std::istringstream words(sentence);
+  std::string line;
+  for (std::string word; words >> word;) {
+    if (!line.empty() && line.size() + 1 + word.size() > kTextWidth) {
+      out << line << '\n';
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  out << line << '\n';
+}
+
+/// Failures of a study that fails a thousand times are not worth a thousand lines.
+void print_failures(std::ostream& out, const StudyAnalysis& study) {
+  constexpr std::size_t kMost = 20;
+  TextTable table = failure_table(study);
+  const std::size_t all = table.rows.size();
+  out << "Failed runs (" << all << "), left out of everything below:\n";
+  table.rows.resize(std::min(all, kMost));
+  print(out, table);
+  if (all > kMost) out << "... and " << all - kMost << " more: see failures.csv (--csv DIR)\n";
+  out << '\n';
+}
+
+/// What a reader must hear even if they look at one table only.
+void print_warnings(std::ostream& out, const StudyAnalysis& study) {
+  for (const CellAnalysis& cell : study.cells) {
+    const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
+    if (pose == nullptr || pose->series.floored + pose->series.undefined == 0) continue;
+    print_wrapped(out, cell.label + ": of " + std::to_string(pose->series.samples) +
+                           " covariances " + std::to_string(pose->series.floored) +
+                           " were singular (a floor of 0.1 mm and 0.00001 rad was added) and " +
+                           std::to_string(pose->series.undefined) +
+                           " not a number (left out of the average).");
+  }
+}
+
+}  // namespace
+
+void print_tables(std::ostream& out, const StudyAnalysis& study) {
+  out << study.study_name << ": " << study.runs_here << " of " << study.study_runs << " runs, "
+      << study.times.size() << " scans each, seed " << study.seed << "\n\n";
+  if (study.has_failures()) print_failures(out, study);
+  print(out, verdict_table(study));
+  out << '\n';
+  print_warnings(out, study);
+  for (const std::string& note : verdict_notes(study)) print_wrapped(out, note);
+}
+
+}  // namespace montecarta

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/study_analysis.hpp"
+
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+enum class Align { left, right };
+
+/// A table in words, whatever it is set in.
+struct TextTable {
+  struct Heading {
+    std::string text;
+    Align align = Align::right;
+  };
+  std::vector<Heading> headings;
+  std::vector<std::vector<std::string>> rows;
+};
+
+/// One row a cell: what became of its runs, the verdict, and the numbers behind it.
+TextTable verdict_table(const StudyAnalysis& study);
+
+/// One row a cell and definition of covariance and error: the whole NEES test.
+TextTable consistency_table(const StudyAnalysis& study);
+
+/// One row for each failed run: cell, run, step, reason.
+TextTable failure_table(const StudyAnalysis& study);
+
+/// How to read the verdict table, a sentence each, for someone who never heard of chi-square.
+std::vector<std::string> verdict_notes(const StudyAnalysis& study);
+
+/// "40 complete", "2 FAILED, 38 complete", ...
+std::string runs_in_words(const CellAnalysis& cell);
+
+std::string name_of(ErrorBlock block);
+std::string name_of(Moments moments);
+
+}  // namespace montecarta

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/tables.hpp"
+
+#include "analysis/tables/csv_file.hpp"
+#include "analysis/tables/latex.hpp"
+#include "analysis/tables/number_text.hpp"
+#include "engine/errors.hpp"
+#include "engine/records/h5.hpp"
+#include "tests/doubles/scratch_folder.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+namespace montecarta {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+CellAnalysis consistent_cell() {
+  CellAnalysis cell;
+  cell.label = "ekf_slam";
+  cell.filter = "ekf_slam";
+  cell.complete = 30;
+  cell.error.position_rmse = {30, 1.93, 0.06 * std::sqrt(30.0)};
+  NeesResult pose;
+  pose.series.dimension = 3;
+  pose.series.average = {3.0, 3.5};
+  pose.series.median = {2.4, 2.5};
+  pose.series.runs = {30, 30};
+  pose.series.bounds.assign(2, nees_bounds(30, 3, 0.95));
+  pose.consistency = judge(pose.series, std::vector<double>{0.2, 0.4}, 0.95);
+  cell.nees = {pose};
+  cell.error.position_over_time = {0.1, 0.2};
+  cell.error.heading_over_time = {0.01, 0.02};
+  return cell;
+}
+
+StudyAnalysis small_study() {
+  StudyAnalysis study;
+  study.study_name = "web_map";
+  study.study_runs = study.runs_here = 30;
+  study.times = {0.2, 0.4};
+  study.duration = 0.4;
+  CellAnalysis broken;
+  broken.label = "fastslam2_m30";
+  broken.missing = 3;
+  broken.failures = {{7, 120, "weights, all of them, are zero"}};
+  study.cells = {consistent_cell(), broken};
+  return study;
+}
+
+std::string read(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+TEST(NumberText, IsShortAndHonest) {
+  EXPECT_EQ(readable(3.14159), "3.14");
+  EXPECT_EQ(readable(152.37), "152");
+  EXPECT_EQ(readable(15237.0), "15237");
+  EXPECT_EQ(readable(0.0123456), "0.0123");
+  EXPECT_EQ(readable(0.0), "0.00");
+  EXPECT_EQ(readable(2.5e9), "2.5e+09");
+  EXPECT_EQ(readable(kNaN), "-");
+  EXPECT_EQ(with_error(3.5812, 0.1049), "3.58 +- 0.10");
+  EXPECT_EQ(with_error(3.5812, kNaN), "3.58");
+  EXPECT_EQ(with_error(1234.5, 56.7), "1234 +- 57");
+  EXPECT_EQ(percent(0.9456), "94.6 %");
+  EXPECT_EQ(level_text(0.95), "95 %");
+  EXPECT_EQ(level_text(0.999), "99.9 %");
+  EXPECT_EQ(std::stod(exact_text(0.1 + 0.2)), 0.1 + 0.2);
+}
+
+TEST(PrintTables, PutFailedRunsFirstAndTheVerdictInWords) {
+  std::ostringstream out;
+  print_tables(out, small_study());
+  const std::string text = out.str();
+  EXPECT_THAT(text, HasSubstr("Failed runs (1)"));
+  EXPECT_LT(text.find("weights, all of them"), text.find("verdict"));
+  EXPECT_THAT(text, HasSubstr("1 FAILED, 3 missing, 0 complete  not tested"));
+  EXPECT_THAT(text, HasSubstr("30 complete"));
+  EXPECT_THAT(text, HasSubstr("consistent"));
+  EXPECT_THAT(text, HasSubstr("[2.19, 3.94]"));
+  EXPECT_THAT(text, HasSubstr("1.930 +- 0.060"));
+  EXPECT_THAT(text, HasSubstr("pointwise"));
+}
+
+TEST(WriteCsv, WritesOneRowACellAndOneRowAScan) {
+  const ScratchFolder folder;
+  write_csv(small_study(), folder / "csv");
+  EXPECT_THAT(read(folder / "csv/cells.csv"), HasSubstr("\nekf_slam,ekf_slam,consistent,0,30,0"));
+  EXPECT_THAT(read(folder / "csv/consistency.csv"), HasSubstr("ekf_slam,pose,spread,consistent"));
+  EXPECT_THAT(read(folder / "csv/failures.csv"),
+              HasSubstr("fastslam2_m30,7,120,\"weights, all of them, are zero\""));
+  const std::string series = read(folder / "csv/series_ekf_slam.csv");
+  EXPECT_THAT(series, testing::StartsWith("time [s],position_rmse [m],heading_rmse [rad],anees"));
+  EXPECT_THAT(series, HasSubstr("\n0.4,0.2,0.02,3.5,2.5,"));
+}
+
+TEST(WriteCsv, NamesTheFileItCannotWrite) {
+  const ScratchFolder folder;
+  std::ofstream(folder / "taken") << "a file";
+  EXPECT_THROW(write_csv(small_study(), folder / "taken"), RunError);
+  EXPECT_THROW(write_text("/dev/full", std::string(100'000, 'x')), RunError);
+}
+
+TEST(Latex, EscapesWhatLatexWouldTakeForItself) {
+  EXPECT_EQ(latex_escape("fastslam2_m30 & 5 % #1 $x$ {y}"),
+            "fastslam2\\_m30 \\& 5 \\% \\#1 \\$x\\$ \\{y\\}");
+  EXPECT_EQ(latex_escape("~^\\<>"),
+            "\\textasciitilde{}\\textasciicircum{}\\textbackslash{}\\textless{}\\textgreater{}");
+  EXPECT_EQ(latex_escape("3.58 +- 0.10"), "3.58 $\\pm$ 0.10");
+}
+
+TEST(Latex, HasOneRowACellAndAsManyColumnsAsHeadings) {
+  TextTable table;
+  table.headings = {{"", Align::left}, {"RMSE [m]"}};
+  table.rows = {{"a_b", "1 +- 2"}, {"", "3"}};
+  EXPECT_EQ(latex_tabular(table),
+            "\\begin{tabular}{lr}\n\\toprule\n & RMSE [m] \\\\\n\\midrule\n"
+            "a\\_b & 1 $\\pm$ 2 \\\\\n & 3 \\\\\n\\bottomrule\n\\end{tabular}\n");
+}
+
+TEST(WriteAnalysisFile, HoldsSeriesAndVerdicts) {
+  const ScratchFolder folder;
+  write_analysis_file(small_study(), folder / "analysis.h5");
+  const auto file = h5::open_file(folder / "analysis.h5");
+  EXPECT_EQ(h5::text(file, "filetype"), "montecarta-analysis");
+  const auto cell = h5::open_group(file, "cells/ekf_slam");
+  EXPECT_EQ(h5::text(cell, "verdict"), "consistent");
+  std::vector<double> values(2);
+  h5::read(h5::open_dataset(file, "cells/ekf_slam/series/anees_pose_spread"), Element::f64,
+           std::as_writable_bytes(std::span(values)));
+  EXPECT_THAT(values, ElementsAre(3.0, 3.5));
+  EXPECT_EQ(h5::text(h5::open_group(file, "cells/fastslam2_m30"), "verdict"), "not tested");
+}
+
+}  // namespace
+}  // namespace montecarta
