@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/figures/figure.hpp"
+
+#include "analysis/figures/gnuplot.hpp"
+#include "analysis/tables/csv_file.hpp"
+#include "analysis/tables/number_text.hpp"
+
+#include <array>
+
+namespace montecarta {
+namespace {
+
+/// Common to all figures. What is black here takes the colour of the text where the page is dark.
+constexpr const char* kStyle = R"(set encoding utf8
+set datafile separator comma
+set datafile missing 'nan'
+set datafile columnheaders
+set border 3 linewidth 0.8 linecolor rgb 'black'
+set tics nomirror out scale 0.6
+set grid linecolor rgb '#999999' linewidth 0.4 dashtype (2,4)
+set key above left horizontal noenhanced samplen 1.6 spacing 1.1 width 1
+set style fill transparent solid 0.25 noborder
+)";
+
+void write_data(const FigureData& data, const std::filesystem::path& directory) {
+  CsvFile file(directory / data.name);
+  file.row(data.headings);
+  for (const auto& row : data.rows) file.row(row);
+  file.close();
+}
+
+/// The whole script: the same figure for the page and for print.
+std::string script_of(const Figure& figure) {
+  const std::string size = std::to_string(figure.width) + "," + std::to_string(figure.height);
+  const auto centimetres = [](std::size_t pixels) {
+    return readable(static_cast<double>(pixels) * 0.025, 3) + "cm";
+  };
+  return std::string("# Drawn again by: gnuplot ") + figure.name + ".gp\n" +
+         "set terminal svg size " + size + " dynamic font 'sans-serif,13' linewidth 1.3\n" +
+         "set output '" + figure.name + ".svg'\n" + kStyle + figure.script +
+         "unset output\nreset\nset terminal pdfcairo size " + centimetres(figure.width) + "," +
+         centimetres(figure.height) + " font 'sans,9' linewidth 1.3\nset output '" + figure.name +
+         ".pdf'\n" + kStyle + figure.script + "unset output\n";
+}
+
+}  // namespace
+
+void draw(const Figure& figure, const std::filesystem::path& directory) {
+  make_directory(directory / "data");
+  make_directory(directory / "figures");
+  for (const FigureData& data : figure.data) write_data(data, directory / "data");
+  const std::string script = figure.name + ".gp";
+  write_text(directory / "figures" / script, script_of(figure));
+  run_gnuplot(directory / "figures", script);
+}
+
+std::string line_style(std::size_t i) {
+  constexpr std::array kColours = {"#0072B2", "#D55E00", "#009E73",
+                                   "#CC79A7", "#E69F00", "#56B4E9"};
+  return std::string("linewidth 1.4 linecolor rgb '") + kColours[i % kColours.size()] +
+         "' dashtype " + std::to_string(1 + i / kColours.size());
+}
+
+FigureData data_over_time(const std::string& name, const ThinnedSeries& thinned) {
+  FigureData data{name, {"time [s]"}, {}};
+  for (const NamedSeries& one : thinned.series) {
+    data.headings.push_back(one.units == "1" ? one.name : one.name + " [" + one.units + "]");
+  }
+  for (std::size_t k = 0; k < thinned.times.size(); ++k) {
+    std::vector<std::string> row = {exact_text(thinned.times[k])};
+    for (const NamedSeries& one : thinned.series) row.push_back(exact_text(one.values[k]));
+    data.rows.push_back(std::move(row));
+  }
+  return data;
+}
+
+}  // namespace montecarta

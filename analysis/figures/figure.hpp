@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/figures/thinning.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// A file of numbers that a figure draws: headings with units, and rows.
+struct FigureData {
+  std::string name;  ///< of the file below data/, e.g. "anees.csv"
+  std::vector<std::string> headings;
+  std::vector<std::vector<std::string>> rows;
+};
+
+/// A figure before it is drawn.
+struct Figure {
+  std::string name;      ///< of its files, e.g. "anees"
+  std::string title;     ///< a heading on the page
+  std::string sentence;  ///< what it means, for someone who sees such a figure for the first time
+  std::size_t width = 560;   ///< [px]
+  std::size_t height = 340;  ///< [px]
+  std::string script;        ///< gnuplot commands behind terminal and style; data lies in ../data/
+  std::vector<FigureData> data;
+};
+
+/// Writes figures/<name>.gp and data/ below `directory` and draws figures/<name>.svg and .pdf.
+void draw(const Figure& figure, const std::filesystem::path& directory);
+
+/// Line colour and dashes of curve `i`, for gnuplot: told apart by the colour-blind (Okabe and
+/// Ito), and from the seventh on by dashes.
+std::string line_style(std::size_t i);
+
+/// The data file of a figure over time.
+FigureData data_over_time(const std::string& name, const ThinnedSeries& thinned);
+
+}  // namespace montecarta

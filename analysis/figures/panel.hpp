@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/figures/figure.hpp"
+
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// A curve of a panel over time.
+struct Curve {
+  std::string legend;          ///< empty: none
+  std::size_t style = 0;       ///< for line_style()
+  std::vector<double> values;  ///< {scan}
+};
+
+/// A horizontal band, e.g. where a right filter stays.
+struct Band {
+  std::string legend;
+  double lower = 0.0;
+  double upper = 0.0;
+};
+
+/// Axes with curves over time.
+struct Panel {
+  std::string name;   ///< of its data file
+  std::string label;  ///< of the vertical axis, with unit
+  std::vector<Curve> curves;
+  std::vector<Band> bands;
+  bool may_be_logarithmic = false;  ///< where the curves span more than a factor of thirty
+  bool from_zero = false;           ///< the vertical axis begins at zero, where linear
+};
+
+/// Adds panels one above the other, with one time axis and one legend, to a figure.
+void add_panels(const std::vector<Panel>& panels, const std::vector<double>& times, Figure& figure);
+
+}  // namespace montecarta

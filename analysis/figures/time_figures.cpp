@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/figures/time_figures.hpp"
+
+#include "analysis/figures/panel.hpp"
+#include "analysis/tables/number_text.hpp"
+#include "engine/numbers/angle.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <set>
+
+namespace montecarta {
+namespace {
+
+/// The values of a cell that a panel shows; empty where it has none.
+using ValuesOf = std::function<std::vector<double>(const CellAnalysis&)>;
+
+/// A cell keeps its colour in every figure.
+std::vector<Curve> curves(const StudyAnalysis& study, const ValuesOf& values_of) {
+  std::vector<Curve> found;
+  for (std::size_t i = 0; i < study.cells.size(); ++i) {
+    std::vector<double> values = values_of(study.cells[i]);
+    if (!values.empty()) found.push_back({study.cells[i].label, i, std::move(values)});
+  }
+  return found;
+}
+
+std::vector<double> scaled(std::vector<double> values, double factor) {
+  for (double& value : values) value *= factor;
+  return values;
+}
+
+/// One band for each number of complete runs among the cells that are tested.
+std::vector<Band> bands(const StudyAnalysis& study, std::size_t dimension) {
+  std::set<std::size_t> runs;
+  for (const CellAnalysis& cell : study.cells) {
+    if (!cell.nees.empty()) runs.insert(cell.complete);
+  }
+  std::vector<Band> found;
+  for (const std::size_t n : runs) {
+    const Interval band = nees_bounds(n, dimension, study.level);
+    found.push_back({level_text(study.level) + " band, " + std::to_string(n) + " runs", band.lower,
+                     band.upper});
+  }
+  return found;
+}
+
+Panel anees_panel(const StudyAnalysis& study, ErrorBlock block, const std::string& name,
+                  const std::string& label) {
+  Panel panel{name, label, {}, {}, true, true};
+  std::size_t dimension = 0;
+  panel.curves = curves(study, [&](const CellAnalysis& cell) {
+    const NeesResult* nees = cell.find_nees(block, cell.leading);
+    if (nees == nullptr) return std::vector<double>{};
+    dimension = nees->series.dimension;
+    return nees->series.average;
+  });
+  if (!panel.curves.empty()) panel.bands = bands(study, dimension);
+  return panel;
+}
+
+/// A panel of distinct ancestors.
+Panel ancestor_panel(const StudyAnalysis& study, const std::string& name, const std::string& label,
+                     std::vector<double> DiversitySummary::*values) {
+  const ValuesOf values_of = [&](const CellAnalysis& cell) {
+    return cell.diversity ? (*cell.diversity).*values : std::vector<double>{};
+  };
+  return {name, label, curves(study, values_of), {}, true, true};
+}
+
+void add_if_shown(const std::vector<Panel>& panels, const StudyAnalysis& study, Figure& figure) {
+  if (!panels.front().curves.empty()) add_panels(panels, study.times, figure);
+}
+
+}  // namespace
+
+Figure anees_figure(const StudyAnalysis& study) {
+  Figure figure{"anees", "Is the filter right about its own errors?", "", 560, 360, "", {}};
+  figure.sentence =
+      "Average normalised error squared (ANEES) of the pose over time. A curve inside the grey "
+      "band belongs to a filter whose stated uncertainty fits its real errors; a curve that climbs "
+      "above the band and stays there belongs to a filter that is sure of a wrong answer.";
+  add_if_shown({anees_panel(study, ErrorBlock::pose, "anees_pose", "ANEES of the pose")}, study,
+               figure);
+  return figure;
+}
+
+Figure anees_parts_figure(const StudyAnalysis& study) {
+  Figure figure{"anees_parts", "Position or heading: which one goes wrong?", "", 560, 480, "", {}};
+  figure.sentence =
+      "The same test for position alone (two components, right around 2) and heading alone (one "
+      "component, right around 1): the curve that leaves its band first shows where trouble "
+      "begins.";
+  add_if_shown({anees_panel(study, ErrorBlock::position, "anees_position", "ANEES of position"),
+                anees_panel(study, ErrorBlock::heading, "anees_heading", "ANEES of heading")},
+               study, figure);
+  return figure;
+}
+
+Figure rmse_figure(const StudyAnalysis& study) {
+  Figure figure{"rmse", "How large are the errors?", "", 560, 480, "", {}};
+  figure.sentence =
+      "Root mean square error over runs at each scan: lower is better. It grows while the vehicle "
+      "explores and falls where it meets landmarks it knows.";
+  const auto complete = [](const CellAnalysis& cell, const std::vector<double>& values) {
+    return cell.complete == 0 ? std::vector<double>{} : values;
+  };
+  const ValuesOf position = [&](const CellAnalysis& cell) {
+    return complete(cell, cell.error.position_over_time);
+  };
+  const ValuesOf heading = [&](const CellAnalysis& cell) {
+    return scaled(complete(cell, cell.error.heading_over_time), 180.0 / kPi);
+  };
+  add_if_shown({{"rmse_position", "position RMSE [m]", curves(study, position), {}, false, true},
+                {"rmse_heading", "heading RMSE [deg]", curves(study, heading), {}, false, true}},
+               study, figure);
+  return figure;
+}
+
+Figure diversity_figure(const StudyAnalysis& study) {
+  Figure figure{"diversity", "How many different histories survive?", "", 560, 600, "", {}};
+  figure.sentence =
+      "Distinct ancestors of the particles, mean over runs: parents in the last resampling, "
+      "ancestors 10 s ago, and ancestors at the start. When few are left, the particles tell one "
+      "story in many copies, and the filter cannot know how wrong that story is.";
+  add_if_shown(
+      {ancestor_panel(study, "ancestors_last_resampling", "in the last resampling",
+                      &DiversitySummary::last_resampling_over_time),
+       ancestor_panel(study, "ancestors_10_s_ago", "10 s ago", &DiversitySummary::lag_over_time),
+       ancestor_panel(study, "ancestors_at_start", "at the start",
+                      &DiversitySummary::root_over_time)},
+      study, figure);
+  return figure;
+}
+
+Figure ess_figure(const StudyAnalysis& study) {
+  Figure figure{"ess", "How many particles still count?", "", 560, 340, "", {}};
+  figure.sentence =
+      "Effective sample size as a share of all particles, mean over runs: near 100 % all particles "
+      "explain the measurements about equally well; a low share means that few carry all weight.";
+  const ValuesOf share = [](const CellAnalysis& cell) {
+    if (!cell.weights) return std::vector<double>{};
+    return scaled(cell.weights->ess_over_time, 100.0 / static_cast<double>(cell.particles));
+  };
+  add_if_shown({{"ess_share", "effective particles [%]", curves(study, share), {}, false, true}},
+               study, figure);
+  return figure;
+}
+
+std::vector<Figure> time_figures(const StudyAnalysis& study) {
+  std::vector<Figure> figures = {anees_figure(study), anees_parts_figure(study), rmse_figure(study),
+                                 diversity_figure(study), ess_figure(study)};
+  std::erase_if(figures, [](const Figure& figure) { return figure.data.empty(); });
+  return figures;
+}
+
+}  // namespace montecarta

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/tables/verdict_table.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace montecarta {
+
+/// Plain text as a page shows it.
+std::string html_escape(const std::string& text);
+
+/// A table that scrolls sideways where the page is narrow.
+std::string html_table(const TextTable& table);
+
+/// A table of names and values without headings.
+std::string html_pairs(const std::vector<std::pair<std::string, std::string>>& pairs);
+
+/// An SVG document made part of a page: without its prologue, with identifiers that begin with
+/// `name`, so that several fit on one page, and told aloud as `description`.
+std::string inline_svg(const std::string& svg, const std::string& name,
+                       const std::string& description);
+
+/// A whole self-contained page, for light and dark screens of any width.
+std::string html_page(const std::string& title, const std::string& body);
+
+}  // namespace montecarta

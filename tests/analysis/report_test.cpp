@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/report.hpp"
+
+#include "analysis/html.hpp"
+#include "engine/errors.hpp"
+#include "tests/analysis/synthetic_result.hpp"
+#include "tests/doubles/scratch_folder.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+namespace montecarta {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+std::string read(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+TEST(Report, HoldsEverySectionAndNeedsNothingElse) {
+  const ScratchFolder folder;
+  write_synthetic_result(folder / "out.h5", 6, 120);
+  write_report(ResultFile(folder / "out.h5"), folder / "report");
+  const std::string page = read(folder / "report/index.html");
+  for (const char* heading :
+       {"Failed runs", "Verdict", "Where did the filter think it was?",
+        "Is the filter right about its own errors?", "Position or heading: which one goes wrong?",
+        "How large are the errors?", "How many different histories survive?",
+        "How many particles still count?", "The whole test", "Where this comes from"}) {
+    EXPECT_THAT(page, HasSubstr(std::string("<h2>") + heading));
+  }
+  EXPECT_THAT(page, HasSubstr("gain is &lt;not&gt; a number &amp; worse"));
+  EXPECT_LT(page.find("Failed runs"), page.find("<h2>Verdict"));
+  EXPECT_THAT(page, Not(HasSubstr("src=")));
+  EXPECT_THAT(page, Not(HasSubstr("href=\"http")));
+  for (const char* name : {"paths", "anees", "anees_parts", "rmse", "diversity", "ess"}) {
+    const auto figures = folder.path() / "report/figures";
+    EXPECT_THAT(read(figures / (std::string(name) + ".svg")), HasSubstr("</svg>")) << name;
+    EXPECT_THAT(read(figures / (std::string(name) + ".pdf")), testing::StartsWith("%PDF")) << name;
+    EXPECT_THAT(page, HasSubstr(std::string("figures/") + name + ".pdf"));
+  }
+  EXPECT_THAT(read(folder / "report/tables/verdict.tex"), HasSubstr("\\bottomrule"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "report/data/anees_pose.csv"));
+}
+
+TEST(Report, IsNotOverwrittenUnasked) {
+  const ScratchFolder folder;
+  write_synthetic_result(folder / "out.h5", 2, 40);
+  const ResultFile file(folder / "out.h5");
+  std::filesystem::create_directories(folder / "report");
+  std::ofstream(folder / "report/index.html") << "mine";
+  EXPECT_THROW(write_report(file, folder / "report"), StudyError);
+  EXPECT_EQ(read(folder / "report/index.html"), "mine");
+}
+
+TEST(Report, RefusesARunThatIsNotThere) {
+  const ScratchFolder folder;
+  write_synthetic_result(folder / "out.h5", 2, 40);
+  ReportOptions options;
+  options.run = 99;
+  EXPECT_THROW(write_report(ResultFile(folder / "out.h5"), folder / "report", options), StudyError);
+  EXPECT_FALSE(std::filesystem::exists(folder / "report/index.html"));
+}
+
+TEST(Html, EscapesText) {
+  EXPECT_EQ(html_escape("a < b & \"c\" 3 +- 1"), "a &lt; b &amp; &quot;c&quot; 3 &plusmn; 1");
+}
+
+TEST(Html, GivesEveryDrawingItsOwnIdentifiers) {
+  const std::string svg = "<?xml?><svg><g id=\"a\"/><use href='#a'/></svg>";
+  EXPECT_EQ(inline_svg(svg, "rmse", "what"),
+            "<svg role=\"img\" aria-label=\"what\"><g id=\"rmse_a\"/><use href='#rmse_a'/></svg>");
+}
+
+}  // namespace
+}  // namespace montecarta

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/records/result_writer.hpp"
+#include "tests/analysis/synthetic_runs.hpp"
+#include "tests/doubles/scripted_result.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include <filesystem>
+#include <string>
+
+namespace montecarta {
+
+/// Overwrites the estimates of a record by the truth plus errors drawn from SyntheticStudy's
+/// covariance, made `inflation` times larger than the covariance says.
+inline void perturb(const Drive& drive, std::uint64_t run, double inflation, RunRecord& record) {
+  const RecordLayout& layout = record.layout();
+  const Eigen::Matrix3d P = SyntheticStudy::covariance();
+  const Eigen::Matrix3d L = P.llt().matrixL();
+  RngStream draw({3, run, 0, 0, Draw::test});
+  for (const std::string suffix : {"", "_mixture"}) {
+    const auto mean = record.column<double>(*layout.find("pose_mean" + suffix));
+    const auto covariance = record.column<double>(*layout.find("pose_covariance" + suffix));
+    for (std::size_t k = 0; k < drive.truth.size(); ++k) {
+      const Eigen::Vector3d noise(draw.normal(), draw.normal(), draw.normal());
+      const Eigen::Vector3d error = inflation * (L * noise);
+      const Pose& truth = drive.truth[k];
+      mean[3 * k] = truth.x + error(0);
+      mean[3 * k + 1] = truth.y + error(1);
+      mean[3 * k + 2] = wrap(truth.heading + error(2));
+      std::copy(P.data(), P.data() + 9, covariance.begin() + static_cast<std::ptrdiff_t>(9 * k));
+    }
+  }
+}
+
+/// A result with a perfect cell ("scripted_m4") and an overconfident one ("scripted_m3"), whose
+/// last run failed at step 5.
+inline void write_synthetic_result(const std::filesystem::path& path, std::uint64_t runs = 12,
+                                   std::size_t steps = 400) {
+  const StudyPlan plan = small_result_plan(runs, steps);
+  ResultWriter writer = ResultWriter::create(path, plan, {{"host", "nowhere"}}, Existing::replace);
+  Drive drive;
+  for (std::uint64_t run = 0; run < runs; ++run) {
+    plan.drives->generate(run, drive);
+    writer.write_truth(run, drive);
+    for (std::size_t cell = 0; cell < plan.cells.size(); ++cell) {
+      const RecordLayout layout(plan.cells[cell], plan.columns, plan.drives->itinerary());
+      RunRecord record(layout);
+      fill_record(plan, cell, run, drive, record);
+      perturb(drive, run, cell == 0 ? 1.0 : 3.0, record);
+      if (cell == 1 && run + 1 == runs) record.mark_failed(5, "gain is <not> a number & worse", 1);
+      writer.write(cell, run, record);
+    }
+  }
+  writer.finish();
+}
+
+}  // namespace montecarta
