@@ -78,7 +78,7 @@ TEST(ReferenceFastSlam, ParticlesNeverJumpFartherThanTheVehicleCanMove) {
     const auto& now = filter.population();
     for (std::size_t i = 0; i < now.size() && s > 0; ++i) {
       const Eigen::Vector3d way = now[i].pose - before[now[i].ancestor].pose;
-      EXPECT_LT(way.head<2>().norm(), 1.5) << "scan " << s << " particle " << i;  // 0.6 m and noise
+      EXPECT_NEAR(way.head<2>().norm(), 0.6, 0.15) << "scan " << s << " particle " << i;
     }
     before = now;
     resamplings += filter.report().resampled;

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/nees_bounds.hpp"
+#include "filters/ekf_slam/ekf_slam.hpp"
+#include "tests/filters/reference/fast_slam2.hpp"
+#include "tests/filters/small_world.hpp"
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace montecarta {
+namespace {
+
+double nees(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
+  return error.dot(covariance.llt().solve(error));
+}
+
+/// One vehicle in a linear world and the Kalman filter that knows the world's matrices
+/// (SPEC 23.10).
+class LinearRun {
+ public:
+  explicit LinearRun(std::uint64_t run) : draw_({.seed = 2310, .run = run, .purpose = Draw::test}) {
+    F_ << 0.8, 0.1, 0.0, -0.1, 0.7, 0.2, 0.0, 0.1, 0.6;
+    G_ << 1.0, 0.0, 0.3, 0.5, 0.0, 0.8;  // two noises drive three states, as in a vehicle
+    H_ << 1.0, 0.0, 0.5, 0.0, 1.0, -0.4;
+  }
+
+  /// One step, one measurement; returns the NEES after it.
+  double advance() {
+    const Eigen::Vector2d process(draw_.normal(), draw_.normal());
+    truth_ = (F_ * truth_ + G_ * process).eval();
+    P_ = (F_ * P_ * F_.transpose() + G_ * G_.transpose()).eval();
+    mean_ = (F_ * mean_).eval();
+    const Eigen::Vector2d sensor(draw_.normal(), draw_.normal());
+    const Eigen::Vector2d innovation = H_ * (truth_ - mean_) + sensor;
+    const Eigen::Matrix2d S = H_ * P_ * H_.transpose() + Eigen::Matrix2d::Identity();
+    const Matrix32 K = S.llt().solve(H_ * P_).transpose();
+    mean_ += K * innovation;
+    P_ -= (K * S * K.transpose()).eval();
+    return nees(truth_ - mean_, P_);
+  }
+
+ private:
+  RngStream draw_;
+  Eigen::Matrix3d F_;
+  Matrix32 G_;
+  Matrix23 H_;
+  Eigen::Vector3d truth_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d P_ = Eigen::Matrix3d::Zero();
+};
+
+TEST(Consistency, AMatchedLinearWorldStaysInsideItsBand) {
+  constexpr std::uint64_t kRuns = 30;
+  constexpr int kSteps = 4000;
+  std::vector<LinearRun> runs;
+  for (std::uint64_t run = 0; run < kRuns; ++run) runs.emplace_back(run);
+  for (LinearRun& run : runs) {
+    run.advance(), run.advance();  // two noises need two steps to fill three dimensions
+  }
+  const Interval band = nees_bounds(kRuns, 3, 0.95);
+  int inside = 0;
+  double total = 0.0;
+  for (int step = 0; step < kSteps; ++step) {
+    double sum = 0.0;
+    for (LinearRun& run : runs) sum += run.advance();
+    const double anees = sum / static_cast<double>(kRuns);
+    inside += anees >= band.lower && anees <= band.upper;
+    total += anees;
+  }
+  // 120,000 chi-squares, neighbours correlated by 0.8 or less: standard error below 0.02.
+  EXPECT_NEAR(total / kSteps, 3.0, 0.1);
+  EXPECT_GE(inside, 0.94 * kSteps);
+  EXPECT_LE(inside, 0.96 * kSteps);
+}
+
+/// Noise so small that the models are linear within it: there EKF-SLAM is the Kalman filter of its
+/// world.
+Belief fine() {
+  return {.wheelbase = 4.0,
+          .sigma_speed = 3e-3,
+          .sigma_steer = 5e-4,
+          .sigma_range = 1e-3,
+          .sigma_bearing = 2e-4};
+}
+
+TEST(Consistency, EkfSlamIsConsistentWhereNoiseIsSmall) {
+  constexpr std::uint64_t kRuns = 200;
+  const auto filter = make_ekf_slam(
+      {.belief = fine(), .association = {}, .options = FilterOptions({}), .landmarks = 20});
+  double sum = 0.0;
+  for (std::uint64_t run = 0; run < kRuns; ++run) {
+    const SmallWorld world = small_world({.seed = 500 + run, .scans = 40, .noise = fine()});
+    drive_through(*filter, world, {}, [](std::size_t) {});
+    const PoseMoments belief = filter->estimate().spread;
+    sum += nees(boxminus(world.drive.truth.back(), belief.mean), belief.covariance);
+  }
+  // Five standard errors, as a level of the exact interval.
+  const Interval band = nees_bounds(kRuns, 3, 1.0 - 5.7e-7);
+  EXPECT_GT(sum / kRuns, band.lower);
+  EXPECT_LT(sum / kRuns, band.upper);
+}
+
+/// Random symmetric positive definite matrix.
+template <int N>
+Eigen::Matrix<double, N, N> random_covariance(RngStream& draw) {
+  Eigen::Matrix<double, N, N> A;
+  for (int k = 0; k < A.size(); ++k) A(k) = draw.normal();
+  return A * A.transpose() + 0.1 * Eigen::Matrix<double, N, N>::Identity();
+}
+
+TEST(FastSlam2Weights, InALinearCaseTheRatioIsTheClosedFormWhateverWasDrawn) {
+  // SPEC 23.5: p(z | x) N(x; prior) / N(x; posterior) is p(z), for every x.
+  RngStream draw({.seed = 235, .purpose = Draw::test});
+  for (int n = 0; n < 200; ++n) {
+    const Eigen::Matrix3d P = random_covariance<3>(draw);
+    const Eigen::Matrix2d S_f = random_covariance<2>(draw);
+    const Matrix23 H = Matrix23::NullaryExpr([&](Eigen::Index) { return draw.normal(); });
+    const Eigen::Vector2d nu(draw.normal(), draw.normal());
+    const Eigen::Matrix2d S_z = H * P * H.transpose() + S_f;
+    const Matrix32 K = S_z.llt().solve(H * P).transpose();
+    const Eigen::Vector3d shift = K * nu;
+    const Eigen::Matrix3d P_after = P - K * S_z * K.transpose();
+    const double closed = reference::log_gaussian<2>(nu, S_z);
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d eps(draw.normal(), draw.normal(), draw.normal());
+      const Eigen::Vector3d x = shift + reference::psd_chol(P_after) * eps;
+      const double ratio = reference::log_gaussian<2>(nu - H * x, S_f) +
+                           reference::log_gaussian<3>(x, P) -
+                           reference::log_gaussian<3>(x - shift, P_after);
+      EXPECT_NEAR(ratio, closed, 1e-9 * (1.0 + std::abs(closed))) << "case " << n << ", draw " << k;
+    }
+  }
+}
+
+/// Two scans with a short drive between: from where the filter knows to stand, then again.
+SmallWorld two_scans() {
+  const SmallWorldSettings settings{.seed = 77, .landmarks = 40};
+  SmallWorld world{.itinerary = {}, .drive = {}, .seed = 77};
+  place_landmarks(settings, world);
+  world.drive.scan_begin.push_back(0);
+  look_around(settings, 0, Pose{}, world);
+  Pose truth;
+  for (int step = 0; step < 8; ++step) truth = move(truth, Control{3.0, 0.15}, 0.025, 4.0);
+  look_around(settings, 8, truth, world);
+  return world;
+}
+
+PoseEstimate after_both_scans(SlamFilter& filter, const SmallWorld& world) {
+  filter.start({});
+  filter.update(StepContext(77, 0, 0, Parallel::serial()), world.drive.scan(0));
+  for (std::uint32_t step = 1; step <= 8; ++step) {
+    filter.predict(StepContext(77, 0, step, Parallel::serial()), {3.0, 0.15}, 0.025);
+  }
+  filter.update(StepContext(77, 0, 8, Parallel::serial()), world.drive.scan(1));
+  return filter.estimate();
+}
+
+TEST(FastSlam2, SeeingAgainFromAKnownPoseIsTheKalmanFiltersUpdate) {
+  // Landmarks born at an exactly known pose are independent of it and of each other, so the first
+  // scan that sees them again is the same Bayesian update for both filters, likelihood included
+  // (SPEC 23.5: M = 1).
+  const SmallWorld world = two_scans();
+  const auto kalman = make_ekf_slam(
+      {.belief = {}, .association = {}, .options = FilterOptions({}), .landmarks = 40});
+  const PoseMoments expected = after_both_scans(*kalman, world).spread;
+  EXPECT_GE(kalman->report().nis_dof, 4u);
+  for (const std::size_t particles : {1, 30}) {
+    reference::FastSlam2 filter({.particles = particles, .landmarks = 40},
+                                reference::Weight::closed);
+    const PoseMoments mixture = *after_both_scans(filter, world).mixture;
+    EXPECT_LT(boxminus(mixture.mean, expected.mean).norm(), 1e-12);
+    EXPECT_LT((mixture.covariance - expected.covariance).norm(), 1e-13);
+    EXPECT_NEAR(filter.report().log_likelihood, kalman->report().log_likelihood, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace montecarta
