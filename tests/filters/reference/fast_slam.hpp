@@ -6,6 +6,7 @@
 #include "tests/filters/reference/resampling.hpp"
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace montecarta::reference {
@@ -39,7 +40,7 @@ class FastSlam : public SlamFilter {
     particles_.assign(settings_.particles, first);
     for (std::uint32_t i = 0; i < particles_.size(); ++i) particles_[i].ancestor = i;
     report_ = {};
-    parents_.clear();
+    after_update_ = false;
   }
 
   void predict(const StepContext& context, const Control& control, double duration) final {
@@ -51,6 +52,7 @@ class FastSlam : public SlamFilter {
 
   void update(const StepContext& context, Scan scan) final {
     resample();
+    after_update_ = true;
     for (Particle& p : particles_) associate(p, scan);  // step 1
     report_ = {.ess = effective()};
     if (nothing_to_use()) return;  // step 2
@@ -191,10 +193,11 @@ class FastSlam : public SlamFilter {
     }
   }
 
+  /// Once between two scans: what the last one decided takes effect.
   void resample() {
-    for (std::uint32_t i = 0; i < particles_.size() && parents_.empty(); ++i)
-      particles_[i].ancestor = i;
-    if (parents_.empty()) return;
+    if (!std::exchange(after_update_, false)) return;
+    for (std::uint32_t i = 0; i < particles_.size(); ++i) particles_[i].ancestor = i;
+    if (!report_.resampled) return;
     std::vector<Particle> next;
     next.reserve(particles_.size());
     for (const std::uint32_t parent : parents_) {
@@ -203,11 +206,11 @@ class FastSlam : public SlamFilter {
       next.back().log_weight = -std::log(static_cast<double>(particles_.size()));
     }
     particles_ = std::move(next);
-    parents_.clear();
   }
 
   ScanReport report_;
-  std::vector<std::uint32_t> parents_;  ///< of a resampling that has yet to take effect
+  std::vector<std::uint32_t> parents_;  ///< of the last resampling
+  bool after_update_ = false;
 };
 
 }  // namespace montecarta::reference
