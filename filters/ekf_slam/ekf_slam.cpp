@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/ekf_slam/ekf_slam.hpp"
 
+#include "engine/errors.hpp"
 #include "filters/association/nearest.hpp"
 #include "filters/ekf_slam/joint_gaussian.hpp"
 #include "filters/models/eigen_jacobians.hpp"
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
 namespace montecarta {
 namespace {
@@ -116,12 +118,19 @@ class EkfSlam final : public SlamFilter {
   }
 
   void give_birth(const Detection& detection) {
+    expect_room_to_grow();
     if (known()) {
       const auto identity = static_cast<std::size_t>(detection.identity);
       if (identity >= slot_of_identity_.size()) slot_of_identity_.resize(identity + 1, kUnseen);
       slot_of_identity_[identity] = static_cast<std::uint32_t>(gaussian_.landmarks());
     }
     gaussian_.append(sight_of(detection));
+  }
+
+  void expect_room_to_grow() const {
+    if (known() || gaussian_.landmarks() < association_.most_landmarks) return;
+    throw RunError("the map grew beyond " + std::to_string(association_.most_landmarks) +
+                   " landmarks");
   }
 
   AssociationSettings association_;

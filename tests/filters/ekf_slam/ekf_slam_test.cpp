@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/ekf_slam/ekf_slam.hpp"
 
+#include "engine/errors.hpp"
 #include "tests/filters/reference/textbook_ekf_slam.hpp"
 #include "tests/filters/small_world.hpp"
 
@@ -138,6 +139,16 @@ TEST(EkfSlam, TwoDetectionsNeverShareALandmark) {
   filter->update(context, rivals);
   EXPECT_EQ(filter->report().nis_dof, 2u);
   EXPECT_NEAR(filter->report().nis, 0.5, 1e-9);  // of the nearer: (0.1 m)^2 / (2 (0.1 m)^2)
+}
+
+TEST(EkfSlam, AMapThatRunsAwayFailsTheRun) {
+  FilterSetup setup = setup_for(1, Association::nearest);
+  setup.association.most_landmarks = 1;
+  const auto filter = make_ekf_slam(setup);
+  const StepContext context(1, 0, 0, Parallel::serial());
+  const std::vector<Detection> scan{{10.0, 0.3, 0}, {20.0, -0.3, 1}};
+  filter->start({});
+  EXPECT_THROW(filter->update(context, scan), RunError);
 }
 
 TEST(EkfSlam, ReportsWhatItMatched) {
