@@ -64,12 +64,11 @@ using Shape = std::vector<unsigned long long>;  ///< HDF5's hsize_t
 /// A contiguous dataset, given its place in the file at once and filled with nothing.
 Handle create_dataset(const Handle& parent, const std::string& name, Element element,
                       const Shape& shape);
-/// The same of strings of a fixed width [byte].
-Handle create_text_dataset(const Handle& parent, const std::string& name, std::size_t width,
-                           const Shape& shape);
+/// One text of at most `width` bytes. Texts along an axis would crash netCDF-C 4.9 or Octave 7.
+Handle create_text(const Handle& parent, const std::string& name, std::size_t width);
 Handle open_dataset(const Handle& parent, const std::string& name);
 void write(const Handle& dataset, Element element, const void* values);
-void write_texts(const Handle& dataset, std::span<const std::string> values);
+void write_text(const Handle& dataset, const std::string& text);
 /// Where the elements begin in the file [byte]; nullopt where they do not lie in one piece.
 std::optional<std::uint64_t> place(const Handle& dataset);
 Shape shape(const Handle& dataset);
@@ -79,7 +78,7 @@ std::optional<Element> element(const Handle& dataset);
 void read(const Handle& dataset, Element element, std::span<std::byte> bytes);
 /// Reads index `i` of the first axis, converted to `element`; `bytes` must fit exactly.
 void read_row(const Handle& dataset, std::uint64_t i, Element element, std::span<std::byte> bytes);
-std::vector<std::string> read_texts(const Handle& dataset);
+std::string read_text(const Handle& dataset);
 
 /// Makes a dataset the scale of a dimension.
 void make_scale(const Handle& dataset, const std::string& dimension);

@@ -20,11 +20,11 @@ Handle space_of(const Shape& shape) {
   return Handle(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr));
 }
 
+/// Marked ASCII, though the text may be UTF-8: Octave 7 reads no text that is marked UTF-8.
 Handle text_type(std::size_t width) {
   Handle type(H5Tcopy(H5T_C_S1));
   H5Tset_size(type.id(), std::max<std::size_t>(width, 1));
   H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
-  H5Tset_cset(type.id(), H5T_CSET_UTF8);
   return type;
 }
 
@@ -54,9 +54,8 @@ Handle create_dataset(const Handle& parent, const std::string& name, Element ele
   return create(parent, name, native_type(element), shape);
 }
 
-Handle create_text_dataset(const Handle& parent, const std::string& name, std::size_t width,
-                           const Shape& shape) {
-  return create(parent, name, text_type(width).id(), shape);
+Handle create_text(const Handle& parent, const std::string& name, std::size_t width) {
+  return create(parent, name, text_type(width).id(), {});
 }
 
 Handle open_dataset(const Handle& parent, const std::string& name) {
@@ -70,12 +69,11 @@ void write(const Handle& dataset, Element element, const void* values) {
   check(status, "write", dataset, "");
 }
 
-void write_texts(const Handle& dataset, std::span<const std::string> values) {
+void write_text(const Handle& dataset, const std::string& text) {
   const Handle type(H5Dget_type(dataset.id()));
-  const std::size_t width = H5Tget_size(type.id());
-  std::string packed(width * values.size(), '\0');
-  for (std::size_t i = 0; i < values.size(); ++i) values[i].copy(packed.data() + i * width, width);
-  check(H5Dwrite(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, packed.data()), "write",
+  std::string padded = text;
+  padded.resize(H5Tget_size(type.id()), '\0');
+  check(H5Dwrite(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()), "write",
         dataset, "");
 }
 
@@ -125,18 +123,13 @@ void read_row(const Handle& dataset, std::uint64_t i, Element element, std::span
   check(status, "read", dataset, "");
 }
 
-std::vector<std::string> read_texts(const Handle& dataset) {
+std::string read_text(const Handle& dataset) {
   const Handle type(H5Dget_type(dataset.id()));
-  const std::size_t width = H5Tget_size(type.id());
-  std::vector<std::string> values(count(shape(dataset)));
-  std::string packed(width * values.size(), '\0');
-  check(H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, packed.data()), "read",
+  std::string text(H5Tget_size(type.id()), '\0');
+  check(H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()), "read",
         dataset, "");
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = packed.substr(i * width, width);
-    values[i].resize(std::min(values[i].find('\0'), values[i].size()));
-  }
-  return values;
+  text.resize(std::min(text.find('\0'), text.size()));
+  return text;
 }
 
 void make_scale(const Handle& dataset, const std::string& dimension) {

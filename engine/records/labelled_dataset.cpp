@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/records/labelled_dataset.hpp"
 
-#include <algorithm>
 #include <numeric>
 
 namespace montecarta {
@@ -47,12 +46,11 @@ h5::Handle add_dataset(const h5::Handle& parent, const std::string& name, Elemen
   return dataset;
 }
 
-h5::Handle add_text_dataset(const h5::Handle& parent, const std::string& name, std::size_t width,
-                            const h5::Shape& shape, const std::vector<std::string>& dimensions,
-                            const Label& label, const Scales& scales) {
-  h5::Handle dataset = h5::create_text_dataset(parent, name, width, shape);
+h5::Handle add_text(const h5::Handle& parent, const std::string& name, const std::string& text,
+                    std::size_t width, const Label& label) {
+  h5::Handle dataset = h5::create_text(parent, name, width);
+  h5::write_text(dataset, text);
   put_label(dataset, label);
-  put_dimensions(dataset, dimensions, scales);
   return dataset;
 }
 
@@ -64,15 +62,6 @@ void add_scale(const h5::Handle& parent, const std::string& name, const std::vec
 void add_scale(const h5::Handle& parent, const std::string& name,
                const std::vector<std::uint64_t>& values, const Label& label, Scales& scales) {
   add_numeric_scale(parent, name, Element::u64, values.size(), values.data(), label, scales);
-}
-
-void add_scale(const h5::Handle& parent, const std::string& name,
-               const std::vector<std::string>& values, const Label& label, Scales& scales) {
-  std::size_t width = 1;
-  for (const std::string& value : values) width = std::max(width, value.size());
-  h5::Handle dataset = h5::create_text_dataset(parent, name, width, {values.size()});
-  h5::write_texts(dataset, values);
-  become_scale(std::move(dataset), name, label, scales);
 }
 
 void add_index_scale(const h5::Handle& parent, const std::string& name, std::size_t length,

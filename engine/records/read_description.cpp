@@ -118,7 +118,7 @@ void read_provenance(const h5::Handle& file, ResultDescription& result) {
   result.provenance = h5::texts(group);
   std::erase_if(result.provenance, [](const auto& pair) { return pair.first == "study_sha256"; });
   result.study_sha256 = h5::text(group, "study_sha256");
-  result.study_text = h5::read_texts(h5::open_dataset(group, "study")).at(0);
+  result.study_text = h5::read_text(h5::open_dataset(group, "study"));
 }
 
 }  // namespace

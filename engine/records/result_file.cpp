@@ -4,6 +4,7 @@
 #include "engine/errors.hpp"
 #include "engine/records/h5.hpp"
 #include "engine/records/read_description.hpp"
+#include "engine/records/run_record.hpp"
 
 #include <algorithm>
 #include <map>
@@ -109,8 +110,14 @@ std::vector<RunStatus> ResultFile::status(const StoredCell& cell) const {
 }
 
 std::vector<std::string> ResultFile::failure_reasons(const StoredCell& cell) const {
-  return h5::read_texts(
-      h5::open_dataset(contents_->file, "cells/" + cell.label + "/failure_reason"));
+  const h5::Handle dataset =
+      h5::open_dataset(contents_->file, "cells/" + cell.label + "/failure_reason");
+  std::string texts(runs().size() * kFailureReasonBytes, '\0');
+  h5::read(dataset, Element::u8, std::as_writable_bytes(std::span(texts)));
+  std::vector<std::string> reasons;
+  for (std::size_t i = 0; i < runs().size(); ++i)
+    reasons.emplace_back(texts.substr(i * kFailureReasonBytes, kFailureReasonBytes).c_str());
+  return reasons;
 }
 
 std::vector<std::uint32_t> ResultFile::failure_steps(const StoredCell& cell) const {

@@ -35,14 +35,13 @@ void add_axes(const h5::Handle& file, const ResultDescription& result, Scales& s
   add_scale(file, "run", result.runs, {"1", "number of the run in the study"}, scales);
   add_scale(file, "time", result.times, {"s", "time of the estimate"}, scales);
   add_scale(file, "scan", result.scan_times, {"s", "time of the scan"}, scales);
-  const std::vector<std::string> components = {"x", "y", "heading"};
-  const std::vector<std::string> coordinates = {"x", "y"};
-  add_scale(file, "component", components, {"1", "component of a pose"}, scales);
-  add_scale(file, "component_column", components, {"1", "component of a pose, second axis"},
-            scales);
-  add_scale(file, "coordinate", coordinates, {"1", "coordinate of a point"}, scales);
-  add_scale(file, "coordinate_column", coordinates, {"1", "coordinate of a point, second axis"},
-            scales);
+  const std::string components = "component of a pose: 0 x, 1 y, 2 heading";
+  const std::string coordinates = "coordinate of a point: 0 x, 1 y";
+  add_index_scale(file, "component", 3, {"1", components}, scales);
+  add_index_scale(file, "component_column", 3, {"1", components}, scales);
+  add_index_scale(file, "coordinate", 2, {"1", coordinates}, scales);
+  add_index_scale(file, "coordinate_column", 2, {"1", coordinates}, scales);
+  add_index_scale(file, "character", kFailureReasonBytes, {"1", "place in a text"}, scales);
   add_scan_index(file, "scan_step", result.scan_steps, "control step after which the scan is taken",
                  scales);
   add_scan_index(file, "scan_row", result.scan_rows, "row of time at which the scan is taken",
@@ -101,8 +100,9 @@ void add_bookkeeping(const h5::Handle& group, std::size_t runs, const Scales& sc
   const auto status = add_dataset(group, "status", Element::u8, {runs}, {"run"},
                                   {"1", "0 missing, 1 complete, 2 failed"}, scales);
   write_zeros(status, Element::u8, runs);
-  add_text_dataset(group, "failure_reason", kFailureReasonBytes, {runs}, {"run"},
-                   {"1", "why a failed run ended"}, scales);
+  add_dataset(group, "failure_reason", Element::u8, {runs, kFailureReasonBytes},
+              {"run", "character"}, {"1", "why a failed run ended: UTF-8 text, zeros behind it"},
+              scales);
   add_dataset(group, "failure_step", Element::u32, {runs}, {"run"},
               {"1", "control step at which a failed run ended"}, scales);
   const auto fingerprint = add_dataset(group, "fingerprint", Element::u64, {runs}, {"run"},
@@ -148,19 +148,15 @@ void add_timing(const h5::Handle& file, const ResultDescription& result, const S
   }
 }
 
-void add_provenance(const h5::Handle& file, const ResultDescription& result, Scales& scales) {
+void add_provenance(const h5::Handle& file, const ResultDescription& result) {
   const h5::Handle group = h5::create_group(file, "provenance");
   for (const auto& [name, value] : result.provenance) h5::put_text(group, name, value);
   h5::put_text(group, "study_sha256", result.study_sha256);
-  const auto text = add_text_dataset(group, "study", result.study_text.size(), {}, {},
-                                     {"1", "study file with everything filled in"}, scales);
-  h5::write_texts(text, std::array{result.study_text});
-  add_index_scale(group, "sitting", format::kSittings, {"1", "start or resumption of the work"},
-                  scales);
-  const auto sittings =
-      add_text_dataset(group, "sittings", format::kSittingBytes, {format::kSittings}, {"sitting"},
-                       {"1", "what was different each time the work was resumed"}, scales);
-  h5::write_texts(sittings, std::vector<std::string>(format::kSittings));
+  add_text(group, "study", result.study_text, result.study_text.size(),
+           {"1", "study file with everything filled in"});
+  add_text(
+      group, "sittings", "", format::kSittingsBytes,
+      {"1", "one line for each resumption of the work: what was different from its beginning"});
 }
 
 }  // namespace
@@ -175,7 +171,7 @@ void lay_out(const std::filesystem::path& path, const ResultDescription& result)
   const h5::Handle cells = h5::create_group(file, "cells");
   for (const StoredCell& cell : result.cells) add_cell(cells, cell, result.runs.size(), scales);
   add_timing(file, result, scales);
-  add_provenance(file, result, scales);
+  add_provenance(file, result);
   scales.clear();
   h5::close_file(std::move(file));
 }

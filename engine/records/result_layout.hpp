@@ -12,10 +12,9 @@ namespace montecarta {
 /// Names and widths on which the writer of a result file and its reader agree (analysis/FORMAT.md).
 namespace format {
 inline constexpr std::string_view kFiletype = "montecarta-results";
-inline constexpr std::uint64_t kMajor = 1;         ///< grows when a meaning changes
-inline constexpr std::uint64_t kMinor = 0;         ///< grows when something is added
-inline constexpr std::size_t kSittings = 16;       ///< how many starts and resumptions are logged
-inline constexpr std::size_t kSittingBytes = 256;  ///< width of a line of that log
+inline constexpr std::uint64_t kMajor = 1;           ///< grows when a meaning changes
+inline constexpr std::uint64_t kMinor = 0;           ///< grows when something is added
+inline constexpr std::size_t kSittingsBytes = 4096;  ///< room for the log of resumptions
 }  // namespace format
 
 /// Creates at `path` a complete, closed result file in which every run is missing: all groups,

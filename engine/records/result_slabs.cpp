@@ -66,7 +66,7 @@ ResultSlabs find_slabs(const std::filesystem::path& path, const ResultDescriptio
   slabs.truth = finder.find("truth/pose", description.times.size() * 3 * sizeof(double));
   slabs.truth_fingerprint = finder.find("truth/fingerprint", sizeof(std::uint64_t));
   slabs.wall_seconds = finder.find("timing/wall_seconds", sizeof(double));
-  slabs.sittings = finder.find("provenance/sittings", format::kSittingBytes);
+  slabs.sittings = finder.find("provenance/sittings", format::kSittingsBytes);
   for (const StoredCell& cell : description.cells) slabs.cells.push_back(finder.find(cell));
   return slabs;
 }

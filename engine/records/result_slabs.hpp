@@ -29,7 +29,7 @@ struct CellSlabs {
 struct ResultSlabs {
   Slab truth, truth_fingerprint;
   Slab wall_seconds;  ///< one value, not one a run
-  Slab sittings;      ///< one line of text a sitting
+  Slab sittings;      ///< one text, not one a run
   std::vector<CellSlabs> cells;
 };
 

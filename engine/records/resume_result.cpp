@@ -88,14 +88,14 @@ std::string differences(const TextPairs& begun, const Provenance& now) {
   return line.empty() ? "resumed" : line.substr(0, line.size() - 2);
 }
 
-/// Logs the resumption in the first free line; once all are used, in the last.
-void log_sitting(const OpenResult& result, std::string line) {
-  std::string all(format::kSittings * format::kSittingBytes, '\0');
-  result.file.read_at(result.slabs.sittings.offset, std::as_writable_bytes(std::span(all)));
-  std::size_t free = 0;
-  while (free + 1 < format::kSittings && all[free * format::kSittingBytes] != '\0') ++free;
-  line.resize(format::kSittingBytes, '\0');
-  result.file.write_at(result.slabs.sittings.at(free), std::as_bytes(std::span(line)));
+/// Adds a line to the log of resumptions; once it is full, no more.
+void log_sitting(const OpenResult& result, const std::string& line) {
+  std::string log(format::kSittingsBytes, '\0');
+  result.file.read_at(result.slabs.sittings.offset, std::as_writable_bytes(std::span(log)));
+  const std::size_t length = std::min(log.find('\0'), log.size());
+  if (length + line.size() + 1 > log.size()) return;
+  (line + "\n").copy(log.data() + length, line.size() + 1);
+  result.file.write_at(result.slabs.sittings.offset, std::as_bytes(std::span(log)));
 }
 
 void note_other_build(const TextPairs& begun, const Provenance& now,
