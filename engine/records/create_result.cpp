@@ -59,24 +59,16 @@ void expect_room(const fs::path& path, double bytes) {
 
 fs::path part_of(const fs::path& path) { return with_suffix(path, ".part"); }
 
-PosixFile lay_out_part(const fs::path& path, const ResultDescription& description,
-                       Existing existing) {
-  if (is_folder(path)) throw StudyError(path.string() + ": is a folder: name a file in it");
-  const fs::path part = part_of(path);
-  const fs::path fresh = with_suffix(part, ".new");
-  std::optional<PosixFile> replaced;  // its lock proves that nobody writes the work we replace
-  if (existing == Existing::replace && is_there(part))
-    replaced.emplace(part, PosixFile::Mode::write).lock();
-  PosixFile file(fresh, PosixFile::Mode::create);
+PosixFile lay_out_new(const fs::path& path, const ResultDescription& description) {
+  PosixFile file(path, PosixFile::Mode::create);
   file.lock();
   try {
     expect_room(path, description.bytes_per_run() * static_cast<double>(description.runs.size()));
-    lay_out(fresh, description);
+    lay_out(path, description);
     file.sync();
-    file.rename(part, replaced ? PosixFile::Target::replace : PosixFile::Target::keep);
   } catch (...) {
     std::error_code ignored;
-    fs::remove(fresh, ignored);
+    fs::remove(path, ignored);
     throw;
   }
   return file;
@@ -85,8 +77,13 @@ PosixFile lay_out_part(const fs::path& path, const ResultDescription& descriptio
 OpenResult create_result(const fs::path& path, const StudyPlan& plan, const Provenance& provenance,
                          Existing existing) {
   if (existing == Existing::refuse) refuse_existing(path);
+  if (is_folder(path)) throw StudyError(path.string() + ": is a folder: name a file in it");
   const ResultDescription description = describe(plan, provenance);
-  OpenResult result{lay_out_part(path, description, existing), {}, {}, {}, {}};
+  std::optional<PosixFile> replaced;  // its lock proves that nobody writes the work we replace
+  if (is_there(part_of(path))) replaced.emplace(part_of(path), PosixFile::Mode::write).lock();
+  OpenResult result{lay_out_new(with_suffix(part_of(path), ".new"), description), {}, {}, {}, {}};
+  result.file.rename(part_of(path),
+                     replaced ? PosixFile::Target::replace : PosixFile::Target::keep);
   result.slabs = find_slabs(result.file.path(), description);
   result.status.assign(plan.cells.size(), std::vector<RunStatus>(plan.runs_here()));
   result.truth_stored.assign(plan.runs_here(), false);

@@ -36,6 +36,9 @@ class Handle {
 
 using Text = std::pair<std::string, std::string>;  ///< (name, value) of an attribute
 
+/// Of the HDF5 library, e.g. "1.10.8".
+std::string library_version();
+
 /// Creates or empties a file. Takes no HDF5 lock: the caller holds its own.
 Handle create_file(const std::filesystem::path& path);
 /// Opens for reading, also while another process writes runs into it.

@@ -6,6 +6,7 @@
 #include "engine/records/result_writer.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,9 +28,17 @@ std::filesystem::path part_of(const std::filesystem::path& path);
 /// Throws RunError where less than `bytes` are free beside `path`.
 void expect_room(const std::filesystem::path& path, double bytes);
 
-/// Lays out the work in progress of `path` and hands it back locked. Nothing but it is touched.
-PosixFile lay_out_part(const std::filesystem::path& path, const ResultDescription& description,
-                       Existing existing);
+/// Lays out an empty result at the temporary name `path` and hands it back locked; leaves nothing
+/// where that fails.
+PosixFile lay_out_new(const std::filesystem::path& path, const ResultDescription& description);
+
+/// Whether two descriptions are of the same study laid out alike (their runs may differ); else what
+/// differs, worded "place: problem (why): remedy" for the file `path`, which `b` describes.
+std::optional<std::string> difference(const ResultDescription& a, const ResultDescription& b,
+                                      const std::filesystem::path& path);
+
+/// Of two builds, worded for the user; empty where they round alike.
+std::vector<std::string> build_differences(const TextPairs& a, const TextPairs& b);
 
 /// See ResultWriter::create.
 OpenResult create_result(const std::filesystem::path& path, const StudyPlan& plan,

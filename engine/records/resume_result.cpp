@@ -25,33 +25,12 @@ std::string range(const ResultDescription& result) {
   return std::to_string(result.runs.front()) + ":" + std::to_string(result.runs.back() + 1);
 }
 
-bool same_columns(const StoredCell& a, const StoredCell& b) {
-  return a.label == b.label &&
-         std::ranges::equal(a.columns, b.columns, [](const Column& x, const Column& y) {
-           return x.name == y.name && x.element == y.element && x.shape == y.shape;
-         });
-}
-
-void expect_same_study(const fs::path& path, const ResultDescription& planned,
-                       const ResultDescription& stored) {
-  if (stored.study_sha256 != planned.study_sha256) {
-    throw StudyError(
-        path.string() + ": belongs to another study ('" + stored.study_name + "', SHA-256 " +
-        stored.study_sha256.substr(0, 12) + ", not '" + planned.study_name + "', " +
-        planned.study_sha256.substr(0, 12) +
-        "): resume it with its own study file and the same --set, or choose another path");
-  }
-  if (stored.runs != planned.runs) {
-    throw StudyError(path.string() + ": holds runs " + range(stored) + " (asked for: " +
-                     range(planned) + "): give the same --runs or --shard as at the start");
-  }
-  if (!std::ranges::equal(stored.cells, planned.cells, same_columns) ||
-      stored.times != planned.times) {
-    throw StudyError(
-        path.string() +
-        ": is laid out differently from what this program would write (another version "
-        "of montecarta or of a world file began it): start afresh with --force");
-  }
+void expect_same(const fs::path& path, const ResultDescription& planned,
+                 const ResultDescription& stored) {
+  if (const auto different = difference(planned, stored, path)) throw StudyError(*different);
+  if (stored.runs == planned.runs) return;
+  throw StudyError(path.string() + ": holds runs " + range(stored) + " (asked for: " +
+                   range(planned) + "): give the same --runs or --shard as at the start");
 }
 
 void forget(OpenResult& result, std::size_t cell, std::size_t run_index) {
@@ -98,25 +77,12 @@ void log_sitting(const OpenResult& result, const std::string& line) {
   result.file.write_at(result.slabs.sittings.offset, std::as_bytes(std::span(log)));
 }
 
-void note_other_build(const TextPairs& begun, const Provenance& now,
-                      std::vector<std::string>& notes) {
-  for (const char* name : {"git", "compiler", "flags", "instruction_set"}) {
-    const auto named = [&](const auto& pair) { return pair.first == name; };
-    const auto then = std::ranges::find_if(begun, named);
-    const auto here = std::ranges::find_if(now, named);
-    if (then == begun.end() || here == now.end() || then->second == here->second) continue;
-    notes.push_back("the work was begun by another build (" + std::string(name) + ": " +
-                    then->second + ", now " + here->second +
-                    "): the last digits of its runs may differ from those computed now");
-  }
-}
-
 OpenResult open_existing(const fs::path& path, PosixFile::Mode mode,
                          const ResultDescription& planned, ResultDescription& stored) {
   OpenResult result{PosixFile(path, mode), {}, {}, {}, {}};
   if (mode == PosixFile::Mode::write) result.file.lock();
   stored = read_description_of(path);
-  expect_same_study(path, planned, stored);
+  expect_same(path, planned, stored);
   result.slabs = find_slabs(path, stored);
   for (const CellSlabs& cell : result.slabs.cells)
     result.status.push_back(read_statuses(result.file, cell, stored.runs.size()));
@@ -146,7 +112,8 @@ OpenResult resume_result(const fs::path& path, const StudyPlan& plan,
     result.notes.push_back(std::to_string(torn) +
                            " stored runs were damaged (a power cut?) and are computed again");
   }
-  note_other_build(stored.provenance, provenance, result.notes);
+  for (std::string& note : build_differences(stored.provenance, provenance))
+    result.notes.push_back(std::move(note));
   log_sitting(result, differences(stored.provenance, provenance));
   return result;
 }

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/records/merge.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/records/open_result.hpp"
+#include "engine/records/shard.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+namespace montecarta {
+namespace {
+
+namespace fs = std::filesystem;
+
+void expect_mergeable(const fs::path& out, const std::vector<fs::path>& shards, Existing existing) {
+  std::error_code ignored;
+  if (shards.empty()) throw StudyError(out.string() + ": no shards to merge: name at least one");
+  for (const fs::path& shard : shards) {
+    if (fs::equivalent(out, shard, ignored))
+      throw StudyError(out.string() +
+                       ": is one of the shards: choose another name for the merged file");
+  }
+  if (existing == Existing::refuse && fs::exists(out, ignored)) {
+    throw StudyError(out.string() +
+                     ": exists (nothing is overwritten unasked): add --force to replace it, or "
+                     "choose another path");
+  }
+}
+
+/// Opens every shard and makes sure that all are of one study.
+std::vector<Shard> open_shards(const std::vector<fs::path>& paths, ResultDescription& first) {
+  std::vector<Shard> shards;
+  for (const fs::path& path : paths) {
+    ResultDescription description = describe_shard(path);
+    if (shards.empty()) first = description;
+    if (const auto different = difference(first, description, path)) throw StudyError(*different);
+    shards.push_back(make_shard(path, description));
+  }
+  return shards;
+}
+
+/// "3:5, 8:9" for the runs 3, 4 and 8.
+std::string ranges(const std::vector<std::uint64_t>& runs) {
+  std::string text;
+  for (std::size_t begin = 0, end = 0; begin < runs.size(); begin = end) {
+    while (end < runs.size() && runs[end] == runs[begin] + (end - begin)) ++end;
+    text += (text.empty() ? "" : ", ") + std::to_string(runs[begin]) + ":" +
+            std::to_string(runs[end - 1] + 1);
+  }
+  return text;
+}
+
+/// For every run of the study which shard gives it. Runs held twice must be equal.
+std::vector<std::size_t> choose_sources(const std::vector<Shard>& shards, std::uint64_t runs,
+                                        MergeSummary& summary) {
+  constexpr std::size_t none = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> source(runs, none);
+  for (std::size_t s = 0; s < shards.size(); ++s) {
+    for (std::uint64_t run : shards[s].complete_runs) {
+      if (source.at(run) == none) {
+        source[run] = s;
+      } else {
+        expect_equal(shards[source[run]], shards[s], run);
+        ++summary.overlapping;
+      }
+    }
+  }
+  std::vector<std::uint64_t> missing;
+  for (std::uint64_t run = 0; run < runs; ++run) {
+    if (source[run] == none) missing.push_back(run);
+  }
+  if (missing.empty()) return source;
+  throw StudyError("merge: runs " + ranges(missing) + " are in none of the shards (" +
+                   std::to_string(missing.size()) + " of " + std::to_string(runs) +
+                   " missing; nothing was written): compute them with 'montecarta run "
+                   "STUDY.ini -o SHARD.h5 --runs A:B', then merge again");
+}
+
+/// The description of the whole study: that of the first shard with all runs.
+ResultDescription whole_study(ResultDescription description, std::size_t n_shards) {
+  description.runs.resize(description.study_runs);
+  std::iota(description.runs.begin(), description.runs.end(), 0U);
+  description.provenance.emplace_back(
+      "merged_from", std::to_string(n_shards) + " shards; the facts here are the first one's");
+  return description;
+}
+
+void note_builds(const std::vector<Shard>& shards, MergeSummary& summary) {
+  std::set<std::string> seen;
+  for (const Shard& shard : shards) {
+    for (const std::string& note : build_differences(shards.front().provenance, shard.provenance)) {
+      if (seen.insert(note).second) summary.notes.push_back(note);
+    }
+  }
+}
+
+void copy_runs(const std::vector<Shard>& shards, const std::vector<std::size_t>& source,
+               const PosixFile& file, const ResultSlabs& slabs, MergeSummary& summary) {
+  std::vector<std::byte> buffer;
+  for (std::size_t s = 0; s < shards.size(); ++s) {
+    const PosixFile from(shards[s].path, PosixFile::Mode::read);
+    for (std::uint64_t run : shards[s].complete_runs) {
+      if (source[run] != s) continue;
+      expect_whole(from, shards[s], run, buffer);
+      summary.failed += copy_run(from, shards[s], run, file, slabs);
+    }
+  }
+  double seconds = 0.0;
+  for (const Shard& shard : shards) seconds += shard.wall_seconds;
+  file.write_at(slabs.wall_seconds.offset, std::as_bytes(std::span(&seconds, 1)));
+}
+
+}  // namespace
+
+MergeSummary merge_results(const fs::path& out, const std::vector<fs::path>& paths,
+                           Existing existing) {
+  expect_mergeable(out, paths, existing);
+  ResultDescription description;
+  const std::vector<Shard> shards = open_shards(paths, description);
+  MergeSummary summary;
+  summary.runs = description.study_runs;
+  summary.cells = description.cells.size();
+  const auto source = choose_sources(shards, description.study_runs, summary);
+  note_builds(shards, summary);
+  fs::path temporary = out;
+  temporary += ".merging";
+  PosixFile file = lay_out_new(temporary, whole_study(description, shards.size()));
+  try {
+    copy_runs(shards, source, file, find_slabs(temporary, description), summary);
+    file.sync();
+    summary.bytes = file.size();
+    file.rename(
+        out, existing == Existing::replace ? PosixFile::Target::replace : PosixFile::Target::keep);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    throw;
+  }
+  return summary;
+}
+
+}  // namespace montecarta

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/records/result_slabs.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace montecarta {
+
+/// What a merge keeps in mind of one shard: nothing that grows with the size of its runs.
+struct Shard {
+  std::filesystem::path path;
+  ResultSlabs slabs;
+  std::uint64_t first_run = 0;               ///< number of the run at run index 0
+  std::vector<std::uint64_t> complete_runs;  ///< numbers of the runs of which no cell is missing
+  TextPairs provenance;
+  double wall_seconds = 0.0;  ///< [s]
+
+  std::size_t index(std::uint64_t run) const { return run - first_run; }
+};
+
+/// Throws StudyError where the file at `path` is no result.
+ResultDescription describe_shard(const std::filesystem::path& path);
+Shard make_shard(const std::filesystem::path& path, const ResultDescription& description);
+
+/// Throws StudyError where the two shards hold different bytes for a run they both have.
+void expect_equal(const Shard& a, const Shard& b, std::uint64_t run);
+/// Throws RunError where a run does not fit its fingerprints.
+void expect_whole(const PosixFile& file, const Shard& shard, std::uint64_t run,
+                  std::vector<std::byte>& buffer);
+/// Copies all cells of a run and its true path to a file of the whole study; tells how many cells
+/// failed in it.
+std::uint64_t copy_run(const PosixFile& from, const Shard& shard, std::uint64_t run,
+                       const PosixFile& to, const ResultSlabs& slabs);
+
+}  // namespace montecarta
