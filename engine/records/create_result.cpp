@@ -76,8 +76,8 @@ PosixFile lay_out_new(const fs::path& path, const ResultDescription& description
 
 OpenResult create_result(const fs::path& path, const StudyPlan& plan, const Provenance& provenance,
                          Existing existing) {
-  if (existing == Existing::refuse) refuse_existing(path);
   if (is_folder(path)) throw StudyError(path.string() + ": is a folder: name a file in it");
+  if (existing == Existing::refuse) refuse_existing(path);
   const ResultDescription description = describe(plan, provenance);
   std::optional<PosixFile> replaced;  // its lock proves that nobody writes the work we replace
   if (is_there(part_of(path))) replaced.emplace(part_of(path), PosixFile::Mode::write).lock();

@@ -139,6 +139,12 @@ bool has(const Handle& parent, const std::string& name) {
          0;
 }
 
+bool is_group(const Handle& parent, const std::string& name) {
+  const hid_t opened = H5Oopen(parent.id(), name.c_str(), H5P_DEFAULT);
+  const Handle object(detail::check(opened, "open", parent, name));
+  return H5Iget_type(object.id()) == H5I_GROUP;
+}
+
 std::vector<std::string> members(const Handle& group) {
   std::vector<std::string> names;
   herr_t status =

@@ -90,7 +90,7 @@ StoredCell read_cell(const h5::Handle& cells, const std::string& label) {
   cell.particles = h5::numbers(group, "particles").at(0);
   cell.settings = h5::texts(h5::open_group(group, "settings"));
   for (const std::string& name : h5::members(group)) {
-    if (name == "settings") continue;
+    if (h5::is_group(group, name)) continue;
     if (auto column = column_of(group, name)) cell.columns.push_back(*std::move(column));
   }
   return cell;

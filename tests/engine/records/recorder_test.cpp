@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/records/recorder.hpp"
+
+#include "tests/doubles/scripted_result.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace montecarta {
+namespace {
+
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::IsNan;
+
+std::vector<std::string> names(const RecordLayout& layout) {
+  std::vector<std::string> names;
+  for (const Column& column : layout.columns()) names.push_back(column.name);
+  return names;
+}
+
+/// Asks for nothing but what it was told may be asked for.
+class StrictFilter : public ScriptedFilter {
+ public:
+  using ScriptedFilter::ScriptedFilter;
+  void particles(const ParticleColumns& columns) const override {
+    EXPECT_THAT(columns.pose, IsEmpty());
+    EXPECT_THAT(columns.log_weight, IsEmpty());
+    ScriptedFilter::particles(columns);
+  }
+  void map(std::span<std::optional<LandmarkEstimate>>) const override {
+    ADD_FAILURE() << "nobody asked for a map";
+  }
+};
+
+TEST(RecordLayout, HoldsWhatWasAskedFor) {
+  StudyPlan plan = small_result_plan();
+  plan.columns = {.covariance = false, .ancestry = false};
+  const RecordLayout least(plan.cells[0], plan.columns, plan.drives->itinerary());
+  EXPECT_THAT(names(least), ElementsAre("pose_mean", "ess", "resampled", "log_likelihood", "nis",
+                                        "nis_dof", "numerical_faults"));
+  plan.columns = {};
+  plan.cells[0].mixture = false;
+  const RecordLayout usual(plan.cells[0], plan.columns, plan.drives->itinerary());
+  EXPECT_FALSE(usual.find("pose_mean_mixture"));
+  EXPECT_TRUE(usual.find("ancestor"));
+}
+
+TEST(RecordLayout, HasNoParticleColumnsForAKalmanFilter) {
+  StudyPlan plan = small_result_plan();
+  plan.cells[0].particles = 0;
+  const RecordLayout layout(plan.cells[0], plan.columns, plan.drives->itinerary());
+  EXPECT_FALSE(layout.find("ancestor"));
+  EXPECT_FALSE(layout.find("particle_pose"));
+  EXPECT_TRUE(layout.find("map_mean"));
+}
+
+TEST(RecordLayout, WidensAncestorsWhereSixteenBitsDoNotReach) {
+  StudyPlan plan = small_result_plan();
+  for (auto [particles, element] :
+       {std::pair(65535U, Element::u16), std::pair(65536U, Element::u32)}) {
+    plan.cells[0].particles = particles;
+    const RecordLayout layout(plan.cells[0], plan.columns, plan.drives->itinerary());
+    EXPECT_EQ(layout.columns()[*layout.find("ancestor")].element, element) << particles;
+  }
+}
+
+TEST(RecordLayout, ColumnsDoNotOverlap) {
+  const StudyPlan plan = small_result_plan();
+  const RecordLayout layout(plan.cells[0], plan.columns, plan.drives->itinerary());
+  for (std::size_t c = 0; c + 1 < layout.columns().size(); ++c) {
+    EXPECT_EQ(layout.offset(c) % 64, 0U);
+    EXPECT_GE(layout.offset(c + 1), layout.offset(c) + layout.columns()[c].bytes());
+  }
+  EXPECT_GE(layout.bytes(),
+            layout.offset(layout.columns().size() - 1) + layout.columns().back().bytes());
+}
+
+TEST(Recorder, NeverAsksForAColumnThatNobodyWants) {
+  StudyPlan plan = small_result_plan();
+  plan.columns = {.covariance = true, .ancestry = true};
+  const RecordLayout layout(plan.cells[0], plan.columns, plan.drives->itinerary());
+  RunRecord record(layout);
+  Recorder recorder(record);
+  StrictFilter filter({.particles = 4});
+  filter.start({});
+  recorder.after_scan(filter, 0);
+  recorder.after_step(filter, 3);
+  EXPECT_THAT(record.column<std::uint16_t>(*layout.find("ancestor")).first(4),
+              ElementsAre(0, 1, 2, 3));
+}
+
+TEST(Recorder, LeavesNaNWhereNothingWasRecorded) {
+  const StudyPlan plan = small_result_plan();
+  const RecordLayout layout(plan.cells[0], plan.columns, plan.drives->itinerary());
+  RunRecord record(layout);
+  Drive drive;
+  plan.drives->generate(0, drive);
+  fill_record(plan, 0, 0, drive, record);
+  record.clear();
+  for (std::size_t c = 0; c < layout.columns().size(); ++c) {
+    if (layout.columns()[c].element == Element::f64) {
+      EXPECT_THAT(record.column<double>(c), Each(IsNan())) << layout.columns()[c].name;
+    } else {
+      EXPECT_THAT(record.bytes(c), Each(std::byte{0})) << layout.columns()[c].name;
+    }
+  }
+  EXPECT_EQ(record.status(), RunStatus::missing);
+}
+
+TEST(Recorder, PutsCovariancesAndMapsWhereTheyBelong) {
+  const StudyPlan plan = small_result_plan();
+  const RecordLayout layout(plan.cells[0], plan.columns, plan.drives->itinerary());
+  RunRecord record(layout);
+  Drive drive;
+  plan.drives->generate(0, drive);
+  fill_record(plan, 0, 0, drive, record);
+  EXPECT_THAT(record.column<double>(*layout.find("pose_covariance")).subspan(9 * 5, 9),
+              ElementsAre(1, 0, 0, 0, 1, 0, 0, 0, 1));
+  const auto seen = record.column<std::uint8_t>(*layout.find("map_seen"));
+  const auto mean = record.column<double>(*layout.find("map_mean"));
+  EXPECT_THAT(seen.first(6),
+              ElementsAre(0, 0, 0, 1, 0, 0));  // run 0 sees nothing, then one landmark
+  EXPECT_TRUE(std::isnan(mean[2]));
+  EXPECT_EQ(mean[2 * 3 + 1], 0.0);
+}
+
+TEST(RunRecord, FingerprintTellsEveryBitApart) {
+  const StudyPlan plan = small_result_plan();
+  const RecordLayout layout(plan.cells[0], plan.columns, plan.drives->itinerary());
+  RunRecord record(layout);
+  Drive drive;
+  plan.drives->generate(0, drive);
+  fill_record(plan, 0, 0, drive, record);
+  const std::uint64_t whole = record.fingerprint();
+  for (std::size_t c = 0; c < layout.columns().size(); ++c) {
+    auto* last = const_cast<std::byte*>(&record.bytes(c).back());
+    *last ^= std::byte{1};
+    EXPECT_NE(record.fingerprint(), whole) << layout.columns()[c].name;
+    *last ^= std::byte{1};
+  }
+  EXPECT_EQ(record.fingerprint(), whole);
+  record.mark_failed(1, "", 0.0);
+  EXPECT_NE(record.fingerprint(), whole);
+}
+
+}  // namespace
+}  // namespace montecarta

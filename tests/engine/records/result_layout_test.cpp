@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/records/result_layout.hpp"
+
+#include "engine/records/h5.hpp"
+#include "tests/doubles/scratch_folder.hpp"
+#include "tests/doubles/scripted_result.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+namespace montecarta {
+namespace {
+
+std::string type_name(const h5::Handle& dataset) {
+  const auto element = h5::element(dataset);
+  if (!element) return "text";
+  constexpr const char* names[] = {"f64", "u8", "u16", "u32", "u64"};
+  return names[static_cast<std::size_t>(*element)];
+}
+
+void list_attributes(const h5::Handle& object, const std::string& indent, std::ostream& out) {
+  for (const auto& [name, value] : h5::texts(object)) {
+    if (name != "CLASS" && name != "NAME") out << indent << "  @" << name << " = " << value << "\n";
+  }
+}
+
+void list(const h5::Handle& group, const std::string& path, std::ostream& out) {
+  out << path << "/\n";
+  list_attributes(group, "", out);
+  for (const std::string& name : h5::members(group)) {
+    if (h5::is_group(group, name)) {
+      list(h5::open_group(group, name), path + "/" + name, out);
+      continue;
+    }
+    const h5::Handle dataset = h5::open_dataset(group, name);
+    out << path << "/" << name << " " << type_name(dataset);
+    for (auto length : h5::shape(dataset)) out << " x " << length;
+    out << (h5::is_scale(dataset) ? " (scale)\n" : "\n");
+    list_attributes(dataset, "", out);
+  }
+}
+
+/// Renewed on purpose only: MONTECARTA_UPDATE_GOLDEN=1 rewrites and fails.
+TEST(ResultLayout, IsThatOfTheGoldenFile) {
+  const std::string golden =
+      std::string(MONTECARTA_SOURCE_DIR) + "/tests/engine/records/golden/result_1_0.txt";
+  const ScratchFolder folder;
+  StudyPlan plan = small_result_plan();
+  plan.cells[1].particles = 0;  // a Kalman filter
+  plan.cells[1].mixture = false;
+  lay_out(folder / "out.h5", describe(plan, {{"host", "nowhere"}}));
+  std::ostringstream listing;
+  list(h5::open_file(folder / "out.h5"), "", listing);
+  if (std::getenv("MONTECARTA_UPDATE_GOLDEN") != nullptr) {
+    std::ofstream(golden) << listing.str();
+    FAIL() << golden
+           << " was rewritten: look at the difference, then test again without "
+              "MONTECARTA_UPDATE_GOLDEN";
+  }
+  std::ifstream stream(golden);
+  const std::string expected((std::istreambuf_iterator<char>(stream)), {});
+  EXPECT_EQ(listing.str(), expected) << "the format changed: raise its version (analysis/FORMAT.md "
+                                        "says which part), then renew the golden file";
+}
+
+TEST(ResultLayout, EveryNumberHasUnitNameAndAxes) {
+  const ScratchFolder folder;
+  const StudyPlan plan = small_result_plan();
+  lay_out(folder / "out.h5", describe(plan, {}));
+  const h5::Handle file = h5::open_file(folder / "out.h5");
+  const h5::Handle cell = h5::open_group(file, "cells/scripted_m4");
+  for (const std::string& name : h5::members(cell)) {
+    if (name == "settings") continue;
+    const h5::Handle dataset = h5::open_dataset(cell, name);
+    EXPECT_FALSE(h5::text(dataset, "units").empty()) << name;
+    EXPECT_FALSE(h5::text(dataset, "long_name").empty()) << name;
+    if (!h5::is_scale(dataset)) {
+      EXPECT_EQ(h5::text(dataset, "dimension_order").substr(0, 3), "run") << name;
+    }
+    EXPECT_TRUE(h5::place(dataset)) << name << " must lie in one piece";
+  }
+}
+
+}  // namespace
+}  // namespace montecarta

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Law: the readers that people have open a result file. Run with the real programs from Debian.
+#include "engine/records/result_file.hpp"
+#include "tests/doubles/reader_program.hpp"
+#include "tests/doubles/scratch_folder.hpp"
+#include "tests/doubles/scripted_result.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+namespace montecarta {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class ResultReaders : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ResultWriter writer =
+        ResultWriter::create(path_, plan_, {{"host", "nowhere"}}, Existing::refuse);
+    store_run(writer, plan_, 0);
+    const RecordLayout layout(plan_.cells[0], plan_.columns, plan_.drives->itinerary());
+    RunRecord record(layout);
+    record.mark_failed(17, "weights vanished", 0.5);
+    writer.write(0, 1, record);
+  }
+  /// One run is missing: the file is work in progress, which must open as well.
+  std::string file() const { return path_.string() + ".part"; }
+  std::string mean_x() const {
+    const ResultFile result(file());
+    std::vector<double> mean(24 * 3);
+    result.read(result.cells()[0], "pose_mean", 0, mean);
+    std::ostringstream text;
+    text.precision(17);
+    text << mean[3 * 23];
+    return text.str();
+  }
+  ProgramOutcome python(const std::string& script) const {
+    std::ofstream(folder_ / "script.py") << script;
+    return run_program("HDF5_USE_FILE_LOCKING= /usr/bin/python3 " +
+                       (folder_ / "script.py").string());
+  }
+
+  ScratchFolder folder_;
+  std::filesystem::path path_ = folder_ / "out.h5";
+  StudyPlan plan_ = small_result_plan();
+};
+
+TEST_F(ResultReaders, H5py) {
+  if (!python_has("h5py")) GTEST_SKIP() << "h5py (python3-h5py) is not installed";
+  const auto outcome = python("import h5py\nf = h5py.File('" + file() + R"(', 'r')
+c = f['cells/scripted_m4']
+assert f.attrs['filetype'] == 'montecarta-results'
+assert list(f.attrs['format_version']) == [1, 0]
+assert list(c['status'][:]) == [1, 2, 0]
+assert c['failure_reason'][1].tobytes().rstrip(b'\0').decode() == 'weights vanished'
+assert c['pose_mean'].dims[1].keys() == ['time'] and c['pose_mean'].attrs['units'] == 'm, m, rad'
+assert c['ancestor'].dtype == 'uint16'
+assert f['provenance/study'][()].decode().startswith('[study]')
+assert abs(c['pose_mean'][0, -1, 0] - )" +
+                              mean_x() + R"() < 1e-15
+)");
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+}
+
+TEST_F(ResultReaders, Xarray) {
+  if (!python_has("xarray, netCDF4"))
+    GTEST_SKIP() << "python3-xarray, python3-netcdf4 are not installed";
+  const auto outcome = python("import xarray\nf = '" + file() + R"('
+root = xarray.open_dataset(f)
+assert root.time.values[-1] == 24 * 0.025 and root.time.attrs['units'] == 's'
+for name in ('scripted_m4', 'scripted_m3'):
+    cell = xarray.open_dataset(f, group='cells/' + name).load()
+    assert cell.pose_covariance.dims == ('run', 'time', 'component', 'component_column')
+    assert cell.ancestor.dims == ('run', 'scan', 'particle')
+truth = xarray.open_dataset(f, group='truth').load()
+cell = xarray.open_dataset(f, group='cells/scripted_m4').load()
+assert (cell.pose_mean - truth.pose).sizes['component'] == 3
+)");
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+}
+
+TEST_F(ResultReaders, Ncdump) {
+  if (!installed("ncdump")) GTEST_SKIP() << "ncdump (netcdf-bin) is not installed";
+  const auto outcome = run_program("ncdump " + file());  // data too, not only the header
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("double pose_mean(run, time, component)"),
+                                    HasSubstr("status = 1, 2, 0")));
+}
+
+TEST_F(ResultReaders, Octave) {
+  if (!installed("octave")) GTEST_SKIP() << "octave is not installed";
+  std::ofstream(folder_ / "script.m")
+      << "s = load('-hdf5', '" << file() << R"(');
+c = s.cells.scripted_m4;
+assert(double(c.status(:))', [1 2 0]);
+assert(size(c.pose_covariance), [3 3 24 3]);   % column-first: dimension_order turned round
+assert(strtrim(char(c.failure_reason(1:16, 2)')), 'weights vanished');
+assert(class(c.ancestor), 'uint16');
+assert(abs(c.pose_mean(1, end, 1) - )"
+      << mean_x() << ") < 1e-15);\nassert(s.provenance.study(1:7), '[study]');\n";
+  const auto outcome = run_program("HDF5_USE_FILE_LOCKING= octave --no-gui --norc " +
+                                   (folder_ / "script.m").string());
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+}
+
+TEST_F(ResultReaders, H5dump) {
+  if (!installed("h5dump")) GTEST_SKIP() << "h5dump (hdf5-tools) is not installed";
+  const auto outcome = run_program("h5dump -d /cells/scripted_m4/status " + file());
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("H5T_STD_U8LE"), HasSubstr("(0): 1, 2, 0")));
+}
+
+}  // namespace
+}  // namespace montecarta

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/records/result_writer.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/records/result_file.hpp"
+#include "tests/doubles/reader_program.hpp"
+#include "tests/doubles/scratch_folder.hpp"
+#include "tests/doubles/scripted_result.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+namespace montecarta {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class ResultWriterTest : public ::testing::Test {
+ protected:
+  ResultWriter create(Existing existing = Existing::refuse) const {
+    return ResultWriter::create(path_, plan_, {}, existing);
+  }
+  ResultWriter resume() const { return ResultWriter::resume(path_, plan_, {}); }
+  std::string bytes_of(const std::filesystem::path& path) const {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+
+  ScratchFolder folder_;
+  std::filesystem::path path_ = folder_ / "out.h5";
+  std::filesystem::path part_ = folder_ / "out.h5.part";
+  StudyPlan plan_ = small_result_plan();
+};
+
+template <class Error, class Action>
+std::string message(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "nothing of that kind was thrown";
+  return {};
+}
+
+TEST_F(ResultWriterTest, LeavesOnlyTheFinalNameWhenFinished) {
+  write_result(path_, plan_);
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+    names.push_back(entry.path().filename());
+  EXPECT_THAT(names, ElementsAre("out.h5"));
+}
+
+TEST_F(ResultWriterTest, KeepsWorkInProgressReadable) {
+  ResultWriter writer = create();
+  store_run(writer, plan_, 1);
+  const ResultFile file(part_);
+  EXPECT_THAT(file.status(file.cells()[0]),
+              ElementsAre(RunStatus::missing, RunStatus::complete, RunStatus::missing));
+  EXPECT_FALSE(std::filesystem::exists(path_));
+}
+
+TEST_F(ResultWriterTest, PutsTheStatusBehindAllData) {
+  // Law: a run whose status is set is whole. With the record gone wrong before status, it stays
+  // missing.
+  ResultWriter writer = create();
+  const RecordLayout layout(plan_.cells[0], plan_.columns, plan_.drives->itinerary());
+  RunRecord record(layout);
+  EXPECT_THROW(writer.write(0, 0, record), std::logic_error);  // neither complete nor failed
+  EXPECT_EQ(writer.status(0, 0), RunStatus::missing);
+  record.mark_complete(1.0);
+  writer.write(0, 0, record);
+  EXPECT_EQ(writer.status(0, 0), RunStatus::complete);
+  EXPECT_THROW(writer.write(0, 0, record), std::logic_error);  // twice
+}
+
+TEST_F(ResultWriterTest, StoresAFailedRunWithStepAndReason) {
+  ResultWriter writer = create();
+  const RecordLayout layout(plan_.cells[0], plan_.columns, plan_.drives->itinerary());
+  RunRecord record(layout);
+  record.mark_failed(17, "weights vanished", 0.5);
+  writer.write(0, 1, record);
+  record.mark_failed(3, std::string(127, 'x') + "\u00e9",
+                     0.5);  // the last character would be cut in two
+  writer.write(0, 2, record);
+  const ResultFile file(part_);
+  const StoredCell& cell = file.cells()[0];
+  EXPECT_EQ(file.status(cell)[1], RunStatus::failed);
+  EXPECT_THAT(file.failure_reasons(cell),
+              ElementsAre("", "weights vanished", std::string(127, 'x')));
+  EXPECT_THAT(file.failure_steps(cell), ElementsAre(0U, 17U, 3U));
+}
+
+TEST_F(ResultWriterTest, ResumesWithWhatIsThere) {
+  {
+    ResultWriter writer = create();
+    store_run(writer, plan_, 0);
+    store_run(writer, plan_, 2);
+    writer.note_wall_seconds(1.5);
+  }
+  ResultWriter writer = resume();
+  EXPECT_EQ(writer.status(1, 0), RunStatus::complete);
+  EXPECT_EQ(writer.status(1, 1), RunStatus::missing);
+  EXPECT_TRUE(writer.notes().empty());
+  store_run(writer, plan_, 1);
+  writer.note_wall_seconds(2.0);
+  writer.finish();
+  EXPECT_EQ(ResultFile(path_).wall_seconds(), 3.5);
+}
+
+TEST_F(ResultWriterTest, ResumedFileEqualsOneWrittenAtOnce) {
+  if (!installed("h5diff")) GTEST_SKIP() << "h5diff (hdf5-tools) is not installed";
+  {
+    ResultWriter writer = create();
+    store_run(writer, plan_, 2);
+  }
+  {
+    ResultWriter writer = resume();
+    store_run(writer, plan_, 0);
+    store_run(writer, plan_, 1);
+    writer.finish();
+  }
+  write_result(folder_ / "once.h5", plan_);
+  const std::string diff = "h5diff " + path_.string() + " " + (folder_ / "once.h5").string();
+  EXPECT_EQ(std::system((diff + " /cells /cells").c_str()), 0);
+  EXPECT_EQ(std::system((diff + " /truth /truth").c_str()), 0);
+}
+
+TEST_F(ResultWriterTest, BeginsWhereThereIsNothingToResume) {
+  ResultWriter writer = resume();
+  EXPECT_EQ(writer.status(0, 0), RunStatus::missing);
+  EXPECT_TRUE(std::filesystem::exists(part_));
+}
+
+TEST_F(ResultWriterTest, ResumingAFinishedResultFindsNothingToDo) {
+  write_result(path_, plan_);
+  const std::string before = bytes_of(path_);
+  ResultWriter writer = resume();
+  EXPECT_EQ(writer.status(1, 2), RunStatus::complete);
+  writer.note_wall_seconds(1.0);
+  writer.finish();
+  EXPECT_EQ(bytes_of(path_), before);
+}
+
+TEST_F(ResultWriterTest, ComputesTornRunsAgain) {
+  {
+    ResultWriter writer = create();
+    for (std::uint64_t run = 0; run < 3; ++run) store_run(writer, plan_, run);
+  }
+  std::fstream file(part_, std::ios::binary | std::ios::in | std::ios::out);
+  std::string content = bytes_of(part_);
+  // A power cut that lost one page: flip the first mean of run 1 of the first cell.
+  Drive drive;
+  plan_.drives->generate(1, drive);
+  const RecordLayout layout(plan_.cells[0], plan_.columns, plan_.drives->itinerary());
+  RunRecord record(layout);
+  fill_record(plan_, 0, 1, drive, record);
+  const auto mean = record.bytes(*layout.find("pose_mean"));
+  const auto at =
+      content.find(std::string(reinterpret_cast<const char*>(mean.data()), mean.size()));
+  ASSERT_NE(at, std::string::npos);
+  file.seekp(static_cast<std::streamoff>(at));
+  file.write("torn", 4);
+  file.close();
+  ResultWriter writer = resume();
+  EXPECT_EQ(writer.status(0, 0), RunStatus::complete);
+  EXPECT_EQ(writer.status(0, 1), RunStatus::missing);
+  EXPECT_EQ(writer.status(1, 1), RunStatus::complete);
+  EXPECT_THAT(writer.notes(), ElementsAre(HasSubstr("1 stored runs were damaged")));
+}
+
+TEST_F(ResultWriterTest, RefusesWhatIsThereUnlessForced) {
+  write_result(path_, plan_);
+  EXPECT_THAT(message<StudyError>([&] { create(); }),
+              AllOf(HasSubstr("out.h5: exists"), HasSubstr("--force")));
+  const std::string before = bytes_of(path_);
+  {
+    ResultWriter writer = create(Existing::replace);
+    EXPECT_EQ(bytes_of(path_), before) << "the old result goes only when the new one is complete";
+  }
+  EXPECT_THAT(message<StudyError>([&] { create(); }), HasSubstr("--force"));
+}
+
+TEST_F(ResultWriterTest, RefusesUnfinishedWorkUnlessForced) {
+  {
+    ResultWriter writer = create();
+    store_run(writer, plan_, 0);
+  }
+  EXPECT_THAT(message<StudyError>([&] { create(); }),
+              AllOf(HasSubstr(".part"), HasSubstr("--resume")));
+  EXPECT_EQ(create(Existing::replace).status(0, 0), RunStatus::missing);
+}
+
+TEST_F(ResultWriterTest, RefusesAnotherStudyAndOtherRuns) {
+  {
+    ResultWriter writer = create();
+    store_run(writer, plan_, 0);
+  }
+  const std::string before = bytes_of(part_);
+  StudyPlan other = plan_;
+  other.resolved_text += "seed = 8\n";
+  EXPECT_THAT(message<StudyError>([&] { ResultWriter::resume(path_, other, {}); }),
+              AllOf(HasSubstr("another study"), HasSubstr("SHA-256")));
+  EXPECT_THAT(
+      message<StudyError>([&] { ResultWriter::resume(path_, part_of_plan(plan_, 1, 3), {}); }),
+      AllOf(HasSubstr("holds runs 0:3"), HasSubstr("asked for: 1:3")));
+  EXPECT_EQ(bytes_of(part_), before);
+}
+
+TEST_F(ResultWriterTest, RefusesAFileThatAnotherProcessWrites) {
+  ResultWriter writer = create();
+  EXPECT_THAT(message<StudyError>([&] { resume(); }), HasSubstr("another montecarta process"));
+  EXPECT_THAT(message<StudyError>([&] { create(Existing::replace); }),
+              HasSubstr("another montecarta process"));
+}
+
+TEST_F(ResultWriterTest, RefusesACutFile) {
+  {
+    ResultWriter writer = create();
+    store_run(writer, plan_, 0);
+  }
+  std::filesystem::resize_file(part_, std::filesystem::file_size(part_) / 2);
+  EXPECT_THAT(message<StudyError>([&] { resume(); }),
+              AllOf(HasSubstr("cannot be resumed"), HasSubstr("--force")));
+}
+
+TEST_F(ResultWriterTest, NamesAPathThatCannotBeWritten) {
+  path_ = folder_ / "nowhere" / "out.h5";
+  EXPECT_THAT(message<StudyError>([&] { create(); }),
+              AllOf(HasSubstr("nowhere"), HasSubstr("make the folder")));
+  path_ = folder_.path();
+  EXPECT_THAT(message<StudyError>([&] { create(); }), HasSubstr("is a folder"));
+}
+
+TEST_F(ResultWriterTest, RefusesMoreThanTheDiskHoldsAndMoreRunsThanAFile) {
+  plan_ = small_result_plan(9'000'000, 40'000);
+  EXPECT_THAT(message<RunError>([&] { create(); }), HasSubstr("are needed"));
+  plan_ = small_result_plan(1'000'000'000'000);
+  EXPECT_THAT(message<StudyError>([&] { create(); }), HasSubstr("--shard"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+}
+
+TEST_F(ResultWriterTest, LogsAResumptionByAnotherBuild) {
+  {
+    ResultWriter writer =
+        ResultWriter::create(path_, plan_, {{"git", "abc"}, {"host", "a"}}, Existing::refuse);
+  }
+  const ResultWriter writer = ResultWriter::resume(path_, plan_, {{"git", "def"}, {"host", "a"}});
+  EXPECT_THAT(writer.notes(), ElementsAre(AllOf(HasSubstr("abc"), HasSubstr("def"))));
+  EXPECT_THAT(bytes_of(part_), HasSubstr("git=def\n"));
+}
+
+}  // namespace
+}  // namespace montecarta
