@@ -71,6 +71,7 @@ AssociationSettings association_of(const Settings& s) {
   association.gate = gate_of(s.number(in, "gate_sigma"));
   association.new_gate = gate_of(s.number(in, "new_gate_sigma"));
   association.log_new_density_offset = s.number(in, "log_new_density_offset");
+  association.most_landmarks = s.count(in, "most_landmarks");
   if (association.new_gate < association.gate) {
     throw StudyError(s.place(in, "new_gate_sigma") +
                      ": new_gate_sigma is below gate_sigma (a detection would be old "

@@ -5,8 +5,6 @@
 #include "engine/runs/pose.hpp"
 #include "filters/models/range_bearing.hpp"
 
-#include <Eigen/Core>
-
 namespace montecarta {
 
 /// Symmetric matrix over (x, y, heading).
@@ -16,11 +14,6 @@ struct Symmetric3 {
   Real xh{}, yh{};        ///< [m rad]
   Real hh{};              ///< [rad^2]
 };
-
-/// As a matrix.
-inline Eigen::Matrix3d symmetric(const Symmetric3<double>& P) {
-  return Eigen::Matrix3d{{P.xx, P.xy, P.xh}, {P.xy, P.yy, P.yh}, {P.xh, P.yh, P.hh}};
-}
 
 /// Symmetric matrix over (x, y) [m^2].
 template <class Real>

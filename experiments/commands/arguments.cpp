@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/commands/arguments.hpp"
+
+#include "engine/errors.hpp"
+#include "experiments/text/numbers.hpp"
+#include "experiments/text/words.hpp"
+
+#include <boost/program_options.hpp>
+
+#include <algorithm>
+
+namespace montecarta {
+namespace {
+
+namespace po = boost::program_options;
+using Texts = std::vector<std::string>;
+
+constexpr const char* kOperands = "operands";
+
+po::options_description described(const CommandSpec& spec) {
+  po::options_description all;
+  const auto add = [&](const OptionSpec& option) {
+    const std::string names = option.name + (option.letter.empty() ? "" : "," + option.letter);
+    if (option.values.empty()) {
+      all.add_options()(names.c_str(), po::value<bool>()->zero_tokens()->implicit_value(true));
+    } else if (option.values.size() == 1) {
+      all.add_options()(names.c_str(), po::value<Texts>()->composing());
+    } else {
+      all.add_options()(names.c_str(), po::value<Texts>()->multitoken()->composing());
+    }
+  };
+  std::ranges::for_each(spec.options, add);
+  all.add_options()(kOperands, po::value<Texts>());
+  return all;
+}
+
+Texts spellings_of(const CommandSpec& spec) {
+  Texts names{"--help"};
+  for (const OptionSpec& option : spec.options) names.push_back("--" + option.name);
+  return names;
+}
+
+po::parsed_options parsed(const CommandSpec& spec, const Texts& words,
+                          const po::options_description& all) {
+  const po::positional_options_description positional =
+      po::positional_options_description().add(kOperands, -1);
+  const int style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
+  try {
+    return po::command_line_parser(words).options(all).positional(positional).style(style).run();
+  } catch (const po::unknown_option& error) {
+    throw StudyError(error.get_option_name() + ": unknown option (montecarta " + spec.name +
+                     " has none of that name): " +
+                     nearest_spelling(error.get_option_name(), spellings_of(spec)));
+  } catch (const po::error& error) {
+    throw StudyError("montecarta " + spec.name + ": " + error.what() +
+                     " (see the options below --help): correct the command");
+  }
+}
+
+void check_count(const OptionSpec& option, std::size_t given, std::size_t times) {
+  if (times > 1 && !option.repeatable) {
+    throw StudyError("--" + option.name + ": given " + std::to_string(times) +
+                     " times (once is meant): remove all but one");
+  }
+  if (given == option.values.size() * times) return;
+  throw StudyError("--" + option.name + ": " + std::to_string(given) + " values (it takes " +
+                   std::to_string(option.values.size()) + "): write --" + option.name + " " +
+                   joined(option.values, " "));
+}
+
+}  // namespace
+
+Arguments::Arguments(const CommandSpec& spec, std::vector<std::string> words)
+    : words_(std::move(words)) {
+  const po::options_description all = described(spec);
+  std::map<std::string, std::size_t> times;
+  for (const auto& option : parsed(spec, words_, all).options) {
+    if (option.string_key == kOperands || option.position_key >= 0) {
+      operands_.insert(operands_.end(), option.value.begin(), option.value.end());
+      continue;
+    }
+    auto& values = values_[option.string_key];
+    values.insert(values.end(), option.value.begin(), option.value.end());
+    ++times[option.string_key];
+  }
+  for (const OptionSpec& option : spec.options) {
+    if (has(option.name)) check_count(option, values_[option.name].size(), times[option.name]);
+  }
+  check_operands(spec);
+}
+
+void Arguments::check_operands(const CommandSpec& spec) const {
+  std::size_t least = 0;
+  std::size_t most = 0;
+  Texts names;
+  for (const OperandSpec& operand : spec.operands) {
+    if (operands_.size() < least + operand.least) {
+      throw StudyError("montecarta " + spec.name + ": " + operand.name +
+                       " is missing (nothing to work on): see montecarta " + spec.name + " --help");
+    }
+    least += operand.least;
+    most = operand.most > 1000 ? operand.most : most + operand.most;
+    names.push_back(operand.name);
+  }
+  if (operands_.size() <= most) return;
+  throw StudyError(operands_[most] + ": stray argument (montecarta " + spec.name + " takes " +
+                   (names.empty() ? "options only" : joined(names, " ")) +
+                   "): remove it, or put its option before it");
+}
+
+std::optional<std::string> Arguments::text(const std::string& option) const {
+  const Texts all = texts(option);
+  return all.empty() ? std::nullopt : std::optional(all.front());
+}
+
+std::vector<std::string> Arguments::texts(const std::string& option) const {
+  const auto found = values_.find(option);
+  return found == values_.end() ? Texts{} : found->second;
+}
+
+std::optional<double> Arguments::number(const std::string& option, double least,
+                                        double most) const {
+  const auto given = text(option);
+  if (!given) return std::nullopt;
+  const auto value = to_number(*given);
+  if (value && *value >= least && *value <= most) return value;
+  throw StudyError("--" + option + " " + *given + ": not usable (a number from " + to_text(least) +
+                   " to " + to_text(most) + " is needed): correct it");
+}
+
+std::optional<std::uint64_t> Arguments::count(const std::string& option, std::uint64_t least,
+                                              std::uint64_t most) const {
+  const auto given = text(option);
+  if (!given) return std::nullopt;
+  const auto value = to_count(*given);
+  if (value && *value >= least && *value <= most) return value;
+  throw StudyError("--" + option + " " + *given + ": not usable (a whole number from " +
+                   std::to_string(least) + " to " + std::to_string(most) +
+                   " is needed): correct it");
+}
+
+std::string Arguments::choice(const std::string& option,
+                              const std::vector<std::string>& known) const {
+  const std::string given = text(option).value_or(known.front());
+  if (std::ranges::find(known, given) != known.end()) return given;
+  throw StudyError("--" + option + " " + given + ": not known (one of " + joined(known) +
+                   "): " + nearest_spelling(given, known));
+}
+
+}  // namespace montecarta

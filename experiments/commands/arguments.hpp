@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// One option of a command.
+struct OptionSpec {
+  std::string name;                 ///< without dashes
+  std::string letter;               ///< one letter, or ""
+  std::vector<std::string> values;  ///< names of what follows it; empty: a flag
+  std::string meaning;
+  bool repeatable = false;
+};
+
+/// What stands on a command's line besides options.
+struct OperandSpec {
+  std::string name;  ///< e.g. "STUDY.ini"
+  std::size_t least = 1;
+  std::size_t most = 1;
+};
+
+/// How a command is called; parsing and help come from this alone.
+struct CommandSpec {
+  std::string name;
+  std::string summary;                ///< one line
+  std::vector<OperandSpec> operands;  ///< of several only the last may repeat
+  std::vector<OptionSpec> options;
+  std::string details;  ///< the end of --help: examples
+};
+
+/// What a user typed behind a command's name, checked against its CommandSpec.
+class Arguments {
+ public:
+  /// Throws StudyError naming the nearest known spelling of what is unknown.
+  Arguments(const CommandSpec& spec, std::vector<std::string> words);
+
+  bool has(const std::string& option) const { return values_.contains(option); }
+  /// The value behind an option; nullopt where it is not given.
+  std::optional<std::string> text(const std::string& option) const;
+  /// All values behind an option, in the order given.
+  std::vector<std::string> texts(const std::string& option) const;
+  /// A number or whole number within limits; throws StudyError where it is none.
+  std::optional<double> number(const std::string& option, double least, double most) const;
+  std::optional<std::uint64_t> count(const std::string& option, std::uint64_t least,
+                                     std::uint64_t most) const;
+  /// One of `known`; the first where it is not given.
+  std::string choice(const std::string& option, const std::vector<std::string>& known) const;
+  /// As typed, in order.
+  const std::vector<std::string>& operands() const { return operands_; }
+  const std::vector<std::string>& words() const { return words_; }
+
+ private:
+  void check_operands(const CommandSpec& spec) const;
+
+  std::vector<std::string> words_;
+  std::map<std::string, std::vector<std::string>> values_;
+  std::vector<std::string> operands_;
+};
+
+/// "montecarta run STUDY.ini -o OUT.h5 [options]" and all below it.
+std::string help_text(const CommandSpec& spec);
+
+/// One word as a POSIX shell reads it back.
+std::string shell_quoted(const std::string& word);
+
+}  // namespace montecarta

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/records/record_layout.hpp"
+#include "engine/records/sha256.hpp"
+#include "experiments/commands/commands.hpp"
+#include "experiments/commands/plan_arguments.hpp"
+#include "experiments/commands/trial.hpp"
+#include "experiments/text/table.hpp"
+
+#include <algorithm>
+#include <iostream>
+
+namespace montecarta {
+namespace {
+
+struct Estimate {
+  double cpu_seconds = 0.0;
+  double disk = 0.0;        ///< [byte]
+  double per_thread = 0.0;  ///< [byte]
+};
+
+/// Prints one row a cell and adds up what they need.
+Estimate print_cells(const StudyPlan& plan) {
+  Drive drive;
+  plan.drives->generate(plan.first_run, drive);
+  const Itinerary& itinerary = plan.drives->itinerary();
+  const double runs = static_cast<double>(plan.runs_here());
+  Estimate total;
+  total.disk = runs * static_cast<double>(itinerary.steps() * 3 * sizeof(double));
+  total.per_thread = 2.0 * total.disk / runs;
+  std::vector<TableRow> rows{{"cell", "filter", "ms a run", "a run", "all runs"}};
+  for (const Cell& cell : plan.cells) {
+    const double seconds = trial_seconds(cell, plan, drive);
+    const double bytes = static_cast<double>(RecordLayout(cell, plan.columns, itinerary).bytes());
+    rows.push_back({cell.label, cell.long_name,
+                    std::to_string(std::max(1L, std::lround(seconds * 1e3))), bytes_text(bytes),
+                    bytes_text(bytes * runs)});
+    total.cpu_seconds += seconds * runs;
+    total.disk += bytes * runs;
+    total.per_thread += bytes;
+  }
+  std::cout << aligned(rows);
+  return total;
+}
+
+int check(const Arguments& arguments) {
+  const StudyPlan plan = plan_of(arguments);
+  const Itinerary& itinerary = plan.drives->itinerary();
+  const int threads = parallel_of(arguments).threads();
+  std::cout << plan.title << "\n"
+            << aligned(
+                   {{"study", plan.name + ", seed " + std::to_string(plan.seed) + ", SHA-256 " +
+                                  sha256(plan.resolved_text)},
+                    {"runs", std::to_string(plan.runs_here()) + " of " + std::to_string(plan.runs) +
+                                 " for each of " + std::to_string(plan.cells.size()) + " cells"},
+                    {"a run", std::to_string(itinerary.steps()) + " steps, " +
+                                  std::to_string(itinerary.scans()) + " scans, " +
+                                  duration_text(itinerary.step_time.back()) + " of driving, " +
+                                  std::to_string(itinerary.landmarks.size()) + " landmarks"}})
+            << "\n";
+  const Estimate total = print_cells(plan);
+  std::cout << "\n"
+            << aligned({{"time", "about " + duration_text(total.cpu_seconds / threads) + " on " +
+                                     std::to_string(threads) + " threads (by a short trial)"},
+                        {"memory", "about " + bytes_text(total.per_thread * threads + 3e7)},
+                        {"disk", bytes_text(total.disk)}});
+  if (arguments.has("text")) std::cout << "\n" << plan.resolved_text;
+  return kDone;
+}
+
+}  // namespace
+
+Command check_command() {
+  CommandSpec spec{.name = "check",
+                   .summary =
+                       "checks a study and prints its plan: cells, runs, steps, time, memory, "
+                       "disk; runs nothing",
+                   .operands = {{"STUDY.ini"}},
+                   .options = plan_options(),
+                   .details = {}};
+  spec.options.push_back({"text", "", {}, "print the study with every setting filled in, too"});
+  return {spec, check};
+}
+
+}  // namespace montecarta

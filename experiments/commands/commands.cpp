@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/commands/commands.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/records/provenance.hpp"
+#include "experiments/text/table.hpp"
+#include "experiments/text/words.hpp"
+
+#include <algorithm>
+#include <iostream>
+#include <new>
+
+namespace montecarta {
+namespace {
+
+std::string general_help(const std::vector<Command>& commands) {
+  std::vector<TableRow> rows;
+  for (const Command& command : commands) rows.push_back({command.spec.name, command.spec.summary});
+  return "montecarta: Monte Carlo consistency studies of SLAM filters\n\nusage: montecarta COMMAND "
+         "...\n\n" +
+         aligned(rows) +
+         "\nmontecarta COMMAND --help says more; montecarta --version names this build.\n"
+         "Begin with: montecarta run experiments/studies/first_study.ini -o first_study.h5\n";
+}
+
+const Command& find_command(const std::vector<Command>& commands, const std::string& name) {
+  const auto found =
+      std::ranges::find_if(commands, [&](const Command& c) { return c.spec.name == name; });
+  if (found != commands.end()) return *found;
+  std::vector<std::string> known;
+  for (const Command& command : commands) known.push_back(command.spec.name);
+  throw StudyError(name +
+                   ": unknown command (see montecarta --help): " + nearest_spelling(name, known));
+}
+
+bool asks_for_help(const std::vector<std::string>& words) {
+  return std::ranges::any_of(
+      words, [](const std::string& word) { return word == "--help" || word == "-h"; });
+}
+
+int dispatch(const std::vector<std::string>& words) {
+  const std::vector<Command> commands = all_commands();
+  if (words.empty()) {
+    std::cerr << general_help(commands);
+    return kWrongInput;
+  }
+  if (words[0] == "--help" || words[0] == "-h" || (words[0] == "help" && words.size() == 1)) {
+    std::cout << general_help(commands);
+    return kDone;
+  }
+  if (words[0] == "--version") {
+    std::cout << "montecarta " << program_version() << "\n";
+    return kDone;
+  }
+  const bool help_first = words[0] == "help";
+  const Command& command = find_command(commands, words[help_first ? 1 : 0]);
+  if (help_first || asks_for_help(words)) {
+    std::cout << help_text(command.spec);
+    return kDone;
+  }
+  return command.run(Arguments(command.spec, {words.begin() + 1, words.end()}));
+}
+
+int complain(const std::string& message, int code) {
+  std::cout.flush();
+  std::cerr << "montecarta: " << message << "\n";
+  return code;
+}
+
+}  // namespace
+
+std::vector<Command> all_commands() {
+  return {run_command(),     check_command(),  info_command(),   status_command(), merge_command(),
+          analyze_command(), report_command(), bounds_command(), list_command()};
+}
+
+int run_program(const std::vector<std::string>& words) {
+  try {
+    const int code = dispatch(words);
+    std::cout.flush();
+    return std::cout.good()
+               ? code
+               : complain("standard output cannot be written (closed or full): redirect it",
+                          kFailed);
+  } catch (const StudyError& error) {
+    return complain(error.what(), kWrongInput);
+  } catch (const std::bad_alloc&) {
+    return complain(
+        "out of memory (the study is too large for this machine): use fewer particles or "
+        "record.rate = scan",
+        kFailed);
+  } catch (const std::exception& error) {
+    return complain(error.what(), kFailed);
+  }
+}
+
+}  // namespace montecarta

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "experiments/commands/arguments.hpp"
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// Exit codes that users and scripts rely on; those of an interrupted study come from exit_code().
+enum ExitCode : int { kDone = 0, kFailed = 1, kWrongInput = 2 };
+
+/// One command of the program: how it is called and what it does. Returns the exit code.
+struct Command {
+  CommandSpec spec;
+  std::function<int(const Arguments&)> run;
+};
+
+Command run_command();
+Command check_command();
+Command info_command();
+Command status_command();
+Command merge_command();
+Command analyze_command();
+Command report_command();
+Command bounds_command();
+Command list_command();
+
+/// All commands, in the order of the help.
+std::vector<Command> all_commands();
+
+/// The whole program but its name: finds the command, runs it, and turns exceptions into messages
+/// on standard error and exit codes.
+int run_program(const std::vector<std::string>& words);
+
+}  // namespace montecarta

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/errors.hpp"
+#include "experiments/commands/commands.hpp"
+#include "experiments/shipped_files.hpp"
+#include "experiments/study/ini_text.hpp"
+#include "experiments/study/setting.hpp"
+#include "experiments/study/settings.hpp"
+#include "experiments/text/table.hpp"
+#include "experiments/text/words.hpp"
+#include "experiments/worlds/world_file.hpp"
+#include "filters/factory.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+namespace montecarta {
+namespace {
+
+void list_filters() {
+  for (const FilterKind& filter : filter_kinds()) {
+    std::cout << filter.name << "  " << filter.long_name << "  " << filter.source << "\n";
+    std::vector<TableRow> rows;
+    for (const FilterOption& option : filter.options) {
+      rows.push_back(
+          {option.name + "=" + option.fallback, option.meaning, demand_of(setting_of(option))});
+    }
+    std::cout << aligned(rows, 4);
+  }
+}
+
+/// The settings of the given sections with unit, default and meaning.
+void list_settings(const std::vector<std::string>& sections) {
+  std::vector<TableRow> rows;
+  for (const Setting& setting : study_settings()) {
+    if (std::ranges::find(sections, setting.section) == sections.end()) continue;
+    const std::string fallback = setting.fallback ? *setting.fallback : "(required)";
+    rows.push_back({setting.section + "." + setting.key, fallback, setting.unit, setting.meaning});
+  }
+  std::cout << aligned(rows, 0);
+}
+
+/// Worlds with their size, then what a scenario may set.
+void list_scenarios() {
+  std::vector<TableRow> rows;
+  for (const std::string& name : shipped_worlds()) {
+    const World world = find_world(name);
+    rows.push_back({"world = " + name, std::to_string(world.landmarks.size()) + " landmarks",
+                    std::to_string(world.waypoints.size()) + " way-points"});
+  }
+  std::cout << "simulated: way-points, range and bearing (SPEC 1)\n" << aligned(rows);
+  list_settings({"scenario"});
+}
+
+std::string title_of(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  const IniText ini = read_ini(text.str(), path.string());
+  const auto found = std::ranges::find_if(
+      ini.entries, [](const IniEntry& e) { return e.section == "study" && e.key == "title"; });
+  return found == ini.entries.end() ? "" : found->value;
+}
+
+void list_studies() {
+  std::vector<TableRow> rows;
+  for (const std::string& name : shipped_names("studies", ".ini")) {
+    const auto path = shipped_file("studies", name + ".ini").value();
+    rows.push_back({path.string(), title_of(path)});
+  }
+  std::cout << aligned(rows, 0);
+}
+
+void list_columns() {
+  std::cout << aligned(
+      {{"pose", "pose_mean, ess, resampled, log_likelihood, nis, nis_dof: always stored"},
+       {"covariance",
+        "pose_covariance; pose_mean_mixture and pose_covariance_mixture where a filter has them "
+        "(SPEC 19)"},
+       {"ancestry", "ancestor: parent of each particle one scan ago (SPEC 18)"},
+       {"particles", "particle_pose, log_weight at every scan"},
+       {"map", "map_mean, map_covariance, map_seen at every scan"}},
+      0);
+}
+
+int list(const Arguments& arguments) {
+  const std::vector<std::string> known = {"filters", "scenarios", "studies", "columns", "settings"};
+  const std::string& what = arguments.operands().front();
+  if (what == "filters") return list_filters(), kDone;
+  if (what == "scenarios") return list_scenarios(), kDone;
+  if (what == "studies") return list_studies(), kDone;
+  if (what == "columns") return list_columns(), kDone;
+  if (what == "settings") return list_settings(study_sections()), kDone;
+  throw StudyError(what + ": nothing to list (one of " + joined(known) +
+                   "): " + nearest_spelling(what, known));
+}
+
+}  // namespace
+
+Command list_command() {
+  return {{.name = "list",
+           .summary = "lists filters, scenarios, studies, columns or settings, one line each",
+           .operands = {{"filters|scenarios|studies|columns|settings"}},
+           .options = {},
+           .details = {}},
+          list};
+}
+
+}  // namespace montecarta

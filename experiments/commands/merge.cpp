@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/records/merge.hpp"
+
+#include "experiments/commands/commands.hpp"
+#include "experiments/text/table.hpp"
+
+#include <iostream>
+
+namespace montecarta {
+namespace {
+
+int merge(const Arguments& arguments) {
+  const std::vector<std::string>& names = arguments.operands();
+  const std::vector<std::filesystem::path> shards(names.begin() + 1, names.end());
+  const Existing existing = arguments.has("force") ? Existing::replace : Existing::refuse;
+  const MergeSummary summary = merge_results(names.front(), shards, existing);
+  for (const std::string& note : summary.notes) std::cerr << "montecarta: " << note << "\n";
+  std::cerr << "montecarta: " << summary.runs << " runs of " << summary.cells << " cells out of "
+            << shards.size() << " files, " << bytes_text(static_cast<double>(summary.bytes))
+            << ", stored in " << names.front() << "\n";
+  return kDone;
+}
+
+}  // namespace
+
+Command merge_command() {
+  return {{.name = "merge",
+           .summary = "makes one self-contained file out of shards of one study",
+           .operands = {{"OUT.h5"}, {"SHARD.h5", 1, SIZE_MAX}},
+           .options = {{"force", "", {}, "replace OUT.h5"}},
+           .details = "Refuses shards of other studies and names runs that are missing; runs held "
+                      "twice must be equal.\n"},
+          merge};
+}
+
+}  // namespace montecarta

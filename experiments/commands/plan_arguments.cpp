@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/commands/plan_arguments.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/runs/thread_budget.hpp"
+#include "experiments/study/make_plan.hpp"
+
+namespace montecarta {
+namespace {
+
+std::optional<RunRange> range_of(const Arguments& arguments, std::uint64_t runs) {
+  const auto range = arguments.text("runs");
+  const auto shard = arguments.text("shard");
+  if (range && shard) {
+    throw StudyError("--runs and --shard: both choose runs (one is enough): remove one of them");
+  }
+  if (range) return parse_run_range(*range, runs);
+  if (shard) return parse_shard(*shard, runs);
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<OptionSpec> plan_options() {
+  return {{"set", "", {"SECTION.KEY=VALUE"}, "override a setting of the study; repeatable", true},
+          {"runs", "", {"A:B"}, "only runs A to B-1"},
+          {"shard", "", {"I/N"}, "only part I (from 0) of N"},
+          {"threads", "", {"N"}, "default: what this process may use"},
+          {"backend", "", {"tbb|openmp|serial"}, "how runs are spread over threads; same results"}};
+}
+
+StudyPlan plan_of(const Arguments& arguments) {
+  const Study study = read_study(arguments.operands().front(), arguments.texts("set"));
+  return make_plan(study, range_of(arguments, study.settings.count("study", "runs")));
+}
+
+Parallel parallel_of(const Arguments& arguments) {
+  const std::string backend = arguments.choice("backend", {"tbb", "openmp", "serial"});
+  const int threads = thread_budget(arguments.text("threads")).threads;
+  if (backend == "serial") return Parallel::serial();
+  return Parallel(backend == "openmp" ? Backend::openmp : Backend::tbb, threads);
+}
+
+}  // namespace montecarta

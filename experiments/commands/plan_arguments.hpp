@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/runs/parallel.hpp"
+#include "engine/runs/plan.hpp"
+#include "experiments/commands/arguments.hpp"
+
+#include <vector>
+
+namespace montecarta {
+
+/// Options that choose what part of a study runs and on how many threads: --set, --runs, --shard,
+/// --threads, --backend.
+std::vector<OptionSpec> plan_options();
+/// The plan of the study file that is the first operand, changed by --set and cut by --runs or
+/// --shard.
+StudyPlan plan_of(const Arguments& arguments);
+/// As --threads, --backend and the environment have it.
+Parallel parallel_of(const Arguments& arguments);
+
+}  // namespace montecarta

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/study_analysis.hpp"
+#include "analysis/tables.hpp"
+#include "engine/errors.hpp"
+#include "engine/records/provenance.hpp"
+#include "engine/records/result_file.hpp"
+#include "engine/runs/monte_carlo.hpp"
+#include "engine/runs/thread_budget.hpp"
+#include "experiments/commands/commands.hpp"
+#include "experiments/commands/plan_arguments.hpp"
+#include "experiments/text/table.hpp"
+
+#include <filesystem>
+#include <iostream>
+
+namespace montecarta {
+namespace {
+
+/// Beyond this a verdict would take longer to read than to wait for: the command that gives it is
+/// printed instead.
+constexpr std::uintmax_t kLargestVerdict = 2'000'000'000;
+
+ProgressStyle progress_of(const Arguments& arguments) {
+  const std::string style = arguments.choice("progress", {"auto", "plain", "none"});
+  return style == "plain"  ? ProgressStyle::plain
+         : style == "none" ? ProgressStyle::none
+                           : ProgressStyle::automatic;
+}
+
+std::string command_line(const Arguments& arguments) {
+  std::string line = "montecarta run";
+  for (const std::string& word : arguments.words()) line += " " + shell_quoted(word);
+  return line;
+}
+
+/// What a user types to go on where this command stopped.
+std::string resuming_command(const Arguments& arguments) {
+  std::string line = std::filesystem::read_symlink("/proc/self/exe").string() + " run";
+  for (const std::string& word : arguments.words()) {
+    if (word != "--force" && word != "--resume") line += " " + shell_quoted(word);
+  }
+  return line + " --resume";
+}
+
+RunOptions options_of(const Arguments& arguments) {
+  const auto output = arguments.text("output");
+  if (!output)
+    throw StudyError(
+        "montecarta run: -o OUT.h5 is missing (results need a name): add e.g. -o results.h5");
+  if (arguments.has("resume") && arguments.has("force")) {
+    throw StudyError(
+        "--resume and --force: one contradicts the other (go on, or begin anew?): remove one of "
+        "them");
+  }
+  RunOptions options;
+  options.output = *output;
+  options.parallel = parallel_of(arguments);
+  options.resume = arguments.has("resume");
+  options.force = arguments.has("force");
+  options.time_budget = arguments.number("time-budget", 0.0, 1e9);
+  options.progress = progress_of(arguments);
+  options.quiet = arguments.has("quiet");
+  options.provenance = collect_provenance();
+  options.provenance.emplace_back("command_line", command_line(arguments));
+  options.provenance.emplace_back("backend",
+                                  arguments.choice("backend", {"tbb", "openmp", "serial"}));
+  options.provenance.emplace_back("threads", std::to_string(options.parallel.threads()));
+  return options;
+}
+
+void tell_how_to_resume(const RunOutcome& outcome, const Arguments& arguments) {
+  std::cerr << "montecarta: stopped, " << outcome.missing()
+            << " runs are missing; what is done is safe in " << arguments.text("output").value()
+            << ".part. Go on with:\n  " << resuming_command(arguments) << "\n";
+}
+
+void tell_verdict(const RunOptions& options) {
+  if (std::filesystem::file_size(options.output) > kLargestVerdict) {
+    std::cout << "The verdict: montecarta analyze " << shell_quoted(options.output.string())
+              << "\n";
+    return;
+  }
+  const ResultFile file(options.output);
+  print_tables(std::cout, analyze(file, 0.95, options.parallel));
+}
+
+int run(const Arguments& arguments) {
+  const RunOptions options = options_of(arguments);
+  const StudyPlan plan = plan_of(arguments);
+  const RunOutcome outcome = run_study(plan, options);
+  if (outcome.missing() > 0) {
+    tell_how_to_resume(outcome, arguments);
+    return exit_code(outcome, runs_under_scheduler());
+  }
+  if (!options.quiet) {
+    tell_verdict(options);
+    std::cerr << "montecarta: " << outcome.runs_here << " runs in "
+              << duration_text(outcome.seconds) << ", stored in " << options.output.string()
+              << "\n";
+  }
+  return exit_code(outcome, runs_under_scheduler());
+}
+
+}  // namespace
+
+Command run_command() {
+  CommandSpec spec{
+      .name = "run",
+      .summary = "runs a study and stores every run in one HDF5 file",
+      .operands = {{"STUDY.ini"}},
+      .options = {{"output", "o", {"OUT.h5"}, "where results go; OUT.h5.part until complete"}},
+      .details =
+          "Results depend on the study file alone, not on threads, backend, shards or "
+          "interruptions.\n"
+          "Ctrl-C closes the file and prints the command that goes on. Exit codes: 0 done, 3 done "
+          "but\n"
+          "some runs failed, 85 stopped at a checkpoint, 130 or 143 interrupted, 2 wrong input, 1 "
+          "failed.\n\n"
+          "examples:\n"
+          "  montecarta run experiments/studies/first_study.ini -o first_study.h5\n"
+          "  montecarta run study.ini -o out.h5 --set study.runs=500 --set scenario.noise=matched\n"
+          "  montecarta run study.ini -o shard0.h5 --shard 0/4\n"};
+  for (const OptionSpec& option : plan_options()) spec.options.push_back(option);
+  const std::vector<OptionSpec> more = {
+      {"resume", "", {}, "go on with OUT.h5.part: compute only what is missing"},
+      {"force", "", {}, "replace OUT.h5 and OUT.h5.part"},
+      {"time-budget", "", {"SECONDS"}, "stop at a checkpoint (exit code 85) after so long"},
+      {"quiet", "", {}, "neither progress nor verdict"},
+      {"progress", "", {"auto|plain|none"}, "how progress is shown on standard error"}};
+  spec.options.insert(spec.options.end(), more.begin(), more.end());
+  return {spec, run};
+}
+
+}  // namespace montecarta

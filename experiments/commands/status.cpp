@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/errors.hpp"
+#include "experiments/commands/commands.hpp"
+#include "experiments/commands/stored_result.hpp"
+#include "experiments/text/table.hpp"
+
+#include <iostream>
+
+namespace montecarta {
+namespace {
+
+/// The state of every run of a study, cell by cell, over many files.
+class StudyStatus {
+ public:
+  explicit StudyStatus(const ResultFile& first) : sha256_(first.study_sha256()) {
+    for (const StoredCell& cell : first.cells()) {
+      labels_.push_back(cell.label);
+      status_.emplace_back(first.study_runs(), RunStatus::missing);
+    }
+  }
+
+  void add(const ResultFile& file) {
+    if (file.study_sha256() != sha256_) {
+      throw StudyError(file.path().string() +
+                       ": holds another study (its SHA-256 differs from that of the first file): "
+                       "ask for each study by itself");
+    }
+    for (std::size_t c = 0; c < labels_.size(); ++c) {
+      const std::vector<RunStatus> here = file.status(file.cells().at(c));
+      for (std::size_t i = 0; i < here.size(); ++i) {
+        if (here[i] != RunStatus::missing) status_[c].at(file.runs()[i]) = here[i];
+      }
+    }
+  }
+
+  void print() const {
+    std::vector<TableRow> rows{{"cell", "complete", "failed", "missing", "of"}};
+    for (std::size_t c = 0; c < labels_.size(); ++c) {
+      const StatusCounts counts = count_status(status_[c]);
+      rows.push_back({labels_[c], std::to_string(counts.complete), std::to_string(counts.failed),
+                      std::to_string(counts.missing), std::to_string(status_[c].size())});
+    }
+    std::cout << aligned(rows, 0);
+  }
+
+ private:
+  std::string sha256_;
+  std::vector<std::string> labels_;
+  std::vector<std::vector<RunStatus>> status_;
+};
+
+int status(const Arguments& arguments) {
+  StudyStatus status(open_stored(arguments.operands().front()));
+  for (const std::string& name : arguments.operands()) status.add(open_stored(name));
+  status.print();
+  return kDone;
+}
+
+}  // namespace
+
+Command status_command() {
+  return {
+      {.name = "status",
+       .summary = "counts done, failed and missing runs of each cell, over one file or many shards",
+       .operands = {{"FILE.h5", 1, SIZE_MAX}},
+       .options = {},
+       .details = {}},
+      status};
+}
+
+}  // namespace montecarta

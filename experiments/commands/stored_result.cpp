@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/commands/stored_result.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+
+namespace montecarta {
+
+ResultFile open_stored(const std::string& name) {
+  const std::filesystem::path part = name + ".part";
+  if (std::filesystem::exists(name) || !std::filesystem::exists(part)) return ResultFile(name);
+  std::cerr << "montecarta: " << name << " is unfinished; reading " << part.string() << "\n";
+  return ResultFile(part);
+}
+
+StatusCounts count_status(const std::vector<RunStatus>& status) {
+  const auto count = [&](RunStatus wanted) {
+    return static_cast<std::size_t>(std::ranges::count(status, wanted));
+  };
+  return {count(RunStatus::complete), count(RunStatus::failed), count(RunStatus::missing)};
+}
+
+}  // namespace montecarta

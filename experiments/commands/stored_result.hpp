@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/records/result_file.hpp"
+
+#include <string>
+
+namespace montecarta {
+
+/// Opens FILE.h5, or FILE.h5.part where only unfinished work is there (and says so on standard
+/// error).
+ResultFile open_stored(const std::string& name);
+
+/// How many runs of a cell are in which state.
+struct StatusCounts {
+  std::size_t complete = 0;
+  std::size_t failed = 0;
+  std::size_t missing = 0;
+};
+StatusCounts count_status(const std::vector<RunStatus>& status);
+
+}  // namespace montecarta

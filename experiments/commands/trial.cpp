@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/commands/trial.hpp"
+
+#include <chrono>
+
+namespace montecarta {
+namespace {
+
+constexpr double kTrialSeconds = 0.25;
+
+/// One step as the engine takes it; `scan` is the next scan of the itinerary.
+void step_through(SlamFilter& filter, const StudyPlan& plan, const Drive& drive, std::size_t k,
+                  std::size_t& scan) {
+  const Itinerary& itinerary = plan.drives->itinerary();
+  const StepContext context(plan.seed, plan.first_run, static_cast<std::uint32_t>(k),
+                            Parallel::serial());
+  filter.predict(context, drive.controls[k], itinerary.duration(k));
+  if (scan < itinerary.scans() && itinerary.scan_step[scan] == k)
+    filter.update(context, drive.scan(scan++));
+  (void)filter.estimate();
+}
+
+}  // namespace
+
+double trial_seconds(const Cell& cell, const StudyPlan& plan, const Drive& drive) {
+  using Clock = std::chrono::steady_clock;
+  const std::size_t steps = plan.drives->itinerary().steps();
+  const auto begin = Clock::now();
+  double seconds = 0.0;
+  std::size_t k = 0;
+  try {
+    const std::unique_ptr<SlamFilter> filter = cell.make_filter();
+    filter->start(plan.drives->itinerary().start);
+    for (std::size_t scan = 0; k < steps && seconds < kTrialSeconds; ++k) {
+      step_through(*filter, plan, drive, k, scan);
+      if (k % 64 == 63 || k + 1 == steps)
+        seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    }
+  } catch (const std::exception&) {
+    return 0.0;
+  }
+  return seconds * static_cast<double>(steps) / static_cast<double>(k);
+}
+
+}  // namespace montecarta

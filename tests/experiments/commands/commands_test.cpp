@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/commands/commands.hpp"
+
+#include "tests/experiments/commands/program.hpp"
+
+#include <gmock/gmock.h>
+
+namespace montecarta {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+class Commands : public Program {
+ protected:
+  Commands() {
+    write("blink.ini", kBlink);
+    write("blink.csv", kBlinkWorld);
+  }
+  /// The call must end as wrong input, saying `words`, and leave no result.
+  void expect_wrong(const std::vector<std::string>& arguments, const std::string& words) const {
+    const Called called = call(arguments);
+    EXPECT_EQ(called.code, 2) << called.err;
+    EXPECT_THAT(called.err, HasSubstr(words));
+    EXPECT_THAT(called.out, IsEmpty());
+    EXPECT_FALSE(exists("out.h5"));
+    EXPECT_FALSE(exists("out.h5.part"));
+  }
+};
+
+TEST_F(Commands, HelpAndVersionAreForStandardOutput) {
+  EXPECT_EQ(call({"--help"}).code, 0);
+  EXPECT_THAT(call({"--help"}).out, HasSubstr("montecarta COMMAND"));
+  EXPECT_THAT(call({"--version"}).out, testing::StartsWith("montecarta "));
+  EXPECT_THAT(call({"help", "run"}).out, HasSubstr("--time-budget SECONDS"));
+  EXPECT_EQ(call({}).code, 2);
+  for (const Command& command : all_commands()) {
+    const Called called = call({command.spec.name, "--help"});
+    EXPECT_EQ(called.code, 0) << command.spec.name;
+    EXPECT_THAT(called.out, HasSubstr(command.spec.summary));
+  }
+}
+
+TEST_F(Commands, WrongInputIsNamedWithItsRemedy) {
+  expect_wrong({"rnu"}, "rnu: unknown command (see montecarta --help): did you mean run?");
+  expect_wrong({"run"}, "-o OUT.h5 is missing");
+  expect_wrong({"run", "-o", "out.h5"}, "STUDY.ini is missing");
+  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--thrads", "2"}, "did you mean --threads?");
+  expect_wrong({"run", "blink.ini", "-o", "out.h5", "stray"}, "stray: stray argument");
+  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--threads"}, "threads");
+  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--threads", "0"}, "threads");
+  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--backend", "cuda"},
+               "one of tbb, openmp, serial");
+  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--set", "study.runs=0"},
+               "--set study.runs: runs = 0");
+  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--runs", "2:9"}, "--runs 2:9");
+  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--shard", "3/3"}, "--shard 3/3");
+  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--runs", "0:1", "--shard", "0/3"},
+               "remove one of them");
+  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--time-budget", "soon"}, "--time-budget soon");
+  expect_wrong({"run", "absent.ini", "-o", "out.h5"}, "absent.ini: cannot be read");
+  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--set", "scenario.world=no.csv"},
+               "no.csv: no such world file");
+  expect_wrong({"list", "filtres"}, "did you mean filters?");
+  expect_wrong({"info", "absent.h5"}, "absent.h5");
+  expect_wrong({"bounds", "--runs", "30"}, "--dim D");
+}
+
+TEST_F(Commands, RunStoresAndTellsWhereAndOverwritesNothing) {
+  const Called ran = call({"run", "blink.ini", "-o", "out.h5", "--threads", "1"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("stored in out.h5"));
+  EXPECT_THAT(ran.out, HasSubstr("ekf_slam"));
+  const std::string before = text_of("out.h5");
+  EXPECT_EQ(call({"run", "blink.ini", "-o", "out.h5"}).code, 2);
+  EXPECT_EQ(text_of("out.h5"), before);
+  EXPECT_EQ(call({"run", "blink.ini", "-o", "out.h5", "--set", "study.seed=7", "--resume"}).code, 2)
+      << "another study's";
+  EXPECT_EQ(text_of("out.h5"), before);
+  const Called quiet = call({"run", "blink.ini", "-o", "out.h5", "--force", "--quiet"});
+  EXPECT_EQ(quiet.code, 0);
+  EXPECT_THAT(quiet.err + quiet.out, IsEmpty());
+}
+
+TEST_F(Commands, TimeBudgetEndsAtACheckpointAndTheCommandPrintedGoesOn) {
+  const Called stopped = call({"run", "blink.ini", "-o", "out.h5", "--set", "study.runs=3000",
+                               "--time-budget", "0", "--threads", "1"});
+  EXPECT_EQ(stopped.code, 85) << stopped.err;
+  EXPECT_THAT(stopped.err, HasSubstr("--resume"));
+  EXPECT_TRUE(exists("out.h5.part"));
+  EXPECT_THAT(call({"status", "out.h5"}).out, HasSubstr("missing"));
+}
+
+TEST_F(Commands, InfoAndStatusReadWhatRunWrote) {
+  ASSERT_EQ(call({"run", "blink.ini", "-o", "out.h5", "--quiet", "--runs", "1:3"}).code, 0);
+  const Called info = call({"info", "out.h5"});
+  EXPECT_EQ(info.code, 0) << info.err;
+  EXPECT_THAT(info.out, HasSubstr("2 of 3"));
+  EXPECT_THAT(info.out, HasSubstr("/cells/fastslam2_m10/pose_mean"));
+  const Called status = call({"status", "out.h5"});
+  EXPECT_THAT(status.out, testing::ContainsRegex("ekf_slam +2 +0 +1 +3"));
+  const Called text = call({"info", "out.h5", "--text"});
+  write("again.ini", text.out);
+  EXPECT_EQ(call({"run", "again.ini", "-o", "out.h5", "--resume", "--quiet", "--runs", "1:3"}).code,
+            0)
+      << "the resolved text is the study";
+}
+
+TEST_F(Commands, CheckRunsNothing) {
+  const Called called = call({"check", "blink.ini"});
+  EXPECT_EQ(called.code, 0) << called.err;
+  for (const char* words : {"fastslam2_m10", "SHA-256", "3 of 3", "steps", "memory", "disk"})
+    EXPECT_THAT(called.out, HasSubstr(words));
+  EXPECT_FALSE(exists("out.h5"));
+}
+
+TEST_F(Commands, BoundsAreExact) {
+  EXPECT_THAT(call({"bounds", "--runs", "30", "--dim", "3"}).out, testing::StartsWith("[2.188"));
+  EXPECT_THAT(call({"bounds", "--match", "1.3", "2.79"}).out, testing::ContainsRegex("20 +2 +0.9"));
+  EXPECT_EQ(call({"bounds", "--match", "2.79"}).code, 2);
+}
+
+TEST_F(Commands, ListsSayWhatThereIs) {
+  EXPECT_THAT(call({"list", "filters"}).out, HasSubstr("fastslam2"));
+  EXPECT_THAT(call({"list", "scenarios"}).out, HasSubstr("web_loop"));
+  EXPECT_THAT(call({"list", "studies"}).out, HasSubstr("first_study.ini"));
+  EXPECT_THAT(call({"list", "columns"}).out, HasSubstr("ancestry"));
+  EXPECT_THAT(call({"list", "settings"}).out, HasSubstr("scenario.field_of_view_deg"));
+}
+
+TEST_F(Commands, ShardsMergeIntoTheWhole) {
+  ASSERT_EQ(call({"run", "blink.ini", "-o", "a.h5", "--quiet", "--shard", "0/2"}).code, 0);
+  ASSERT_EQ(call({"run", "blink.ini", "-o", "b.h5", "--quiet", "--shard", "1/2"}).code, 0);
+  const Called gap = call({"merge", "out.h5", "a.h5"});
+  EXPECT_EQ(gap.code, 2) << gap.err;
+  EXPECT_FALSE(exists("out.h5"));
+  EXPECT_EQ(call({"merge", "out.h5", "a.h5", "b.h5"}).code, 0);
+  EXPECT_THAT(call({"status", "out.h5"}).out, testing::ContainsRegex("ekf_slam +3 +0 +0 +3"));
+}
+
+TEST_F(Commands, FullStandardOutputIsAFailure) {
+  const std::string line =
+      std::string(MONTECARTA_EXECUTABLE) + " list settings > /dev/full 2> /dev/null";
+  EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 1);
+}
+
+}  // namespace
+}  // namespace montecarta

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "experiments/commands/arguments.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <vector>
+
+namespace montecarta {
+
+/// What a call of the real executable left behind.
+struct Called {
+  int code = -1;
+  std::string out;  ///< standard output
+  std::string err;  ///< standard error
+};
+
+/// A folder of its own for each test, in which the program is called.
+class Program : public testing::Test {
+ protected:
+  Program() {
+    const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder_ = std::filesystem::temp_directory_path() /
+              ("montecarta_program_" + test + "_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+  ~Program() override { std::filesystem::remove_all(folder_); }
+
+  Called call(const std::vector<std::string>& words) const {
+    std::string line = "cd " + shell_quoted(folder_.string()) + " && " + MONTECARTA_EXECUTABLE;
+    for (const std::string& word : words) line += " " + shell_quoted(word);
+    line += " 2>" + shell_quoted((folder_ / "stderr").string());
+    Called called;
+    std::FILE* pipe = ::popen(line.c_str(), "r");
+    std::array<char, 4096> buffer;
+    for (std::size_t n = 0; (n = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) {
+      called.out.append(buffer.data(), n);
+    }
+    const int status = ::pclose(pipe);
+    called.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    called.err = text_of("stderr");
+    return called;
+  }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
+  std::string text_of(const std::string& name) const {
+    std::ifstream file(folder_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+
+  std::filesystem::path folder_;
+};
+
+/// A study that takes a blink: one short straight and back.
+inline const std::string kBlink = R"([study]
+name = blink
+runs = 3
+[scenario]
+world = blink.csv
+[cells]
+cell = ekf_slam
+cell = fastslam2 particles=10
+)";
+inline const std::string kBlinkWorld =
+    "kind,x,y\nwaypoint,10,0\nwaypoint,20,1\nlandmark,15,5\nlandmark,25,-4\n";
+
+}  // namespace montecarta
