@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/factory.hpp"
 
+#include "filters/dead_reckoning.hpp"
 #include "filters/ekf_slam/ekf_slam.hpp"
 #include "filters/fastslam/fast_slam_filters.hpp"
 
@@ -11,6 +12,7 @@ std::span<const FilterKind> filter_kinds() {
       ekf_slam_kind(),
       fastslam1_kind(),
       fastslam2_kind(),
+      dead_reckoning_kind(),
   };
   return kinds;
 }

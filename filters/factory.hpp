@@ -31,7 +31,7 @@ struct AssociationSettings {
   double gate = 5.991464547107979;  ///< chi-square, 2 dof: a detection nearer than this may match
   double new_gate = 25.0;           ///< farther than this from every landmark: a new one
   double log_new_density_offset = 0.0;  ///< added to log p0 of SPEC 17 [D]
-  std::size_t most_landmarks = 1000;    ///< a map that grows beyond this has run away: the run fails
+  std::size_t most_landmarks = 1000;  ///< a map that grows beyond this has run away: the run fails
 };
 
 /// One setting of a filter, as a user types it behind the filter's name in a cell line.

@@ -30,13 +30,6 @@ std::array<double, N> weighted_sums(const Weights<Real>& weights, const Terms& t
   return sums;
 }
 
-/// The matrix out of (xx, xy, yy, xh, yh, hh).
-inline Eigen::Matrix3d symmetric(const std::array<double, 6>& C) {
-  Eigen::Matrix3d P;
-  P << C[0], C[1], C[3], C[1], C[2], C[4], C[3], C[4], C[5];
-  return P;
-}
-
 /// The pose of particle i out of a column of structs that hold a pose; `pose_of(block)`.
 template <class Real, class PoseOf>
 Pose pose_of_particle(const PoseOf& pose_of, std::size_t i) {
@@ -66,7 +59,7 @@ PoseMoments spread_of(const Weights<Real>& weights, const std::vector<BasicPose<
     const Real h = wrap(poses[b].heading - mean.heading);
     return std::array<Real, 6>{x * x, x * y, y * y, x * h, y * h, h * h};
   });
-  return {mean, symmetric(C)};
+  return {mean, symmetric({C[0], C[1], C[2], C[3], C[4], C[5]})};
 }
 
 /// Mean and covariance of a mixture of Gaussians (SPEC 19).
@@ -80,7 +73,7 @@ PoseMoments mixture_of(const Weights<Real>& weights,
     return std::array<Real, 6>{P.xx + x * x, P.xy + x * y, P.yy + y * y,
                                P.xh + x * h, P.yh + y * h, P.hh + h * h};
   });
-  return {mean, symmetric(C)};
+  return {mean, symmetric({C[0], C[1], C[2], C[3], C[4], C[5]})};
 }
 
 /// What the particles together believe about one landmark; owner(block) = 1 for those that have it.

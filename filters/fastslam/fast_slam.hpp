@@ -4,8 +4,8 @@
 #include "engine/particles/resampling.hpp"
 #include "engine/particles/weights.hpp"
 #include "engine/runs/slam_filter.hpp"
-#include "filters/factory.hpp"
 #include "filters/fastslam/cloud_moments.hpp"
+#include "filters/fastslam/fast_slam_options.hpp"
 #include "filters/fastslam/innovation_sums.hpp"
 #include "filters/fastslam/particle_maps.hpp"
 
@@ -15,13 +15,6 @@
 #include <vector>
 
 namespace montecarta {
-
-/// What every filter of the family can be told.
-struct FastSlamSettings {
-  std::size_t particles = 100;
-  Resampling resampling = Resampling::systematic;
-  double resample_below = 0.5;  ///< resample where ESS < this times particles (SPEC 18)
-};
 
 /// Rao-Blackwellised particle filter with one map per particle (SPEC 5). `Real`: double or Lanes.
 /// `Proposal` moves, weighs and draws poses and updates the maps of one block; `Associating`

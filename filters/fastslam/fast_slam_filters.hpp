@@ -3,6 +3,7 @@
 
 #include "filters/factory.hpp"
 #include "filters/fastslam/fast_slam.hpp"
+#include "filters/fastslam/fast_slam_options.hpp"
 #include "filters/fastslam/gaussian_proposal.hpp"
 #include "filters/fastslam/known_association.hpp"
 #include "filters/fastslam/motion_sampling.hpp"
@@ -27,12 +28,6 @@ std::unique_ptr<SlamFilter> make_fast_slam(const FilterSetup& setup,
       settings, std::move(proposal),
       NearestAssociation<Real>(settings.particles, setup.association, setup.belief));
 }
-
-/// The options that the whole family shares, in the order in which they are documented.
-std::vector<FilterOption> fast_slam_options();
-/// Reads them.
-FastSlamSettings fast_slam_settings(const FilterOptions& options);
-WeightForm weight_form(const FilterOptions& options);
 
 /// `Real` = double is the same filter one particle at a time, for tests.
 template <class Real>

@@ -3,6 +3,7 @@
 
 #include "engine/random/normals.hpp"
 #include "filters/fastslam/cloud_moments.hpp"
+#include "filters/fastslam/fast_slam_options.hpp"
 #include "filters/fastslam/linearised.hpp"
 #include "filters/fastslam/motion_increment.hpp"
 
@@ -10,13 +11,6 @@
 #include <vector>
 
 namespace montecarta {
-
-/// The three ways to weigh a particle of FastSLAM II (SPEC 7.2).
-enum class WeightForm {
-  closed,  ///< product of N(innovation; S), each before absorbing the detection
-  ratio,   ///< likelihood times prior over proposal at the drawn pose
-  batch,   ///< N of the stacked innovation, linearised at the predicted pose
-};
 
 /// FastSLAM II (SPEC 7): the predicted pose is refined by the scan before it is drawn.
 template <class Real>

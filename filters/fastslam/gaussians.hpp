@@ -5,6 +5,8 @@
 #include "engine/runs/pose.hpp"
 #include "filters/models/range_bearing.hpp"
 
+#include <Eigen/Core>
+
 namespace montecarta {
 
 /// Symmetric matrix over (x, y, heading).
@@ -14,6 +16,11 @@ struct Symmetric3 {
   Real xh{}, yh{};        ///< [m rad]
   Real hh{};              ///< [rad^2]
 };
+
+/// As a matrix.
+inline Eigen::Matrix3d symmetric(const Symmetric3<double>& P) {
+  return Eigen::Matrix3d{{P.xx, P.xy, P.xh}, {P.xy, P.yy, P.yh}, {P.xh, P.yh, P.hh}};
+}
 
 /// Symmetric matrix over (x, y) [m^2].
 template <class Real>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "filters/fastslam/fast_slam_filters.hpp"
+#include "filters/fastslam/fast_slam_options.hpp"
 
 #include <algorithm>
 #include <array>
@@ -41,31 +41,10 @@ FastSlamSettings fast_slam_settings(const FilterOptions& options) {
           .resample_below = options.number("resample_below")};
 }
 
+const std::vector<std::string>& weight_form_names() { return kWeightForms; }
+
 WeightForm weight_form(const FilterOptions& options) {
   return chosen<WeightForm>(options.choice("weights"), kWeightForms);
-}
-
-FilterKind fastslam1_kind() {
-  return {.name = "fastslam1",
-          .long_name = "FastSLAM I",
-          .source = "Montemerlo et al. 2002; SPEC 6",
-          .has_particles = true,
-          .has_mixture = false,
-          .options = fast_slam_options(),
-          .make = make_fastslam1<Lanes>};
-}
-
-FilterKind fastslam2_kind() {
-  std::vector<FilterOption> options = fast_slam_options();
-  options.push_back({"weights", FilterOption::Kind::choice, "closed", 0, 0, kWeightForms,
-                     "form of the importance weight (SPEC 7.2 c, r, b)"});
-  return {.name = "fastslam2",
-          .long_name = "FastSLAM II",
-          .source = "Montemerlo et al. 2003; SPEC 7",
-          .has_particles = true,
-          .has_mixture = true,
-          .options = std::move(options),
-          .make = make_fastslam2<Lanes>};
 }
 
 }  // namespace montecarta
