@@ -25,7 +25,7 @@ int analyze_files(const Arguments& arguments) {
   const bool writes = arguments.has("output") || arguments.has("csv");
   if (writes && arguments.operands().size() > 1) {
     throw StudyError(
-        "montecarta analyze: -o and --csv take one file (shards are merged first): see montecarta "
+        "analyze: -o and --csv take one file (shards are merged first): see montecarta "
         "merge --help");
   }
   refuse_to_overwrite(arguments);

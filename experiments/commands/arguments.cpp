@@ -52,7 +52,7 @@ po::parsed_options parsed(const CommandSpec& spec, const Texts& words,
                      " has none of that name): " +
                      nearest_spelling(error.get_option_name(), spellings_of(spec)));
   } catch (const po::error& error) {
-    throw StudyError("montecarta " + spec.name + ": " + error.what() +
+    throw StudyError(spec.name + ": " + error.what() +
                      " (see the options below --help): correct the command");
   }
 }
@@ -95,7 +95,7 @@ void Arguments::check_operands(const CommandSpec& spec) const {
   Texts names;
   for (const OperandSpec& operand : spec.operands) {
     if (operands_.size() < least + operand.least) {
-      throw StudyError("montecarta " + spec.name + ": " + operand.name +
+      throw StudyError(spec.name + ": " + operand.name +
                        " is missing (nothing to work on): see montecarta " + spec.name + " --help");
     }
     least += operand.least;

@@ -43,7 +43,7 @@ int bounds(const Arguments& arguments) {
   const double level = arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(0.95);
   if (!arguments.has("match") && (!runs || !dimension)) {
     throw StudyError(
-        "montecarta bounds: --runs N and --dim D are needed (or --match LO HI): add e.g. --runs 30 "
+        "bounds: --runs N and --dim D are needed (or --match LO HI): add e.g. --runs 30 "
         "--dim 3");
   }
   if (runs && dimension) {

@@ -15,8 +15,7 @@ namespace {
 int report(const Arguments& arguments) {
   const auto directory = arguments.text("output");
   if (!directory)
-    throw StudyError(
-        "montecarta report: -o DIR is missing (figures need a place): add e.g. -o report");
+    throw StudyError("report: -o DIR is missing (figures need a place): add e.g. -o report");
   const Parallel parallel = parallel_of(arguments);
   ReportOptions options;
   options.level = arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(options.level);

@@ -45,8 +45,7 @@ std::string resuming_command(const Arguments& arguments) {
 RunOptions options_of(const Arguments& arguments) {
   const auto output = arguments.text("output");
   if (!output)
-    throw StudyError(
-        "montecarta run: -o OUT.h5 is missing (results need a name): add e.g. -o results.h5");
+    throw StudyError("run: -o OUT.h5 is missing (results need a name): add e.g. -o results.h5");
   if (arguments.has("resume") && arguments.has("force")) {
     throw StudyError(
         "--resume and --force: one contradicts the other (go on, or begin anew?): remove one of "

@@ -48,7 +48,7 @@ TEST(Arguments, AreRefusedWhereTheyAreNotWhatTheCommandTakes) {
   EXPECT_THAT(complaint_about({"rye", "--hot", "--hot"}), HasSubstr("--hot: given 2 times"));
   EXPECT_THAT(complaint_about({"rye", "-o", "a", "-o", "b"}), HasSubstr("--output: given 2 times"));
   EXPECT_THAT(complaint_about({"rye", "--match", "1"}), HasSubstr("--match: 1 values"));
-  EXPECT_THAT(complaint_about({"rye", "-o"}), HasSubstr("montecarta bake"));
+  EXPECT_THAT(complaint_about({"rye", "-o"}), testing::StartsWith("bake: "));
 }
 
 TEST(Arguments, ReadNumbersWithinLimits) {

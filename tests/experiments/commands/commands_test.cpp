@@ -44,7 +44,7 @@ TEST_F(Commands, HelpAndVersionAreForStandardOutput) {
 
 TEST_F(Commands, WrongInputIsNamedWithItsRemedy) {
   expect_wrong({"rnu"}, "rnu: unknown command (see montecarta --help): did you mean run?");
-  expect_wrong({"run"}, "-o OUT.h5 is missing");
+  expect_wrong({"run", "blink.ini"}, "-o OUT.h5 is missing");
   expect_wrong({"run", "-o", "out.h5"}, "STUDY.ini is missing");
   expect_wrong({"run", "blink.ini", "-o", "out.h5", "--thrads", "2"}, "did you mean --threads?");
   expect_wrong({"run", "blink.ini", "-o", "out.h5", "stray"}, "stray: stray argument");
