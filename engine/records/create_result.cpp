@@ -65,6 +65,7 @@ PosixFile lay_out_new(const fs::path& path, const ResultDescription& description
   try {
     expect_room(path, description.bytes_per_run() * static_cast<double>(description.runs.size()));
     lay_out(path, description);
+    file.reserve();
     file.sync();
   } catch (...) {
     std::error_code ignored;

@@ -141,6 +141,16 @@ void PosixFile::copy_through_memory(std::uint64_t offset, const PosixFile& from,
   }
 }
 
+void PosixFile::reserve() const {
+  int status = 0;
+  do {
+    status = ::fallocate(descriptor_, 0, 0, signed_offset(size()));
+  } while (status != 0 && errno == EINTR);
+  if (status == 0 || (errno != ENOSPC && errno != EDQUOT && errno != EFBIG)) return;
+  throw RunError(path_.string() + ": cannot reserve " + std::to_string(size()) + " bytes" +
+                 reason(errno) + ": free space, or store fewer runs or columns");
+}
+
 void PosixFile::sync() const {
   int status = 0;
   do {

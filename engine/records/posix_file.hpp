@@ -28,6 +28,9 @@ class PosixFile {
   /// can.
   void copy_at(std::uint64_t offset, const PosixFile& from, std::uint64_t from_offset,
                std::uint64_t count) const;
+  /// Takes the disk space of the whole file now, so that it cannot run out later; writing then also
+  /// costs the system about half. Does nothing on file systems that cannot.
+  void reserve() const;
   /// Waits until everything is on the disk.
   void sync() const;
   /// Keeps other montecarta processes out until this file is closed; readers are not kept out.
