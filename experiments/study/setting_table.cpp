@@ -132,8 +132,8 @@ void add_association(std::vector<Setting>& table) {
                          "farther from all: a new one"));
   table.push_back(
       number(s, "log_new_density_offset", "1", "0", -1000, 1000, "added to log p0 of SPEC 17"));
-  table.push_back(count(s, "most_landmarks", "1000", 1, 100'000,
-                        "a larger map has run away: the run fails"));
+  table.push_back(
+      count(s, "most_landmarks", "1000", 1, 100'000, "a larger map has run away: the run fails"));
 }
 
 void add_record(std::vector<Setting>& table) {
