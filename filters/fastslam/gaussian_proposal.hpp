@@ -92,14 +92,18 @@ class GaussianProposal {
     return evidence.log_density();
   }
 
+  /// The factor is that in the frame of the vehicle, so that a turned world gives a turned draw.
   static BasicPose<Real> draw(const StepContext& context, std::size_t b,
                               const PoseGaussian<Real>& from) {
     const StreamIdentity identity =
         context.identity(Draw::pose_proposal, static_cast<std::uint32_t>(b * kLanesOf<Real>));
     const auto [e0, e1] = normal_pairs<Real>(identity, 0);
     const Real e2 = normal_pairs<Real>(identity, 1).first;
-    const Cholesky3<Real> L(from.covariance);
-    return {from.mean.x + L.xx * e0, from.mean.y + L.yx * e0 + L.yy * e1,
+    const Direction<Real> ahead = direction_of(from.mean.heading);
+    const Cholesky3<Real> L(turned(from.covariance, {ahead.cosine, -ahead.sine}));
+    const Real x = L.xx * e0, y = L.yx * e0 + L.yy * e1;
+    return {from.mean.x + ahead.cosine * x - ahead.sine * y,
+            from.mean.y + ahead.sine * x + ahead.cosine * y,
             wrap(from.mean.heading + L.hx * e0 + L.hy * e1 + L.hh * e2)};
   }
 

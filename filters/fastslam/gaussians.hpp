@@ -22,6 +22,21 @@ inline Eigen::Matrix3d symmetric(const Symmetric3<double>& P) {
   return Eigen::Matrix3d{{P.xx, P.xy, P.xh}, {P.xy, P.yy, P.yh}, {P.xh, P.yh, P.hh}};
 }
 
+/// R P R' for the turn R of (x, y) by the angle of `d`; the heading stays.
+template <class Real>
+[[gnu::always_inline]] inline Symmetric3<Real> turned(const Symmetric3<Real>& P,
+                                                      const Direction<Real>& d) {
+  const Real c = d.cosine, s = d.sine;
+  const Real along_x = c * P.xx - s * P.xy, along_y = c * P.xy - s * P.yy;
+  const Real across_x = s * P.xx + c * P.xy, across_y = s * P.xy + c * P.yy;
+  return {.xx = along_x * c - along_y * s,
+          .xy = along_x * s + along_y * c,
+          .yy = across_x * s + across_y * c,
+          .xh = c * P.xh - s * P.yh,
+          .yh = s * P.xh + c * P.yh,
+          .hh = P.hh};
+}
+
 /// Symmetric matrix over (x, y) [m^2].
 template <class Real>
 struct Symmetric2 {

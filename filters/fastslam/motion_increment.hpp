@@ -35,18 +35,12 @@ class MotionIncrement {
   template <class Real>
   [[gnu::always_inline]] PoseGaussian<Real> from(const BasicPose<Real>& origin) const {
     const Direction<Real> d = direction_of(origin.heading);
-    const Real c = d.cosine, s = d.sine;
     const Eigen::Matrix3d& C = covariance_;
-    const Real along_x = c * C(0, 0) - s * C(0, 1), along_y = c * C(0, 1) - s * C(1, 1);
-    const Real across_x = s * C(0, 0) + c * C(0, 1), across_y = s * C(0, 1) + c * C(1, 1);
-    return {{origin.x + c * pose_.x - s * pose_.y, origin.y + s * pose_.x + c * pose_.y,
-             wrap(origin.heading + pose_.heading)},
-            {.xx = along_x * c - along_y * s,
-             .xy = along_x * s + along_y * c,
-             .yy = across_x * s + across_y * c,
-             .xh = c * C(0, 2) - s * C(1, 2),
-             .yh = s * C(0, 2) + c * C(1, 2),
-             .hh = Real(C(2, 2))}};
+    const Symmetric3<Real> here{C(0, 0), C(0, 1), C(1, 1), C(0, 2), C(1, 2), C(2, 2)};
+    return {
+        {origin.x + d.cosine * pose_.x - d.sine * pose_.y,
+         origin.y + d.sine * pose_.x + d.cosine * pose_.y, wrap(origin.heading + pose_.heading)},
+        turned(here, d)};
   }
 
  private:

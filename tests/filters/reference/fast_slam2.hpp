@@ -3,6 +3,8 @@
 
 #include "tests/filters/reference/fast_slam.hpp"
 
+#include <Eigen/Geometry>
+
 namespace montecarta::reference {
 
 /// The three forms of SPEC 7.2.
@@ -102,7 +104,9 @@ class FastSlam2 final : public FastSlam {
   void draw_pose(RngStream draw, Particle& p) const {
     Eigen::Vector3d eps;
     for (int k = 0; k < 3; ++k) eps(k) = draw.normal();
-    p.pose += psd_chol(p.covariance) * eps;
+    Eigen::Matrix3d ahead = Eigen::Matrix3d::Identity();  // from the vehicle's frame into the map's
+    ahead.topLeftCorner<2, 2>() = Eigen::Rotation2D<double>(p.pose(2)).toRotationMatrix();
+    p.pose += ahead * psd_chol(ahead.transpose() * p.covariance * ahead) * eps;
     p.pose(2) = wrap(p.pose(2));
     p.covariance.setZero();
   }

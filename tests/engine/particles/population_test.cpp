@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/particles/blocks.hpp"
+#include "engine/particles/genealogy.hpp"
+#include "engine/particles/weights.hpp"
+#include "engine/random/stream.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+namespace montecarta {
+namespace {
+
+TEST(Genealogy, TracesLikeStepByStepCopying) {
+  const std::size_t n = 16;
+  RngStream draw({5, 0, 0, 0, Draw::test});
+  Genealogy genealogy(n);
+  std::vector<std::vector<std::uint32_t>>
+      copied_since;  // for each generation: what eager copying holds
+  std::vector<std::uint32_t> source(n);
+  for (int g = 0; g < 300; ++g) {
+    copied_since.emplace_back(n);
+    for (std::uint32_t i = 0; i < n; ++i) copied_since.back()[i] = i;
+    std::vector<std::uint32_t> parents(n);
+    for (auto& parent : parents) parent = draw.below(n);
+    if (genealogy.is_long()) {
+      genealogy.forget();
+      copied_since.erase(copied_since.begin(), copied_since.end() - 1);
+    }
+    genealogy.add(parents);
+    for (auto& copy : copied_since) {
+      std::vector<std::uint32_t> next(n);
+      for (std::size_t i = 0; i < n; ++i) next[i] = copy[parents[i]];
+      copy = next;
+    }
+    const auto first = genealogy.generation() - static_cast<std::uint32_t>(copied_since.size());
+    for (std::uint32_t k = 0; k < copied_since.size(); k += 37) {
+      genealogy.trace(first + k, source);
+      ASSERT_EQ(source, copied_since[k]) << "generation " << g;
+    }
+  }
+}
+
+TEST(Blocks, GatherCopiesEveryField) {
+  struct Two {
+    Lanes a, b;
+  };
+  std::vector<Two> from(3), to(3);
+  std::vector<std::uint32_t> source(24);
+  for (std::size_t i = 0; i < 24; ++i) {
+    set(from[i / 8].a, i % 8, static_cast<double>(i));
+    set(from[i / 8].b, i % 8, -static_cast<double>(i));
+    source[i] = static_cast<std::uint32_t>((7 * i + 3) % 24);
+  }
+  gather<Lanes>(from, source, to);
+  for (std::size_t i = 0; i < 24; ++i) {
+    EXPECT_EQ(to[i / 8].a.get(i % 8), source[i]);
+    EXPECT_EQ(to[i / 8].b.get(i % 8), -static_cast<double>(source[i]));
+  }
+}
+
+TEST(Weights, NormaliseReturnsTheEvidenceAndLeavesDeadLanesOut) {
+  Weights<Lanes> weights(5);
+  weights.multiply(0, Lanes(-1000.0));  // far below what exp can hold
+  EXPECT_NEAR(weights.normalise(), -1000.0, 1e-12);
+  EXPECT_NEAR(weights.effective(), 5.0, 1e-12);
+  Lanes increment(0.0);
+  set(increment, 2, std::log(3.0));
+  weights.multiply(0, increment);
+  EXPECT_NEAR(weights.normalise(), std::log(7.0 / 5.0), 1e-12);
+  EXPECT_NEAR(weights.linear_scalars()[2], 3.0 / 7.0, 1e-12);
+  EXPECT_EQ(weights.heaviest(), 2U);
+  EXPECT_EQ(get(weights.linear()[0], 6), 0.0);
+}
+
+TEST(Weights, SayWhenNoParticleIsLeft) {
+  Weights<Lanes> dead(4), wild(4);
+  dead.multiply(0, Lanes(-std::numeric_limits<double>::infinity()));
+  EXPECT_THROW(dead.normalise(), std::runtime_error);
+  wild.multiply(0, Lanes(std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_THROW(wild.normalise(), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace montecarta
