@@ -18,7 +18,7 @@ set datafile columnheaders
 set border 3 linewidth 0.8 linecolor rgb 'black'
 set tics nomirror out scale 0.6
 set grid linecolor rgb '#999999' linewidth 0.4 dashtype (2,4)
-set key above left horizontal noenhanced samplen 1.6 spacing 1.1 width 1
+set key noenhanced samplen 1.6 spacing 1.15 width 1
 set style fill transparent solid 0.25 noborder
 )";
 
@@ -67,8 +67,8 @@ FigureData data_over_time(const std::string& name, const ThinnedSeries& thinned)
     data.headings.push_back(one.units == "1" ? one.name : one.name + " [" + one.units + "]");
   }
   for (std::size_t k = 0; k < thinned.times.size(); ++k) {
-    std::vector<std::string> row = {exact_text(thinned.times[k])};
-    for (const NamedSeries& one : thinned.series) row.push_back(exact_text(one.values[k]));
+    std::vector<double> row = {thinned.times[k]};
+    for (const NamedSeries& one : thinned.series) row.push_back(one.values[k]);
     data.rows.push_back(std::move(row));
   }
   return data;

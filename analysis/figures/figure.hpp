@@ -14,7 +14,7 @@ namespace montecarta {
 struct FigureData {
   std::string name;  ///< of the file below data/, e.g. "anees.csv"
   std::vector<std::string> headings;
-  std::vector<std::vector<std::string>> rows;
+  std::vector<std::vector<double>> rows;
 };
 
 /// A figure before it is drawn.

@@ -12,7 +12,9 @@ namespace montecarta {
 namespace {
 
 constexpr std::size_t kBuckets = 300;
-constexpr double kLogarithmicFrom = 30.0;
+constexpr double kLogarithmicFrom = 10.0;
+constexpr std::size_t kAxisPixels = 62;    // below the lowest panel: ticks and label
+constexpr std::size_t kLegendPixels = 22;  // of a row
 
 struct Range {
   double least = std::numeric_limits<double>::infinity();
@@ -38,14 +40,16 @@ Range range_of(const Panel& panel) {
 std::string axes_of(const Panel& panel) {
   const Range range = range_of(panel);
   std::string script = "set ylabel " + gnuplot_quoted(panel.label) + " noenhanced\n";
-  if (panel.may_be_logarithmic && range.greatest > kLogarithmicFrom * range.least) {
-    // Whole decades, so that the band and the ticks are where one looks for them.
-    return script + "set logscale y\nset format y '%h'\nset yrange [" +
-           exact_text(std::pow(10.0, std::floor(std::log10(range.least)))) + ":" +
-           exact_text(std::pow(10.0, std::ceil(std::log10(range.greatest)))) + "]\n";
+  const bool wide = range.greatest > kLogarithmicFrom * range.least;
+  if (panel.scale == Scale::logarithmic || (panel.scale == Scale::automatic && wide)) {
+    const double from = std::floor(std::log10(range.least));
+    const double to = std::max(from + 1.0, std::ceil(std::log10(range.greatest)));
+    return script + "set logscale y\nset format y '" + (to - from > 3.0 ? "10^{%T}" : "%h") +
+           "'\nset yrange [" + exact_text(std::pow(10.0, from)) + ":" +
+           exact_text(std::pow(10.0, to)) + "]\n";
   }
-  script += "unset logscale y\nset format y '%h'\n";
-  return script + (panel.from_zero ? "set yrange [0:*]\n" : "set yrange [*:*]\n");
+  return script + "unset logscale y\nset format y '%h'\nset yrange [0:" +
+         (panel.scale == Scale::percent ? "100" : "*") + "]\n";
 }
 
 ThinnedSeries thinned(const Panel& panel, const std::vector<double>& times) {
@@ -54,15 +58,30 @@ ThinnedSeries thinned(const Panel& panel, const std::vector<double>& times) {
   return thin(times, series, kBuckets);
 }
 
-std::string plot_of(const Panel& panel, double last_time, bool legend) {
+std::string band_name(const Panel& panel, std::size_t b) {
+  return "$" + panel.name + "_band" + std::to_string(b);
+}
+
+/// Numbers of the bands, within the script.
+std::string bands_of(const Panel& panel, double last_time) {
+  std::string script;
+  for (std::size_t b = 0; b < panel.bands.size(); ++b) {
+    const std::string ends =
+        "," + exact_text(panel.bands[b].lower) + "," + exact_text(panel.bands[b].upper) + "\n";
+    script += band_name(panel, b) + " << EOD\ntime,lower,upper\n0" + ends + exact_text(last_time) +
+              ends + "EOD\n";
+  }
+  return script;
+}
+
+std::string plot_of(const Panel& panel, bool legend) {
   const auto title = [&](const std::string& text) {
     return text.empty() || !legend ? std::string(" notitle") : " title " + gnuplot_quoted(text);
   };
   std::string script = "plot ";
-  for (const Band& band : panel.bands) {
-    script += "[0:" + exact_text(last_time) + "] '+' using 1:(" + exact_text(band.lower) + "):(" +
-              exact_text(band.upper) + ") with filledcurves linecolor rgb '#777777'" +
-              title(band.legend) + ", \\\n  ";
+  for (std::size_t b = 0; b < panel.bands.size(); ++b) {
+    script += band_name(panel, b) + " using 1:2:3 with filledcurves linecolor rgb '#777777'" +
+              title(panel.bands[b].legend) + ", \\\n  ";
   }
   for (std::size_t i = 0; i < panel.curves.size(); ++i) {
     script += (i == 0 ? "'../data/" + panel.name + ".csv'" : "''") +
@@ -73,24 +92,45 @@ std::string plot_of(const Panel& panel, double last_time, bool legend) {
   return script;
 }
 
+/// A legend above all panels; returns its rows.
+std::size_t add_legend(const Panel& panel, Figure& figure) {
+  std::size_t entries = panel.curves.size(), longest = 8;
+  for (const Curve& curve : panel.curves) longest = std::max(longest, curve.legend.size());
+  for (const Band& band : panel.bands) {
+    longest = std::max(longest, band.legend.size());
+    entries += band.legend.empty() ? 0 : 1;
+  }
+  const std::size_t columns =
+      std::clamp<std::size_t>((figure.width - 80) / (8 * longest + 68), 1, entries);
+  figure.script += "set key at screen 0.13,0.985 left top horizontal Left reverse maxcols " +
+                   std::to_string(columns) + "\n";
+  return (entries + columns - 1) / columns;
+}
+
 }  // namespace
 
 void add_panels(const std::vector<Panel>& panels, const std::vector<double>& times,
                 Figure& figure) {
   const double last = times.back();
-  const bool several = panels.size() > 1;
-  figure.script += "set xrange [0:" + exact_text(last) + "]\nset lmargin 9\n";
-  if (several) {
-    figure.script += "set multiplot layout " + std::to_string(panels.size()) + ",1\n";
-  }
+  const std::size_t rows = add_legend(panels.front(), figure);
+  const std::size_t top = rows * kLegendPixels + 24;
+  figure.height += top;
+  const auto share = [&](std::size_t pixels) {
+    return exact_text(static_cast<double>(pixels) / static_cast<double>(figure.height));
+  };
+  for (const Panel& panel : panels) figure.script += bands_of(panel, last);
+  figure.script += "set xrange [0:" + exact_text(last) + "]\nset multiplot layout " +
+                   std::to_string(panels.size()) + ",1 margins 0.13," + "0.97" + "," +
+                   share(kAxisPixels) + "," + share(figure.height - top) + " spacing 0.05\n";
   for (std::size_t p = 0; p < panels.size(); ++p) {
     const bool lowest = p + 1 == panels.size();
-    figure.script += lowest ? "set xlabel 'time [s]'\n" : "unset xlabel\n";
+    figure.script +=
+        lowest ? "set xlabel 'time [s]'\nset format x '%h'\n" : "unset xlabel\nset format x ''\n";
     if (p > 0) figure.script += "set key off\n";
-    figure.script += axes_of(panels[p]) + plot_of(panels[p], last, p == 0);
+    figure.script += axes_of(panels[p]) + plot_of(panels[p], p == 0);
     figure.data.push_back(data_over_time(panels[p].name + ".csv", thinned(panels[p], times)));
   }
-  if (several) figure.script += "unset multiplot\n";
+  figure.script += "unset multiplot\n";
 }
 
 }  // namespace montecarta

@@ -22,14 +22,21 @@ struct Band {
   double upper = 0.0;
 };
 
+/// The vertical axis.
+enum class Scale {
+  from_zero,
+  percent,      ///< 0 to 100
+  logarithmic,  ///< whole decades
+  automatic     ///< logarithmic where the values span more than a factor of ten, else from zero
+};
+
 /// Axes with curves over time.
 struct Panel {
   std::string name;   ///< of its data file
   std::string label;  ///< of the vertical axis, with unit
   std::vector<Curve> curves;
   std::vector<Band> bands;
-  bool may_be_logarithmic = false;  ///< where the curves span more than a factor of thirty
-  bool from_zero = false;           ///< the vertical axis begins at zero, where linear
+  Scale scale = Scale::from_zero;
 };
 
 /// Adds panels one above the other, with one time axis and one legend, to a figure.

@@ -1,36 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/figures/path_figure.hpp"
 
-#include "analysis/figures/ellipse.hpp"
 #include "analysis/figures/gnuplot.hpp"
-#include "analysis/metrics/run_rows.hpp"
+#include "analysis/figures/path_data.hpp"
 #include "analysis/run_reader.hpp"
 #include "analysis/tables/number_text.hpp"
 #include "engine/errors.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace montecarta {
 namespace {
 
 constexpr std::size_t kMostPanels = 8;
-constexpr std::size_t kMostPoints = 500;
-constexpr std::size_t kPoseEllipses = 16;
-
-using Rows = std::vector<std::vector<std::string>>;
-
-std::vector<std::string> texts(const std::vector<double>& numbers) {
-  std::vector<std::string> row;
-  for (const double number : numbers) row.push_back(exact_text(number));
-  return row;
-}
-
-const std::vector<std::string> kEllipseHeadings = {"x [m]", "y [m]", "major diameter [m]",
-                                                   "minor diameter [m]", "angle [deg]"};
-
-std::vector<std::string> ellipse_row(const Ellipse& e) {
-  return texts({e.x, e.y, e.major, e.minor, e.angle});
-}
+constexpr std::size_t kLegendPixels = 30;
 
 /// In how many cells each run is complete.
 std::vector<std::size_t> completeness(const ResultFile& file) {
@@ -60,77 +45,51 @@ std::optional<std::size_t> choose_run(const ResultFile& file, std::optional<std:
   return static_cast<std::size_t>(best - cells.begin());
 }
 
-FigureData path_data(const ResultFile& file, const StoredCell& cell, const RunRows& run) {
-  FigureData data{"path_" + cell.label + ".csv",
-                  {"time [s]", "true x [m]", "true y [m]", "x [m]", "y [m]"},
-                  {}};
-  const auto& times = file.scan_times();
-  const auto& mean = run.mixture.mean.empty() ? run.spread.mean : run.mixture.mean;
-  const std::size_t stride = 1 + times.size() / kMostPoints;
-  for (std::size_t s = 0; s < times.size(); s += stride) {
-    data.rows.push_back(
-        texts({times[s], run.truth[3 * s], run.truth[3 * s + 1], mean[3 * s], mean[3 * s + 1]}));
-  }
-  return data;
-}
+/// The rectangle that all paths and landmarks lie in.
+struct Bounds {
+  double left = std::numeric_limits<double>::infinity(), right = -left;
+  double low = left, high = -left;
 
-FigureData pose_ellipses(const StoredCell& cell, const RunRows& run) {
-  FigureData data{"pose_ellipses_" + cell.label + ".csv", kEllipseHeadings, {}};
-  const MomentRows& moments = run.mixture.mean.empty() ? run.spread : run.mixture;
-  const std::size_t scans = moments.covariance.size() / 9;
-  for (std::size_t k = 1; k <= kPoseEllipses && scans > 0; ++k) {
-    const std::size_t s = k * scans / kPoseEllipses - 1;
-    const double* P = moments.covariance.data() + 9 * s;
-    data.rows.push_back(ellipse_row(
-        two_sigma_ellipse(moments.mean[3 * s], moments.mean[3 * s + 1], P[0], P[3], P[4])));
+  void include(double x, double y) {
+    if (!std::isfinite(x) || !std::isfinite(y)) return;
+    left = std::min(left, x);
+    right = std::max(right, x);
+    low = std::min(low, y);
+    high = std::max(high, y);
   }
-  return data;
-}
-
-/// Landmarks that the filter has at the last scan.
-FigureData map_data(const ResultFile& file, const StoredCell& cell, std::size_t run_index) {
-  FigureData data{"map_" + cell.label + ".csv", kEllipseHeadings, {}};
-  const auto column = std::ranges::find(cell.columns, std::string("map_seen"), &Column::name);
-  if (column == cell.columns.end()) return data;
-  const std::size_t all = column->elements(), landmarks = column->shape.back();
-  std::vector<double> mean(2 * all), covariance(4 * all), seen(all);
-  file.read(cell, "map_mean", run_index, std::span(mean));
-  file.read(cell, "map_covariance", run_index, std::span(covariance));
-  file.read(cell, "map_seen", run_index, std::span(seen));
-  for (std::size_t k = all - landmarks; k < all; ++k) {
-    if (seen[k] == 0.0) continue;
-    const double* P = covariance.data() + 4 * k;
-    data.rows.push_back(
-        ellipse_row(two_sigma_ellipse(mean[2 * k], mean[2 * k + 1], P[0], P[2], P[3])));
+  /// Room around, and no axis shorter than a quarter of the other.
+  Bounds widened() const {
+    const double width = right - left, height = high - low;
+    const double room = 0.05 * std::max(width, height) + 1e-3;
+    const double x = room + std::max(0.0, 0.25 * height - width) / 2.0;
+    const double y = room + std::max(0.0, 0.25 * width - height) / 2.0;
+    Bounds wide;
+    wide.include(left - x, low - y);
+    wide.include(right + x, high + y);
+    return wide;
   }
-  return data;
-}
-
-FigureData landmark_data(const ResultFile& file) {
-  FigureData data{"landmarks.csv", {"x [m]", "y [m]"}, {}};
-  for (const auto& [x, y] : file.landmarks()) data.rows.push_back(texts({x, y}));
-  return data;
-}
+};
 
 /// Plots of one panel; an empty data file would be an error to gnuplot.
 class PanelScript {
  public:
-  explicit PanelScript(bool legend) : legend_(legend) {}
-  void add(const FigureData& data, const std::string& how, const std::string& title) {
+  void add(const FigureData& data, const std::string& how) {
     if (data.rows.empty()) return;
     script_ += (script_.empty() ? "plot " : ", \\\n  ") + gnuplot_quoted("../data/" + data.name) +
-               " " + how + (legend_ ? " title " + gnuplot_quoted(title) : " notitle");
+               " " + how + " notitle";
   }
   std::string text() const { return script_ + "\n"; }
 
  private:
-  bool legend_;
   std::string script_;
 };
 
-/// One cell of the chosen run: truth below, estimate above.
-void add_panel(const ResultFile& file, std::size_t cell_index, std::size_t run_index, bool first,
-               const FigureData& landmarks, Figure& figure) {
+constexpr const char* kTruth = "with lines linewidth 3 linecolor rgb '#aaaaaa'";
+constexpr const char* kLandmark = "with points pointtype 1 pointsize 0.6 linecolor rgb 'black'";
+
+/// Adds the data of one cell of the chosen run and returns its plot: truth below, estimate above.
+std::string add_panel(const ResultFile& file, std::size_t cell_index, std::size_t run_index,
+                      const FigureData& landmarks, Figure& figure) {
   const StoredCell& cell = file.cells()[cell_index];
   RunRows run;
   RunReader::Scratch scratch;
@@ -140,17 +99,78 @@ void add_panel(const ResultFile& file, std::size_t cell_index, std::size_t run_i
   figure.data.push_back(map_data(file, cell, run_index));
   const auto* data = &figure.data[figure.data.size() - 3];
   const std::string style = line_style(cell_index);
-  PanelScript panel(first);
-  panel.add(data[0], "using 2:3 with lines linewidth 3 linecolor rgb '#aaaaaa'", "true path");
-  panel.add(landmarks, "using 1:2 with points pointtype 1 pointsize 0.6 linecolor rgb 'black'",
-            "landmark");
-  panel.add(data[2], "using 1:2:3:4:5 with ellipses fillstyle empty border " + style,
-            "its estimate, 2 sigma");
-  panel.add(data[0], "using 4:5 with lines " + style, "estimated path");
-  panel.add(data[1], "using 1:2:3:4:5 with ellipses fillstyle empty border " + style,
-            "pose, 2 sigma");
-  figure.script +=
-      "set title " + gnuplot_quoted(cell.label) + " noenhanced offset 0,-0.6\n" + panel.text();
+  const std::string ellipses = "using 1:2:3:4:5 with ellipses fillstyle empty border " + style;
+  PanelScript panel;
+  panel.add(data[0], std::string("using 2:3 ") + kTruth);
+  panel.add(landmarks, std::string("using 1:2 ") + kLandmark);
+  panel.add(data[2], ellipses);
+  panel.add(data[0], "using 4:5 with lines " + style);
+  panel.add(data[1], ellipses);
+  return "set title " + gnuplot_quoted(cell.label) + " noenhanced offset 0,-0.5\n" + panel.text();
+}
+
+Bounds bounds_of(const std::vector<FigureData>& all) {
+  Bounds bounds;
+  for (const FigureData& data : all) {
+    const bool is_path = data.name.starts_with("path_");
+    if (!is_path && data.name != "landmarks.csv") continue;
+    for (const auto& row : data.rows) {
+      for (std::size_t c = is_path ? 1 : 0; c + 1 < row.size(); c += 2) {
+        bounds.include(row[c], row[c + 1]);
+      }
+    }
+  }
+  return bounds.widened();
+}
+
+std::size_t columns_of(std::size_t panels) { return panels == 1 ? 1 : 2; }
+
+/// Panels in two columns with one scale, the legend above; sets the figure's height.
+std::string layout_of(std::size_t panels, const Bounds& bounds, Figure& figure) {
+  const std::size_t columns = columns_of(panels), rows = (panels + columns - 1) / columns;
+  const double width = static_cast<double>(figure.width) * (columns == 1 ? 0.835 : 0.375);
+  const double aspect = (bounds.high - bounds.low) / (bounds.right - bounds.left);
+  const std::size_t legend = kLegendPixels, title = 30, axis = 60;
+  figure.height =
+      legend + axis + rows * (static_cast<std::size_t>(width * aspect) + title) + (rows - 1) * 30;
+  const auto share = [&](std::size_t pixels) {
+    return readable(static_cast<double>(pixels) / static_cast<double>(figure.height), 5);
+  };
+  const auto range = [](const char* name, double from, double to) {
+    return std::string("set ") + name + " [" + exact_text(from) + ":" + exact_text(to) + "]\n";
+  };
+  return "set style ellipse units xx\nset size ratio -1\n" +
+         range("xrange", bounds.left, bounds.right) + range("yrange", bounds.low, bounds.high) +
+         "set multiplot layout " + std::to_string(rows) + "," + std::to_string(columns) +
+         " margins 0.135,0.97," + share(axis) + "," + share(figure.height - legend - title) +
+         " spacing 0.08," + share(title + 30) + "\n";
+}
+
+/// A plot of nothing across the whole figure, for its legend: that of a panel is no wider than the
+/// panel.
+std::string legend_plot(const Figure& figure) {
+  const double bottom =
+      1.0 - static_cast<double>(kLegendPixels) / static_cast<double>(figure.height);
+  const auto entry = [](const std::string& how, const char* title) {
+    return "keyentry " + how + " title " + gnuplot_quoted(title) + ", \\\n  ";
+  };
+  return "set size noratio\nset lmargin at screen 0\nset rmargin at screen 1\nset tmargin at "
+         "screen "
+         "1\nset bmargin at screen " +
+         readable(bottom, 5) +
+         "\nunset title\nunset xlabel\nunset ylabel\nunset border\nunset tics\nunset grid\n"
+         "set key inside center center horizontal Left reverse\nplot [0:1] [0:1] " +
+         entry(kTruth, "true path") + entry(kLandmark, "landmark") +
+         entry("with lines " + line_style(0), "estimate") +
+         entry("with points pointtype 6 pointsize 1.2 " + line_style(0), "2 sigma") +
+         "NaN notitle\n";
+}
+
+/// Only the outer panels name their axes: all have the same.
+std::string labels_of(std::size_t panel, std::size_t panels) {
+  const std::size_t columns = columns_of(panels);
+  return std::string(panel % columns == 0 ? "set ylabel 'y [m]'\n" : "unset ylabel\n") +
+         (panel + columns >= panels ? "set xlabel 'x [m]'\n" : "unset xlabel\n");
 }
 
 std::vector<std::size_t> drawable_cells(const ResultFile& file, std::size_t run_index) {
@@ -168,22 +188,20 @@ Figure path_figure(const ResultFile& file, std::optional<std::uint64_t> run) {
   const auto run_index = choose_run(file, run);
   const auto cells = run_index ? drawable_cells(file, *run_index) : std::vector<std::size_t>{};
   if (cells.empty()) return figure;
-  const std::size_t columns = cells.size() == 1 ? 1 : 2;
-  const std::size_t rows = (cells.size() + columns - 1) / columns;
-  figure.height = rows * (columns == 1 ? 460 : 300) + 40;
   figure.sentence = "Run " + std::to_string(file.runs()[*run_index]) +
                     ": the true path in grey, the filter's in colour. Ellipses hold two standard "
-                    "deviations: where the filter is honest, the truth is seldom outside.";
+                    "deviations of the pose, at " +
+                    std::to_string(kPoseEllipses) +
+                    " moments, and of landmarks at the end: where the filter is honest, the truth "
+                    "is seldom outside.";
   const FigureData landmarks = landmark_data(file);
-  figure.script =
-      "set size ratio -1\nset style ellipse units xx\nset xlabel 'x [m]'\n"
-      "set ylabel 'y [m]'\nset multiplot layout " +
-      std::to_string(rows) + "," + std::to_string(columns) + "\n";
+  std::string panels;
   for (std::size_t k = 0; k < cells.size(); ++k) {
-    add_panel(file, cells[k], *run_index, k == 0, landmarks, figure);
+    panels += labels_of(k, cells.size()) + add_panel(file, cells[k], *run_index, landmarks, figure);
   }
-  figure.script += "unset multiplot\n";
   figure.data.push_back(landmarks);
+  figure.script = layout_of(cells.size(), bounds_of(figure.data), figure) + panels;
+  figure.script += legend_plot(figure) + "unset multiplot\n";
   return figure;
 }
 

@@ -39,15 +39,15 @@ std::vector<Band> bands(const StudyAnalysis& study, std::size_t dimension) {
   std::vector<Band> found;
   for (const std::size_t n : runs) {
     const Interval band = nees_bounds(n, dimension, study.level);
-    found.push_back({level_text(study.level) + " band, " + std::to_string(n) + " runs", band.lower,
-                     band.upper});
+    found.push_back(
+        {found.empty() ? level_text(study.level) + " band" : "", band.lower, band.upper});
   }
   return found;
 }
 
 Panel anees_panel(const StudyAnalysis& study, ErrorBlock block, const std::string& name,
                   const std::string& label) {
-  Panel panel{name, label, {}, {}, true, true};
+  Panel panel{name, label, {}, {}, Scale::automatic};
   std::size_t dimension = 0;
   panel.curves = curves(study, [&](const CellAnalysis& cell) {
     const NeesResult* nees = cell.find_nees(block, cell.leading);
@@ -65,7 +65,7 @@ Panel ancestor_panel(const StudyAnalysis& study, const std::string& name, const 
   const ValuesOf values_of = [&](const CellAnalysis& cell) {
     return cell.diversity ? (*cell.diversity).*values : std::vector<double>{};
   };
-  return {name, label, curves(study, values_of), {}, true, true};
+  return {name, label, curves(study, values_of), {}, Scale::logarithmic};
 }
 
 void add_if_shown(const std::vector<Panel>& panels, const StudyAnalysis& study, Figure& figure) {
@@ -75,7 +75,7 @@ void add_if_shown(const std::vector<Panel>& panels, const StudyAnalysis& study, 
 }  // namespace
 
 Figure anees_figure(const StudyAnalysis& study) {
-  Figure figure{"anees", "Is the filter right about its own errors?", "", 560, 360, "", {}};
+  Figure figure{"anees", "Is the filter right about its own errors?", "", 560, 320, "", {}};
   figure.sentence =
       "Average normalised error squared (ANEES) of the pose over time. A curve inside the grey "
       "band belongs to a filter whose stated uncertainty fits its real errors; a curve that climbs "
@@ -86,7 +86,7 @@ Figure anees_figure(const StudyAnalysis& study) {
 }
 
 Figure anees_parts_figure(const StudyAnalysis& study) {
-  Figure figure{"anees_parts", "Position or heading: which one goes wrong?", "", 560, 480, "", {}};
+  Figure figure{"anees_parts", "Position or heading: which one goes wrong?", "", 560, 440, "", {}};
   figure.sentence =
       "The same test for position alone (two components, right around 2) and heading alone (one "
       "component, right around 1): the curve that leaves its band first shows where trouble "
@@ -98,7 +98,7 @@ Figure anees_parts_figure(const StudyAnalysis& study) {
 }
 
 Figure rmse_figure(const StudyAnalysis& study) {
-  Figure figure{"rmse", "How large are the errors?", "", 560, 480, "", {}};
+  Figure figure{"rmse", "How large are the errors?", "", 560, 440, "", {}};
   figure.sentence =
       "Root mean square error over runs at each scan: lower is better. It grows while the vehicle "
       "explores and falls where it meets landmarks it knows.";
@@ -111,20 +111,21 @@ Figure rmse_figure(const StudyAnalysis& study) {
   const ValuesOf heading = [&](const CellAnalysis& cell) {
     return scaled(complete(cell, cell.error.heading_over_time), 180.0 / kPi);
   };
-  add_if_shown({{"rmse_position", "position RMSE [m]", curves(study, position), {}, false, true},
-                {"rmse_heading", "heading RMSE [deg]", curves(study, heading), {}, false, true}},
-               study, figure);
+  add_if_shown(
+      {{"rmse_position", "position RMSE [m]", curves(study, position), {}, Scale::from_zero},
+       {"rmse_heading", "heading RMSE [deg]", curves(study, heading), {}, Scale::from_zero}},
+      study, figure);
   return figure;
 }
 
 Figure diversity_figure(const StudyAnalysis& study) {
-  Figure figure{"diversity", "How many different histories survive?", "", 560, 600, "", {}};
+  Figure figure{"diversity", "How many different histories survive?", "", 560, 560, "", {}};
   figure.sentence =
       "Distinct ancestors of the particles, mean over runs: parents in the last resampling, "
       "ancestors 10 s ago, and ancestors at the start. When few are left, the particles tell one "
       "story in many copies, and the filter cannot know how wrong that story is.";
   add_if_shown(
-      {ancestor_panel(study, "ancestors_last_resampling", "in the last resampling",
+      {ancestor_panel(study, "ancestors_last_resampling", "last resampling",
                       &DiversitySummary::last_resampling_over_time),
        ancestor_panel(study, "ancestors_10_s_ago", "10 s ago", &DiversitySummary::lag_over_time),
        ancestor_panel(study, "ancestors_at_start", "at the start",
@@ -134,7 +135,7 @@ Figure diversity_figure(const StudyAnalysis& study) {
 }
 
 Figure ess_figure(const StudyAnalysis& study) {
-  Figure figure{"ess", "How many particles still count?", "", 560, 340, "", {}};
+  Figure figure{"ess", "How many particles still count?", "", 560, 280, "", {}};
   figure.sentence =
       "Effective sample size as a share of all particles, mean over runs: near 100 % all particles "
       "explain the measurements about equally well; a low share means that few carry all weight.";
@@ -142,7 +143,7 @@ Figure ess_figure(const StudyAnalysis& study) {
     if (!cell.weights) return std::vector<double>{};
     return scaled(cell.weights->ess_over_time, 100.0 / static_cast<double>(cell.particles));
   };
-  add_if_shown({{"ess_share", "effective particles [%]", curves(study, share), {}, false, true}},
+  add_if_shown({{"ess_share", "effective particles [%]", curves(study, share), {}, Scale::percent}},
                study, figure);
   return figure;
 }

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/figures/path_data.hpp"
+
+#include "analysis/figures/ellipse.hpp"
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace montecarta {
+namespace {
+
+constexpr std::size_t kMostPoints = 500;
+
+const std::vector<std::string> kEllipseHeadings = {"x [m]", "y [m]", "major diameter [m]",
+                                                   "minor diameter [m]", "angle [deg]"};
+
+std::vector<double> ellipse_row(const Ellipse& e) { return {e.x, e.y, e.major, e.minor, e.angle}; }
+
+const std::vector<double>& leading_mean(const RunRows& run) {
+  return run.mixture.mean.empty() ? run.spread.mean : run.mixture.mean;
+}
+
+}  // namespace
+
+FigureData path_data(const ResultFile& file, const StoredCell& cell, const RunRows& run) {
+  FigureData data{"path_" + cell.label + ".csv",
+                  {"time [s]", "true x [m]", "true y [m]", "x [m]", "y [m]"},
+                  {}};
+  const auto& times = file.scan_times();
+  const auto& mean = leading_mean(run);
+  const std::size_t stride = 1 + times.size() / kMostPoints;
+  for (std::size_t s = 0; s < times.size(); s += stride) {
+    data.rows.push_back(
+        {times[s], run.truth[3 * s], run.truth[3 * s + 1], mean[3 * s], mean[3 * s + 1]});
+  }
+  return data;
+}
+
+FigureData pose_ellipses(const StoredCell& cell, const RunRows& run) {
+  FigureData data{"pose_ellipses_" + cell.label + ".csv", kEllipseHeadings, {}};
+  const MomentRows& moments = run.mixture.mean.empty() ? run.spread : run.mixture;
+  const std::size_t scans = moments.covariance.size() / 9;
+  for (std::size_t k = 1; k <= kPoseEllipses && scans > 0; ++k) {
+    const std::size_t s = k * scans / kPoseEllipses - 1;
+    const double* P = moments.covariance.data() + 9 * s;
+    data.rows.push_back(ellipse_row(
+        two_sigma_ellipse(moments.mean[3 * s], moments.mean[3 * s + 1], P[0], P[3], P[4])));
+  }
+  return data;
+}
+
+/// Landmarks that the filter has at the last scan.
+FigureData map_data(const ResultFile& file, const StoredCell& cell, std::size_t run_index) {
+  FigureData data{"map_" + cell.label + ".csv", kEllipseHeadings, {}};
+  const auto column = std::ranges::find(cell.columns, std::string("map_seen"), &Column::name);
+  if (column == cell.columns.end()) return data;
+  const std::size_t all = column->elements(), landmarks = column->shape.back();
+  std::vector<double> mean(2 * all), covariance(4 * all), seen(all);
+  file.read(cell, "map_mean", run_index, std::span(mean));
+  file.read(cell, "map_covariance", run_index, std::span(covariance));
+  file.read(cell, "map_seen", run_index, std::span(seen));
+  for (std::size_t k = all - landmarks; k < all; ++k) {
+    if (seen[k] == 0.0) continue;
+    const double* P = covariance.data() + 4 * k;
+    data.rows.push_back(
+        ellipse_row(two_sigma_ellipse(mean[2 * k], mean[2 * k + 1], P[0], P[2], P[3])));
+  }
+  return data;
+}
+
+FigureData landmark_data(const ResultFile& file) {
+  FigureData data{"landmarks.csv", {"x [m]", "y [m]"}, {}};
+  for (const auto& [x, y] : file.landmarks()) data.rows.push_back({x, y});
+  return data;
+}
+
+}  // namespace montecarta

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/figures/figure.hpp"
+#include "analysis/metrics/run_rows.hpp"
+#include "engine/records/result_file.hpp"
+
+#include <cstddef>
+
+namespace montecarta {
+
+/// How many ellipses of the pose lie along a path.
+inline constexpr std::size_t kPoseEllipses = 16;
+
+/// (time, true x, true y, x, y) at up to some hundred scans of a run.
+FigureData path_data(const ResultFile& file, const StoredCell& cell, const RunRows& run);
+/// Two-sigma ellipses of the pose at kPoseEllipses moments; no rows without covariance.
+FigureData pose_ellipses(const StoredCell& cell, const RunRows& run);
+/// Two-sigma ellipses of the landmarks that the filter has at the last scan; no rows where no map
+/// is stored.
+FigureData map_data(const ResultFile& file, const StoredCell& cell, std::size_t run_index);
+/// True landmarks.
+FigureData landmark_data(const ResultFile& file);
+
+}  // namespace montecarta
