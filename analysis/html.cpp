@@ -12,7 +12,7 @@ constexpr const char* kStyle = R"(
   :root { --page: #15171a; --text: #e8e8e8; --soft: #a8a8a8; --line: #3a3d42; --bad: #ff8a80;
     --good: #6fd49b; }
 }
-body { margin: 0 auto; padding: 1rem; max-width: 60rem; background: var(--page);
+body { margin: 0 auto; padding: 1rem; max-width: 76rem; background: var(--page);
   color: var(--text); font: 1rem/1.5 system-ui, sans-serif; }
 h1 { font-size: 1.5rem; line-height: 1.25; margin: .5rem 0; }
 h2 { font-size: 1.15rem; margin: 2.2rem 0 .5rem; }
@@ -113,6 +113,9 @@ std::string inline_svg(const std::string& svg, const std::string& name,
   part = replaced(part, "id='", "id='" + name + "_");
   part = replaced(part, "href='#", "href='#" + name + "_");
   part = replaced(part, "url(#", "url(#" + name + "_");
+  // Black on a light page, light on a dark one; gnuplot writes it in two ways.
+  part = replaced(part, "rgb(0,0,0)", "currentColor");
+  part = replaced(part, "rgb(  0,   0,   0)", "currentColor");
   return replaced(part, "<svg",
                   "<svg role=\"img\" aria-label=\"" + html_escape(description) + "\"");
 }

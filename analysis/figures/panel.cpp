@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kBuckets = 300;
 constexpr double kLogarithmicFrom = 10.0;
-constexpr std::size_t kAxisPixels = 62;    // below the lowest panel: ticks and label
+constexpr std::size_t kAxisPixels = 66;    // below the lowest panel: ticks and label
 constexpr std::size_t kLegendPixels = 22;  // of a row
 
 struct Range {

@@ -130,9 +130,9 @@ std::string layout_of(std::size_t panels, const Bounds& bounds, Figure& figure) 
   const std::size_t columns = columns_of(panels), rows = (panels + columns - 1) / columns;
   const double width = static_cast<double>(figure.width) * (columns == 1 ? 0.835 : 0.375);
   const double aspect = (bounds.high - bounds.low) / (bounds.right - bounds.left);
-  const std::size_t legend = kLegendPixels, title = 30, axis = 60;
+  const std::size_t legend = kLegendPixels, title = 30, axis = 68;
   figure.height =
-      legend + axis + rows * (static_cast<std::size_t>(width * aspect) + title) + (rows - 1) * 30;
+      legend + axis + rows * (static_cast<std::size_t>(width * aspect) + title) + (rows - 1) * 40;
   const auto share = [&](std::size_t pixels) {
     return readable(static_cast<double>(pixels) / static_cast<double>(figure.height), 5);
   };
@@ -143,7 +143,7 @@ std::string layout_of(std::size_t panels, const Bounds& bounds, Figure& figure) 
          range("xrange", bounds.left, bounds.right) + range("yrange", bounds.low, bounds.high) +
          "set multiplot layout " + std::to_string(rows) + "," + std::to_string(columns) +
          " margins 0.135,0.97," + share(axis) + "," + share(figure.height - legend - title) +
-         " spacing 0.08," + share(title + 30) + "\n";
+         " spacing 0.08," + share(title + 40) + "\n";
 }
 
 /// A plot of nothing across the whole figure, for its legend: that of a panel is no wider than the

@@ -74,10 +74,12 @@ TEST(Html, EscapesText) {
   EXPECT_EQ(html_escape("a < b & \"c\" 3 +- 1"), "a &lt; b &amp; &quot;c&quot; 3 &plusmn; 1");
 }
 
-TEST(Html, GivesEveryDrawingItsOwnIdentifiers) {
-  const std::string svg = "<?xml?><svg><g id=\"a\"/><use href='#a'/></svg>";
+TEST(Html, GivesEveryDrawingItsOwnIdentifiersAndTheColourOfTheText) {
+  const std::string svg =
+      "<?xml?><svg><g id=\"a\" fill='rgb(  0,   0,   0)'/><use href='#a'/></svg>";
   EXPECT_EQ(inline_svg(svg, "rmse", "what"),
-            "<svg role=\"img\" aria-label=\"what\"><g id=\"rmse_a\"/><use href='#rmse_a'/></svg>");
+            "<svg role=\"img\" aria-label=\"what\"><g id=\"rmse_a\" fill='currentColor'/><use "
+            "href='#rmse_a'/></svg>");
 }
 
 }  // namespace
