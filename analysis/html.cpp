@@ -12,20 +12,21 @@ constexpr const char* kStyle = R"(
   :root { --page: #15171a; --text: #e8e8e8; --soft: #a8a8a8; --line: #3a3d42; --bad: #ff8a80;
     --good: #6fd49b; }
 }
-body { margin: 0 auto; padding: 1rem; max-width: 76rem; background: var(--page);
+body { margin: 0 auto; padding: 1rem; max-width: 78rem; background: var(--page);
   color: var(--text); font: 1rem/1.5 system-ui, sans-serif; }
 h1 { font-size: 1.5rem; line-height: 1.25; margin: .5rem 0; }
 h2 { font-size: 1.15rem; margin: 2.2rem 0 .5rem; }
-p { margin: .5rem 0; max-width: 46rem; }
+p { margin: .5rem 0; max-width: 60rem; }
 .soft, figcaption { color: var(--soft); font-size: .92rem; }
-.scroll { overflow-x: auto; }
+.scroll { overflow-x: auto; margin-bottom: .8rem; }
 table { border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabular-nums; }
-th, td { padding: .3rem .6rem; white-space: nowrap; border-bottom: 1px solid var(--line); }
+th, td { padding: .3rem .5rem; white-space: nowrap; border-bottom: 1px solid var(--line); }
 th { text-align: left; font-weight: 600; border-bottom: 2px solid var(--text); }
 .right { text-align: right; }
 .bad { color: var(--bad); font-weight: 600; }
 .good { color: var(--good); font-weight: 600; }
-figure { margin: .5rem 0; max-width: 46rem; }
+figure { margin: .5rem 0; }
+figcaption { max-width: 60rem; }
 figure svg { width: 100%; height: auto; display: block; color: var(--text); }
 svg [color="black"] { color: inherit; }
 svg [fill="black"] { fill: currentColor; }
@@ -113,6 +114,8 @@ std::string inline_svg(const std::string& svg, const std::string& name,
   part = replaced(part, "id='", "id='" + name + "_");
   part = replaced(part, "href='#", "href='#" + name + "_");
   part = replaced(part, "url(#", "url(#" + name + "_");
+  // The paper belongs to the file alone: on a page the page is the paper.
+  part = replaced(part, "fill=\"#ffffff\"", "fill=\"none\"");
   // Black on a light page, light on a dark one; gnuplot writes it in two ways.
   part = replaced(part, "rgb(0,0,0)", "currentColor");
   part = replaced(part, "rgb(  0,   0,   0)", "currentColor");

@@ -106,6 +106,7 @@ std::string origin(const ResultFile& file, const StudyAnalysis& study) {
 void write_tables(const StudyAnalysis& study, const fs::path& directory) {
   write_csv(study, directory);
   write_text(directory / "verdict.tex", latex_table(study));
+  write_text(directory / "accuracy.tex", latex_tabular(accuracy_table(study)));
   write_text(directory / "consistency.tex", latex_tabular(consistency_table(study)));
 }
 
@@ -121,7 +122,8 @@ void write_report(const ResultFile& file, const fs::path& directory, const Repor
   write_tables(study, directory / "tables");
   std::string body =
       head(study) + failures(study) +
-      section("Verdict", html_table(verdict_table(study)) + paragraphs(verdict_notes(study)));
+      section("Verdict", html_table(verdict_table(study)) + html_table(accuracy_table(study)) +
+                             paragraphs(verdict_notes(study)));
   for (const Figure& figure : figures) {
     draw(figure, directory);
     body += figure_section(figure, directory);

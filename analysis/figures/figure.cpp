@@ -17,7 +17,7 @@ set datafile missing 'nan'
 set datafile columnheaders
 set border 3 linewidth 0.8 linecolor rgb 'black'
 set tics nomirror out scale 0.6
-set grid linecolor rgb '#999999' linewidth 0.4 dashtype (2,4)
+set grid linecolor rgb '#bbbbbb' linewidth 0.4 dashtype (2,4)
 set key noenhanced samplen 1.6 spacing 1.15 width 1
 set style fill transparent solid 0.25 noborder
 )";
@@ -33,13 +33,14 @@ void write_data(const FigureData& data, const std::filesystem::path& directory) 
 std::string script_of(const Figure& figure) {
   const std::string size = std::to_string(figure.width) + "," + std::to_string(figure.height);
   const auto centimetres = [](std::size_t pixels) {
-    return readable(static_cast<double>(pixels) * 0.025, 3) + "cm";
+    return readable(static_cast<double>(pixels) * 0.02, 3) + "cm";
   };
   return std::string("# Drawn again by: gnuplot ") + figure.name + ".gp\n" +
-         "set terminal svg size " + size + " dynamic font 'sans-serif,13' linewidth 1.3\n" +
-         "set output '" + figure.name + ".svg'\n" + kStyle + figure.script +
+         "set terminal svg size " + size +
+         " dynamic background rgb '#ffffff' font 'sans-serif,13' linewidth 1.3\n" + "set output '" +
+         figure.name + ".svg'\n" + kStyle + figure.script +
          "unset output\nreset\nset terminal pdfcairo size " + centimetres(figure.width) + "," +
-         centimetres(figure.height) + " font 'sans,9' linewidth 1.3\nset output '" + figure.name +
+         centimetres(figure.height) + " font 'sans,8' linewidth 1.3\nset output '" + figure.name +
          ".pdf'\n" + kStyle + figure.script + "unset output\n";
 }
 

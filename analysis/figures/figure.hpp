@@ -22,8 +22,8 @@ struct Figure {
   std::string name;      ///< of its files, e.g. "anees"
   std::string title;     ///< a heading on the page
   std::string sentence;  ///< what it means, for someone who sees such a figure for the first time
-  std::size_t width = 560;   ///< [px]
-  std::size_t height = 340;  ///< [px]
+  std::size_t width = 900;   ///< [px] 18 cm in print: the text width of a journal's page
+  std::size_t height = 360;  ///< [px]
   std::string script;        ///< gnuplot commands behind terminal and style; data lies in ../data/
   std::vector<FigureData> data;
 };

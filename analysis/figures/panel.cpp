@@ -12,7 +12,8 @@ namespace montecarta {
 namespace {
 
 constexpr std::size_t kBuckets = 300;
-constexpr double kLogarithmicFrom = 10.0;
+constexpr double kBelowBand = 0.3, kAboveBand = 1000.0;  // where the axis ends at the latest
+constexpr double kLogarithmicFrom = 30.0;
 constexpr std::size_t kAxisPixels = 66;    // below the lowest panel: ticks and label
 constexpr std::size_t kLegendPixels = 22;  // of a row
 
@@ -21,7 +22,7 @@ struct Range {
   double greatest = 0.0;
 };
 
-/// Of all positive values of a panel, bands included.
+/// Of all positive values of a panel, bands included; near the bands where there are some.
 Range range_of(const Panel& panel) {
   Range range;
   const auto include = [&](double value) {
@@ -31,22 +32,29 @@ Range range_of(const Panel& panel) {
   };
   for (const Curve& curve : panel.curves) std::ranges::for_each(curve.values, include);
   for (const Band& band : panel.bands) {
-    include(band.lower);
-    include(band.upper);
+    range.least = std::clamp(range.least, kBelowBand * band.lower, 0.5 * band.lower);
+    range.greatest = std::clamp(range.greatest, band.upper, kAboveBand * band.upper);
   }
   return range;
 }
 
+/// Whole decades; near a band no farther than the range itself.
+std::string logarithmic_axis(const Panel& panel, const Range& range) {
+  const double from = std::floor(std::log10(range.least));
+  const double to = std::max(from + 1.0, std::ceil(std::log10(range.greatest)));
+  const bool plain = from >= -2.0 && to <= 4.0;
+  const bool near = !panel.bands.empty();
+  return std::string("set logscale y\nset format y '") + (plain ? "%h" : "10^{%T}") +
+         "'\nset yrange [" + exact_text(near ? range.least : std::pow(10.0, from)) + ":" +
+         exact_text(near ? range.greatest : std::pow(10.0, to)) + "]\n";
+}
+
 std::string axes_of(const Panel& panel) {
   const Range range = range_of(panel);
-  std::string script = "set ylabel " + gnuplot_quoted(panel.label) + " noenhanced\n";
+  std::string script = "set ylabel " + gnuplot_quoted(panel.label) + " noenhanced offset 1.5,0\n";
   const bool wide = range.greatest > kLogarithmicFrom * range.least;
   if (panel.scale == Scale::logarithmic || (panel.scale == Scale::automatic && wide)) {
-    const double from = std::floor(std::log10(range.least));
-    const double to = std::max(from + 1.0, std::ceil(std::log10(range.greatest)));
-    return script + "set logscale y\nset format y '" + (to - from > 3.0 ? "10^{%T}" : "%h") +
-           "'\nset yrange [" + exact_text(std::pow(10.0, from)) + ":" +
-           exact_text(std::pow(10.0, to)) + "]\n";
+    return script + logarithmic_axis(panel, range);
   }
   return script + "unset logscale y\nset format y '%h'\nset yrange [0:" +
          (panel.scale == Scale::percent ? "100" : "*") + "]\n";
@@ -80,7 +88,10 @@ std::string plot_of(const Panel& panel, bool legend) {
   };
   std::string script = "plot ";
   for (std::size_t b = 0; b < panel.bands.size(); ++b) {
-    script += band_name(panel, b) + " using 1:2:3 with filledcurves linecolor rgb '#777777'" +
+    script += band_name(panel, b) +
+              " using 1:2:3 with filledcurves fillcolor rgb '#707070' fillstyle transparent solid "
+              "0.45 border "
+              "linecolor rgb '#666666' linewidth 0.6" +
               title(panel.bands[b].legend) + ", \\\n  ";
   }
   for (std::size_t i = 0; i < panel.curves.size(); ++i) {
@@ -101,8 +112,8 @@ std::size_t add_legend(const Panel& panel, Figure& figure) {
     entries += band.legend.empty() ? 0 : 1;
   }
   const std::size_t columns =
-      std::clamp<std::size_t>((figure.width - 80) / (8 * longest + 68), 1, entries);
-  figure.script += "set key at screen 0.13,0.985 left top horizontal Left reverse maxcols " +
+      std::clamp<std::size_t>((figure.width - 90) / (8 * longest + 68), 1, entries);
+  figure.script += "set key at screen 0.085,0.985 left top horizontal Left reverse maxcols " +
                    std::to_string(columns) + "\n";
   return (entries + columns - 1) / columns;
 }
@@ -120,12 +131,12 @@ void add_panels(const std::vector<Panel>& panels, const std::vector<double>& tim
   };
   for (const Panel& panel : panels) figure.script += bands_of(panel, last);
   figure.script += "set xrange [0:" + exact_text(last) + "]\nset multiplot layout " +
-                   std::to_string(panels.size()) + ",1 margins 0.13," + "0.97" + "," +
-                   share(kAxisPixels) + "," + share(figure.height - top) + " spacing 0.05\n";
+                   std::to_string(panels.size()) + ",1 margins 0.085,0.985," + share(kAxisPixels) +
+                   "," + share(figure.height - top) + " spacing 0.05\n";
   for (std::size_t p = 0; p < panels.size(); ++p) {
     const bool lowest = p + 1 == panels.size();
-    figure.script +=
-        lowest ? "set xlabel 'time [s]'\nset format x '%h'\n" : "unset xlabel\nset format x ''\n";
+    figure.script += lowest ? "set xlabel 'time [s]' offset 0,0.4\nset format x '%h'\n"
+                            : "unset xlabel\nset format x ''\n";
     if (p > 0) figure.script += "set key off\n";
     figure.script += axes_of(panels[p]) + plot_of(panels[p], p == 0);
     figure.data.push_back(data_over_time(panels[p].name + ".csv", thinned(panels[p], times)));

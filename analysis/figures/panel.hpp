@@ -15,7 +15,9 @@ struct Curve {
   std::vector<double> values;  ///< {scan}
 };
 
-/// A horizontal band, e.g. where a right filter stays.
+/// A horizontal band, e.g. where a right filter stays. It keeps the vertical axis near: from 0.3
+/// times its lower end to 1000 times its upper one at most, so that it is seen beside a filter that
+/// is off by many powers of ten.
 struct Band {
   std::string legend;
   double lower = 0.0;
@@ -25,9 +27,9 @@ struct Band {
 /// The vertical axis.
 enum class Scale {
   from_zero,
-  percent,      ///< 0 to 100
-  logarithmic,  ///< whole decades
-  automatic     ///< logarithmic where the values span more than a factor of ten, else from zero
+  percent,  ///< 0 to 100
+  logarithmic,
+  automatic  ///< logarithmic where the values span more than a factor of 30, else from zero
 };
 
 /// Axes with curves over time.

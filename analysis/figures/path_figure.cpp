@@ -15,7 +15,8 @@ namespace montecarta {
 namespace {
 
 constexpr std::size_t kMostPanels = 8;
-constexpr std::size_t kLegendPixels = 30;
+constexpr std::size_t kLegendPixels = 32;
+constexpr std::size_t kRowGapPixels = 44;  // below a row: ticks and label of a short last row
 
 /// In how many cells each run is complete.
 std::vector<std::size_t> completeness(const ResultFile& file) {
@@ -123,27 +124,60 @@ Bounds bounds_of(const std::vector<FigureData>& all) {
   return bounds.widened();
 }
 
-std::size_t columns_of(std::size_t panels) { return panels == 1 ? 1 : 2; }
+/// Where panels lie across the figure, in shares of its width.
+struct Columns {
+  std::size_t count = 1;
+  double left = 0.25, right = 0.75;  ///< one panel alone needs no more than half of the width
+  double gap = 0.02;
 
-/// Panels in two columns with one scale, the legend above; sets the figure's height.
-std::string layout_of(std::size_t panels, const Bounds& bounds, Figure& figure) {
-  const std::size_t columns = columns_of(panels), rows = (panels + columns - 1) / columns;
-  const double width = static_cast<double>(figure.width) * (columns == 1 ? 0.835 : 0.375);
-  const double aspect = (bounds.high - bounds.low) / (bounds.right - bounds.left);
-  const std::size_t legend = kLegendPixels, title = 30, axis = 68;
-  figure.height =
-      legend + axis + rows * (static_cast<std::size_t>(width * aspect) + title) + (rows - 1) * 40;
-  const auto share = [&](std::size_t pixels) {
-    return readable(static_cast<double>(pixels) / static_cast<double>(figure.height), 5);
-  };
+  explicit Columns(std::size_t panels) : count(std::min<std::size_t>(panels, 3)) {
+    if (count == 1) return;
+    left = 0.085;
+    right = 0.985;
+  }
+  double panel() const {
+    const auto n = static_cast<double>(count);
+    return (right - left - (n - 1.0) * gap) / n;
+  }
+};
+
+/// A distance between ticks of 1, 2 or 5 times a power of ten that cuts `span` into 4 to 9 parts.
+double tick_distance(double span) {
+  const double power = std::pow(10.0, std::floor(std::log10(span / 4.0)));
+  const double most = span / 4.0 / power;
+  return power * (most >= 5.0 ? 5.0 : most >= 2.0 ? 2.0 : 1.0);
+}
+
+/// Ranges and ticks that all panels share: one scale in both directions.
+std::string axes_of(const Bounds& bounds) {
+  const double width = bounds.right - bounds.left, height = bounds.high - bounds.low;
+  const std::string tick = exact_text(tick_distance(std::max(width, height)));
   const auto range = [](const char* name, double from, double to) {
     return std::string("set ") + name + " [" + exact_text(from) + ":" + exact_text(to) + "]\n";
   };
   return "set style ellipse units xx\nset size ratio -1\n" +
          range("xrange", bounds.left, bounds.right) + range("yrange", bounds.low, bounds.high) +
-         "set multiplot layout " + std::to_string(rows) + "," + std::to_string(columns) +
-         " margins 0.135,0.97," + share(axis) + "," + share(figure.height - legend - title) +
-         " spacing 0.08," + share(title + 40) + "\n";
+         "set xtics " + tick + "\nset ytics " + tick + "\n";
+}
+
+/// Panels of equal size side by side, wrapped beyond three, the legend in a strip of its own above;
+/// sets the figure's height.
+std::string layout_of(std::size_t panels, const Bounds& bounds, Figure& figure) {
+  const Columns columns(panels);
+  const std::size_t rows = (panels + columns.count - 1) / columns.count;
+  const double aspect = (bounds.high - bounds.low) / (bounds.right - bounds.left);
+  const std::size_t title = 24, axis = 66;
+  const auto panel =
+      static_cast<std::size_t>(static_cast<double>(figure.width) * columns.panel() * aspect);
+  figure.height = kLegendPixels + axis + rows * (panel + title) + (rows - 1) * kRowGapPixels;
+  const auto share = [&](std::size_t pixels) {
+    return readable(static_cast<double>(pixels) / static_cast<double>(figure.height), 5);
+  };
+  return axes_of(bounds) + "set multiplot layout " + std::to_string(rows) + "," +
+         std::to_string(columns.count) + " margins " + readable(columns.left, 5) + "," +
+         readable(columns.right, 5) + "," + share(axis) + "," +
+         share(figure.height - kLegendPixels - title) + " spacing " + readable(columns.gap, 5) +
+         "," + share(title + kRowGapPixels) + "\n";
 }
 
 /// A plot of nothing across the whole figure, for its legend: that of a panel is no wider than the
@@ -154,9 +188,8 @@ std::string legend_plot(const Figure& figure) {
   const auto entry = [](const std::string& how, const char* title) {
     return "keyentry " + how + " title " + gnuplot_quoted(title) + ", \\\n  ";
   };
-  return "set size noratio\nset lmargin at screen 0\nset rmargin at screen 1\nset tmargin at "
-         "screen "
-         "1\nset bmargin at screen " +
+  return "set size noratio\nset lmargin at screen 0\nset rmargin at screen 1\n"
+         "set tmargin at screen 1\nset bmargin at screen " +
          readable(bottom, 5) +
          "\nunset title\nunset xlabel\nunset ylabel\nunset border\nunset tics\nunset grid\n"
          "set key inside center center horizontal Left reverse\nplot [0:1] [0:1] " +
@@ -166,11 +199,16 @@ std::string legend_plot(const Figure& figure) {
          "NaN notitle\n";
 }
 
-/// Only the outer panels name their axes: all have the same.
+/// Only the outer panels number and name their axes: all have the same.
 std::string labels_of(std::size_t panel, std::size_t panels) {
-  const std::size_t columns = columns_of(panels);
-  return std::string(panel % columns == 0 ? "set ylabel 'y [m]'\n" : "unset ylabel\n") +
-         (panel + columns >= panels ? "set xlabel 'x [m]'\n" : "unset xlabel\n");
+  const std::size_t columns = Columns(panels).count;
+  const auto labels = [](bool outer, const std::string& axis, const std::string& offset) {
+    return outer ? "set " + axis + "label '" + axis + " [m]' offset " + offset + "\nset format " +
+                       axis + " '%h'\n"
+                 : "unset " + axis + "label\nset format " + axis + " ''\n";
+  };
+  return labels(panel % columns == 0, "y", "1.5,0") +
+         labels(panel + columns >= panels, "x", "0,0.4");
 }
 
 std::vector<std::size_t> drawable_cells(const ResultFile& file, std::size_t run_index) {
@@ -184,7 +222,7 @@ std::vector<std::size_t> drawable_cells(const ResultFile& file, std::size_t run_
 }  // namespace
 
 Figure path_figure(const ResultFile& file, std::optional<std::uint64_t> run) {
-  Figure figure{"paths", "Where did the filter think it was?", "", 560, 0, "", {}};
+  Figure figure{"paths", "Where did the filter think it was?", "", 900, 0, "", {}};
   const auto run_index = choose_run(file, run);
   const auto cells = run_index ? drawable_cells(file, *run_index) : std::vector<std::size_t>{};
   if (cells.empty()) return figure;

@@ -75,18 +75,19 @@ void add_if_shown(const std::vector<Panel>& panels, const StudyAnalysis& study, 
 }  // namespace
 
 Figure anees_figure(const StudyAnalysis& study) {
-  Figure figure{"anees", "Is the filter right about its own errors?", "", 560, 320, "", {}};
+  Figure figure{"anees", "Is the filter right about its own errors?", "", 900, 320, "", {}};
   figure.sentence =
       "Average normalised error squared (ANEES) of the pose over time. A curve inside the grey "
       "band belongs to a filter whose stated uncertainty fits its real errors; a curve that climbs "
-      "above the band and stays there belongs to a filter that is sure of a wrong answer.";
+      "above the band and stays there belongs to a filter that is sure of a wrong answer. The axis "
+      "ends at 1000 times the band; the numbers hold every value, also of curves beyond the top.";
   add_if_shown({anees_panel(study, ErrorBlock::pose, "anees_pose", "ANEES of the pose")}, study,
                figure);
   return figure;
 }
 
 Figure anees_parts_figure(const StudyAnalysis& study) {
-  Figure figure{"anees_parts", "Position or heading: which one goes wrong?", "", 560, 440, "", {}};
+  Figure figure{"anees_parts", "Position or heading: which one goes wrong?", "", 900, 460, "", {}};
   figure.sentence =
       "The same test for position alone (two components, right around 2) and heading alone (one "
       "component, right around 1): the curve that leaves its band first shows where trouble "
@@ -98,7 +99,7 @@ Figure anees_parts_figure(const StudyAnalysis& study) {
 }
 
 Figure rmse_figure(const StudyAnalysis& study) {
-  Figure figure{"rmse", "How large are the errors?", "", 560, 440, "", {}};
+  Figure figure{"rmse", "How large are the errors?", "", 900, 460, "", {}};
   figure.sentence =
       "Root mean square error over runs at each scan: lower is better. It grows while the vehicle "
       "explores and falls where it meets landmarks it knows.";
@@ -119,23 +120,23 @@ Figure rmse_figure(const StudyAnalysis& study) {
 }
 
 Figure diversity_figure(const StudyAnalysis& study) {
-  Figure figure{"diversity", "How many different histories survive?", "", 560, 560, "", {}};
+  Figure figure{"diversity", "How many different histories survive?", "", 900, 580, "", {}};
   figure.sentence =
       "Distinct ancestors of the particles, mean over runs: parents in the last resampling, "
       "ancestors 10 s ago, and ancestors at the start. When few are left, the particles tell one "
       "story in many copies, and the filter cannot know how wrong that story is.";
-  add_if_shown(
-      {ancestor_panel(study, "ancestors_last_resampling", "last resampling",
-                      &DiversitySummary::last_resampling_over_time),
-       ancestor_panel(study, "ancestors_10_s_ago", "10 s ago", &DiversitySummary::lag_over_time),
-       ancestor_panel(study, "ancestors_at_start", "at the start",
-                      &DiversitySummary::root_over_time)},
-      study, figure);
+  add_if_shown({ancestor_panel(study, "ancestors_last_resampling", "parents, last resampling",
+                               &DiversitySummary::last_resampling_over_time),
+                ancestor_panel(study, "ancestors_10_s_ago", "ancestors, 10 s ago",
+                               &DiversitySummary::lag_over_time),
+                ancestor_panel(study, "ancestors_at_start", "ancestors at the start",
+                               &DiversitySummary::root_over_time)},
+               study, figure);
   return figure;
 }
 
 Figure ess_figure(const StudyAnalysis& study) {
-  Figure figure{"ess", "How many particles still count?", "", 560, 280, "", {}};
+  Figure figure{"ess", "How many particles still count?", "", 900, 240, "", {}};
   figure.sentence =
       "Effective sample size as a share of all particles, mean over runs: near 100 % all particles "
       "explain the measurements about equally well; a low share means that few carry all weight.";

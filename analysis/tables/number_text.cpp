@@ -30,6 +30,12 @@ std::string readable(double value, int digits) {
   return printed("%.*f", std::max(0, digits - 1 - magnitude(value)), value);
 }
 
+std::string compact(double value) {
+  if (!std::isfinite(value) || std::abs(value) < 1e4) return readable(value);
+  const int power = magnitude(value);
+  return printed("%.*f", 2, value / std::pow(10.0, power)) + "e" + std::to_string(power);
+}
+
 std::string with_error(double mean, double standard_error) {
   if (std::isnan(mean) || std::isnan(standard_error) || standard_error == 0.0) {
     return readable(mean);

@@ -9,6 +9,9 @@ namespace montecarta {
 /// million.
 std::string readable(double value, int digits = 3);
 
+/// As readable(), but from ten thousand on in powers of ten, "2.73e5": only the power matters.
+std::string compact(double value);
+
 /// A mean with its standard error, "3.58 +- 0.10": both to the second significant digit of the
 /// error. "-" where there is none; without error where it is of one run.
 std::string with_error(double mean, double standard_error);

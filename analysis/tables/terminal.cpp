@@ -87,6 +87,8 @@ void print_tables(std::ostream& out, const StudyAnalysis& study) {
   if (study.has_failures()) print_failures(out, study);
   print(out, verdict_table(study));
   out << '\n';
+  print(out, accuracy_table(study));
+  out << '\n';
   print_warnings(out, study);
   for (const std::string& note : verdict_notes(study)) print_wrapped(out, note);
 }

@@ -38,12 +38,16 @@ std::vector<std::string> verdict_row(const CellAnalysis& cell, double level) {
   return {cell.label,
           runs_in_words(cell),
           in_words(verdict),
-          if_tested(readable(verdict.mean)),
+          if_tested(compact(verdict.mean)),
           if_tested(band_text(cell, 3, level)),
           if_tested(percent(verdict.share_inside)),
           if_tested(percent(verdict.share_above)),
           if_tested(percent(verdict.share_below)),
-          exit_text(verdict),
+          exit_text(verdict)};
+}
+
+std::vector<std::string> accuracy_row(const CellAnalysis& cell) {
+  return {cell.label,
           with_error(cell.error.position_rmse.mean, cell.error.position_rmse.standard_error()),
           in_degrees(cell.error.heading_rmse),
           cell.weights ? readable(cell.weights->ess.mean) : "-",
@@ -58,8 +62,8 @@ std::vector<std::string> consistency_row(const CellAnalysis& cell, const NeesRes
           name_of(nees.block),
           name_of(nees.moments),
           in_words(found),
-          readable(found.mean),
-          readable(found.median),
+          compact(found.mean),
+          compact(found.median),
           band_text(cell, nees.series.dimension, level),
           percent(found.share_inside),
           percent(found.share_above),
@@ -96,13 +100,20 @@ TextTable verdict_table(const StudyAnalysis& study) {
                     {"inside"},
                     {"above"},
                     {"below"},
-                    {"leaves at"},
+                    {"leaves at"}};
+  for (const CellAnalysis& cell : study.cells) table.rows.push_back(verdict_row(cell, study.level));
+  return table;
+}
+
+TextTable accuracy_table(const StudyAnalysis& study) {
+  TextTable table;
+  table.headings = {{"cell", Align::left},
                     {"position RMSE [m]"},
                     {"heading RMSE [deg]"},
                     {"ESS"},
                     {"roots"},
                     {"CPU [s]"}};
-  for (const CellAnalysis& cell : study.cells) table.rows.push_back(verdict_row(cell, study.level));
+  for (const CellAnalysis& cell : study.cells) table.rows.push_back(accuracy_row(cell));
   return table;
 }
 
@@ -157,8 +168,8 @@ std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
           " s of this study. 'optimistic' and 'conservative' mean outside more than twice as "
           "often as chance has it, mostly above or mostly below.",
       "RMSE is given as mean over runs +- its standard error; ESS is the effective number of "
-      "particles, roots how many of the first particles still have descendants at the end; all "
-      "of complete runs only."};
+      "particles, roots how many of the first particles still have descendants at the end, CPU "
+      "the filter's own time in a run; all of complete runs only."};
 }
 
 }  // namespace montecarta

@@ -23,6 +23,9 @@ struct TextTable {
 /// One row a cell: what became of its runs, the verdict, and the numbers behind it.
 TextTable verdict_table(const StudyAnalysis& study);
 
+/// One row a cell: errors, particles that count, and what a run costs.
+TextTable accuracy_table(const StudyAnalysis& study);
+
 /// One row a cell and definition of covariance and error: the whole NEES test.
 TextTable consistency_table(const StudyAnalysis& study);
 

@@ -72,6 +72,9 @@ TEST(NumberText, IsShortAndHonest) {
   EXPECT_EQ(readable(0.0), "0.00");
   EXPECT_EQ(readable(2.5e9), "2.5e+09");
   EXPECT_EQ(readable(kNaN), "-");
+  EXPECT_EQ(compact(9999.0), "9999");
+  EXPECT_EQ(compact(272632.0), "2.73e5");
+  EXPECT_EQ(compact(kNaN), "-");
   EXPECT_EQ(with_error(3.5812, 0.1049), "3.58 +- 0.10");
   EXPECT_EQ(with_error(3.5812, kNaN), "3.58");
   EXPECT_EQ(with_error(1234.5, 56.7), "1234 +- 57");

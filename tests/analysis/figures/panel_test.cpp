@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/figures/panel.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace montecarta {
+namespace {
+
+using testing::HasSubstr;
+
+Figure drawn(const Panel& panel) {
+  Figure figure;
+  add_panels({panel}, {0.2, 0.4}, figure);
+  return figure;
+}
+
+TEST(Panels, KeepTheBandInSightOfACollapsedFilterAndEveryValueInTheNumbers) {
+  const Figure figure =
+      drawn({"anees", "ANEES", {{"bad", 0, {3.0, 1e30}}}, {{"band", 2.0, 4.0}}, Scale::automatic});
+  EXPECT_THAT(figure.script, HasSubstr("set yrange [1:4000]"));
+  EXPECT_THAT(figure.script, HasSubstr("set format y '%h'"));
+  EXPECT_EQ(figure.data.front().rows.back().back(), 1e30);
+}
+
+TEST(Panels, NumberManyDecadesByTheirPowers) {
+  const Figure figure =
+      drawn({"count", "particles", {{"one", 0, {1.0, 1e6}}}, {}, Scale::logarithmic});
+  EXPECT_THAT(figure.script, HasSubstr("set format y '10^{%T}'"));
+}
+
+}  // namespace
+}  // namespace montecarta
