@@ -68,7 +68,6 @@ std::vector<std::string> consistency_row(const CellAnalysis& cell, const NeesRes
           percent(found.share_inside),
           percent(found.share_above),
           percent(found.share_below),
-          exit_text(found),
           std::to_string(nees.series.floored),
           std::to_string(nees.series.undefined)};
 }
@@ -129,7 +128,6 @@ TextTable consistency_table(const StudyAnalysis& study) {
                     {"inside"},
                     {"above"},
                     {"below"},
-                    {"leaves at"},
                     {"floored"},
                     {"undefined"}};
   for (const CellAnalysis& cell : study.cells) {
