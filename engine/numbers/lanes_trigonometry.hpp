@@ -5,6 +5,7 @@
 #include "engine/numbers/lanes.hpp"
 
 #include <cstdint>
+#include <limits>
 
 /// Branch-free sine, cosine and arc tangent of one register. The library's choose their polynomial
 /// by what the neighbouring lanes hold, so that a particle's bits would depend on who shares its
@@ -53,16 +54,17 @@ template <class... Rest>
   cosine = c ^ swap ^ cosine_sign;
 }
 
-/// Angle of the vector (x, y) in [-pi, pi]; not both zero. One division: the octant is chosen
-/// before it. Polynomial: Chebyshev fit of (atan(s)/s - 1)/s^2 in s^2 on [0, tan(pi/8)^2], error
-/// 6e-18.
+/// Angle of the vector (x, y) in [-pi, pi]; 0 where both are zero. One division: the octant is
+/// chosen before it. Polynomial: Chebyshev fit of (atan(s)/s - 1)/s^2 in s^2 on [0, tan(pi/8)^2],
+/// error 6e-18.
 [[gnu::always_inline]] inline Register atan2(const Register& y, const Register& x) {
   const Register ax = xsimd::abs(x), ay = xsimd::abs(y);
   const Register big = xsimd::max(ax, ay), small = xsimd::min(ax, ay);
   const auto steep = ay > ax;
   const auto middle = small > Register(0.41421356237309503) * big;
   const Register numerator = xsimd::select(middle, small - big, small);
-  const Register denominator = xsimd::select(middle, small + big, big);
+  const Register denominator = xsimd::max(xsimd::select(middle, small + big, big),
+                                          Register(std::numeric_limits<double>::min()));
   const Register t = numerator / denominator;
   const Register z = t * t;
   const Register p = polynomial(z, -0.01917392228554793, 0.03922923713835943, -0.05085365922344248,

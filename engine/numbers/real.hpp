@@ -81,13 +81,14 @@ inline Lanes max(const Lanes& a, const Lanes& b) {
 }
 inline double max(double a, double b) { return a < b ? b : a; }
 
-/// Like wrap(double), but lanes that are in range already may change in the last bit at the border.
+/// Like wrap(double): in (-pi, pi], exact where the angle is in range already.
 inline Lanes wrap(const Lanes& angle) {
   return by_register(
       [](const auto& x) {
         using Register = Lanes::Register;
         const Register turns = xsimd::nearbyint(x * Register(1.0 / kTwoPi));
-        return xsimd::fnma(turns, Register(kTwoPi), x);
+        const Register wrapped = xsimd::min(xsimd::fnma(turns, Register(kTwoPi), x), Register(kPi));
+        return xsimd::select(wrapped > Register(-kPi), wrapped, Register(kPi));
       },
       angle);
 }

@@ -30,10 +30,20 @@ class Genealogy {
     parents_.insert(parents_.end(), parents.begin(), parents.end());
   }
   /// Whether so much is remembered that all owners should catch up and forget() be called.
-  bool is_long() const { return parents_.size() / identity_.size() >= kLongest; }
+  bool is_long() const {
+    return parents_.size() >= kMostNumbers || parents_.size() / identity_.size() >= kLongest;
+  }
   void forget() {
     forgotten_ = generation();
     parents_.clear();
+  }
+
+  /// The index at `since` of the ancestor of today's particle.
+  std::uint32_t trace(std::uint32_t since, std::uint32_t particle) const {
+    for (std::size_t g = generation() - forgotten_; g-- > since - forgotten_;) {
+      particle = parents_[g * identity_.size() + particle];
+    }
+    return particle;
   }
 
   /// source[i] = the index at `since` of the ancestor of today's particle i; since >= the last
@@ -47,7 +57,8 @@ class Genealogy {
   }
 
  private:
-  static constexpr std::size_t kLongest = 256;
+  static constexpr std::size_t kLongest = 256;           // generations
+  static constexpr std::size_t kMostNumbers = 1U << 22;  // 16 MiB
   std::vector<std::uint32_t> identity_;
   std::vector<std::uint32_t> parents_;  // one generation behind the other
   std::uint32_t forgotten_ = 0;

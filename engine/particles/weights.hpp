@@ -3,6 +3,7 @@
 
 #include "engine/particles/blocks.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -30,14 +31,10 @@ class Weights {
 
   void make_equal() {
     heaviest_ = 0;
-    const auto logs = scalars(log_);
-    const auto weights = scalars(linear_);
-    for (std::size_t i = 0; i < logs.size(); ++i) {
-      const bool alive = i < particles_;
-      logs[i] = alive ? -std::log(static_cast<double>(particles_))
-                      : -std::numeric_limits<double>::infinity();
-      weights[i] = alive ? 1.0 / static_cast<double>(particles_) : 0.0;
-    }
+    const double share = 1.0 / static_cast<double>(particles_);
+    std::fill(log_.begin(), log_.end(), Real(std::log(share)));
+    std::fill(linear_.begin(), linear_.end(), Real(share));
+    bury_dead_lanes();
   }
 
   /// Multiplies a block of weights by exp(increment); normalise() must follow.
@@ -63,6 +60,7 @@ class Weights {
       linear_[b] = linear_[b] * Real(1.0 / sum);
       log_[b] -= Real(log_sum);
     }
+    bury_dead_lanes();
     return log_sum;
   }
 
@@ -74,6 +72,13 @@ class Weights {
   }
 
  private:
+  void bury_dead_lanes() {
+    for (std::size_t i = particles_; i < scalars(log_).size(); ++i) {
+      scalars(log_)[i] = -std::numeric_limits<double>::infinity();
+      scalars(linear_)[i] = 0.0;
+    }
+  }
+
   std::size_t particles_;
   std::size_t heaviest_ = 0;
   std::vector<Real> log_;

@@ -29,18 +29,25 @@ class Parallel {
   template <class Body>
   void for_each(std::size_t count, const Body& body) const {
     if (threads() == 1 || count < 2) {
-      for (std::size_t i = 0; i < count; ++i) body(i);
+      for (std::size_t i = 0; i < count; ++i) call_body<Body>(&body, i);
       return;
     }
     const LoopSeam seam(&body);
-    const auto call = [](const void* erased, std::size_t i) {
+    const auto call_inside = [](const void* erased, std::size_t i) {
       const LoopSeam::Call inside(erased);
-      (*static_cast<const Body*>(erased))(i);
+      call_body<Body>(erased, i);
     };
-    spread(count, call, &body);
+    spread(count, call_inside, &body);
   }
 
  private:
+  /// The one compiled copy of a body: two copies, inlined apart, might contract their arithmetic
+  /// differently and so not agree bit for bit.
+  template <class Body>
+  [[gnu::noinline, gnu::noclone]] static void call_body(const void* body, std::size_t i) {
+    (*static_cast<const Body*>(body))(i);
+  }
+
   struct Pool;
   void spread(std::size_t count, void (*call)(const void*, std::size_t), const void* body) const;
 

@@ -29,11 +29,13 @@ struct PoseEstimate {
 
 /// What a filter says of its last update; a value that does not apply stays NaN or zero.
 struct ScanReport {
-  double ess = 0.0;             ///< effective number of particles after weighing, before resampling
-  bool resampled = false;       ///< whether this update ended with a resampling
-  double log_likelihood = 0.0;  ///< log p(scan | past scans), sum over matched detections
-  double nis = 0.0;             ///< normalised innovation squared, sum over matched detections
-  std::uint32_t nis_dof = 0;    ///< its degrees of freedom
+  double ess = 0.0;        ///< effective number of particles after weighing, before resampling
+  bool resampled = false;  ///< whether this update ended with a resampling
+  /// log p(scan | past scans) of the matched detections; with unknown association also log p0 (SPEC
+  /// 17) for each detection that matches nothing, so that all particles count as many factors.
+  double log_likelihood = 0.0;
+  double nis = 0.0;           ///< normalised innovation squared, sum over matched detections
+  std::uint32_t nis_dof = 0;  ///< its degrees of freedom
   std::uint32_t numerical_faults =
       0;  ///< factorisations that failed and were answered by a fallback
 };

@@ -23,6 +23,7 @@ class EkfSlam final : public SlamFilter {
  public:
   explicit EkfSlam(const FilterSetup& setup)
       : association_(setup.association),
+        log_new_density_(log_new_density(setup.association, setup.belief)),
         gaussian_(setup.belief, setup.landmarks),
         slot_of_identity_(setup.landmarks, kUnseen) {}
 
@@ -41,7 +42,11 @@ class EkfSlam final : public SlamFilter {
     gaussian_.finish_motion();
     associate(scan);
     for (std::size_t k = 0; k < scan.size(); ++k) {
-      if (pairings_[k].verdict == Verdict::matched) absorb(scan[k], pairings_[k].landmark);
+      if (pairings_[k].verdict == Verdict::matched) {
+        absorb(scan[k], pairings_[k].landmark);
+      } else if (!known()) {
+        report_.log_likelihood += log_new_density_;  // as every particle does (SPEC 17)
+      }
     }
     for (std::size_t k = 0; k < scan.size(); ++k) {
       if (pairings_[k].verdict == Verdict::fresh) give_birth(scan[k]);
@@ -134,6 +139,7 @@ class EkfSlam final : public SlamFilter {
   }
 
   AssociationSettings association_;
+  double log_new_density_;
   JointGaussian gaussian_;
   std::vector<std::uint32_t> slot_of_identity_;  ///< known association only
   std::vector<Pairing> pairings_;                ///< of the current scan

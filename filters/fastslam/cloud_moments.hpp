@@ -21,7 +21,8 @@ std::array<double, N> weighted_sums(const Weights<Real>& weights, const Terms& t
   const std::vector<Real>& w = weights.linear();
   for (std::size_t b = 0; b < w.size(); ++b) {
     const std::array<Real, N> values = terms(b);
-    for (std::size_t k = 0; k < N; ++k) lanes[k] += w[b] * values[k];
+    const auto counts = w[b] > Real(0.0);  // what a dead lane holds reaches no sum
+    for (std::size_t k = 0; k < N; ++k) lanes[k] += select(counts, w[b] * values[k], Real(0.0));
   }
   std::array<double, N> sums{};
   for (std::size_t k = 0; k < N; ++k) {
@@ -76,27 +77,20 @@ PoseMoments mixture_of(const Weights<Real>& weights,
   return {mean, symmetric({C[0], C[1], C[2], C[3], C[4], C[5]})};
 }
 
-/// What the particles together believe about one landmark; owner(block) = 1 for those that have it.
-/// Empty where none has. Mean and covariance of the mixture.
-template <class Real, class Owner>
-std::optional<LandmarkEstimate> mixture_of_landmarks(
-    const Weights<Real>& weights, const std::vector<LandmarkGaussian<Real>>& landmarks,
-    const Owner& owner) {
-  const auto first = weighted_sums<Real, 3>(weights, [&](std::size_t b) {
-    const Real own = owner(b);
-    return std::array<Real, 3>{own, own * landmarks[b].mean.x, own * landmarks[b].mean.y};
+/// What the particles together believe about one landmark: mean and covariance of the mixture.
+template <class Real>
+LandmarkEstimate mixture_of_landmarks(const Weights<Real>& weights,
+                                      const std::vector<LandmarkGaussian<Real>>& landmarks) {
+  const auto first = weighted_sums<Real, 2>(weights, [&](std::size_t b) {
+    return std::array<Real, 2>{landmarks[b].mean.x, landmarks[b].mean.y};
   });
-  if (first[0] <= 0.0) return std::nullopt;
-  const Point mean{first[1] / first[0], first[2] / first[0]};
+  const Point mean{first[0], first[1]};
   const auto C = weighted_sums<Real, 3>(weights, [&](std::size_t b) {
-    const Real own = owner(b);
     const Real x = landmarks[b].mean.x - mean.x, y = landmarks[b].mean.y - mean.y;
     const Symmetric2<Real>& P = landmarks[b].covariance;
-    return std::array<Real, 3>{own * (P.xx + x * x), own * (P.xy + x * y), own * (P.yy + y * y)};
+    return std::array<Real, 3>{P.xx + x * x, P.xy + x * y, P.yy + y * y};
   });
-  const double w = first[0];
-  return LandmarkEstimate{{mean.x, mean.y},
-                          Eigen::Matrix2d{{C[0] / w, C[1] / w}, {C[1] / w, C[2] / w}}};
+  return {{mean.x, mean.y}, Eigen::Matrix2d{{C[0], C[1]}, {C[1], C[2]}}};
 }
 
 /// Second moments of a cloud of drawn poses from which its estimate after any common motion follows
@@ -114,18 +108,22 @@ class CloudMoments {
       const Real h = wrap(poses[b].heading - mean_.heading);
       const Direction<Real> d = direction_of(h);
       const Real c = d.cosine - 1.0, s = d.sine;
-      return std::array<Real, 17>{c,     s,     x * x, x * y, x * h, x * c, x * s, y * y, y * h,
-                                  y * c, y * s, h * h, h * c, h * s, c * c, c * s, s * s};
+      return std::array<Real, 18>{h,     c,     s,     x * x, x * y, x * h, x * c, x * s, y * y,
+                                  y * h, y * c, y * s, h * h, h * c, h * s, c * c, c * s, s * s};
     };
-    const auto S = weighted_sums<Real, 17>(weights, terms);
-    cosine_ = S[0], sine_ = S[1];
-    for (int row = 0, k = 2; row < 5; ++row) {
+    const auto S = weighted_sums<Real, 18>(weights, terms);
+    cosine_ = S[1], sine_ = S[2];
+    for (int row = 0, k = 3; row < 5; ++row) {
       for (int column = row; column < 5; ++column, ++k) {
         second_(row, column) = second_(column, row) = S[static_cast<std::size_t>(k)];
       }
     }
-    const Eigen::Matrix<double, 5, 1> first{0.0, 0.0, 0.0, cosine_, sine_};
-    centred_ = second_ - first * first.transpose();
+    // Headings more than half a turn from the mean wrap, so that their mean is not quite zero; they
+    // are deviations from the mean heading all the same.
+    const Eigen::Matrix<double, 5, 1> mean{0.0, 0.0, S[0], cosine_, sine_};
+    const Eigen::Matrix<double, 5, 1> origin{0.0, 0.0, 0.0, cosine_, sine_};
+    centred_ = second_ - mean * origin.transpose() - origin * mean.transpose() +
+               origin * origin.transpose();
   }
 
   /// The estimate after the cloud moved by `increment`.
@@ -136,7 +134,8 @@ class CloudMoments {
   double cosine_ = 0.0;                                                       ///< mean of cos h - 1
   double sine_ = 0.0;                                                         ///< mean of sin h
   Eigen::Matrix<double, 5, 5> second_ = Eigen::Matrix<double, 5, 5>::Zero();  ///< E[v v']
-  Eigen::Matrix<double, 5, 5> centred_ = Eigen::Matrix<double, 5, 5>::Zero();  ///< Cov v
+  Eigen::Matrix<double, 5, 5> centred_ =
+      Eigen::Matrix<double, 5, 5>::Zero();  ///< about the moved mean
 };
 
 }  // namespace montecarta

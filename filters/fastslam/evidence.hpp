@@ -5,10 +5,11 @@
 
 namespace montecarta {
 
-/// What a sensor's noise is believed to be: variances of range [m^2] and bearing [rad^2].
-struct SensorNoise {
-  double range;
-  double bearing;
+/// What a scan does to the weights of one block.
+template <class Real>
+struct Weighing {
+  Real log_weight;  ///< log of the factor
+  Real faults;      ///< numerical faults met on the way
 };
 
 /// The product of densities N(innovation; S) of one particle's detections, with one logarithm for
@@ -18,12 +19,17 @@ class Evidence {
  public:
   /// One detection: `squared` = innovation' S^-1 innovation, `determinant` = det S; (0, 1) =
   /// nothing seen.
-  [[gnu::always_inline]] void add(const Real& squared, const Real& determinant, const Real& count) {
+  /// `used` of the `matched` lanes (1 or 0) could be absorbed.
+  [[gnu::always_inline]] void add(const Real& squared, const Real& determinant, const Real& used,
+                                  const Real& matched) {
     squared_ += squared;
     determinant_ *= determinant;
-    count_ += count;
+    count_ += used;
+    left_out_ += matched - used;
     if (++since_logarithm_ == kBetweenLogarithms) take_logarithm();
   }
+  /// Detections that matched a landmark too near to be used.
+  const Real& left_out() const { return left_out_; }
   /// Log of the product.
   Real log_density() const {
     return -0.5 * (squared_ + log_determinant_ + log(determinant_)) - kLogTwoPi * count_;
@@ -39,7 +45,7 @@ class Evidence {
     since_logarithm_ = 0;
   }
 
-  Real squared_{0.0}, determinant_{1.0}, log_determinant_{0.0}, count_{0.0};
+  Real squared_{0.0}, determinant_{1.0}, log_determinant_{0.0}, count_{0.0}, left_out_{0.0};
   int since_logarithm_ = 0;
 };
 

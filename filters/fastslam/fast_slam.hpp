@@ -5,6 +5,7 @@
 #include "engine/particles/weights.hpp"
 #include "engine/runs/slam_filter.hpp"
 #include "filters/fastslam/cloud_moments.hpp"
+#include "filters/fastslam/evidence.hpp"
 #include "filters/fastslam/fast_slam_options.hpp"
 #include "filters/fastslam/innovation_sums.hpp"
 #include "filters/fastslam/particle_maps.hpp"
@@ -32,7 +33,8 @@ class FastSlam final : public SlamFilter {
         resampled_poses_(poses_.size()),
         maps_(settings.particles),
         parents_(poses_.size() * kLanesOf<Real>),
-        ancestors_(parents_.size()) {}
+        ancestors_(parents_.size()),
+        faults_(poses_.size()) {}
 
   void start(const Pose& start) override {
     weights_.make_equal();
@@ -85,6 +87,9 @@ class FastSlam final : public SlamFilter {
     });
     report_.log_likelihood = weights_.normalise();
     report_.ess = weights_.effective();
+    for (std::size_t i = 0; i < settings_.particles; ++i) {
+      report_.numerical_faults += static_cast<std::uint32_t>(scalars(faults_)[i]);
+    }
     proposal_.end_scan();
   }
 
@@ -93,8 +98,10 @@ class FastSlam final : public SlamFilter {
     const auto note = [&](std::size_t k, const Innovation<Real>& innovation, const auto& matched) {
       innovations_.add(task, k, innovation, weight * as_number<Real>(matched));
     };
-    const Real log_weight = proposal_.weigh_and_draw(context, association_, b, poses_[b], note);
-    weights_.multiply(b, log_weight + association_.unmatched_log_weight(b));
+    const Weighing<Real> weighing =
+        proposal_.weigh_and_draw(context, association_, b, poses_[b], note);
+    weights_.multiply(b, weighing.log_weight + association_.unmatched_log_weight(b));
+    faults_[b] = weighing.faults;
   }
 
   void add_new_landmarks() {
@@ -115,6 +122,7 @@ class FastSlam final : public SlamFilter {
   }
 
   void report_innovations();
+  std::optional<LandmarkEstimate> landmark(std::size_t j) const;
 
   /// Ends the time in which the particles of the last scan can be asked for: resampling takes
   /// effect.
@@ -142,7 +150,10 @@ class FastSlam final : public SlamFilter {
   InnovationSums<Real> innovations_;
   std::vector<double> matched_weights_;  ///< of each detection, before the scan
   std::vector<std::uint32_t> parents_;  ///< of the resampling that is decided but not yet in effect
-  std::vector<std::uint32_t> ancestors_;  ///< one scan ago
+  std::vector<std::uint32_t> ancestors_;            ///< one scan ago
+  std::vector<Real> faults_;                        ///< of each block's particles in this scan
+  mutable std::vector<std::uint32_t> slot_source_;  ///< scratch of map()
+  mutable std::vector<LandmarkGaussian<Real>> slot_blocks_;  ///< scratch of map()
   ScanReport report_;
   bool after_update_ = false;
 };

@@ -33,16 +33,23 @@ void FastSlam<Real, Proposal, Associating>::particles(const ParticleColumns& col
 template <class Real, class Proposal, class Associating>
 void FastSlam<Real, Proposal, Associating>::map(
     std::span<std::optional<LandmarkEstimate>> landmarks) const {
-  std::vector<std::uint32_t> source;
-  std::vector<LandmarkGaussian<Real>> blocks;
-  for (std::size_t j = 0; j < landmarks.size(); ++j) {
-    landmarks[j].reset();
+  for (std::size_t j = 0; j < landmarks.size(); ++j) landmarks[j] = landmark(j);
+}
+
+/// Known association: the mixture of all particles, by identity. Otherwise the heaviest particle's
+/// map in the order in which it met its landmarks.
+template <class Real, class Proposal, class Associating>
+std::optional<LandmarkEstimate> FastSlam<Real, Proposal, Associating>::landmark(
+    std::size_t j) const {
+  if constexpr (Associating::kShared) {
     const std::int32_t slot = association_.slot_of(j);
-    if (slot < 0 || static_cast<std::size_t>(slot) >= maps_.slots()) continue;
-    maps_.copy_slot(static_cast<std::uint32_t>(slot), source, blocks);
-    landmarks[j] = mixture_of_landmarks(weights_, blocks, [&](std::size_t b) {
-      return association_.owners(static_cast<std::uint32_t>(slot), b);
-    });
+    if (slot == Associating::kUnseen) return std::nullopt;
+    maps_.copy_slot(static_cast<std::uint32_t>(slot), slot_source_, slot_blocks_);
+    return mixture_of_landmarks(weights_, slot_blocks_);
+  } else {
+    const std::size_t heaviest = weights_.heaviest();
+    if (j >= association_.count_of(heaviest)) return std::nullopt;
+    return maps_.landmark_of(static_cast<std::uint32_t>(j), static_cast<std::uint32_t>(heaviest));
   }
 }
 

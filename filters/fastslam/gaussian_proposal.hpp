@@ -18,8 +18,7 @@ class GaussianProposal {
  public:
   GaussianProposal(std::size_t particles, const Belief& belief, WeightForm form)
       : belief_(belief),
-        noise_{belief.sigma_range * belief.sigma_range,
-               belief.sigma_bearing * belief.sigma_bearing},
+        noise_(SensorNoise::of(belief)),
         form_(form),
         posterior_(blocks_for<Real>(particles)) {}
 
@@ -36,8 +35,8 @@ class GaussianProposal {
   /// Refines, draws and weighs one block and updates its landmarks; returns the log of the weight's
   /// factor.
   template <class Matches, class Note>
-  Real weigh_and_draw(const StepContext& context, const Matches& matches, std::size_t b,
-                      BasicPose<Real>& pose, const Note& note) {
+  Weighing<Real> weigh_and_draw(const StepContext& context, const Matches& matches, std::size_t b,
+                                BasicPose<Real>& pose, const Note& note) {
     const PoseGaussian<Real> prior = motion_.from(pose);
     PoseGaussian<Real> posterior = prior;
     Evidence<Real> closed, drawn;
@@ -45,20 +44,22 @@ class GaussianProposal {
       note(k, refine_pose(posterior, landmark, seen, noise_, mask, closed), mask);
     });
     const Real batch = form_ == WeightForm::batch ? batch_log_weight(matches, b, prior) : Real(0.0);
-    pose = draw(context, b, posterior);
+    Real faults(0.0);
+    pose = draw(context, b, posterior, faults);
     matches.update(b, [&](std::size_t, auto& landmark, const auto& seen, const auto& mask) {
       update_landmark(landmark, pose, seen, noise_, mask, drawn);
     });
     posterior_[b] = posterior;
+    faults += closed.left_out();
     switch (form_) {
       case WeightForm::closed:
-        return closed.log_density();
+        return {closed.log_density(), faults};
       case WeightForm::batch:
-        return batch;
+        return {batch, faults};
       case WeightForm::ratio:
         break;
     }
-    return drawn.log_density() + log_density(prior, pose) - log_density(posterior, pose);
+    return {drawn.log_density() + log_density(prior, pose) - log_density(posterior, pose), faults};
   }
 
   LandmarkGaussian<Real> birth(const BasicPose<Real>& pose, const RangeBearing<Real>& seen) const {
@@ -94,13 +95,14 @@ class GaussianProposal {
 
   /// The factor is that in the frame of the vehicle, so that a turned world gives a turned draw.
   static BasicPose<Real> draw(const StepContext& context, std::size_t b,
-                              const PoseGaussian<Real>& from) {
+                              const PoseGaussian<Real>& from, Real& faults) {
     const StreamIdentity identity =
         context.identity(Draw::pose_proposal, static_cast<std::uint32_t>(b * kLanesOf<Real>));
     const auto [e0, e1] = normal_pairs<Real>(identity, 0);
     const Real e2 = normal_pairs<Real>(identity, 1).first;
     const Direction<Real> ahead = direction_of(from.mean.heading);
     const Cholesky3<Real> L(turned(from.covariance, {ahead.cosine, -ahead.sine}));
+    faults += L.faults;
     const Real x = L.xx * e0, y = L.yx * e0 + L.yy * e1;
     return {from.mean.x + ahead.cosine * x - ahead.sine * y,
             from.mean.y + ahead.sine * x + ahead.cosine * y,

@@ -79,6 +79,7 @@ template <class Real>
 template <class Real>
 struct Cholesky3 {
   Real xx, yx, yy, hx, hy, hh;
+  Real faults{0.0};  ///< pivots too negative to be rounding: the matrix was not a covariance
 
   [[gnu::always_inline]] explicit Cholesky3(const Symmetric3<Real>& P) {
     Real inverse;
@@ -92,8 +93,9 @@ struct Cholesky3 {
   }
 
  private:
-  [[gnu::always_inline]] static void pivot(const Real& square, const Real& diagonal, Real& root,
-                                           Real& inverse) {
+  [[gnu::always_inline]] void pivot(const Real& square, const Real& diagonal, Real& root,
+                                    Real& inverse) {
+    faults += select(square < -1e-12 * diagonal, Real(1.0), Real(0.0));
     const auto positive = square > 1e-18 * (Real(1.0) + diagonal);
     root = sqrt(select(positive, square, Real(0.0)));
     inverse = select(positive, Real(1.0) / root, Real(0.0));

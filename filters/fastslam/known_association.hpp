@@ -39,7 +39,7 @@ class KnownAssociation {
 
   bool found_nothing() const { return slots_.empty() && new_.empty(); }
   std::size_t matches() const { return slots_.size(); }
-  /// How many detections particles matched, on weighted average.
+  /// The weight of the particles that matched detection k: all.
   double matched_weight(std::size_t /*k*/, const Weights<Real>& /*weights*/) const { return 1.0; }
 
   /// visit(k, landmark, seen, mask) for every match of block b; the first visit of a scan.
@@ -74,9 +74,8 @@ class KnownAssociation {
   std::int32_t slot_of(std::size_t identity) const {
     return identity < slot_of_.size() ? slot_of_[identity] : kUnseen;
   }
-  /// Whether (1 or 0) each particle of block b has the slot.
-  Real owners(std::uint32_t /*slot*/, std::size_t /*b*/) const { return Real(1.0); }
-
+  /// A slot is the same landmark for all particles, so a map is reported as their mixture.
+  static constexpr bool kShared = true;
   static constexpr std::int32_t kUnseen = -1;
 
  private:

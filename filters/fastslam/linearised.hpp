@@ -3,6 +3,7 @@
 
 #include "filters/fastslam/evidence.hpp"
 #include "filters/fastslam/gaussians.hpp"
+#include "filters/fastslam/sensor_noise.hpp"
 
 namespace montecarta {
 
@@ -130,7 +131,7 @@ template <class Real, class Mask>
   subtract_outer(pose.covariance, range_gain, v.range);
   subtract_outer(pose.covariance, gain, column);
   evidence.add(first * first * per_rr + second * second * per_bb,
-               select(use, determinant, Real(1.0)), select(use, Real(1.0), Real(0.0)));
+               select(use, determinant, Real(1.0)), as_number<Real>(use), as_number<Real>(matched));
   return v;
 }
 
@@ -163,9 +164,20 @@ template <class Real, class Mask>
   absorb(pose, s, innovation, landmark.covariance, noise, matched, evidence);
 }
 
+/// turned() back into the frame of the map.
+template <class Real>
+[[gnu::always_inline]] inline Symmetric2<Real> turned_back(const Turned<Real>& P,
+                                                           const Sightline<Real>& s) {
+  const Real along_x = s.ux * P.along - s.uy * P.cross, along_y = s.uy * P.along + s.ux * P.cross;
+  const Real across_x = s.ux * P.cross - s.uy * P.across;
+  const Real across_y = s.uy * P.cross + s.ux * P.across;
+  return {along_x * s.ux - across_x * s.uy, along_x * s.uy + across_x * s.ux,
+          along_y * s.uy + across_y * s.ux};
+}
+
 /// Absorbs one detection into a landmark seen from an exactly known pose (SPEC 7.3). In the frame
-/// of the line of sight the noise is diagonal and P (P + R)^-1 R has no difference that could turn
-/// negative.
+/// of the line of sight the noise R is diagonal, and the new covariance P (P + R)^-1 R has no
+/// difference that could turn negative; the gain is that times R^-1.
 template <class Real, class Mask>
 [[gnu::always_inline]] inline Innovation<Real> update_landmark(
     LandmarkGaussian<Real>& landmark, const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
@@ -173,43 +185,33 @@ template <class Real, class Mask>
   const Sightline<Real> s = sightline(pose, landmark.mean);
   const auto use = matched && is_usable(s);
   const Turned<Real> P = turned(landmark.covariance, s);
-  const Real range = s.predicted.range;
-  const Real across_noise = noise.bearing * range * range;
   const RangeBearing<Real> innovation = residual(seen, s.predicted);
-  const Real across = innovation.bearing * range;
-
-  const Real s_along = P.along + noise.range;
-  const Real s_across = P.across + across_noise;
-  const Real determinant = s_along * s_across - P.cross * P.cross;
+  const Real along = innovation.range, across = innovation.bearing * s.predicted.range;
+  const Turned<Real> R{noise.range, Real(0.0),
+                       noise.bearing * s.predicted.range * s.predicted.range};
+  const Turned<Real> S{P.along + R.along, P.cross, P.across + R.across};
+  const Real determinant = S.along * S.across - S.cross * S.cross;
   const Real inverse = select(use, 1.0 / determinant, Real(0.0));
+
   const Real det_P = P.along * P.across - P.cross * P.cross;
-  // gain = P S^-1
-  const Real g_aa = (P.along * s_across - P.cross * P.cross) * inverse;
-  const Real g_cc = (P.across * s_along - P.cross * P.cross) * inverse;
-  const Real g_ac = P.cross * noise.range * inverse;
-  const Real g_ca = P.cross * across_noise * inverse;
-  const Real move_along = g_aa * innovation.range + g_ac * across;
-  const Real move_across = g_ca * innovation.range + g_cc * across;
+  const Turned<Real> g{(det_P + P.along * R.across) * inverse, P.cross * inverse,
+                       (det_P + P.across * R.along) * inverse};
+  const Real move_along = g.along * along + g.cross * R.along * across;
+  const Real move_across = g.cross * R.across * along + g.across * across;
   landmark.mean.x += s.ux * move_along - s.uy * move_across;
   landmark.mean.y += s.uy * move_along + s.ux * move_across;
+  const Symmetric2<Real> after = turned_back(
+      Turned<Real>{g.along * R.along, g.cross * R.along * R.across, g.across * R.across}, s);
+  landmark.covariance = {select(use, after.xx, landmark.covariance.xx),
+                         select(use, after.xy, landmark.covariance.xy),
+                         select(use, after.yy, landmark.covariance.yy)};
 
-  // P+ = gain R
-  const Real along = (det_P + P.along * across_noise) * noise.range * inverse;
-  const Real cross = P.cross * noise.range * across_noise * inverse;
-  const Real across_after = (det_P + P.across * noise.range) * across_noise * inverse;
-  const Real along_x = s.ux * along - s.uy * cross, along_y = s.uy * along + s.ux * cross;
-  const Real across_x = s.ux * cross - s.uy * across_after,
-             across_y = s.uy * cross + s.ux * across_after;
-  Symmetric2<Real>& after = landmark.covariance;
-  after.xx = select(use, along_x * s.ux - across_x * s.uy, after.xx);
-  after.xy = select(use, along_y * s.ux - across_y * s.uy, after.xy);
-  after.yy = select(use, along_y * s.uy + across_y * s.ux, after.yy);
-  const Real squared = (s_across * innovation.range * innovation.range -
-                        2.0 * P.cross * innovation.range * across + s_along * across * across) *
-                       inverse;
+  const Real squared =
+      (S.across * along * along - 2.0 * S.cross * along * across + S.along * across * across) *
+      inverse;
   evidence.add(squared, select(use, determinant * s.per_range * s.per_range, Real(1.0)),
-               select(use, Real(1.0), Real(0.0)));
-  return {innovation, s_along, P.cross * s.per_range, s_across * s.per_range * s.per_range, {}, {}};
+               as_number<Real>(use), as_number<Real>(matched));
+  return {innovation, S.along, S.cross * s.per_range, S.across * s.per_range * s.per_range, {}, {}};
 }
 
 /// A landmark seen for the first time from an exactly known pose: g(x, z) and Gz R Gz' (SPEC 7.3).

@@ -16,9 +16,7 @@ template <class Real>
 class MotionSampling {
  public:
   explicit MotionSampling(const Belief& belief)
-      : belief_(belief),
-        noise_{belief.sigma_range * belief.sigma_range,
-               belief.sigma_bearing * belief.sigma_bearing} {}
+      : belief_(belief), noise_(SensorNoise::of(belief)) {}
 
   void start(const std::vector<BasicPose<Real>>& /*poses*/) {}
 
@@ -38,14 +36,14 @@ class MotionSampling {
 
   /// Weighs one block by the likelihood at its poses and updates its landmarks.
   template <class Matches, class Note>
-  Real weigh_and_draw(const StepContext& /*context*/, const Matches& matches, std::size_t b,
-                      const BasicPose<Real>& pose, const Note& note) {
+  Weighing<Real> weigh_and_draw(const StepContext& /*context*/, const Matches& matches,
+                                std::size_t b, const BasicPose<Real>& pose, const Note& note) {
     Evidence<Real> likelihood;
     matches.read(b, [](auto&&...) {});
     matches.update(b, [&](std::size_t k, auto& landmark, const auto& seen, const auto& mask) {
       note(k, update_landmark(landmark, pose, seen, noise_, mask, likelihood), mask);
     });
-    return likelihood.log_density();
+    return {likelihood.log_density(), likelihood.left_out()};
   }
   LandmarkGaussian<Real> birth(const BasicPose<Real>& pose, const RangeBearing<Real>& seen) const {
     return new_landmark(pose, seen, noise_);

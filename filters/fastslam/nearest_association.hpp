@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/errors.hpp"
 #include "engine/particles/weights.hpp"
 #include "engine/runs/drive.hpp"
 #include "engine/runs/step_context.hpp"
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
-#include <stdexcept>
 #include <vector>
 
 namespace montecarta {
@@ -25,8 +25,7 @@ class NearestAssociation {
                      const Belief& belief)
       : particles_(particles),
         settings_(settings),
-        noise_{belief.sigma_range * belief.sigma_range,
-               belief.sigma_bearing * belief.sigma_bearing},
+        noise_(SensorNoise::of(belief)),
         log_new_density_(log_new_density(settings, belief)),
         counts_(blocks_for<Real>(particles), Real(0.0)),
         resampled_counts_(counts_) {}
@@ -100,9 +99,11 @@ class NearestAssociation {
     gather<Real>(counts_, parents, resampled_counts_);
     std::swap(counts_, resampled_counts_);
   }
-  std::int32_t slot_of(std::size_t slot) const { return static_cast<std::int32_t>(slot); }
-  Real owners(std::uint32_t slot, std::size_t b) const {
-    return select(counts_[b] > Real(static_cast<double>(slot)), Real(1.0), Real(0.0));
+  /// Slots are given out by every particle for itself, so only one particle's map makes sense.
+  static constexpr bool kShared = false;
+  /// How many landmarks a particle has.
+  std::size_t count_of(std::size_t particle) const {
+    return static_cast<std::size_t>(get(counts_[particle / kLanes], particle % kLanes));
   }
 
  private:
@@ -180,8 +181,8 @@ class NearestAssociation {
       if (particle >= particles_ || pairings_of(particle)[k].verdict != Verdict::fresh) continue;
       const auto slot = static_cast<std::uint32_t>(get(counts_[b], lane));
       if (slot >= settings_.most_landmarks) {
-        throw std::runtime_error("the map of a particle grew beyond " +
-                                 std::to_string(settings_.most_landmarks) + " landmarks");
+        throw RunError("the map of a particle grew beyond " +
+                       std::to_string(settings_.most_landmarks) + " landmarks");
       }
       if (slot == maps.slots()) maps.add();
       copy_lane(born, maps.blocks_of(slot)[b], lane);

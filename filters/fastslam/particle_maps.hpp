@@ -3,8 +3,10 @@
 
 #include "engine/particles/blocks.hpp"
 #include "engine/particles/genealogy.hpp"
+#include "engine/runs/slam_filter.hpp"
 #include "filters/fastslam/gaussians.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -49,7 +51,7 @@ class ParticleMaps {
     std::span<Landmark> to_;
   };
 
-  /// Opens slots for one scan; every block of each must be fetched before close(). Slots must
+  /// Opens slots for one scan; every block of each must be fetched. Slots must
   /// differ.
   void open(std::span<const std::uint32_t> slots, std::vector<OpenSlot>& opened) {
     opened.resize(slots.size());
@@ -73,6 +75,7 @@ class ParticleMaps {
   std::uint32_t add() {
     if (n_slots_ == slots_.size()) slots_.push_back({std::vector<Landmark>(blocks_), 0});
     slots_[n_slots_].generation = genealogy_.generation();
+    std::fill(slots_[n_slots_].blocks.begin(), slots_[n_slots_].blocks.end(), Landmark{});
     return static_cast<std::uint32_t>(n_slots_++);
   }
   std::span<Landmark> blocks_of(std::uint32_t slot) { return slots_[slot].blocks; }
@@ -83,6 +86,17 @@ class ParticleMaps {
     if (!genealogy_.is_long()) return;
     for (std::size_t j = 0; j < n_slots_; ++j) bring_up_to_date(slots_[j]);
     genealogy_.forget();
+  }
+
+  /// What one particle believes about the landmark of slot j.
+  LandmarkEstimate landmark_of(std::uint32_t j, std::uint32_t particle) const {
+    const std::uint32_t then = genealogy_.trace(slots_[j].generation, particle);
+    const Landmark& block = slots_[j].blocks[then / kLanesOf<Real>];
+    const std::size_t lane = then % kLanesOf<Real>;
+    const Symmetric2<Real>& P = block.covariance;
+    return {
+        {get(block.mean.x, lane), get(block.mean.y, lane)},
+        Eigen::Matrix2d{{get(P.xx, lane), get(P.xy, lane)}, {get(P.xy, lane), get(P.yy, lane)}}};
   }
 
   /// Slot j with today's particles in order, brought into `blocks` without a trace.

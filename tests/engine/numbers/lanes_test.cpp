@@ -52,6 +52,21 @@ TEST(Lanes, ArcTangentOnTheAxes) {
     EXPECT_NEAR(atan2(Lanes(y), Lanes(x)).get(0), std::atan2(y, x), kUlp);
 }
 
+TEST(Lanes, ArcTangentOfNothingIsZeroAsInTheLibrary) {
+  EXPECT_EQ(atan2(Lanes(0.0), Lanes(0.0)).get(0), 0.0);
+}
+
+TEST(Lanes, WrapKeepsItsContractAtTheBorder) {
+  for (double angle :
+       {kPi, -kPi, std::nextafter(kPi, 4.0), std::nextafter(-kPi, -4.0), 3 * kPi, 1e300}) {
+    const Lanes wrapped = wrap(Lanes(angle));
+    EXPECT_GT(wrapped.get(0), -kPi) << angle;
+    EXPECT_LE(wrapped.get(0), kPi) << angle;
+    EXPECT_EQ(wrap(wrapped).get(0), wrapped.get(0)) << angle;
+  }
+  EXPECT_EQ(wrap(Lanes(-kPi)).get(0), kPi);
+}
+
 TEST(Lanes, WrapEqualsTheScalarOne) {
   for_random_lanes(30.0, [](const Lanes& angle) {
     const Lanes wrapped = wrap(angle);

@@ -20,7 +20,8 @@ struct Variant {
 
   friend std::ostream& operator<<(std::ostream& out, const Variant& v) {
     return out << v.filter << '_' << v.weights
-               << (v.association == Association::known ? "_known" : "_nearest");
+               << (v.association == Association::known ? "_known" : "_nearest") << '_'
+               << v.particles;
   }
 };
 
@@ -150,7 +151,10 @@ INSTANTIATE_TEST_SUITE_P(All, FastSlams,
                                          Variant{"fastslam2", "batch"},
                                          Variant{"fastslam1", "closed", Association::nearest},
                                          Variant{"fastslam2", "closed", Association::nearest},
-                                         Variant{"fastslam2", "batch", Association::nearest, 40}),
+                                         Variant{"fastslam2", "batch", Association::nearest, 40},
+                                         Variant{"fastslam2", "ratio", Association::nearest, 8},
+                                         Variant{"fastslam2", "closed", Association::known, 1},
+                                         Variant{"fastslam1", "closed", Association::known, 9}),
                          testing::PrintToStringParamName());
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/factory.hpp"
+#include "filters/fastslam/cloud_moments.hpp"
 #include "tests/filters/small_world.hpp"
 
 #include <Eigen/Geometry>
@@ -9,21 +10,54 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <ostream>
 #include <string>
 #include <vector>
 
 namespace montecarta {
+
+/// So that a test is listed by the filter's name.
+void PrintTo(const FilterKind& kind, std::ostream* out) { *out << kind.name; }
+
 namespace {
 
 std::unique_ptr<SlamFilter> make_default(const FilterKind& kind, std::size_t particles,
-                                         const SmallWorldSettings& world) {
+                                         const SmallWorldSettings& world,
+                                         Association association = Association::known) {
   std::map<std::string, std::string, std::less<>> values;
   for (const FilterOption& option : kind.options) values[option.name] = option.fallback;
   if (kind.has_particles) values["particles"] = std::to_string(particles);
   return kind.make({.belief = world.noise,
-                    .association = {},
+                    .association = {.kind = association},
                     .options = FilterOptions(values),
                     .landmarks = world.landmarks});
+}
+
+TEST(CloudMoments, MoveAsEveryPoseDoesHoweverWideTheCloud) {
+  for (const double width : {0.01, 1.0, kPi}) {
+    RngStream draw({3, 0, 0, 0, Draw::test});
+    Weights<double> weights(9);
+    std::vector<BasicPose<double>> poses(9);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      poses[i] = {10 * draw.normal(), 10 * draw.normal(),
+                  wrap(3.0 + width * (2 * draw.uniform() - 1))};
+      weights.multiply(i, draw.normal());
+    }
+    weights.normalise();
+    MotionIncrement motion;
+    for (int k = 0; k < 5; ++k) motion.advance({3.0, 0.3}, 0.1, Belief{});
+    const PoseEstimate closed = CloudMoments(weights, poses).moved_by(motion);
+    std::vector<PoseGaussian<double>> moved;
+    std::vector<BasicPose<double>> centres;
+    for (const auto& pose : poses) {
+      moved.push_back(motion.from(pose));
+      centres.push_back(moved.back().mean);
+    }
+    const PoseMoments spread = spread_of(weights, centres), mixture = mixture_of(weights, moved);
+    EXPECT_LT((closed.spread.covariance - spread.covariance).norm(), 1e-9) << width;
+    EXPECT_LT((closed.mixture->covariance - mixture.covariance).norm(), 1e-9) << width;
+    EXPECT_LT(boxminus(closed.spread.mean, spread.mean).norm(), 1e-9) << width;
+  }
 }
 
 /// Every filter there is, as a newcomer would get it.
@@ -49,6 +83,59 @@ TEST_P(EveryFilter, WalkingBackThroughAncestorsNeverJumpsFartherThanTheVehicleCa
     before = poses;
   });
   EXPECT_TRUE(resampled) << "the law was not put to the test";
+}
+
+TEST_P(EveryFilter, StandsStillAtTheOriginOfTheMapWithoutHarm) {
+  const SmallWorldSettings settings;
+  for (const auto association : {Association::known, Association::nearest}) {
+    const auto filter = make_default(GetParam(), 9, settings, association);
+    filter->start(Pose());
+    const std::vector<Detection> scan{{10.0, 0.3, 0}, {15.0, -0.4, 1}};
+    for (std::uint32_t step = 0; step < 20; ++step) {
+      const StepContext context(1, 0, step, Parallel::serial());
+      filter->predict(context, {0.0, 0.0}, 0.2);
+      filter->update(context, scan);
+      const PoseMoments now = filter->estimate().spread;
+      ASSERT_LT(boxminus(now.mean, Pose()).norm(), 1.5);  // five times its random walk
+      ASSERT_TRUE(now.covariance.allFinite());
+    }
+  }
+}
+
+TEST_P(EveryFilter, LeavesADetectionOutWhoseLandmarkItStandsOn) {
+  const SmallWorldSettings settings;
+  const auto filter = make_default(GetParam(), 9, settings);
+  filter->start(Pose());
+  for (std::uint32_t step = 0; step < 5; ++step) {
+    const StepContext context(1, 0, step, Parallel::serial());
+    filter->predict(context, {0.0, 0.0}, 0.2);
+    filter->update(context, std::vector<Detection>{{1e-9, 0.0, 0}});
+    ASSERT_LT(boxminus(filter->estimate().spread.mean, Pose()).norm(), 0.7);  // five times its walk
+  }
+  EXPECT_EQ(filter->report().numerical_faults, GetParam().has_particles ? 9U : 0U);
+}
+
+TEST_P(EveryFilter, ForgetsADifferentRunBefore) {
+  const SmallWorldSettings first_settings{.seed = 5, .scans = 70}, settings;
+  const SmallWorld first = small_world(first_settings), world = small_world(settings);
+  for (const auto association : {Association::known, Association::nearest}) {
+    const auto used = make_default(GetParam(), 11, settings, association);
+    const auto fresh = make_default(GetParam(), 11, settings, association);
+    drive_through(*used, first, Pose(), [](std::size_t) {});
+    std::vector<PoseEstimate> estimates;
+    std::vector<std::optional<LandmarkEstimate>> map(settings.landmarks), fresh_map(map);
+    drive_through(*used, world, Pose(),
+                  [&](std::size_t) { estimates.push_back(used->estimate()); });
+    drive_through(*fresh, world, Pose(), [&](std::size_t scan) {
+      ASSERT_EQ(fresh->estimate().spread.covariance, estimates[scan].spread.covariance);
+      ASSERT_EQ(boxminus(fresh->estimate().spread.mean, estimates[scan].spread.mean).norm(), 0.0);
+    });
+    used->map(map), fresh->map(fresh_map);
+    for (std::size_t k = 0; k < map.size(); ++k) {
+      ASSERT_EQ(map[k].has_value(), fresh_map[k].has_value());
+      ASSERT_TRUE(!map[k] || map[k]->mean == fresh_map[k]->mean);
+    }
+  }
 }
 
 /// The same drive in a world that is turned about the origin and shifted.
