@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/tables.hpp"
 #include "analysis/tables/cell_series.hpp"
+#include "analysis/tables/csv_file.hpp"
 #include "analysis/tables/verdict_table.hpp"
 #include "engine/records/h5.hpp"
 
@@ -41,8 +42,9 @@ void write_cell(const h5::Handle& cells, const CellAnalysis& cell, double level,
 
 }  // namespace
 
+// HDF5 1.10 crashes at exit when a disk is full, so it is given none.
 void write_analysis_file(const StudyAnalysis& study, const std::filesystem::path& path) {
-  auto file = h5::create_file(path);
+  const auto file = h5::create_image(path.string());
   h5::put_text(file, "filetype", "montecarta-analysis");
   h5::put_text(file, "title", study.title);
   h5::put_text(file, "study", study.study_name);
@@ -56,7 +58,7 @@ void write_analysis_file(const StudyAnalysis& study, const std::filesystem::path
     const auto cells = h5::create_group(file, "cells");
     for (const CellAnalysis& cell : study.cells) write_cell(cells, cell, study.level, time);
   }
-  h5::close_file(std::move(file));
+  write_text(path, h5::image_of(file));
 }
 
 }  // namespace montecarta

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 #include <system_error>
+#include <unistd.h>
 
 namespace montecarta {
 namespace {
@@ -21,6 +22,14 @@ std::string quoted(const std::string& field) {
 [[noreturn]] void cannot_write(const std::filesystem::path& path) {
   throw RunError(path.string() + ": cannot be written (" + std::strerror(errno) +
                  "): make room, or choose another place");
+}
+
+void write_in_place(const std::filesystem::path& path, const std::string& text) {
+  errno = 0;
+  std::ofstream out(path, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) cannot_write(path);
 }
 
 }  // namespace
@@ -59,10 +68,20 @@ void make_directory(const std::filesystem::path& directory) {
 }
 
 void write_text(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) cannot_write(path);
+  const std::filesystem::path target = std::filesystem::weakly_canonical(path);
+  const bool is_special =
+      std::filesystem::exists(target) && !std::filesystem::is_regular_file(target);
+  if (is_special) return write_in_place(target, text);
+  std::filesystem::path draft = target;
+  draft += "." + std::to_string(::getpid()) + ".new";
+  try {
+    write_in_place(draft, text);
+    std::filesystem::rename(draft, target);
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(draft, ignored);
+    throw;
+  }
 }
 
 }  // namespace montecarta

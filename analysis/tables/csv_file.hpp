@@ -29,7 +29,8 @@ class CsvFile {
 /// Makes a directory and those above it. Throws RunError where it cannot.
 void make_directory(const std::filesystem::path& directory);
 
-/// Writes a whole file. Throws RunError naming it.
+/// Writes a whole file, binary or text: under its name there is all of it or what was there before.
+/// Throws RunError naming it.
 void write_text(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace montecarta

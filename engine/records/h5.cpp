@@ -27,6 +27,14 @@ Handle file_access() {
   return access;
 }
 
+/// Members and attributes keep the order in which they are made.
+Handle file_creation() {
+  Handle creation(H5Pcreate(H5P_FILE_CREATE));
+  H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  H5Pset_attr_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  return creation;
+}
+
 std::string name_of_file(hid_t id) {
   std::string name(static_cast<std::size_t>(std::max<ssize_t>(H5Fget_name(id, nullptr, 0), 0)),
                    '\0');
@@ -91,14 +99,31 @@ std::string library_version() {
 
 Handle create_file(const std::filesystem::path& path) {
   silence();
-  Handle creation(H5Pcreate(H5P_FILE_CREATE));
-  H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
-  H5Pset_attr_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
-  Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), file_access().id()));
+  Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, file_creation().id(), file_access().id()));
   if (file.id() < 0)
     throw RunError(path.string() +
                    ": cannot create it (HDF5 refused; the disk may be full): check the disk");
   return file;
+}
+
+Handle create_image(const std::string& name) {
+  silence();
+  const Handle access = file_access();
+  H5Pset_fapl_core(access.id(), kLarge, false);
+  // H5Fget_file_image spoils the checksum that newer superblocks have.
+  H5Pset_libver_bounds(access.id(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
+  Handle file(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, file_creation().id(), access.id()));
+  if (file.id() < 0)
+    throw RunError(name + ": cannot be made in memory (HDF5 refused): free memory");
+  return file;
+}
+
+std::string image_of(const Handle& file) {
+  detail::check(H5Fflush(file.id(), H5F_SCOPE_LOCAL), "flush", file, "");
+  const auto size = detail::check(H5Fget_file_image(file.id(), nullptr, 0), "measure", file, "");
+  std::string image(static_cast<std::size_t>(size), '\0');
+  detail::check(H5Fget_file_image(file.id(), image.data(), image.size()), "copy", file, "");
+  return image;
 }
 
 Handle open_file(const std::filesystem::path& path) {

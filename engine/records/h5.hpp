@@ -41,6 +41,10 @@ std::string library_version();
 
 /// Creates or empties a file. Takes no HDF5 lock: the caller holds its own.
 Handle create_file(const std::filesystem::path& path);
+/// Begins a file in memory, which never touches a disk; `name` is for messages only.
+Handle create_image(const std::string& name);
+/// The bytes of a file made by create_image(), all other handles into which are closed.
+std::string image_of(const Handle& file);
 /// Opens for reading, also while another process writes runs into it.
 Handle open_file(const std::filesystem::path& path);
 /// Writes out what is cached and closes; unlike the destructor it tells when that fails.
