@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iosfwd>
 #include <string>
+#include <vector>
 
 namespace montecarta {
 
@@ -18,11 +19,14 @@ void print_tables(std::ostream& out, const StudyAnalysis& study);
 /// that cannot be written.
 void write_csv(const StudyAnalysis& study, const std::filesystem::path& directory);
 
+/// Names of the files that write_csv() makes of cells with these labels.
+std::vector<std::string> csv_names(const std::vector<std::string>& labels);
+
 /// The verdict table for \input in a LaTeX document with the package booktabs.
 std::string latex_table(const StudyAnalysis& study);
 
 /// Writes everything as HDF5: one group a cell below /cells, series over the scale `time`. Replaces
-/// `path`. Throws RunError where it cannot.
+/// `path` when all is written. Throws RunError where it cannot, and leaves what was there.
 void write_analysis_file(const StudyAnalysis& study, const std::filesystem::path& path);
 
 }  // namespace montecarta

@@ -8,6 +8,11 @@
 namespace montecarta {
 namespace {
 
+constexpr const char* kFailures = "failures.csv";
+constexpr const char* kCells = "cells.csv";
+constexpr const char* kConsistency = "consistency.csv";
+std::string series_name(const std::string& label) { return "series_" + label + ".csv"; }
+
 /// The unit belongs to the name where there is one: position_rmse_mean [m].
 std::string heading(const std::string& name, const std::string& units) {
   return units == "1" ? name : name + " [" + units + "]";
@@ -78,13 +83,19 @@ void write_series(const StudyAnalysis& study, const CellAnalysis& cell,
 
 }  // namespace
 
+std::vector<std::string> csv_names(const std::vector<std::string>& labels) {
+  std::vector<std::string> names = {kFailures, kCells, kConsistency};
+  for (const std::string& label : labels) names.push_back(series_name(label));
+  return names;
+}
+
 void write_csv(const StudyAnalysis& study, const std::filesystem::path& directory) {
   make_directory(directory);
-  write_table(failure_table(study), directory / "failures.csv");
-  write_cells(study, directory / "cells.csv");
-  write_consistency(study, directory / "consistency.csv");
+  write_table(failure_table(study), directory / kFailures);
+  write_cells(study, directory / kCells);
+  write_consistency(study, directory / kConsistency);
   for (const CellAnalysis& cell : study.cells) {
-    write_series(study, cell, directory / ("series_" + cell.label + ".csv"));
+    write_series(study, cell, directory / series_name(cell.label));
   }
 }
 

@@ -3,34 +3,55 @@
 #include "analysis/tables.hpp"
 #include "engine/errors.hpp"
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/output_guard.hpp"
 #include "experiments/commands/plan_arguments.hpp"
 #include "experiments/commands/stored_result.hpp"
 
-#include <filesystem>
 #include <iostream>
 
 namespace montecarta {
 namespace {
 
-void refuse_to_overwrite(const Arguments& arguments) {
+/// Finds out before the work, not after it, that the results have no place to go.
+void check_outputs(const Arguments& arguments, const ResultFile& file) {
   const auto output = arguments.text("output");
-  if (arguments.has("force") || !output || !std::filesystem::exists(*output)) return;
-  throw StudyError(
-      *output +
-      ": is there already (nothing is overwritten unasked): choose another name, or add --force");
+  const auto directory = arguments.text("csv");
+  if (output) refuse_input_as_output(*output, arguments.operands());
+  if (arguments.has("force")) return;
+  if (output) refuse_existing("", {*output});
+  if (!directory) return;
+  std::vector<std::string> labels;
+  for (const StoredCell& cell : file.cells()) labels.push_back(cell.label);
+  refuse_existing(*directory, csv_names(labels));
+}
+
+/// Tables of different studies below each other would be taken for one.
+void expect_one_study(const std::vector<std::string>& names) {
+  if (names.size() == 1) return;
+  const std::string first = open_stored(names.front()).study_sha256();
+  for (const std::string& name : names) {
+    if (open_stored(name).study_sha256() == first) continue;
+    throw StudyError(name +
+                     ": holds another study (its SHA-256 differs from that of the first file): "
+                     "analyze each study by itself");
+  }
 }
 
 int analyze_files(const Arguments& arguments) {
   const double level = arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(0.95);
+  const std::vector<std::string>& names = arguments.operands();
   const bool writes = arguments.has("output") || arguments.has("csv");
-  if (writes && arguments.operands().size() > 1) {
+  if (writes && names.size() > 1) {
     throw StudyError(
         "analyze: -o and --csv take one file (shards are merged first): see montecarta "
         "merge --help");
   }
-  refuse_to_overwrite(arguments);
-  for (const std::string& name : arguments.operands()) {
-    const StudyAnalysis study = analyze(open_stored(name), level, parallel_of(arguments));
+  expect_one_study(names);
+  for (const std::string& name : names) {
+    const ResultFile file = open_stored(name);
+    check_outputs(arguments, file);
+    const StudyAnalysis study = analyze(file, level, parallel_of(arguments));
+    if (names.size() > 1) std::cout << (name == names.front() ? "" : "\n") << name << "\n";
     print_tables(std::cout, study);
     if (const auto directory = arguments.text("csv")) write_csv(study, *directory);
     if (const auto output = arguments.text("output")) write_analysis_file(study, *output);
@@ -48,7 +69,7 @@ Command analyze_command() {
        .options = {{"output", "o", {"OUT.h5"}, "write every metric over time as HDF5"},
                    {"csv", "", {"DIR"}, "write tables and series as CSV"},
                    {"level", "", {"L"}, "probability inside the NEES bounds; default 0.95"},
-                   {"force", "", {}, "replace OUT.h5"},
+                   {"force", "", {}, "replace OUT.h5 and the tables in DIR"},
                    {"threads", "", {"N"}, "default: what this process may use"},
                    {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},
        .details = {}},

@@ -37,7 +37,16 @@ void print_matches(const std::vector<std::string>& ends) {
   std::cout << aligned(rows, 0);
 }
 
+void expect_one_question(const Arguments& arguments) {
+  for (const char* option : {"runs", "dim", "level"}) {
+    if (!arguments.has("match") || !arguments.has(option)) continue;
+    throw StudyError("--match and --" + std::string(option) +
+                     ": two questions at once (--match finds runs, dim and level): ask one");
+  }
+}
+
 int bounds(const Arguments& arguments) {
+  expect_one_question(arguments);
   const auto runs = arguments.count("runs", 1, 1'000'000'000);
   const auto dimension = arguments.count("dim", 1, 1000);
   const double level = arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(0.95);

@@ -44,6 +44,10 @@ Estimate print_cells(const StudyPlan& plan) {
 
 int check(const Arguments& arguments) {
   const StudyPlan plan = plan_of(arguments);
+  if (arguments.has("text")) {
+    std::cout << plan.resolved_text;
+    return kDone;
+  }
   const Itinerary& itinerary = plan.drives->itinerary();
   const int threads = parallel_of(arguments).threads();
   std::cout << plan.title << "\n"
@@ -63,7 +67,6 @@ int check(const Arguments& arguments) {
                                      std::to_string(threads) + " threads (by a short trial)"},
                         {"memory", "about " + bytes_text(total.per_thread * threads + 3e7)},
                         {"disk", bytes_text(total.disk)}});
-  if (arguments.has("text")) std::cout << "\n" << plan.resolved_text;
   return kDone;
 }
 
@@ -77,7 +80,8 @@ Command check_command() {
                    .operands = {{"STUDY.ini"}},
                    .options = plan_options(),
                    .details = {}};
-  spec.options.push_back({"text", "", {}, "print the study with every setting filled in, too"});
+  spec.options.push_back(
+      {"text", "", {}, "print the study with every setting filled in, nothing else"});
   return {spec, check};
 }
 

@@ -3,17 +3,31 @@
 #include "experiments/commands/stored_result.hpp"
 #include "experiments/text/table.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
 namespace montecarta {
 namespace {
 
+/// How many of the runs held are neither missing nor unfinished in any cell.
+std::size_t runs_done(const ResultFile& file) {
+  std::vector<bool> done(file.runs().size(), true);
+  for (const StoredCell& cell : file.cells()) {
+    const std::vector<RunStatus> status = file.status(cell);
+    for (std::size_t i = 0; i < status.size(); ++i) {
+      done[i] = done[i] && status[i] != RunStatus::missing;
+    }
+  }
+  return static_cast<std::size_t>(std::ranges::count(done, true));
+}
+
 void print_study(const ResultFile& file) {
   std::vector<TableRow> rows{
       {"study", file.study_name() + ", seed " + std::to_string(file.seed())},
       {"SHA-256", file.study_sha256()},
-      {"runs", std::to_string(file.runs().size()) + " of " + std::to_string(file.study_runs())},
+      {"runs", std::to_string(file.runs().size()) + " of " + std::to_string(file.study_runs()) +
+                   ", of which " + std::to_string(runs_done(file)) + " are done in every cell"},
       {"a run", std::to_string(file.times().size()) + " rows of time, " +
                     std::to_string(file.scan_times().size()) + " scans"},
       {"size", bytes_text(static_cast<double>(std::filesystem::file_size(file.path())))}};
@@ -32,6 +46,15 @@ void print_cells(const ResultFile& file) {
 
 void print_datasets(const ResultFile& file) {
   std::vector<TableRow> rows{{"dataset", "units", "size", "meaning"}};
+  const auto add = [&](const char* group, std::size_t numbers, const char* meaning) {
+    const double bytes = static_cast<double>(numbers * sizeof(double));
+    rows.push_back({group, "", bytes_text(bytes), meaning});
+  };
+  const std::size_t runs = file.runs().size();
+  add("/scenario", 3 + 2 * (file.landmarks().size() + file.waypoints().size()),
+      "start, landmarks and way-points");
+  add("/truth", runs * (3 * file.times().size() + 1), "true poses of every run");
+  add("/timing", runs * file.cells().size() + 1, "seconds that the filters took");
   for (const StoredCell& cell : file.cells()) {
     for (const Column& column : cell.columns) {
       const double bytes = static_cast<double>(column.bytes() * file.runs().size());

@@ -1,16 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/report.hpp"
 
+#include "analysis/figures/gnuplot.hpp"
 #include "engine/errors.hpp"
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/output_guard.hpp"
 #include "experiments/commands/plan_arguments.hpp"
 #include "experiments/commands/stored_result.hpp"
 
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
+#include <memory>
 
 namespace montecarta {
 namespace {
+
+/// A report takes minutes: what it needs at the end is tried at the beginning.
+void expect_gnuplot() {
+  namespace fs = std::filesystem;
+  std::string folder = (fs::temp_directory_path() / "montecarta_XXXXXX").string();
+  if (::mkdtemp(folder.data()) == nullptr) return;  // then the figures will tell
+  const auto remove = [](const std::string* path) { fs::remove_all(*path); };
+  const std::unique_ptr<const std::string, decltype(remove)> removed_at_end(&folder, remove);
+  std::ofstream(fs::path(folder) / "trial.gp") << "set terminal svg\nset terminal pdfcairo\n";
+  run_gnuplot(folder, "trial.gp");
+}
 
 int report(const Arguments& arguments) {
   const auto directory = arguments.text("output");
@@ -22,6 +38,9 @@ int report(const Arguments& arguments) {
   options.run = arguments.count("run", 0, UINT32_MAX);
   options.existing = arguments.has("force") ? ExistingReport::replace : ExistingReport::refuse;
   options.parallel = &parallel;
+  if (!arguments.has("force"))
+    refuse_existing(*directory, {"index.html", "figures", "data", "tables"});
+  expect_gnuplot();
   write_report(open_stored(arguments.operands().front()), *directory, options);
   std::cout << (std::filesystem::path(*directory) / "index.html").string() << "\n";
   return kDone;

@@ -7,6 +7,7 @@
 #include "engine/runs/monte_carlo.hpp"
 #include "engine/runs/thread_budget.hpp"
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/output_guard.hpp"
 #include "experiments/commands/plan_arguments.hpp"
 #include "experiments/text/table.hpp"
 
@@ -19,6 +20,9 @@ namespace {
 /// Beyond this a verdict would take longer to read than to wait for: the command that gives it is
 /// printed instead.
 constexpr std::uintmax_t kLargestVerdict = 2'000'000'000;
+
+/// [s]: in no time nothing is done, and a script that resumes would never end.
+constexpr double kLeastBudget = 0.001;
 
 ProgressStyle progress_of(const Arguments& arguments) {
   const std::string style = arguments.choice("progress", {"auto", "plain", "none"});
@@ -51,12 +55,13 @@ RunOptions options_of(const Arguments& arguments) {
         "--resume and --force: one contradicts the other (go on, or begin anew?): remove one of "
         "them");
   }
+  refuse_to_replace_other_kinds(*output);
   RunOptions options;
   options.output = *output;
   options.parallel = parallel_of(arguments);
   options.resume = arguments.has("resume");
   options.force = arguments.has("force");
-  options.time_budget = arguments.number("time-budget", 0.0, 1e9);
+  options.time_budget = arguments.number("time-budget", kLeastBudget, 1e9);
   options.progress = progress_of(arguments);
   options.quiet = arguments.has("quiet");
   options.provenance = collect_provenance();

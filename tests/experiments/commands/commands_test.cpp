@@ -18,12 +18,16 @@ class Commands : public Program {
     write("blink.ini", kBlink);
     write("blink.csv", kBlinkWorld);
   }
-  /// The call must end as wrong input, saying `words`, and leave no result.
-  void expect_wrong(const std::vector<std::string>& arguments, const std::string& words) const {
+  /// The call must end as wrong input, saying `words` and nothing else.
+  void expect_refused(const std::vector<std::string>& arguments, const std::string& words) const {
     const Called called = call(arguments);
     EXPECT_EQ(called.code, 2) << called.err;
     EXPECT_THAT(called.err, HasSubstr(words));
     EXPECT_THAT(called.out, IsEmpty());
+  }
+  /// Likewise, and there must be no result.
+  void expect_wrong(const std::vector<std::string>& arguments, const std::string& words) const {
+    expect_refused(arguments, words);
     EXPECT_FALSE(exists("out.h5"));
     EXPECT_FALSE(exists("out.h5.part"));
   }
@@ -59,6 +63,9 @@ TEST_F(Commands, WrongInputIsNamedWithItsRemedy) {
   expect_wrong({"run", "blink.ini", "-o", "out.h5", "--runs", "0:1", "--shard", "0/3"},
                "remove one of them");
   expect_wrong({"run", "blink.ini", "-o", "out.h5", "--time-budget", "soon"}, "--time-budget soon");
+  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--time-budget", "0"}, "--time-budget 0");
+  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--set", "study.seed=-1"},
+               "from 0 to 18446744073709551615 is");
   expect_wrong({"run", "absent.ini", "-o", "out.h5"}, "absent.ini: cannot be read");
   expect_wrong({"run", "blink.ini", "-o", "out.h5", "--set", "scenario.world=no.csv"},
                "no.csv: no such world file");
@@ -85,7 +92,7 @@ TEST_F(Commands, RunStoresAndTellsWhereAndOverwritesNothing) {
 
 TEST_F(Commands, TimeBudgetEndsAtACheckpointAndTheCommandPrintedGoesOn) {
   const Called stopped = call({"run", "blink.ini", "-o", "out.h5", "--set", "study.runs=3000",
-                               "--time-budget", "0", "--threads", "1"});
+                               "--time-budget", "0.001", "--threads", "1"});
   EXPECT_EQ(stopped.code, 85) << stopped.err;
   EXPECT_THAT(stopped.err, HasSubstr("--resume"));
   EXPECT_TRUE(exists("out.h5.part"));
@@ -97,7 +104,9 @@ TEST_F(Commands, InfoAndStatusReadWhatRunWrote) {
   const Called info = call({"info", "out.h5"});
   EXPECT_EQ(info.code, 0) << info.err;
   EXPECT_THAT(info.out, HasSubstr("2 of 3"));
-  EXPECT_THAT(info.out, HasSubstr("/cells/fastslam2_m10/pose_mean"));
+  EXPECT_THAT(info.out, HasSubstr("2 are done in every cell"));
+  for (const char* dataset : {"/cells/fastslam2_m10/pose_mean", "/truth", "/scenario", "/timing"})
+    EXPECT_THAT(info.out, HasSubstr(dataset));
   const Called status = call({"status", "out.h5"});
   EXPECT_THAT(status.out, testing::ContainsRegex("ekf_slam +2 +0 +1 +3"));
   const Called text = call({"info", "out.h5", "--text"});
@@ -113,12 +122,16 @@ TEST_F(Commands, CheckRunsNothing) {
   for (const char* words : {"fastslam2_m10", "SHA-256", "3 of 3", "steps", "memory", "disk"})
     EXPECT_THAT(called.out, HasSubstr(words));
   EXPECT_FALSE(exists("out.h5"));
+  EXPECT_THAT(call({"check", "blink.ini", "--text"}).out, testing::StartsWith("[study]\n"))
+      << "the text alone, to be put into a file";
 }
 
 TEST_F(Commands, BoundsAreExact) {
   EXPECT_THAT(call({"bounds", "--runs", "30", "--dim", "3"}).out, testing::StartsWith("[2.188"));
   EXPECT_THAT(call({"bounds", "--match", "1.3", "2.79"}).out, testing::ContainsRegex("20 +2 +0.9"));
   EXPECT_EQ(call({"bounds", "--match", "2.79"}).code, 2);
+  expect_wrong({"bounds", "--runs", "30", "--dim", "3", "--match", "1.3", "2.79"},
+               "--match and --runs");
 }
 
 TEST_F(Commands, ListsSayWhatThereIs) {
@@ -137,6 +150,75 @@ TEST_F(Commands, ShardsMergeIntoTheWhole) {
   EXPECT_FALSE(exists("out.h5"));
   EXPECT_EQ(call({"merge", "out.h5", "a.h5", "b.h5"}).code, 0);
   EXPECT_THAT(call({"status", "out.h5"}).out, testing::ContainsRegex("ekf_slam +3 +0 +0 +3"));
+}
+
+TEST_F(Commands, NothingThatIsReadIsEverReplaced) {
+  EXPECT_EQ(call({"run", "blink.ini", "-o", "blink.ini", "--force"}).code, 2);
+  EXPECT_EQ(call({"run", "blink.ini", "-o", "blink.csv", "--force"}).code, 2);
+  EXPECT_EQ(text_of("blink.ini"), kBlink);
+  EXPECT_EQ(text_of("blink.csv"), kBlinkWorld);
+  ASSERT_EQ(call({"run", "blink.ini", "-o", "out.h5", "--quiet"}).code, 0);
+  std::filesystem::create_symlink("out.h5", folder_ / "soft.h5");
+  std::filesystem::create_hard_link(folder_ / "out.h5", folder_ / "hard.h5");
+  std::filesystem::create_symlink("out.h5", folder_ / "late.h5.part");
+  const std::string before = text_of("out.h5");
+  for (const char* output : {"out.h5", "./out.h5", "soft.h5", "hard.h5", "late.h5.part"}) {
+    const Called called = call({"analyze", "out.h5", "-o", output, "--force"});
+    EXPECT_EQ(called.code, 2) << output;
+    EXPECT_THAT(called.err, HasSubstr("is the same file as out.h5")) << output;
+  }
+  EXPECT_EQ(call({"analyze", "late.h5", "-o", "late.h5.part", "--force"}).code, 2);
+  EXPECT_EQ(text_of("out.h5"), before);
+}
+
+TEST_F(Commands, AnalyzeOnAFullDiskLeavesWhatWasThere) {
+  ASSERT_EQ(call({"run", "blink.ini", "-o", "out.h5", "--quiet"}).code, 0);
+  write("metrics.h5", "mine");
+  const std::string line = "cd " + shell_quoted(folder_.string()) +
+                           " && trap '' XFSZ && ulimit -f 8 && " MONTECARTA_EXECUTABLE
+                           " analyze out.h5 -o metrics.h5 --force > stdout 2> stderr";
+  EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 1);
+  EXPECT_THAT(text_of("stderr"), HasSubstr("metrics.h5"));
+  EXPECT_THAT(text_of("stderr"), HasSubstr("cannot be written"));
+  EXPECT_EQ(text_of("metrics.h5"), "mine");
+  for (const auto& entry : std::filesystem::directory_iterator(folder_))
+    EXPECT_NE(entry.path().extension(), ".new") << "a draft is left";
+  EXPECT_EQ(call({"analyze", "out.h5", "-o", "metrics.h5", "--force"}).code, 0);
+  EXPECT_THAT(text_of("metrics.h5"), testing::StartsWith("\x89HDF"));
+}
+
+TEST_F(Commands, TablesAndReportsAreNotOverwrittenUnasked) {
+  ASSERT_EQ(call({"run", "blink.ini", "-o", "out.h5", "--quiet"}).code, 0);
+  std::filesystem::create_directories(folder_ / "csv");
+  write("csv/series_ekf_slam.csv", "mine");
+  expect_refused({"analyze", "out.h5", "--csv", "csv"}, "series_ekf_slam.csv: is there already");
+  EXPECT_EQ(text_of("csv/series_ekf_slam.csv"), "mine");
+  EXPECT_FALSE(exists("csv/cells.csv"));
+  EXPECT_EQ(call({"analyze", "out.h5", "--csv", "csv", "--force"}).code, 0);
+  EXPECT_THAT(text_of("csv/series_ekf_slam.csv"), testing::StartsWith("time"));
+  std::filesystem::create_directories(folder_ / "report/tables");
+  expect_refused({"report", "out.h5", "-o", "report"}, "report/tables: is there already");
+}
+
+TEST_F(Commands, ReportWithoutGnuplotWritesNothing) {
+  ASSERT_EQ(call({"run", "blink.ini", "-o", "out.h5", "--quiet"}).code, 0);
+  const std::string line = "cd " + shell_quoted(folder_.string()) +
+                           " && PATH=/nowhere " MONTECARTA_EXECUTABLE
+                           " report out.h5 -o report 2> stderr";
+  EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 2);
+  EXPECT_THAT(text_of("stderr"), HasSubstr("gnuplot: not found"));
+  EXPECT_FALSE(exists("report"));
+}
+
+TEST_F(Commands, AnalyzeOfManyFilesNamesEachAndRefusesAStranger) {
+  ASSERT_EQ(call({"run", "blink.ini", "-o", "a.h5", "--quiet", "--shard", "0/2"}).code, 0);
+  ASSERT_EQ(call({"run", "blink.ini", "-o", "b.h5", "--quiet", "--shard", "1/2"}).code, 0);
+  const Called both = call({"analyze", "a.h5", "b.h5"});
+  EXPECT_EQ(both.code, 0) << both.err;
+  EXPECT_THAT(both.out, testing::StartsWith("a.h5\n"));
+  EXPECT_THAT(both.out, HasSubstr("\n\nb.h5\n"));
+  ASSERT_EQ(call({"run", "blink.ini", "-o", "c.h5", "--quiet", "--set", "study.seed=9"}).code, 0);
+  expect_refused({"analyze", "a.h5", "c.h5"}, "c.h5: holds another study");
 }
 
 TEST_F(Commands, FullStandardOutputIsAFailure) {
