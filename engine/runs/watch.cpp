@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdio>
 
 namespace montecarta {
 namespace {
@@ -44,7 +45,15 @@ void Watch::keep_watch() {
   }
 }
 
+/// Closing the file may take seconds, in which a user would wonder whether Ctrl-C was heard.
+void Watch::acknowledge_signal() const {
+  if (interruption_.signal() == 0 || stop_.made()) return;
+  std::fputs("\nmontecarta: stopping, what is done is kept (a second signal ends it at once)\n",
+             stderr);
+}
+
 void Watch::look() {
+  acknowledge_signal();
   if (interruption_.signal() == SIGINT) stop_.make(StopReason::sigint);
   if (interruption_.signal() == SIGTERM) stop_.make(StopReason::sigterm);
   if (deadline_ && Clock::now() >= *deadline_) stop_.make(StopReason::time_budget);

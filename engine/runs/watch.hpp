@@ -33,6 +33,7 @@ class Watch {
  private:
   void keep_watch();
   void look();
+  void acknowledge_signal() const;
 
   const Interruption& interruption_;
   std::optional<std::chrono::steady_clock::time_point> deadline_;
