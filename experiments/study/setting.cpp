@@ -6,6 +6,8 @@
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 
 namespace montecarta {
 namespace {
@@ -58,12 +60,18 @@ std::string checked_choices(const Setting& setting, std::string_view text,
   return joined(ordered);
 }
 
+/// A double cannot hold the largest of 64 bits, of which the reader takes every one.
+std::string most_of(const Setting& setting) {
+  constexpr std::uint64_t kLargest = std::numeric_limits<std::uint64_t>::max();
+  const bool is_all = setting.kind == Kind::count && setting.most >= static_cast<double>(kLargest);
+  return is_all ? std::to_string(kLargest) : to_text(setting.most);
+}
+
 }  // namespace
 
 std::string demand_of(const Setting& setting) {
   const std::string unit = setting.unit.empty() || setting.unit == "1" ? "" : " " + setting.unit;
-  const std::string range =
-      " from " + to_text(setting.least) + " to " + to_text(setting.most) + unit;
+  const std::string range = " from " + to_text(setting.least) + " to " + most_of(setting) + unit;
   switch (setting.kind) {
     case Kind::text:
       return "a text";

@@ -47,10 +47,22 @@ void Settings::fill_in(const std::string& name) {
                        setting.meaning + "): add " + setting.key + " = " + setting.example +
                        " under [" + setting.section + "]");
     }
-    const bool copied = *setting.fallback == "scenario";
-    const std::string& value = copied ? text("scenario", setting.key) : *setting.fallback;
+    const std::string value =
+        *setting.fallback == "scenario" ? copied_from_scenario(setting) : *setting.fallback;
     const std::string place = name + ": " + setting.section + "." + setting.key + " (not given)";
     values_[{setting.section, setting.key}] = {checked_value(setting, value, place), name};
+  }
+}
+
+/// What a filter is not told it takes from the world, which may have values that no filter can use.
+std::string Settings::copied_from_scenario(const Setting& setting) const {
+  const auto& [value, given_at] = at("scenario", setting.key);
+  try {
+    return checked_value(setting, value, given_at);
+  } catch (const StudyError&) {
+    throw StudyError(given_at + ": scenario." + setting.key + " = " + value +
+                     " is what the filters would believe (" + demand_of(setting) +
+                     " is needed there): give [belief] " + setting.key);
   }
 }
 

@@ -13,6 +13,8 @@
 
 namespace montecarta {
 
+struct Setting;
+
 /// The value of every setting of study_settings(), checked and in its one spelling.
 class Settings {
  public:
@@ -41,6 +43,7 @@ class Settings {
   using Name = std::pair<std::string, std::string>;
   void take(const IniEntry& entry);
   void fill_in(const std::string& name);
+  std::string copied_from_scenario(const Setting& setting) const;
   const Value& at(std::string_view section, std::string_view key) const;
 
   std::map<Name, Value> values_;

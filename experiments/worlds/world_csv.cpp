@@ -34,6 +34,11 @@ void read_row(const std::string& row, const std::string& place, World& world) {
   points.emplace_back(coordinate(fields[1], place), coordinate(fields[2], place));
 }
 
+/// Spreadsheets mark UTF-8 by three bytes in front.
+void skip_byte_order_mark(std::string& line) {
+  if (line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
+}
+
 /// The part of a line before a comment.
 std::string content_of(const std::string& line) {
   return std::string(trimmed(std::string_view(line).substr(0, line.find('#'))));
@@ -50,6 +55,7 @@ World read_world_csv(const std::filesystem::path& path) {
   bool headed = false;
   std::string line;
   for (int number = 1; std::getline(file, line); ++number) {
+    if (number == 1) skip_byte_order_mark(line);
     const std::string row = content_of(line);
     const std::string place = path.string() + ":" + std::to_string(number);
     if (row.empty()) continue;

@@ -97,7 +97,7 @@ const BadStudy kBadStudies[] = {
     {"wrong_cell_key", with("cell =", "cel ="), {"trial.ini:7", "did you mean cell?"}},
     {"sensor_without_noise",
      with("[cells]", "sigma_bearing_deg = 0\n[cells]"),
-     {"belief.sigma_bearing_deg", "1e-06"}},
+     {"trial.ini:6: scenario.sigma_bearing_deg = 0", "1e-06", "give [belief] sigma_bearing_deg"}},
     {"half_a_world", kGoodStudy + "[world]\nlandmark = 1, 2\n", {"0 way-points"}},
     {"no_point", kGoodStudy + "[world]\nlandmark = 1\n", {"trial.ini:9", "two coordinates"}},
 };

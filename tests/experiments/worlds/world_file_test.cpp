@@ -63,6 +63,12 @@ TEST_F(WorldFile, ReadsCsvWithCommentsAndEmptyLines) {
       write("yard.csv",
             "# my yard\nkind,x,y\n\nwaypoint, 1, 2 # first\nwaypoint,3,4\nlandmark,-5.5,+6e1\n"));
   EXPECT_EQ(world.name, "yard");
+  EXPECT_EQ(read_world_file(write("sheet.csv",
+                                  "\xEF\xBB\xBFkind,x,y\nwaypoint,1,2\nwaypoint,3,4\n"
+                                  "landmark,1,2\n"))
+                .waypoints.size(),
+            2U)
+      << "as spreadsheets save it";
   ASSERT_EQ(world.waypoints.size(), 2U);
   EXPECT_EQ(world.waypoints[1], Eigen::Vector2d(3, 4));
   ASSERT_EQ(world.landmarks.size(), 1U);
