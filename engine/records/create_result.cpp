@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/errors.hpp"
 #include "engine/records/open_result.hpp"
+#include "engine/records/output_path.hpp"
 #include "engine/records/result_layout.hpp"
 
 #include <optional>
@@ -14,23 +15,13 @@ namespace fs = std::filesystem;
 
 fs::path with_suffix(fs::path path, const char* suffix) { return path += suffix; }
 
-// Where a folder may not be searched, opening the file says so better than these could.
-bool is_there(const fs::path& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
-}
-
 bool is_folder(const fs::path& path) {
   std::error_code ignored;
   return fs::is_directory(path, ignored);
 }
 
 void refuse_existing(const fs::path& path) {
-  if (is_there(path)) {
-    throw StudyError(path.string() +
-                     ": exists (nothing is overwritten unasked): add --force to replace it, or "
-                     "choose another path");
-  }
+  expect_free(path);
   if (is_there(part_of(path))) {
     throw StudyError(
         part_of(path).string() +
@@ -57,8 +48,6 @@ void expect_room(const fs::path& path, double bytes) {
                  " are free: free space, choose another disk, or store fewer runs or columns");
 }
 
-fs::path part_of(const fs::path& path) { return with_suffix(path, ".part"); }
-
 PosixFile lay_out_new(const fs::path& path, const ResultDescription& description) {
   PosixFile file(path, PosixFile::Mode::create);
   file.lock();
@@ -75,7 +64,7 @@ PosixFile lay_out_new(const fs::path& path, const ResultDescription& description
   return file;
 }
 
-OpenResult create_result(const fs::path& path, const StudyPlan& plan, const Provenance& provenance,
+OpenResult create_result(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance,
                          Existing existing) {
   if (is_folder(path)) throw StudyError(path.string() + ": is a folder: name a file in it");
   if (existing == Existing::refuse) refuse_existing(path);

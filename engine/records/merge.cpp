@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/open_result.hpp"
+#include "engine/records/output_path.hpp"
 #include "engine/records/shard.hpp"
 
 #include <algorithm>
@@ -22,11 +23,7 @@ void expect_mergeable(const fs::path& out, const std::vector<fs::path>& shards, 
       throw StudyError(out.string() +
                        ": is one of the shards: choose another name for the merged file");
   }
-  if (existing == Existing::refuse && fs::exists(out, ignored)) {
-    throw StudyError(out.string() +
-                     ": exists (nothing is overwritten unasked): add --force to replace it, or "
-                     "choose another path");
-  }
+  if (existing == Existing::refuse) expect_free(out);
 }
 
 /// Opens every shard and makes sure that all are of one study.

@@ -22,9 +22,6 @@ struct OpenResult {
   PosixFile::Target target = PosixFile::Target::keep;  ///< what finishing does to an older OUT.h5
 };
 
-/// Name of the work in progress of `path`.
-std::filesystem::path part_of(const std::filesystem::path& path);
-
 /// Throws RunError where less than `bytes` are free beside `path`.
 void expect_room(const std::filesystem::path& path, double bytes);
 
@@ -42,9 +39,9 @@ std::vector<std::string> build_differences(const TextPairs& a, const TextPairs& 
 
 /// See ResultWriter::create.
 OpenResult create_result(const std::filesystem::path& path, const StudyPlan& plan,
-                         const Provenance& provenance, Existing existing);
+                         const TextPairs& provenance, Existing existing);
 /// See ResultWriter::resume.
 OpenResult resume_result(const std::filesystem::path& path, const StudyPlan& plan,
-                         const Provenance& provenance);
+                         const TextPairs& provenance);
 
 }  // namespace montecarta

@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/h5.hpp"
+#include "engine/records/output_path.hpp"
 #include "engine/records/read_description.hpp"
 #include "engine/records/run_record.hpp"
 
@@ -54,15 +55,12 @@ struct ResultFile::Contents {
 namespace {
 
 const std::filesystem::path& existing(const std::filesystem::path& path) {
-  std::error_code unreadable;
-  if (std::filesystem::exists(path, unreadable)) return path;
-  auto part = path;
-  part += ".part";
-  const bool unfinished = std::filesystem::exists(part, unreadable);
+  if (is_there(path)) return path;
   throw StudyError(path.string() + ": no such file" +
-                   (unfinished ? " (the work is unfinished): read " + part.string() +
-                                     ", or finish it with 'montecarta run --resume'"
-                               : ": check the spelling"));
+                   (is_there(part_of(path))
+                        ? " (the work is unfinished): read " + part_of(path).string() +
+                              ", or finish it with 'montecarta run --resume'"
+                        : ": check the spelling"));
 }
 
 }  // namespace
@@ -97,15 +95,9 @@ const std::vector<StoredCell>& ResultFile::cells() const { return description().
 std::uint64_t ResultFile::bytes() const { return std::filesystem::file_size(path()); }
 
 std::vector<RunStatus> ResultFile::status(const StoredCell& cell) const {
-  const auto numbers =
-      contents_->per_run<std::uint8_t>("cells/" + cell.label + "/status", Element::u8);
-  std::vector<RunStatus> statuses;
-  for (std::uint8_t number : numbers) {
-    if (number > static_cast<std::uint8_t>(RunStatus::failed))
-      throw RunError(path().string() + ": a status of cell '" + cell.label +
-                     "' is none of 0, 1, 2 (the file is damaged): make it anew");
-    statuses.push_back(static_cast<RunStatus>(number));
-  }
+  const auto statuses =
+      contents_->per_run<RunStatus>("cells/" + cell.label + "/status", Element::u8);
+  expect_known(statuses, path().string() + ": cell '" + cell.label + "'");
   return statuses;
 }
 

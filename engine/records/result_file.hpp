@@ -45,8 +45,8 @@ class ResultFile {
   const std::vector<double>& scan_times() const;  ///< [s]
   const std::vector<std::pair<double, double>>& landmarks() const;  ///< [m] true positions
   const std::vector<std::pair<double, double>>& waypoints() const;  ///< [m]
-  const std::vector<std::pair<std::string, std::string>>& scenario() const;
-  const std::vector<std::pair<std::string, std::string>>& provenance() const;
+  const TextPairs& scenario() const;
+  const TextPairs& provenance() const;
   const std::vector<StoredCell>& cells() const;
 
   std::vector<RunStatus> status(const StoredCell& cell) const;  ///< one per run held

@@ -75,11 +75,7 @@ std::vector<RunStatus> read_statuses(const PosixFile& file, const CellSlabs& cel
                                      std::size_t runs) {
   std::vector<RunStatus> statuses(runs);
   file.read_at(cell.status.offset, std::as_writable_bytes(std::span(statuses)));
-  for (RunStatus status : statuses) {
-    if (status > RunStatus::failed)
-      throw RunError(file.path().string() +
-                     ": a status is none of 0, 1, 2 (the file is damaged): make it anew");
-  }
+  expect_known(statuses, file.path().string());
   return statuses;
 }
 

@@ -51,13 +51,13 @@ ResultWriter::ResultWriter(ResultWriter&&) noexcept = default;
 ResultWriter& ResultWriter::operator=(ResultWriter&&) noexcept = default;
 
 ResultWriter ResultWriter::create(const std::filesystem::path& path, const StudyPlan& plan,
-                                  const Provenance& provenance, Existing existing) {
+                                  const TextPairs& provenance, Existing existing) {
   return ResultWriter(
       std::make_unique<Work>(path, create_result(path, plan, provenance, existing), plan));
 }
 
 ResultWriter ResultWriter::resume(const std::filesystem::path& path, const StudyPlan& plan,
-                                  const Provenance& provenance) {
+                                  const TextPairs& provenance) {
   return ResultWriter(std::make_unique<Work>(path, resume_result(path, plan, provenance), plan));
 }
 

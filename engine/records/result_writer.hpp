@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/records/result_description.hpp"
 #include "engine/records/run_record.hpp"
 #include "engine/runs/drive.hpp"
 #include "engine/runs/plan.hpp"
@@ -9,16 +10,12 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace montecarta {
 
 /// What to do where a result of that name is already there.
 enum class Existing { refuse, replace };
-
-/// Facts about how a file was made: (name, value), in order; become attributes of /provenance.
-using Provenance = std::vector<std::pair<std::string, std::string>>;
 
 /// Writes the result file of a plan. Work in progress lies in OUT.h5.part, which any HDF5 reader
 /// opens at any moment; finish() gives it its final name. Runs go straight from the caller's thread
@@ -29,13 +26,14 @@ using Provenance = std::vector<std::pair<std::string, std::string>>;
 class ResultWriter {
  public:
   /// Lays out a new file. `existing` also says what happens to an unfinished OUT.h5.part. An OUT.h5
-  /// to be replaced stays untouched until finish().
+  /// to be replaced stays untouched until finish(). `provenance` (how the file is made) becomes
+  /// attributes of /provenance.
   static ResultWriter create(const std::filesystem::path& path, const StudyPlan& plan,
-                             const Provenance& provenance, Existing existing);
+                             const TextPairs& provenance, Existing existing);
   /// Goes on with OUT.h5.part, or finds OUT.h5 finished with nothing missing, or begins where there
   /// is neither. Stored runs whose fingerprint does not fit (a power cut) count as missing again.
   static ResultWriter resume(const std::filesystem::path& path, const StudyPlan& plan,
-                             const Provenance& provenance);
+                             const TextPairs& provenance);
   ~ResultWriter();
   ResultWriter(ResultWriter&&) noexcept;
   ResultWriter& operator=(ResultWriter&&) noexcept;

@@ -2,6 +2,7 @@
 #include "engine/errors.hpp"
 #include "engine/records/h5.hpp"
 #include "engine/records/open_result.hpp"
+#include "engine/records/output_path.hpp"
 #include "engine/records/read_description.hpp"
 #include "engine/records/result_layout.hpp"
 
@@ -58,7 +59,7 @@ std::size_t forget_torn_runs(OpenResult& result) {
 }
 
 /// What differs from how the work was begun, "name=value" each, in one line.
-std::string differences(const TextPairs& begun, const Provenance& now) {
+std::string differences(const TextPairs& begun, const TextPairs& now) {
   std::string line;
   for (const auto& pair : now) {
     if (std::ranges::find(begun, pair) == begun.end())
@@ -93,12 +94,9 @@ OpenResult open_existing(const fs::path& path, PosixFile::Mode mode,
 
 }  // namespace
 
-OpenResult resume_result(const fs::path& path, const StudyPlan& plan,
-                         const Provenance& provenance) {
-  std::error_code unreadable;
-  const bool begun = fs::exists(part_of(path), unreadable);
-  if (!begun && !fs::exists(path, unreadable))
-    return create_result(path, plan, provenance, Existing::refuse);
+OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance) {
+  const bool begun = is_there(part_of(path));
+  if (!begun && !is_there(path)) return create_result(path, plan, provenance, Existing::refuse);
   const ResultDescription planned = describe(plan, provenance);
   ResultDescription stored;
   if (!begun) {

@@ -20,8 +20,8 @@ struct RunOptions {
   bool force = false;                   ///< replace a finished or unfinished one
   std::optional<double> time_budget{};  ///< [s], then stop at a checkpoint
   ProgressStyle progress = ProgressStyle::automatic;
-  bool quiet = false;       ///< neither progress nor notes on standard error
-  Provenance provenance{};  ///< how the file was made
+  bool quiet = false;      ///< neither progress nor notes on standard error
+  TextPairs provenance{};  ///< how the file was made
 };
 
 /// Runs what is missing of the plan and stores it. Ends early on SIGINT, SIGTERM or when the time

@@ -2,6 +2,7 @@
 #include "analysis/study_analysis.hpp"
 #include "analysis/tables.hpp"
 #include "engine/errors.hpp"
+#include "engine/records/output_path.hpp"
 #include "engine/records/provenance.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
@@ -74,8 +75,9 @@ RunOptions options_of(const Arguments& arguments) {
 
 void tell_how_to_resume(const RunOutcome& outcome, const Arguments& arguments) {
   std::cerr << "montecarta: stopped, " << outcome.missing()
-            << " runs are missing; what is done is safe in " << arguments.text("output").value()
-            << ".part. Go on with:\n  " << resuming_command(arguments) << "\n";
+            << " runs are missing; what is done is safe in "
+            << part_of(arguments.text("output").value()).string() << ". Go on with:\n  "
+            << resuming_command(arguments) << "\n";
 }
 
 void tell_verdict(const RunOptions& options) {

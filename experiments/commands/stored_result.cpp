@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/commands/stored_result.hpp"
 
+#include "engine/records/output_path.hpp"
+
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -8,8 +10,8 @@
 namespace montecarta {
 
 ResultFile open_stored(const std::string& name) {
-  const std::filesystem::path part = name + ".part";
-  if (std::filesystem::exists(name) || !std::filesystem::exists(part)) return ResultFile(name);
+  const std::filesystem::path part = part_of(name);
+  if (is_there(name) || !is_there(part)) return ResultFile(name);
   std::cerr << "montecarta: " << name << " is unfinished; reading " << part.string() << "\n";
   return ResultFile(part);
 }
