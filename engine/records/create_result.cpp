@@ -68,7 +68,8 @@ OpenResult create_result(const fs::path& path, const StudyPlan& plan, const Text
                          Existing existing) {
   if (is_folder(path)) throw StudyError(path.string() + ": is a folder: name a file in it");
   if (existing == Existing::refuse) refuse_existing(path);
-  const ResultDescription description = describe(plan, provenance);
+  ResultDescription description = describe(plan, provenance);
+  if (is_there(path)) description.provenance.emplace_back(format::kReplaces, "an older result");
   std::optional<PosixFile> replaced;  // its lock proves that nobody writes the work we replace
   if (is_there(part_of(path))) replaced.emplace(part_of(path), PosixFile::Mode::write).lock();
   OpenResult result{lay_out_new(with_suffix(part_of(path), ".new"), description), {}, {}, {}, {}};

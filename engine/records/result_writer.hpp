@@ -31,7 +31,8 @@ class ResultWriter {
   static ResultWriter create(const std::filesystem::path& path, const StudyPlan& plan,
                              const TextPairs& provenance, Existing existing);
   /// Goes on with OUT.h5.part, or finds OUT.h5 finished with nothing missing, or begins where there
-  /// is neither. Stored runs whose fingerprint does not fit (a power cut) count as missing again.
+  /// is neither. Refuses beside an OUT.h5 of another study or other runs, unless `replace` began
+  /// it. Stored runs whose fingerprint does not fit (a power cut) count as missing again.
   static ResultWriter resume(const std::filesystem::path& path, const StudyPlan& plan,
                              const TextPairs& provenance);
   ~ResultWriter();

@@ -34,6 +34,29 @@ void expect_same(const fs::path& path, const ResultDescription& planned,
                    range(planned) + "): give the same --runs or --shard as at the start");
 }
 
+bool begun_with_force(const ResultDescription& stored) {
+  return std::ranges::any_of(stored.provenance,
+                             [](const auto& pair) { return pair.first == format::kReplaces; });
+}
+
+bool holds_the_same(const fs::path& path, const ResultDescription& planned) {
+  try {
+    const ResultDescription stored = read_description(h5::open_file(path), path);
+    return stored.runs == planned.runs && !difference(planned, stored, path);
+  } catch (const std::runtime_error&) {
+    return false;  // no result at all: the user's own file, which is not ours to replace either
+  }
+}
+
+/// Finishing replaces what is at `path`; the user must have asked for that, or lose nothing by it.
+void expect_replaceable(const fs::path& path, const ResultDescription& planned,
+                        const ResultDescription& begun) {
+  if (!is_there(path) || begun_with_force(begun) || holds_the_same(path, planned)) return;
+  throw StudyError(path.string() + ": exists and is not the result that " + part_of(path).string() +
+                   " becomes (finishing would replace it): move it away, then continue with "
+                   "--resume, or start afresh with --force");
+}
+
 void forget(OpenResult& result, std::size_t cell, std::size_t run_index) {
   const std::byte missing{static_cast<std::uint8_t>(RunStatus::missing)};
   result.status[cell][run_index] = RunStatus::missing;
@@ -88,7 +111,6 @@ OpenResult open_existing(const fs::path& path, PosixFile::Mode mode,
   for (const CellSlabs& cell : result.slabs.cells)
     result.status.push_back(read_statuses(result.file, cell, stored.runs.size()));
   result.truth_stored.assign(stored.runs.size(), true);
-  result.target = PosixFile::Target::replace;
   return result;
 }
 
@@ -105,6 +127,8 @@ OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const Text
     return finished;
   }
   OpenResult result = open_existing(part_of(path), PosixFile::Mode::write, planned, stored);
+  expect_replaceable(path, planned, stored);
+  if (is_there(path)) result.target = PosixFile::Target::replace;
   const std::size_t torn = forget_torn_runs(result);
   if (torn > 0) {
     result.notes.push_back(std::to_string(torn) +
