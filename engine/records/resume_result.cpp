@@ -114,6 +114,21 @@ OpenResult open_existing(const fs::path& path, PosixFile::Mode mode,
   return result;
 }
 
+/// A file has its final name only once nothing is missing, unless somebody else renamed it.
+void expect_finished(const OpenResult& result) {
+  std::size_t missing = 0;
+  std::size_t all = 0;
+  for (const auto& of_cell : result.status) {
+    missing += static_cast<std::size_t>(std::ranges::count(of_cell, RunStatus::missing));
+    all += of_cell.size();
+  }
+  if (missing == 0) return;
+  const fs::path& path = result.file.path();
+  throw StudyError(path.string() + ": " + std::to_string(missing) + " of " + std::to_string(all) +
+                   " runs are missing (unfinished work under a final name): rename it to " +
+                   part_of(path).string() + ", then continue with --resume");
+}
+
 }  // namespace
 
 OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance) {
@@ -123,6 +138,7 @@ OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const Text
   ResultDescription stored;
   if (!begun) {
     OpenResult finished = open_existing(path, PosixFile::Mode::read, planned, stored);
+    expect_finished(finished);
     finished.notes.push_back(path.string() + " is complete already");
     return finished;
   }
