@@ -86,7 +86,7 @@ struct CellAnalysis {
   ErrorSummary error;                 ///< of the leading mean
   std::optional<WeightSummary> weights;
   std::optional<DiversitySummary> diversity;
-  Summary cpu_seconds;       ///< filter only, of complete runs
+  Summary cpu_seconds;       ///< [s] of each complete run's own thread over its steps
   Summary numerical_faults;  ///< factorisations answered by a fallback, per run
 
   /// nullptr where it is not stored.

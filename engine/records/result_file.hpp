@@ -52,10 +52,10 @@ class ResultFile {
   std::vector<RunStatus> status(const StoredCell& cell) const;  ///< one per run held
   std::vector<std::string> failure_reasons(const StoredCell& cell) const;
   std::vector<std::uint32_t> failure_steps(const StoredCell& cell) const;
-  std::vector<double> cpu_seconds(
-      const StoredCell& cell) const;  ///< [s] filter only; NaN where missing
-  double wall_seconds() const;        ///< [s] of all sittings
-  std::uint64_t bytes() const;        ///< size of the file
+  std::vector<double> cpu_seconds(const StoredCell& cell)
+      const;                    ///< [s] of the run's own thread over its steps; NaN where missing
+  double wall_seconds() const;  ///< [s] of all sittings
+  std::uint64_t bytes() const;  ///< size of the file
 
   /// Copies {axes of the column} of run index `i` (0-based in this file), converted to double.
   /// `out` must fit.

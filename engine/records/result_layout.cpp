@@ -142,8 +142,9 @@ void add_timing(const h5::Handle& file, const ResultDescription& result, const S
   const std::vector<double> unknown(result.runs.size(), std::numeric_limits<double>::quiet_NaN());
   for (const StoredCell& cell : result.cells) {
     const h5::Handle of_cell = h5::create_group(group, cell.label);
-    const auto cpu = add_dataset(of_cell, "cpu_seconds", Element::f64, {unknown.size()}, {"run"},
-                                 {"s", "thread CPU time of the filter"}, scales);
+    const auto cpu =
+        add_dataset(of_cell, "cpu_seconds", Element::f64, {unknown.size()}, {"run"},
+                    {"s", "processor time of the run's own thread over its steps"}, scales);
     h5::write(cpu, Element::f64, unknown.data());
   }
 }

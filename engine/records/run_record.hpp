@@ -31,7 +31,8 @@ class RunRecord {
 
   /// Forgets the run: numbers become NaN, counts and flags 0, status missing.
   void clear();
-  /// The run went through. `cpu_seconds`: thread CPU time of the filter alone.
+  /// The run went through. `cpu_seconds`: processor time of the run's own thread over its steps
+  /// (analysis/FORMAT.md, "/timing").
   void mark_complete(double cpu_seconds);
   /// The run ended at `step` (0-based) for `reason`; a longer reason than the file holds is cut at
   /// a character.
