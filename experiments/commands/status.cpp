@@ -5,6 +5,7 @@
 #include "experiments/text/table.hpp"
 
 #include <iostream>
+#include <optional>
 
 namespace montecarta {
 namespace {
@@ -50,9 +51,13 @@ class StudyStatus {
 };
 
 int status(const Arguments& arguments) {
-  StudyStatus status(open_stored(arguments.operands().front()));
-  for (const std::string& name : arguments.operands()) status.add(open_stored(name));
-  status.print();
+  std::optional<StudyStatus> status;
+  for (const std::string& name : arguments.operands()) {
+    const ResultFile file = open_stored(name);
+    if (!status) status.emplace(file);
+    status->add(file);
+  }
+  status->print();
   return kDone;
 }
 
