@@ -15,8 +15,12 @@ constexpr hsize_t kLarge = 1024 * 1024;  // [byte] what counts as large
 
 static_assert(sizeof(hid_t) == sizeof(std::int64_t));
 
-/// Errors become exceptions here; HDF5's own printed stacks would only frighten.
-void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+/// Errors become exceptions here; HDF5's own printed stacks would only frighten. Its tidying up at
+/// exit goes, too: nothing is left open for it, and it crashes on a file it could not write out.
+void silence() {
+  H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 Handle file_access() {
   Handle access(H5Pcreate(H5P_FILE_ACCESS));
@@ -90,6 +94,7 @@ Handle::~Handle() {
 }
 
 std::string library_version() {
+  silence();
   unsigned major = 0;
   unsigned minor = 0;
   unsigned release = 0;
@@ -141,8 +146,10 @@ void close_file(Handle file) {
   const hid_t id = file.id();
   H5Iinc_ref(id);
   if (H5Fflush(id, H5F_SCOPE_LOCAL) < 0 || H5Fclose(id) < 0)
-    throw RunError(name +
-                   ": cannot write it out (the disk may be full): free space, then try again");
+    throw RunError(
+        name +
+        ": cannot write it out (the disk is full, or a limit on file sizes reached): free "
+        "space or raise the limit (ulimit -f), then try again");
 }
 
 Handle create_group(const Handle& parent, const std::string& name) {

@@ -27,13 +27,15 @@ std::string reason(int error) { return " (" + std::string(std::strerror(error)) 
   throw StudyError(path.string() + ": cannot open it" + reason(error) + ": " + remedy);
 }
 
+std::string remedy(int error) {
+  if (error == ENOSPC || error == EDQUOT) return "free space";
+  if (error == EFBIG) return "raise the limit on file sizes (ulimit -f)";
+  return "check the disk";
+}
+
 [[noreturn]] void fail_to_write(const std::filesystem::path& path, int error) {
-  std::string remedy = "check the disk, then continue with --resume";
-  if (error == ENOSPC || error == EDQUOT) remedy = "free space, then continue with --resume";
-  if (error == EFBIG)
-    remedy = "raise the limit on file sizes (ulimit -f), then continue with --resume";
-  throw RunError(path.string() + ": cannot write" + reason(error) + ": " + remedy +
-                 "; the runs stored so far are safe");
+  throw RunError(path.string() + ": cannot write" + reason(error) + ": " + remedy(error) +
+                 ", then continue with --resume; the runs stored so far are safe");
 }
 
 [[noreturn]] void fail_to_read(const std::filesystem::path& path, const std::string& why) {
@@ -142,13 +144,14 @@ void PosixFile::copy_through_memory(std::uint64_t offset, const PosixFile& from,
 }
 
 void PosixFile::reserve() const {
-  int status = 0;
+  const std::uint64_t bytes = size();
+  int error = 0;
   do {
-    status = ::fallocate(descriptor_, 0, 0, signed_offset(size()));
-  } while (status != 0 && errno == EINTR);
-  if (status == 0 || (errno != ENOSPC && errno != EDQUOT && errno != EFBIG)) return;
-  throw RunError(path_.string() + ": cannot reserve " + std::to_string(size()) + " bytes" +
-                 reason(errno) + ": free space, or store fewer runs or columns");
+    error = ::fallocate(descriptor_, 0, 0, signed_offset(bytes)) == 0 ? 0 : errno;
+  } while (error == EINTR);
+  if (error != ENOSPC && error != EDQUOT && error != EFBIG) return;
+  throw RunError(path_.string() + ": cannot reserve " + std::to_string(bytes) + " bytes" +
+                 reason(error) + ": " + remedy(error) + ", or store fewer runs or columns");
 }
 
 void PosixFile::sync() const {

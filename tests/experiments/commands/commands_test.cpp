@@ -18,6 +18,10 @@ class Commands : public Program {
     write("blink.ini", kBlink);
     write("blink.csv", kBlinkWorld);
   }
+  /// A call that may write no file beyond a few kilobytes.
+  Called call_limited(const std::vector<std::string>& words) const {
+    return call(words, "ulimit -f 8 && ");
+  }
   /// The call must end as wrong input, saying `words` and nothing else.
   void expect_refused(const std::vector<std::string>& arguments, const std::string& words) const {
     const Called called = call(arguments);
@@ -96,7 +100,21 @@ TEST_F(Commands, TimeBudgetEndsAtACheckpointAndTheCommandPrintedGoesOn) {
   EXPECT_EQ(stopped.code, 85) << stopped.err;
   EXPECT_THAT(stopped.err, HasSubstr("--resume"));
   EXPECT_TRUE(exists("out.h5.part"));
-  EXPECT_THAT(call({"status", "out.h5"}).out, HasSubstr("missing"));
+  const Called status = call({"status", "out.h5"});
+  EXPECT_THAT(status.out, HasSubstr("missing"));
+  EXPECT_EQ(status.err, "montecarta: out.h5 is unfinished; reading out.h5.part\n");
+}
+
+TEST_F(Commands, ALimitOnFileSizesIsNamedWithItsRemedy) {
+  const Called begun = call_limited({"run", "blink.ini", "-o", "new.h5"});
+  EXPECT_EQ(begun.code, 1);
+  EXPECT_THAT(begun.err, HasSubstr("ulimit -f"));
+  call({"run", "blink.ini", "-o", "out.h5", "--set", "study.runs=3000", "--time-budget", "0"});
+  ASSERT_TRUE(exists("out.h5.part"));
+  const Called resumed =
+      call_limited({"run", "blink.ini", "-o", "out.h5", "--set", "study.runs=3000", "--resume"});
+  EXPECT_EQ(resumed.code, 1);
+  EXPECT_THAT(resumed.err, HasSubstr("(ulimit -f), then continue with --resume"));
 }
 
 TEST_F(Commands, InfoAndStatusReadWhatRunWrote) {

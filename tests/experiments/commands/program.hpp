@@ -35,8 +35,10 @@ class Program : public testing::Test {
   }
   ~Program() override { std::filesystem::remove_all(folder_); }
 
-  Called call(const std::vector<std::string>& words) const {
-    std::string line = "cd " + shell_quoted(folder_.string()) + " && " + MONTECARTA_EXECUTABLE;
+  /// `before`: shell commands that go first.
+  Called call(const std::vector<std::string>& words, const std::string& before = "") const {
+    std::string line =
+        "cd " + shell_quoted(folder_.string()) + " && " + before + MONTECARTA_EXECUTABLE;
     for (const std::string& word : words) line += " " + shell_quoted(word);
     line += " 2>" + shell_quoted((folder_ / "stderr").string());
     Called called;
