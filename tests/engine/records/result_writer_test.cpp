@@ -4,15 +4,13 @@
 #include "engine/errors.hpp"
 #include "engine/records/result_file.hpp"
 #include "tests/doubles/reader_program.hpp"
-#include "tests/doubles/scratch_folder.hpp"
-#include "tests/doubles/scripted_result.hpp"
+#include "tests/doubles/result_writing.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 
 namespace montecarta {
 namespace {
@@ -21,38 +19,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-class ResultWriterTest : public ::testing::Test {
- protected:
-  ResultWriter create(Existing existing = Existing::refuse) const {
-    return ResultWriter::create(path_, plan_, {}, existing);
-  }
-  /// Leaves unfinished work with run 0 stored.
-  void begin(Existing existing = Existing::refuse) const {
-    ResultWriter writer = create(existing);
-    store_run(writer, plan_, 0);
-  }
-  ResultWriter resume() const { return ResultWriter::resume(path_, plan_, {}); }
-  std::string bytes_of(const std::filesystem::path& path) const {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
-
-  ScratchFolder folder_;
-  std::filesystem::path path_ = folder_ / "out.h5";
-  std::filesystem::path part_ = folder_ / "out.h5.part";
-  StudyPlan plan_ = small_result_plan();
-};
-
-template <class Error, class Action>
-std::string message(const Action& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "nothing of that kind was thrown";
-  return {};
-}
+class ResultWriterTest : public ResultWriting {};
 
 TEST_F(ResultWriterTest, LeavesOnlyTheFinalNameWhenFinished) {
   write_result(path_, plan_);
@@ -216,47 +183,6 @@ TEST_F(ResultWriterTest, RefusesAnotherStudyAndOtherRuns) {
       message<StudyError>([&] { ResultWriter::resume(path_, part_of_plan(plan_, 1, 3), {}); }),
       AllOf(HasSubstr("holds runs 0:3"), HasSubstr("asked for: 1:3")));
   EXPECT_EQ(bytes_of(part_), before);
-}
-
-TEST_F(ResultWriterTest, ResumesBesideAnOlderResultOnlyWhereItIsOfTheSameStudyAndRuns) {
-  begin();
-  StudyPlan other = plan_;
-  other.resolved_text += "seed = 8\n";
-  const auto older = folder_ / "older.h5";
-  write_result(older, other);
-  std::filesystem::rename(older, path_);
-  const std::string before = bytes_of(path_);
-  EXPECT_THAT(message<StudyError>([&] { resume(); }),
-              AllOf(HasSubstr("out.h5: exists"), HasSubstr("--resume"), HasSubstr("--force")));
-  EXPECT_EQ(bytes_of(path_), before);
-  write_result(older, part_of_plan(plan_, 1, 3));
-  std::filesystem::rename(older, path_);
-  EXPECT_THAT(message<StudyError>([&] { resume(); }), HasSubstr("out.h5: exists"));
-  std::ofstream(path_) << "no result at all";
-  EXPECT_THAT(message<StudyError>([&] { resume(); }), HasSubstr("out.h5: exists"));
-  write_result(older, plan_);
-  std::filesystem::rename(older, path_);
-  EXPECT_EQ(resume().status(0, 0), RunStatus::complete);
-}
-
-TEST_F(ResultWriterTest, ReplacesAnotherResultAfterAResumptionWhereTheStartWasForced) {
-  StudyPlan other = plan_;
-  other.resolved_text += "seed = 8\n";
-  write_result(path_, other);
-  begin(Existing::replace);
-  ResultWriter writer = resume();
-  store_run(writer, plan_, 1);
-  store_run(writer, plan_, 2);
-  writer.finish();
-  EXPECT_EQ(ResultFile(path_).study_text(), plan_.resolved_text);
-}
-
-TEST_F(ResultWriterTest, TellsUnfinishedWorkUnderAFinalNameFromAResult) {
-  begin();
-  std::filesystem::rename(part_, path_);
-  EXPECT_THAT(
-      message<StudyError>([&] { resume(); }),
-      AllOf(HasSubstr("4 of 6 runs are missing"), HasSubstr("rename it to " + part_.string())));
 }
 
 TEST_F(ResultWriterTest, RefusesAFileThatAnotherProcessWrites) {
