@@ -109,7 +109,7 @@ TEST_F(Commands, ALimitOnFileSizesIsNamedWithItsRemedy) {
   const Called begun = call_limited({"run", "blink.ini", "-o", "new.h5"});
   EXPECT_EQ(begun.code, 1);
   EXPECT_THAT(begun.err, HasSubstr("ulimit -f"));
-  call({"run", "blink.ini", "-o", "out.h5", "--set", "study.runs=3000", "--time-budget", "0"});
+  call({"run", "blink.ini", "-o", "out.h5", "--set", "study.runs=3000", "--time-budget", "0.001"});
   ASSERT_TRUE(exists("out.h5.part"));
   const Called resumed =
       call_limited({"run", "blink.ini", "-o", "out.h5", "--set", "study.runs=3000", "--resume"});
