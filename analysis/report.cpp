@@ -25,9 +25,10 @@ std::string read_text(const fs::path& path) {
 }
 
 void refuse_existing(const fs::path& directory, ExistingReport existing) {
-  const fs::path page = directory / "index.html";
-  if (existing == ExistingReport::refuse && fs::exists(page)) {
-    throw StudyError(page.string() +
+  if (existing == ExistingReport::replace) return;
+  for (const char* name : {"index.html", "figures", "data", "tables"}) {
+    if (!fs::exists(directory / name)) continue;
+    throw StudyError((directory / name).string() +
                      ": is there already (nothing is overwritten unasked): add --force, or choose "
                      "another directory");
   }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "filters/factory.hpp"
-#include "filters/fastslam/motion_increment.hpp"
+#include "filters/moments/motion_increment.hpp"
 
 namespace montecarta {
 

@@ -4,7 +4,6 @@
 #include "analysis/figures/gnuplot.hpp"
 #include "engine/errors.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/output_guard.hpp"
 #include "experiments/commands/plan_arguments.hpp"
 #include "experiments/commands/stored_result.hpp"
 
@@ -38,8 +37,6 @@ int report(const Arguments& arguments) {
   options.run = arguments.count("run", 0, UINT32_MAX);
   options.existing = arguments.has("force") ? ExistingReport::replace : ExistingReport::refuse;
   options.parallel = &parallel;
-  if (!arguments.has("force"))
-    refuse_existing(*directory, {"index.html", "figures", "data", "tables"});
   expect_gnuplot();
   write_report(open_stored(arguments.operands().front()), *directory, options);
   std::cout << (std::filesystem::path(*directory) / "index.html").string() << "\n";

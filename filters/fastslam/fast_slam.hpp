@@ -4,11 +4,11 @@
 #include "engine/particles/resampling.hpp"
 #include "engine/particles/weights.hpp"
 #include "engine/runs/slam_filter.hpp"
-#include "filters/fastslam/cloud_moments.hpp"
-#include "filters/fastslam/evidence.hpp"
 #include "filters/fastslam/fast_slam_options.hpp"
 #include "filters/fastslam/innovation_sums.hpp"
 #include "filters/fastslam/particle_maps.hpp"
+#include "filters/moments/cloud_moments.hpp"
+#include "filters/moments/evidence.hpp"
 
 #include <algorithm>
 #include <numeric>

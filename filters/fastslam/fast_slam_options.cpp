@@ -2,7 +2,6 @@
 #include "filters/fastslam/fast_slam_options.hpp"
 
 #include <algorithm>
-#include <array>
 #include <string>
 
 namespace montecarta {

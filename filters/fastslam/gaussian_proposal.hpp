@@ -2,10 +2,10 @@
 #pragma once
 
 #include "engine/random/normals.hpp"
-#include "filters/fastslam/cloud_moments.hpp"
 #include "filters/fastslam/fast_slam_options.hpp"
-#include "filters/fastslam/linearised.hpp"
-#include "filters/fastslam/motion_increment.hpp"
+#include "filters/moments/cloud_moments.hpp"
+#include "filters/moments/linearised.hpp"
+#include "filters/moments/motion_increment.hpp"
 
 #include <optional>
 #include <vector>

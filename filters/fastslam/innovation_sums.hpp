@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/fastslam/linearised.hpp"
+#include "filters/moments/linearised.hpp"
 
 #include <array>
 #include <cstddef>

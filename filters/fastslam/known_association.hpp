@@ -2,8 +2,8 @@
 #pragma once
 
 #include "engine/runs/drive.hpp"
-#include "filters/fastslam/linearised.hpp"
 #include "filters/fastslam/particle_maps.hpp"
+#include "filters/moments/linearised.hpp"
 
 #include <cstdint>
 #include <vector>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "engine/random/normals.hpp"
-#include "filters/fastslam/cloud_moments.hpp"
-#include "filters/fastslam/linearised.hpp"
 #include "filters/models/ackermann.hpp"
+#include "filters/moments/cloud_moments.hpp"
+#include "filters/moments/linearised.hpp"
 
 #include <vector>
 

@@ -6,8 +6,8 @@
 #include "engine/runs/drive.hpp"
 #include "engine/runs/step_context.hpp"
 #include "filters/association/nearest.hpp"
-#include "filters/fastslam/linearised.hpp"
 #include "filters/fastslam/particle_maps.hpp"
+#include "filters/moments/linearised.hpp"
 
 #include <algorithm>
 #include <cstdint>

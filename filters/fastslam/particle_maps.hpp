@@ -4,7 +4,7 @@
 #include "engine/particles/blocks.hpp"
 #include "engine/particles/genealogy.hpp"
 #include "engine/runs/slam_filter.hpp"
-#include "filters/fastslam/gaussians.hpp"
+#include "filters/moments/gaussians.hpp"
 
 #include <algorithm>
 #include <cstddef>

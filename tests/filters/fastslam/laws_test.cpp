@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/factory.hpp"
-#include "filters/fastslam/cloud_moments.hpp"
+#include "filters/moments/cloud_moments.hpp"
 #include "tests/filters/small_world.hpp"
 
 #include <Eigen/Geometry>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "filters/factory.hpp"
-#include "filters/fastslam/gaussians.hpp"
 #include "filters/models/eigen_jacobians.hpp"
+#include "filters/moments/gaussians.hpp"
 
 #include <Eigen/Core>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/fastslam/evidence.hpp"
-#include "filters/fastslam/gaussians.hpp"
-#include "filters/fastslam/sensor_noise.hpp"
+#include "filters/moments/evidence.hpp"
+#include "filters/moments/gaussians.hpp"
+#include "filters/moments/sensor_noise.hpp"
 
 namespace montecarta {
 

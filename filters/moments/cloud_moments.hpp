@@ -3,8 +3,8 @@
 
 #include "engine/particles/weights.hpp"
 #include "engine/runs/slam_filter.hpp"
-#include "filters/fastslam/gaussians.hpp"
-#include "filters/fastslam/motion_increment.hpp"
+#include "filters/moments/gaussians.hpp"
+#include "filters/moments/motion_increment.hpp"
 
 #include <Eigen/Core>
 
@@ -98,8 +98,6 @@ LandmarkEstimate mixture_of_landmarks(const Weights<Real>& weights,
 /// = (x, y, h, cos h, sin h), h the heading less its mean, the moved cloud is linear in v.
 class CloudMoments {
  public:
-  CloudMoments() = default;
-
   template <class Real>
   CloudMoments(const Weights<Real>& weights, const std::vector<BasicPose<Real>>& poses)
       : mean_(weighted_mean<Real>(weights, [&](std::size_t b) { return poses[b]; })) {

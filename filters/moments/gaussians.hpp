@@ -82,23 +82,21 @@ struct Cholesky3 {
   Real faults{0.0};  ///< pivots too negative to be rounding: the matrix was not a covariance
 
   [[gnu::always_inline]] explicit Cholesky3(const Symmetric3<Real>& P) {
-    Real inverse;
-    pivot(P.xx, P.xx, xx, inverse);
+    Real inverse = pivot(P.xx, P.xx, xx);
     yx = P.xy * inverse;
     hx = P.xh * inverse;
-    pivot(P.yy - yx * yx, P.yy, yy, inverse);
+    inverse = pivot(P.yy - yx * yx, P.yy, yy);
     hy = (P.yh - hx * yx) * inverse;
-    Real unused;
-    pivot(P.hh - hx * hx - hy * hy, P.hh, hh, unused);
+    pivot(P.hh - hx * hx - hy * hy, P.hh, hh);
   }
 
  private:
-  [[gnu::always_inline]] void pivot(const Real& square, const Real& diagonal, Real& root,
-                                    Real& inverse) {
+  /// Returns 1 / root, or 0 for a pivot that is zero.
+  [[gnu::always_inline]] Real pivot(const Real& square, const Real& diagonal, Real& root) {
     faults += select(square < -1e-12 * diagonal, Real(1.0), Real(0.0));
     const auto positive = square > 1e-18 * (Real(1.0) + diagonal);
     root = sqrt(select(positive, square, Real(0.0)));
-    inverse = select(positive, Real(1.0) / root, Real(0.0));
+    return select(positive, Real(1.0) / root, Real(0.0));
   }
 };
 
