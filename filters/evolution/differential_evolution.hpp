@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/evolution/random_members.hpp"
+#include "filters/evolution/search_box.hpp"
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace montecarta {
+
+/// Which member a trial starts from: DE/best/1 (Ankishan), DE/rand/1 (Havangi eq. 6) or
+/// DE/current/1 (Havangi eq. 30: nothing pulls towards the best but selection).
+enum class EvolutionBase { best, random, target };
+
+struct EvolutionSettings {
+  double scale = 0.5;                          ///< F
+  double crossover = 0.8;                      ///< Cr in [0, 1]
+  std::size_t generations = 10;                ///< at most
+  EvolutionBase base = EvolutionBase::random;  ///< of the trial vector
+  double tolerance = 1e-6;  ///< stop where all members are equally good up to this
+  double good_enough = std::numeric_limits<double>::infinity();  ///< stop where the best is as good
+};
+
+/// Memory that evolve() keeps from call to call; one for each thread.
+template <class Real, std::size_t D>
+struct EvolutionScratch {
+  std::vector<std::array<Real, D>> trials;
+  std::vector<Real> fitness, trial_fitness;  ///< of every member
+
+  void resize(std::size_t size) {
+    trials.resize(size);
+    fitness.resize(size);
+    trial_fitness.resize(size);
+  }
+};
+
+/// The best member, of equals the first, and what the objective says of it.
+template <class Real, std::size_t D>
+struct Evolved {
+  std::array<Real, D> best;
+  Real fitness;
+};
+
+/// Fewest members with which trials can be made of members that differ (SPEC 12).
+constexpr std::size_t least_population(EvolutionBase base) {
+  return base == EvolutionBase::random ? 4 : 3;
+}
+
+namespace evolution {
+
+template <class Real, std::size_t D>
+using Population = std::span<std::array<Real, D>>;
+
+/// Who leads, and how far behind the last one is.
+template <class Real, std::size_t D>
+struct Standing {
+  Evolved<Real, D> leader;
+  Real worst;
+
+  Standing(Population<Real, D> population, const std::vector<Real>& fitness)
+      : leader{population[0], fitness[0]}, worst(fitness[0]) {
+    for (std::size_t i = 1; i < population.size(); ++i) {
+      const auto better = fitness[i] > leader.fitness;
+      for (std::size_t j = 0; j < D; ++j)
+        leader.best[j] = select(better, population[i][j], leader.best[j]);
+      leader.fitness = select(better, fitness[i], leader.fitness);
+      worst = select(fitness[i] < worst, fitness[i], worst);
+    }
+  }
+  /// Where evolution is not over; it stays over, since then nothing is accepted.
+  auto goes_on(const EvolutionSettings& settings) const {
+    return !(leader.fitness - worst < Real(settings.tolerance)) &&
+           leader.fitness < Real(settings.good_enough);
+  }
+};
+
+/// The k-th of every lane's random members.
+template <class Real, std::size_t D>
+std::array<Real, D> gather(Population<Real, D> population, const TrialDraws<Real, D>& draws,
+                           std::size_t k) {
+  constexpr std::size_t lanes = kLanesOf<Real>;
+  const double* numbers = reinterpret_cast<const double*>(population.data());
+  std::array<Real, D> member;
+  for (std::size_t j = 0; j < D; ++j) {
+    alignas(64) std::array<double, lanes> values;
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+      values[lane] = numbers[(draws.members[lane][k] * D + j) * lanes + lane];
+    member[j] = load_real<Real>(values.data());
+  }
+  return member;
+}
+
+/// Mutation, binomial crossover and repair of member i (SPEC 12).
+template <class Real, std::size_t D>
+std::array<Real, D> trial(Population<Real, D> population, std::size_t i,
+                          const std::array<Real, D>& leader, const SearchBox<Real, D>& box,
+                          const EvolutionSettings& settings, const TrialDraws<Real, D>& draws) {
+  const std::array<Real, D> plus = gather(population, draws, 0);
+  const std::array<Real, D> minus = gather(population, draws, 1);
+  std::array<Real, D> base = leader;
+  if (settings.base == EvolutionBase::random) base = gather(population, draws, 2);
+  if (settings.base == EvolutionBase::target) base = population[i];
+  std::array<Real, D> offspring;
+  for (std::size_t j = 0; j < D; ++j) {
+    const Real mutant = base[j] + Real(settings.scale) * box.difference(j, plus[j], minus[j]);
+    offspring[j] = select(draws.crosses[j] <= Real(settings.crossover), box.repaired(j, mutant),
+                          population[i][j]);
+  }
+  return offspring;
+}
+
+/// One synchronous generation: all trials are built from the old one, then the good ones move in.
+template <class Real, std::size_t D, class Objective>
+void live_on(Population<Real, D> population, std::size_t generation,
+             const Standing<Real, D>& standing, const SearchBox<Real, D>& box,
+             const EvolutionSettings& settings, const EvolutionDraws& draws,
+             EvolutionScratch<Real, D>& scratch, const Objective& objective) {
+  const std::size_t size = population.size();
+  const auto goes_on = standing.goes_on(settings);
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::size_t block = (generation * size + i) * TrialDraws<Real, D>::kBlocks;
+    const TrialDraws<Real, D> chance(draws, static_cast<std::uint32_t>(block), size, i);
+    scratch.trials[i] = trial(population, i, standing.leader.best, box, settings, chance);
+    scratch.trial_fitness[i] = objective(i, std::as_const(scratch.trials[i]));
+  }
+  for (std::size_t i = 0; i < size; ++i) {
+    const auto moves_in = goes_on && scratch.trial_fitness[i] >= scratch.fitness[i];
+    for (std::size_t j = 0; j < D; ++j)
+      population[i][j] = select(moves_in, scratch.trials[i][j], population[i][j]);
+    scratch.fitness[i] = select(moves_in, scratch.trial_fitness[i], scratch.fitness[i]);
+  }
+}
+
+}  // namespace evolution
+
+/// Differential evolution (SPEC 12): `population` moves towards where `objective(member,
+/// candidate)`, a number, is greatest, and the best is returned. `Real` = Lanes: every lane evolves
+/// a population of its own with random numbers of its own. Members must lie in `box`. Below
+/// least_population() nothing moves. Allocates only where `scratch` has to grow.
+template <class Real, std::size_t D, class Objective>
+Evolved<Real, D> evolve(std::span<std::array<Real, D>> population, const SearchBox<Real, D>& box,
+                        const EvolutionSettings& settings, const EvolutionDraws& draws,
+                        EvolutionScratch<Real, D>& scratch, const Objective& objective) {
+  scratch.resize(population.size());
+  for (std::size_t i = 0; i < population.size(); ++i)
+    scratch.fitness[i] = objective(i, std::as_const(population[i]));
+  evolution::Standing<Real, D> standing(population, scratch.fitness);
+  if (population.size() < least_population(settings.base)) return standing.leader;
+  for (std::size_t g = 0; g < settings.generations && any(standing.goes_on(settings)); ++g) {
+    evolution::live_on(population, g, standing, box, settings, draws, scratch, objective);
+    standing = evolution::Standing<Real, D>(population, scratch.fitness);
+  }
+  return standing.leader;
+}
+
+}  // namespace montecarta
