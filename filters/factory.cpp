@@ -10,6 +10,7 @@ namespace montecarta {
 std::span<const FilterKind> filter_kinds() {
   static const std::vector<FilterKind> kinds{
       ekf_slam_kind(),
+      riekf_slam_kind(),
       fastslam1_kind(),
       fastslam2_kind(),
       dead_reckoning_kind(),

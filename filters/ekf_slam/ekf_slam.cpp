@@ -21,10 +21,10 @@ Eigen::Vector2d innovation_of(const Detection& detection, const ExpectedSight& e
 
 class EkfSlam final : public SlamFilter {
  public:
-  explicit EkfSlam(const FilterSetup& setup)
+  EkfSlam(const FilterSetup& setup, Retraction retraction)
       : association_(setup.association),
         log_new_density_(log_new_density(setup.association, setup.belief)),
-        gaussian_(setup.belief, setup.landmarks),
+        gaussian_(setup.belief, retraction, setup.landmarks),
         slot_of_identity_(setup.landmarks, kUnseen) {}
 
   void start(const Pose& start) override {
@@ -150,7 +150,11 @@ class EkfSlam final : public SlamFilter {
 }  // namespace
 
 std::unique_ptr<SlamFilter> make_ekf_slam(const FilterSetup& setup) {
-  return std::make_unique<EkfSlam>(setup);
+  return std::make_unique<EkfSlam>(setup, Retraction::additive);
+}
+
+std::unique_ptr<SlamFilter> make_riekf_slam(const FilterSetup& setup) {
+  return std::make_unique<EkfSlam>(setup, Retraction::invariant);
 }
 
 FilterKind ekf_slam_kind() {
@@ -161,6 +165,16 @@ FilterKind ekf_slam_kind() {
           .has_mixture = false,
           .options = {},
           .make = make_ekf_slam};
+}
+
+FilterKind riekf_slam_kind() {
+  return {.name = "riekf_slam",
+          .long_name = "right-invariant EKF-SLAM",
+          .source = "Barrau, Bonnabel 2015",
+          .has_particles = false,
+          .has_mixture = false,
+          .options = {},
+          .make = make_riekf_slam};
 }
 
 }  // namespace montecarta

@@ -12,7 +12,12 @@ namespace montecarta {
 /// absorbed one by one in the order of the scan.
 std::unique_ptr<SlamFilter> make_ekf_slam(const FilterSetup& setup);
 
-/// Its line in the table of filters.
+/// The same with the error of Barrau, which pose and map share as one rigid motion: what nobody
+/// can observe, where the map lies in the world, no detection is taken to tell.
+std::unique_ptr<SlamFilter> make_riekf_slam(const FilterSetup& setup);
+
+/// Their lines in the table of filters.
 FilterKind ekf_slam_kind();
+FilterKind riekf_slam_kind();
 
 }  // namespace montecarta

@@ -44,7 +44,8 @@ Eigen::Matrix3d moved_covariance(const Eigen::Matrix3d& P, const MotionJacobians
 
 }  // namespace
 
-JointGaussian::JointGaussian(const Belief& belief, std::size_t room) : belief_(belief) {
+JointGaussian::JointGaussian(const Belief& belief, Retraction retraction, std::size_t room)
+    : belief_(belief), retraction_(retraction) {
   grow(room);
 }
 
@@ -55,6 +56,7 @@ void JointGaussian::grow(std::size_t room) {
   cross_.conservativeResize(wanted, 3);
   map_.conservativeResize(wanted, wanted);
   gain_map_.resize(wanted, 2);
+  map_step_.resize(2, wanted / 2);
   map_mean_.tail(wanted - held).setZero();
   cross_.bottomRows(wanted - held).setZero();
   map_.bottomRows(wanted - held).setZero();
@@ -144,11 +146,25 @@ double JointGaussian::absorb(std::size_t slot, const ExpectedSight& expected,
                              const Eigen::Vector2d& innovation) {
   const Eigen::Vector2d white = expected.innovation.whiten(innovation);
   whiten_gain(slot, expected);
-  const Eigen::Vector3d step = gain_pose_ * white;
-  pose_.mean = {pose_.mean.x + step(0), pose_.mean.y + step(1), wrap(pose_.mean.heading + step(2))};
-  map_mean_.head(rows()) += gain_map_.topRows(rows()).lazyProduct(white);
   subtract_information();
+  step(white);
   return white.squaredNorm();
+}
+
+void JointGaussian::step(const Eigen::Vector2d& white) {
+  const Eigen::Vector3d pose_step = gain_pose_ * white;
+  Eigen::Vector2d moved = pose_step.head<2>();
+  auto map_step = map_step_.reshaped().head(rows());
+  map_step = gain_map_.topRows(rows()).lazyProduct(white);
+  if (retraction_ == Retraction::invariant) {
+    const Eigen::Matrix2d V = exponential_jacobian(pose_step(2));
+    moved = V * moved;
+    apply(V, map_step_.leftCols(rows() / 2));
+  }
+  pose_.mean = {pose_.mean.x + moved(0), pose_.mean.y + moved(1),
+                wrap(pose_.mean.heading + pose_step(2))};
+  map_mean_.head(rows()) += map_step;
+  if (retraction_ == Retraction::invariant) transport(moved);
 }
 
 void JointGaussian::append(const RangeBearing<double>& sight) {

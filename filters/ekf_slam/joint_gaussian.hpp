@@ -3,6 +3,7 @@
 
 #include "engine/runs/slam_filter.hpp"
 #include "filters/ekf_slam/innovation.hpp"
+#include "filters/ekf_slam/retraction.hpp"
 #include "filters/factory.hpp"
 #include "filters/models/range_bearing.hpp"
 
@@ -22,10 +23,16 @@ struct ExpectedSight {
 /// One Gaussian over the pose and all landmarks: the state of EKF-SLAM (SPEC 24). Its covariance is
 /// kept in three parts, [pose cross'; cross map], exactly symmetric. Landmarks are numbered in
 /// order of birth.
+///
+/// The invariant error of Barrau turns pose and map together: xi = e - J p e_heading for every
+/// point p, J = [0 -1; 1 0]. Held is the covariance of e, in the map frame; it is that of xi at the
+/// present estimate. A prediction is then the same for both errors, since Fx carries xi unchanged.
+/// A detection is not: xi keeps its covariance while the estimate steps, so that of e is carried
+/// along (transport()).
 class JointGaussian {
  public:
   /// `room` landmarks fit without allocation; it grows beyond.
-  JointGaussian(const Belief& belief, std::size_t room);
+  JointGaussian(const Belief& belief, Retraction retraction, std::size_t room);
 
   /// Stands exactly at `start` with an empty map.
   void start(const Pose& start);
@@ -57,8 +64,12 @@ class JointGaussian {
   Eigen::Matrix2d innovation_covariance(std::size_t slot, const LinearisedSight<double>& at) const;
   void whiten_gain(std::size_t slot, const ExpectedSight& expected);
   void subtract_information();
+  void step(const Eigen::Vector2d& white);
+  void transport(const Eigen::Vector2d& pose_step);
+  void transport_map(double heading_variance);
 
   Belief belief_;
+  Retraction retraction_;
   PoseMoments pose_;
   double pending_x_heading_ = 0.0;  ///< [m/rad] element (x, heading) of Fx since the last scan
   double pending_y_heading_ = 0.0;  ///< [m/rad]
@@ -68,6 +79,7 @@ class JointGaussian {
   Eigen::MatrixXd map_;                    ///< covariance of landmarks
   Columns2 gain_map_;                      ///< P H' L^-T, rows of the map
   Eigen::Matrix<double, 3, 2> gain_pose_;  ///< the same, rows of the pose
+  Eigen::Matrix2Xd map_step_;              ///< [m] how one detection moves the landmarks
 };
 
 }  // namespace montecarta

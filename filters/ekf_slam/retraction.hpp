@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cmath>
+
+namespace montecarta {
+
+/// How a Kalman step moves the estimate, and so what its covariance is the covariance of.
+enum class Retraction {
+  additive,  ///< EKF-SLAM: truth = estimate + error
+  invariant  ///< RI-EKF-SLAM: truth = exp(error) estimate, one turn of pose and map together
+};
+
+/// V of the exponential of SE(2), Barrau sec. III: exp(turn, rho) = (R(turn), V(turn) rho). Where
+/// the additive step moves a point by e, the invariant one moves it by V e, since V J = R - I.
+inline Eigen::Matrix2d exponential_jacobian(double turn) {
+  const double half = 0.5 * turn;
+  const double half_sine = std::sin(half);
+  const bool small = std::abs(half) < 1e-4;  // there sin(half) / half is 1 - half^2 / 6 to 1e-17
+  const double chord = small ? 1.0 - half * half / 6.0 : half_sine / half;
+  const double along = chord * std::cos(half);  // sin(turn) / turn
+  const double across = chord * half_sine;      // (1 - cos(turn)) / turn
+  Eigen::Matrix2d V;
+  V << along, -across, across, along;
+  return V;
+}
+
+/// J: a turn to the left by 90 degrees; J p is how far p moves when the plane turns by 1 rad.
+inline Eigen::Matrix2d quarter_turn() { return Eigen::Matrix2d{{0.0, -1.0}, {1.0, 0.0}}; }
+
+/// Multiplies every column by A.
+inline void apply(const Eigen::Matrix2d& A, Eigen::Ref<Eigen::Matrix2Xd> vectors) {
+  for (auto vector : vectors.colwise()) vector = (A * vector).eval();
+}
+
+}  // namespace montecarta
