@@ -22,13 +22,6 @@ namespace evolution {
 /// Three members that differ from each other and from the target.
 using Members = std::array<std::uint32_t, 3>;
 
-/// Number k of those in {0, 1, ...} that are not in the first `n_taken` of `taken` (sorted).
-inline std::uint32_t skipping(std::uint32_t k, const std::array<std::uint32_t, 3>& taken,
-                              std::size_t n_taken) {
-  for (std::size_t t = 0; t < n_taken; ++t) k += k >= taken[t];
-  return k;
-}
-
 /// Splits a uniform number in (0, 1): a digit in {0, ..., count - 1}, and another uniform number
 /// out of the bits it did not use.
 inline std::uint32_t take_digit(double& uniform, std::size_t count) {
@@ -38,18 +31,22 @@ inline std::uint32_t take_digit(double& uniform, std::size_t count) {
   return static_cast<std::uint32_t>(digit);
 }
 
-/// r1, r2 (from `first`) and r0 (from `second`): all different and none `target`. With three
-/// members there is no third one, and the last is not to be used.
+/// r1, r2 (from `first`) and r0 (from `second`): all different and none `target`; `size` >= 3. With
+/// three members there is no third one, and r0 is not to be used.
 inline Members draw_members(std::size_t size, std::uint32_t target, double& first, double& second) {
-  std::array<std::uint32_t, 3> taken{target};
-  Members members{};
-  for (std::size_t k = 0; k < 3 && k + 1 < size; ++k) {
-    members[k] = skipping(take_digit(k < 2 ? first : second, size - 1 - k), taken, k + 1);
-    if (k == 2) break;
-    taken[k + 1] = members[k];
-    std::sort(taken.begin(), taken.begin() + static_cast<std::ptrdiff_t>(k + 2));
-  }
-  return members;
+  std::uint32_t r1 = take_digit(first, size - 1);
+  r1 += r1 >= target;
+  const std::uint32_t low = std::min(r1, target), high = std::max(r1, target);
+  std::uint32_t r2 = take_digit(first, size - 2);
+  r2 += r2 >= low;
+  r2 += r2 >= high;
+  if (size == 3) return {r1, r2, 0};
+  const std::uint32_t least = std::min(low, r2), most = std::max(high, r2);
+  std::uint32_t r0 = take_digit(second, size - 3);
+  r0 += r0 >= least;
+  r0 += r0 >= low + high + r2 - least - most;
+  r0 += r0 >= most;
+  return {r1, r2, r0};
 }
 
 /// What one trial needs to know of chance.
