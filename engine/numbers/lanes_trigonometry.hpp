@@ -4,6 +4,8 @@
 #include "engine/numbers/angle.hpp"
 #include "engine/numbers/lanes.hpp"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -15,12 +17,27 @@ namespace montecarta::register_math {
 using Register = Lanes::Register;
 using Bits = xsimd::batch<std::int64_t>;
 
-/// Polynomial with the highest coefficient first.
-template <class... Rest>
-[[gnu::always_inline]] inline Register polynomial(const Register& z, double first, Rest... rest) {
-  Register sum(first);
-  ((sum = xsimd::fma(sum, z, Register(rest))), ...);
-  return sum;
+/// Polynomial with the highest coefficient first, as one in z^2 whose coefficients are pairs
+/// (Estrin): half as many steps wait for each other.
+template <std::size_t N>
+[[gnu::always_inline]] inline Register polynomial(const Register& z,
+                                                  const std::array<Register, N>& coefficients) {
+  if constexpr (N == 1) {
+    return coefficients[0];
+  } else {
+    std::array<Register, (N + 1) / 2> pairs;
+    pairs[0] = coefficients[0];
+    for (std::size_t k = N % 2; k < N; k += 2) {
+      pairs[(k + 1) / 2] = xsimd::fma(coefficients[k], z, coefficients[k + 1]);
+    }
+    return polynomial(z * z, pairs);
+  }
+}
+template <class... Coefficients>
+[[gnu::always_inline]] inline Register polynomial(const Register& z, double first,
+                                                  Coefficients... rest) {
+  return polynomial(z,
+                    std::array<Register, 1 + sizeof...(rest)>{Register(first), Register(rest)...});
 }
 
 /// Sine and cosine for |angle| < 1e5, to one unit in the last place (polynomials of FreeBSD's

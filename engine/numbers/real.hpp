@@ -81,6 +81,20 @@ inline Lanes max(const Lanes& a, const Lanes& b) {
 }
 inline double max(double a, double b) { return a < b ? b : a; }
 
+/// The same turn by the shorter way: `angle` [rad] less the nearest whole number of turns, in [-pi,
+/// pi] to rounding. For differences that are used at once; what is kept is wrapped by wrap().
+inline double shorter_way(double angle) {
+  return angle - kTwoPi * std::nearbyint(angle * (1.0 / kTwoPi));
+}
+[[gnu::always_inline]] inline Lanes shorter_way(const Lanes& angle) {
+  return by_register(
+      [](const auto& x) {
+        using Register = Lanes::Register;
+        return xsimd::fnma(xsimd::nearbyint(x * Register(1.0 / kTwoPi)), Register(kTwoPi), x);
+      },
+      angle);
+}
+
 /// Like wrap(double): in (-pi, pi], exact where the angle is in range already.
 inline Lanes wrap(const Lanes& angle) {
   return by_register(

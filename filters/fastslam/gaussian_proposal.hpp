@@ -46,9 +46,13 @@ class GaussianProposal {
     const Real batch = form_ == WeightForm::batch ? batch_log_weight(matches, b, prior) : Real(0.0);
     Real faults(0.0);
     pose = draw(context, b, posterior, faults);
-    matches.update(b, [&](std::size_t, auto& landmark, const auto& seen, const auto& mask) {
-      update_landmark(landmark, pose, seen, noise_, mask, drawn);
-    });
+    const auto update_landmarks = [&](auto& evidence) {
+      matches.update(b, [&](std::size_t, auto& landmark, const auto& seen, const auto& mask) {
+        update_landmark(landmark, pose, seen, noise_, mask, evidence);
+      });
+    };
+    Unweighed<Real> unweighed;
+    form_ == WeightForm::ratio ? update_landmarks(drawn) : update_landmarks(unweighed);
     posterior_[b] = posterior;
     faults += closed.left_out();
     switch (form_) {

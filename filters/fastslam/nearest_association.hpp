@@ -134,7 +134,7 @@ class NearestAssociation {
     const LandmarkGaussian<Real>& landmark = opened_[j].at(b);
     const Sightline<Real> s = sightline(pose.mean, landmark.mean);
     const Innovation<Real> v =
-        innovation_of(pose.covariance, s, residual(seen, s.predicted), landmark.covariance, noise_);
+        innovation_of(pose.covariance, s, residual(seen, s), landmark.covariance, noise_);
     const Real distance = v.squared();
     const Real cost = distance + log(v.determinant());
     for (std::size_t lane = 0; lane < kLanes; ++lane) {

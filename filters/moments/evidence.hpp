@@ -49,4 +49,10 @@ class Evidence {
   int since_logarithm_ = 0;
 };
 
+/// In place of an Evidence where nobody weighs by it.
+template <class Real>
+struct Unweighed {
+  [[gnu::always_inline]] void add(const Real&, const Real&, const Real&, const Real&) const {}
+};
+
 }  // namespace montecarta

@@ -10,9 +10,9 @@ namespace montecarta {
 /// A landmark seen from a pose, in the frame of the line of sight: along it and across it.
 template <class Real>
 struct Sightline {
-  RangeBearing<Real> predicted;
-  Real ux, uy;     ///< unit vector towards the landmark
-  Real per_range;  ///< 1 / range [1/m]
+  RangeBearing<Real> predicted;  ///< bearing not wrapped: for residual() only
+  Real ux, uy;                   ///< unit vector towards the landmark
+  Real per_range;                ///< 1 / range [1/m]
 };
 
 template <class Real>
@@ -22,7 +22,15 @@ template <class Real>
   const Real dy = landmark.y - pose.y;
   const Real range = max(sqrt(dx * dx + dy * dy), Real(kLeastDistance));
   const Real per_range = 1.0 / range;
-  return {{range, wrap(atan2(dy, dx) - pose.heading)}, dx * per_range, dy * per_range, per_range};
+  return {{range, atan2(dy, dx) - pose.heading}, dx * per_range, dy * per_range, per_range};
+}
+
+/// detected boxminus predicted: the innovation, bearing by the shorter way.
+template <class Real>
+[[gnu::always_inline]] inline RangeBearing<Real> residual(const RangeBearing<Real>& detected,
+                                                          const Sightline<Real>& s) {
+  return {detected.range - s.predicted.range,
+          shorter_way(Real(detected.bearing - s.predicted.bearing))};
 }
 
 /// The landmark's covariance turned into the line of sight [m^2].
@@ -144,8 +152,7 @@ template <class Real, class Mask>
                                                            const Mask& matched,
                                                            Evidence<Real>& evidence) {
   const Sightline<Real> s = sightline(pose.mean, landmark.mean);
-  return absorb(pose, s, residual(seen, s.predicted), landmark.covariance, noise, matched,
-                evidence);
+  return absorb(pose, s, residual(seen, s), landmark.covariance, noise, matched, evidence);
 }
 
 /// absorb() with the model linearised at the predicted pose for all detections alike: the sequence
@@ -156,7 +163,7 @@ template <class Real, class Mask>
     const LandmarkGaussian<Real>& landmark, const RangeBearing<Real>& seen,
     const SensorNoise& noise, const Mask& matched, Evidence<Real>& evidence) {
   const Sightline<Real> s = sightline(predicted, landmark.mean);
-  RangeBearing<Real> innovation = residual(seen, s.predicted);
+  RangeBearing<Real> innovation = residual(seen, s);
   const Column3<Real> moved{pose.mean.x - predicted.x, pose.mean.y - predicted.y,
                             pose.mean.heading - predicted.heading};
   innovation.range += s.ux * moved.x + s.uy * moved.y;
@@ -178,14 +185,14 @@ template <class Real>
 /// Absorbs one detection into a landmark seen from an exactly known pose (SPEC 7.3). In the frame
 /// of the line of sight the noise R is diagonal, and the new covariance P (P + R)^-1 R has no
 /// difference that could turn negative; the gain is that times R^-1.
-template <class Real, class Mask>
+template <class Real, class Mask, class Weighed>
 [[gnu::always_inline]] inline Innovation<Real> update_landmark(
     LandmarkGaussian<Real>& landmark, const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
-    const SensorNoise& noise, const Mask& matched, Evidence<Real>& evidence) {
+    const SensorNoise& noise, const Mask& matched, Weighed& evidence) {
   const Sightline<Real> s = sightline(pose, landmark.mean);
   const auto use = matched && is_usable(s);
   const Turned<Real> P = turned(landmark.covariance, s);
-  const RangeBearing<Real> innovation = residual(seen, s.predicted);
+  const RangeBearing<Real> innovation = residual(seen, s);
   const Real along = innovation.range, across = innovation.bearing * s.predicted.range;
   const Turned<Real> R{noise.range, Real(0.0),
                        noise.bearing * s.predicted.range * s.predicted.range};

@@ -77,6 +77,17 @@ TEST(Lanes, WrapEqualsTheScalarOne) {
   });
 }
 
+TEST(Lanes, TheShorterWayIsTheSameAngleWithinHalfATurn) {
+  for_random_lanes(30.0, [](const Lanes& angle) {
+    const Lanes way = shorter_way(angle);
+    for (std::size_t i = 0; i < Lanes::kSize; ++i) {
+      ASSERT_NEAR(wrap(way.get(i) - wrap(angle.get(i))), 0.0, 1e-14);
+      ASSERT_NEAR(way.get(i), shorter_way(angle.get(i)), 1e-14);
+      ASSERT_LE(std::abs(way.get(i)), kPi + 1e-14);
+    }
+  });
+}
+
 TEST(Lanes, EveryLaneIsAFunctionOfItselfAlone) {
   for_random_lanes(10.0, [](const Lanes& a) {
     for (std::size_t i = 0; i < Lanes::kSize; ++i) {
