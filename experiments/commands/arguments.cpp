@@ -141,7 +141,7 @@ std::optional<std::uint64_t> Arguments::count(const std::string& option, std::ui
 
 std::string Arguments::choice(const std::string& option,
                               const std::vector<std::string>& known) const {
-  const std::string given = text(option).value_or(known.front());
+  std::string given = text(option).value_or(known.front());
   if (std::ranges::find(known, given) != known.end()) return given;
   throw StudyError("--" + option + " " + given + ": not known (one of " + joined(known) +
                    "): " + nearest_spelling(given, known));

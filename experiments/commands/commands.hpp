@@ -11,7 +11,7 @@
 namespace montecarta {
 
 /// Exit codes that users and scripts rely on; those of an interrupted study come from exit_code().
-enum ExitCode : int { kDone = 0, kFailed = 1, kWrongInput = 2 };
+inline constexpr int kDone = 0, kFailed = 1, kWrongInput = 2;
 
 /// One command of the program: how it is called and what it does. Returns the exit code.
 struct Command {
