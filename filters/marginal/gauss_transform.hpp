@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/numbers/real.hpp"
+#include "filters/marginal/farthest_points.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// Calls visit(dimension, parent) for every monomial of degree 1 to `order` - 1 in D variables:
+/// monomial number t (from 1, in the order of the calls) is monomial `parent` times one of the
+/// variables. `same` calls in a row tell how often that variable is in it.
+template <std::size_t D, class Visit>
+void for_each_monomial(int order, const Visit& visit) {
+  std::array<std::size_t, D + 1> heads{};
+  heads[D] = static_cast<std::size_t>(-1);
+  std::size_t t = 1, tail = 1;
+  for (int k = 1; k < order; ++k, tail = t) {
+    for (std::size_t d = 0; d < D; ++d) {
+      const std::size_t head = heads[d];
+      heads[d] = t;
+      for (std::size_t parent = head; parent < tail; ++parent, ++t)
+        visit(d, parent, parent < heads[d + 1]);
+    }
+  }
+}
+
+/// Number of monomials of degree below `order` in D variables: binom(order - 1 + D, D).
+template <std::size_t D>
+std::size_t monomials_below(int order) {
+  double count = 1.0;
+  for (std::size_t d = 1; d <= D; ++d)
+    count *= (static_cast<double>(order) - 1.0 + static_cast<double>(d)) / static_cast<double>(d);
+  return static_cast<std::size_t>(std::lround(count));
+}
+
+/// Fewest degrees with which the series of a source at distance `radius` from its centre is exact
+/// to `tolerance` at every target up to `reach` from the centre, if at most `most` (SPEC 16).
+inline std::optional<int> series_order(double radius, double reach, double tolerance, int most) {
+  double factor = 1.0;  // (2 a b)^p / p!
+  for (int p = 1; p <= most; ++p) {
+    const double b = std::min(reach, 0.5 * (radius + std::sqrt(radius * radius + 2.0 * p)));
+    factor = 1.0;
+    for (int k = 1; k <= p; ++k) factor *= 2.0 * radius * b / k;
+    if (factor * std::exp(-(radius - b) * (radius - b)) <= tolerance) return p;
+  }
+  return std::nullopt;
+}
+
+/// Improved fast Gauss transform (SPEC 16; Havangi, appendix): Sum_j q_n[j] exp(-|y - x_j|^2) for N
+/// sets of weights at once, with an error of at most tolerance Sum_j |q_n[j]|.
+template <std::size_t D, std::size_t N>
+class GaussTransform {
+ public:
+  using Place = std::array<double, D>;
+  using Charges = std::array<double, N>;
+  static constexpr int kMostOrder = 30;
+
+  /// False where the sources are too scattered for series to pay: sum directly then. `clusters`:
+  /// how many, or 0 for as many as are cheapest.
+  [[nodiscard]] bool build(std::span<const Place> sources, std::span<const Charges> charges,
+                           double tolerance, std::size_t clusters = 0) {
+    reach_ = std::sqrt(std::log(1.0 / tolerance));
+    const bool is_free = clusters == 0;
+    const std::size_t most = is_free ? std::max<std::size_t>(1, sources.size() / 2) : clusters;
+    if (!choose(sources, tolerance, most, is_free)) return false;
+    expand(sources, charges);
+    return true;
+  }
+  std::size_t clusters() const { return centres_.size(); }
+  int order() const { return order_; }
+
+  /// The N sums at one target, or at one for each lane.
+  template <class Real>
+  std::array<Real, N> operator()(const std::array<Real, D>& target,
+                                 std::vector<Real>& monomials) const {
+    std::array<Real, N> sums;
+    sums.fill(Real(0.0));
+    monomials.resize(terms_);
+    for (std::size_t c = 0; c < centres_.size(); ++c) {
+      std::array<Real, D> off;
+      Real squared(0.0);
+      for (std::size_t d = 0; d < D; ++d) {
+        off[d] = target[d] - Real(sites_[c][d]);
+        squared += off[d] * off[d];
+      }
+      const double far = reach_ + radius_;
+      if (!any(squared <= Real(far * far))) continue;
+      fill_monomials(off, Real(exp(-squared)), monomials);
+      const Charges* coefficients = coefficients_.data() + c * terms_;
+      for (std::size_t t = 0; t < terms_; ++t) {
+        for (std::size_t n = 0; n < N; ++n) sums[n] += Real(coefficients[t][n]) * monomials[t];
+      }
+    }
+    return sums;
+  }
+
+ private:
+  /// Takes more and more clusters while the work, as estimated, falls.
+  bool choose(std::span<const Place> sources, double tolerance, std::size_t most, bool is_free) {
+    FarthestPoints<D> points(sources);
+    double least_work = std::numeric_limits<double>::infinity();
+    std::size_t best = 0;
+    for (std::size_t k = 1; k <= most && points.grow(); ++k) {
+      if (!is_free && k < most) continue;
+      const double radius = points.radius();
+      const auto order = series_order(radius, radius + reach_, tolerance, kMostOrder);
+      if (!order) continue;
+      const double cells = std::pow((reach_ + 2.0 * radius) / std::max(radius, 1e-300), double(D));
+      const double neighbours = std::min(static_cast<double>(k), cells);
+      const double work = static_cast<double>(D * k) * (1.0 + std::log(static_cast<double>(k))) +
+                          (1.0 + neighbours) * static_cast<double>(monomials_below<D>(*order));
+      if (work < least_work) least_work = work, best = k, order_ = *order, radius_ = radius;
+      if (best > 0 && k > 2 * best + 10) break;
+    }
+    if (best == 0) return false;
+    points.shrink(best);
+    centres_.assign(points.centres().begin(), points.centres().end());
+    owners_.assign(points.owners().begin(), points.owners().end());
+    radius_ = points.radius();
+    return true;
+  }
+
+  void expand(std::span<const Place> sources, std::span<const Charges> charges) {
+    terms_ = monomials_below<D>(order_);
+    coefficients_.assign(centres_.size() * terms_, Charges{});
+    sites_.clear();
+    for (const std::uint32_t c : centres_) sites_.push_back(sources[c]);
+    std::vector<double> monomials(terms_), constants(terms_, 1.0), powers(terms_, 0.0);
+    std::size_t t = 1;
+    for_each_monomial<D>(order_, [&](std::size_t, std::size_t parent, bool again) {
+      powers[t] = again ? powers[parent] + 1.0 : 1.0;
+      constants[t] = 2.0 * constants[parent] / powers[t];  // 2^|a| / a!, never overflowing
+      ++t;
+    });
+    for (std::size_t j = 0; j < sources.size(); ++j) {
+      Place off;
+      double squared = 0.0;
+      for (std::size_t d = 0; d < D; ++d) {
+        off[d] = sources[j][d] - sites_[owners_[j]][d];
+        squared += off[d] * off[d];
+      }
+      fill_monomials(off, std::exp(-squared), monomials);
+      for (std::size_t k = 0; k < terms_; ++k) {
+        for (std::size_t n = 0; n < N; ++n)
+          coefficients_[owners_[j] * terms_ + k][n] += charges[j][n] * monomials[k] * constants[k];
+      }
+    }
+  }
+
+  template <class Real>
+  void fill_monomials(const std::array<Real, D>& x, const Real& first,
+                      std::vector<Real>& monomials) const {
+    monomials[0] = first;
+    std::size_t t = 1;
+    for_each_monomial<D>(order_, [&](std::size_t d, std::size_t parent, bool) {
+      monomials[t++] = x[d] * monomials[parent];
+    });
+  }
+
+  double reach_ = 0.0;   ///< r: a source farther than this from a target is nothing
+  double radius_ = 0.0;  ///< r_x: no source is farther from its centre
+  int order_ = 1;        ///< p
+  std::size_t terms_ = 1;
+  std::vector<std::uint32_t> centres_;  ///< sources that are centres
+  std::vector<std::uint32_t> owners_;   ///< {source} its centre's number
+  std::vector<Place> sites_;            ///< of the centres
+  std::vector<Charges> coefficients_;   ///< {centre, monomial}
+};
+
+}  // namespace montecarta

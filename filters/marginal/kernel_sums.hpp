@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/particles/weights.hpp"
+#include "engine/runs/step_context.hpp"
+#include "filters/marginal/direct_sums.hpp"
+#include "filters/marginal/ifgt_sums.hpp"
+#include "filters/marginal/marginal_options.hpp"
+#include "filters/marginal/pose_kernels.hpp"
+#include "filters/marginal/tree_sums.hpp"
+#include "filters/moments/cloud_moments.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// log Sum_j weights_n[j] N(target; gaussian_j) for blocks of targets and every n (SPEC 14, 16), by
+/// the method asked for.
+template <class Real, std::size_t N>
+class KernelSummation {
+ public:
+  KernelSummation(KernelSums method, double tolerance) : asked_(method), tolerance_(tolerance) {}
+
+  /// Prepares the method; where it does not pay the direct one is used.
+  void assign(std::span<const PoseGaussian<Real>> gaussians,
+              const std::array<std::span<const double>, N>& weights) {
+    kernels_.assign(gaussians, weights);
+    used_ = asked_;
+    const bool may_pay = weights[0].size() >= kTreePaysFrom && asked_ == KernelSums::automatic;
+    if (may_pay || asked_ == KernelSums::tree) tree_.build(kernels_);
+    if (asked_ == KernelSums::automatic)
+      used_ = may_pay && tree_.extent() > kWide ? KernelSums::tree : KernelSums::direct;
+    if (used_ == KernelSums::ifgt && !ifgt_.build(kernels_, first_of(gaussians[0]), tolerance_)) {
+      used_ = KernelSums::direct;
+    }
+  }
+  KernelSums used() const { return used_; }
+
+  /// logs[b] of targets[b]. Blocks are independent of each other.
+  void sum(const StepContext& context, std::span<const BasicPose<Real>> targets,
+           std::span<std::array<Real, N>> logs) {
+    if (used_ != KernelSums::tree) {
+      return over_blocks(context, targets.size(),
+                         [&](std::size_t b, auto& scratch) { logs[b] = at(targets[b], scratch); });
+    }
+    put_in_order(targets);
+    over_blocks(context, targets.size(), [&](std::size_t b, auto&) {
+      const auto near = gather_block<Real, BasicPose<Real>>(targets, std::span(order_), b);
+      const auto found = tree_.log_sums(near, tolerance_);
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const std::uint32_t i = order_[b * kLanes + lane];
+        for (std::size_t n = 0; n < N; ++n)
+          set(logs[i / kLanes][n], i % kLanes, get(found[n], lane));
+      }
+    });
+  }
+
+ private:
+  static constexpr std::size_t kLanes = kLanesOf<Real>;
+
+  // Where the tree overtakes direct sums: tests/filters/marginal/kernel_sums_benchmark.cpp. The
+  // transform never does, and its error is of the wrong kind for weights.
+  static constexpr std::size_t kTreePaysFrom = 200;  ///< kernels
+  static constexpr double kWide = 20.0;              ///< extent of the cloud, in sigmas of a kernel
+
+  std::array<Real, N> at(const BasicPose<Real>& target, std::vector<Real>& scratch) const {
+    return used_ == KernelSums::ifgt ? ifgt_.log_sums(target, kernels_, scratch)
+                                     : direct_log_sums(target, kernels_);
+  }
+
+  /// Targets of a block should need the same leaves.
+  void put_in_order(std::span<const BasicPose<Real>> targets) {
+    points_.clear();
+    for (std::size_t i = 0; i < targets.size() * kLanes; ++i) {
+      points_.push_back(tree_.whitened_by_first(
+          pose_of_particle<Real>([&](std::size_t b) { return targets[b]; }, i)));
+    }
+    kd_order(points_, Lanes::kSize, order_);
+  }
+
+  template <class Body>
+  void over_blocks(const StepContext& context, std::size_t blocks, const Body& body) const {
+    constexpr std::size_t kPairsPerTask = 1U << 14;  // some 20 us
+    const std::size_t pairs_per_block = kLanes * kernels_.kernels().size();
+    const std::size_t per_task = std::max<std::size_t>(1, kPairsPerTask / pairs_per_block);
+    context.parallel_for((blocks + per_task - 1) / per_task, [&](std::size_t task) {
+      std::vector<Real> scratch;  // of the transform; empty otherwise
+      const std::size_t end = std::min(blocks, (task + 1) * per_task);
+      for (std::size_t b = task * per_task; b < end; ++b) body(b, scratch);
+    });
+  }
+
+  static PoseGaussian<double> first_of(const PoseGaussian<Real>& block) {
+    const auto& [m, C] = block;
+    return {{get(m.x, 0), get(m.y, 0), get(m.heading, 0)},
+            {get(C.xx, 0), get(C.xy, 0), get(C.yy, 0), get(C.xh, 0), get(C.yh, 0), get(C.hh, 0)}};
+  }
+
+  KernelSums asked_, used_ = KernelSums::direct;
+  double tolerance_;
+  PoseKernels<N> kernels_;
+  KernelTree<N> tree_;
+  IfgtSums<N> ifgt_;
+  std::vector<Point3> points_;
+  std::vector<std::uint32_t> order_;  ///< of the targets, for the tree
+};
+
+/// The factor by which the weights of a marginal filter differ from the likelihood: Sum_j w_j
+/// N(s_i; prior_j) / Sum_j lambda_j N(s_i; proposal_j) (SPEC 14, step 3).
+template <class Real>
+class KernelRatios {
+ public:
+  using Gaussians = std::vector<PoseGaussian<Real>>;
+
+  /// With prior kernels the sums share everything but the weights; if those are equal, too, the
+  /// ratio is one wherever the targets are, and nothing is summed.
+  KernelRatios(const MarginalSettings& settings)
+      : is_shared_(settings.kernel == Kernel::prior),
+        is_one_(is_shared_ && settings.choice == Choice::by_weight),
+        shared_(settings.kernel_sums, settings.kernel_tolerance),
+        numerator_(without_transform(settings.kernel_sums), settings.kernel_tolerance),
+        denominator_(without_transform(settings.kernel_sums), settings.kernel_tolerance),
+        logs_(blocks_for<Real>(settings.particles)),
+        log_numerators_(logs_.size()),
+        log_denominators_(logs_.size()) {}
+
+  /// `proposal` is `priors` itself with prior kernels.
+  void assign(const Gaussians& priors, const Gaussians& proposal, const Weights<Real>& w,
+              const Weights<Real>& lambda) {
+    if (is_one_) return;
+    if (is_shared_) {
+      shared_.assign(priors, {w.linear_scalars(), lambda.linear_scalars()});
+    } else {
+      numerator_.assign(priors, {w.linear_scalars()});
+      denominator_.assign(proposal, {lambda.linear_scalars()});
+    }
+  }
+
+  /// Multiplies the weights by the ratios at `poses`.
+  void multiply(const StepContext& context, const std::vector<BasicPose<Real>>& poses,
+                Weights<Real>& weights) {
+    if (is_one_) return;
+    if (is_shared_) {
+      shared_.sum(context, poses, logs_);
+      for (std::size_t b = 0; b < logs_.size(); ++b) weights.multiply(b, logs_[b][0] - logs_[b][1]);
+    } else {
+      numerator_.sum(context, poses, log_numerators_);
+      denominator_.sum(context, poses, log_denominators_);
+      for (std::size_t b = 0; b < logs_.size(); ++b)
+        weights.multiply(b, log_numerators_[b][0] - log_denominators_[b][0]);
+    }
+  }
+
+ private:
+  /// Kernels refined by a scan have covariances of their own, which the transform cannot take.
+  static KernelSums without_transform(KernelSums method) {
+    return method == KernelSums::ifgt ? KernelSums::direct : method;
+  }
+
+  bool is_shared_, is_one_;
+  KernelSummation<Real, 2> shared_;
+  KernelSummation<Real, 1> numerator_, denominator_;
+  std::vector<std::array<Real, 2>> logs_;
+  std::vector<std::array<Real, 1>> log_numerators_, log_denominators_;
+};
+
+}  // namespace montecarta

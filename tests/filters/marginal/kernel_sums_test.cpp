@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/marginal/kernel_sums.hpp"
+
+#include "tests/filters/marginal/kernel_clouds.hpp"
+#include "tests/filters/reference/gaussian.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace montecarta {
+namespace {
+
+const StepContext kContext(1, 0, 0, Parallel::serial());
+
+/// {target} log of the sums over w and over lambda.
+template <class Real>
+std::vector<std::array<double, 2>> log_sums(const KernelCloud<Real>& cloud, KernelSums method,
+                                            double tolerance = 1e-9) {
+  KernelSummation<Real, 2> summation(method, tolerance);
+  summation.assign(cloud.kernels, {cloud.w, cloud.lambda});
+  EXPECT_EQ(summation.used(), method);
+  std::vector<std::array<Real, 2>> logs(cloud.targets.size());
+  summation.sum(kContext, cloud.targets, logs);
+  std::vector<std::array<double, 2>> flat;
+  for (std::size_t i = 0; i < cloud.w.size(); ++i) {
+    const auto& block = logs[i / kLanesOf<Real>];
+    flat.push_back({get(block[0], i % kLanesOf<Real>), get(block[1], i % kLanesOf<Real>)});
+  }
+  return flat;
+}
+
+/// The sums as SPEC 14 writes them.
+std::vector<std::array<double, 2>> plain_log_sums(const KernelCloud<double>& cloud) {
+  std::vector<std::array<double, 2>> logs;
+  for (const Pose& target : cloud.targets) {
+    double sum_w = 0.0, sum_lambda = 0.0;
+    for (std::size_t j = 0; j < cloud.kernels.size(); ++j) {
+      const Eigen::Vector3d off = boxminus(target, cloud.kernels[j].mean);
+      const double density =
+          std::exp(reference::log_gaussian<3>(off, symmetric(cloud.kernels[j].covariance)));
+      sum_w += cloud.w[j] * density;
+      sum_lambda += cloud.lambda[j] * density;
+    }
+    logs.push_back({std::log(sum_w), std::log(sum_lambda)});
+  }
+  return logs;
+}
+
+template <class A, class B>
+double greatest_difference(const A& a, const B& b) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (std::size_t n = 0; n < 2; ++n) most = std::max(most, std::abs(a[i][n] - b[i][n]));
+  }
+  return most;
+}
+
+constexpr double kFloors[] = {0.0005, 0.01, 0.1};  // [m]
+
+TEST(DirectSums, EqualPlainEigenAcrossTheBackwardDirection) {
+  for (const double heading : {0.3, kPi}) {
+    for (const double floor : kFloors) {
+      const KernelCloud<double> plain(53, 3.0, heading, floor);
+      const auto expected = plain_log_sums(plain);
+      EXPECT_LT(greatest_difference(log_sums(plain, KernelSums::direct), expected), 1e-9);
+      const KernelCloud<Lanes> lanes(53, 3.0, heading, floor);
+      EXPECT_EQ(lanes.w[7], plain.w[7]);
+      EXPECT_LT(greatest_difference(log_sums(lanes, KernelSums::direct),
+                                    log_sums(plain, KernelSums::direct)),
+                1e-10);
+    }
+  }
+}
+
+TEST(DirectSums, SurviveTargetsFarFromEveryKernel) {
+  KernelCloud<Lanes> cloud(20, 1.0, 0.0, 0.01);
+  set(cloud.targets[0].x, 3, 200.0);
+  set(cloud.targets[1].heading, 2, 2.0);
+  const auto logs = log_sums(cloud, KernelSums::direct);
+  EXPECT_LT(logs[3][0], -1e5);
+  EXPECT_TRUE(std::isfinite(logs[3][0] - logs[3][1]));
+  EXPECT_TRUE(std::isfinite(logs[10][1]));
+  EXPECT_LT(greatest_difference(log_sums(cloud, KernelSums::tree), logs), 1e-8);
+}
+
+// SPEC 14: neither the order of particles nor a particle that is written as two makes a difference.
+TEST(DirectSums, DoNotDependOnOrderOrOnParticlesSplitInTwo) {
+  const KernelCloud<double> cloud(17, 2.0, 0.3, 0.01);
+  KernelCloud<double> other = cloud;
+  std::reverse(other.kernels.begin(), other.kernels.end());
+  std::reverse(other.w.begin(), other.w.end());
+  std::reverse(other.lambda.begin(), other.lambda.end());
+  other.kernels.push_back(other.kernels[4]);
+  other.targets.push_back(other.targets[4]);
+  other.w.push_back(0.25 * other.w[4]), other.w[4] *= 0.75;
+  other.lambda.push_back(0.25 * other.lambda[4]), other.lambda[4] *= 0.75;
+  EXPECT_LT(
+      greatest_difference(log_sums(cloud, KernelSums::direct), log_sums(other, KernelSums::direct)),
+      1e-12);
+}
+
+TEST(TreeSums, ErrByNoMoreThanAskedFor) {
+  for (const double tolerance : {1e-3, 1e-6, 1e-12}) {
+    for (const double width : {0.5, 10.0, 100.0}) {
+      for (const double floor : kFloors) {
+        const KernelCloud<Lanes> cloud(700, width, kPi, floor);
+        const double error = greatest_difference(log_sums(cloud, KernelSums::tree, tolerance),
+                                                 log_sums(cloud, KernelSums::direct));
+        EXPECT_LT(error, tolerance + 1e-11) << width << ' ' << floor;
+      }
+    }
+  }
+}
+
+TEST(TreeSums, LeaveOutWhatIsFar) {
+  double error = 0.0;
+  for (const double width : {3.0, 10.0, 30.0}) {
+    const KernelCloud<Lanes> cloud(700, width, 0.0, 0.05);
+    error = std::max(error, greatest_difference(log_sums(cloud, KernelSums::tree, 1e-2),
+                                                log_sums(cloud, KernelSums::direct)));
+  }
+  EXPECT_GT(error, 1e-9) << "nothing was left out, so nothing was gained";
+}
+
+TEST(IfgtSums, EqualDirectOnesWhereKernelsAreBroadAndHeadingsAgree) {
+  // a floor of half a metre dominates the kernels, so one covariance serves all
+  const KernelCloud<Lanes> cloud(400, 3.0, 0.3, 0.5);
+  EXPECT_LT(greatest_difference(log_sums(cloud, KernelSums::ifgt, 1e-9),
+                                log_sums(cloud, KernelSums::direct)),
+            1e-3);
+}
+
+TEST(IfgtSums, FallBackToDirectOnesWhereKernelsAreThin) {
+  const KernelCloud<Lanes> cloud(100, 30.0, 0.3, 0.0005);
+  KernelSummation<Lanes, 2> summation(KernelSums::ifgt, 1e-9);
+  summation.assign(cloud.kernels, {cloud.w, cloud.lambda});
+  EXPECT_EQ(summation.used(), KernelSums::direct);
+}
+
+TEST(AutomaticSums, TakeTheTreeForManyParticlesFarApartOnly) {
+  KernelSummation<Lanes, 2> summation(KernelSums::automatic, 1e-9);
+  const auto used = [&](std::size_t n, double width) {
+    const KernelCloud<Lanes> cloud(n, width, 0.0, 0.01);
+    summation.assign(cloud.kernels, {cloud.w, cloud.lambda});
+    return summation.used();
+  };
+  EXPECT_EQ(used(30, 30.0), KernelSums::direct);
+  EXPECT_EQ(used(2000, 1.0), KernelSums::direct);
+  EXPECT_EQ(used(2000, 30.0), KernelSums::tree);
+}
+
+TEST(KernelRatios, AreOneWherePriorKernelsAreChosenByWeight) {
+  const KernelCloud<Lanes> cloud(20, 1.0, 0.0, 0.01);
+  const auto logs = log_sums(cloud, KernelSums::direct);
+  KernelSummation<Lanes, 2> summation(KernelSums::direct, 1e-9);
+  summation.assign(cloud.kernels, {cloud.w, cloud.w});
+  std::vector<std::array<Lanes, 2>> same(cloud.targets.size());
+  summation.sum(kContext, cloud.targets, same);
+  for (std::size_t i = 0; i < 20; ++i) {
+    EXPECT_EQ(get(same[i / 8][0], i % 8), get(same[i / 8][1], i % 8));
+    EXPECT_NE(logs[i][0], logs[i][1]);
+  }
+}
+
+}  // namespace
+}  // namespace montecarta
