@@ -4,6 +4,7 @@
 #include "filters/dead_reckoning.hpp"
 #include "filters/ekf_slam/ekf_slam.hpp"
 #include "filters/fastslam/fast_slam_filters.hpp"
+#include "filters/marginal/marginal_filters.hpp"
 
 namespace montecarta {
 
@@ -13,6 +14,8 @@ std::span<const FilterKind> filter_kinds() {
       riekf_slam_kind(),
       fastslam1_kind(),
       fastslam2_kind(),
+      marginal_kind(),
+      ampf_de_kind(),
       dead_reckoning_kind(),
   };
   return kinds;

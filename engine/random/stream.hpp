@@ -18,6 +18,7 @@ enum class Draw : std::uint8_t {
   pose_proposal = 17,   ///< FastSLAM 2 draw from the proposal, index = particle
   resampling = 18,      ///< index = 0 (systematic) or particle
   evolution = 19,       ///< differential evolution
+  kernel_sample = 23,   ///< marginal filters: pose drawn from the chosen kernel, index = particle
   analysis_bootstrap = 32,
   test = 255,
 };

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/particles/resampling.hpp"
+#include "filters/fastslam/innovation_sums.hpp"
+#include "filters/marginal/kernel_sums.hpp"
+#include "filters/marginal/map_learning.hpp"
+#include "filters/marginal/marginal_options.hpp"
+#include "filters/marginal/shared_association.hpp"
+#include "filters/marginal/shared_likelihood.hpp"
+#include "filters/moments/motion_increment.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+namespace montecarta {
+
+/// Marginal and auxiliary marginal particle filter with one map for all particles (SPEC 14, 15;
+/// Havangi). `Real`: double or Lanes.
+template <class Real>
+class MarginalFilter final : public SlamFilter {
+ public:
+  MarginalFilter(const FilterSetup& setup, const MarginalSettings& settings)
+      : settings_(settings),
+        belief_(setup.belief),
+        association_(setup),
+        likelihood_(SensorNoise::of(setup.belief), settings.map.mode),
+        learning_(settings.map, SensorNoise::of(setup.belief)),
+        ratios_(settings),
+        weights_(settings.particles),
+        lambda_(settings.particles),
+        poses_(blocks_for<Real>(settings.particles)),
+        priors_(poses_.size()),
+        kernels_(poses_.size()),
+        faults_(poses_.size()),
+        ancestors_(poses_.size() * kLanesOf<Real>) {}
+
+  void start(const Pose& start) override {
+    std::fill(poses_.begin(), poses_.end(), BasicPose<Real>{start.x, start.y, start.heading});
+    weights_.make_equal();
+    map_.clear();
+    association_.clear();
+    motion_.restart();
+    forget_scan();
+    report_ = {};
+  }
+
+  void predict(const StepContext& /*context*/, const Control& control, double duration) override {
+    if (is_drawn_) forget_scan();
+    motion_.advance(control, duration, belief_);
+  }
+
+  void update(const StepContext& context, Scan scan) override {
+    forget_scan();
+    propagate_kernels();
+    associate(scan);
+    report_ = {.ess = weights_.effective()};
+    if (association_.found_nothing()) return;  // the kernels go on growing
+    likelihood_.see(association_.matches(), map_);
+    choose_kernels(context);
+    draw_poses(context);
+    weigh(context);
+    learn_map(context);
+    motion_.restart();
+    is_drawn_ = true;
+  }
+
+  PoseEstimate estimate() const override;
+  const ScanReport& report() const override { return report_; }
+  void particles(const ParticleColumns& columns) const override;
+  void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override;
+
+ private:
+  /// p(s | s_j) for every particle: the motion since the last draw, and the floor (SPEC 14.1).
+  void propagate_kernels() {
+    for (std::size_t b = 0; b < poses_.size(); ++b) {
+      priors_[b] = motion_.from(poses_[b]);
+      add_floor(priors_[b].covariance);
+    }
+  }
+  void add_floor(Symmetric3<Real>& C) const {
+    const double xy = std::max(settings_.kernel_floor_xy, 1e-5);            // [m]
+    const double heading = std::max(settings_.kernel_floor_heading, 1e-6);  // [rad]
+    C.xx += Real(xy * xy), C.yy += Real(xy * xy), C.hh += Real(heading * heading);
+  }
+
+  void associate(Scan scan) {
+    if (association_.known()) return association_.associate(scan);
+    association_.associate(scan, map_, likelihood_.map_is_exact(), mixture_of(weights_, priors_));
+  }
+
+  /// Step 1: lambda_j, from the weights and, if auxiliary, from how kernel j explains the scan.
+  void choose_kernels(const StepContext& context) {
+    innovations_.start(kernels_.size(), likelihood_.matches());
+    lambda_ = weights_;
+    over_blocks(context, [&](std::size_t b) {
+      const Weighing<Real> explained =
+          settings_.kernel == Kernel::prior
+              ? likelihood_.at_mean(priors_[b], b, weights_.linear()[b], innovations_)
+              : likelihood_.refine(kernels_[b] = priors_[b], b, weights_.linear()[b], innovations_);
+      faults_[b] = explained.faults;
+      if (settings_.choice == Choice::by_likelihood) lambda_.multiply(b, explained.log_weight);
+    });
+    if (settings_.choice == Choice::by_likelihood) lambda_.normalise();
+    report_innovations();
+  }
+  const std::vector<PoseGaussian<Real>>& proposal() const {
+    return settings_.kernel == Kernel::prior ? priors_ : kernels_;
+  }
+
+  /// Step 2: one pose per particle, from the very Gaussians that step 3 evaluates.
+  void draw_poses(const StepContext& context) {
+    draw_parents(Resampling::stratified, lambda_.linear_scalars(), context,
+                 std::span(ancestors_).first(settings_.particles));
+    over_blocks(context, [&](std::size_t b) {
+      const auto chosen =
+          gather_block<Real, PoseGaussian<Real>>(proposal(), std::span(ancestors_), b);
+      poses_[b] = drawn_from(chosen, context.identity(Draw::kernel_sample, first_particle(b)));
+    });
+  }
+
+  /// Step 3 and 4: w' = p(z | s) Sum w N(s; prior) / Sum lambda N(s; proposal).
+  void weigh(const StepContext& context) {
+    ratios_.assign(priors_, proposal(), weights_, lambda_);
+    weights_.make_equal();
+    over_blocks(context, [&](std::size_t b) {
+      const Weighing<Real> likelihood = likelihood_.at(poses_[b]);
+      faults_[b] = likelihood.faults;
+      weights_.multiply(b, likelihood.log_weight);
+    });
+    ratios_.multiply(context, poses_, weights_);
+    report_.log_likelihood = weights_.normalise() + association_.unmatched_log_density();
+    report_.ess = weights_.effective();
+    report_.resampled = true;  // in step 2
+    for (const double faults : scalars(faults_).first(settings_.particles))
+      report_.numerical_faults += static_cast<std::uint32_t>(faults);
+  }
+
+  /// One map, learnt with the weighed poses (SPEC 15).
+  void learn_map(const StepContext& context) {
+    const double heading = drawn_mean().heading;
+    for (const SharedMatch& match : association_.matches())
+      learning_.learn(context, match.landmark, heading, poses_, weights_, match.seen,
+                      map_[match.landmark]);
+    for (const Detection& fresh : association_.fresh()) {
+      association_.give_slot(fresh, map_.size());
+      map_.push_back(learning_.born(poses_, weights_, sight_of(fresh)));
+    }
+  }
+
+  template <class Body>
+  void over_blocks(const StepContext& context, const Body& body) {
+    constexpr std::size_t kBlocksPerTask = 256 / kLanesOf<Real>;  // fewer particles do not pay
+    const std::size_t blocks = poses_.size();
+    context.parallel_for((blocks + kBlocksPerTask - 1) / kBlocksPerTask, [&](std::size_t task) {
+      const std::size_t end = std::min(blocks, (task + 1) * kBlocksPerTask);
+      for (std::size_t b = task * kBlocksPerTask; b < end; ++b) body(b);
+    });
+  }
+  static std::uint32_t first_particle(std::size_t b) {
+    return static_cast<std::uint32_t>(b * kLanesOf<Real>);
+  }
+  Pose drawn_mean() const {
+    return weighted_mean<Real>(weights_, [&](std::size_t b) { return poses_[b]; });
+  }
+  void report_innovations() {
+    for (std::size_t k = 0; k < likelihood_.matches(); ++k) {
+      report_.nis += innovations_.normalised_squared(k, 1.0);
+      report_.nis_dof += 2;
+    }
+  }
+  /// The particles of the last scan can no longer be asked for.
+  void forget_scan() {
+    std::iota(ancestors_.begin(), ancestors_.end(), 0U);
+    moments_.reset();
+    is_drawn_ = false;
+  }
+
+  MarginalSettings settings_;
+  Belief belief_;
+  SharedAssociation association_;
+  SharedLikelihood<Real> likelihood_;
+  MapLearning<Real> learning_;
+  KernelRatios<Real> ratios_;
+  MotionIncrement motion_;
+  Weights<Real> weights_;  ///< w
+  Weights<Real> lambda_;
+  std::vector<BasicPose<Real>> poses_;       ///< drawn at the last scan that was of use
+  std::vector<PoseGaussian<Real>> priors_;   ///< p(s | s_j)
+  std::vector<PoseGaussian<Real>> kernels_;  ///< p(s | s_j, z), if asked for
+  InnovationSums<Real> innovations_;
+  std::vector<Real> faults_;
+  std::vector<std::uint32_t> ancestors_;  ///< a_i
+  SharedMap map_;
+  mutable std::optional<CloudMoments> moments_;  ///< of the poses, once asked for
+  ScanReport report_;
+  bool is_drawn_ = false;  ///< whether the poses were drawn by the last update()
+};
+
+}  // namespace montecarta
+
+#include "filters/marginal/marginal_reports.hpp"
