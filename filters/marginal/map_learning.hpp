@@ -59,7 +59,8 @@ class MapLearning {
 
  private:
   static constexpr int kMostSteps = 20;
-  static constexpr double kShortStep = 1e-9;  // [m]
+  static constexpr double kSurelyGood = 1e-6;  // [m]
+  static constexpr double kShortStep = 1e-12;  // [m]
 
   /// J of SPEC 15: what the detection says plus what is known already.
   double cost(const Point& place) {
@@ -68,17 +69,18 @@ class MapLearning {
     return evidence_.cost(place) + L.xx * d.x * d.x + 2.0 * L.xy * d.x * d.y + L.yy * d.y * d.y;
   }
 
-  /// From the old place downhill as long as it helps.
+  /// From the old place downhill as long as it helps; the last steps are too short for the cost to
+  /// show.
   Point gauss_newton_place() {
     Point place = prior_.mean;
     double here = cost(place);
     for (int k = 0; k < kMostSteps; ++k) {
       const Point step = gauss_newton_step(place);
       const Point next{place.x + step.x, place.y + step.y};
-      const double there = cost(next);
-      if (!(there < here)) return place;
+      const double length = std::hypot(step.x, step.y), there = cost(next);
+      if (!(there < here) && !(length < kSurelyGood)) return place;
       place = next, here = there;
-      if (std::hypot(step.x, step.y) < kShortStep) return place;
+      if (length < kShortStep) return place;
     }
     return place;
   }

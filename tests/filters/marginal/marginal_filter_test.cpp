@@ -90,7 +90,7 @@ TEST_P(Marginals, LanesEqualOneParticleAtATime) {
   drive_through(*lanes, world, Pose(),
                 [&](std::size_t) { clouds.emplace_back(*lanes, 13, settings.landmarks); });
   drive_through(*single, world, Pose(), [&](std::size_t scan) {
-    expect_same(clouds[scan], Cloud(*single, 13, settings.landmarks), 1e-9);
+    expect_same(clouds[scan], Cloud(*single, 13, settings.landmarks), 1e-12);
   });
 }
 
@@ -149,13 +149,14 @@ void expect_reference(const Variant& v, double tolerance) {
 }
 
 TEST(MarginalReference, EqualsPlainEigen) {
-  expect_reference({"marginal", {}}, 1e-9);
-  expect_reference({"marginal", {{"kernel", "posterior"}}}, 1e-9);
-  expect_reference({"ampf_de", {}}, 1e-9);
-  expect_reference({"ampf_de", {{"kernel", "posterior"}}}, 1e-9);
-  expect_reference({"ampf_de", {{"map", "onestep_converged"}, {"map_objective", "squares"}}}, 1e-9);
+  expect_reference({"marginal", {}}, 1e-12);
+  expect_reference({"marginal", {{"kernel", "posterior"}}}, 1e-12);
+  expect_reference({"ampf_de", {}}, 1e-12);
+  expect_reference({"ampf_de", {{"kernel", "posterior"}}}, 1e-12);
+  expect_reference({"ampf_de", {{"map", "onestep_converged"}, {"map_objective", "squares"}}},
+                   1e-12);
   expect_reference(
-      {"ampf_de", {{"map", "onestep_threshold"}, {"map_objective", "squares_as_printed"}}}, 1e-9);
+      {"ampf_de", {{"map", "onestep_threshold"}, {"map_objective", "squares_as_printed"}}}, 1e-12);
 }
 
 }  // namespace
