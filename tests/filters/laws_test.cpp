@@ -148,6 +148,36 @@ TEST_P(EveryFilter, ForgetsADifferentRunBefore) {
   }
 }
 
+/// Estimates after every scan, with loops over particles spread over `parallel`.
+std::vector<PoseMoments> estimates(SlamFilter& filter, const SmallWorld& world,
+                                   const Parallel& parallel) {
+  std::vector<PoseMoments> found;
+  filter.start(Pose());
+  for (std::uint32_t step = 0, scan = 0; step < world.itinerary.steps(); ++step) {
+    const StepContext context(world.seed, 0, step, parallel);
+    filter.predict(context, world.drive.controls[step], world.itinerary.duration(step));
+    if (world.itinerary.scan_step[scan] != step) continue;
+    filter.update(context, world.drive.scan(scan++));
+    found.push_back(filter.estimate().spread);
+  }
+  return found;
+}
+
+TEST_P(EveryFilter, GivesTheSameBitsOnAnyNumberOfThreads) {
+  const SmallWorldSettings settings{.scans = 8};
+  const SmallWorld world = small_world(settings);
+  const Parallel threads(Backend::tbb, 3);
+  for (const auto association : {Association::known, Association::nearest}) {
+    const auto filter = make_default(GetParam(), 700, settings, association);
+    const auto alone = estimates(*filter, world, Parallel::serial());
+    const auto together = estimates(*filter, world, threads);
+    for (std::size_t scan = 0; scan < alone.size(); ++scan) {
+      ASSERT_EQ(boxminus(alone[scan].mean, together[scan].mean).norm(), 0.0) << scan;
+      ASSERT_EQ(alone[scan].covariance, together[scan].covariance) << scan;
+    }
+  }
+}
+
 /// The same drive in a world that is turned about the origin and shifted.
 SmallWorld turned(const SmallWorld& world, double angle, double x, double y) {
   SmallWorld other = world;
