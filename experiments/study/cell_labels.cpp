@@ -11,7 +11,7 @@ namespace {
 std::string label_part(std::string text) {
   for (char& c : text) {
     if (c == '-') c = 'm';
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = 'p';
+    if (c != '_' && std::isalnum(static_cast<unsigned char>(c)) == 0) c = 'p';
   }
   return text;
 }

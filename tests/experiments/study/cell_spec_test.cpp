@@ -17,8 +17,8 @@ std::vector<FilterKind> paper_filters() {
   using Kind = FilterOption::Kind;
   const FilterOption particles{"particles", Kind::integer, "100", 1, 1e6, {}, "how many"};
   const FilterOption threshold{"threshold", Kind::number, "0.5", 0, 1, {}, "when to resample"};
-  const FilterOption weight{"weight", Kind::choice,        "closed",    0,
-                            0,        {"closed", "ratio"}, "which form"};
+  const FilterOption weight{
+      "weight", Kind::choice, "closed", 0, 0, {"closed", "ratio", "as_printed"}, "which form"};
   return {{"bold", "Bold filter", "", true, false, {particles, threshold, weight}, {}},
           {"plain", "Plain filter", "", false, false, {threshold}, {}}};
 }
@@ -55,6 +55,8 @@ TEST(Cells, AreLabelledByWhatDistinguishesThem) {
               ElementsAre("bold_m100_weight_ratio", "bold_m100_weight_closed"));
   EXPECT_THAT(labels_of({"plain threshold=0.5,0.75"}),
               ElementsAre("plain_threshold_0p5", "plain_threshold_0p75"));
+  EXPECT_THAT(labels_of({"bold weight=closed,as_printed"}),
+              ElementsAre("bold_m100_weight_closed", "bold_m100_weight_as_printed"));
   EXPECT_THAT(labels_of({"bold label=mine", "bold particles=3"}), ElementsAre("mine", "bold_m3"));
 }
 
