@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/particles/weights.hpp"
+#include "filters/marginal/falling_exponential.hpp"
 #include "filters/marginal/marginal_options.hpp"
 #include "filters/marginal/shared_map.hpp"
 #include "filters/moments/sensor_noise.hpp"
@@ -49,8 +50,9 @@ class LandmarkEvidence {
   /// At `place`, after its cost(): every particle counts as much as it explains.
   NormalEquations normal_equations(const Point& place) const {
     return sums(place, [&](std::size_t b) {
-      return objective_ == MapObjective::likelihood ? Real(exp(terms_[b] - Real(log_sum_)))
-                                                    : share(b);
+      return objective_ == MapObjective::likelihood
+                 ? falling_exponential(Real(log_sum_) - terms_[b])
+                 : share(b);
     });
   }
   /// Sum of w H' R^-1 H at `place` (SPEC 15.3).
@@ -119,7 +121,7 @@ class LandmarkEvidence {
     for (std::size_t lane = 1; lane < kLanesOf<Real>; ++lane)
       peak = std::max(peak, get(peaks, lane));
     Real sum(0.0);
-    for (const Real& term : terms_) sum += exp(term - Real(peak));
+    for (const Real& term : terms_) sum += falling_exponential(Real(peak) - term);
     log_sum_ = peak + std::log(over_lanes(sum));
     return -2.0 * log_sum_;
   }
