@@ -37,10 +37,11 @@ class Program : public testing::Test {
 
   /// `before`: shell commands that go first.
   Called call(const std::vector<std::string>& words, const std::string& before = "") const {
-    std::string line =
-        "cd " + shell_quoted(folder_.string()) + " && " + before + MONTECARTA_EXECUTABLE;
-    for (const std::string& word : words) line += " " + shell_quoted(word);
-    line += " 2>" + shell_quoted((folder_ / "stderr").string());
+    std::string line = "cd ";  // append() throughout: g++ 12 sees an overrun in " " + std::string
+    line.append(shell_quoted(folder_.string())).append(" && ").append(before);
+    line.append(MONTECARTA_EXECUTABLE);
+    for (const std::string& word : words) line.append(" ").append(shell_quoted(word));
+    line.append(" 2>").append(shell_quoted((folder_ / "stderr").string()));
     Called called;
     std::FILE* pipe = ::popen(line.c_str(), "r");
     std::array<char, 4096> buffer;
