@@ -78,6 +78,12 @@ std::string figure_section(const Figure& figure, const fs::path& directory) {
                                    "</figcaption>\n</figure>\n");
 }
 
+std::string association_section(const StudyAnalysis& study) {
+  const TextTable table = association_table(study);
+  if (table.rows.empty()) return "";
+  return section("Association", html_table(table) + paragraphs(association_notes()));
+}
+
 std::string consistency_section(const StudyAnalysis& study) {
   return section(
       "The whole test",
@@ -86,6 +92,10 @@ std::string consistency_section(const StudyAnalysis& study) {
                       "of the particle mixture or of the particle spread. The spread of few "
                       "particles is too small by construction, so the mixture decides where there "
                       "is one.",
+                      "'ideal' is the ANEES of a perfect filter: the number of components; with the "
+                      "spread of M particles that are independent draws from the truth's "
+                      "distribution it is larger, since so few draws cannot tell their covariance "
+                      "better.",
                       "'median' is the middle run instead of the average one: far below ANEES it "
                       "says that few bad runs make the average. 'floored' counts covariances that "
                       "were singular (0.1 mm and 0.00001 rad were added), 'undefined' those that "
@@ -108,6 +118,9 @@ void write_tables(const StudyAnalysis& study, const fs::path& directory) {
   write_csv(study, directory);
   write_text(directory / "verdict.tex", latex_table(study));
   write_text(directory / "accuracy.tex", latex_tabular(accuracy_table(study)));
+  if (const TextTable table = association_table(study); !table.rows.empty()) {
+    write_text(directory / "association.tex", latex_tabular(table));
+  }
   write_text(directory / "consistency.tex", latex_tabular(consistency_table(study)));
 }
 
@@ -129,7 +142,7 @@ void write_report(const ResultFile& file, const fs::path& directory, const Repor
     draw(figure, directory);
     body += figure_section(figure, directory);
   }
-  body += consistency_section(study) + origin(file, study);
+  body += association_section(study) + consistency_section(study) + origin(file, study);
   write_text(directory / "index.html", html_page(study.study_name + ": report", body));
 }
 

@@ -55,6 +55,11 @@ void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
   read_at_scans("pose_mean_mixture", 3, i, rows.mixture.mean, scratch);
   read_at_scans("pose_covariance_mixture", 9, i, rows.mixture.covariance, scratch);
   read_scans("numerical_faults", 1, i, rows.numerical_faults);
+  read_scans("association_correct", 1, i, rows.association.correct);
+  read_scans("association_wrong", 1, i, rows.association.wrong);
+  read_scans("association_new_again", 1, i, rows.association.new_again);
+  read_scans("association_missed", 1, i, rows.association.missed);
+  read_scans("association_clutter", 1, i, rows.association.clutter);
   rows.cpu_seconds = cpu_seconds_[i];
   rows.ess.clear();
   rows.resampled.clear();

@@ -58,6 +58,7 @@ CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& stored, doub
   accumulate(RunReader(file, stored), complete, stored.particles, file.scan_times(), parallel,
              slots, sums);
   CellAnalysis cell = sums.result();
+  for (const std::size_t i : complete) cell.runs.push_back(file.runs()[i]);
   cell.label = stored.label;
   cell.filter = stored.filter;
   cell.long_name = stored.long_name;

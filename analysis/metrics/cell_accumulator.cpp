@@ -4,26 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 namespace montecarta {
-namespace {
-
-template <class Values>
-double mean_of(const Values& values) {
-  double sum = 0.0;
-  for (const auto value : values) sum += static_cast<double>(value);
-  return sum / static_cast<double>(values.size());
-}
-
-double mean_of_roots(const std::vector<double>& squares) {
-  double sum = 0.0;
-  for (const double square : squares) sum += std::sqrt(square);
-  return sum / static_cast<double>(squares.size());
-}
-
-}  // namespace
-
 std::vector<double> MeanOverTime::mean() const {
   std::vector<double> means = sum_;
   for (double& mean : means) mean /= static_cast<double>(runs_);
@@ -82,10 +64,8 @@ void CellAccumulator::add(const RunRows& rows, const RunMetrics& metrics) {
   ++complete_;
   if (!rows.mixture.mean.empty()) leading_ = Moments::mixture;
   add_nees(metrics);
-  add_errors(metrics);
-  if (!rows.ess.empty()) add_weights(rows);
-  if (metrics.diversity() != nullptr) add_diversity(*metrics.diversity());
-  add_effort(rows);
+  add_over_time(rows, metrics);
+  scores_.push_back(scores_of(rows, metrics));
 }
 
 void CellAccumulator::add_nees(const RunMetrics& metrics) {
@@ -98,73 +78,59 @@ void CellAccumulator::add_nees(const RunMetrics& metrics) {
   for (NeesAccumulator& nees : nees_) nees.add(metrics);
 }
 
-void CellAccumulator::add_errors(const RunMetrics& metrics) {
-  const double position_mse = mean_of(metrics.squared_position());
-  const double heading_mse = mean_of(metrics.squared_heading());
-  const double distance = mean_of_roots(metrics.squared_position());
-  error_.position_mse.add(position_mse);
-  error_.position_rmse.add(std::sqrt(position_mse));
-  error_.position_mean.add(distance);
-  error_.position_variance.add(position_mse - distance * distance);
-  error_.heading_mse.add(heading_mse);
-  error_.heading_rmse.add(std::sqrt(heading_mse));
-  error_.heading_mean.add(mean_of_roots(metrics.squared_heading()));
-  error_.position.add(metrics.squared_position());
-  error_.heading.add(metrics.squared_heading());
+void CellAccumulator::add_over_time(const RunRows& rows, const RunMetrics& metrics) {
+  squared_position_.add(metrics.squared_position());
+  squared_heading_.add(metrics.squared_heading());
+  if (!rows.ess.empty()) ess_.add(rows.ess);
+  if (metrics.diversity() == nullptr) return;
+  last_resampling_.add(metrics.diversity()->last_resampling);
+  lag_.add(metrics.diversity()->lag);
+  root_.add(metrics.diversity()->root);
 }
 
-void CellAccumulator::add_weights(const RunRows& rows) {
-  weights_.ess.add(mean_of(rows.ess));
-  weights_.resampling_rate.add(mean_of(rows.resampled));
-  weights_.ess_over_time.add(rows.ess);
-}
-
-void CellAccumulator::add_diversity(const Diversity& diversity) {
-  diversity_.last_resampling.add(mean_of(diversity.last_resampling));
-  diversity_.lag.add(mean_of(diversity.lag));
-  diversity_.root.add(mean_of(diversity.root));
-  diversity_.final_root.add(diversity.root.back());
-  diversity_.last_resampling_over_time.add(diversity.last_resampling);
-  diversity_.lag_over_time.add(diversity.lag);
-  diversity_.root_over_time.add(diversity.root);
-}
-
-void CellAccumulator::add_effort(const RunRows& rows) {
-  cpu_seconds_.add(rows.cpu_seconds);
-  const auto& faults = rows.numerical_faults;
-  numerical_faults_.add(
-      static_cast<double>(std::accumulate(faults.begin(), faults.end(), std::uint64_t{0})));
+Summary CellAccumulator::over_runs(double RunScores::*score) const {
+  SummaryOf sums;
+  for (const RunScores& run : scores_) sums.add(run.*score);
+  return sums.result();
 }
 
 ErrorSummary CellAccumulator::errors() const {
   ErrorSummary summary;
-  summary.position_rmse = error_.position_rmse.result();
-  summary.position_mse = error_.position_mse.result();
-  summary.position_mean = error_.position_mean.result();
-  summary.position_variance = error_.position_variance.result();
-  summary.heading_rmse = error_.heading_rmse.result();
-  summary.heading_mse = error_.heading_mse.result();
-  summary.heading_mean = error_.heading_mean.result();
-  summary.position_over_time = error_.position.root_mean();
-  summary.heading_over_time = error_.heading.root_mean();
+  summary.position_rmse = over_runs(&RunScores::position_rmse);
+  summary.position_mse = over_runs(&RunScores::position_mse);
+  summary.position_mean = over_runs(&RunScores::position_mean);
+  summary.position_variance = over_runs(&RunScores::position_variance);
+  summary.heading_rmse = over_runs(&RunScores::heading_rmse);
+  summary.heading_mse = over_runs(&RunScores::heading_mse);
+  summary.heading_mean = over_runs(&RunScores::heading_mean);
+  summary.position_over_time = squared_position_.root_mean();
+  summary.heading_over_time = squared_heading_.root_mean();
   return summary;
 }
 
 std::optional<WeightSummary> CellAccumulator::weights() const {
-  if (weights_.ess_over_time.empty()) return std::nullopt;
-  return WeightSummary{weights_.ess.result(), weights_.resampling_rate.result(),
-                       weights_.ess_over_time.mean()};
+  if (ess_.empty()) return std::nullopt;
+  return WeightSummary{over_runs(&RunScores::ess), over_runs(&RunScores::resampling_rate),
+                       ess_.mean()};
 }
 
 std::optional<DiversitySummary> CellAccumulator::diversity() const {
-  if (diversity_.root_over_time.empty()) return std::nullopt;
-  return DiversitySummary{diversity_.last_resampling.result(),
-                          diversity_.lag.result(),
-                          diversity_.root.result(),
-                          diversity_.final_root.result(),
-                          diversity_.last_resampling_over_time.mean(),
-                          diversity_.lag_over_time.mean(),
-                          diversity_.root_over_time.mean()};
+  if (root_.empty()) return std::nullopt;
+  return DiversitySummary{over_runs(&RunScores::last_resampling),
+                          over_runs(&RunScores::lag),
+                          over_runs(&RunScores::root),
+                          over_runs(&RunScores::final_root),
+                          last_resampling_.mean(),
+                          lag_.mean(),
+                          root_.mean()};
+}
+
+std::optional<AssociationSummary> CellAccumulator::association() const {
+  const AssociationSummary summary{over_runs(&RunScores::correct), over_runs(&RunScores::wrong),
+                                   over_runs(&RunScores::new_again), over_runs(&RunScores::missed),
+                                   over_runs(&RunScores::clutter)};
+  if (std::isnan(summary.correct.mean)) return std::nullopt;
+  return summary;
 }
 
 CellAnalysis CellAccumulator::result() const {
@@ -175,8 +141,10 @@ CellAnalysis CellAccumulator::result() const {
   cell.error = errors();
   cell.weights = weights();
   cell.diversity = diversity();
-  cell.cpu_seconds = cpu_seconds_.result();
-  cell.numerical_faults = numerical_faults_.result();
+  cell.association = association();
+  cell.scores = scores_;
+  cell.cpu_seconds = over_runs(&RunScores::cpu_seconds);
+  cell.numerical_faults = over_runs(&RunScores::numerical_faults);
   return cell;
 }
 

@@ -47,7 +47,8 @@ class MeanOverTime {
   std::size_t runs_ = 0;
 };
 
-/// Adds up complete runs of one cell in the order of the calls. Memory depends on scans only.
+/// Adds up complete runs of one cell in the order of the calls. Memory depends on scans, and grows
+/// by a few numbers with every run.
 class CellAccumulator {
  public:
   CellAccumulator(std::span<const double> times, double level) : times_(times), level_(level) {}
@@ -59,33 +60,20 @@ class CellAccumulator {
 
  private:
   void add_nees(const RunMetrics& metrics);
-  void add_errors(const RunMetrics& metrics);
-  void add_weights(const RunRows& rows);
-  void add_diversity(const Diversity& diversity);
-  void add_effort(const RunRows& rows);
+  void add_over_time(const RunRows& rows, const RunMetrics& metrics);
+  Summary over_runs(double RunScores::*score) const;
   ErrorSummary errors() const;
   std::optional<WeightSummary> weights() const;
   std::optional<DiversitySummary> diversity() const;
+  std::optional<AssociationSummary> association() const;
 
   std::span<const double> times_;
   double level_;
   std::size_t complete_ = 0;
   std::vector<NeesAccumulator> nees_;  ///< leading first
   Moments leading_ = Moments::spread;
-  struct {
-    SummaryOf position_rmse, position_mse, position_mean, position_variance;
-    SummaryOf heading_rmse, heading_mse, heading_mean;
-    MeanOverTime position, heading;  ///< squared
-  } error_;
-  struct {
-    SummaryOf ess, resampling_rate;
-    MeanOverTime ess_over_time;
-  } weights_;
-  struct {
-    SummaryOf last_resampling, lag, root, final_root;
-    MeanOverTime last_resampling_over_time, lag_over_time, root_over_time;
-  } diversity_;
-  SummaryOf cpu_seconds_, numerical_faults_;
+  std::vector<RunScores> scores_;  ///< {run}
+  MeanOverTime squared_position_, squared_heading_, ess_, last_resampling_, lag_, root_;
 };
 
 }  // namespace montecarta

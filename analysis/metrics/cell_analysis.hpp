@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/metrics/consistency.hpp"
+#include "analysis/metrics/run_scores.hpp"
 #include "analysis/metrics/summary.hpp"
 
 #include <cstddef>
@@ -12,19 +13,6 @@
 #include <vector>
 
 namespace montecarta {
-
-/// Which mean and covariance of a filter are judged (SPEC 19).
-enum class Moments {
-  mixture,  ///< spread of the particles plus each particle's own covariance, before sampling
-  spread    ///< of the weighted drawn particles; of the Gaussian for a Kalman filter
-};
-
-/// Which components of the pose error are judged.
-enum class ErrorBlock {
-  pose,      ///< x, y, heading
-  position,  ///< x, y, with the position block of the covariance
-  heading
-};
 
 /// A NEES series and what it says.
 struct NeesResult {
@@ -65,6 +53,11 @@ struct DiversitySummary {
   std::vector<double> root_over_time;
 };
 
+/// What became of detections in a run, in sums over its scans (AssociationCounts).
+struct AssociationSummary {
+  Summary correct, wrong, new_again, missed, clutter;
+};
+
 /// A run that ended early: a result like any other.
 struct FailedRun {
   std::uint64_t run = 0;
@@ -86,8 +79,11 @@ struct CellAnalysis {
   ErrorSummary error;                 ///< of the leading mean
   std::optional<WeightSummary> weights;
   std::optional<DiversitySummary> diversity;
-  Summary cpu_seconds;       ///< [s] of each complete run's own thread over its steps
-  Summary numerical_faults;  ///< factorisations answered by a fallback, per run
+  std::optional<AssociationSummary> association;
+  std::vector<std::uint64_t> runs;  ///< numbers of the complete runs, increasing
+  std::vector<RunScores> scores;    ///< of each of them
+  Summary cpu_seconds;              ///< [s] of each complete run's own thread over its steps
+  Summary numerical_faults;         ///< factorisations answered by a fallback, per run
 
   /// nullptr where it is not stored.
   const NeesResult* find_nees(ErrorBlock block, Moments moments) const;

@@ -59,6 +59,12 @@ Nees nees(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, int f
   return {value.value_or(std::numeric_limits<double>::quiet_NaN()), true};
 }
 
+double ideal_spread_nees(std::size_t dimension, std::size_t particles) {
+  if (particles <= dimension + 2) return std::numeric_limits<double>::infinity();
+  const auto d = static_cast<double>(dimension), M = static_cast<double>(particles);
+  return d * (M + 1.0) / (M - d - 2.0);
+}
+
 template Nees nees<1>(const Eigen::Vector3d&, const Eigen::Matrix3d&, int);
 template Nees nees<2>(const Eigen::Vector3d&, const Eigen::Matrix3d&, int);
 template Nees nees<3>(const Eigen::Vector3d&, const Eigen::Matrix3d&, int);

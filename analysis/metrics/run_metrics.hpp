@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/metrics/cell_analysis.hpp"
 #include "analysis/metrics/diversity.hpp"
 #include "analysis/metrics/run_rows.hpp"
 
@@ -11,6 +10,19 @@
 #include <vector>
 
 namespace montecarta {
+
+/// Which mean and covariance of a filter are judged (SPEC 19).
+enum class Moments {
+  mixture,  ///< spread of the particles plus each particle's own covariance, before sampling
+  spread    ///< of the weighted drawn particles; of the Gaussian for a Kalman filter
+};
+
+/// Which components of the pose error are judged.
+enum class ErrorBlock {
+  pose,      ///< x, y, heading
+  position,  ///< x, y, with the position block of the covariance
+  heading
+};
 
 inline constexpr std::array kErrorBlocks = {ErrorBlock::pose, ErrorBlock::position,
                                             ErrorBlock::heading};

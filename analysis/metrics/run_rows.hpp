@@ -13,6 +13,11 @@ struct MomentRows {
   std::vector<double> covariance;  ///< {scan, 3, 3}
 };
 
+/// What became of the detections of every scan (AssociationCounts); empty where not stored.
+struct AssociationRows {
+  std::vector<double> correct, wrong, new_again, missed, clutter;  ///< {scan}
+};
+
 /// What analysis needs of one run, as plain arrays: where they come from does not matter. Columns
 /// that are not stored are empty.
 struct RunRows {
@@ -23,6 +28,7 @@ struct RunRows {
   std::vector<std::uint32_t> resampled;         ///< {scan} 0 or 1
   std::vector<std::uint32_t> numerical_faults;  ///< {scan}
   std::vector<std::uint32_t> ancestor;          ///< {scan, particle}
+  AssociationRows association;
   double cpu_seconds = 0.0;
 };
 

@@ -72,6 +72,12 @@ std::vector<NamedNumber> numbers_of(const CellAnalysis& cell) {
   add("ancestors_10_s_ago", "1", diversity.lag, all);
   add("ancestors_at_start", "1", diversity.root, all);
   add("ancestors_at_start_at_the_end", "1", diversity.final_root, all);
+  const AssociationSummary association = cell.association.value_or(AssociationSummary{});
+  add("association_correct", "1", association.correct, all);
+  add("association_wrong", "1", association.wrong, all);
+  add("association_new_again", "1", association.new_again, all);
+  add("association_missed", "1", association.missed, all);
+  add("association_clutter", "1", association.clutter, all);
   add("numerical_faults", "1", cell.numerical_faults, all);
   add("cpu_seconds", "s", cell.cpu_seconds, all);
   return all;

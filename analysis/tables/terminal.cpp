@@ -90,6 +90,11 @@ void print_tables(std::ostream& out, const StudyAnalysis& study) {
   print(out, accuracy_table(study));
   out << '\n';
   print_warnings(out, study);
+  if (const TextTable table = association_table(study); !table.rows.empty()) {
+    print(out, table);
+    out << '\n';
+    for (const std::string& note : association_notes()) print_wrapped(out, note);
+  }
   for (const std::string& note : verdict_notes(study)) print_wrapped(out, note);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/tables/verdict_table.hpp"
 
+#include "analysis/metrics/nees.hpp"
 #include "analysis/tables/number_text.hpp"
 #include "engine/numbers/angle.hpp"
 
@@ -55,6 +56,25 @@ std::vector<std::string> accuracy_row(const CellAnalysis& cell) {
           readable(cell.cpu_seconds.mean)};
 }
 
+std::vector<std::string> association_row(const CellAnalysis& cell) {
+  const AssociationSummary& a = *cell.association;
+  const double all = a.correct.mean + a.wrong.mean + a.new_again.mean + a.missed.mean;
+  return {cell.label,
+          readable(all, 4),
+          percent(a.correct.mean / all),
+          percent(a.wrong.mean / all),
+          percent(a.new_again.mean / all),
+          percent(a.missed.mean / all),
+          readable(a.clutter.mean)};
+}
+
+/// The average of an ideal filter with these moments.
+double ideal_nees(const CellAnalysis& cell, const NeesResult& nees) {
+  const std::size_t d = nees.series.dimension;
+  const bool drawn = nees.moments == Moments::spread && cell.particles > 0;
+  return drawn ? ideal_spread_nees(d, cell.particles) : static_cast<double>(d);
+}
+
 std::vector<std::string> consistency_row(const CellAnalysis& cell, const NeesResult& nees,
                                          double level) {
   const Consistency& found = nees.consistency;
@@ -64,6 +84,7 @@ std::vector<std::string> consistency_row(const CellAnalysis& cell, const NeesRes
           in_words(found),
           compact(found.mean),
           compact(found.median),
+          readable(ideal_nees(cell, nees)),
           band_text(cell, nees.series.dimension, level),
           percent(found.share_inside),
           percent(found.share_above),
@@ -116,6 +137,25 @@ TextTable accuracy_table(const StudyAnalysis& study) {
   return table;
 }
 
+TextTable association_table(const StudyAnalysis& study) {
+  TextTable table;
+  table.headings = {{"cell", Align::left}, {"detections"}, {"correct"},       {"wrong"},
+                    {"new again"},         {"left out"},   {"false accepted"}};
+  for (const CellAnalysis& cell : study.cells) {
+    if (cell.association) table.rows.push_back(association_row(cell));
+  }
+  return table;
+}
+
+std::vector<std::string> association_notes() {
+  return {
+      "Detections of landmarks in a run, counted against the simulator's identities, as the "
+      "filter's weighted particles took them: 'correct' went to their own landmark or were "
+      "rightly made new, 'wrong' to another one, 'new again' were made new although the map had "
+      "theirs, 'left out' were not used; 'false accepted' are false alarms in a run that were "
+      "used."};
+}
+
 TextTable consistency_table(const StudyAnalysis& study) {
   TextTable table;
   table.headings = {{"cell", Align::left},
@@ -124,6 +164,7 @@ TextTable consistency_table(const StudyAnalysis& study) {
                     {"verdict", Align::left},
                     {"ANEES"},
                     {"median"},
+                    {"ideal"},
                     {level_text(study.level) + " band"},
                     {"inside"},
                     {"above"},

@@ -26,6 +26,12 @@ TextTable verdict_table(const StudyAnalysis& study);
 /// One row a cell: errors, particles that count, and what a run costs.
 TextTable accuracy_table(const StudyAnalysis& study);
 
+/// One row a cell whose associations are counted: what share of a run's detections of landmarks
+/// went where. Without rows where none is.
+TextTable association_table(const StudyAnalysis& study);
+/// How to read it.
+std::vector<std::string> association_notes();
+
 /// One row a cell and definition of covariance and error: the whole NEES test.
 TextTable consistency_table(const StudyAnalysis& study);
 

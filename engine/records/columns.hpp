@@ -16,10 +16,11 @@ namespace montecarta {
 struct ColumnSelection {
   bool covariance =
       true;  ///< pose_covariance; pose_mean_mixture, pose_covariance_mixture where there is one
-  bool ancestry = true;     ///< ancestor
-  bool particles = false;   ///< particle_pose, log_weight
-  bool map = false;         ///< map_mean, map_covariance, map_seen, at every scan
-  bool scans_only = false;  ///< record.rate = scan: rows of `time` only where a scan was taken
+  bool ancestry = true;      ///< ancestor
+  bool particles = false;    ///< particle_pose, log_weight
+  bool association = false;  ///< association_correct, _wrong, _new_again, _missed, _clutter
+  bool map = false;          ///< map_mean, map_covariance, map_seen, at every scan
+  bool scans_only = false;   ///< record.rate = scan: rows of `time` only where a scan was taken
 };
 
 enum class Element : std::uint8_t { f64, u8, u16, u32, u64 };

@@ -71,6 +71,44 @@ std::vector<Column> report_columns() {
   };
 }
 
+std::vector<Column> association_columns(const ColumnSelection& selection) {
+  if (!selection.association) return {};
+  const std::vector<Axis> axes = {Axis::scan};
+  const std::string mean = ", mean over the weighted particles";
+  return {
+      {"association_correct",
+       Element::f64,
+       axes,
+       {},
+       "1",
+       "detections given to their landmark, or made new where the map had none" + mean},
+      {"association_wrong",
+       Element::f64,
+       axes,
+       {},
+       "1",
+       "detections given to another landmark" + mean},
+      {"association_new_again",
+       Element::f64,
+       axes,
+       {},
+       "1",
+       "detections made new though the map had their landmark" + mean},
+      {"association_missed",
+       Element::f64,
+       axes,
+       {},
+       "1",
+       "detections of a landmark that were left out" + mean},
+      {"association_clutter",
+       Element::f64,
+       axes,
+       {},
+       "1",
+       "false alarms given to a landmark or made new" + mean},
+  };
+}
+
 std::vector<Column> particle_columns(const Cell& cell, const ColumnSelection& selection) {
   using enum Axis;
   std::vector<Column> columns;
@@ -124,8 +162,8 @@ RecordLayout::RecordLayout(const Cell& cell, const ColumnSelection& selection,
       scans_only_(selection.scans_only),
       particles_(cell.particles),
       landmarks_(cell.landmarks) {
-  for (auto group :
-       {report_columns(), particle_columns(cell, selection), map_columns(cell, selection)})
+  for (auto group : {report_columns(), association_columns(selection),
+                     particle_columns(cell, selection), map_columns(cell, selection)})
     columns_.insert(columns_.end(), group.begin(), group.end());
   const std::size_t rows = scans_only_ ? itinerary.scans() : itinerary.steps();
   for (Column& column : columns_) {

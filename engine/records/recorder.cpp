@@ -45,6 +45,11 @@ Recorder::Recorder(RunRecord& record)
   columns_.nis = column<double>(record, "nis");
   columns_.nis_dof = column<std::uint32_t>(record, "nis_dof");
   columns_.numerical_faults = column<std::uint32_t>(record, "numerical_faults");
+  columns_.correct = column<double>(record, "association_correct");
+  columns_.wrong = column<double>(record, "association_wrong");
+  columns_.new_again = column<double>(record, "association_new_again");
+  columns_.missed = column<double>(record, "association_missed");
+  columns_.clutter = column<double>(record, "association_clutter");
   columns_.particle_pose = column<double>(record, "particle_pose");
   columns_.log_weight = column<double>(record, "log_weight");
   columns_.map_mean = column<double>(record, "map_mean");
@@ -71,6 +76,7 @@ const PoseEstimate* Recorder::after_step(const SlamFilter& filter, std::size_t s
 const PoseEstimate* Recorder::after_scan(const SlamFilter& filter, std::size_t scan) {
   const PoseEstimate* recorded = layout_->scans_only() ? record_pose(filter, scan) : nullptr;
   record_report(filter.report(), scan);
+  record_association(filter.report().association, scan);
   record_particles(filter, scan);
   record_map(filter, scan);
   return recorded;
@@ -93,6 +99,15 @@ void Recorder::record_report(const ScanReport& report, std::size_t scan) {
   columns_.nis[scan] = report.nis;
   columns_.nis_dof[scan] = report.nis_dof;
   columns_.numerical_faults[scan] = report.numerical_faults;
+}
+
+void Recorder::record_association(const AssociationCounts& counts, std::size_t scan) {
+  if (columns_.correct.empty()) return;
+  columns_.correct[scan] = counts.correct;
+  columns_.wrong[scan] = counts.wrong;
+  columns_.new_again[scan] = counts.new_again;
+  columns_.missed[scan] = counts.missed;
+  columns_.clutter[scan] = counts.clutter;
 }
 
 void Recorder::record_particles(const SlamFilter& filter, std::size_t scan) {

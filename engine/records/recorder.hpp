@@ -31,6 +31,7 @@ class Recorder {
  private:
   struct Columns {
     std::span<double> pose_mean, pose_covariance, pose_mean_mixture, pose_covariance_mixture;
+    std::span<double> correct, wrong, new_again, missed, clutter;
     std::span<double> ess, log_likelihood, nis, particle_pose, log_weight, map_mean, map_covariance;
     std::span<std::uint8_t> resampled, map_seen;
     std::span<std::uint32_t> nis_dof, numerical_faults, ancestor_wide;
@@ -40,6 +41,7 @@ class Recorder {
   void choose_ancestor(RunRecord& record);
   const PoseEstimate* record_pose(const SlamFilter& filter, std::size_t row);
   void record_report(const ScanReport& report, std::size_t scan);
+  void record_association(const AssociationCounts& counts, std::size_t scan);
   void record_particles(const SlamFilter& filter, std::size_t scan);
   void record_map(const SlamFilter& filter, std::size_t scan);
 

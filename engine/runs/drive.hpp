@@ -24,7 +24,7 @@ struct Detection {
   double range = 0.0;                           ///< [m]
   double bearing = 0.0;                         ///< [rad], relative to the heading
   std::int32_t identity =
-      kClutter;  ///< landmark of the world; a filter may use it only with known association
+      kClutter;  ///< landmark of the world; a filter may estimate by it only with known association
 };
 
 /// All detections of one instant, in increasing identity; may be empty.

@@ -27,6 +27,17 @@ struct PoseEstimate {
       mixture;  ///< spread plus each particle's own covariance, before sampling
 };
 
+/// What became of a scan's detections, counted against the simulator's identities: a landmark of a
+/// map is the one of the detection that it was made of. Of a particle filter: mean over its
+/// weighted particles. Detections of no landmark that were left out are in none of the five.
+struct AssociationCounts {
+  double correct = 0.0;  ///< given to the landmark that it is of, or made new where there was none
+  double wrong = 0.0;    ///< given to another landmark
+  double new_again = 0.0;  ///< made new though the map has its landmark
+  double missed = 0.0;     ///< of a landmark, but left out
+  double clutter = 0.0;    ///< of no landmark, but given to one or made new
+};
+
 /// What a filter says of its last update; a value that does not apply stays NaN or zero.
 struct ScanReport {
   double ess = 0.0;        ///< effective number of particles after weighing, before resampling
@@ -38,6 +49,7 @@ struct ScanReport {
   std::uint32_t nis_dof = 0;  ///< its degrees of freedom
   std::uint32_t numerical_faults =
       0;  ///< factorisations that failed and were answered by a fallback
+  AssociationCounts association = {};
 };
 
 /// Where a filter writes its particles; an empty span means that nobody wants that column.

@@ -79,6 +79,9 @@ void list_columns() {
         "(SPEC 19)"},
        {"ancestry", "ancestor: parent of each particle one scan ago (SPEC 18)"},
        {"particles", "particle_pose, log_weight at every scan"},
+       {"association",
+        "association_correct, _wrong, _new_again, _missed, _clutter: what became of detections, "
+        "by the simulator's identities"},
        {"map", "map_mean, map_covariance, map_seen at every scan"}},
       0);
 }

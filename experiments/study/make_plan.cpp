@@ -88,8 +88,17 @@ ColumnSelection columns_of(const Settings& s) {
   return {.covariance = has("covariance"),
           .ancestry = has("ancestry"),
           .particles = has("particles"),
+          .association = has("association"),
           .map = has("map"),
           .scans_only = s.text("record", "rate") == "scan"};
+}
+
+/// Rows of the map columns: with unknown association landmarks are numbered by birth, and there may
+/// be more than the world has.
+std::size_t map_rows_of(const FilterSetup& setup, const Settings& s) {
+  const std::uint64_t asked = s.count("record", "map_rows");
+  if (setup.association.kind == Association::known || asked == 0) return setup.landmarks;
+  return asked;
 }
 
 std::size_t particles_of(const CellSpec& spec) {
@@ -110,7 +119,7 @@ Cell cell_of(const CellSpec& spec, const Study& study) {
           .long_name = filter.long_name + (spec.distinction.empty() ? "" : ", " + spec.distinction),
           .particles = particles_of(spec),
           .mixture = filter.has_mixture,
-          .landmarks = setup.landmarks,
+          .landmarks = map_rows_of(setup, study.settings),
           .settings = spec.options,
           .make_filter = [make = filter.make, setup] { return make(setup); }};
 }

@@ -144,11 +144,13 @@ void add_record(std::vector<Setting>& table) {
                    "pose, covariance, ancestry",
                    0,
                    0,
-                   {"pose", "covariance", "ancestry", "particles", "map"},
+                   {"pose", "covariance", "ancestry", "particles", "association", "map"},
                    "what is stored",
                    {}});
   table.push_back(choice("record", "rate", {"control", "scan"},
                          "store poses at every control step or at scans only"));
+  table.push_back(count("record", "map_rows", "0", 0, 100'000,
+                        "rows of map columns with unknown association; 0: as many as the world"));
 }
 
 std::vector<Setting> make_table() {

@@ -2,6 +2,7 @@
 #include "filters/ekf_slam/ekf_slam.hpp"
 
 #include "engine/errors.hpp"
+#include "filters/association/association_counts.hpp"
 #include "filters/association/nearest.hpp"
 #include "filters/ekf_slam/joint_gaussian.hpp"
 #include "filters/models/eigen_jacobians.hpp"
@@ -30,6 +31,7 @@ class EkfSlam final : public SlamFilter {
   void start(const Pose& start) override {
     gaussian_.start(start);
     std::fill(slot_of_identity_.begin(), slot_of_identity_.end(), kUnseen);
+    made_of_.clear();
     report_ = {};
   }
 
@@ -41,6 +43,7 @@ class EkfSlam final : public SlamFilter {
     report_ = {};
     gaussian_.finish_motion();
     associate(scan);
+    report_.association = association_counts(scan, pairings_, made_of_);
     for (std::size_t k = 0; k < scan.size(); ++k) {
       if (pairings_[k].verdict == Verdict::matched) {
         absorb(scan[k], pairings_[k].landmark);
@@ -130,6 +133,7 @@ class EkfSlam final : public SlamFilter {
       slot_of_identity_[identity] = static_cast<std::uint32_t>(gaussian_.landmarks());
     }
     gaussian_.append(sight_of(detection));
+    made_of_.push_back(detection.identity);
   }
 
   void expect_room_to_grow() const {
@@ -142,6 +146,7 @@ class EkfSlam final : public SlamFilter {
   double log_new_density_;
   JointGaussian gaussian_;
   std::vector<std::uint32_t> slot_of_identity_;  ///< known association only
+  std::vector<std::int32_t> made_of_;            ///< {slot} identity at birth, to count errors
   std::vector<Pairing> pairings_;                ///< of the current scan
   std::vector<NearestSearch> searches_;
   ScanReport report_;

@@ -58,8 +58,12 @@ class FastSlam final : public SlamFilter {
     association_.associate(context, scan, maps_,
                            [&](std::size_t b) { return proposal_.predicted(poses_[b]); });
     report_ = {.ess = weights_.effective()};
-    if (association_.found_nothing()) return;
+    if (association_.found_nothing()) {
+      report_.association = association_.counts(weights_);
+      return;
+    }
     weigh_and_draw(context);
+    report_.association = association_.counts(weights_);
     add_new_landmarks();
     decide_on_resampling(context);
   }

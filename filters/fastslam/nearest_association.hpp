@@ -5,6 +5,7 @@
 #include "engine/particles/weights.hpp"
 #include "engine/runs/drive.hpp"
 #include "engine/runs/step_context.hpp"
+#include "filters/association/association_counts.hpp"
 #include "filters/association/nearest.hpp"
 #include "filters/fastslam/particle_maps.hpp"
 #include "filters/moments/linearised.hpp"
@@ -28,14 +29,20 @@ class NearestAssociation {
         noise_(SensorNoise::of(belief)),
         log_new_density_(log_new_density(settings, belief)),
         counts_(blocks_for<Real>(particles), Real(0.0)),
-        resampled_counts_(counts_) {}
+        resampled_counts_(counts_),
+        made_of_(counts_.size() * kLanes),
+        resampled_made_of_(made_of_) {}
 
-  void clear() { std::fill(counts_.begin(), counts_.end(), Real(0.0)); }
+  void clear() {
+    std::fill(counts_.begin(), counts_.end(), Real(0.0));
+    for (auto& identities : made_of_) identities.clear();
+  }
 
   /// Judges every detection by every particle's map; predicted(b) is the pose Gaussian of block b.
   template <class Predicted>
   void associate(const StepContext& context, Scan scan, ParticleMaps<Real>& maps,
                  const Predicted& predicted) {
+    scan_ = scan;
     seen_.clear();
     for (const Detection& detection : scan) seen_.push_back(sight_of<Real>(detection));
     slots_.resize(maps.slots());
@@ -89,6 +96,16 @@ class NearestAssociation {
     return sum;
   }
 
+  /// Against the simulator's identities; before add_new().
+  AssociationCounts counts(const Weights<Real>& weights) const {
+    AssociationCounts mean;
+    for (std::size_t i = 0; i < particles_; ++i) {
+      add(association_counts(scan_, pairings_of(i), made_of_[i]), weights.linear_scalars()[i],
+          mean);
+    }
+    return mean;
+  }
+
   template <class Birth>
   void add_new(ParticleMaps<Real>& maps, const Birth& birth) {
     for (std::size_t k = 0; k < seen_.size(); ++k) {
@@ -98,6 +115,8 @@ class NearestAssociation {
   void resample(std::span<const std::uint32_t> parents) {
     gather<Real>(counts_, parents, resampled_counts_);
     std::swap(counts_, resampled_counts_);
+    for (std::size_t i = 0; i < parents.size(); ++i) resampled_made_of_[i] = made_of_[parents[i]];
+    std::swap(made_of_, resampled_made_of_);
   }
   /// Slots are given out by every particle for itself, so only one particle's map makes sense.
   static constexpr bool kShared = false;
@@ -187,6 +206,7 @@ class NearestAssociation {
       if (slot == maps.slots()) maps.add();
       copy_lane(born, maps.blocks_of(slot)[b], lane);
       set(counts_[b], lane, slot + 1.0);
+      made_of_[particle].push_back(scan_[k].identity);
     }
   }
 
@@ -195,6 +215,9 @@ class NearestAssociation {
   SensorNoise noise_;
   double log_new_density_;
   std::vector<Real> counts_, resampled_counts_;
+  /// {particle}{slot} identity of the detection that was its birth, to count errors only.
+  std::vector<std::vector<std::int32_t>> made_of_, resampled_made_of_;
+  Scan scan_;  ///< the caller's, for the time of an update
   std::vector<RangeBearing<Real>> seen_;
   std::vector<std::uint32_t> slots_;
   std::vector<Pairing> pairings_;  ///< {particle, detection}

@@ -64,6 +64,7 @@ class ScriptedFilter : public SlamFilter {
     report_.nis = 0.0;
     for (const Detection& detection : scan) report_.nis += detection.range;
     report_.nis_dof = static_cast<std::uint32_t>(2 * scan.size());
+    report_.association = {.correct = static_cast<double>(scan.size()), .missed = 1.0};
     seen_ = std::min(script_.landmarks, seen_ + scan.size());
   }
 

@@ -169,5 +169,29 @@ TEST(CellAccumulator, SummarisesParticles) {
   EXPECT_DOUBLE_EQ(cell.diversity->final_root.mean, 2.0);
 }
 
+TEST(CellAccumulator, SumsAssociationsOverARunAndAveragesOverRuns) {
+  const std::vector<double> times = {0.2, 0.4};
+  CellAccumulator sums(times, 0.95);
+  RunMetrics metrics;
+  RunRows rows;
+  rows.truth.assign(6, 0.0);
+  rows.spread.mean.assign(6, 0.0);
+  metrics.measure(rows, 0, times);
+  sums.add(rows, metrics);
+  EXPECT_FALSE(sums.result().association);
+  CellAccumulator counted(times, 0.95);
+  for (const double wrong : {1.0, 4.0}) {
+    rows.association = {{3.0, 2.5}, {wrong, 0.5}, {0.0, 0.0}, {1.0, 0.0}, {0.0, 2.0}};
+    counted.add(rows, metrics);
+  }
+  const CellAnalysis cell = counted.result();
+  ASSERT_TRUE(cell.association);
+  EXPECT_DOUBLE_EQ(cell.association->correct.mean, 5.5);
+  EXPECT_DOUBLE_EQ(cell.association->wrong.mean, 3.0);
+  EXPECT_DOUBLE_EQ(cell.association->missed.mean, 1.0);
+  EXPECT_DOUBLE_EQ(cell.association->clutter.mean, 2.0);
+  EXPECT_DOUBLE_EQ(cell.scores[1].wrong, 4.5);
+}
+
 }  // namespace
 }  // namespace montecarta

@@ -93,10 +93,12 @@ Summary mean_nees_of_draws(int particles, int samples) {
 TEST(Nees, OfAParticleCloudHasHotellingsMean) {
   for (const int particles : {20, 30, 100}) {
     const Summary found = mean_nees_of_draws(particles, 10'000);
-    const double expected = 3.0 * (particles + 1.0) / (particles - 5.0);
+    const double expected = ideal_spread_nees(3, static_cast<std::size_t>(particles));
     EXPECT_NEAR(found.mean, expected, 5.0 * found.standard_error()) << particles;
     EXPECT_LT(found.standard_error(), 0.02 * expected);
   }
+  EXPECT_DOUBLE_EQ(ideal_spread_nees(3, 10), 6.6);  // SPEC 19
+  EXPECT_TRUE(std::isinf(ideal_spread_nees(3, 5)));
 }
 
 }  // namespace

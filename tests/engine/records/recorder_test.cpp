@@ -128,6 +128,26 @@ TEST(Recorder, PutsCovariancesAndMapsWhereTheyBelong) {
   EXPECT_EQ(mean[2 * 3 + 1], 0.0);
 }
 
+TEST(Recorder, StoresAssociationsWhereTheyAreAskedFor) {
+  StudyPlan plan = small_result_plan();
+  EXPECT_FALSE(RecordLayout(plan.cells[0], plan.columns, plan.drives->itinerary())
+                   .find("association_wrong"));
+  plan.columns.association = true;
+  const RecordLayout layout(plan.cells[0], plan.columns, plan.drives->itinerary());
+  RunRecord record(layout);
+  Drive drive;
+  plan.drives->generate(0, drive);
+  fill_record(plan, 0, 0, drive, record);
+  const auto column = [&](const char* name) { return record.column<double>(*layout.find(name)); };
+  for (std::size_t s = 0; s < plan.drives->itinerary().scans(); ++s) {
+    EXPECT_EQ(column("association_correct")[s], static_cast<double>(drive.scan(s).size()));
+  }
+  EXPECT_THAT(column("association_missed"), Each(1.0));
+  for (const char* name : {"association_wrong", "association_new_again", "association_clutter"}) {
+    EXPECT_THAT(column(name), Each(0.0)) << name;
+  }
+}
+
 TEST(RunRecord, FingerprintTellsEveryBitApart) {
   const StudyPlan plan = small_result_plan();
   const RecordLayout layout(plan.cells[0], plan.columns, plan.drives->itinerary());

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/run_scores.hpp"
+
+#include <cmath>
+
+namespace montecarta {
+namespace {
+
+template <class Values>
+double sum_of(const Values& values) {
+  double sum = 0.0;
+  for (const auto value : values) sum += static_cast<double>(value);
+  return sum;
+}
+
+template <class Values>
+double mean_of(const Values& values) {
+  return sum_of(values) / static_cast<double>(values.size());
+}
+
+double mean_of_roots(const std::vector<double>& squares) {
+  double sum = 0.0;
+  for (const double square : squares) sum += std::sqrt(square);
+  return sum / static_cast<double>(squares.size());
+}
+
+/// Over the scans that have a NEES.
+double mean_of_finite(const std::vector<double>& values) {
+  double sum = 0.0;
+  std::size_t n = 0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    sum += value;
+    ++n;
+  }
+  return n == 0 ? RunScores::kNone : sum / static_cast<double>(n);
+}
+
+void score_errors(const RunMetrics& metrics, RunScores& scores) {
+  scores.position_mse = mean_of(metrics.squared_position());
+  scores.position_rmse = std::sqrt(scores.position_mse);
+  scores.position_mean = mean_of_roots(metrics.squared_position());
+  scores.position_variance = scores.position_mse - scores.position_mean * scores.position_mean;
+  scores.heading_mse = mean_of(metrics.squared_heading());
+  scores.heading_rmse = std::sqrt(scores.heading_mse);
+  scores.heading_mean = mean_of_roots(metrics.squared_heading());
+}
+
+void score_diversity(const Diversity& diversity, RunScores& scores) {
+  scores.last_resampling = mean_of(diversity.last_resampling);
+  scores.lag = mean_of(diversity.lag);
+  scores.root = mean_of(diversity.root);
+  scores.final_root = diversity.root.back();
+}
+
+void score_association(const AssociationRows& rows, RunScores& scores) {
+  scores.correct = sum_of(rows.correct);
+  scores.wrong = sum_of(rows.wrong);
+  scores.new_again = sum_of(rows.new_again);
+  scores.missed = sum_of(rows.missed);
+  scores.clutter = sum_of(rows.clutter);
+}
+
+constexpr ScoreName kNames[] = {
+    {"position_rmse", "m", "position RMSE", &RunScores::position_rmse},
+    {"position_mse", "m2", "position MSE", &RunScores::position_mse},
+    {"position_error", "m", "mean position error", &RunScores::position_mean},
+    {"position_error_variance_over_time", "m2", "variance of the position error over time",
+     &RunScores::position_variance},
+    {"heading_rmse", "rad", "heading RMSE", &RunScores::heading_rmse},
+    {"heading_mse", "rad2", "heading MSE", &RunScores::heading_mse},
+    {"heading_error", "rad", "mean absolute heading error", &RunScores::heading_mean},
+    {"nees", "1", "mean NEES of the pose", &RunScores::nees},
+    {"nees_position", "1", "mean NEES of the position", &RunScores::nees_position},
+    {"ess", "1", "effective particles", &RunScores::ess},
+    {"resampling_rate", "1", "share of scans that resample", &RunScores::resampling_rate},
+    {"ancestors_last_resampling", "1", "distinct particles after a resampling",
+     &RunScores::last_resampling},
+    {"ancestors_10_s_ago", "1", "distinct ancestors 10 s ago", &RunScores::lag},
+    {"ancestors_at_start", "1", "distinct ancestors at the start", &RunScores::root},
+    {"ancestors_at_start_at_the_end", "1", "first particles that have descendants at the end",
+     &RunScores::final_root},
+    {"association_correct", "1", "detections rightly associated", &RunScores::correct},
+    {"association_wrong", "1", "detections given to a wrong landmark", &RunScores::wrong},
+    {"association_new_again", "1", "detections made new again", &RunScores::new_again},
+    {"association_missed", "1", "detections left out", &RunScores::missed},
+    {"association_clutter", "1", "false alarms accepted", &RunScores::clutter},
+    {"numerical_faults", "1", "factorisations answered by a fallback",
+     &RunScores::numerical_faults},
+    {"cpu_seconds", "s", "processor time of a run", &RunScores::cpu_seconds},
+};
+
+}  // namespace
+
+RunScores scores_of(const RunRows& rows, const RunMetrics& metrics) {
+  RunScores scores;
+  score_errors(metrics, scores);
+  const Moments leading = rows.mixture.mean.empty() ? Moments::spread : Moments::mixture;
+  scores.nees = mean_of_finite(metrics.nees(leading).value[0]);
+  scores.nees_position = mean_of_finite(metrics.nees(leading).value[1]);
+  if (!rows.ess.empty()) {
+    scores.ess = mean_of(rows.ess);
+    scores.resampling_rate = mean_of(rows.resampled);
+  }
+  if (metrics.diversity() != nullptr) score_diversity(*metrics.diversity(), scores);
+  if (!rows.association.correct.empty()) score_association(rows.association, scores);
+  scores.numerical_faults = sum_of(rows.numerical_faults);
+  scores.cpu_seconds = rows.cpu_seconds;
+  return scores;
+}
+
+std::span<const ScoreName> score_names() { return kNames; }
+
+}  // namespace montecarta

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/metrics/run_metrics.hpp"
+#include "analysis/metrics/run_rows.hpp"
+
+#include <limits>
+#include <span>
+
+namespace montecarta {
+
+/// Every run in single numbers: what is averaged over runs, and compared run by run. NaN where one
+/// does not apply.
+struct RunScores {
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+  double position_rmse = kNone;      ///< [m]
+  double position_mse = kNone;       ///< [m^2]
+  double position_mean = kNone;      ///< [m] distance, mean over scans
+  double position_variance = kNone;  ///< [m^2] of the distance over scans
+  double heading_rmse = kNone;       ///< [rad]
+  double heading_mse = kNone;        ///< [rad^2]
+  double heading_mean = kNone;       ///< [rad] absolute
+  double nees = kNone;               ///< [1] of the pose, mean over scans, leading moments
+  double nees_position = kNone;      ///< [1] of the position
+  double ess = kNone;                ///< [1] mean over scans
+  double resampling_rate = kNone;    ///< [1] share of scans
+  double last_resampling = kNone;    ///< [1] distinct parents in the last resampling, over scans
+  double lag = kNone;                ///< [1] distinct ancestors kDiversityLag ago, over scans
+  double root = kNone;               ///< [1] distinct ancestors at the start, over scans
+  double final_root = kNone;         ///< [1] the same at the last scan
+  double correct = kNone;            ///< [1] sum over scans, as the next four (AssociationCounts)
+  double wrong = kNone;
+  double new_again = kNone;
+  double missed = kNone;
+  double clutter = kNone;
+  double numerical_faults = kNone;  ///< [1] sum over scans
+  double cpu_seconds = kNone;       ///< [s]
+};
+
+RunScores scores_of(const RunRows& rows, const RunMetrics& metrics);
+
+/// A score under the name that files and studies give it.
+struct ScoreName {
+  const char* name;   ///< e.g. "position_rmse"
+  const char* units;  ///< UDUNITS style, "1" where there is none
+  const char* words;  ///< for tables
+  double RunScores::*value;
+};
+
+/// All of them.
+std::span<const ScoreName> score_names();
+
+}  // namespace montecarta
