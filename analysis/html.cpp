@@ -22,9 +22,11 @@ p { margin: .5rem 0; max-width: 60rem; }
 table { border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabular-nums; }
 th, td { padding: .3rem .5rem; white-space: nowrap; border-bottom: 1px solid var(--line); }
 th { text-align: left; font-weight: 600; border-bottom: 2px solid var(--text); }
+@media (max-width: 40rem) { td:not(.right) { white-space: normal; min-width: 5rem; } }
 .right { text-align: right; }
 .bad { color: var(--bad); font-weight: 600; }
 .good { color: var(--good); font-weight: 600; }
+ul { max-width: 60rem; padding-left: 1.2rem; }
 figure { margin: .5rem 0; }
 figcaption { max-width: 60rem; }
 figure svg { width: 100%; height: auto; display: block; color: var(--text); }
@@ -39,9 +41,11 @@ summary { cursor: pointer; font-weight: 600; margin-top: 1rem; }
 std::string class_of(const std::string& text, Align align) {
   std::string names = align == Align::right ? "right" : "";
   const bool bad = text.starts_with("inconsistent") || text.starts_with("optimistic") ||
+                   text.starts_with("not reproduced") || text.starts_with("contradicted") ||
                    text.find("FAILED") != std::string::npos;
   if (bad) names += " bad";
-  if (text == "consistent") names += " good";
+  const bool good = text == "consistent" || text.starts_with("agrees") || text.starts_with("holds");
+  if (good) names += " good";
   return names.empty() ? "" : " class=\"" + names + "\"";
 }
 

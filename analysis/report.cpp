@@ -4,6 +4,7 @@
 #include "analysis/figures/path_figure.hpp"
 #include "analysis/figures/time_figures.hpp"
 #include "analysis/html.hpp"
+#include "analysis/printed/comparison.hpp"
 #include "analysis/study_analysis.hpp"
 #include "analysis/tables.hpp"
 #include "analysis/tables/csv_file.hpp"
@@ -102,6 +103,24 @@ std::string consistency_section(const StudyAnalysis& study) {
                       "were not a number and left out."}));
 }
 
+std::string printed_section(const StudyAnalysis& study) {
+  if (study.printed.empty()) return "";
+  std::string body;
+  if (!study.printed.source.empty()) {
+    body += "<p>" + html_escape(study.printed.source) + "</p>\n";
+  }
+  for (const TextTable& table : {printed_value_table(study), printed_claim_table(study)}) {
+    if (!table.rows.empty()) body += html_table(table);
+  }
+  body += paragraphs(printed_notes(study));
+  if (study.printed.assumptions.empty()) return section("Printed and measured", body);
+  body += "<p>What the paper leaves open, and what we assume:</p>\n<ul>\n";
+  for (const std::string& each : study.printed.assumptions) {
+    body += "<li>" + html_escape(each) + "</li>\n";
+  }
+  return section("Printed and measured", body + "</ul>\n");
+}
+
 std::string origin(const ResultFile& file, const StudyAnalysis& study) {
   return section("Where this comes from",
                  paragraphs({"Same study, same build, same numbers: study " + study.study_sha256 +
@@ -118,6 +137,10 @@ void write_tables(const StudyAnalysis& study, const fs::path& directory) {
   write_csv(study, directory);
   write_text(directory / "verdict.tex", latex_table(study));
   write_text(directory / "accuracy.tex", latex_tabular(accuracy_table(study)));
+  if (!study.printed.empty()) {
+    write_text(directory / "printed.tex", latex_tabular(printed_value_table(study)));
+    write_text(directory / "claims.tex", latex_tabular(printed_claim_table(study)));
+  }
   if (const TextTable table = association_table(study); !table.rows.empty()) {
     write_text(directory / "association.tex", latex_tabular(table));
   }
@@ -142,7 +165,8 @@ void write_report(const ResultFile& file, const fs::path& directory, const Repor
     draw(figure, directory);
     body += figure_section(figure, directory);
   }
-  body += association_section(study) + consistency_section(study) + origin(file, study);
+  body += association_section(study) + consistency_section(study) + origin(file, study) +
+          printed_section(study);
   write_text(directory / "index.html", html_page(study.study_name + ": report", body));
 }
 

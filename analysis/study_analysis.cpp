@@ -85,6 +85,7 @@ StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& para
   study.study_runs = file.study_runs();
   study.runs_here = file.runs().size();
   study.level = level;
+  study.printed = printed_in(file.study_text());
   study.times = file.scan_times();
   study.duration = study.times.empty() ? 0.0 : study.times.back();
   if (study.times.empty()) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/metrics/cell_analysis.hpp"
+#include "analysis/printed/printed.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/runs/parallel.hpp"
 
@@ -24,6 +25,7 @@ struct StudyAnalysis {
   double duration = 0.0;         ///< [s] time of the last scan
   std::vector<double> times;     ///< [s] of the scans
   std::vector<CellAnalysis> cells;
+  Printed printed;  ///< what the study repeats; empty where it repeats nothing
 
   bool has_failures() const;
 };

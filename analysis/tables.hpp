@@ -14,7 +14,8 @@ namespace montecarta {
 void print_tables(std::ostream& out, const StudyAnalysis& study);
 
 /// Writes failures.csv, cells.csv (one row a cell), consistency.csv (one row a cell and definition
-/// of error and covariance) and, for each cell, series_<label>.csv (one row
+/// of error and covariance), printed.csv and claims.csv (what a paper says and what was measured;
+/// headings alone where the study repeats none) and, for each cell, series_<label>.csv (one row
 /// a scan) into `directory`, which is made where it is missing. Throws RunError naming the file
 /// that cannot be written.
 void write_csv(const StudyAnalysis& study, const std::filesystem::path& directory);

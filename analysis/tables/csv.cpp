@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/printed/comparison.hpp"
 #include "analysis/tables.hpp"
 #include "analysis/tables/cell_series.hpp"
 #include "analysis/tables/csv_file.hpp"
@@ -11,6 +12,8 @@ namespace {
 constexpr const char* kFailures = "failures.csv";
 constexpr const char* kCells = "cells.csv";
 constexpr const char* kConsistency = "consistency.csv";
+constexpr const char* kPrinted = "printed.csv";
+constexpr const char* kClaims = "claims.csv";
 std::string series_name(const std::string& label) { return "series_" + label + ".csv"; }
 
 /// The unit belongs to the name where there is one: position_rmse_mean [m].
@@ -84,7 +87,7 @@ void write_series(const StudyAnalysis& study, const CellAnalysis& cell,
 }  // namespace
 
 std::vector<std::string> csv_names(const std::vector<std::string>& labels) {
-  std::vector<std::string> names = {kFailures, kCells, kConsistency};
+  std::vector<std::string> names = {kFailures, kCells, kConsistency, kPrinted, kClaims};
   for (const std::string& label : labels) names.push_back(series_name(label));
   return names;
 }
@@ -94,6 +97,8 @@ void write_csv(const StudyAnalysis& study, const std::filesystem::path& director
   write_table(failure_table(study), directory / kFailures);
   write_cells(study, directory / kCells);
   write_consistency(study, directory / kConsistency);
+  write_table(printed_value_table(study), directory / kPrinted);
+  write_table(printed_claim_table(study), directory / kClaims);
   for (const CellAnalysis& cell : study.cells) {
     write_series(study, cell, directory / series_name(cell.label));
   }

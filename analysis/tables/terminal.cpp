@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/printed/comparison.hpp"
 #include "analysis/tables.hpp"
 #include "analysis/tables/verdict_table.hpp"
 
@@ -79,6 +80,20 @@ void print_warnings(std::ostream& out, const StudyAnalysis& study) {
   }
 }
 
+/// What a paper printed against what was measured, and what had to be assumed.
+void print_printed(std::ostream& out, const StudyAnalysis& study) {
+  if (study.printed.empty()) return;
+  out << "\nPrinted and measured" << (study.printed.source.empty() ? "" : ": ")
+      << study.printed.source << "\n\n";
+  for (const TextTable& table : {printed_value_table(study), printed_claim_table(study)}) {
+    if (table.rows.empty()) continue;
+    print(out, table);
+    out << '\n';
+  }
+  for (const std::string& note : printed_notes(study)) print_wrapped(out, note);
+  for (const std::string& each : study.printed.assumptions) print_wrapped(out, "Assumed: " + each);
+}
+
 }  // namespace
 
 void print_tables(std::ostream& out, const StudyAnalysis& study) {
@@ -96,6 +111,7 @@ void print_tables(std::ostream& out, const StudyAnalysis& study) {
     for (const std::string& note : association_notes()) print_wrapped(out, note);
   }
   for (const std::string& note : verdict_notes(study)) print_wrapped(out, note);
+  print_printed(out, study);
 }
 
 }  // namespace montecarta

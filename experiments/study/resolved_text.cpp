@@ -7,12 +7,14 @@ namespace montecarta {
 std::string resolved_text(const Study& study) {
   std::string text;
   for (const std::string& section : study_sections()) {
+    if (section == "printed" && study.printed.empty()) continue;
     text += "[" + section + "]\n";
     for (const auto& [key, value] : study.settings.section(section))
       text += key + " = " + value + "\n";
     if (section == "cells") {
       for (const CellSpec& cell : study.cells) text += "cell = " + cell_line(cell) + "\n";
     }
+    if (section == "printed") text += printed_text(study.printed);
     if (section == "world") text += inline_world_text(study.world);
   }
   return text;

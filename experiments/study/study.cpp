@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "experiments/study/inline_world.hpp"
+#include "experiments/study/printed_section.hpp"
 #include "experiments/text/words.hpp"
 #include "experiments/worlds/world_file.hpp"
 
@@ -80,7 +81,8 @@ Study parse_study(const std::string& text, const std::string& name,
   IniText ini = read_ini(text, name);
   apply(overrides, ini);
   refuse_unknown_sections(ini);
-  Study study{Settings(ini.entries, name), read_cells(ini.entries, name, filter_kinds()), {}};
+  Study study{Settings(ini.entries, name), read_cells(ini.entries, name, filter_kinds()), {}, {}};
+  study.printed = read_printed(ini.entries, study.cells);
   study.world = world_of(ini, study.settings, folder);
   study.settings.replace("scenario", "world", study.world.name);
   if (study.settings.text("study", "title").empty()) {

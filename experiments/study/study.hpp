@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/printed/printed.hpp"
 #include "experiments/study/cell_spec.hpp"
 #include "experiments/study/settings.hpp"
 #include "experiments/worlds/world.hpp"
@@ -17,6 +18,7 @@ struct Study {
   Settings settings;
   std::vector<CellSpec> cells;
   World world;
+  Printed printed;  ///< what a paper says of it; no result depends on it
 };
 
 /// Reads a study file. `overrides` are "section.key=value" as given to --set; "cells.cell=..."

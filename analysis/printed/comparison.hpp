@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/study_analysis.hpp"
+#include "analysis/tables/verdict_table.hpp"
+
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// Farther off than this factor, a printed number is not reproduced.
+inline constexpr double kReproducedWithin = 2.0;
+/// Cells are alike where their difference is less than this share of their mean.
+inline constexpr double kAlikeWithin = 0.1;
+
+/// A printed number and ours.
+struct ComparedValue {
+  double measured = 0.0;  ///< mean over runs, or one number of all runs; infinite: never
+  Interval interval;      ///< of the mean, at the study's level; NaN where runs have no value each
+  std::string verdict;    ///< "agrees", "differs: ...", "not reproduced: ...", "not measured"
+};
+
+/// A claim and our paired difference, left minus right.
+struct ComparedClaim {
+  double difference = 0.0;
+  Interval interval;     ///< of the mean difference over runs that both cells completed
+  std::size_t runs = 0;  ///< of them
+  std::string verdict;   ///< "holds", "contradicted", "undecided", "not measured"
+};
+
+/// A printed number agrees where it lies where the mean of as many runs as the paper's would lie,
+/// with probability `level`, given the scatter of ours, or rounds to the printed digits.
+ComparedValue compare(const StudyAnalysis& study, const PrintedValue& value);
+/// A claim holds where the whole interval of the paired difference is on its side.
+ComparedClaim compare(const StudyAnalysis& study, const PrintedClaim& claim);
+
+/// One row a printed number, one row a claim; without rows where there is none.
+TextTable printed_value_table(const StudyAnalysis& study);
+TextTable printed_claim_table(const StudyAnalysis& study);
+/// How to read them.
+std::vector<std::string> printed_notes(const StudyAnalysis& study);
+
+}  // namespace montecarta

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/printed/run_samples.hpp"
+
+#include <boost/math/distributions/students_t.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace montecarta {
+namespace {
+
+/// A number that only all runs of a cell together have: of an average NEES.
+struct JointName {
+  const char* name;
+  const char* words;
+  ErrorBlock block;
+  double (*value)(const Consistency&);
+};
+
+double inside(const Consistency& found) { return found.share_inside; }
+double above(const Consistency& found) { return found.share_above; }
+double exit_time(const Consistency& found) {
+  return found.lasting_exit.value_or(std::numeric_limits<double>::infinity());
+}
+
+constexpr JointName kJoint[] = {
+    {"share_inside_pose", "share of scans inside the band, pose", ErrorBlock::pose, inside},
+    {"share_inside_position", "share of scans inside the band, position", ErrorBlock::position,
+     inside},
+    {"share_above_pose", "share of scans above the band, pose", ErrorBlock::pose, above},
+    {"share_above_position", "share of scans above the band, position", ErrorBlock::position,
+     above},
+    {"lasting_exit_pose", "leaves the band for good, pose [s]", ErrorBlock::pose, exit_time},
+    {"lasting_exit_position", "leaves the band for good, position [s]", ErrorBlock::position,
+     exit_time},
+};
+
+template <class Names>
+auto find_name(const Names& names, const std::string& name) {
+  return std::ranges::find_if(names, [&](const auto& each) { return each.name == name; });
+}
+
+Sample joint_sample(const CellAnalysis& cell, const JointName& joint) {
+  const NeesResult* nees = cell.find_nees(joint.block, cell.leading);
+  if (nees == nullptr || nees->consistency.verdict == Verdict::untested) return {};
+  return {joint.value(nees->consistency), RunScores::kNone, 1};
+}
+
+Sample sample_over(std::span<const double> values) {
+  SummaryOf sums;
+  for (const double value : values) sums.add(value);
+  const Summary summary = sums.result();
+  return {summary.mean, summary.sd, summary.n};
+}
+
+/// (left, right) of every run that both cells completed.
+std::vector<std::pair<double, double>> pairs_of(const CellAnalysis& left, const CellAnalysis& right,
+                                                double RunScores::*score) {
+  std::vector<std::pair<double, double>> pairs;
+  std::size_t r = 0;
+  for (std::size_t l = 0; l < left.runs.size(); ++l) {
+    while (r < right.runs.size() && right.runs[r] < left.runs[l]) ++r;
+    if (r == right.runs.size() || right.runs[r] != left.runs[l]) continue;
+    pairs.emplace_back(left.scores[l].*score, right.scores[r].*score);
+  }
+  return pairs;
+}
+
+}  // namespace
+
+Sample sample_of(const CellAnalysis* cell, const std::string& metric) {
+  if (cell == nullptr) return {};
+  if (const auto joint = find_name(kJoint, metric); joint != std::end(kJoint)) {
+    return joint_sample(*cell, *joint);
+  }
+  const auto score = find_name(score_names(), metric);
+  if (score == score_names().end()) return {};
+  std::vector<double> values;
+  for (const RunScores& run : cell->scores) values.push_back(run.*(score->value));
+  return sample_over(values);
+}
+
+Sample ratio_of(const CellAnalysis* cell, const CellAnalysis* unit, const std::string& metric) {
+  const auto score = find_name(score_names(), metric);
+  if (cell == nullptr || unit == nullptr || score == score_names().end()) return {};
+  const double base = sample_of(unit, metric).mean;
+  const double ratio = sample_of(cell, metric).mean / base;
+  std::vector<double> deviations;  // of a linearised ratio
+  for (const auto& [value, reference] : pairs_of(*cell, *unit, score->value)) {
+    deviations.push_back((value - ratio * reference) / base);
+  }
+  const Sample scatter = sample_over(deviations);
+  return {ratio, scatter.sd, scatter.n};
+}
+
+Sample difference_of(const CellAnalysis* left, const CellAnalysis* right,
+                     const std::string& metric) {
+  if (left == nullptr || right == nullptr) return {};
+  const auto score = find_name(score_names(), metric);
+  if (score == score_names().end()) {
+    const double l = sample_of(left, metric).mean, r = sample_of(right, metric).mean;
+    return {l == r ? 0.0 : l - r, RunScores::kNone, 1};  // both may be infinite: never
+  }
+  std::vector<double> differences;
+  for (const auto& [l, r] : pairs_of(*left, *right, score->value)) differences.push_back(l - r);
+  return sample_over(differences);
+}
+
+double t_quantile(std::size_t n, double level) {
+  const boost::math::students_t t(static_cast<double>(n - 1));
+  return boost::math::quantile(t, 0.5 + 0.5 * level);
+}
+
+Interval interval_of(const Sample& sample, double level) {
+  if (sample.n < 2) return {RunScores::kNone, RunScores::kNone};
+  const double half =
+      t_quantile(sample.n, level) * sample.sd / std::sqrt(static_cast<double>(sample.n));
+  return {sample.mean - half, sample.mean + half};
+}
+
+std::string metric_in_words(const std::string& metric) {
+  if (const auto joint = find_name(kJoint, metric); joint != std::end(kJoint)) return joint->words;
+  const auto score = find_name(score_names(), metric);
+  if (score == score_names().end()) return metric;
+  const std::string units = score->units;
+  return score->words + (units == "1" ? "" : " [" + units + "]");
+}
+
+bool is_run_metric(const std::string& metric) {
+  return find_name(score_names(), metric) != score_names().end();
+}
+
+std::vector<std::string> printed_metrics() {
+  std::vector<std::string> names;
+  for (const ScoreName& score : score_names()) names.emplace_back(score.name);
+  for (const JointName& joint : kJoint) names.emplace_back(joint.name);
+  return names;
+}
+
+}  // namespace montecarta
