@@ -89,18 +89,19 @@ std::string consistency_section(const StudyAnalysis& study) {
   return section(
       "The whole test",
       html_table(consistency_table(study)) +
-          paragraphs({"Each row is one test: of the pose or of a part of it, with the covariance "
-                      "of the particle mixture or of the particle spread. The spread of few "
-                      "particles is too small by construction, so the mixture decides where there "
-                      "is one.",
-                      "'ideal' is the ANEES of a perfect filter: the number of components; with the "
-                      "spread of M particles that are independent draws from the truth's "
-                      "distribution it is larger, since so few draws cannot tell their covariance "
-                      "better.",
-                      "'median' is the middle run instead of the average one: far below ANEES it "
-                      "says that few bad runs make the average. 'floored' counts covariances that "
-                      "were singular (0.1 mm and 0.00001 rad were added), 'undefined' those that "
-                      "were not a number and left out."}));
+          paragraphs(
+              {"Each row is one test: of the pose or of a part of it, with the covariance "
+               "of the particle mixture or of the particle spread. The spread of few "
+               "particles is too small by construction, so the mixture decides where there "
+               "is one.",
+               "'ideal' is the ANEES of a perfect filter: the number of components; with the "
+               "spread of M particles that are independent draws from the truth's "
+               "distribution it is larger, since so few draws cannot tell their covariance "
+               "better.",
+               "'median' is the middle run instead of the average one: far below ANEES it "
+               "says that few bad runs make the average. 'floored' counts covariances that "
+               "were singular (0.1 mm and 0.00001 rad were added), 'undefined' those that "
+               "were not a number and left out."}));
 }
 
 std::string printed_section(const StudyAnalysis& study) {

@@ -144,7 +144,7 @@ std::vector<std::string> without_licence(const Tree& tree) {
 std::vector<std::string> strays(const std::vector<std::string>& names) {
   static const std::regex belongs(
       R"(CMakeLists\.txt|CMakePresets\.json|CMakeUserPresets\.json|README\.md|LICENSE|\..*)"
-      R"(|build.*|.*\.h5|.*\.h5\.part(\.new)?|first_study_report)");
+      R"(|build.*|.*\.h5|.*\.h5\.part(\.new)?|first_study_report|reproduction)");
   std::vector<std::string> found;
   for (const std::string& name : names) {
     const bool is_room = std::ranges::count(kRooms, name) > 0;

@@ -23,9 +23,10 @@ struct Nees {
 template <int Dimension>
 Nees nees(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, int first = 0);
 
-/// What the NEES of `dimension` components is on the average if a filter is perfect but its covariance
-/// is the spread, with 1 / particles, of so many independent draws (Hotelling; SPEC 19): d (M + 1) /
-/// (M - d - 2), infinite where there are too few. Weights and common ancestors make it larger.
+/// What the NEES of `dimension` components is on the average if a filter is perfect but its
+/// covariance is the spread, with 1 / particles, of so many independent draws (Hotelling; SPEC 19):
+/// d (M + 1) / (M - d - 2), infinite where there are too few. Weights and common ancestors make it
+/// larger.
 double ideal_spread_nees(std::size_t dimension, std::size_t particles);
 
 extern template Nees nees<1>(const Eigen::Vector3d&, const Eigen::Matrix3d&, int);
