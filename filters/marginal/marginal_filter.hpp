@@ -56,7 +56,7 @@ class MarginalFilter final : public SlamFilter {
     forget_scan();
     propagate_kernels();
     associate(scan);
-    report_ = {.ess = weights_.effective()};
+    report_ = {.ess = weights_.effective(), .association = association_.counts()};
     if (association_.found_nothing()) return;  // the kernels go on growing
     likelihood_.see(association_.matches(), map_);
     choose_kernels(context);

@@ -25,6 +25,7 @@ SharedAssociation::SharedAssociation(const FilterSetup& setup)
 
 void SharedAssociation::clear() {
   std::fill(slot_of_identity_.begin(), slot_of_identity_.end(), kUnseen);
+  made_of_.clear();
 }
 
 void SharedAssociation::associate(Scan scan) {
@@ -63,6 +64,7 @@ void SharedAssociation::sort_out(Scan scan, const std::vector<Pairing>& pairings
   matches_.clear();
   fresh_.clear();
   unmatched_ = 0;
+  counts_ = association_counts(scan, pairings, made_of_);
   for (std::size_t k = 0; k < scan.size(); ++k) {
     unmatched_ += pairings[k].verdict != Verdict::matched;
     if (pairings[k].verdict == Verdict::fresh) fresh_.push_back(scan[k]);
@@ -82,6 +84,7 @@ void SharedAssociation::give_slot(const Detection& fresh, std::size_t slot) {
     throw RunError("the map grew beyond " + std::to_string(settings_.most_landmarks) +
                    " landmarks");
   }
+  made_of_.push_back(fresh.identity);
 }
 
 std::size_t SharedAssociation::slot_of_row(std::size_t k) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "filters/association/association_counts.hpp"
 #include "filters/association/nearest.hpp"
 #include "filters/marginal/shared_map.hpp"
 #include "filters/moments/gaussians.hpp"
@@ -34,6 +35,8 @@ class SharedAssociation {
   const std::vector<SharedMatch>& matches() const { return matches_; }
   /// Detections of landmarks not seen before.
   const std::vector<Detection>& fresh() const { return fresh_; }
+  /// Against the simulator's identities.
+  const AssociationCounts& counts() const { return counts_; }
   /// log p0 for every detection that matches nothing, if association is not known (SPEC 17).
   double unmatched_log_density() const;
 
@@ -55,6 +58,8 @@ class SharedAssociation {
   std::vector<SharedMatch> matches_;
   std::vector<Detection> fresh_;
   std::size_t unmatched_ = 0;
+  std::vector<std::int32_t> made_of_;  ///< {slot} identity at birth, to count errors only
+  AssociationCounts counts_;
   std::vector<Pairing> pairings_;  ///< scratch
 };
 
