@@ -6,6 +6,7 @@
 #include "engine/runs/drive.hpp"
 #include "engine/runs/step_context.hpp"
 #include "filters/association/association_counts.hpp"
+#include "filters/association/birth_identities.hpp"
 #include "filters/association/nearest.hpp"
 #include "filters/fastslam/particle_maps.hpp"
 #include "filters/moments/linearised.hpp"
@@ -30,12 +31,11 @@ class NearestAssociation {
         log_new_density_(log_new_density(settings, belief)),
         counts_(blocks_for<Real>(particles), Real(0.0)),
         resampled_counts_(counts_),
-        made_of_(counts_.size() * kLanes),
-        resampled_made_of_(made_of_) {}
+        made_of_(particles) {}
 
   void clear() {
     std::fill(counts_.begin(), counts_.end(), Real(0.0));
-    for (auto& identities : made_of_) identities.clear();
+    made_of_.clear();
   }
 
   /// Judges every detection by every particle's map; predicted(b) is the pose Gaussian of block b.
@@ -100,7 +100,7 @@ class NearestAssociation {
   AssociationCounts counts(const Weights<Real>& weights) const {
     AssociationCounts mean;
     for (std::size_t i = 0; i < particles_; ++i) {
-      add(association_counts(scan_, pairings_of(i), made_of_[i]), weights.linear_scalars()[i],
+      add(association_counts(scan_, pairings_of(i), made_of_.of(i)), weights.linear_scalars()[i],
           mean);
     }
     return mean;
@@ -115,8 +115,7 @@ class NearestAssociation {
   void resample(std::span<const std::uint32_t> parents) {
     gather<Real>(counts_, parents, resampled_counts_);
     std::swap(counts_, resampled_counts_);
-    for (std::size_t i = 0; i < parents.size(); ++i) resampled_made_of_[i] = made_of_[parents[i]];
-    std::swap(made_of_, resampled_made_of_);
+    made_of_.resample(parents);
   }
   /// Slots are given out by every particle for itself, so only one particle's map makes sense.
   static constexpr bool kShared = false;
@@ -206,7 +205,7 @@ class NearestAssociation {
       if (slot == maps.slots()) maps.add();
       copy_lane(born, maps.blocks_of(slot)[b], lane);
       set(counts_[b], lane, slot + 1.0);
-      made_of_[particle].push_back(scan_[k].identity);
+      made_of_.add(particle, scan_[k].identity);
     }
   }
 
@@ -215,8 +214,7 @@ class NearestAssociation {
   SensorNoise noise_;
   double log_new_density_;
   std::vector<Real> counts_, resampled_counts_;
-  /// {particle}{slot} identity of the detection that was its birth, to count errors only.
-  std::vector<std::vector<std::int32_t>> made_of_, resampled_made_of_;
+  BirthIdentities made_of_;
   Scan scan_;  ///< the caller's, for the time of an update
   std::vector<RangeBearing<Real>> seen_;
   std::vector<std::uint32_t> slots_;
