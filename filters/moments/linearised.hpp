@@ -110,18 +110,17 @@ template <class Real>
           bearing};
 }
 
-/// Absorbs one detection into a pose Gaussian by the extended Kalman filter (SPEC 7.1), with the
-/// model linearised on the sightline `s`. `matched`: which lanes saw it. The two components of the
-/// innovation are decorrelated first, so both are scalar updates.
+/// What N(innovation; S) needs; (0, 1) in the lanes that have nothing to absorb.
+template <class Real>
+struct Density {
+  Real squared, determinant;
+};
+
+/// Kalman update of a pose by an innovation, in the lanes of `use` (SPEC 7.1). The two components
+/// of the innovation are decorrelated first, so both are scalar updates.
 template <class Real, class Mask>
-[[gnu::always_inline]] inline Innovation<Real> absorb(PoseGaussian<Real>& pose,
-                                                      const Sightline<Real>& s,
-                                                      const RangeBearing<Real>& value,
-                                                      const Symmetric2<Real>& map_covariance,
-                                                      const SensorNoise& noise, const Mask& matched,
-                                                      Evidence<Real>& evidence) {
-  const auto use = matched && is_usable(s);
-  const Innovation<Real> v = innovation_of(pose.covariance, s, value, map_covariance, noise);
+[[gnu::always_inline]] inline Density<Real> condition(PoseGaussian<Real>& pose,
+                                                      const Innovation<Real>& v, const Mask& use) {
   const Real determinant = v.determinant();
   const Real inverse = select(use, 1.0 / (v.s_rr * determinant), Real(0.0));
   const Real per_rr = determinant * inverse;
@@ -138,8 +137,23 @@ template <class Real, class Mask>
   pose.mean.heading += range_gain.h * first + gain.h * second;
   subtract_outer(pose.covariance, range_gain, v.range);
   subtract_outer(pose.covariance, gain, column);
-  evidence.add(first * first * per_rr + second * second * per_bb,
-               select(use, determinant, Real(1.0)), as_number<Real>(use), as_number<Real>(matched));
+  return {first * first * per_rr + second * second * per_bb, select(use, determinant, Real(1.0))};
+}
+
+/// Absorbs one detection into a pose Gaussian by the extended Kalman filter (SPEC 7.1), with the
+/// model linearised on the sightline `s`. `matched`: which lanes saw it.
+template <class Real, class Mask>
+[[gnu::always_inline]] inline Innovation<Real> absorb(PoseGaussian<Real>& pose,
+                                                      const Sightline<Real>& s,
+                                                      const RangeBearing<Real>& value,
+                                                      const Symmetric2<Real>& map_covariance,
+                                                      const SensorNoise& noise, const Mask& matched,
+                                                      Evidence<Real>& evidence) {
+  const auto use = matched && is_usable(s);
+  const Innovation<Real> v = innovation_of(pose.covariance, s, value, map_covariance, noise);
+  const Density<Real> density = condition(pose, v, use);
+  evidence.add(density.squared, density.determinant, as_number<Real>(use),
+               as_number<Real>(matched));
   return v;
 }
 

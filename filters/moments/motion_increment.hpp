@@ -12,12 +12,17 @@ namespace montecarta {
 /// The motion since poses were last drawn, in the frame of the drawn pose. The vehicle does not
 /// know where in the world it is, so this Gaussian is the same for every particle: it is predicted
 /// once for all of them and turned to each particle's heading only when it is needed. Exact: equal
-/// to one extended Kalman prediction (SPEC 2.1) per particle and step.
+/// to one prediction per particle and step, by the extended Kalman filter (SPEC 2.1: advance()) or
+/// by sigma points (sigma_motion.hpp).
 class MotionIncrement {
  public:
+  MotionIncrement() = default;
+  MotionIncrement(const Pose& pose, const Eigen::Matrix3d& covariance)
+      : pose_(pose), covariance_(covariance) {}
+
   void restart() { *this = MotionIncrement(); }
 
-  /// One control step of `duration` [s].
+  /// One control step of `duration` [s], linearised.
   void advance(const Control& control, double duration, const Belief& belief) {
     const LinearisedMove<double> step = linearised_move(pose_, control, duration, belief.wheelbase);
     const Eigen::Matrix3d F = pose_jacobian(step.jacobians);

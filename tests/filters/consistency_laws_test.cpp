@@ -125,7 +125,7 @@ TEST(FastSlam2Weights, InALinearCaseTheRatioIsTheClosedFormWhateverWasDrawn) {
     const double closed = reference::log_gaussian<2>(nu, S_z);
     for (int k = 0; k < 3; ++k) {
       const Eigen::Vector3d eps(draw.normal(), draw.normal(), draw.normal());
-      const Eigen::Vector3d x = shift + reference::psd_chol(P_after) * eps;
+      const Eigen::Vector3d x = shift + reference::psd_chol<3>(P_after) * eps;
       const double ratio = reference::log_gaussian<2>(nu - H * x, S_f) +
                            reference::log_gaussian<3>(x, P) -
                            reference::log_gaussian<3>(x - shift, P_after);

@@ -60,8 +60,8 @@ class FastSlam : public SlamFilter {
       weigh_and_draw(context, i, particles_[i], scan);  // step 3
       if (!known()) particles_[i].log_weight += log_p0_ * unmatched(particles_[i]);
     }
-    normalise();                                         // step 4
-    for (Particle& p : particles_) update_map(p, scan);  // step 5
+    normalise();                                          // step 4
+    for (Particle& p : particles_) update_maps(p, scan);  // step 5
     if (report_.ess < settings_.threshold * static_cast<double>(particles_.size())) {
       report_.resampled =
           true;  // step 6: takes effect with the next call, so that the scan can be recorded
@@ -91,6 +91,16 @@ class FastSlam : public SlamFilter {
                                 const Control& control, double duration) = 0;
   virtual void weigh_and_draw(const StepContext& context, std::uint32_t i, Particle& p,
                               Scan scan) = 0;
+  /// Steps 5 and 7 for one landmark, at a pose that is taken for exact.
+  virtual void update_map(const Eigen::Vector3d& pose, Landmark& landmark,
+                          const Detection& detection) const {
+    if (const auto seen = seen_from(pose, landmark, detection, R_)) {
+      update_landmark(landmark, *seen, R_);
+    }
+  }
+  virtual Landmark born(const Eigen::Vector3d& pose, const Detection& detection) const {
+    return new_landmark(pose, detection, R_);
+  }
 
   bool known() const { return settings_.association.kind == Association::known; }
   PoseMoments drawn() const {
@@ -171,20 +181,17 @@ class FastSlam : public SlamFilter {
     return 1.0 / squares;
   }
 
-  void update_map(Particle& p, Scan scan) const {
+  void update_maps(Particle& p, Scan scan) const {
     for (std::size_t k = 0; k < scan.size(); ++k) {
       if (p.pairings[k].verdict != Verdict::matched) continue;
-      Landmark& landmark = *p.map[p.pairings[k].landmark];
-      if (const auto seen = seen_from(p.pose, landmark, scan[k], R_)) {
-        update_landmark(landmark, *seen, R_);
-      }
+      update_map(p.pose, *p.map[p.pairings[k].landmark], scan[k]);
     }
   }
 
   void add_new_landmarks(Particle& p, Scan scan) const {
     for (std::size_t k = 0; k < scan.size(); ++k) {
       if (p.pairings[k].verdict != Verdict::fresh) continue;
-      const Landmark landmark = new_landmark(p.pose, scan[k], R_);
+      const Landmark landmark = born(p.pose, scan[k]);
       if (known()) {
         p.map[p.pairings[k].landmark] = landmark;
       } else {

@@ -5,14 +5,16 @@
 
 #include <Eigen/Geometry>
 
+#include <optional>
+
 namespace montecarta::reference {
 
 /// The three forms of SPEC 7.2.
 enum class Weight { closed, ratio, batch };
 
 /// FastSLAM II (SPEC 7): the pose Gaussian is refined by the scan, weighed, and a pose drawn from
-/// it.
-class FastSlam2 final : public FastSlam {
+/// it. Filters with other Gaussians differ in move_gaussian(), absorb() and log_likelihood().
+class FastSlam2 : public FastSlam {
  public:
   FastSlam2(const FastSlamSettings& settings, Weight weight)
       : FastSlam(settings), weight_(weight) {}
@@ -25,15 +27,44 @@ class FastSlam2 final : public FastSlam {
                          [](const Particle& p) { return p.refined_covariance; })};
   }
 
- private:
-  void predict_particle(const StepContext&, std::uint32_t, Particle& p, const Control& control,
-                        double duration) override {
+ protected:
+  /// Carries (p.pose, p.covariance) through one step.
+  virtual void move_gaussian(Particle& p, const Control& control, double duration) const {
     const auto step =
         linearised_move(as_pose(p.pose), control, duration, settings_.belief.wheelbase);
     const Eigen::Matrix3d Fx = pose_jacobian(step.jacobians);
     const Matrix32 Fu = control_jacobian(step.jacobians);
     p.covariance = (Fx * p.covariance * Fx.transpose() + Fu * Q_ * Fu.transpose()).eval();
     p.pose = Eigen::Vector3d(step.pose.x, step.pose.y, step.pose.heading);
+  }
+
+  /// SPEC 7.1: refines (p.pose, p.covariance) by one detection and returns log N(nu; S_z); nothing
+  /// where the landmark is too near.
+  virtual std::optional<double> absorb(Particle& p, const Landmark& landmark,
+                                       const Detection& detection) const {
+    const auto seen = seen_from(p.pose, landmark, detection, R_);
+    if (!seen) return std::nullopt;
+    const Eigen::Matrix2d S_z = seen->Hx * p.covariance * seen->Hx.transpose() + seen->S_f;
+    const Matrix32 K = S_z.llt().solve(seen->Hx * p.covariance).transpose();
+    p.pose += K * seen->nu;
+    p.pose(2) = wrap(p.pose(2));
+    p.covariance -= (K * S_z * K.transpose()).eval();
+    return log_gaussian<2>(seen->nu, S_z);
+  }
+
+  /// log p(z | pose, landmark) at a pose that is taken for exact.
+  virtual std::optional<double> log_likelihood(const Eigen::Vector3d& pose,
+                                               const Landmark& landmark,
+                                               const Detection& detection) const {
+    const auto seen = seen_from(pose, landmark, detection, R_);
+    if (!seen) return std::nullopt;
+    return log_gaussian<2>(seen->nu, seen->S_f);
+  }
+
+ private:
+  void predict_particle(const StepContext&, std::uint32_t, Particle& p, const Control& control,
+                        double duration) final {
+    move_gaussian(p, control, duration);
     p.refined_pose = p.pose;
     p.refined_covariance = p.covariance;
   }
@@ -60,20 +91,12 @@ class FastSlam2 final : public FastSlam {
     }
   }
 
-  /// SPEC 7.1: one detection after the other, each linearised where the last one led; returns the
-  /// closed form (c).
+  /// One detection after the other, each where the last one led; returns the closed form (c).
   double refine(Particle& p, Scan scan) const {
     double log_evidence = 0.0;
     for (std::size_t k = 0; k < scan.size(); ++k) {
       if (p.pairings[k].verdict != Verdict::matched) continue;
-      const auto seen = seen_from(p.pose, *p.map[p.pairings[k].landmark], scan[k], R_);
-      if (!seen) continue;
-      const Eigen::Matrix2d S_z = seen->Hx * p.covariance * seen->Hx.transpose() + seen->S_f;
-      const Matrix32 K = S_z.llt().solve(seen->Hx * p.covariance).transpose();
-      p.pose += K * seen->nu;
-      p.pose(2) = wrap(p.pose(2));
-      p.covariance -= (K * S_z * K.transpose()).eval();
-      log_evidence += log_gaussian<2>(seen->nu, S_z);
+      log_evidence += absorb(p, *p.map[p.pairings[k].landmark], scan[k]).value_or(0.0);
     }
     return log_evidence;
   }
@@ -106,28 +129,28 @@ class FastSlam2 final : public FastSlam {
     for (int k = 0; k < 3; ++k) eps(k) = draw.normal();
     Eigen::Matrix3d ahead = Eigen::Matrix3d::Identity();  // from the vehicle's frame into the map's
     ahead.topLeftCorner<2, 2>() = Eigen::Rotation2D<double>(p.pose(2)).toRotationMatrix();
-    p.pose += ahead * psd_chol(ahead.transpose() * p.covariance * ahead) * eps;
+    p.pose += ahead * psd_chol<3>(ahead.transpose() * p.covariance * ahead) * eps;
     p.pose(2) = wrap(p.pose(2));
     p.covariance.setZero();
+    p.factor.setZero();
   }
 
   /// Form (r): likelihood at the drawn pose times prior over proposal there (Bailey et al. 2006).
   double log_ratio(const Particle& p, Scan scan, const Eigen::Vector3d& predicted,
                    const Eigen::Matrix3d& P_predicted) const {
-    double log_likelihood = 0.0;
+    double likelihood = 0.0;
     bool matched = false;
     for (std::size_t k = 0; k < scan.size(); ++k) {
       if (p.pairings[k].verdict != Verdict::matched) continue;
-      const auto seen = seen_from(p.pose, *p.map[p.pairings[k].landmark], scan[k], R_);
-      if (!seen) continue;
-      log_likelihood += log_gaussian<2>(seen->nu, seen->S_f);
-      matched = true;
+      const auto seen = log_likelihood(p.pose, *p.map[p.pairings[k].landmark], scan[k]);
+      likelihood += seen.value_or(0.0);
+      matched = matched || seen;
     }
     if (!matched) return 0.0;
     const Eigen::Matrix3d floor = Eigen::Vector3d(1e-12, 1e-12, 1e-14).asDiagonal();
     const Eigen::Vector3d from_prior = boxminus(as_pose(p.pose), as_pose(predicted));
     const Eigen::Vector3d from_proposal = boxminus(as_pose(p.pose), as_pose(p.refined_pose));
-    return log_likelihood + log_gaussian<3>(from_prior, P_predicted + floor) -
+    return likelihood + log_gaussian<3>(from_prior, P_predicted + floor) -
            log_gaussian<3>(from_proposal, p.refined_covariance + floor);
   }
 

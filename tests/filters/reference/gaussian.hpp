@@ -20,15 +20,23 @@ double log_gaussian(const Eigen::Matrix<double, N, 1>& v, const Eigen::Matrix<do
 
 /// Lower Cholesky factor that allows zero pivots: a pivot <= 1e-18 (1 + |P_jj|) gives a zero column
 /// (SPEC 4).
-inline Eigen::Matrix3d psd_chol(const Eigen::Matrix3d& P) {
-  Eigen::Matrix3d L = Eigen::Matrix3d::Zero();
-  for (int j = 0; j < 3; ++j) {
+template <int N>
+Eigen::Matrix<double, N, N> psd_chol(const Eigen::Matrix<double, N, N>& P) {
+  Eigen::Matrix<double, N, N> L = Eigen::Matrix<double, N, N>::Zero();
+  for (int j = 0; j < N; ++j) {
     const double pivot = P(j, j) - L.row(j).squaredNorm();
     if (pivot <= 1e-18 * (1.0 + std::abs(P(j, j)))) continue;
     L(j, j) = std::sqrt(pivot);
-    for (int i = j + 1; i < 3; ++i) L(i, j) = (P(i, j) - L.row(i).dot(L.row(j))) / L(j, j);
+    for (int i = j + 1; i < N; ++i) L(i, j) = (P(i, j) - L.row(i).dot(L.row(j))) / L(j, j);
   }
   return L;
+}
+
+/// The square root of P that is lower triangular in the coordinates y = T x, T orthogonal.
+template <int N>
+Eigen::Matrix<double, N, N> chol_in(const Eigen::Matrix<double, N, N>& T,
+                                    const Eigen::Matrix<double, N, N>& P) {
+  return T.transpose() * psd_chol<N>(T * P * T.transpose());
 }
 
 }  // namespace montecarta::reference

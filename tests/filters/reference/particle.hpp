@@ -5,7 +5,7 @@
 #include "filters/association/nearest.hpp"
 #include "filters/models/eigen_jacobians.hpp"
 
-#include <Eigen/Core>
+#include <Eigen/Dense>
 
 #include <optional>
 #include <vector>
@@ -15,12 +15,14 @@ namespace montecarta::reference {
 struct Landmark {
   Eigen::Vector2d mean;
   Eigen::Matrix2d covariance;
+  Eigen::Matrix2d factor = Eigen::Matrix2d::Zero();  ///< where the filter keeps square roots
 };
 
 /// One particle of the FastSLAM family (SPEC 5), with its own map and its own opinion on the scan.
 struct Particle {
   Eigen::Vector3d pose = Eigen::Vector3d::Zero();        ///< x_i; drawn after a scan
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< P_i, accumulated since the last draw
+  Eigen::Matrix3d factor = Eigen::Matrix3d::Zero();      ///< where the filter keeps square roots
   Eigen::Vector3d refined_pose =
       Eigen::Vector3d::Zero();  ///< proposal of the last scan, before drawing
   Eigen::Matrix3d refined_covariance = Eigen::Matrix3d::Zero();
@@ -64,7 +66,7 @@ inline Landmark new_landmark(const Eigen::Vector3d& pose, const Detection& detec
                              const Eigen::Matrix2d& R) {
   const auto placed = linearised_place(as_pose(pose), sight_of(detection));
   const Eigen::Matrix2d Gz = sight_jacobian(placed);
-  return {to_vector(placed.point), Gz * R * Gz.transpose()};
+  return {.mean = to_vector(placed.point), .covariance = Gz * R * Gz.transpose()};
 }
 
 }  // namespace montecarta::reference

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tests/filters/reference/unscented.hpp"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+
+/// The square-root toolbox of SPEC 4 and the central differences of SPEC 9, literally.
+namespace montecarta::reference {
+
+/// The lower triangular L, diagonal not negative, with L L' = A A' (the papers' "qr").
+template <int N, int M>
+Eigen::Matrix<double, N, N> tria(const Eigen::Matrix<double, N, M>& A) {
+  const Eigen::Matrix<double, M, N> At = A.transpose();
+  const Eigen::HouseholderQR<Eigen::Matrix<double, M, N>> qr(At);
+  Eigen::Matrix<double, N, N> R = Eigen::Matrix<double, N, N>::Zero();
+  constexpr int rows = std::min(N, M);
+  R.template topRows<rows>() =
+      qr.matrixQR().template topRows<rows>().template triangularView<Eigen::Upper>();
+  for (int i = 0; i < N; ++i) {
+    if (R(i, i) < 0.0) R.row(i) = -R.row(i);
+  }
+  return R.transpose();
+}
+
+/// S S' -> S S' - U U', one hyperbolic downdate per column of U; false where that is not positive.
+template <int N, int M>
+[[nodiscard]] bool cholupdate(Eigen::Matrix<double, N, N>& S,
+                              const Eigen::Matrix<double, N, M>& U) {
+  for (int c = 0; c < M; ++c) {
+    Vector<N> u = U.col(c);
+    for (int k = 0; k < N; ++k) {
+      const double square = S(k, k) * S(k, k) - u(k) * u(k);
+      if (square <= 0.0) return false;
+      const double root = std::sqrt(square), cosine = root / S(k, k), sine = u(k) / S(k, k);
+      S(k, k) = root;
+      for (int i = k + 1; i < N; ++i) {
+        S(i, k) = (S(i, k) - sine * u(i)) / cosine;
+        u(i) = cosine * u(i) - sine * S(i, k);
+      }
+    }
+  }
+  return true;
+}
+
+/// First (A) and second (B) differences of a model, and the mean of its image (SPEC 9).
+template <int N, int M>
+struct Differences {
+  Vector<M> mean;
+  Eigen::Matrix<double, M, N> A, B;
+};
+
+template <int M, int Angle, int N, class Model>
+Differences<N, M> central_differences(const Vector<N>& x, const Eigen::Matrix<double, N, N>& S,
+                                      double h, const Model& model) {
+  const Vector<M> centre = model(x);
+  Differences<N, M> image;
+  Vector<M> sum = Vector<M>::Zero();  // of the outer points, as differences from the centre's image
+  for (int i = 0; i < N; ++i) {
+    const Vector<N> ahead = x + h * S.col(i), behind = x - h * S.col(i);
+    const Vector<M> plus = difference<Angle, M>(model(ahead), centre);
+    const Vector<M> minus = difference<Angle, M>(model(behind), centre);
+    image.A.col(i) = (plus - minus) / (2.0 * h);
+    image.B.col(i) = std::sqrt(h * h - 1.0) / (2.0 * h * h) * (plus + minus);
+    sum += plus + minus;
+  }
+  image.mean = centre + 1.0 / (2.0 * h * h) * sum;
+  if constexpr (Angle >= 0) image.mean(Angle) = wrap(image.mean(Angle));
+  return image;
+}
+
+/// K = P_xz (S_y S_y')^-1 by two triangular solves (SPEC 4).
+template <int N, int M>
+Eigen::Matrix<double, N, M> gain(const Eigen::Matrix<double, N, M>& P_xz,
+                                 const Eigen::Matrix<double, M, M>& S_y) {
+  const auto L = S_y.template triangularView<Eigen::Lower>();
+  const Eigen::Matrix<double, M, N> half = L.solve(P_xz.transpose());
+  const Eigen::Matrix<double, M, N> K = L.transpose().solve(half);
+  return K.transpose();
+}
+
+/// The square root of S S' that is lower triangular in the coordinates y = T x, T orthogonal.
+template <int N>
+Eigen::Matrix<double, N, N> tria_in(const Eigen::Matrix<double, N, N>& T,
+                                    const Eigen::Matrix<double, N, N>& S) {
+  const Eigen::Matrix<double, N, N> turned = T * S;
+  return T.transpose() * tria<N, N>(turned);
+}
+
+}  // namespace montecarta::reference

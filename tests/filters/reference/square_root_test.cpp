@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/filters/reference/square_root.hpp"
+
+#include "engine/random/stream.hpp"
+#include "tests/filters/reference/gaussian.hpp"
+
+#include <gtest/gtest.h>
+
+namespace montecarta::reference {
+namespace {
+
+const double kInterval = std::sqrt(3.0);
+
+template <int N, int M>
+Eigen::Matrix<double, N, M> random_matrix(RngStream& draw) {
+  return Eigen::Matrix<double, N, M>::NullaryExpr([&](Eigen::Index) { return draw.normal(); });
+}
+
+/// x' = F x + G w, z = H x + v; w and v with the square roots Q and R.
+struct LinearSystem {
+  Eigen::Matrix3d F;
+  Eigen::Matrix<double, 3, 2> G;
+  Eigen::Matrix<double, 2, 3> H;
+  Eigen::Matrix2d Q, R;
+  explicit LinearSystem(RngStream& draw)
+      : F(0.5 * random_matrix<3, 3>(draw)),
+        G(random_matrix<3, 2>(draw)),
+        H(random_matrix<2, 3>(draw)),
+        Q(random_matrix<2, 2>(draw)),
+        R(random_matrix<2, 2>(draw) + Eigen::Matrix2d::Identity()) {}
+};
+
+/// SPEC 9 with the process noise augmented and the sensor's added.
+struct SquareRootFilter {
+  Vector<3> x = Vector<3>::Zero();
+  Eigen::Matrix3d S = Eigen::Matrix3d::Identity();
+
+  void predict(const LinearSystem& system) {
+    Vector<5> both = Vector<5>::Zero();
+    both.head<3>() = x;
+    Eigen::Matrix<double, 5, 5> root = Eigen::Matrix<double, 5, 5>::Zero();
+    root.topLeftCorner<3, 3>() = S;
+    root.bottomRightCorner<2, 2>() = system.Q;
+    const auto image =
+        central_differences<3, -1>(both, root, kInterval, [&](const Vector<5>& v) -> Vector<3> {
+          return system.F * v.head<3>() + system.G * v.tail<2>();
+        });
+    Eigen::Matrix<double, 3, 10> columns;
+    columns << image.A, image.B;
+    x = image.mean;
+    S = tria<3, 10>(columns);
+  }
+
+  void update(const LinearSystem& system, const Vector<2>& z) {
+    const auto image = central_differences<2, -1>(
+        x, S, kInterval, [&](const Vector<3>& v) -> Vector<2> { return system.H * v; });
+    Eigen::Matrix<double, 2, 8> sight;
+    sight << image.A, image.B, system.R;
+    const Eigen::Matrix2d S_y = tria<2, 8>(sight);
+    const Eigen::Matrix<double, 3, 2> K = gain<3, 2>(S * image.A.transpose(), S_y);
+    Eigen::Matrix<double, 3, 8> columns;
+    columns << S - K * image.A, K * image.B, K * system.R;
+    x += K * (z - image.mean);
+    S = tria<3, 8>(columns);
+  }
+};
+
+struct KalmanFilter {
+  Vector<3> x = Vector<3>::Zero();
+  Eigen::Matrix3d P = Eigen::Matrix3d::Identity();
+
+  void predict(const LinearSystem& s) {
+    x = (s.F * x).eval();
+    P = (s.F * P * s.F.transpose() + s.G * s.Q * s.Q.transpose() * s.G.transpose()).eval();
+  }
+  void update(const LinearSystem& s, const Vector<2>& z) {
+    const Eigen::Matrix2d S_z = s.H * P * s.H.transpose() + s.R * s.R.transpose();
+    const Eigen::Matrix<double, 3, 2> K = S_z.llt().solve(s.H * P).transpose();
+    x += (K * (z - s.H * x)).eval();
+    P -= (K * S_z * K.transpose()).eval();
+  }
+};
+
+TEST(SquareRootCentralDifferences, AreTheKalmanFilterOnLinearSystems) {  // SPEC 23.1
+  RngStream draw({.seed = 231, .purpose = Draw::test});
+  for (int n = 0; n < 1000; ++n) {
+    const LinearSystem system(draw);
+    SquareRootFilter root;
+    KalmanFilter kalman;
+    for (int step = 0; step < 5; ++step) {
+      const Vector<2> z = random_matrix<2, 1>(draw);
+      root.predict(system), kalman.predict(system);
+      root.update(system, z), kalman.update(system, z);
+    }
+    const Eigen::Matrix3d P = root.S * root.S.transpose();
+    EXPECT_LT((root.x - kalman.x).norm(), 1e-11 * (1.0 + kalman.x.norm())) << "system " << n;
+    EXPECT_LT((P - kalman.P).norm(), 1e-11 * (1.0 + kalman.P.norm())) << "system " << n;
+  }
+}
+
+TEST(CentralDifferences, HaveTheMomentsOfAQuadraticButNotOfAProduct) {  // SPEC 23.2
+  RngStream draw({.seed = 232, .purpose = Draw::test});
+  using One = Vector<1>;
+  for (int n = 0; n < 200; ++n) {
+    const double a = draw.normal(), b = draw.normal(), c = draw.normal(), m = draw.normal();
+    const double s = 0.1 + draw.uniform(), h = 1.1 + 2.0 * draw.uniform();
+    const auto quadratic = [&](const One& x) { return One(a + b * x(0) + c * x(0) * x(0)); };
+    const double mean = a + b * m + c * (m * m + s * s);
+    const double variance = std::pow((b + 2 * c * m) * s, 2) + 2 * std::pow(c * s * s, 2);
+    EXPECT_NEAR((central_differences<1, -1>(One(m), One(s), h, quadratic).mean(0)), mean, 1e-12);
+    const auto image = central_differences<1, -1>(One(m), One(s), kInterval, quadratic);
+    EXPECT_NEAR(image.A.squaredNorm() + image.B.squaredNorm(), variance, 1e-12 * (1 + variance));
+  }
+  const Eigen::Matrix2d S = Eigen::Matrix2d::Identity();
+  const auto image = central_differences<1, -1>(
+      Vector<2>(0.0, 0.0), S, kInterval, [](const Vector<2>& x) { return One(x(0) * x(1)); });
+  EXPECT_EQ(image.A.squaredNorm() + image.B.squaredNorm(), 0.0) << "truth is 1: a known defect";
+}
+
+/// A bent model of three variables.
+Vector<2> bent(const Vector<3>& x) {
+  return {std::sqrt(4.0 + x.squaredNorm()), std::atan2(x(1), 3.0 + x(0)) - x(2)};
+}
+
+TEST(CentralDifferences, NoiseAsPointsIsNoiseAdded) {  // SPEC 23.3
+  RngStream draw({.seed = 233, .purpose = Draw::test});
+  for (int n = 0; n < 200; ++n) {
+    const Eigen::Matrix3d S = 0.3 * random_matrix<3, 3>(draw);
+    const Eigen::Matrix2d R = 0.3 * random_matrix<2, 2>(draw);
+    const Vector<3> x = random_matrix<3, 1>(draw);
+    const auto added = central_differences<2, -1>(x, S, kInterval, bent);
+    Vector<5> both = Vector<5>::Zero();
+    both.head<3>() = x;
+    Eigen::Matrix<double, 5, 5> root = Eigen::Matrix<double, 5, 5>::Zero();
+    root.topLeftCorner<3, 3>() = S, root.bottomRightCorner<2, 2>() = R;
+    const auto augmented = central_differences<2, -1>(
+        both, root, kInterval,
+        [](const Vector<5>& v) -> Vector<2> { return bent(v.head<3>()) + v.tail<2>(); });
+    const auto square = [](const auto& A) -> Eigen::Matrix2d { return A * A.transpose(); };
+    const Eigen::Matrix2d P = square(added.A) + square(added.B) + square(R);
+    EXPECT_LT((augmented.mean - added.mean).norm(), 2e-15 * (1 + added.mean.norm()));
+    EXPECT_LT((square(augmented.A) + square(augmented.B) - P).norm(), 4e-15 * (1 + P.norm()));
+  }
+}
+
+TEST(SquareRootUpdate, ThreeFormsAgree) {  // SPEC 23.4
+  RngStream draw({.seed = 234, .purpose = Draw::test});
+  for (int n = 0; n < 1000; ++n) {
+    Eigen::Matrix3d S = tria<3, 3>(0.3 * random_matrix<3, 3>(draw));
+    const Eigen::Matrix2d R = 0.1 * random_matrix<2, 2>(draw);
+    const Vector<3> x = random_matrix<3, 1>(draw);
+    const auto image = central_differences<2, -1>(x, S, kInterval, bent);
+    Eigen::Matrix<double, 2, 8> sight;
+    sight << image.A, image.B, R;
+    const Eigen::Matrix2d S_y = tria<2, 8>(sight);
+    const Eigen::Matrix<double, 3, 2> K = gain<3, 2>(S * image.A.transpose(), S_y);
+    Eigen::Matrix<double, 3, 8> columns;
+    columns << S - K * image.A, K * image.B, K * R;
+    const Eigen::Matrix3d by_tria = tria<3, 8>(columns);
+    Eigen::Matrix3d by_downdate = S;
+    ASSERT_TRUE((cholupdate<3, 2>(by_downdate, K * S_y)));
+    const Eigen::Matrix3d P = S * S.transpose() - K * S_y * S_y.transpose() * K.transpose();
+    EXPECT_LT((by_tria * by_tria.transpose() - P).norm(), 1e-12);
+    EXPECT_LT((by_downdate * by_downdate.transpose() - P).norm(), 1e-12);
+  }
+}
+
+TEST(SquareRootUpdate, ADowndateThatTakesMoreThanThereIsIsRefused) {  // SPEC 23.4
+  Eigen::Matrix2d S;
+  S << 1.0, 0.0, 0.5, 0.3;
+  EXPECT_FALSE((cholupdate<2, 1>(S, Vector<2>(1.0, 0.0))));
+  S << 1.0, 0.0, 0.5, 0.3;
+  EXPECT_FALSE((cholupdate<2, 1>(S, Vector<2>(0.0, 0.4)))) << "in the second pivot";
+  S << 1.0, 0.0, 0.5, 0.3;
+  EXPECT_TRUE((cholupdate<2, 1>(S, Vector<2>(0.0, 0.2))));
+}
+
+TEST(InnovationOfEquation26, IsThatOfPoseMapAndSensorOnALinearModel) {  // SPEC 23.6
+  RngStream draw({.seed = 236, .purpose = Draw::test});
+  for (int n = 0; n < 200; ++n) {
+    const Eigen::Matrix3d S = tria<3, 3>(random_matrix<3, 3>(draw));
+    const Eigen::Matrix2d S_f = random_matrix<2, 2>(draw), R = random_matrix<2, 2>(draw);
+    const auto Hx = random_matrix<2, 3>(draw);
+    const auto Hf = random_matrix<2, 2>(draw);
+    const auto of_pose = central_differences<2, -1>(
+        Vector<3>(0, 0, 0), S, kInterval, [&](const Vector<3>& x) -> Vector<2> { return Hx * x; });
+    const auto of_map = central_differences<2, -1>(
+        Vector<2>(0, 0), S_f, kInterval, [&](const Vector<2>& f) -> Vector<2> { return Hf * f; });
+    const Eigen::Matrix2d S_bar =
+        of_map.A * of_map.A.transpose() + of_map.B * of_map.B.transpose() + R * R.transpose();
+    const Eigen::Matrix3d P = S * S.transpose();
+    const Eigen::Matrix2d truth = Hx * P * Hx.transpose() + S_bar;
+    const Eigen::Matrix<double, 3, 2> P_xz = S * of_pose.A.transpose();
+    const Eigen::Matrix2d corrected = P_xz.transpose() * P.llt().solve(P_xz) + S_bar;
+    EXPECT_LT((corrected - truth).norm(), 1e-7 * truth.norm());  // P may be all but singular
+    const Eigen::Matrix2d by_columns = of_pose.A * of_pose.A.transpose() + S_bar;
+    EXPECT_LT((by_columns - truth).norm(), 1e-13 * truth.norm());
+    const Eigen::Matrix2d printed =
+        P_xz.transpose() * S.triangularView<Eigen::Lower>().solve(P_xz) + S_bar;
+    EXPECT_GT((printed - printed.transpose()).norm(), 1e-9) << "a factor where P belongs";
+  }
+}
+
+}  // namespace
+}  // namespace montecarta::reference
