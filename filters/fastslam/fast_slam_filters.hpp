@@ -29,6 +29,18 @@ std::unique_ptr<SlamFilter> make_fast_slam(const FilterSetup& setup,
       NearestAssociation<Real>(settings.particles, setup.association, setup.belief));
 }
 
+/// FastSLAM whose poses are refined by the scan, each Gaussian carried by a transform of its own.
+template <class Real, class PoseTransform, class MapTransform>
+std::unique_ptr<SlamFilter> make_refined(const FilterSetup& setup,
+                                         const PoseTransform& pose_transform,
+                                         const MapTransform& map_transform) {
+  const FastSlamSettings settings = fast_slam_settings(setup.options);
+  return make_fast_slam<Real>(setup, settings,
+                              GaussianProposal<Real, PoseTransform, MapTransform>(
+                                  settings.particles, setup.belief, weight_form(setup.options),
+                                  pose_transform, map_transform));
+}
+
 /// `Real` = double is the same filter one particle at a time, for tests.
 template <class Real>
 std::unique_ptr<SlamFilter> make_fastslam1(const FilterSetup& setup) {
@@ -37,14 +49,15 @@ std::unique_ptr<SlamFilter> make_fastslam1(const FilterSetup& setup) {
 }
 template <class Real>
 std::unique_ptr<SlamFilter> make_fastslam2(const FilterSetup& setup) {
-  const FastSlamSettings settings = fast_slam_settings(setup.options);
-  return make_fast_slam<Real>(
-      setup, settings,
-      GaussianProposal<Real>(settings.particles, setup.belief, weight_form(setup.options)));
+  return make_refined<Real>(setup, Linearised(), Linearised());
 }
 
 /// Lines for the table of factory.cpp.
 FilterKind fastslam1_kind();
 FilterKind fastslam2_kind();
+FilterKind ufastslam_kind();
+FilterKind srcd_kind();
+FilterKind srcd_aided_kind();
+FilterKind srcd_pf_kind();
 
 }  // namespace montecarta

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/fastslam/fast_slam_filters.hpp"
+#include "filters/fastslam/sigma_point_options.hpp"
+
+namespace montecarta {
+
+/// SRCD-FastSLAM (Ankishan 2016; SPEC 10): FastSLAM II with every Gaussian carried by central
+/// differences. Covariances are kept, and the factor is taken where points are drawn: the same
+/// numbers as the square-root recursion, to rounding.
+template <class Real>
+std::unique_ptr<SlamFilter> make_srcd(const FilterSetup& setup) {
+  const SigmaPoints points = central_difference_points(setup, map_uncertainty(setup.options));
+  return make_refined<Real>(setup, points, points);
+}
+
+/// SRCD-aided FastSLAM (SPEC 11): the poses of FastSLAM II, landmarks by central differences.
+template <class Real>
+std::unique_ptr<SlamFilter> make_srcd_aided(const FilterSetup& setup) {
+  return make_refined<Real>(setup, Linearised(),
+                            central_difference_points(setup, MapUncertainty::on));
+}
+
+/// SRCD-particle-filter based FastSLAM (SPEC 11): poses by central differences, the landmarks of
+/// FastSLAM II.
+template <class Real>
+std::unique_ptr<SlamFilter> make_srcd_pf(const FilterSetup& setup) {
+  return make_refined<Real>(setup, central_difference_points(setup, map_uncertainty(setup.options)),
+                            Linearised());
+}
+
+/// Options of a filter that uses central differences, in the order in which they are documented.
+inline std::vector<FilterOption> srcd_options() {
+  std::vector<FilterOption> options = sigma_point_options();
+  for (FilterOption& option : central_difference_options()) options.push_back(std::move(option));
+  return options;
+}
+
+}  // namespace montecarta
