@@ -84,6 +84,7 @@ class FastSlam final : public SlamFilter {
     for (std::size_t k = 0; k < matched_weights_.size(); ++k) {
       matched_weights_[k] = association_.matched_weight(k, weights_);
     }
+    proposal_.prepare(context, association_, weights_, poses_);
     context.parallel_for(tasks, [&](std::size_t task) {
       const std::size_t end = std::min(blocks, (task + 1) * kBlocksPerTask);
       for (std::size_t b = task * kBlocksPerTask; b < end; ++b)

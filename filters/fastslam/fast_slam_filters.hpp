@@ -59,5 +59,6 @@ FilterKind ufastslam_kind();
 FilterKind srcd_kind();
 FilterKind srcd_aided_kind();
 FilterKind srcd_pf_kind();
+FilterKind de_srcd_kind();
 
 }  // namespace montecarta

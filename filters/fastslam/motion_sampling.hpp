@@ -34,6 +34,10 @@ class MotionSampling {
   /// The pose is certain within a particle.
   PoseGaussian<Real> predicted(const BasicPose<Real>& pose) const { return {pose, {}}; }
 
+  template <class Matches>
+  void prepare(const StepContext& /*context*/, const Matches& /*matches*/,
+               const Weights<Real>& /*weights*/, const std::vector<BasicPose<Real>>& /*poses*/) {}
+
   /// Weighs one block by the likelihood at its poses and updates its landmarks.
   template <class Matches, class Note>
   Weighing<Real> weigh_and_draw(const StepContext& /*context*/, const Matches& matches,

@@ -37,6 +37,12 @@ template <class Real>
           .hh = P.hh};
 }
 
+/// factor P.
+template <class Real>
+Symmetric3<Real> scaled(const Symmetric3<Real>& P, double factor) {
+  return {factor * P.xx, factor * P.xy, factor * P.yy, factor * P.xh, factor * P.yh, factor * P.hh};
+}
+
 /// Symmetric matrix over (x, y) [m^2].
 template <class Real>
 struct Symmetric2 {

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/fastslam/de_srcd.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace montecarta {
+namespace {
+
+/// In the order of the enumerators.
+const std::vector<std::string> kEvolutionModes{"honest", "as_printed", "prior", "shared"};
+
+std::vector<FilterOption> options_of_evolution() {
+  using Kind = FilterOption::Kind;
+  return {{"mode", Kind::choice, "honest", 0, 0, kEvolutionModes,
+           "what is evolved, and whether the draw is paid for (SPEC 13)"},
+          {"scale", Kind::number, "0.4", 0, 2, {}, "F, of the difference vectors (SPEC 12)"},
+          {"crossover", Kind::number, "0.8", 0, 1, {}, "Cr, share of components that cross"},
+          {"generations", Kind::integer, "10", 0, 1000, {}, "at most; the paper does not say"},
+          {"population",
+           Kind::integer,
+           "10",
+           7,
+           1000,
+           {},
+           "of each particle's own evolution (mode honest); the particles themselves otherwise"},
+          {"bounds", Kind::number, "3", 0, 100, {}, "of the search, in standard deviations"},
+          {"inflation",
+           Kind::number,
+           "1",
+           1,
+           10,
+           {},
+           "of the covariance that is drawn from (modes honest and shared)"}};
+}
+
+}  // namespace
+
+EvolvedSettings evolved_settings(const FilterOptions& options) {
+  const auto mode =
+      std::find(kEvolutionModes.begin(), kEvolutionModes.end(), options.choice("mode"));
+  return {.mode = static_cast<EvolutionMode>(mode - kEvolutionModes.begin()),
+          .evolution = {.scale = options.number("scale"),
+                        .crossover = options.number("crossover"),
+                        .generations = options.integer("generations"),
+                        .base = EvolutionBase::best},
+          .population = options.integer("population"),
+          .bounds = options.number("bounds"),
+          .inflation = options.number("inflation")};
+}
+
+FilterKind de_srcd_kind() {
+  std::vector<FilterOption> options = fast_slam_options();
+  for (FilterOption& option : options_of_evolution()) options.push_back(std::move(option));
+  for (FilterOption& option : central_difference_options()) options.push_back(std::move(option));
+  options.push_back(map_uncertainty_option());
+  return {.name = "de_srcd",
+          .long_name = "DE-SRCD-FastSLAM",
+          .source = "Ankishan et al. 2016; SPEC 13",
+          .has_particles = true,
+          .has_mixture = true,
+          .options = std::move(options),
+          .make = make_de_srcd<Lanes>};
+}
+
+}  // namespace montecarta

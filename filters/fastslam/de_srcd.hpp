@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/fastslam/evolved_proposal.hpp"
+#include "filters/fastslam/fast_slam_filters.hpp"
+#include "filters/fastslam/sigma_point_options.hpp"
+
+namespace montecarta {
+
+/// What evolution was told to be.
+EvolvedSettings evolved_settings(const FilterOptions& options);
+
+/// DE-SRCD-FastSLAM (Ankishan 2016; SPEC 13): SRCD-FastSLAM with its poses moved by differential
+/// evolution.
+template <class Real>
+std::unique_ptr<SlamFilter> make_de_srcd(const FilterSetup& setup) {
+  const FastSlamSettings settings = fast_slam_settings(setup.options);
+  const SigmaPoints points = central_difference_points(setup, map_uncertainty(setup.options));
+  return make_fast_slam<Real>(setup, settings,
+                              EvolvedProposal<Real>(settings.particles, setup.belief,
+                                                    evolved_settings(setup.options), points));
+}
+
+}  // namespace montecarta

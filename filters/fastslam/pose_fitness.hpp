@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/fastslam/gaussian_draw.hpp"
+#include "filters/moments/linearised.hpp"
+
+#include <span>
+
+namespace montecarta {
+
+/// A detection and the landmark that a particle takes it for.
+template <class Real>
+struct Sighting {
+  LandmarkGaussian<Real> landmark;
+  RangeBearing<Real> seen;
+  Real matched;  ///< 1, or 0 where the particle takes it for nothing it knows
+};
+
+/// How well a pose explains a scan.
+template <class Real>
+class PoseFitness {
+ public:
+  PoseFitness(const PoseGaussian<Real>& predicted, const SensorNoise& noise)
+      : predicted_(predicted), noise_(noise) {}
+
+  /// Log of Ankishan eq. (32) read for range and bearing: sum of -1/2 nu' R^-1 nu (SPEC 13).
+  /// Neither the motion nor the map's covariance counts.
+  Real likelihood(const BasicPose<Real>& pose, std::span<const Sighting<Real>> scan) const {
+    Real sum(0.0);
+    for (const Sighting<Real>& one : scan) {
+      const RangeBearing<Real> nu = residual(one.seen, sightline(pose, one.landmark.mean));
+      sum += one.matched *
+             (nu.range * nu.range / noise_.range + nu.bearing * nu.bearing / noise_.bearing);
+    }
+    return -0.5 * sum;
+  }
+
+  /// Log of the pose's posterior density up to a constant: the map's covariance in the innovation,
+  /// and the prediction as prior (SPEC 13, DE-Q).
+  Real posterior(const BasicPose<Real>& pose, std::span<const Sighting<Real>> scan) const {
+    Evidence<Real> evidence;
+    for (const Sighting<Real>& one : scan) {
+      const Sightline<Real> s = sightline(pose, one.landmark.mean);
+      const auto use = one.matched > Real(0.5) && is_usable(s);
+      const Turned<Real> map = turned(one.landmark.covariance, s);
+      const auto [r, b] = residual(one.seen, s);
+      const Real rr = noise_.range + map.along, rb = map.cross * s.per_range;
+      const Real bb = noise_.bearing + map.across * s.per_range * s.per_range;
+      const Real determinant = rr * bb - rb * rb;
+      const Real squared = (bb * r * r - 2.0 * rb * r * b + rr * b * b) / determinant;
+      evidence.add(select(use, squared, Real(0.0)), select(use, determinant, Real(1.0)),
+                   as_number<Real>(use), one.matched);
+    }
+    return evidence.log_density() + predicted_(pose);
+  }
+
+ private:
+  PoseDensity<Real> predicted_;
+  SensorNoise noise_;
+};
+
+}  // namespace montecarta

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/fastslam/de_srcd.hpp"
+
+#include "filters/ekf_slam/ekf_slam.hpp"
+#include "tests/filters/fastslam/filter_comparison.hpp"
+
+#include <gtest/gtest.h>
+
+namespace montecarta {
+namespace {
+
+Variant de_srcd(const std::string& mode, std::size_t particles,
+                Association association = Association::known) {
+  return {"de_srcd", "closed", association, particles, {{"mode", mode}}};
+}
+
+class DeSrcd : public testing::TestWithParam<Variant> {};
+
+TEST_P(DeSrcd, LanesEqualOneParticleAtATime) {
+  const SmallWorldSettings settings;
+  const auto lanes = make_production(GetParam(), settings);
+  const auto single = make_de_srcd<double>(setup_of(GetParam(), settings));
+  expect_same_run(*lanes, *single, small_world(settings), 1e-8);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DeSrcd,
+                         testing::Values(de_srcd("honest", 10), de_srcd("as_printed", 11),
+                                         de_srcd("prior", 3), de_srcd("shared", 9),
+                                         de_srcd("honest", 3, Association::nearest),
+                                         de_srcd("as_printed", 5, Association::nearest)),
+                         testing::PrintToStringParamName());
+
+TEST(DeSrcd, FollowsTheTruthWithOneTwoAndThreeParticles) {
+  const SmallWorldSettings settings;
+  const SmallWorld world = small_world(settings);
+  for (const char* mode : {"honest", "as_printed", "prior", "shared"}) {
+    for (const std::size_t particles : {1, 2, 3}) {
+      const auto filter = make_production(de_srcd(mode, particles), settings);
+      drive_through(*filter, world, Pose(), [&](std::size_t scan) {
+        const Pose& truth = world.drive.truth[world.itinerary.scan_step[scan]];
+        EXPECT_LT(boxminus(filter->estimate().spread.mean, truth).norm(), 2.0)
+            << mode << " with " << particles << ", scan " << scan;
+      });
+    }
+  }
+}
+
+/// A scan from where the vehicle knows to stand, a short drive, and a scan of the same landmarks.
+PoseEstimate after_two_scans(SlamFilter& filter, const SmallWorld& world) {
+  filter.start({});
+  filter.update(StepContext(77, 0, 0, Parallel::serial()), world.drive.scan(0));
+  for (std::uint32_t step = 1; step <= 8; ++step) {
+    filter.predict(StepContext(77, 0, step, Parallel::serial()), {3.0, 0.15}, 0.025);
+  }
+  filter.update(StepContext(77, 0, 8, Parallel::serial()), world.drive.scan(1));
+  return filter.estimate();
+}
+
+TEST(DeSrcd, WeighsItsDrawsSoThatTheyAreThePosteriorWhereverItDrawsAbout) {
+  // The first scan that sees landmarks again is the Kalman filter's update (SPEC 23.5). In mode
+  // shared all particles still stand at one place, so evolution leaves the centre at the
+  // prediction; in mode honest too much is drawn from. The weights must make up for both.
+  const SmallWorldSettings settings{.seed = 77, .landmarks = 40};
+  SmallWorld world{.itinerary = {}, .drive = {}, .seed = 77};
+  place_landmarks(settings, world);
+  world.drive.scan_begin.push_back(0);
+  look_around(settings, 0, Pose{}, world);
+  Pose truth;
+  for (int step = 0; step < 8; ++step) truth = move(truth, Control{3.0, 0.15}, 0.025, 4.0);
+  look_around(settings, 8, truth, world);
+  const auto kalman = make_ekf_slam(
+      {.belief = {}, .association = {}, .options = FilterOptions({}), .landmarks = 40});
+  const PoseMoments expected = after_two_scans(*kalman, world).spread;
+
+  for (const char* mode : {"honest", "shared"}) {
+    Variant variant = de_srcd(mode, 20000);
+    variant.options["inflation"] = "2";
+    variant.options["resample_below"] = "0";
+    const auto filter = make_production(variant, settings);
+    const PoseMoments found = after_two_scans(*filter, world).spread;
+    const double ess = filter->report().ess;
+    const Eigen::Vector3d error = boxminus(found.mean, expected.mean);
+    for (int k = 0; k < 3; ++k) {
+      const double sigma = std::sqrt(expected.covariance(k, k));
+      EXPECT_NEAR(error(k), 0.0, 5.0 * sigma / std::sqrt(ess) + 0.02 * sigma) << mode << ' ' << k;
+      EXPECT_NEAR(found.covariance(k, k) / (sigma * sigma), 1.0, 10.0 / std::sqrt(ess) + 0.02)
+          << mode << ' ' << k;
+    }
+    EXPECT_NEAR(filter->report().log_likelihood, kalman->report().log_likelihood, 0.1) << mode;
+  }
+}
+
+/// A pose Gaussian, a linear detection of it, and what Bayes makes of both.
+struct LinearCase {
+  PoseGaussian<double> prior{{1.0, -2.0, 0.4}, {0.04, 0.0, 1e-6, 0.0, 0.0, 1e-6}};
+  double z = 1.5, r = 0.09;  ///< of x, with its variance
+  double s() const { return prior.covariance.xx + r; }
+  /// The Gaussian about `mean` after absorbing z.
+  PoseGaussian<double> refined(double mean) const {
+    PoseGaussian<double> posterior = prior;
+    const double gain = prior.covariance.xx / s();
+    posterior.mean.x = mean + gain * (z - mean);
+    posterior.covariance.xx = (1.0 - gain) * prior.covariance.xx;
+    return posterior;
+  }
+  double log_evidence(double mean) const {
+    return -0.5 * ((z - mean) * (z - mean) / s() + std::log(kTwoPi * s()));
+  }
+};
+
+/// Mean of w and of w x over draws, and their standard errors.
+struct Weighed {
+  double w = 0.0, wx = 0.0, error_w = 0.0, error_wx = 0.0;
+};
+
+template <class Draw>
+Weighed average(const Draw& draw) {
+  constexpr int kDraws = 100000;
+  double w = 0.0, ww = 0.0, wx = 0.0, wxwx = 0.0;
+  for (std::uint32_t n = 0; n < kDraws; ++n) {
+    const auto [weight, x] = draw(StreamIdentity{.seed = 238, .index = n});
+    w += weight, ww += weight * weight, wx += weight * x, wxwx += weight * x * weight * x;
+  }
+  const auto error = [](double sum, double squares) {
+    return std::sqrt((squares / kDraws - sum / kDraws * sum / kDraws) / kDraws);
+  };
+  return {w / kDraws, wx / kDraws, error(w, ww), error(wx, wxwx)};
+}
+
+TEST(DeSrcd, HonestWeightsAreUnbiasedForAMisplacedCentreAndPrintedOnesAreNot) {  // SPEC 23.8
+  const LinearCase c;
+  const PoseGaussian<double> posterior = c.refined(c.prior.mean.x);
+  const double evidence = std::exp(c.log_evidence(c.prior.mean.x));
+  const double misplaced = posterior.mean.x + 1.5 * std::sqrt(posterior.covariance.xx);
+
+  const Weighed honest = average([&](const StreamIdentity& identity) {
+    PoseGaussian<double> proposal = posterior;
+    proposal.mean.x = misplaced;
+    const Pose pose = draw_from(PoseFactor<double>(proposal), identity);
+    const double nu = c.z - pose.x;
+    const double log_weight = -0.5 * (nu * nu / c.r + std::log(kTwoPi * c.r)) +
+                              PoseDensity<double>(c.prior)(pose) -
+                              PoseDensity<double>(proposal)(pose);
+    return std::pair(std::exp(log_weight), pose.x);
+  });
+  EXPECT_NEAR(honest.w, evidence, 5.0 * honest.error_w);
+  EXPECT_NEAR(honest.wx, evidence * posterior.mean.x, 5.0 * honest.error_wx);
+
+  const Weighed printed = average([&](const StreamIdentity& identity) {
+    const Pose pose = draw_from(PoseFactor<double>(c.refined(misplaced)), identity);
+    return std::pair(std::exp(c.log_evidence(misplaced)), pose.x);
+  });
+  EXPECT_GT(std::abs(printed.w - evidence), 5.0 * honest.error_w);
+  EXPECT_GT(std::abs(printed.wx / printed.w - posterior.mean.x), 5.0 * honest.error_wx / evidence);
+}
+
+TEST(PoseFitness, IsEquation32OrTheDensityOfThePose) {
+  RngStream draw({.seed = 13, .purpose = Draw::test});
+  const SensorNoise noise{0.04, 0.001};
+  const PoseGaussian<double> prior{{1.0, 2.0, 0.5}, {0.1, 0.01, 0.2, 0.0, 0.01, 0.02}};
+  const PoseFitness<double> fitness(prior, noise);
+  for (int n = 0; n < 100; ++n) {
+    const Pose pose{1.0 + 0.2 * draw.normal(), 2.0 + 0.2 * draw.normal(),
+                    0.5 + 0.1 * draw.normal()};
+    const std::vector<Sighting<double>> scan{
+        {{{20.0, 5.0}, {0.3, 0.1, 0.2}}, {19.0, -0.3}, 1.0},
+        {{{-10.0, 7.0}, {0.1, 0.0, 0.4}}, {12.0, 2.0}, 1.0},
+        {{{0.0, 0.0}, {}}, {1.0, 1.0}, 0.0}};  // matched nothing
+    double printed = 0.0, density = PoseDensity<double>(prior)(pose);
+    const Eigen::Matrix2d R = Eigen::Vector2d(noise.range, noise.bearing).asDiagonal();
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto& [landmark, seen, matched] = scan[k];
+      const auto& P = landmark.covariance;
+      const auto at =
+          reference::seen_from({pose.x, pose.y, pose.heading},
+                               {.mean = to_vector(landmark.mean),
+                                .covariance = Eigen::Matrix2d{{P.xx, P.xy}, {P.xy, P.yy}}},
+                               {seen.range, seen.bearing, 0}, R);
+      printed += -0.5 * at->nu.dot(R.llt().solve(at->nu));
+      density += reference::log_gaussian<2>(at->nu, at->S_f);
+    }
+    EXPECT_NEAR(fitness.likelihood(pose, scan), printed, 1e-9 * (1 + std::abs(printed)));
+    EXPECT_NEAR(fitness.posterior(pose, scan), density, 1e-9 * (1 + std::abs(density)));
+  }
+}
+
+}  // namespace
+}  // namespace montecarta
