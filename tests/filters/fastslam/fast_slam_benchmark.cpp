@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/runs/cpu_clock.hpp"
-#include "filters/fastslam/fast_slam_filters.hpp"
-#include "tests/filters/reference/fast_slam2.hpp"
+#include "filters/factory.hpp"
+#include "tests/filters/reference/srcd_fast_slam.hpp"
+#include "tests/filters/reference/ufast_slam.hpp"
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 
-// Particle-observation and particle-step costs of FastSLAM II, and of the plain Eigen reference in
-// the same run: the ratio is the figure to quote. build/benchmarks --benchmark_filter=FastSlam2
+// Particle-observation and particle-step costs of the family, and of the plain Eigen references (of
+// seven dimensions and fifteen points where the filter has points) in the same run: the ratio is
+// the figure to quote. build/benchmarks --benchmark_filter='FastSlam2|UFastSlam|Srcd'
 namespace montecarta {
 namespace {
 
@@ -33,20 +37,29 @@ std::vector<Detection> look(const Pose& truth) {
   return scan;
 }
 
-std::unique_ptr<SlamFilter> production(std::size_t particles) {
-  return make_fastslam2<Lanes>({.belief = belief(),
-                                .association = {},
-                                .options = FilterOptions({{"particles", std::to_string(particles)},
-                                                          {"resampling", "systematic"},
-                                                          {"resample_below", "0.5"},
-                                                          {"weights", "closed"}}),
-                                .landmarks = kSeen});
+/// As users get it, by name.
+std::unique_ptr<SlamFilter> production(const char* name, std::size_t particles) {
+  const auto kinds = filter_kinds();
+  const FilterKind& kind = *std::find_if(kinds.begin(), kinds.end(),
+                                         [&](const FilterKind& k) { return k.name == name; });
+  std::map<std::string, std::string, std::less<>> values;
+  for (const FilterOption& option : kind.options) values[option.name] = option.fallback;
+  values["particles"] = std::to_string(particles);
+  return kind.make({.belief = belief(),
+                    .association = {},
+                    .options = FilterOptions(values),
+                    .landmarks = kSeen});
 }
 
-std::unique_ptr<SlamFilter> plain(std::size_t particles) {
+std::unique_ptr<SlamFilter> plain(const std::string& name, std::size_t particles) {
   const reference::FastSlamSettings settings{
       .particles = particles, .belief = belief(), .landmarks = kSeen};
-  return std::make_unique<reference::FastSlam2>(settings, reference::Weight::closed);
+  constexpr auto kWeight = reference::Weight::closed;
+  if (name == "ufastslam")
+    return std::make_unique<reference::UFastSlam>(settings, kWeight, reference::Unscented{}, true);
+  if (name == "srcd")
+    return std::make_unique<reference::SrcdFastSlam>(settings, kWeight, reference::SrcdParts{});
+  return std::make_unique<reference::FastSlam2>(settings, kWeight);
 }
 
 /// What timing nothing takes [s]: reading the clock is a system call.
@@ -92,33 +105,51 @@ void drive(benchmark::State& state, SlamFilter& filter, std::size_t particles, P
       items * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void FastSlam2(benchmark::State& state, std::unique_ptr<SlamFilter> (*make)(std::size_t),
-               Part part) {
+enum class Make { lanes, eigen };
+
+void measure(benchmark::State& state, const char* name, Make make, Part part) {
   const auto particles = static_cast<std::size_t>(state.range(0));
-  const auto filter = make(particles);
+  const auto filter = make == Make::lanes ? production(name, particles) : plain(name, particles);
   drive(state, *filter, particles, part);
 }
 
-BENCHMARK_CAPTURE(FastSlam2, observation, production, Part::scan)
-    ->Arg(30)
-    ->Arg(100)
-    ->Arg(1000)
-    ->UseManualTime();
-BENCHMARK_CAPTURE(FastSlam2, observation_eigen, plain, Part::scan)
-    ->Arg(30)
-    ->Arg(100)
-    ->Arg(1000)
-    ->UseManualTime();
-BENCHMARK_CAPTURE(FastSlam2, prediction, production, Part::prediction)
-    ->Arg(30)
-    ->Arg(100)
-    ->Arg(1000)
-    ->UseManualTime();
-BENCHMARK_CAPTURE(FastSlam2, prediction_eigen, plain, Part::prediction)
-    ->Arg(30)
-    ->Arg(100)
-    ->Arg(1000)
-    ->UseManualTime();
+void FastSlam2(benchmark::State& state, Make make, Part part) {
+  measure(state, "fastslam2", make, part);
+}
+void UFastSlam(benchmark::State& state, Make make, Part part) {
+  measure(state, "ufastslam", make, part);
+}
+void Srcd(benchmark::State& state, Make make, Part part) { measure(state, "srcd", make, part); }
+void DeSrcd(benchmark::State& state, Make make, Part part) {
+  measure(state, "de_srcd", make, part);
+}
+
+void sizes(benchmark::internal::Benchmark* benchmark) {
+  for (const std::int64_t particles : {30, 100, 1000}) benchmark->Arg(particles);
+  benchmark->UseManualTime();
+}
+void few(benchmark::internal::Benchmark* benchmark) {
+  for (const std::int64_t particles : {3, 10, 100}) benchmark->Arg(particles);
+  benchmark->UseManualTime();
+}
+
+BENCHMARK_CAPTURE(FastSlam2, observation, Make::lanes, Part::scan)->Apply(sizes);
+BENCHMARK_CAPTURE(FastSlam2, observation_eigen, Make::eigen, Part::scan)->Apply(sizes);
+BENCHMARK_CAPTURE(FastSlam2, prediction, Make::lanes, Part::prediction)->Apply(sizes);
+BENCHMARK_CAPTURE(FastSlam2, prediction_eigen, Make::eigen, Part::prediction)->Apply(sizes);
+
+BENCHMARK_CAPTURE(UFastSlam, observation, Make::lanes, Part::scan)->Apply(sizes);
+BENCHMARK_CAPTURE(UFastSlam, observation_eigen, Make::eigen, Part::scan)->Apply(sizes);
+BENCHMARK_CAPTURE(UFastSlam, prediction, Make::lanes, Part::prediction)->Apply(sizes);
+BENCHMARK_CAPTURE(UFastSlam, prediction_eigen, Make::eigen, Part::prediction)->Apply(sizes);
+
+BENCHMARK_CAPTURE(Srcd, observation, Make::lanes, Part::scan)->Apply(sizes);
+BENCHMARK_CAPTURE(Srcd, observation_eigen, Make::eigen, Part::scan)->Apply(sizes);
+BENCHMARK_CAPTURE(Srcd, prediction, Make::lanes, Part::prediction)->Apply(sizes);
+BENCHMARK_CAPTURE(Srcd, prediction_eigen, Make::eigen, Part::prediction)->Apply(sizes);
+
+BENCHMARK_CAPTURE(DeSrcd, observation, Make::lanes, Part::scan)->Apply(few);
+BENCHMARK_CAPTURE(DeSrcd, prediction, Make::lanes, Part::prediction)->Apply(few);
 
 }  // namespace
 }  // namespace montecarta
