@@ -75,6 +75,15 @@ TEST(DirectSums, EqualPlainEigenAcrossTheBackwardDirection) {
   }
 }
 
+TEST(DirectSums, EqualPlainEigenWhereHeadingsPointEverywhere) {
+  const KernelCloud<double> plain(53, 1000.0, 0.3, 20.0);
+  const KernelCloud<Lanes> lanes(53, 1000.0, 0.3, 20.0);
+  const auto expected = plain_log_sums(plain);
+  EXPECT_LT(greatest_difference(log_sums(plain, KernelSums::direct), expected), 1e-9);
+  EXPECT_LT(greatest_difference(log_sums(lanes, KernelSums::direct), expected), 1e-9);
+  EXPECT_LT(greatest_difference(log_sums(lanes, KernelSums::tree), expected), 1e-8);
+}
+
 TEST(DirectSums, SurviveTargetsFarFromEveryKernel) {
   KernelCloud<Lanes> cloud(20, 1.0, 0.0, 0.01);
   set(cloud.targets[0].x, 3, 200.0);
