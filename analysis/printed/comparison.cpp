@@ -26,6 +26,15 @@ std::string distance_text(double measured, double printed) {
   return (far ? "not reproduced: " : "differs: ") + factor_text(factor);
 }
 
+/// Whether one run more could well be the printed one: not among our most extreme (1 - level).
+bool is_among(const std::vector<double>& runs, const PrintedValue& value, double level) {
+  const double number = value.number(), rounding = value.rounding();
+  const auto below = std::ranges::count_if(runs, [&](double v) { return v <= number + rounding; });
+  const auto above = std::ranges::count_if(runs, [&](double v) { return v >= number - rounding; });
+  const double least = 0.5 * (1.0 - level) * static_cast<double>(runs.size());
+  return static_cast<double>(std::min(below, above)) >= std::max(1.0, least);
+}
+
 std::string verdict_on(const PrintedValue& value, std::uint64_t paper_runs, const Sample& sample,
                        double level) {
   const double off = std::abs(sample.mean - value.number());
@@ -33,6 +42,9 @@ std::string verdict_on(const PrintedValue& value, std::uint64_t paper_runs, cons
   if (sample.n < 2) {
     const bool near = off <= kNearWithoutInterval * std::abs(value.number());
     return near ? "agrees within 20 %" : distance_text(sample.mean, value.number());
+  }
+  if (paper_runs <= 1 && !sample.values.empty() && !is_among(sample.values, value, level)) {
+    return distance_text(sample.mean, value.number());
   }
   const double n = static_cast<double>(sample.n);
   const double N = static_cast<double>(std::max<std::uint64_t>(1, paper_runs));

@@ -30,7 +30,8 @@ struct ComparedClaim {
 };
 
 /// A printed number agrees where it lies where the mean of as many runs as the paper's would lie,
-/// with probability `level`, given the scatter of ours, or rounds to the printed digits.
+/// with probability `level`, given the scatter of ours, or rounds to the printed digits. A single
+/// run's number must also lie among our runs, whose scatter may be lopsided.
 ComparedValue compare(const StudyAnalysis& study, const PrintedValue& value);
 /// A claim holds where the whole interval of the paired difference is on its side.
 ComparedClaim compare(const StudyAnalysis& study, const PrintedClaim& claim);

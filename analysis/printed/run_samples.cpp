@@ -47,14 +47,14 @@ auto find_name(const Names& names, const std::string& name) {
 Sample joint_sample(const CellAnalysis& cell, const JointName& joint) {
   const NeesResult* nees = cell.find_nees(joint.block, cell.leading);
   if (nees == nullptr || nees->consistency.verdict == Verdict::untested) return {};
-  return {joint.value(nees->consistency), RunScores::kNone, 1};
+  return {joint.value(nees->consistency), RunScores::kNone, 1, {}};
 }
 
 Sample sample_over(std::span<const double> values) {
   SummaryOf sums;
   for (const double value : values) sums.add(value);
   const Summary summary = sums.result();
-  return {summary.mean, summary.sd, summary.n};
+  return {summary.mean, summary.sd, summary.n, {}};
 }
 
 /// (left, right) of every run that both cells completed.
@@ -81,7 +81,9 @@ Sample sample_of(const CellAnalysis* cell, const std::string& metric) {
   if (score == score_names().end()) return {};
   std::vector<double> values;
   for (const RunScores& run : cell->scores) values.push_back(run.*(score->value));
-  return sample_over(values);
+  Sample sample = sample_over(values);
+  sample.values = std::move(values);
+  return sample;
 }
 
 Sample ratio_of(const CellAnalysis* cell, const CellAnalysis* unit, const std::string& metric) {
@@ -94,7 +96,7 @@ Sample ratio_of(const CellAnalysis* cell, const CellAnalysis* unit, const std::s
     deviations.push_back((value - ratio * reference) / base);
   }
   const Sample scatter = sample_over(deviations);
-  return {ratio, scatter.sd, scatter.n};
+  return {ratio, scatter.sd, scatter.n, {}};
 }
 
 Sample difference_of(const CellAnalysis* left, const CellAnalysis* right,
@@ -103,7 +105,7 @@ Sample difference_of(const CellAnalysis* left, const CellAnalysis* right,
   const auto score = find_name(score_names(), metric);
   if (score == score_names().end()) {
     const double l = sample_of(left, metric).mean, r = sample_of(right, metric).mean;
-    return {l == r ? 0.0 : l - r, RunScores::kNone, 1};  // both may be infinite: never
+    return {l == r ? 0.0 : l - r, RunScores::kNone, 1, {}};  // both may be infinite: never
   }
   std::vector<double> differences;
   for (const auto& [l, r] : pairs_of(*left, *right, score->value)) differences.push_back(l - r);

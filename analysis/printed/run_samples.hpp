@@ -15,6 +15,7 @@ struct Sample {
   double mean = RunScores::kNone;  ///< NaN: not measured; infinite: never
   double sd = RunScores::kNone;    ///< of one run
   std::size_t n = 0;               ///< runs
+  std::vector<double> values{};    ///< of each run, where runs have one
 };
 
 /// A metric of a cell; nothing where `cell` is nullptr.
