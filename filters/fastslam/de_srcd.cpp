@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/de_srcd.hpp"
 
-#include <algorithm>
+#include "filters/option_choice.hpp"
+
 #include <string>
 #include <vector>
 
@@ -38,9 +39,7 @@ std::vector<FilterOption> options_of_evolution() {
 }  // namespace
 
 EvolvedSettings evolved_settings(const FilterOptions& options) {
-  const auto mode =
-      std::find(kEvolutionModes.begin(), kEvolutionModes.end(), options.choice("mode"));
-  return {.mode = static_cast<EvolutionMode>(mode - kEvolutionModes.begin()),
+  return {.mode = chosen<EvolutionMode>(options.choice("mode"), kEvolutionModes),
           .evolution = {.scale = options.number("scale"),
                         .crossover = options.number("crossover"),
                         .generations = options.integer("generations"),

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/fast_slam_options.hpp"
 
-#include <algorithm>
+#include "filters/option_choice.hpp"
+
 #include <string>
 
 namespace montecarta {
@@ -9,13 +10,6 @@ namespace {
 
 const std::vector<std::string> kResamplings{"systematic", "stratified", "residual", "multinomial"};
 const std::vector<std::string> kWeightForms{"closed", "ratio", "batch"};
-
-/// The enumerator at the place of `choice` among `choices`.
-template <class Enumerator>
-Enumerator chosen(const std::string& choice, const std::vector<std::string>& choices) {
-  return static_cast<Enumerator>(std::find(choices.begin(), choices.end(), choice) -
-                                 choices.begin());
-}
 
 }  // namespace
 

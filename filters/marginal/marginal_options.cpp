@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/marginal/marginal_options.hpp"
 
-#include <algorithm>
+#include "filters/option_choice.hpp"
+
 #include <string>
 
 namespace montecarta {
@@ -17,12 +18,6 @@ const Names kSolvers{"gauss_newton", "de"};
 const Names kObjectives{"likelihood", "squares", "squares_as_printed"};
 const Names kSums{"direct", "tree", "ifgt", "auto"};
 const Names kBases{"best", "random", "target"};
-
-template <class Enumerator>
-Enumerator chosen(const std::string& choice, const Names& choices) {
-  return static_cast<Enumerator>(std::find(choices.begin(), choices.end(), choice) -
-                                 choices.begin());
-}
 
 FilterOption choice(const char* name, const std::string& fallback, const Names& choices,
                     const char* meaning) {
