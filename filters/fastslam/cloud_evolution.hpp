@@ -76,12 +76,6 @@ class CloudEvolution {
           get(matched, lane)};
     }
   }
-  static PoseGaussian<double> of_lane(const PoseGaussian<Real>& block, std::size_t lane) {
-    const auto& [m, P] = block;
-    return {{get(m.x, lane), get(m.y, lane), get(m.heading, lane)},
-            {get(P.xx, lane), get(P.xy, lane), get(P.yy, lane), get(P.xh, lane), get(P.yh, lane),
-             get(P.hh, lane)}};
-  }
 
   std::array<double, 3> member(const Pose& pose) const {
     const double x = pose.x - moments_.mean.x, y = pose.y - moments_.mean.y;
@@ -96,10 +90,8 @@ class CloudEvolution {
 
   /// mean +- bounds standard deviations, and no member outside.
   SearchBox<double, 3> box(double bounds) const {
-    const Eigen::Matrix3d& C = moments_.covariance;
     const Symmetric3<double> P =
-        turned(Symmetric3<double>{C(0, 0), C(0, 1), C(1, 1), C(0, 2), C(1, 2), C(2, 2)},
-               Direction<double>{frame_.cosine, -frame_.sine});
+        turned(symmetric_of(moments_.covariance), Direction<double>{frame_.cosine, -frame_.sine});
     SearchBox<double, 3> box{
         {0.0, 0.0, 0.0},
         {bounds * std::sqrt(std::max(P.xx, 0.0)), bounds * std::sqrt(std::max(P.yy, 0.0)),

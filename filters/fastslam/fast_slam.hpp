@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/particles/block_tasks.hpp"
 #include "engine/particles/resampling.hpp"
 #include "engine/particles/weights.hpp"
 #include "engine/runs/slam_filter.hpp"
 #include "filters/fastslam/fast_slam_options.hpp"
-#include "filters/fastslam/innovation_sums.hpp"
 #include "filters/fastslam/particle_maps.hpp"
 #include "filters/moments/cloud_moments.hpp"
 #include "filters/moments/evidence.hpp"
+#include "filters/moments/innovation_sums.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -74,22 +75,16 @@ class FastSlam final : public SlamFilter {
   void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override;
 
  private:
-  static constexpr std::size_t kBlocksPerTask = 256 / kLanesOf<Real>;  // fewer particles do not pay
-
   void weigh_and_draw(const StepContext& context) {
-    const std::size_t blocks = poses_.size();
-    const std::size_t tasks = (blocks + kBlocksPerTask - 1) / kBlocksPerTask;
-    innovations_.start(tasks, association_.matches());
+    const BlockTasks<Real> tasks(poses_.size());
+    innovations_.start(tasks.count(), association_.matches());
     matched_weights_.resize(association_.matches());
     for (std::size_t k = 0; k < matched_weights_.size(); ++k) {
       matched_weights_[k] = association_.matched_weight(k, weights_);
     }
     proposal_.prepare(context, association_, weights_, poses_);
-    context.parallel_for(tasks, [&](std::size_t task) {
-      const std::size_t end = std::min(blocks, (task + 1) * kBlocksPerTask);
-      for (std::size_t b = task * kBlocksPerTask; b < end; ++b)
-        weigh_and_draw_block(context, task, b);
-    });
+    tasks.run(context,
+              [&](std::size_t task, std::size_t b) { weigh_and_draw_block(context, task, b); });
     report_.log_likelihood = weights_.normalise();
     report_.ess = weights_.effective();
     for (std::size_t i = 0; i < settings_.particles; ++i) {

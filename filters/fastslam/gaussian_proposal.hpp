@@ -2,8 +2,8 @@
 #pragma once
 
 #include "filters/fastslam/fast_slam_options.hpp"
-#include "filters/fastslam/gaussian_draw.hpp"
 #include "filters/fastslam/refined_cloud.hpp"
+#include "filters/moments/gaussian_draw.hpp"
 
 #include <type_traits>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/particles/block_tasks.hpp"
 #include "engine/random/normals.hpp"
 #include "filters/models/ackermann.hpp"
 #include "filters/moments/cloud_moments.hpp"
@@ -23,12 +24,9 @@ class MotionSampling {
   void predict(const StepContext& context, const Control& control, double duration,
                const Weights<Real>& /*weights*/, std::vector<BasicPose<Real>>& poses) {
     constexpr std::size_t kBlocksPerTask = 1024 / kLanesOf<Real>;
-    context.parallel_for(
-        (poses.size() + kBlocksPerTask - 1) / kBlocksPerTask, [&](std::size_t task) {
-          const std::size_t end = std::min(poses.size(), (task + 1) * kBlocksPerTask);
-          for (std::size_t b = task * kBlocksPerTask; b < end; ++b) {
-            poses[b] = moved(context, control, duration, b, poses[b]);
-          }
+    BlockTasks<Real>(poses.size(), kBlocksPerTask)
+        .run(context, [&](std::size_t /*task*/, std::size_t b) {
+          poses[b] = moved(context, control, duration, b, poses[b]);
         });
   }
   /// The pose is certain within a particle.

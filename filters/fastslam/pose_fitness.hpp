@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/fastslam/gaussian_draw.hpp"
+#include "filters/moments/gaussian_draw.hpp"
 #include "filters/moments/linearised.hpp"
 
 #include <span>

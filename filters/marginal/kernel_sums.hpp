@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/particles/block_tasks.hpp"
 #include "engine/particles/weights.hpp"
 #include "engine/runs/step_context.hpp"
 #include "filters/marginal/direct_sums.hpp"
@@ -34,7 +35,7 @@ class KernelSummation {
     if (may_pay || asked_ == KernelSums::tree) tree_.build(kernels_);
     if (asked_ == KernelSums::automatic)
       used_ = may_pay && tree_.extent() > kWide ? KernelSums::tree : KernelSums::direct;
-    if (used_ == KernelSums::ifgt && !ifgt_.build(kernels_, first_of(gaussians[0]), tolerance_)) {
+    if (used_ == KernelSums::ifgt && !ifgt_.build(kernels_, of_lane(gaussians[0], 0), tolerance_)) {
       used_ = KernelSums::direct;
     }
   }
@@ -83,21 +84,13 @@ class KernelSummation {
   }
 
   template <class Body>
-  void over_blocks(const StepContext& context, std::size_t blocks, const Body& body) const {
+  void over_blocks(const StepContext& context, std::size_t blocks, const Body& body) {
     constexpr std::size_t kPairsPerTask = 1U << 14;  // some 20 us
     const std::size_t pairs_per_block = kLanes * kernels_.kernels().size();
     const std::size_t per_task = std::max<std::size_t>(1, kPairsPerTask / pairs_per_block);
-    context.parallel_for((blocks + per_task - 1) / per_task, [&](std::size_t task) {
-      std::vector<Real> scratch;  // of the transform; empty otherwise
-      const std::size_t end = std::min(blocks, (task + 1) * per_task);
-      for (std::size_t b = task * per_task; b < end; ++b) body(b, scratch);
-    });
-  }
-
-  static PoseGaussian<double> first_of(const PoseGaussian<Real>& block) {
-    const auto& [m, C] = block;
-    return {{get(m.x, 0), get(m.y, 0), get(m.heading, 0)},
-            {get(C.xx, 0), get(C.xy, 0), get(C.yy, 0), get(C.xh, 0), get(C.yh, 0), get(C.hh, 0)}};
+    const BlockTasks<Real> tasks(blocks, per_task);
+    scratch_.resize(std::max(scratch_.size(), tasks.count()));
+    tasks.run(context, [&](std::size_t task, std::size_t b) { body(b, scratch_[task]); });
   }
 
   KernelSums asked_, used_ = KernelSums::direct;
@@ -106,7 +99,8 @@ class KernelSummation {
   KernelTree<N> tree_;
   IfgtSums<N> ifgt_;
   std::vector<Point3> points_;
-  std::vector<std::uint32_t> order_;  ///< of the targets, for the tree
+  std::vector<std::uint32_t> order_;        ///< of the targets, for the tree
+  std::vector<std::vector<Real>> scratch_;  ///< of each task, for the transform
 };
 
 /// The factor by which the weights of a marginal filter differ from the likelihood: Sum_j w_j

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/particles/block_tasks.hpp"
 #include "engine/particles/resampling.hpp"
-#include "filters/fastslam/innovation_sums.hpp"
 #include "filters/marginal/kernel_sums.hpp"
 #include "filters/marginal/map_learning.hpp"
 #include "filters/marginal/marginal_options.hpp"
 #include "filters/marginal/shared_association.hpp"
 #include "filters/marginal/shared_likelihood.hpp"
+#include "filters/moments/gaussian_draw.hpp"
+#include "filters/moments/innovation_sums.hpp"
 #include "filters/moments/motion_increment.hpp"
 
 #include <algorithm>
@@ -117,7 +119,8 @@ class MarginalFilter final : public SlamFilter {
     over_blocks(context, [&](std::size_t b) {
       const auto chosen =
           gather_block<Real, PoseGaussian<Real>>(proposal(), std::span(ancestors_), b);
-      poses_[b] = drawn_from(chosen, context.identity(Draw::kernel_sample, first_particle(b)));
+      poses_[b] = draw_from(PoseFactor<Real>(chosen),
+                            context.identity(Draw::kernel_sample, first_particle(b)));
     });
   }
 
@@ -152,11 +155,8 @@ class MarginalFilter final : public SlamFilter {
 
   template <class Body>
   void over_blocks(const StepContext& context, const Body& body) {
-    constexpr std::size_t kBlocksPerTask = 256 / kLanesOf<Real>;  // fewer particles do not pay
-    const std::size_t blocks = poses_.size();
-    context.parallel_for((blocks + kBlocksPerTask - 1) / kBlocksPerTask, [&](std::size_t task) {
-      const std::size_t end = std::min(blocks, (task + 1) * kBlocksPerTask);
-      for (std::size_t b = task * kBlocksPerTask; b < end; ++b) body(b);
+    BlockTasks<Real>(poses_.size()).run(context, [&](std::size_t /*task*/, std::size_t b) {
+      body(b);
     });
   }
   static std::uint32_t first_particle(std::size_t b) {

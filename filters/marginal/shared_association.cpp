@@ -9,13 +9,6 @@
 #include <string>
 
 namespace montecarta {
-namespace {
-
-Symmetric3<double> symmetric_of(const Eigen::Matrix3d& P) {
-  return {P(0, 0), P(0, 1), P(1, 1), P(0, 2), P(1, 2), P(2, 2)};
-}
-
-}  // namespace
 
 SharedAssociation::SharedAssociation(const FilterSetup& setup)
     : settings_(setup.association),
@@ -49,8 +42,7 @@ void SharedAssociation::associate(Scan scan, const SharedMap& map, bool map_is_e
       const auto s = sightline(predicted.mean, map[slot].mean);
       if (!is_usable(s)) continue;
       const auto covariance = map_is_exact ? Symmetric2<double>{} : map[slot].covariance();
-      const auto v =
-          innovation_of(P, s, residual(sight_of(scan[k]), s.predicted), covariance, noise_);
+      const auto v = innovation_of(P, s, residual(sight_of(scan[k]), s), covariance, noise_);
       const double distance = v.squared();
       search.offer(slot, distance, distance + std::log(v.determinant()), settings_.gate);
     }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/random/normals.hpp"
-#include "filters/fastslam/innovation_sums.hpp"
 #include "filters/marginal/marginal_options.hpp"
 #include "filters/marginal/shared_association.hpp"
+#include "filters/moments/innovation_sums.hpp"
 #include "filters/moments/linearised.hpp"
 
 #include <cstddef>
@@ -50,7 +49,7 @@ class SharedLikelihood {
     for (std::size_t k = 0; k < seen_.size(); ++k) {
       const Sightline<Real> s = sightline(kernel.mean, seen_[k].landmark.mean);
       innovations.add(b, k,
-                      innovation_of(kernel.covariance, s, residual(seen_[k].sight, s.predicted),
+                      innovation_of(kernel.covariance, s, residual(seen_[k].sight, s),
                                     seen_[k].landmark.covariance, noise_),
                       weight);
     }
@@ -79,19 +78,5 @@ class SharedLikelihood {
   MapMode mode_;
   std::vector<Seen> seen_;
 };
-
-/// A pose drawn from a Gaussian by the numbers of the stream; the factor is that in the frame of
-/// the vehicle, so that a turned world gives a turned draw.
-template <class Real>
-BasicPose<Real> drawn_from(const PoseGaussian<Real>& gaussian, const StreamIdentity& identity) {
-  const auto [e0, e1] = normal_pairs<Real>(identity, 0);
-  const Real e2 = normal_pairs<Real>(identity, 1).first;
-  const Direction<Real> ahead = direction_of(gaussian.mean.heading);
-  const Cholesky3<Real> L(turned(gaussian.covariance, {ahead.cosine, -ahead.sine}));
-  const Real x = L.xx * e0, y = L.yx * e0 + L.yy * e1;
-  return {gaussian.mean.x + ahead.cosine * x - ahead.sine * y,
-          gaussian.mean.y + ahead.sine * x + ahead.cosine * y,
-          wrap(Real(gaussian.mean.heading + L.hx * e0 + L.hy * e1 + L.hh * e2))};
-}
 
 }  // namespace montecarta

@@ -21,6 +21,11 @@ struct Symmetric3 {
 inline Eigen::Matrix3d symmetric(const Symmetric3<double>& P) {
   return Eigen::Matrix3d{{P.xx, P.xy, P.xh}, {P.xy, P.yy, P.yh}, {P.xh, P.yh, P.hh}};
 }
+/// Of a matrix, whose upper triangle is read.
+template <class Real = double>
+Symmetric3<Real> symmetric_of(const Eigen::Matrix3d& P) {
+  return {P(0, 0), P(0, 1), P(1, 1), P(0, 2), P(1, 2), P(2, 2)};
+}
 
 /// R P R' for the turn R of (x, y) by the angle of `d`; the heading stays.
 template <class Real>
@@ -55,6 +60,15 @@ struct PoseGaussian {
   BasicPose<Real> mean{};
   Symmetric3<Real> covariance{};
 };
+
+/// What the particle of one lane believes.
+template <class Real>
+PoseGaussian<double> of_lane(const PoseGaussian<Real>& block, std::size_t lane) {
+  const auto& [m, P] = block;
+  return {{get(m.x, lane), get(m.y, lane), get(m.heading, lane)},
+          {get(P.xx, lane), get(P.xy, lane), get(P.yy, lane), get(P.xh, lane), get(P.yh, lane),
+           get(P.hh, lane)}};
+}
 
 /// What one particle believes about one landmark.
 template <class Real>

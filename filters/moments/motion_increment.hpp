@@ -40,12 +40,10 @@ class MotionIncrement {
   template <class Real>
   [[gnu::always_inline]] PoseGaussian<Real> from(const BasicPose<Real>& origin) const {
     const Direction<Real> d = direction_of(origin.heading);
-    const Eigen::Matrix3d& C = covariance_;
-    const Symmetric3<Real> here{C(0, 0), C(0, 1), C(1, 1), C(0, 2), C(1, 2), C(2, 2)};
     return {
         {origin.x + d.cosine * pose_.x - d.sine * pose_.y,
          origin.y + d.sine * pose_.x + d.cosine * pose_.y, wrap(origin.heading + pose_.heading)},
-        turned(here, d)};
+        turned(symmetric_of<Real>(covariance_), d)};
   }
 
  private:

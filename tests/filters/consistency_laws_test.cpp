@@ -3,6 +3,7 @@
 #include "filters/ekf_slam/ekf_slam.hpp"
 #include "tests/filters/reference/fast_slam2.hpp"
 #include "tests/filters/small_world.hpp"
+#include "tests/filters/two_scans.hpp"
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
@@ -134,42 +135,19 @@ TEST(FastSlam2Weights, InALinearCaseTheRatioIsTheClosedFormWhateverWasDrawn) {
   }
 }
 
-/// Two scans with a short drive between: from where the filter knows to stand, then again.
-SmallWorld two_scans() {
-  const SmallWorldSettings settings{.seed = 77, .landmarks = 40};
-  SmallWorld world{.itinerary = {}, .drive = {}, .seed = 77};
-  place_landmarks(settings, world);
-  world.drive.scan_begin.push_back(0);
-  look_around(settings, 0, Pose{}, world);
-  Pose truth;
-  for (int step = 0; step < 8; ++step) truth = move(truth, Control{3.0, 0.15}, 0.025, 4.0);
-  look_around(settings, 8, truth, world);
-  return world;
-}
-
-PoseEstimate after_both_scans(SlamFilter& filter, const SmallWorld& world) {
-  filter.start({});
-  filter.update(StepContext(77, 0, 0, Parallel::serial()), world.drive.scan(0));
-  for (std::uint32_t step = 1; step <= 8; ++step) {
-    filter.predict(StepContext(77, 0, step, Parallel::serial()), {3.0, 0.15}, 0.025);
-  }
-  filter.update(StepContext(77, 0, 8, Parallel::serial()), world.drive.scan(1));
-  return filter.estimate();
-}
-
 TEST(FastSlam2, SeeingAgainFromAKnownPoseIsTheKalmanFiltersUpdate) {
   // Landmarks born at an exactly known pose are independent of it and of each other, so the first
   // scan that sees them again is the same Bayesian update for both filters, likelihood included
   // (SPEC 23.5: M = 1).
-  const SmallWorld world = two_scans();
+  const SmallWorld world = drive_of_two_scans();
   const auto kalman = make_ekf_slam(
       {.belief = {}, .association = {}, .options = FilterOptions({}), .landmarks = 40});
-  const PoseMoments expected = after_both_scans(*kalman, world).spread;
+  const PoseMoments expected = after_two_scans(*kalman, world).spread;
   EXPECT_GE(kalman->report().nis_dof, 4u);
   for (const std::size_t particles : {1, 30}) {
     reference::FastSlam2 filter({.particles = particles, .landmarks = 40},
                                 reference::Weight::closed);
-    const PoseMoments mixture = *after_both_scans(filter, world).mixture;
+    const PoseMoments mixture = *after_two_scans(filter, world).mixture;
     EXPECT_LT(boxminus(mixture.mean, expected.mean).norm(), 1e-12);
     EXPECT_LT((mixture.covariance - expected.covariance).norm(), 1e-13);
     EXPECT_NEAR(filter.report().log_likelihood, kalman->report().log_likelihood, 1e-9);

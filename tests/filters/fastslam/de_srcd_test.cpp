@@ -3,6 +3,7 @@
 
 #include "filters/ekf_slam/ekf_slam.hpp"
 #include "tests/filters/fastslam/filter_comparison.hpp"
+#include "tests/filters/two_scans.hpp"
 
 #include <gtest/gtest.h>
 
@@ -45,29 +46,12 @@ TEST(DeSrcd, FollowsTheTruthWithOneTwoAndThreeParticles) {
   }
 }
 
-/// A scan from where the vehicle knows to stand, a short drive, and a scan of the same landmarks.
-PoseEstimate after_two_scans(SlamFilter& filter, const SmallWorld& world) {
-  filter.start({});
-  filter.update(StepContext(77, 0, 0, Parallel::serial()), world.drive.scan(0));
-  for (std::uint32_t step = 1; step <= 8; ++step) {
-    filter.predict(StepContext(77, 0, step, Parallel::serial()), {3.0, 0.15}, 0.025);
-  }
-  filter.update(StepContext(77, 0, 8, Parallel::serial()), world.drive.scan(1));
-  return filter.estimate();
-}
-
 TEST(DeSrcd, WeighsItsDrawsSoThatTheyAreThePosteriorWhereverItDrawsAbout) {
   // The first scan that sees landmarks again is the Kalman filter's update (SPEC 23.5). In mode
   // shared all particles still stand at one place, so evolution leaves the centre at the
   // prediction; in mode honest too much is drawn from. The weights must make up for both.
-  const SmallWorldSettings settings{.seed = 77, .landmarks = 40};
-  SmallWorld world{.itinerary = {}, .drive = {}, .seed = 77};
-  place_landmarks(settings, world);
-  world.drive.scan_begin.push_back(0);
-  look_around(settings, 0, Pose{}, world);
-  Pose truth;
-  for (int step = 0; step < 8; ++step) truth = move(truth, Control{3.0, 0.15}, 0.025, 4.0);
-  look_around(settings, 8, truth, world);
+  const SmallWorldSettings settings = settings_of_two_scans();
+  const SmallWorld world = drive_of_two_scans();
   const auto kalman = make_ekf_slam(
       {.belief = {}, .association = {}, .options = FilterOptions({}), .landmarks = 40});
   const PoseMoments expected = after_two_scans(*kalman, world).spread;

@@ -2,6 +2,7 @@
 #include "engine/random/normals.hpp"
 #include "filters/marginal/kernel_sums.hpp"
 #include "filters/marginal/shared_likelihood.hpp"
+#include "filters/moments/gaussian_draw.hpp"
 #include "tests/filters/marginal/kernel_clouds.hpp"
 
 #include <gtest/gtest.h>
@@ -115,7 +116,7 @@ TEST(AuxiliaryWeights, AverageToTheEvidenceOfTheScan) {
     PoseGaussian<Lanes> chosen = block[0];
     for (std::size_t l = 0; l < Lanes::kSize; ++l)
       set(chosen.mean.x, l, line.kernels[line.choose(get(chance, l))].mean.x);
-    targets[b] = drawn_from(chosen, {7, 0, 1, 8 * b, Draw::test});
+    targets[b] = draw_from(PoseFactor<Lanes>(chosen), {7, 0, 1, 8 * b, Draw::test});
   }
   std::vector<std::array<Lanes, 2>> logs(kBlocks);
   summation.sum(kContext, targets, logs);

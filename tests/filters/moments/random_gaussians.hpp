@@ -17,8 +17,7 @@ inline Symmetric3<double> random_pose_covariance(RngStream& draw, double place, 
   Eigen::Matrix3d S;
   for (double& value : S.reshaped()) value = draw.normal();
   S.topRows<2>() *= place, S.row(2) *= heading;
-  const Eigen::Matrix3d P = S * S.transpose();
-  return {P(0, 0), P(0, 1), P(1, 1), P(0, 2), P(1, 2), P(2, 2)};
+  return symmetric_of(S * S.transpose());
 }
 
 inline Symmetric2<double> random_landmark_covariance(RngStream& draw, double place) {

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tests/filters/small_world.hpp"
+
+/// The first scan that sees landmarks again: a case in which FastSLAM II and the Kalman filter are
+/// one (SPEC 23.5).
+namespace montecarta {
+
+inline SmallWorldSettings settings_of_two_scans() { return {.seed = 77, .landmarks = 40}; }
+
+/// Two scans with a short drive between: from where the filter knows to stand, then again.
+inline SmallWorld drive_of_two_scans() {
+  const SmallWorldSettings settings = settings_of_two_scans();
+  SmallWorld world{.itinerary = {}, .drive = {}, .seed = settings.seed};
+  place_landmarks(settings, world);
+  world.drive.scan_begin.push_back(0);
+  look_around(settings, 0, Pose{}, world);
+  Pose truth;
+  for (int step = 0; step < 8; ++step) truth = move(truth, Control{3.0, 0.15}, 0.025, 4.0);
+  look_around(settings, 8, truth, world);
+  return world;
+}
+
+/// What a filter believes after both.
+inline PoseEstimate after_two_scans(SlamFilter& filter, const SmallWorld& world) {
+  filter.start({});
+  filter.update(StepContext(77, 0, 0, Parallel::serial()), world.drive.scan(0));
+  for (std::uint32_t step = 1; step <= 8; ++step) {
+    filter.predict(StepContext(77, 0, step, Parallel::serial()), {3.0, 0.15}, 0.025);
+  }
+  filter.update(StepContext(77, 0, 8, Parallel::serial()), world.drive.scan(1));
+  return filter.estimate();
+}
+
+}  // namespace montecarta
