@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace montecarta {
@@ -20,15 +21,24 @@ struct Control {
 
 /// One range-bearing measurement of a landmark.
 struct Detection {
-  static constexpr std::int32_t kClutter = -1;  ///< identity of a false alarm
-  double range = 0.0;                           ///< [m]
-  double bearing = 0.0;                         ///< [rad], relative to the heading
+  static constexpr std::int32_t kClutter = -1;       ///< identity of a false alarm
+  static constexpr std::int32_t kUnidentified = -2;  ///< identity that nobody knows
+  double range = 0.0;                                ///< [m]
+  double bearing = 0.0;                              ///< [rad], relative to the heading
   std::int32_t identity =
       kClutter;  ///< landmark of the world; a filter may estimate by it only with known association
 };
 
 /// All detections of one instant, in increasing identity; may be empty.
 using Scan = std::span<const Detection>;
+
+/// An independent measurement of the vehicle's path, by which a recorded drive is judged.
+struct ReferencePath {
+  std::string name;                       ///< e.g. "gps"
+  std::vector<double> time;               ///< [s] of each fix, increasing
+  std::vector<Eigen::Vector2d> position;  ///< [m] of each fix
+  std::vector<double> heading;            ///< [rad] of each fix; empty where it is not measured
+};
 
 /// What all runs of a study share: when steps and scans happen and what there is to map.
 struct Itinerary {
@@ -38,6 +48,8 @@ struct Itinerary {
   std::vector<Eigen::Vector2d> landmarks;  ///< [m] true positions, by identity; empty where unknown
   std::vector<Eigen::Vector2d> waypoints;  ///< [m] for figures only; may be empty
   Pose start;  ///< pose before the first step, known to the filter exactly
+  std::vector<ReferencePath> references;  ///< of a recorded drive
+  bool has_truth = true;  ///< whether drives carry the true poses; a recorded one does not
 
   std::size_t steps() const { return step_time.size(); }
   std::size_t scans() const { return scan_step.size(); }
@@ -50,7 +62,7 @@ struct Itinerary {
 /// One run's input and the truth it is judged by. Buffers keep their memory from run to run.
 struct Drive {
   std::vector<Control> controls;          ///< one per step, as given to the filter
-  std::vector<Pose> truth;                ///< one per step, after the step
+  std::vector<Pose> truth;                ///< one per step, after the step; empty where unknown
   std::vector<Detection> detections;      ///< of all scans, one after the other
   std::vector<std::uint32_t> scan_begin;  ///< scans() + 1 offsets into `detections`
 

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/runs/drive.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// What wheel and steering measured; holds from its time to that of the next.
+struct Odometry {
+  double time = 0.0;  ///< [s]
+  Control control;
+};
+
+/// All that the sensor saw at one instant.
+struct LoggedScan {
+  double time = 0.0;                  ///< [s]
+  std::vector<Detection> detections;  ///< in the sensor's order; may be empty
+};
+
+/// A recorded drive as it was measured, whatever files it came in. Times of one log share an
+/// origin.
+struct DriveLog {
+  Pose start;                              ///< where the vehicle stood at the first odometry
+  std::vector<Odometry> odometry;          ///< in increasing time
+  std::vector<LoggedScan> scans;           ///< in increasing time
+  std::vector<ReferencePath> references;   ///< at least one; the first one leads
+  std::vector<Eigen::Vector2d> landmarks;  ///< [m] surveyed positions; empty where unknown
+};
+
+}  // namespace montecarta
