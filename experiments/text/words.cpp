@@ -21,13 +21,18 @@ std::string_view trimmed(std::string_view text) {
 }
 
 std::vector<std::string> split(std::string_view text, char separator) {
-  std::vector<std::string> parts;
+  std::vector<std::string_view> parts;
+  split_into(text, separator, parts);
+  return {parts.begin(), parts.end()};
+}
+
+void split_into(std::string_view text, char separator, std::vector<std::string_view>& parts) {
+  parts.clear();
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(separator, begin), text.size());
-    parts.emplace_back(trimmed(text.substr(begin, end - begin)));
+    parts.push_back(trimmed(text.substr(begin, end - begin)));
     begin = end + 1;
   }
-  return parts;
 }
 
 std::vector<std::string> words_of(std::string_view text) {
@@ -44,6 +49,14 @@ std::string joined(std::span<const std::string> parts, std::string_view between)
     text += part;
   }
   return text;
+}
+
+std::string excerpt(std::string_view text) {
+  constexpr std::size_t kLongest = 40;
+  std::string shown(text.substr(0, kLongest));
+  const auto unprintable = [](unsigned char c) { return c < 0x20 || c >= 0x7f; };
+  std::ranges::replace_if(shown, unprintable, '?');
+  return text.size() > kLongest ? shown + "..." : shown;
 }
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
