@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/recordings/check_log.hpp"
+
+#include "engine/errors.hpp"
+#include "experiments/text/numbers.hpp"
+#include "experiments/text/words.hpp"
+#include "experiments/worlds/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace montecarta {
+namespace {
+
+constexpr double kLatestTime = 1e10;  ///< [s] beyond are nanoseconds
+constexpr double kFastest = 1e3;      ///< [m/s]
+
+/// A record of one file, for errors.
+struct Record {
+  const std::string& place;
+  std::size_t index;
+
+  [[noreturn]] void refuse(const std::string& fault) const {
+    throw StudyError(place + ": record " + std::to_string(index + 1) + ": " + fault);
+  }
+  /// Throws unless |value| <= most; NaN is never.
+  void limit(double value, double most, const char* noun, const char* why) const {
+    if (std::abs(value) <= most) return;
+    refuse(std::string(noun) + " " + to_text(value) + " (" + why + "): correct it");
+  }
+  void place_on_map(const Eigen::Vector2d& point) const {
+    for (const double coordinate : point) {
+      limit(coordinate, kFarthestCoordinate, "coordinate",
+            "metres from an origin nearby, not beyond 1e6 m");
+    }
+  }
+};
+
+/// `time(i)` of `count` records must be real times, each later than the one before.
+template <class Time>
+void check_times(std::size_t count, const Time& time, const std::string& place) {
+  if (count == 0) {
+    throw StudyError(place + ": no records (it is empty): take a file with at least one");
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const Record record{place, i};
+    record.limit(time(i), kLatestTime, "time", "seconds, a finite number");
+    if (i == 0 || time(i) > time(i - 1)) continue;
+    record.refuse("time " + to_text(time(i)) + " s comes after " + to_text(time(i - 1)) +
+                  " s (times must increase): bring the records into order, each once");
+  }
+}
+
+void check_detection(const Detection& detection, const Record& record) {
+  const auto& [range, bearing, identity] = detection;
+  if (!(range > 0.0)) {
+    record.refuse("range " + to_text(range) + " (a detection is farther than 0 m): correct it");
+  }
+  record.limit(range, kFarthestCoordinate, "range", "metres, a finite number");
+  record.limit(bearing, 2 * kPi, "bearing", "radians relative to the heading");
+  if (identity < Detection::kUnidentified || identity >= kMostIdentities) {
+    record.refuse("identity " + std::to_string(identity) +
+                  " (a whole number from 0 to 999999): number the landmarks from 0");
+  }
+}
+
+/// Identities of one log: given for all detections (clutter included) or for none.
+void check_identities(const DriveLog& log, const std::string& place) {
+  bool identified = false, unidentified = false;
+  for (std::size_t s = 0; s < log.scans.size(); ++s) {
+    for (const Detection& detection : log.scans[s].detections) {
+      const bool unknown = detection.identity == Detection::kUnidentified;
+      (unknown ? unidentified : identified) = true;
+      const Record record{place, s};
+      if (identified && unidentified) {
+        record.refuse("some detections have an identity, others not (all or none): " +
+                      std::string("give it for all"));
+      }
+      if (log.landmarks.empty() || detection.identity < 0) continue;
+      if (static_cast<std::size_t>(detection.identity) >= log.landmarks.size()) {
+        record.refuse("identity " + std::to_string(detection.identity) + " of " +
+                      std::to_string(log.landmarks.size()) +
+                      " landmarks (they count from 0): give all landmarks, or none");
+      }
+    }
+  }
+}
+
+bool is_name(const std::string& name) {
+  const auto fits = [](unsigned char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+  };
+  return !name.empty() && name.size() <= 64 && std::ranges::all_of(name, fits);
+}
+
+void check_references(const DriveLog& log, const std::string& place) {
+  std::set<std::string> names;
+  for (const ReferencePath& reference : log.references) {
+    check_reference(reference, place + " (reference " + excerpt(reference.name) + ")");
+    if (names.insert(reference.name).second) continue;
+    throw StudyError(place + ": two references called " + reference.name +
+                     " (each has a name of its own): rename one");
+  }
+  if (names.empty()) {
+    throw StudyError(place +
+                     ": no reference (a drive is judged by one): add the fixes of a GPS, or "
+                     "another measurement of the path");
+  }
+}
+
+}  // namespace
+
+void check_odometry(std::span<const Odometry> odometry, const std::string& place) {
+  check_times(
+      odometry.size(), [&](std::size_t i) { return odometry[i].time; }, place);
+  for (std::size_t i = 0; i < odometry.size(); ++i) {
+    const Record record{place, i};
+    record.limit(odometry[i].control.speed, kFastest, "speed", "metres per second, at most 1000");
+    record.limit(odometry[i].control.steer, kPi / 2, "steering", "radians, at most pi / 2");
+  }
+}
+
+void check_scans(std::span<const LoggedScan> scans, const std::string& place) {
+  check_times(
+      scans.size(), [&](std::size_t i) { return scans[i].time; }, place);
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    for (const Detection& detection : scans[i].detections) {
+      check_detection(detection, Record{place, i});
+    }
+  }
+}
+
+void check_reference(const ReferencePath& reference, const std::string& place) {
+  const auto& [name, time, position, heading] = reference;
+  if (!is_name(name)) {
+    throw StudyError(place + ": '" + excerpt(name) +
+                     "' is no name of a reference (letters, digits, _ and -): rename it");
+  }
+  if (position.size() != time.size() || (!heading.empty() && heading.size() != time.size())) {
+    throw StudyError(place + ": as many places, or headings, as times are needed (a fix has all " +
+                     "or the reference has no headings): complete the records");
+  }
+  check_times(
+      time.size(), [&time](std::size_t i) { return time[i]; }, place);
+  for (std::size_t i = 0; i < position.size(); ++i) Record{place, i}.place_on_map(position[i]);
+  for (std::size_t i = 0; i < heading.size(); ++i) {
+    Record{place, i}.limit(heading[i], 1e3 * kPi, "heading", "radians");
+  }
+}
+
+void check_landmarks(std::span<const Eigen::Vector2d> landmarks, const std::string& place) {
+  for (std::size_t i = 0; i < landmarks.size(); ++i) Record{place, i}.place_on_map(landmarks[i]);
+}
+
+void check_log(const DriveLog& log, const std::string& place) {
+  const std::string start = place + " (start)";
+  Record{start, 0}.place_on_map({log.start.x, log.start.y});
+  Record{start, 0}.limit(log.start.heading, 1e3 * kPi, "heading", "radians");
+  check_odometry(log.odometry, place + " (odometry)");
+  check_scans(log.scans, place + " (scans)");
+  check_references(log, place);
+  check_landmarks(log.landmarks, place + " (landmarks)");
+  check_identities(log, place + " (scans)");
+}
+
+}  // namespace montecarta

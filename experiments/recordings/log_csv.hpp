@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "experiments/recordings/drive_log.hpp"
+
+#include <filesystem>
+
+namespace montecarta {
+
+/// Reads a drive from a folder of comma-separated files, described in experiments/README.md:
+/// start.csv, odometry.csv, detections.csv, reference.csv or reference_NAME.csv, landmarks.csv.
+/// Throws StudyError naming file and line or record where one is missing or malformed.
+DriveLog read_log_csv(const std::filesystem::path& folder);
+
+/// Writes `log` to a folder that is new or empty, so that reading it gives the same log bit for
+/// bit. Throws StudyError where the folder holds something already or the log cannot be written so
+/// (references out of the order in which they are read), RunError where writing fails.
+void write_log_csv(const DriveLog& log, const std::filesystem::path& folder);
+
+}  // namespace montecarta

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/errors.hpp"
+#include "experiments/files/csv_rows.hpp"
+#include "experiments/recordings/check_log.hpp"
+#include "experiments/recordings/log_csv.hpp"
+#include "experiments/recordings/log_csv_names.hpp"
+#include "experiments/text/numbers.hpp"
+#include "experiments/text/words.hpp"
+
+#include <algorithm>
+#include <system_error>
+
+namespace montecarta {
+namespace {
+
+namespace fs = std::filesystem;
+
+Pose read_start(const fs::path& path) {
+  CsvRows rows(path, log_csv::kStart);
+  const bool has_row = rows.next();
+  const Pose start = has_row ? Pose{.x = rows.number(0, "coordinate"),
+                                    .y = rows.number(1, "coordinate"),
+                                    .heading = rows.number(2, "heading")}
+                             : Pose{};
+  if (has_row && !rows.next()) return start;
+  throw StudyError(path.string() + ": " + (has_row ? "more than one row" : "no row") +
+                   " (a drive starts at one pose): write one row");
+}
+
+std::vector<Odometry> read_odometry(const fs::path& path) {
+  CsvRows rows(path, log_csv::kOdometry);
+  std::vector<Odometry> odometry;
+  while (rows.next()) {
+    odometry.push_back({rows.number(0, "time"),
+                        {.speed = rows.number(1, "speed"), .steer = rows.number(2, "steering")}});
+  }
+  check_odometry(odometry, path.string());
+  return odometry;
+}
+
+/// The whole number in a field; nullopt where it is empty.
+std::optional<std::int32_t> identity_in(const CsvRows& rows, std::size_t column) {
+  if (rows.field(column).empty()) return std::nullopt;
+  const auto identity = to_count(rows.field(column));
+  if (identity && *identity < kMostIdentities) return static_cast<std::int32_t>(*identity);
+  throw StudyError(rows.place() + ": '" + excerpt(rows.field(column)) +
+                   "' is no identity (a whole number from 0 to 999999): number the landmarks " +
+                   "from 0, or leave the field empty for clutter");
+}
+
+Detection detection_in(const CsvRows& rows, bool identified) {
+  Detection detection{.range = rows.number(1, "range"),
+                      .bearing = rows.number(2, "bearing"),
+                      .identity = Detection::kUnidentified};
+  if (identified) detection.identity = identity_in(rows, 3).value_or(Detection::kClutter);
+  return detection;
+}
+
+bool saw_nothing(const CsvRows& rows, bool identified) {
+  return rows.field(1).empty() && rows.field(2).empty() && (!identified || rows.field(3).empty());
+}
+
+/// Rows of one time make one scan; a row of a time alone is a scan that saw nothing.
+std::vector<LoggedScan> read_scans(const fs::path& path) {
+  CsvRows rows(path, log_csv::kDetections);
+  const bool identified = rows.header() == 1;
+  std::vector<LoggedScan> scans;
+  while (rows.next()) {
+    const double time = rows.number(0, "time");
+    const bool nothing = saw_nothing(rows, identified);
+    const bool again = !scans.empty() && scans.back().time == time;
+    if (again && (nothing || scans.back().detections.empty())) {
+      throw StudyError(rows.place() + ": a scan at " + to_text(time) +
+                       " s that saw nothing has other rows (it is one row): delete one of them");
+    }
+    if (!again) scans.push_back({time, {}});
+    if (!nothing) scans.back().detections.push_back(detection_in(rows, identified));
+  }
+  check_scans(scans, path.string());
+  return scans;
+}
+
+ReferencePath read_reference(const fs::path& path, const std::string& name) {
+  CsvRows rows(path, log_csv::kReference);
+  ReferencePath reference{.name = name, .time = {}, .position = {}, .heading = {}};
+  while (rows.next()) {
+    reference.time.push_back(rows.number(0, "time"));
+    reference.position.emplace_back(rows.number(1, "coordinate"), rows.number(2, "coordinate"));
+    if (rows.header() == 1) reference.heading.push_back(rows.number(3, "heading"));
+  }
+  check_reference(reference, path.string());
+  return reference;
+}
+
+/// By identity where that column is there: each from 0 on once.
+std::vector<Eigen::Vector2d> read_landmarks(const fs::path& path) {
+  CsvRows rows(path, log_csv::kLandmarks);
+  std::vector<std::pair<std::int32_t, Eigen::Vector2d>> landmarks;
+  while (rows.next()) {
+    const auto next = static_cast<std::int32_t>(landmarks.size());
+    const auto identity = rows.header() == 1 ? identity_in(rows, 2).value_or(-1) : next;
+    landmarks.push_back({identity, {rows.number(0, "coordinate"), rows.number(1, "coordinate")}});
+  }
+  std::ranges::stable_sort(landmarks, {}, [](const auto& landmark) { return landmark.first; });
+  std::vector<Eigen::Vector2d> places;
+  for (const auto& [identity, place] : landmarks) {
+    if (identity != static_cast<std::int32_t>(places.size())) {
+      throw StudyError(path.string() + ": no landmark of identity " +
+                       std::to_string(places.size()) +
+                       ", or two of the one before (they count from 0): number each row once");
+    }
+    places.push_back(place);
+  }
+  check_landmarks(places, path.string());
+  return places;
+}
+
+/// The name of the reference in a file; empty where it holds none. A file that looks misspelt is
+/// refused, for nobody would miss what it holds.
+std::string reference_in(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  if (file.extension() != ".csv" || stem == "landmarks") return {};
+  if (stem == log_csv::kLeading) return stem;
+  const std::string prefix = log_csv::kLeading + "_";
+  if (stem.starts_with(prefix) && stem != prefix) return stem.substr(prefix.size());
+  if (!stem.starts_with("reference") && !stem.starts_with("landmark")) return {};
+  throw StudyError(file.string() + ": no file of a log (known: reference.csv, " +
+                   "reference_NAME.csv, landmarks.csv): rename it");
+}
+
+std::vector<ReferencePath> read_references(const fs::path& folder) {
+  std::error_code failure;
+  std::vector<ReferencePath> references;
+  for (const auto& entry : fs::directory_iterator(folder, failure)) {
+    const std::string name = reference_in(entry.path());
+    if (!name.empty()) references.push_back(read_reference(entry.path(), name));
+  }
+  std::ranges::sort(references, log_csv::is_before, &ReferencePath::name);
+  return references;
+}
+
+}  // namespace
+
+DriveLog read_log_csv(const fs::path& folder) {
+  DriveLog log;
+  log.start = read_start(folder / "start.csv");
+  log.odometry = read_odometry(folder / "odometry.csv");
+  log.scans = read_scans(folder / "detections.csv");
+  log.references = read_references(folder);
+  if (fs::exists(folder / "landmarks.csv")) {
+    log.landmarks = read_landmarks(folder / "landmarks.csv");
+  }
+  check_log(log, folder.string());
+  return log;
+}
+
+}  // namespace montecarta

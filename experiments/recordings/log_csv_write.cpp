@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/errors.hpp"
+#include "experiments/recordings/check_log.hpp"
+#include "experiments/recordings/log_csv.hpp"
+#include "experiments/recordings/log_csv_names.hpp"
+#include "experiments/text/numbers.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <initializer_list>
+#include <system_error>
+
+namespace montecarta {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file as text, row by row.
+class Table {
+ public:
+  explicit Table(const std::string& header) : text_(header + "\n") {}
+
+  void add(std::initializer_list<double> numbers, const std::string& rest = "") {
+    for (const double number : numbers) {
+      if (text_.back() != '\n') text_ += ',';
+      text_ += to_text(number);
+    }
+    text_ += rest + "\n";
+  }
+  void save(const fs::path& path) const {
+    std::ofstream file(path, std::ios::binary);
+    file << text_;
+    file.close();
+    if (!file) throw RunError(path.string() + ": cannot be written (disk full?): free some space");
+  }
+
+ private:
+  std::string text_;
+};
+
+Table start_table(const Pose& start) {
+  Table table(log_csv::kStart[0]);
+  table.add({start.x, start.y, start.heading});
+  return table;
+}
+
+Table odometry_table(const std::vector<Odometry>& odometry) {
+  Table table(log_csv::kOdometry[0]);
+  for (const auto& [time, control] : odometry) table.add({time, control.speed, control.steer});
+  return table;
+}
+
+bool is_identified(const DriveLog& log) {
+  return std::ranges::any_of(log.scans, [](const LoggedScan& scan) {
+    return !scan.detections.empty() && scan.detections.front().identity != Detection::kUnidentified;
+  });
+}
+
+std::string identity_field(const Detection& detection) {
+  return detection.identity < 0 ? "," : "," + std::to_string(detection.identity);
+}
+
+Table detection_table(const DriveLog& log) {
+  const bool identified = is_identified(log);
+  Table table(log_csv::kDetections[identified ? 1 : 0]);
+  for (const auto& [time, detections] : log.scans) {
+    if (detections.empty()) table.add({time}, identified ? ",,," : ",,");
+    for (const Detection& detection : detections) {
+      table.add({time, detection.range, detection.bearing},
+                identified ? identity_field(detection) : "");
+    }
+  }
+  return table;
+}
+
+Table reference_table(const ReferencePath& reference) {
+  const bool headed = !reference.heading.empty();
+  Table table(log_csv::kReference[headed ? 1 : 0]);
+  for (std::size_t i = 0; i < reference.time.size(); ++i) {
+    const Eigen::Vector2d& place = reference.position[i];
+    table.add({reference.time[i], place.x(), place.y()},
+              headed ? "," + to_text(reference.heading[i]) : "");
+  }
+  return table;
+}
+
+Table landmark_table(const std::vector<Eigen::Vector2d>& landmarks) {
+  Table table(log_csv::kLandmarks[0]);
+  for (const Eigen::Vector2d& place : landmarks) table.add({place.x(), place.y()});
+  return table;
+}
+
+void check_order(const DriveLog& log, const std::string& place) {
+  if (std::ranges::is_sorted(log.references, log_csv::is_before, &ReferencePath::name)) return;
+  throw StudyError(place + ": references are not in the order of their names (in which they will " +
+                   "be read): rename them, or call the leading one 'reference'");
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (failure) {
+    throw RunError(folder.string() + ": cannot be made (" + failure.message() +
+                   "): name another folder");
+  }
+  if (fs::is_empty(folder)) return;
+  throw StudyError(folder.string() +
+                   ": not empty (what lies there would be read with the log): name a new folder");
+}
+
+}  // namespace
+
+void write_log_csv(const DriveLog& log, const fs::path& folder) {
+  check_log(log, folder.string());
+  check_order(log, folder.string());
+  make_folder(folder);
+  start_table(log.start).save(folder / "start.csv");
+  odometry_table(log.odometry).save(folder / "odometry.csv");
+  detection_table(log).save(folder / "detections.csv");
+  for (const ReferencePath& reference : log.references) {
+    reference_table(reference).save(folder / log_csv::file_of_reference(reference.name));
+  }
+  if (!log.landmarks.empty()) landmark_table(log.landmarks).save(folder / "landmarks.csv");
+}
+
+}  // namespace montecarta

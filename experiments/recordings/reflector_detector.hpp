@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/runs/drive.hpp"
+#include "experiments/recordings/laser.hpp"
+
+#include <vector>
+
+namespace montecarta {
+
+/// The reflecting poles in one sweep of ranges [m] and intensities: centre of the pole, by
+/// increasing bearing, none identified. See [reflectors] of experiments/README.md.
+std::vector<Detection> detect_reflectors(LaserSweep ranges, LaserSweep intensities);
+
+}  // namespace montecarta

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/runs/drive.hpp"
+#include "experiments/recordings/laser.hpp"
+
+#include <vector>
+
+namespace montecarta {
+
+/// The trunks of trees in one sweep of ranges [m]: centre of the trunk, by increasing bearing, none
+/// identified. The detector of every code on the Victoria Park data (J. Guivant, ACFR), step by
+/// step as in [trees] of experiments/README.md.
+std::vector<Detection> detect_trees(LaserSweep ranges);
+
+}  // namespace montecarta
