@@ -26,9 +26,8 @@ template <class Number>
 void add_matrix(const std::filesystem::path& path, const char* name, std::vector<Number> values,
                 std::size_t rows, matio_classes kind, matio_types type,
                 matio_compression compression = MAT_COMPRESSION_NONE) {
-  mat_t* file = std::filesystem::exists(path)
-                    ? Mat_Open(path.c_str(), MAT_ACC_RDWR)
-                    : Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5);
+  mat_t* file = std::filesystem::exists(path) ? Mat_Open(path.c_str(), MAT_ACC_RDWR)
+                                              : Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5);
   std::size_t sides[2] = {rows, values.size() / rows};
   matvar_t* variable = Mat_VarCreate(name, kind, type, 2, sides, values.data(), 0);
   Mat_VarWrite(file, variable, compression);

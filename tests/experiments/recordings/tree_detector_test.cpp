@@ -72,9 +72,10 @@ TEST(TreeDetector, Step3WantsTrunksToStandAlone) {
   // One, two, but not three far segments may stand between the two.
   EXPECT_EQ(trees_in({{200, 201, 20}, {204, 204, 50}, {214, 215, 20}}).size(), 1U);
   EXPECT_EQ(trees_in({{200, 201, 20}, {204, 204, 50}, {207, 207, 40}, {214, 215, 20}}).size(), 2U);
-  EXPECT_EQ(trees_in({{200, 201, 20}, {204, 204, 50}, {207, 207, 40}, {210, 210, 60}, {214, 215, 20}})
-                .size(),
-            5U);
+  EXPECT_EQ(
+      trees_in({{200, 201, 20}, {204, 204, 50}, {207, 207, 40}, {210, 210, 60}, {214, 215, 20}})
+          .size(),
+      5U);
 }
 
 TEST(TreeDetector, Step4DiscardsWhatIsPartlyHidden) {
