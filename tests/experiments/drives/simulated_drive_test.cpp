@@ -4,6 +4,7 @@
 #include "engine/errors.hpp"
 #include "experiments/worlds/world_file.hpp"
 #include "filters/models/ackermann.hpp"
+#include "tests/doubles/published_data.hpp"
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
@@ -191,20 +192,12 @@ TEST(SimulatedDrive, SaysWhichWaypointCannotBeReached) {
   }
 }
 
-/// The published map; empty where the data of the papers are not at hand.
-std::filesystem::path published_map() {
-  const char* named = std::getenv("MONTECARTA_DATA");
-  const std::filesystem::path folder =
-      named != nullptr ? named : std::filesystem::path(MONTECARTA_SOURCE_DIR) / "../shared/data";
-  const auto map = folder / "bailey/example_webmap.mat";
-  return std::filesystem::exists(map) ? map : std::filesystem::path();
-}
-
 // The facts of SPEC 1.2.
 TEST(SimulatedDrive, RepeatsThePublishedBenchmark) {
-  if (published_map().empty())
+  const std::filesystem::path map = published_data("bailey/example_webmap.mat");
+  if (map.empty())
     GTEST_SKIP() << "no bailey/example_webmap.mat: set MONTECARTA_DATA to the folder that holds it";
-  const World world = read_world_file(published_map());
+  const World world = read_world_file(map);
   const SimulatedDrive once(world, Scenario{}, 1);
   EXPECT_EQ(once.itinerary().steps(), 8778U);
   EXPECT_EQ(once.itinerary().scans(), 1097U);

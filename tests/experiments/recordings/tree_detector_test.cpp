@@ -57,10 +57,10 @@ TEST(TreeDetector, Step1LeavesOutWhatIsTooFar) {
 }
 
 TEST(TreeDetector, Step2CutsWhereRangeOrAngleSteps) {
-  // One segment from 20 m to 21.4 m is no trunk (rule 7); cut in two, each hides or is clear.
-  EXPECT_EQ(trees_in({{150, 152, 20.0}, {153, 154, 21.4}}).size(), 0U);
-  EXPECT_EQ(trees_in({{150, 152, 20.0}, {153, 154, 25.0}}).size(), 1U);
-  // Beams of 1.5 m 11 apart are two segments, within 3 m of each other; 9 apart one trunk.
+  // A step there and back is one trunk, or three segments that crowd each other.
+  EXPECT_EQ(trees_in({{150, 151, 20.0}, {152, 152, 21.4}, {153, 154, 20.0}}).size(), 1U);
+  EXPECT_EQ(trees_in({{150, 151, 20.0}, {152, 152, 21.6}, {153, 154, 20.0}}).size(), 0U);
+  // Two beams 9 apart are one trunk; 11 apart two segments that crowd each other.
   EXPECT_EQ(trees_in({{200, 200, 2.0}, {209, 209, 2.0}}).size(), 1U);
   EXPECT_EQ(trees_in({{200, 200, 2.0}, {211, 211, 2.0}}).size(), 0U);
 }

@@ -90,7 +90,7 @@ TEST_F(WorldFile, NamesFileLineReasonAndRemedy) {
               HasSubstr("1 way-points (a drive needs at least two)"));
   EXPECT_THAT(complaint("x,y\n1,2\n"),
               AllOf(HasSubstr("bad.csv:1"), HasSubstr("begin with kind,x,y")));
-  EXPECT_THAT(complaint(""), HasSubstr("0 way-points"));
+  EXPECT_THAT(complaint(""), HasSubstr("empty (the first row names the columns)"));
 }
 
 TEST_F(WorldFile, ReadsMatlabMapsLyingAndStanding) {
