@@ -67,7 +67,8 @@ TEST(CarPark, NamesFileAndRecordOfAMistake) {
 
 TEST(PublishedCarPark, HoldsItsCheckValues) {
   const fs::path folder = published_data("car_park");
-  if (folder.empty()) GTEST_SKIP() << "no car_park: set MONTECARTA_DATA to the folder that holds it";
+  if (folder.empty())
+    GTEST_SKIP() << "no car_park: set MONTECARTA_DATA to the folder that holds it";
   const DriveLog log = read_car_park(folder);
   EXPECT_EQ(log.odometry.size(), 5001U);
   EXPECT_EQ(log.scans.size(), 586U);

@@ -147,7 +147,8 @@ Yield yield_of(const DriveLog& log) {
 
 TEST(PublishedVictoriaPark, HoldsItsCheckValues) {
   const fs::path folder = published_data("victoria_park");
-  if (folder.empty()) GTEST_SKIP() << "no victoria_park: set MONTECARTA_DATA to the folder that holds it";
+  if (folder.empty())
+    GTEST_SKIP() << "no victoria_park: set MONTECARTA_DATA to the folder that holds it";
   const DriveLog log = read_victoria_park(folder, Steering::calibrated);
   EXPECT_EQ(log.odometry.size(), 61763U);
   EXPECT_EQ(log.scans.size(), 7230U);
@@ -161,7 +162,8 @@ TEST(PublishedVictoriaPark, HoldsItsCheckValues) {
 // GPS.txt is a part of the .mat fixes, rounded to centimetres: so origin, axes and clock agree.
 TEST(PublishedVictoriaPark, HasOneClockAndOneOrigin) {
   const fs::path folder = published_data("victoria_park");
-  if (folder.empty()) GTEST_SKIP() << "no victoria_park: set MONTECARTA_DATA to the folder that holds it";
+  if (folder.empty())
+    GTEST_SKIP() << "no victoria_park: set MONTECARTA_DATA to the folder that holds it";
   const DriveLog log = read_victoria_park(folder, Steering::raw);
   EXPECT_EQ(log.odometry.size(), 61945U);
   ASSERT_EQ(log.references.size(), 2U);
