@@ -118,6 +118,7 @@ TEST_F(VictoriaPark, HoldsTheManagerAgainstTheFiles) {
               HasSubstr("3 of 4 records of odometry are listed"));
   EXPECT_THAT(complaint("GPS.txt", "0 0 0\n1.01 -2 3\n2 -4 6.5\n"), HasSubstr("record 4 (GPS)"));
   EXPECT_THAT(complaint("Sensors_manager.txt", "0 4 1\n"), HasSubstr("sensor 4"));
+  EXPECT_THAT(complaint("Sensors_manager.txt", "0 1 2\n"), HasSubstr("record 2 at 0 s is not"));
 }
 
 TEST_F(VictoriaPark, RefusesMatFilesOfOtherShapes) {
