@@ -20,6 +20,7 @@ struct ColumnSelection {
   bool particles = false;    ///< particle_pose, log_weight
   bool association = false;  ///< association_correct, _wrong, _new_again, _missed, _clutter
   bool map = false;          ///< map_mean, map_covariance, map_seen, at every scan
+  bool final_map = false;    ///< final_map_mean, final_map_covariance, final_map_seen, at the last
   bool scans_only = false;   ///< record.rate = scan: rows of `time` only where a scan was taken
 };
 

@@ -104,6 +104,18 @@ void read_axes(const h5::Handle& file, ResultDescription& result) {
   result.scan_rows = read_all<std::uint32_t>(file, "scan_row", Element::u32);
 }
 
+void read_references(const h5::Handle& scenario, ResultDescription& result) {
+  if (!h5::has(scenario, format::kReferences)) return;
+  const h5::Handle references = h5::open_group(scenario, format::kReferences);
+  for (const std::string& name : h5::members(references)) {
+    const h5::Handle group = h5::open_group(references, name);
+    ReferencePath path{name, read_all<double>(group, "fix", Element::f64), {}, {}};
+    for (const auto& [x, y] : read_points(group, "position")) path.position.emplace_back(x, y);
+    if (h5::has(group, "heading")) path.heading = read_all<double>(group, "heading", Element::f64);
+    result.references.push_back(std::move(path));
+  }
+}
+
 void read_scenario(const h5::Handle& file, ResultDescription& result) {
   const h5::Handle group = h5::open_group(file, "scenario");
   result.scenario = h5::texts(group);
@@ -111,6 +123,7 @@ void read_scenario(const h5::Handle& file, ResultDescription& result) {
   result.start = {start.at(0), start.at(1), start.at(2)};
   result.landmarks = read_points(group, "landmarks");
   result.waypoints = read_points(group, "waypoints");
+  read_references(group, result);
 }
 
 void read_provenance(const h5::Handle& file, ResultDescription& result) {
@@ -132,6 +145,7 @@ ResultDescription read_description(const h5::Handle& file, const std::filesystem
   result.study_runs = h5::numbers(file, "runs").at(0);
   read_axes(file, result);
   read_scenario(file, result);
+  result.has_truth = h5::has(file, "truth");
   read_provenance(file, result);
   const h5::Handle cells = h5::open_group(file, "cells");
   for (const std::string& label : h5::members(cells))

@@ -68,6 +68,7 @@ std::vector<Column> report_columns() {
       {"nis", Element::f64, axes, {}, "1", "normalised innovation squared of the scan"},
       {"nis_dof", Element::u32, axes, {}, "1", "degrees of freedom of nis"},
       {"numerical_faults", Element::u32, axes, {}, "1", "factorisations answered by a fallback"},
+      {"map_size", Element::f64, axes, {}, "1", "landmarks in the map, mean over the particles"},
   };
 }
 
@@ -139,19 +140,37 @@ std::vector<Column> particle_columns(const Cell& cell, const ColumnSelection& se
   return columns;
 }
 
-std::vector<Column> map_columns(const Cell& cell, const ColumnSelection& selection) {
+/// The map at all that `before` counts.
+void add_map(const std::string& prefix, const std::vector<Axis>& before,
+             std::vector<Column>& columns) {
   using enum Axis;
-  if (!selection.map || cell.landmarks == 0) return {};
-  return {
-      {"map_mean", Element::f64, {scan, landmark, coordinate}, {}, "m", "estimated landmark"},
-      {"map_covariance",
-       Element::f64,
-       {scan, landmark, coordinate, coordinate_column},
-       {},
-       "m2",
-       "covariance of the landmark"},
-      {"map_seen", Element::u8, {scan, landmark}, {}, "1", "1 once the landmark is in the map"},
+  const auto axes = [&](std::initializer_list<Axis> own) {
+    std::vector<Axis> all = before;
+    all.insert(all.end(), own);
+    return all;
   };
+  columns.push_back(
+      {prefix + "mean", Element::f64, axes({landmark, coordinate}), {}, "m", "estimated landmark"});
+  columns.push_back({prefix + "covariance",
+                     Element::f64,
+                     axes({landmark, coordinate, coordinate_column}),
+                     {},
+                     "m2",
+                     "covariance of the landmark"});
+  columns.push_back({prefix + "seen",
+                     Element::u8,
+                     axes({landmark}),
+                     {},
+                     "1",
+                     "1 once the landmark is in the map"});
+}
+
+std::vector<Column> map_columns(const Cell& cell, const ColumnSelection& selection) {
+  std::vector<Column> columns;
+  if (cell.landmarks == 0) return columns;
+  if (selection.map) add_map("map_", {Axis::scan}, columns);
+  if (selection.final_map) add_map("final_map_", {}, columns);
+  return columns;
 }
 
 }  // namespace
@@ -160,6 +179,7 @@ RecordLayout::RecordLayout(const Cell& cell, const ColumnSelection& selection,
                            const Itinerary& itinerary)
     : columns_(pose_columns(cell, selection)),
       scans_only_(selection.scans_only),
+      scans_(itinerary.scans()),
       particles_(cell.particles),
       landmarks_(cell.landmarks) {
   for (auto group : {report_columns(), association_columns(selection),

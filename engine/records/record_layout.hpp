@@ -29,6 +29,7 @@ class RecordLayout {
   std::optional<std::size_t> find(std::string_view name) const;
   /// Rows of `time` are scans, not steps (record.rate = scan).
   bool scans_only() const { return scans_only_; }
+  std::size_t scans() const { return scans_; }
   std::size_t particles() const { return particles_; }
   std::size_t landmarks() const { return landmarks_; }
 
@@ -37,6 +38,7 @@ class RecordLayout {
   std::vector<std::size_t> offsets_;
   std::size_t bytes_ = 0;
   bool scans_only_;
+  std::size_t scans_;
   std::size_t particles_;
   std::size_t landmarks_;
 };

@@ -33,8 +33,7 @@ void copy(const Eigen::Matrix<double, N, N>& matrix, std::span<double> row) {
 
 }  // namespace
 
-Recorder::Recorder(RunRecord& record)
-    : layout_(&record.layout()), landmarks_(layout_->find("map_mean") ? layout_->landmarks() : 0) {
+Recorder::Recorder(RunRecord& record) : layout_(&record.layout()) {
   columns_.pose_mean = column<double>(record, "pose_mean");
   columns_.pose_covariance = column<double>(record, "pose_covariance");
   columns_.pose_mean_mixture = column<double>(record, "pose_mean_mixture");
@@ -52,9 +51,14 @@ Recorder::Recorder(RunRecord& record)
   columns_.clutter = column<double>(record, "association_clutter");
   columns_.particle_pose = column<double>(record, "particle_pose");
   columns_.log_weight = column<double>(record, "log_weight");
-  columns_.map_mean = column<double>(record, "map_mean");
-  columns_.map_covariance = column<double>(record, "map_covariance");
-  columns_.map_seen = column<std::uint8_t>(record, "map_seen");
+  columns_.map_size = column<double>(record, "map_size");
+  columns_.map = {column<double>(record, "map_mean"), column<double>(record, "map_covariance"),
+                  column<std::uint8_t>(record, "map_seen")};
+  columns_.final_map = {column<double>(record, "final_map_mean"),
+                        column<double>(record, "final_map_covariance"),
+                        column<std::uint8_t>(record, "final_map_seen")};
+  const bool any = !columns_.map.mean.empty() || !columns_.final_map.mean.empty();
+  landmarks_.resize(any ? layout_->landmarks() : 0);
   choose_ancestor(record);
 }
 
@@ -99,6 +103,7 @@ void Recorder::record_report(const ScanReport& report, std::size_t scan) {
   columns_.nis[scan] = report.nis;
   columns_.nis_dof[scan] = report.nis_dof;
   columns_.numerical_faults[scan] = report.numerical_faults;
+  columns_.map_size[scan] = report.map_size;
 }
 
 void Recorder::record_association(const AssociationCounts& counts, std::size_t scan) {
@@ -125,16 +130,22 @@ void Recorder::record_particles(const SlamFilter& filter, std::size_t scan) {
 }
 
 void Recorder::record_map(const SlamFilter& filter, std::size_t scan) {
-  if (landmarks_.empty()) return;
+  const bool last = scan + 1 == layout_->scans();
+  if (landmarks_.empty() || (columns_.map.mean.empty() && !last)) return;
   std::ranges::fill(landmarks_, std::nullopt);
   filter.map(landmarks_);
+  if (!columns_.map.mean.empty()) write_map(columns_.map, scan);
+  if (!columns_.final_map.mean.empty() && last) write_map(columns_.final_map, 0);
+}
+
+void Recorder::write_map(const MapColumns& columns, std::size_t row) const {
   for (std::size_t l = 0; l < landmarks_.size(); ++l) {
     if (!landmarks_[l]) continue;
-    const std::size_t row = scan * landmarks_.size() + l;
-    columns_.map_seen[row] = 1;
-    columns_.map_mean[2 * row] = landmarks_[l]->mean.x();
-    columns_.map_mean[2 * row + 1] = landmarks_[l]->mean.y();
-    copy<2>(landmarks_[l]->covariance, row_of(columns_.map_covariance, row, 4));
+    const std::size_t at = row * landmarks_.size() + l;
+    columns.seen[at] = 1;
+    columns.mean[2 * at] = landmarks_[l]->mean.x();
+    columns.mean[2 * at + 1] = landmarks_[l]->mean.y();
+    copy<2>(landmarks_[l]->covariance, row_of(columns.covariance, at, 4));
   }
 }
 

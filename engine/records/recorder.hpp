@@ -29,13 +29,19 @@ class Recorder {
   const PoseEstimate* after_scan(const SlamFilter& filter, std::size_t scan);
 
  private:
+  /// Empty where it is not stored.
+  struct MapColumns {
+    std::span<double> mean, covariance;
+    std::span<std::uint8_t> seen;
+  };
   struct Columns {
     std::span<double> pose_mean, pose_covariance, pose_mean_mixture, pose_covariance_mixture;
     std::span<double> correct, wrong, new_again, missed, clutter;
-    std::span<double> ess, log_likelihood, nis, particle_pose, log_weight, map_mean, map_covariance;
-    std::span<std::uint8_t> resampled, map_seen;
+    std::span<double> ess, log_likelihood, nis, map_size, particle_pose, log_weight;
+    std::span<std::uint8_t> resampled;
     std::span<std::uint32_t> nis_dof, numerical_faults, ancestor_wide;
     std::span<std::uint16_t> ancestor_narrow;
+    MapColumns map, final_map;
   };
 
   void choose_ancestor(RunRecord& record);
@@ -44,6 +50,7 @@ class Recorder {
   void record_association(const AssociationCounts& counts, std::size_t scan);
   void record_particles(const SlamFilter& filter, std::size_t scan);
   void record_map(const SlamFilter& filter, std::size_t scan);
+  void write_map(const MapColumns& columns, std::size_t row) const;
 
   const RecordLayout* layout_;
   Columns columns_;

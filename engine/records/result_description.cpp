@@ -51,7 +51,7 @@ bool StoredCell::has(std::string_view column) const {
 }
 
 double ResultDescription::bytes_per_run() const {
-  double bytes = static_cast<double>(times.size() * 3 * sizeof(double));
+  double bytes = has_truth ? static_cast<double>(times.size() * sizeof(Pose)) : 0.0;
   for (const StoredCell& cell : cells) {
     for (const Column& column : cell.columns) bytes += static_cast<double>(column.bytes());
   }
@@ -73,6 +73,8 @@ ResultDescription describe(const StudyPlan& plan, const TextPairs& provenance) {
   result.start = itinerary.start;
   result.landmarks = pairs(itinerary.landmarks);
   result.waypoints = pairs(itinerary.waypoints);
+  result.references = itinerary.references;
+  result.has_truth = itinerary.has_truth;
   result.scenario = plan.scenario;
   result.provenance = provenance;
   for (const Cell& cell : plan.cells) result.cells.push_back(describe(cell, plan));

@@ -45,6 +45,8 @@ struct ResultDescription {
   Pose start;                                        ///< before the first step
   std::vector<std::pair<double, double>> landmarks;  ///< [m] true positions; empty where unknown
   std::vector<std::pair<double, double>> waypoints;  ///< [m]; may be empty
+  std::vector<ReferencePath> references;             ///< by which a recorded drive is judged
+  bool has_truth = true;                             ///< whether true poses are stored
   TextPairs scenario;
   TextPairs provenance;
   std::vector<StoredCell> cells;

@@ -16,15 +16,13 @@ struct ResultFile::Contents {
   std::filesystem::path path;
   h5::Handle file;
   ResultDescription description;
-  h5::Handle truth;
+  std::optional<h5::Handle> truth;
   /// Every column of every cell, opened once.
   std::map<std::string, std::map<std::string, h5::Handle, std::less<>>, std::less<>> columns;
 
   explicit Contents(const std::filesystem::path& given)
-      : path(given),
-        file(h5::open_file(path)),
-        description(read_description(file, path)),
-        truth(h5::open_dataset(file, "truth/pose")) {
+      : path(given), file(h5::open_file(path)), description(read_description(file, path)) {
+    if (description.has_truth) truth = h5::open_dataset(file, "truth/pose");
     for (const StoredCell& cell : description.cells) {
       for (const Column& column : cell.columns) {
         columns[cell.label].emplace(
@@ -89,6 +87,10 @@ const std::vector<std::pair<double, double>>& ResultFile::landmarks() const {
 const std::vector<std::pair<double, double>>& ResultFile::waypoints() const {
   return description().waypoints;
 }
+const std::vector<ReferencePath>& ResultFile::references() const {
+  return description().references;
+}
+bool ResultFile::has_truth() const { return description().has_truth; }
 const TextPairs& ResultFile::scenario() const { return description().scenario; }
 const TextPairs& ResultFile::provenance() const { return description().provenance; }
 const std::vector<StoredCell>& ResultFile::cells() const { return description().cells; }
@@ -138,7 +140,8 @@ void ResultFile::read(const StoredCell& cell, std::string_view column, std::size
 }
 
 void ResultFile::read_truth(std::size_t i, std::span<double> out) const {
-  h5::read_row(contents_->truth, i, Element::f64, std::as_writable_bytes(out));
+  expect(contents_->truth.has_value(), "the truth was asked for where nobody knows it");
+  h5::read_row(*contents_->truth, i, Element::f64, std::as_writable_bytes(out));
 }
 
 }  // namespace montecarta

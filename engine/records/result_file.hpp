@@ -45,6 +45,8 @@ class ResultFile {
   const std::vector<double>& scan_times() const;  ///< [s]
   const std::vector<std::pair<double, double>>& landmarks() const;  ///< [m] true positions
   const std::vector<std::pair<double, double>>& waypoints() const;  ///< [m]
+  const std::vector<ReferencePath>& references() const;  ///< of a recorded drive, else none
+  bool has_truth() const;                                ///< whether true poses are stored
   const TextPairs& scenario() const;
   const TextPairs& provenance() const;
   const std::vector<StoredCell>& cells() const;
@@ -63,7 +65,8 @@ class ResultFile {
             std::span<double> out) const;
   void read(const StoredCell& cell, std::string_view column, std::size_t i,
             std::span<std::uint32_t> out) const;
-  /// {time, 3} of run index i; zeros where no cell of that run is complete or failed yet.
+  /// {time, 3} of run index i; zeros where no cell of that run is complete or failed yet. Only
+  /// where has_truth().
   void read_truth(std::size_t i, std::span<double> out) const;
 
  private:

@@ -58,6 +58,19 @@ void add_points(const h5::Handle& group, const std::string& one, const Points& p
   h5::write(dataset, Element::f64, points.data());
 }
 
+void add_reference(const h5::Handle& references, const ReferencePath& path, Scales& scales) {
+  const h5::Handle group = h5::create_group(references, path.name);
+  add_scale(group, "fix", path.time, {"s", "time of the fix"}, scales);
+  const auto position =
+      add_dataset(group, "position", Element::f64, {path.position.size(), 2}, {"fix", "coordinate"},
+                  {"m", "measured position of the vehicle"}, scales);
+  h5::write(position, Element::f64, path.position.data());
+  if (path.heading.empty()) return;
+  const auto heading = add_dataset(group, "heading", Element::f64, {path.heading.size()}, {"fix"},
+                                   {"rad", "measured heading of the vehicle"}, scales);
+  h5::write(heading, Element::f64, path.heading.data());
+}
+
 void add_scenario(const h5::Handle& file, const ResultDescription& result, Scales& scales) {
   static_assert(sizeof(Pose) == 3 * sizeof(double));
   const h5::Handle group = h5::create_group(file, "scenario");
@@ -67,6 +80,9 @@ void add_scenario(const h5::Handle& file, const ResultDescription& result, Scale
   h5::write(start, Element::f64, &result.start);
   add_points(group, "landmark", result.landmarks, "true position of the landmark", scales);
   add_points(group, "waypoint", result.waypoints, "position of the way-point", scales);
+  if (result.references.empty()) return;
+  const h5::Handle references = h5::create_group(group, format::kReferences);
+  for (const ReferencePath& path : result.references) add_reference(references, path, scales);
 }
 
 /// Bookkeeping must not depend on what happens to lie in the new file.
@@ -168,7 +184,7 @@ void lay_out(const std::filesystem::path& path, const ResultDescription& result)
   put_root(file, result);
   add_axes(file, result, scales);
   add_scenario(file, result, scales);
-  add_truth(file, result, scales);
+  if (result.has_truth) add_truth(file, result, scales);
   const h5::Handle cells = h5::create_group(file, "cells");
   for (const StoredCell& cell : result.cells) add_cell(cells, cell, result.runs.size(), scales);
   add_timing(file, result, scales);

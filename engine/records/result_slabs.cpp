@@ -63,8 +63,10 @@ std::uint64_t stored_fingerprint(const PosixFile& file, const Slab& slab, std::s
 ResultSlabs find_slabs(const std::filesystem::path& path, const ResultDescription& description) {
   const SlabFinder finder(path);
   ResultSlabs slabs;
-  slabs.truth = finder.find("truth/pose", description.times.size() * 3 * sizeof(double));
-  slabs.truth_fingerprint = finder.find("truth/fingerprint", sizeof(std::uint64_t));
+  if (description.has_truth) {
+    slabs.truth = {finder.find("truth/pose", description.times.size() * sizeof(Pose)),
+                   finder.find("truth/fingerprint", sizeof(std::uint64_t))};
+  }
   slabs.wall_seconds = finder.find("timing/wall_seconds", sizeof(double));
   slabs.sittings = finder.find("provenance/sittings", format::kSittingsBytes);
   for (const StoredCell& cell : description.cells) slabs.cells.push_back(finder.find(cell));
@@ -90,9 +92,10 @@ bool run_is_whole(const PosixFile& file, const CellSlabs& cell, std::size_t run_
 
 bool truth_is_whole(const PosixFile& file, const ResultSlabs& slabs, std::size_t run_index,
                     std::vector<std::byte>& buffer) {
+  if (!slabs.truth) return true;
   Fingerprint fingerprint;
-  add_run(file, slabs.truth, run_index, buffer, fingerprint);
-  return fingerprint.value() == stored_fingerprint(file, slabs.truth_fingerprint, run_index);
+  add_run(file, slabs.truth->pose, run_index, buffer, fingerprint);
+  return fingerprint.value() == stored_fingerprint(file, slabs.truth->fingerprint, run_index);
 }
 
 }  // namespace montecarta

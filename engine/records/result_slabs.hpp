@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace montecarta {
@@ -25,11 +26,16 @@ struct CellSlabs {
   Slab failure_reason, failure_step, fingerprint, cpu_seconds, status;
 };
 
+/// Slabs of the true paths.
+struct TruthSlabs {
+  Slab pose, fingerprint;
+};
+
 /// Slabs of a result file: what one needs to move runs without HDF5.
 struct ResultSlabs {
-  Slab truth, truth_fingerprint;
-  Slab wall_seconds;  ///< one value, not one a run
-  Slab sittings;      ///< one text, not one a run
+  std::optional<TruthSlabs> truth;  ///< nullopt where nobody knows it
+  Slab wall_seconds;                ///< one value, not one a run
+  Slab sittings;                    ///< one text, not one a run
   std::vector<CellSlabs> cells;
 };
 
@@ -45,7 +51,7 @@ std::vector<RunStatus> read_statuses(const PosixFile& file, const CellSlabs& cel
 /// longest column.
 bool run_is_whole(const PosixFile& file, const CellSlabs& cell, std::size_t run_index,
                   std::vector<std::byte>& buffer);
-/// The same for its true path; false where it is missing.
+/// The same for its true path; false where it is missing, true where there is none to store.
 bool truth_is_whole(const PosixFile& file, const ResultSlabs& slabs, std::size_t run_index,
                     std::vector<std::byte>& buffer);
 

@@ -71,9 +71,10 @@ void ResultWriter::Work::write_poses(std::size_t run_index, const Drive& drive,
                                      Fingerprint& fingerprint) const {
   static_assert(sizeof(Pose) == 3 * sizeof(double));
   std::array<Pose, 256> rows;  // on the stack: nothing allocates here
-  std::uint64_t offset = result.slabs.truth.at(run_index);
+  const Slab& slab = result.slabs.truth->pose;
+  std::uint64_t offset = slab.at(run_index);
   const std::size_t count = scans_only ? scan_steps.size() : drive.truth.size();
-  expect(count * sizeof(Pose) == result.slabs.truth.run_bytes, "a drive of another length");
+  expect(count * sizeof(Pose) == slab.run_bytes, "a drive of another length");
   for (std::size_t begin = 0; begin < count; begin += rows.size()) {
     const std::size_t length = std::min(rows.size(), count - begin);
     for (std::size_t i = 0; i < length; ++i)
@@ -86,11 +87,11 @@ void ResultWriter::Work::write_poses(std::size_t run_index, const Drive& drive,
 }
 
 void ResultWriter::write_truth(std::size_t run_index, const Drive& drive) {
-  if (work_->truth_stored[run_index].exchange(true)) return;
+  const std::optional<TruthSlabs>& slabs = work_->result.slabs.truth;
+  if (!slabs || work_->truth_stored[run_index].exchange(true)) return;
   Fingerprint fingerprint;
   work_->write_poses(run_index, drive, fingerprint);
-  work_->result.file.write_at(work_->result.slabs.truth_fingerprint.at(run_index),
-                              bytes_of(fingerprint.value()));
+  work_->result.file.write_at(slabs->fingerprint.at(run_index), bytes_of(fingerprint.value()));
 }
 
 void ResultWriter::write(std::size_t cell, std::size_t run_index, const RunRecord& record) {

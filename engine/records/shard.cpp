@@ -13,7 +13,8 @@ namespace {
 
 /// Everything stored of one run under /cells and /truth, and what it cost; statuses last.
 std::vector<Slab> slabs_of_run(const ResultSlabs& slabs) {
-  std::vector<Slab> all = {slabs.truth, slabs.truth_fingerprint};
+  std::vector<Slab> all;
+  if (slabs.truth) all = {slabs.truth->pose, slabs.truth->fingerprint};
   for (const CellSlabs& cell : slabs.cells) {
     all.insert(all.end(), cell.columns.begin(), cell.columns.end());
     all.insert(all.end(),
@@ -24,7 +25,8 @@ std::vector<Slab> slabs_of_run(const ResultSlabs& slabs) {
 }
 
 std::vector<Slab> fingerprints(const ResultSlabs& slabs) {
-  std::vector<Slab> all = {slabs.truth_fingerprint};
+  std::vector<Slab> all;
+  if (slabs.truth) all.push_back(slabs.truth->fingerprint);
   for (const CellSlabs& cell : slabs.cells) all.push_back(cell.fingerprint);
   return all;
 }

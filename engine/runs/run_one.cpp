@@ -43,7 +43,8 @@ class Walk {
     const Itinerary& itinerary = conditions_.itinerary;
     const StepContext context(conditions_.seed, conditions_.run, step_,
                               conditions_.spare_threads.lend(particles_));
-    filter_.predict(context, conditions_.drive.controls[step_], itinerary.duration(step_));
+    const Control& control = conditions_.drive.controls[step_];
+    if (!control.stands()) filter_.predict(context, control, itinerary.duration(step_));
     while (scan_ < itinerary.scans() && itinerary.scan_step[scan_] == step_) {
       filter_.update(context, conditions_.drive.scan(scan_));
       const std::string_view flaw = flaw_of(recorder_.after_scan(filter_, scan_++));

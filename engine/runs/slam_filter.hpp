@@ -50,6 +50,7 @@ struct ScanReport {
   std::uint32_t numerical_faults =
       0;  ///< factorisations that failed and were answered by a fallback
   AssociationCounts association = {};
+  double map_size = 0.0;  ///< landmarks in the map; mean over the weighted particles
 };
 
 /// Where a filter writes its particles; an empty span means that nobody wants that column.

@@ -25,8 +25,9 @@ Estimate print_cells(const StudyPlan& plan) {
   const Itinerary& itinerary = plan.drives->itinerary();
   const double runs = static_cast<double>(plan.runs_here());
   Estimate total;
-  total.disk = runs * static_cast<double>(itinerary.steps() * 3 * sizeof(double));
-  total.per_thread = 2.0 * total.disk / runs;
+  const auto truth = static_cast<double>(itinerary.steps() * sizeof(Pose));
+  total.disk = itinerary.has_truth ? runs * truth : 0.0;
+  total.per_thread = 2.0 * truth;
   std::vector<TableRow> rows{{"cell", "filter", "ms a run", "a run", "all runs"}};
   for (const Cell& cell : plan.cells) {
     const double seconds = trial_seconds(cell, plan, drive);

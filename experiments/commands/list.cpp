@@ -30,13 +30,25 @@ void list_filters() {
   }
 }
 
+/// The default, and those of kinds of scenario that have another.
+std::string fallback_text(const Setting& setting) {
+  std::string text = setting.fallback.value_or("(required)");
+  for (const auto& [kind, value] : setting.fallback_of_kind) text += "; " + kind + ": " + value;
+  return text;
+}
+
+std::string meaning_of(const Setting& setting) {
+  if (setting.kinds.empty()) return setting.meaning;
+  return setting.meaning + " (" + joined(setting.kinds) + ")";
+}
+
 /// The settings of the given sections with unit, default and meaning.
 void list_settings(const std::vector<std::string>& sections) {
   std::vector<TableRow> rows;
   for (const Setting& setting : study_settings()) {
     if (std::ranges::find(sections, setting.section) == sections.end()) continue;
-    const std::string fallback = setting.fallback ? *setting.fallback : "(required)";
-    rows.push_back({setting.section + "." + setting.key, fallback, setting.unit, setting.meaning});
+    rows.push_back({setting.section + "." + setting.key, fallback_text(setting), setting.unit,
+                    meaning_of(setting)});
   }
   std::cout << aligned(rows, 0);
 }
@@ -73,7 +85,7 @@ void list_studies() {
 
 void list_columns() {
   std::cout << aligned(
-      {{"pose", "pose_mean, ess, resampled, log_likelihood, nis, nis_dof: always stored"},
+      {{"pose", "pose_mean, ess, resampled, log_likelihood, nis, nis_dof, map_size: always stored"},
        {"covariance",
         "pose_covariance; pose_mean_mixture and pose_covariance_mixture where a filter has them "
         "(SPEC 19)"},
@@ -82,7 +94,8 @@ void list_columns() {
        {"association",
         "association_correct, _wrong, _new_again, _missed, _clutter: what became of detections, "
         "by the simulator's identities"},
-       {"map", "map_mean, map_covariance, map_seen at every scan"}},
+       {"map", "map_mean, map_covariance, map_seen at every scan"},
+       {"final_map", "final_map_mean, final_map_covariance, final_map_seen at the last scan"}},
       0);
 }
 

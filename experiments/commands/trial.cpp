@@ -14,7 +14,8 @@ void step_through(SlamFilter& filter, const StudyPlan& plan, const Drive& drive,
   const Itinerary& itinerary = plan.drives->itinerary();
   const StepContext context(plan.seed, plan.first_run, static_cast<std::uint32_t>(k),
                             Parallel::serial());
-  filter.predict(context, drive.controls[k], itinerary.duration(k));
+  const Control& control = drive.controls[k];
+  if (!control.stands()) filter.predict(context, control, itinerary.duration(k));
   if (scan < itinerary.scans() && itinerary.scan_step[scan] == k)
     filter.update(context, drive.scan(scan++));
   (void)filter.estimate();

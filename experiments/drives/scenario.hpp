@@ -3,6 +3,7 @@
 
 #include "engine/numbers/angle.hpp"
 #include "engine/runs/pose.hpp"
+#include "filters/models/vehicle.hpp"
 
 #include <cstdint>
 
@@ -17,10 +18,10 @@ enum class NoiseMode {
 /// How a simulated vehicle drives through a world and what it sees (study file: [scenario]).
 struct Scenario {
   NoiseMode noise = NoiseMode::measured_control;
-  std::uint32_t loops = 1;                       ///< times round the way-points
-  std::uint32_t steps_per_scan = 8;              ///< control_rate / scan_rate
-  double control_rate = 40.0;                    ///< [Hz]
-  double wheelbase = 4.0;                        ///< [m]
+  std::uint32_t loops = 1;           ///< times round the way-points
+  std::uint32_t steps_per_scan = 8;  ///< control_rate / scan_rate
+  double control_rate = 40.0;        ///< [Hz]
+  Vehicle vehicle;
   double speed = 3.0;                            ///< [m/s]
   double sigma_speed = 0.3;                      ///< [m/s]
   double sigma_steer = 3.0 * kPi / 180.0;        ///< [rad]

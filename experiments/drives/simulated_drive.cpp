@@ -15,7 +15,8 @@ namespace {
 /// it.
 double patience(const Pose& pose, const Eigen::Vector2d& waypoint, const Scenario& scenario) {
   const double distance = std::hypot(waypoint.x() - pose.x, waypoint.y() - pose.y);
-  const double turning_circle = kTwoPi * scenario.wheelbase / std::sin(scenario.steer_limit);
+  const double turning_circle =
+      kTwoPi * scenario.vehicle.wheelbase / std::sin(scenario.steer_limit);
   const double time_to_full_lock = scenario.steer_limit / scenario.steer_rate_limit;
   return 3.0 * distance + 10.0 * (turning_circle + scenario.speed * time_to_full_lock);
 }
@@ -71,7 +72,7 @@ void SimulatedDrive::drive_without_noise() {
     if ((left -= step_length) < 0.0) throw_unreachable(world_, target, scenario_);
     if (nominal_.size() == kMostSteps) throw_too_long(world_);
     nominal_.push_back({scenario_.speed, pilot.steer(pose)});
-    pose = move(pose, nominal_.back(), 1.0 / scenario_.control_rate, scenario_.wheelbase);
+    pose = move(pose, nominal_.back(), 1.0 / scenario_.control_rate, scenario_.vehicle);
     path_.push_back(pose);
   }
 }
@@ -123,7 +124,7 @@ void SimulatedDrive::generate_matched(std::uint64_t run, Drive& drive) const {
     const Control error = noise(run, k);
     drive.controls[k] = {scenario_.speed, pilot.steer(pose)};
     pose = move(pose, Control{scenario_.speed + error.speed, drive.controls[k].steer + error.steer},
-                1.0 / scenario_.control_rate, scenario_.wheelbase);
+                1.0 / scenario_.control_rate, scenario_.vehicle);
     drive.truth[k] = pose;
     if ((k + 1) % scenario_.steps_per_scan != 0) continue;
     const StreamIdentity here = place(run, k);

@@ -2,7 +2,7 @@
 #include "experiments/study/make_plan.hpp"
 
 #include "engine/errors.hpp"
-#include "experiments/drives/simulated_drive.hpp"
+#include "experiments/study/make_drives.hpp"
 #include "experiments/text/numbers.hpp"
 #include "experiments/text/words.hpp"
 
@@ -12,48 +12,9 @@
 namespace montecarta {
 namespace {
 
-/// Scans happen at every so-many-th control step: a whole number, for an integer counter never
-/// drifts (SPEC 0).
-std::uint32_t steps_per_scan(const Settings& settings) {
-  const double ratio =
-      settings.number("scenario", "control_rate") / settings.number("scenario", "scan_rate");
-  const double whole = std::round(ratio);
-  if (whole >= 1.0 && std::abs(ratio - whole) <= 1e-9 * whole)
-    return static_cast<std::uint32_t>(whole);
-  throw StudyError(settings.place("scenario", "scan_rate") +
-                   ": scan_rate does not divide control_rate (" + to_text(ratio) +
-                   " steps a scan): choose rates whose ratio is a whole number");
-}
-
-Scenario scenario_of(const Settings& s) {
-  Scenario scenario;
-  const char* in = "scenario";
-  scenario.noise =
-      s.text(in, "noise") == "matched" ? NoiseMode::matched : NoiseMode::measured_control;
-  scenario.loops = static_cast<std::uint32_t>(s.count(in, "loops"));
-  scenario.steps_per_scan = steps_per_scan(s);
-  scenario.control_rate = s.number(in, "control_rate");
-  scenario.wheelbase = s.number(in, "wheelbase");
-  scenario.speed = s.number(in, "speed");
-  scenario.sigma_speed = s.number(in, "sigma_speed");
-  scenario.sigma_steer = s.radians(in, "sigma_steer_deg");
-  scenario.sigma_range = s.number(in, "sigma_range");
-  scenario.sigma_bearing = s.radians(in, "sigma_bearing_deg");
-  scenario.max_range = s.number(in, "max_range");
-  scenario.field_of_view = s.radians(in, "field_of_view_deg");
-  scenario.waypoint_radius = s.number(in, "waypoint_radius");
-  scenario.steer_limit = s.radians(in, "steer_limit_deg");
-  scenario.steer_rate_limit = s.radians(in, "steer_rate_limit_deg");
-  scenario.clutter_rate = s.number(in, "clutter_rate");
-  scenario.miss_probability = s.number(in, "miss_probability");
-  scenario.start = {s.number(in, "start_x"), s.number(in, "start_y"),
-                    wrap(s.radians(in, "start_heading_deg"))};
-  return scenario;
-}
-
 Belief belief_of(const Settings& s) {
   const char* in = "belief";
-  return {.wheelbase = s.number(in, "wheelbase"),
+  return {.vehicle = vehicle_of(s, in),
           .sigma_speed = s.number(in, "sigma_speed"),
           .sigma_steer = s.radians(in, "sigma_steer_deg"),
           .sigma_range = s.number(in, "sigma_range"),
@@ -90,6 +51,7 @@ ColumnSelection columns_of(const Settings& s) {
           .particles = has("particles"),
           .association = has("association"),
           .map = has("map"),
+          .final_map = has("final_map"),
           .scans_only = s.text("record", "rate") == "scan"};
 }
 
@@ -112,7 +74,7 @@ Cell cell_of(const CellSpec& spec, const Study& study) {
   const FilterSetup setup{.belief = belief_of(study.settings),
                           .association = association_of(study.settings),
                           .options = FilterOptions(std::move(values)),
-                          .landmarks = study.world.landmarks.size()};
+                          .landmarks = identities_of(study)};
   const FilterKind& filter = *spec.filter;
   return {.label = spec.label,
           .filter = filter.name,
@@ -148,7 +110,7 @@ StudyPlan make_plan(const Study& study, std::optional<RunRange> range) {
   plan.last_run = range ? range->last : plan.runs;
   for (const CellSpec& spec : study.cells) plan.cells.push_back(cell_of(spec, study));
   plan.columns = columns_of(settings);
-  plan.drives = std::make_shared<SimulatedDrive>(study.world, scenario_of(settings), plan.seed);
+  plan.drives = drives_of(study, plan.seed);
   plan.scenario = scenario_facts(settings);
   plan.resolved_text = resolved_text(study);
   return plan;

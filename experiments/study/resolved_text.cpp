@@ -8,6 +8,7 @@ std::string resolved_text(const Study& study) {
   std::string text;
   for (const std::string& section : study_sections()) {
     if (section == "printed" && study.printed.empty()) continue;
+    if (section == "world" && study.log != nullptr) continue;
     text += "[" + section + "]\n";
     for (const auto& [key, value] : study.settings.section(section))
       text += key + " = " + value + "\n";

@@ -16,8 +16,7 @@ using Kind = Setting::Kind;
 
 std::string remedy_of(const Setting& setting) {
   const std::string value = setting.fallback.value_or(setting.example);
-  return value.empty() || value == "scenario" ? "correct it"
-                                              : "give e.g. " + setting.key + " = " + value;
+  return value.empty() ? "correct it" : "give e.g. " + setting.key + " = " + value;
 }
 
 [[noreturn]] void throw_bad_value(const Setting& setting, std::string_view text,
@@ -68,6 +67,22 @@ std::string most_of(const Setting& setting) {
 }
 
 }  // namespace
+
+bool Setting::is_for(std::string_view scenario_kind) const {
+  return kinds.empty() || std::ranges::find(kinds, scenario_kind) != kinds.end();
+}
+
+std::optional<std::string> Setting::fallback_for(std::string_view scenario_kind) const {
+  for (const auto& [of_kind, value] : fallback_of_kind) {
+    if (of_kind == scenario_kind) return value;
+  }
+  return fallback;
+}
+
+const std::vector<std::string>& recorded_kinds() {
+  static const std::vector<std::string> kinds = {"victoria_park", "car_park", "log"};
+  return kinds;
+}
 
 std::string demand_of(const Setting& setting) {
   const std::string unit = setting.unit.empty() || setting.unit == "1" ? "" : " " + setting.unit;

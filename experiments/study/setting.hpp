@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace montecarta {
@@ -21,17 +22,28 @@ struct Setting {
     choice,   ///< one of `choices`
     choices,  ///< a list out of `choices`
   };
-  std::string section;
-  std::string key;
+  std::string section = {};
+  std::string key = {};
   Kind kind = Kind::text;
-  std::string unit;                     ///< "" where there is none
-  std::optional<std::string> fallback;  ///< nullopt: must be given
+  std::string unit = {};                     ///< "" where there is none
+  std::optional<std::string> fallback = {};  ///< nullopt: must be given
   double least = 0.0;
   double most = 0.0;
-  std::vector<std::string> choices;
-  std::string meaning;  ///< one line
-  std::string example;  ///< offered as remedy where there is no fallback
+  std::vector<std::string> choices = {};
+  std::string meaning = {};  ///< one line
+  std::string example = {};  ///< offered as remedy where there is no fallback
+  /// Kinds of scenario (scenario.kind) that it says something of; empty: all.
+  std::vector<std::string> kinds = {};
+  /// (kind of scenario, its fallback) where that differs. "scenario": the scenario's value of that
+  /// key.
+  std::vector<std::pair<std::string, std::string>> fallback_of_kind = {};
+
+  bool is_for(std::string_view scenario_kind) const;
+  std::optional<std::string> fallback_for(std::string_view scenario_kind) const;
 };
+
+/// Kinds of scenario whose drive was recorded.
+const std::vector<std::string>& recorded_kinds();
 
 /// All settings but those of the filters, section by section in the order of the resolved text.
 std::span<const Setting> study_settings();

@@ -7,6 +7,8 @@
 #include "experiments/text/numbers.hpp"
 #include "experiments/text/words.hpp"
 
+#include <algorithm>
+
 namespace montecarta {
 namespace {
 
@@ -21,6 +23,18 @@ const Setting& known_setting(const IniEntry& entry) {
                    " (nothing would come of it): " + nearest_spelling(entry.key, known));
 }
 
+[[noreturn]] void throw_out_of_place(const Setting& setting, const std::string& kind,
+                                     const std::string& place) {
+  const auto in_belief = [&](const Setting& other) {
+    return other.section == "belief" && other.key == setting.key;
+  };
+  const bool believed = std::ranges::any_of(study_settings(), in_belief);
+  throw StudyError(place + ": " + setting.section + "." + setting.key +
+                   " says nothing of a scenario of kind " + kind + " (it is for " +
+                   joined(setting.kinds) +
+                   "): " + (believed ? "give it under [belief], or remove it" : "remove it"));
+}
+
 }  // namespace
 
 Settings::Settings(std::span<const IniEntry> entries, const std::string& name) {
@@ -29,6 +43,12 @@ Settings::Settings(std::span<const IniEntry> entries, const std::string& name) {
     if (ours && entry.section != "world") take(entry);
   }
   fill_in(name);
+}
+
+/// Before anything else is known: what kind of scenario the rest is about.
+std::string Settings::scenario_kind() const {
+  const auto given = values_.find({"scenario", "kind"});
+  return given == values_.end() ? "simulated" : given->second.text;
 }
 
 void Settings::take(const IniEntry& entry) {
@@ -41,15 +61,21 @@ void Settings::take(const IniEntry& entry) {
 }
 
 void Settings::fill_in(const std::string& name) {
+  const std::string kind = scenario_kind();
   for (const Setting& setting : study_settings()) {
-    if (values_.contains({setting.section, setting.key})) continue;
-    if (!setting.fallback) {
+    const auto given = values_.find({setting.section, setting.key});
+    if (!setting.is_for(kind)) {
+      if (given != values_.end()) throw_out_of_place(setting, kind, given->second.place);
+      continue;
+    }
+    if (given != values_.end()) continue;
+    const std::optional<std::string> fallback = setting.fallback_for(kind);
+    if (!fallback) {
       throw StudyError(name + ": " + setting.section + "." + setting.key + " is missing (" +
                        setting.meaning + "): add " + setting.key + " = " + setting.example +
                        " under [" + setting.section + "]");
     }
-    const std::string value =
-        *setting.fallback == "scenario" ? copied_from_scenario(setting) : *setting.fallback;
+    const std::string value = *fallback == "scenario" ? copied_from_scenario(setting) : *fallback;
     const std::string place = name + ": " + setting.section + "." + setting.key + " (not given)";
     values_[{setting.section, setting.key}] = {checked_value(setting, value, place), name};
   }
@@ -100,7 +126,8 @@ void Settings::replace(std::string_view section, std::string_view key, const std
 std::vector<std::pair<std::string, std::string>> Settings::section(std::string_view name) const {
   std::vector<std::pair<std::string, std::string>> pairs;
   for (const Setting& setting : study_settings()) {
-    if (setting.section == name) pairs.emplace_back(setting.key, text(name, setting.key));
+    if (setting.section == name && setting.is_for(scenario_kind()))
+      pairs.emplace_back(setting.key, text(name, setting.key));
   }
   return pairs;
 }

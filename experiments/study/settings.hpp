@@ -33,7 +33,10 @@ class Settings {
   const std::string& place(std::string_view section, std::string_view key) const;
   void replace(std::string_view section, std::string_view key, const std::string& value);
 
-  /// (key, value) of a section in the order of the table.
+  /// What scenario.kind says.
+  std::string scenario_kind() const;
+
+  /// (key, value) of a section in the order of the table, as far as the kind of scenario has them.
   std::vector<std::pair<std::string, std::string>> section(std::string_view name) const;
 
  private:

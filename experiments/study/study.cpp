@@ -4,6 +4,7 @@
 #include "engine/errors.hpp"
 #include "experiments/study/inline_world.hpp"
 #include "experiments/study/printed_section.hpp"
+#include "experiments/study/recorded_study.hpp"
 #include "experiments/text/words.hpp"
 #include "experiments/worlds/world_file.hpp"
 
@@ -74,6 +75,14 @@ World world_of(const IniText& ini, const Settings& settings, const std::filesyst
   }
 }
 
+void refuse_world(const IniText& ini, const Settings& settings) {
+  if (!has_inline_world(ini)) return;
+  throw StudyError(settings.place("scenario", "kind") +
+                   ": scenario.kind = " + settings.scenario_kind() +
+                   " has its own world, and the study a [world] (nothing would come of it): remove "
+                   "[world]");
+}
+
 }  // namespace
 
 Study parse_study(const std::string& text, const std::string& name,
@@ -81,10 +90,16 @@ Study parse_study(const std::string& text, const std::string& name,
   IniText ini = read_ini(text, name);
   apply(overrides, ini);
   refuse_unknown_sections(ini);
-  Study study{Settings(ini.entries, name), read_cells(ini.entries, name, filter_kinds()), {}, {}};
+  Study study{
+      Settings(ini.entries, name), read_cells(ini.entries, name, filter_kinds()), {}, {}, {}};
   study.printed = read_printed(ini.entries, study.cells);
-  study.world = world_of(ini, study.settings, folder);
-  study.settings.replace("scenario", "world", study.world.name);
+  if (study.settings.scenario_kind() == "simulated") {
+    study.world = world_of(ini, study.settings, folder);
+    study.settings.replace("scenario", "world", study.world.name);
+  } else {
+    refuse_world(ini, study.settings);
+    study.log = read_drive_of(study.settings, folder);
+  }
   if (study.settings.text("study", "title").empty()) {
     study.settings.replace("study", "title", study.settings.text("study", "name"));
   }

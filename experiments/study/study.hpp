@@ -2,11 +2,13 @@
 #pragma once
 
 #include "analysis/printed/printed.hpp"
+#include "experiments/recordings/drive_log.hpp"
 #include "experiments/study/cell_spec.hpp"
 #include "experiments/study/settings.hpp"
 #include "experiments/worlds/world.hpp"
 
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,8 +19,9 @@ namespace montecarta {
 struct Study {
   Settings settings;
   std::vector<CellSpec> cells;
-  World world;
-  Printed printed;  ///< what a paper says of it; no result depends on it
+  World world;                          ///< of a simulation
+  std::shared_ptr<const DriveLog> log;  ///< nullptr in a simulation
+  Printed printed;                      ///< what a paper says of it; no result depends on it
 };
 
 /// Reads a study file. `overrides` are "section.key=value" as given to --set; "cells.cell=..."

@@ -6,9 +6,11 @@
 namespace montecarta {
 namespace {
 
-/// The count that one detection belongs to; nullptr where clutter was rightly left out.
+/// The count that one detection belongs to; nullptr where clutter was rightly left out, or where
+/// nobody knows.
 double* count_of(std::int32_t identity, const Pairing& pairing,
                  std::span<const std::int32_t> made_of, AssociationCounts& counts) {
+  if (identity == Detection::kUnidentified) return nullptr;
   const bool left_out = pairing.verdict == Verdict::ignored;
   if (identity == Detection::kClutter) return left_out ? nullptr : &counts.clutter;
   if (left_out) return &counts.missed;

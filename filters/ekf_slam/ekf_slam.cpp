@@ -54,6 +54,7 @@ class EkfSlam final : public SlamFilter {
     for (std::size_t k = 0; k < scan.size(); ++k) {
       if (pairings_[k].verdict == Verdict::fresh) give_birth(scan[k]);
     }
+    report_.map_size = static_cast<double>(gaussian_.landmarks());
   }
 
   PoseEstimate estimate() const override { return {gaussian_.pose(), std::nullopt}; }

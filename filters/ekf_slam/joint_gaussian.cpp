@@ -75,7 +75,7 @@ void JointGaussian::start(const Pose& start) {
 }
 
 void JointGaussian::move(const Control& control, double duration) {
-  const auto step = linearised_move(pose_.mean, control, duration, belief_.wheelbase);
+  const auto step = linearised_move(pose_.mean, control, duration, belief_.vehicle);
   pose_.mean = step.pose;
   pose_.covariance = moved_covariance(pose_.covariance, step.jacobians, belief_);
   pending_x_heading_ += step.jacobians.x_heading;

@@ -59,14 +59,12 @@ class FastSlam final : public SlamFilter {
     association_.associate(context, scan, maps_,
                            [&](std::size_t b) { return proposal_.predicted(poses_[b]); });
     report_ = {.ess = weights_.effective()};
-    if (association_.found_nothing()) {
-      report_.association = association_.counts(weights_);
-      return;
-    }
-    weigh_and_draw(context);
+    const bool blind = association_.found_nothing();
+    if (!blind) weigh_and_draw(context);
     report_.association = association_.counts(weights_);
-    add_new_landmarks();
-    decide_on_resampling(context);
+    if (!blind) add_new_landmarks();
+    report_.map_size = association_.map_size(maps_, weights_);
+    if (!blind) decide_on_resampling(context);
   }
 
   PoseEstimate estimate() const override { return proposal_.estimate(weights_, poses_); }

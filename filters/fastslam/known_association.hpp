@@ -60,6 +60,10 @@ class KnownAssociation {
   AssociationCounts counts(const Weights<Real>& /*weights*/) const {
     return {.correct = static_cast<double>(slots_.size() + new_.size())};
   }
+  /// Landmarks of a map; every particle has as many.
+  double map_size(const ParticleMaps<Real>& maps, const Weights<Real>& /*weights*/) const {
+    return static_cast<double>(maps.slots());
+  }
   /// All particles explain the same detections, so there is nothing to make equal.
   Real unmatched_log_weight(std::size_t /*b*/) const { return Real(0.0); }
 

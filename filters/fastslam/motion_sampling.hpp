@@ -64,7 +64,7 @@ class MotionSampling {
     const auto [e0, e1] = normal_pairs<Real>(context.identity(Draw::motion_sample, first), 0);
     const Real speed = control.speed + belief_.sigma_speed * e0;
     const Real steer = control.steer + belief_.sigma_steer * e1;
-    return move(pose, speed, steer, duration, belief_.wheelbase);
+    return move(pose, speed, steer, duration, belief_.vehicle);
   }
 
   Belief belief_;

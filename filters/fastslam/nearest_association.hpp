@@ -49,6 +49,7 @@ class NearestAssociation {
     std::iota(slots_.begin(), slots_.end(), 0U);
     maps.open(slots_, opened_);
     pairings_.resize(maps.blocks() * kLanes * seen_.size());
+    searches_.resize(pairings_.size());
     context.parallel_for(maps.blocks(), [&](std::size_t b) { judge_block(b, predicted(b)); });
   }
 
@@ -106,6 +107,15 @@ class NearestAssociation {
     return mean;
   }
 
+  /// Landmarks of a map, mean over the weighted particles.
+  double map_size(const ParticleMaps<Real>& /*maps*/, const Weights<Real>& weights) const {
+    double mean = 0.0;
+    for (std::size_t i = 0; i < particles_; ++i) {
+      mean += weights.linear_scalars()[i] * static_cast<double>(count_of(i));
+    }
+    return mean;
+  }
+
   template <class Birth>
   void add_new(ParticleMaps<Real>& maps, const Birth& birth) {
     for (std::size_t k = 0; k < seen_.size(); ++k) {
@@ -135,30 +145,37 @@ class NearestAssociation {
   }
 
   void judge_block(std::size_t b, const PoseGaussian<Real>& pose) {
-    for (const auto& slot : opened_) slot.fetch(b);
-    for (std::size_t k = 0; k < seen_.size(); ++k) {
-      std::array<NearestSearch, kLanes> search{};
-      for (std::size_t j = 0; j < opened_.size(); ++j) offer(b, j, seen_[k], pose, search);
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        pairings_of(b * kLanes + lane)[k] = judge(search[lane], settings_);
+    const std::span<NearestSearch> searches =
+        std::span(searches_).subspan(b * kLanes * seen_.size(), kLanes * seen_.size());
+    std::ranges::fill(searches, NearestSearch{});
+    for (std::size_t j = 0; j < opened_.size(); ++j)
+      offer(b, j, opened_[j].fetch(b), pose, searches);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::span<Pairing> pairings = pairings_of(b * kLanes + lane);
+      for (std::size_t k = 0; k < seen_.size(); ++k) {
+        pairings[k] = judge(searches[k * kLanes + lane], settings_);
       }
+      exclude_rivals(pairings);
     }
-    for (std::size_t lane = 0; lane < kLanes; ++lane)
-      exclude_rivals(pairings_of(b * kLanes + lane));
   }
 
-  void offer(std::size_t b, std::size_t j, const RangeBearing<Real>& seen,
-             const PoseGaussian<Real>& pose, std::array<NearestSearch, kLanes>& search) const {
-    const LandmarkGaussian<Real>& landmark = opened_[j].at(b);
+  /// Offers landmark j to every detection of the scan; `searches` {detection, lane}.
+  void offer(std::size_t b, std::size_t j, const LandmarkGaussian<Real>& landmark,
+             const PoseGaussian<Real>& pose, std::span<NearestSearch> searches) const {
     const Sightline<Real> s = sightline(pose.mean, landmark.mean);
-    const Innovation<Real> v =
-        innovation_of(pose.covariance, s, residual(seen, s), landmark.covariance, noise_);
-    const Real distance = v.squared();
-    const Real cost = distance + log(v.determinant());
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      if (static_cast<double>(j) >= get(counts_[b], lane)) continue;
-      search[lane].offer(static_cast<std::uint32_t>(j), get(distance, lane), get(cost, lane),
-                         settings_.gate);
+    const auto owned = Real(static_cast<double>(j)) < counts_[b];
+    const Real never(std::numeric_limits<double>::infinity());
+    // Only the innovation itself differs from detection to detection; most lie far away.
+    const Innovation<Real> spread =
+        innovation_of(pose.covariance, s, RangeBearing<Real>{}, landmark.covariance, noise_);
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      const Real distance = select(owned, spread.squared(residual(seen_[k], s)), never);
+      if (!any(distance < Real(settings_.new_gate))) continue;
+      const Real cost = distance + log(spread.determinant());
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        searches[k * kLanes + lane].offer(static_cast<std::uint32_t>(j), get(distance, lane),
+                                          get(cost, lane), settings_.gate);
+      }
     }
   }
 
@@ -218,7 +235,8 @@ class NearestAssociation {
   Scan scan_;  ///< the caller's, for the time of an update
   std::vector<RangeBearing<Real>> seen_;
   std::vector<std::uint32_t> slots_;
-  std::vector<Pairing> pairings_;  ///< {particle, detection}
+  std::vector<Pairing> pairings_;        ///< {particle, detection}
+  std::vector<NearestSearch> searches_;  ///< {block, detection, lane}
   std::vector<typename ParticleMaps<Real>::OpenSlot> opened_;
 };
 

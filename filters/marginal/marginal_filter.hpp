@@ -59,14 +59,8 @@ class MarginalFilter final : public SlamFilter {
     propagate_kernels();
     associate(scan);
     report_ = {.ess = weights_.effective(), .association = association_.counts()};
-    if (association_.found_nothing()) return;  // the kernels go on growing
-    likelihood_.see(association_.matches(), map_);
-    choose_kernels(context);
-    draw_poses(context);
-    weigh(context);
-    learn_map(context);
-    motion_.restart();
-    is_drawn_ = true;
+    if (!association_.found_nothing()) learn(context);  // else the kernels go on growing
+    report_.map_size = static_cast<double>(map_.size());
   }
 
   PoseEstimate estimate() const override;
@@ -75,6 +69,15 @@ class MarginalFilter final : public SlamFilter {
   void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override;
 
  private:
+  void learn(const StepContext& context) {
+    likelihood_.see(association_.matches(), map_);
+    choose_kernels(context);
+    draw_poses(context);
+    weigh(context);
+    learn_map(context);
+    motion_.restart();
+    is_drawn_ = true;
+  }
   /// p(s | s_j) for every particle: the motion since the last draw, and the floor (SPEC 14.1).
   void propagate_kernels() {
     for (std::size_t b = 0; b < poses_.size(); ++b) {

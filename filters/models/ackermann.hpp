@@ -4,10 +4,12 @@
 #include "engine/numbers/real.hpp"
 #include "engine/runs/drive.hpp"
 #include "engine/runs/pose.hpp"
+#include "filters/models/point.hpp"
+#include "filters/models/vehicle.hpp"
 
 namespace montecarta {
 
-/// Derivatives of one Ackermann step (SPEC 2.1): only the elements that are not 0 or 1.
+/// Derivatives of one step (SPEC 2): only the elements that are not 0 or 1.
 /// Fx = [1 0 x_heading; 0 1 y_heading; 0 0 1], Fu = [x_speed x_steer; y_speed y_steer;
 /// heading_speed heading_steer].
 template <class Real>
@@ -29,47 +31,54 @@ struct LinearisedMove {
   MotionJacobians<Real> jacobians;
 };
 
-/// Vehicle steered at the front axle, which is also its reference point (SPEC 2.1; Ankishan eq.
-/// (38) prints cos in both rows). `speed` [m/s] and `steer` [rad] are common to all lanes (double)
-/// or one a lane (Real); `duration` [s]; `wheelbase` [m].
+/// A displacement (forward, left) of a vehicle that heads along `heading`, in the world [m].
+template <class Real>
+BasicPoint<Real> in_world(const Direction<Real>& heading, const Real& forward, const Real& left) {
+  return {heading.cosine * forward - heading.sine * left,
+          heading.sine * forward + heading.cosine * left};
+}
+
+/// One step of a vehicle (SPEC 2.1 and 2.2; Ankishan eq. (38) prints cos in both rows). `speed`
+/// [m/s] and `steer` [rad] are common to all lanes (double) or one a lane (Real); `duration` [s].
 template <class Real, class Input>
 BasicPose<Real> move(const BasicPose<Real>& pose, const Input& speed, const Input& steer,
-                     double duration, double wheelbase) {
-  using std::sin;
-  const Real way = Real(speed * Input(duration));
-  const Direction<Real> course = direction_of(Real(pose.heading + Real(steer)));
-  const Input turn = speed * Input(duration / wheelbase) * sin(steer);
-  return {pose.x + way * course.cosine, pose.y + way * course.sine,
-          wrap(Real(pose.heading + Real(turn)))};
+                     double duration, const Vehicle& vehicle) {
+  const BodyStep<Input> step = body_step(vehicle, speed, steer, duration);
+  const BasicPoint<Real> way =
+      in_world(direction_of(pose.heading), Real(step.forward), Real(step.left));
+  return {pose.x + way.x, pose.y + way.y, wrap(Real(pose.heading + Real(step.turn)))};
 }
 
 /// As above, with the control a filter is given.
 template <class Real>
 BasicPose<Real> move(const BasicPose<Real>& pose, const Control& control, double duration,
-                     double wheelbase) {
-  return move(pose, control.speed, control.steer, duration, wheelbase);
+                     const Vehicle& vehicle) {
+  return move(pose, control.speed, control.steer, duration, vehicle);
 }
 
 /// move() with its derivatives at (pose, control); the control is common to all lanes.
 template <class Real>
 LinearisedMove<Real> linearised_move(const BasicPose<Real>& pose, const Control& control,
-                                     double duration, double wheelbase) {
-  const double way = control.speed * duration;
-  const Direction<Real> course = direction_of(Real(pose.heading + Real(control.steer)));
-  const Direction<double> wheel = direction_of(control.steer);
-  const Real along_x = Real(way) * course.cosine;
-  const Real along_y = Real(way) * course.sine;
-  const BasicPose<Real> moved{pose.x + along_x, pose.y + along_y,
-                              wrap(Real(pose.heading + Real(way * wheel.sine / wheelbase)))};
+                                     double duration, const Vehicle& vehicle) {
+  const BodyStep<double> step = body_step(vehicle, control.speed, control.steer, duration);
+  const BodyStep<double> by_speed = body_step(vehicle, 1.0, control.steer, duration);
+  const BodyStep<double> by_steer =
+      steer_derivative(vehicle, control.speed, control.steer, duration);
+  const Direction<Real> heading = direction_of(pose.heading);
+  const BasicPoint<Real> way = in_world(heading, Real(step.forward), Real(step.left));
+  const BasicPoint<Real> speed = in_world(heading, Real(by_speed.forward), Real(by_speed.left));
+  const BasicPoint<Real> steer = in_world(heading, Real(by_steer.forward), Real(by_steer.left));
+  const BasicPose<Real> moved{pose.x + way.x, pose.y + way.y,
+                              wrap(Real(pose.heading + Real(step.turn)))};
   return {moved,
-          {.x_heading = -along_y,
-           .y_heading = along_x,
-           .x_speed = Real(duration) * course.cosine,
-           .x_steer = -along_y,
-           .y_speed = Real(duration) * course.sine,
-           .y_steer = along_x,
-           .heading_speed = Real(duration * wheel.sine / wheelbase),
-           .heading_steer = Real(way * wheel.cosine / wheelbase)}};
+          {.x_heading = -way.y,
+           .y_heading = way.x,
+           .x_speed = speed.x,
+           .x_steer = steer.x,
+           .y_speed = speed.y,
+           .y_steer = steer.y,
+           .heading_speed = Real(by_speed.turn),
+           .heading_steer = Real(by_steer.turn)}};
 }
 
 }  // namespace montecarta

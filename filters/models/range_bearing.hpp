@@ -4,18 +4,11 @@
 #include "engine/numbers/real.hpp"
 #include "engine/runs/drive.hpp"
 #include "engine/runs/pose.hpp"
+#include "filters/models/point.hpp"
 
 #include <cmath>
 
 namespace montecarta {
-
-/// A place in the map frame; `Real` is double or Lanes.
-template <class Real>
-struct BasicPoint {
-  Real x{};  ///< [m]
-  Real y{};  ///< [m]
-};
-using Point = BasicPoint<double>;
 
 /// A landmark seen from a pose, or the difference of two such sights.
 template <class Real>

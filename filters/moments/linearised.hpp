@@ -82,9 +82,11 @@ struct Innovation {
 
   Real determinant() const { return s_rr * s_bb - s_rb * s_rb; }
   /// value' S^-1 value
-  Real squared() const {
-    const Real& r = value.range;
-    const Real& b = value.bearing;
+  Real squared() const { return squared(value); }
+  /// The same for another innovation with this covariance.
+  Real squared(const RangeBearing<Real>& other) const {
+    const Real& r = other.range;
+    const Real& b = other.bearing;
     return (s_bb * r * r - 2.0 * s_rb * r * b + s_rr * b * b) / determinant();
   }
 };

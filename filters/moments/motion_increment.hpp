@@ -24,7 +24,7 @@ class MotionIncrement {
 
   /// One control step of `duration` [s], linearised.
   void advance(const Control& control, double duration, const Belief& belief) {
-    const LinearisedMove<double> step = linearised_move(pose_, control, duration, belief.wheelbase);
+    const LinearisedMove<double> step = linearised_move(pose_, control, duration, belief.vehicle);
     const Eigen::Matrix3d F = pose_jacobian(step.jacobians);
     Matrix32 G = control_jacobian(step.jacobians);
     G.col(0) *= belief.sigma_speed;

@@ -11,29 +11,18 @@ struct Pair {
   Eigen::Vector3d odd, even;
 };
 
-/// A step along `course` with the front wheel at `wheel`, as the pairs need it.
-struct Step {
-  double way;        ///< speed times duration [m]
-  double wheelbase;  ///< [m]
-  Direction<double> course, wheel;
-};
+/// A step as the vehicle sees it, in the world: its displacement and its turn.
+Eigen::Vector3d turned(const BodyStep<double>& step, const Direction<double>& heading) {
+  const Point way = in_world(heading, step.forward, step.left);
+  return {way.x, way.y, step.turn};
+}
 
 /// Points that differ in heading, by the angle of `turn`, and in place: `column` is the spread
 /// column of the square root.
-Pair heading_pair(const Step& step, const Eigen::Vector3d& column) {
+Pair heading_pair(const Eigen::Vector3d& step, const Eigen::Vector3d& column) {
   const Direction<double> turn = direction_of(column(2));
-  const auto& [c, s] = step.course;
-  return {column + step.way * turn.sine * Eigen::Vector3d(-s, c, 0.0),
-          step.way * (turn.cosine - 1.0) * Eigen::Vector3d(c, s, 0.0)};
-}
-
-/// Points that differ in steer by `angle` [rad].
-Pair steer_pair(const Step& step, double angle) {
-  const Direction<double> turn = direction_of(angle);
-  const auto& [c, s] = step.course;
-  const double L = step.wheelbase;
-  return {step.way * turn.sine * Eigen::Vector3d(-s, c, step.wheel.cosine / L),
-          step.way * (turn.cosine - 1.0) * Eigen::Vector3d(c, s, step.wheel.sine / L)};
+  return {column + turn.sine * Eigen::Vector3d(-step(1), step(0), 0.0),
+          (turn.cosine - 1.0) * Eigen::Vector3d(step(0), step(1), 0.0)};
 }
 
 /// The column of the square root that carries the heading; zero where the heading is certain.
@@ -48,17 +37,21 @@ MotionIncrement moved_by_sigma_points(const MotionIncrement& before, const Contr
                                       double duration, const Belief& belief,
                                       const SigmaRule& rule) {
   const Pose& from = before.pose();
-  const Step step{control.speed * duration, belief.wheelbase,
-                  direction_of(from.heading + control.steer), direction_of(control.steer)};
+  const Direction<double> course = direction_of(from.heading);
+  const auto image = [&](double speed, double steer) {
+    return turned(body_step(belief.vehicle, speed, steer, duration), course);
+  };
+  const Eigen::Vector3d step = image(control.speed, control.steer);
   const Eigen::Vector3d column = heading_column(before.covariance());
   const Pair heading = heading_pair(step, rule.spread * column);
-  const Pair steer = steer_pair(step, rule.spread * belief.sigma_steer);
-  const Eigen::Vector3d speed =  // the way is linear in it: no points needed
-      belief.sigma_speed * duration *
-      Eigen::Vector3d(step.course.cosine, step.course.sine, step.wheel.sine / step.wheelbase);
+  const double angle = rule.spread * belief.sigma_steer;
+  const Eigen::Vector3d leftward = image(control.speed, control.steer + angle);
+  const Eigen::Vector3d rightward = image(control.speed, control.steer - angle);
+  const Pair steer{0.5 * (leftward - rightward), 0.5 * (leftward + rightward) - step};
+  const Eigen::Vector3d speed = image(belief.sigma_speed, control.steer);  // linear: no points
 
   const Eigen::Vector3d e = rule.mean_weight * (heading.even + steer.even);
-  const Pose centre = move(from, control, duration, belief.wheelbase);
+  const Pose centre = move(from, control, duration, belief.vehicle);
   Eigen::Matrix3d P = before.covariance() - column * column.transpose();
   P += speed * speed.transpose();
   P += rule.antisymmetric *

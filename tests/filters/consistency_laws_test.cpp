@@ -79,7 +79,7 @@ TEST(Consistency, AMatchedLinearWorldStaysInsideItsBand) {
 /// Noise so small that the models are linear within it: there EKF-SLAM is the Kalman filter of its
 /// world.
 Belief fine() {
-  return {.wheelbase = 4.0,
+  return {.vehicle = {},
           .sigma_speed = 3e-3,
           .sigma_steer = 5e-4,
           .sigma_range = 1e-3,

@@ -65,7 +65,7 @@ inline SmallWorld small_world(const SmallWorldSettings& settings) {
     const Control control{3.0, 0.15};
     const double speed = control.speed + settings.noise.sigma_speed * draw.normal();
     const double steer = control.steer + settings.noise.sigma_steer * draw.normal();
-    truth = move(truth, speed, steer, 0.025, settings.noise.wheelbase);
+    truth = move(truth, speed, steer, 0.025, settings.noise.vehicle);
     world.itinerary.step_time.push_back(0.025 * (step + 1));
     world.drive.controls.push_back(control);
     world.drive.truth.push_back(truth);

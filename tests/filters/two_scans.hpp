@@ -17,7 +17,7 @@ inline SmallWorld drive_of_two_scans() {
   world.drive.scan_begin.push_back(0);
   look_around(settings, 0, Pose{}, world);
   Pose truth;
-  for (int step = 0; step < 8; ++step) truth = move(truth, Control{3.0, 0.15}, 0.025, 4.0);
+  for (int step = 0; step < 8; ++step) truth = move(truth, Control{3.0, 0.15}, 0.025, Vehicle());
   look_around(settings, 8, truth, world);
   return world;
 }

@@ -64,7 +64,7 @@ TEST(SimulatedDrive, DrivesTheShippedWorldsAsTheyPromise) {
   EXPECT_NEAR(seen_in(drive_of(web, 0)).empty_share, 0.2, 0.05);
   const SimulatedDrive dense(find_world("dense_loop"), Scenario{}, 1);
   EXPECT_NEAR(seen_in(drive_of(dense, 0)).mean, 5.2, 0.3);
-  const Scenario small{.wheelbase = 0.26, .speed = 0.8, .max_range = 5.0};
+  const Scenario small{.vehicle = {.wheelbase = 0.26}, .speed = 0.8, .max_range = 5.0};
   EXPECT_EQ(seen_in(drive_of(SimulatedDrive(find_world("small_loop"), small, 1), 0)).different, 15U)
       << "reached with the default radius and steering rate, too";
 }
@@ -171,7 +171,7 @@ TEST(SimulatedDrive, TurnsWithTheWorld) {
 TEST(SimulatedDrive, CountsScansInWholeNumbers) {
   const World square{
       .name = "square", .waypoints = {{10, 0}, {10, 10}, {0, 10}, {0, 0}}, .landmarks = {{5, 5}}};
-  const Scenario scenario{.loops = 400, .wheelbase = 1.0, .speed = 0.6};
+  const Scenario scenario{.loops = 400, .vehicle = {.wheelbase = 1.0}, .speed = 0.6};
   const SimulatedDrive source(square, scenario, 1);
   const Itinerary& itinerary = source.itinerary();
   ASSERT_GT(itinerary.steps(), 1'000'000U);

@@ -93,7 +93,7 @@ void drive(benchmark::State& state, SlamFilter& filter, std::size_t particles, P
         benchmark::DoNotOptimize(filter.estimate());
       }
     });
-    for (std::size_t k = 0; k < kStepsPerScan; ++k) truth = move(truth, kControl, 0.025, 4.0);
+    for (std::size_t k = 0; k < kStepsPerScan; ++k) truth = move(truth, kControl, 0.025, Vehicle());
     const std::vector<Detection> scan = look(truth);
     const StepContext context(1, 0, step - 1, Parallel::serial());
     timed(Part::scan, [&] { filter.update(context, scan); });

@@ -11,19 +11,28 @@ namespace montecarta {
 namespace {
 
 constexpr double kDuration = 0.025;
-constexpr double kWheelbase = 4.0;
+
+/// The benchmark's, and the car of both recorded drives.
+const Vehicle kFront;
+const Vehicle kCar{.kind = Vehicle::Kind::rear_wheel,
+                   .wheelbase = 2.83,
+                   .wheel_left = 0.76,
+                   .sensor_ahead = 3.78,
+                   .sensor_left = 0.5};
 
 struct Case {
   Pose pose;
   Control control;
+  Vehicle vehicle;
 };
 
 Case random_case(RngStream& draw) {
   return {{10.0 * draw.normal(), 10.0 * draw.normal(), wrap(7.0 * draw.normal())},
-          {3.0 * draw.normal(), 0.3 * draw.normal()}};
+          {3.0 * draw.normal(), 0.3 * draw.normal()},
+          draw.uniform() < 0.5 ? kFront : kCar};
 }
 
-Pose moved(const Case& c) { return move(c.pose, c.control, kDuration, kWheelbase); }
+Pose moved(const Case& c) { return move(c.pose, c.control, kDuration, c.vehicle); }
 
 /// Central difference of move() by the value `at` points to.
 Eigen::Vector3d slope(Case c, double& (*at)(Case&)) {
@@ -39,7 +48,7 @@ TEST(Ackermann, JacobiansEqualCentralDifferences) {
   RngStream draw({.seed = 21, .purpose = Draw::test});
   for (int n = 0; n < 200; ++n) {
     const Case c = random_case(draw);
-    const auto j = linearised_move(c.pose, c.control, kDuration, kWheelbase).jacobians;
+    const auto j = linearised_move(c.pose, c.control, kDuration, c.vehicle).jacobians;
     Eigen::Matrix<double, 3, 5> expected;
     expected << slope(c, [](Case& v) -> double& { return v.pose.x; }),
         slope(c, [](Case& v) -> double& { return v.pose.y; }),
@@ -55,7 +64,7 @@ TEST(Ackermann, LinearisedMoveGoesWhereMoveGoes) {
   RngStream draw({.seed = 22, .purpose = Draw::test});
   for (int n = 0; n < 200; ++n) {
     const Case c = random_case(draw);
-    const Pose there = linearised_move(c.pose, c.control, kDuration, kWheelbase).pose;
+    const Pose there = linearised_move(c.pose, c.control, kDuration, c.vehicle).pose;
     EXPECT_LT(boxminus(there, moved(c)).norm(), 1e-14) << "case " << n;
   }
 }
@@ -70,15 +79,44 @@ TEST(Ackermann, TurningAndShiftingTheWorldTurnsAndShiftsTheMove) {
               p.x * std::sin(turn) + p.y * std::cos(turn) - 2.0, wrap(p.heading + turn)};
     };
     const Pose expected = in_other_world(moved(c));
-    EXPECT_LT(boxminus(moved({in_other_world(c.pose), c.control}), expected).norm(), 1e-12);
+    EXPECT_LT(boxminus(moved({in_other_world(c.pose), c.control, c.vehicle}), expected).norm(),
+              1e-12);
   }
 }
 
 TEST(Ackermann, DrivesSidewaysByTheSineOfCourse) {
   // Ankishan eq. (38) prints cos in both rows; with heading 90 degrees that would stand still in y.
-  const Pose there = move(Pose{0.0, 0.0, kPi / 2.0}, Control{2.0, 0.0}, 0.5, kWheelbase);
+  const Pose there = move(Pose{0.0, 0.0, kPi / 2.0}, Control{2.0, 0.0}, 0.5, kFront);
   EXPECT_NEAR(there.x, 0.0, 1e-15);
   EXPECT_NEAR(there.y, 1.0, 1e-15);
+}
+
+TEST(Ackermann, TheCarMovesAsItsModelIsPublished) {
+  RngStream draw({.seed = 24, .purpose = Draw::test});
+  const auto [kind, L, H, a, b] = kCar;
+  for (int n = 0; n < 200; ++n) {
+    Case c = random_case(draw);
+    c.vehicle = kCar;
+    const double T = std::tan(c.control.steer), phi = c.pose.heading;
+    const double v = c.control.speed / (1.0 - H / L * T);
+    const double sine = std::sin(phi), cosine = std::cos(phi);
+    const Eigen::Vector3d expected(kDuration * (v * cosine - v / L * T * (a * sine + b * cosine)),
+                                   kDuration * (v * sine + v / L * T * (a * cosine - b * sine)),
+                                   kDuration * v / L * T);
+    EXPECT_LT((boxminus(moved(c), c.pose) - expected).norm(), 1e-13) << "case " << n;
+  }
+}
+
+TEST(Ackermann, BothVehiclesAreOneWhereTheirPointsAreTheSame) {
+  RngStream draw({.seed = 25, .purpose = Draw::test});
+  const Vehicle same{.kind = Vehicle::Kind::rear_wheel, .wheelbase = 4.0, .sensor_ahead = 4.0};
+  for (int n = 0; n < 200; ++n) {
+    const Case c = random_case(draw);
+    const double of_rear_axle = c.control.speed * std::cos(c.control.steer);
+    const Pose by_rear = move(c.pose, {of_rear_axle, c.control.steer}, kDuration, same);
+    const Pose by_front = move(c.pose, c.control, kDuration, kFront);
+    EXPECT_LT(boxminus(by_rear, by_front).norm(), 1e-13) << "case " << n;
+  }
 }
 
 /// Standard deviations [m, m, ~rad] along the principal axes after `steps` straight steps, largest
@@ -88,7 +126,7 @@ Eigen::Vector3d deviations_after(int steps) {
   Pose pose;
   Eigen::Matrix3d P = Eigen::Matrix3d::Zero();
   for (int k = 0; k < steps; ++k) {
-    const auto step = linearised_move(pose, Control{3.0, 0.0}, kDuration, kWheelbase);
+    const auto step = linearised_move(pose, Control{3.0, 0.0}, kDuration, kFront);
     const Eigen::Matrix3d Fx = pose_jacobian(step.jacobians);
     const Matrix32 Fu = control_jacobian(step.jacobians);
     P = Fx * P * Fx.transpose() + Fu * Q * Fu.transpose();

@@ -27,13 +27,17 @@ struct Case {
     const Pose pose{draw.normal(), draw.normal(), wrap(7.0 * draw.normal())};
     before = {pose, symmetric(random_pose_covariance(draw, 0.5, 0.2))};
     control = {5.0 * draw.normal(), 0.5 * draw.normal()};
+    if (draw.uniform() < 0.5) {
+      belief.vehicle = {Vehicle::Kind::rear_wheel, 2.83, 0.76, 3.78, 0.5};
+      control.steer *= 0.5;  // sampled angles stay below the one at which the wheel stands still
+    }
     belief.sigma_speed = draw.uniform(), belief.sigma_steer = 0.3 * draw.uniform();
     x.head<3>() << pose.x, pose.y, pose.heading;
     const Vector<2> Q(belief.sigma_speed, belief.sigma_steer), R(0.3, 0.1);
     const Eigen::Matrix2d q = Q.asDiagonal(), r = R.asDiagonal();
     S = blocks<3, 2, 2>(chol_in<3>(heading_first(), before.covariance()), q, r);
   }
-  reference::MotionModel model() const { return {control, 0.4, belief.wheelbase}; }
+  reference::MotionModel model() const { return {control, 0.4, belief.vehicle}; }
 };
 
 void expect_near(const MotionIncrement& moved, const Vector<3>& mean, const Eigen::Matrix3d& P) {
@@ -70,7 +74,8 @@ TEST(SigmaMotion, WithoutNoiseIsTheVehicleItself) {
   sure.sigma_speed = sure.sigma_steer = 0.0;
   const MotionIncrement moved = moved_by_sigma_points(MotionIncrement(), {3.0, 0.2}, 0.025, sure,
                                                       unscented_rule(5, 0.9, 2, 0));
-  EXPECT_EQ(boxminus(moved.pose(), move(Pose(), Control{3.0, 0.2}, 0.025, 4.0)).norm(), 0.0);
+  EXPECT_EQ(boxminus(moved.pose(), move(Pose(), Control{3.0, 0.2}, 0.025, sure.vehicle)).norm(),
+            0.0);
   EXPECT_EQ(moved.covariance().norm(), 0.0);
 }
 

@@ -19,7 +19,7 @@ class FastSlam1 final : public FastSlam {
     RngStream draw = context.stream(Draw::motion_sample, i);
     const double speed = control.speed + belief.sigma_speed * draw.normal();
     const double steer = control.steer + belief.sigma_steer * draw.normal();
-    const Pose moved = move(as_pose(p.pose), speed, steer, duration, belief.wheelbase);
+    const Pose moved = move(as_pose(p.pose), speed, steer, duration, belief.vehicle);
     p.pose = Eigen::Vector3d(moved.x, moved.y, moved.heading);
   }
 

@@ -30,8 +30,7 @@ class FastSlam2 : public FastSlam {
  protected:
   /// Carries (p.pose, p.covariance) through one step.
   virtual void move_gaussian(Particle& p, const Control& control, double duration) const {
-    const auto step =
-        linearised_move(as_pose(p.pose), control, duration, settings_.belief.wheelbase);
+    const auto step = linearised_move(as_pose(p.pose), control, duration, settings_.belief.vehicle);
     const Eigen::Matrix3d Fx = pose_jacobian(step.jacobians);
     const Matrix32 Fu = control_jacobian(step.jacobians);
     p.covariance = (Fx * p.covariance * Fx.transpose() + Fu * Q_ * Fu.transpose()).eval();

@@ -37,7 +37,7 @@ double dead_reckoning_error(const SmallWorld& world) {
   Pose pose;
   double squares = 0.0;
   for (std::size_t step = 0; step < world.itinerary.steps(); ++step) {
-    pose = move(pose, world.drive.controls[step], world.itinerary.duration(step), 4.0);
+    pose = move(pose, world.drive.controls[step], world.itinerary.duration(step), Vehicle());
     squares += boxminus(world.drive.truth[step], pose).head<2>().squaredNorm();
   }
   return std::sqrt(squares / static_cast<double>(world.itinerary.steps()));

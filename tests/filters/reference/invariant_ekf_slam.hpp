@@ -29,11 +29,11 @@ class InvariantEkfSlam {
     const double way = u.speed * duration;
     points[0] += way * Eigen::Vector2d(std::cos(heading + u.steer), std::sin(heading + u.steer));
     Eigen::RowVector2d turn(duration * std::sin(u.steer), way * std::cos(u.steer));
-    turn /= belief_.wheelbase;
+    turn /= belief_.vehicle.wheelbase;
     Eigen::Matrix2d shift;  // of the vehicle alone, by (speed, steer)
     shift << duration * std::cos(heading + u.steer), -way * std::sin(heading + u.steer),
         duration * std::sin(heading + u.steer), way * std::cos(heading + u.steer);
-    heading = wrap(heading + way * std::sin(u.steer) / belief_.wheelbase);
+    heading = wrap(heading + way * std::sin(u.steer) / belief_.vehicle.wheelbase);
     Eigen::MatrixXd G(P.rows(), 2);
     G.row(2) = turn;
     for (std::size_t k = 0; k < points.size(); ++k) {

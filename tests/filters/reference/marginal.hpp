@@ -44,7 +44,7 @@ class Marginal {
 
   void predict(const StepContext&, const Control& control, double duration) {
     for (std::size_t j = 0; j < mean_.size(); ++j) {
-      const auto step = linearised_move(as_pose(mean_[j]), control, duration, belief_.wheelbase);
+      const auto step = linearised_move(as_pose(mean_[j]), control, duration, belief_.vehicle);
       const Eigen::Matrix3d F = pose_jacobian(step.jacobians);
       const Matrix32 G = control_jacobian(step.jacobians);
       covariance_[j] = (F * covariance_[j] * F.transpose() + G * Q_ * G.transpose()).eval();

@@ -15,10 +15,11 @@ inline Vector<3> to_vector(const Pose& pose) { return {pose.x, pose.y, pose.head
 /// f of (pose, control noise, sensor noise); the last has no effect.
 struct MotionModel {
   Control control;
-  double duration, wheelbase;
+  double duration;
+  Vehicle vehicle;
   Vector<3> operator()(const Vector<7>& x) const {
     const Pose from{x(0), x(1), x(2)};
-    return to_vector(move(from, control.speed + x(3), control.steer + x(4), duration, wheelbase));
+    return to_vector(move(from, control.speed + x(3), control.steer + x(4), duration, vehicle));
   }
 };
 

@@ -31,7 +31,7 @@ class SrcdFastSlam final : public FastSlam2 {
     const auto S =
         blocks<3, 2, 2>(tria_in<3>(heading_first(), p.factor), Q_.cwiseSqrt(), R_.cwiseSqrt());
     const auto image = central_differences<3, 2>(
-        x, S, parts_.h, MotionModel{control, duration, settings_.belief.wheelbase});
+        x, S, parts_.h, MotionModel{control, duration, settings_.belief.vehicle});
     Eigen::Matrix<double, 3, 14> columns;
     columns << image.A, image.B;
     p.pose = image.mean;

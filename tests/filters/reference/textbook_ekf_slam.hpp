@@ -23,7 +23,7 @@ class TextbookEkfSlam {
   }
 
   void predict(const Control& control, double duration) {
-    const auto step = linearised_move(pose(), control, duration, belief_.wheelbase);
+    const auto step = linearised_move(pose(), control, duration, belief_.vehicle);
     Eigen::MatrixXd F = Eigen::MatrixXd::Identity(mean.size(), mean.size());
     F.topLeftCorner<3, 3>() = pose_jacobian(step.jacobians);
     Eigen::MatrixXd G = Eigen::MatrixXd::Zero(mean.size(), 2);

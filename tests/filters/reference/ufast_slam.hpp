@@ -27,7 +27,7 @@ class UFastSlam final : public FastSlam2 {
     const auto S =
         blocks<3, 2, 2>(chol_in<3>(heading_first(), p.covariance), Q_.cwiseSqrt(), R_.cwiseSqrt());
     const auto image =
-        unscented<3, 2>(x, S, seven_, MotionModel{control, duration, settings_.belief.wheelbase});
+        unscented<3, 2>(x, S, seven_, MotionModel{control, duration, settings_.belief.vehicle});
     p.pose = image.mean;
     p.covariance = image.covariance;
   }

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "experiments/recordings/drive_log.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// The folder that a study means by `path`: as it is, or below one of `folders`, or below a folder
+/// of the environment variable MONTECARTA_DATA (separated by colons). Throws StudyError where there
+/// is none.
+std::filesystem::path find_recording(const std::string& path,
+                                     const std::vector<std::filesystem::path>& folders);
+
+/// SHA-256 of all that a log says, hexadecimal: whatever files it came in, the same drive has the
+/// same one.
+std::string fingerprint_of(const DriveLog& log);
+
+}  // namespace montecarta

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "experiments/study/study.hpp"
+#include "filters/models/vehicle.hpp"
+
+#include <memory>
+
+namespace montecarta {
+
+/// The vehicle of a section: [scenario] or [belief].
+Vehicle vehicle_of(const Settings& settings, const char* section);
+/// How many landmarks detections can name; 0 where nobody identified them.
+std::size_t identities_of(const Study& study);
+/// The drives of a study. Throws StudyError where its settings do not fit together.
+std::shared_ptr<const DriveSource> drives_of(const Study& study, std::uint64_t seed);
+
+}  // namespace montecarta

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "experiments/study/setting.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+/// How the rows of the table of settings are written.
+namespace montecarta::setting_builders {
+
+inline constexpr double kTiny = 1e-6;  // least of what must be positive
+inline constexpr double kMostSeed = 18446744073709551615.0;
+
+inline Setting text(const char* section, const char* key, const char* meaning) {
+  return {.section = section, .key = key, .fallback = "", .meaning = meaning};
+}
+
+inline Setting number(const char* section, const char* key, const char* unit, const char* fallback,
+                      double least, double most, const char* meaning) {
+  return {.section = section,
+          .key = key,
+          .kind = Setting::Kind::number,
+          .unit = unit,
+          .fallback = fallback,
+          .least = least,
+          .most = most,
+          .meaning = meaning};
+}
+
+inline Setting count(const char* section, const char* key, const char* fallback, double least,
+                     double most, const char* meaning) {
+  return {.section = section,
+          .key = key,
+          .kind = Setting::Kind::count,
+          .fallback = fallback,
+          .least = least,
+          .most = most,
+          .meaning = meaning};
+}
+
+/// The first choice is the default.
+inline Setting choice(const char* section, const char* key, std::vector<std::string> choices,
+                      const char* meaning) {
+  const std::string first = choices.front();
+  return {.section = section,
+          .key = key,
+          .kind = Setting::Kind::choice,
+          .fallback = first,
+          .choices = std::move(choices),
+          .meaning = meaning};
+}
+
+/// Without a default; `example` is offered as remedy.
+inline Setting required(Setting setting, const char* example) {
+  setting.fallback.reset();
+  setting.example = example;
+  return setting;
+}
+
+/// Of these kinds of scenario only.
+inline Setting only_for(std::vector<std::string> kinds, Setting setting) {
+  setting.kinds = std::move(kinds);
+  return setting;
+}
+
+/// With another default where the scenario is of that kind.
+inline Setting but_for(const char* kind, const char* fallback, Setting setting) {
+  setting.fallback_of_kind.emplace_back(kind, fallback);
+  return setting;
+}
+
+/// With another default where the drive was recorded.
+inline Setting for_recorded(Setting setting, const char* fallback) {
+  for (const std::string& kind : recorded_kinds())
+    setting = but_for(kind.c_str(), fallback, std::move(setting));
+  return setting;
+}
+
+void add_scenario(std::vector<Setting>& table);
+void add_belief(std::vector<Setting>& table);
+
+}  // namespace montecarta::setting_builders

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/numbers/real.hpp"
+
+namespace montecarta {
+
+/// A car steered at the front: which of its points the pose is of, and what its controls mean.
+struct Vehicle {
+  enum class Kind {
+    front_axle,  ///< pose and speed are of the middle of the front axle (SPEC 2.1)
+    rear_wheel   ///< pose is of the sensor, speed of a rear wheel (SPEC 2.2)
+  };
+  Kind kind = Kind::front_axle;
+  double wheelbase = 4.0;     ///< L [m]
+  double wheel_left = 0.0;    ///< H [m] of the rear wheel, left of the middle of its axle
+  double sensor_ahead = 0.0;  ///< a [m] of the sensor, from the middle of the rear axle
+  double sensor_left = 0.0;   ///< b [m] likewise
+};
+
+/// A step as the vehicle sees it from where it was; where that is in the world does not matter.
+template <class Real>
+struct BodyStep {
+  Real forward;  ///< [m]
+  Real left;     ///< [m]
+  Real turn;     ///< [rad] counter-clockwise
+};
+
+/// One control step: `speed` [m/s], `steer` [rad], of one vehicle (double) or one a lane;
+/// `duration` [s]. Linear in the speed. SPEC 2.1 and 2.2, in the frame of the vehicle.
+template <class Real>
+BodyStep<Real> body_step(const Vehicle& vehicle, const Real& speed, const Real& steer,
+                         double duration) {
+  const Real way = speed * Real(duration);
+  const Direction<Real> wheel = direction_of(steer);
+  if (vehicle.kind == Vehicle::Kind::front_axle) {
+    const Real left = way * wheel.sine;
+    return {way * wheel.cosine, left, left * Real(1.0 / vehicle.wheelbase)};
+  }
+  const Real tangent = wheel.sine / wheel.cosine;
+  const Real slower = Real(1.0) - Real(vehicle.wheel_left / vehicle.wheelbase) * tangent;
+  const Real of_axle = way / slower;
+  const Real turn = of_axle * tangent * Real(1.0 / vehicle.wheelbase);
+  return {of_axle - Real(vehicle.sensor_left) * turn, Real(vehicle.sensor_ahead) * turn, turn};
+}
+
+/// Derivative of body_step() by the steering angle, each element per rad.
+inline BodyStep<double> steer_derivative(const Vehicle& vehicle, double speed, double steer,
+                                         double duration) {
+  const double way = speed * duration;
+  const Direction<double> wheel = direction_of(steer);
+  const double L = vehicle.wheelbase;
+  if (vehicle.kind == Vehicle::Kind::front_axle) {
+    return {-way * wheel.sine, way * wheel.cosine, way * wheel.cosine / L};
+  }
+  const double tangent = wheel.sine / wheel.cosine;
+  const double by_steer = 1.0 + tangent * tangent;  // of the tangent
+  const double slower = 1.0 - vehicle.wheel_left / L * tangent;
+  const double of_axle = way * vehicle.wheel_left / L * by_steer / (slower * slower);
+  const double turn = way * by_steer / (slower * slower * L);  // of v tan G, in one term
+  return {of_axle - vehicle.sensor_left * turn, vehicle.sensor_ahead * turn, turn};
+}
+
+}  // namespace montecarta
