@@ -27,6 +27,7 @@ Command merge_command();
 Command analyze_command();
 Command report_command();
 Command bounds_command();
+Command convert_command();
 Command list_command();
 
 /// All commands, in the order of the help.

@@ -46,6 +46,8 @@ inline std::string difference_of_run(const ResultFile& a, std::size_t i, const R
       if (!same_bits(values_of(a, left, column, i), values_of(b, right, column, j)))
         return left.label + "/" + column.name;
   }
+  if (a.has_truth() != b.has_truth()) return "truth";
+  if (!a.has_truth()) return "";
   std::vector<double> truth_a(3 * a.times().size());
   std::vector<double> truth_b(3 * b.times().size());
   a.read_truth(i, truth_a);

@@ -13,6 +13,7 @@ namespace {
 
 using ::testing::Each;
 using ::testing::ElementsAre;
+using ::testing::ElementsAreArray;
 using ::testing::IsEmpty;
 using ::testing::IsNan;
 
@@ -41,7 +42,7 @@ TEST(RecordLayout, HoldsWhatWasAskedFor) {
   plan.columns = {.covariance = false, .ancestry = false};
   const RecordLayout least(plan.cells[0], plan.columns, plan.drives->itinerary());
   EXPECT_THAT(names(least), ElementsAre("pose_mean", "ess", "resampled", "log_likelihood", "nis",
-                                        "nis_dof", "numerical_faults"));
+                                        "nis_dof", "numerical_faults", "map_size"));
   plan.columns = {};
   plan.cells[0].mixture = false;
   const RecordLayout usual(plan.cells[0], plan.columns, plan.drives->itinerary());
@@ -126,6 +127,29 @@ TEST(Recorder, PutsCovariancesAndMapsWhereTheyBelong) {
               ElementsAre(0, 0, 0, 1, 0, 0));  // run 0 sees nothing, then one landmark
   EXPECT_TRUE(std::isnan(mean[2]));
   EXPECT_EQ(mean[2 * 3 + 1], 0.0);
+}
+
+TEST(Recorder, StoresTheLastMapWithoutThoseBefore) {
+  StudyPlan plan = small_result_plan();
+  const RecordLayout every(plan.cells[0], plan.columns, plan.drives->itinerary());
+  plan.columns.map = false;
+  plan.columns.final_map = true;
+  const RecordLayout last(plan.cells[0], plan.columns, plan.drives->itinerary());
+  EXPECT_FALSE(last.find("map_mean"));
+  RunRecord all_maps(every), last_map(last);
+  Drive drive;
+  plan.drives->generate(1, drive);
+  fill_record(plan, 0, 1, drive, all_maps);
+  fill_record(plan, 0, 1, drive, last_map);
+  const auto seen = last_map.column<std::uint8_t>(*last.find("final_map_seen"));
+  const auto mean = last_map.column<double>(*last.find("final_map_mean"));
+  const auto covariance = last_map.column<double>(*last.find("final_map_covariance"));
+  EXPECT_THAT(seen, ElementsAreArray(
+                        all_maps.column<std::uint8_t>(*every.find("map_seen")).last(seen.size())));
+  ASSERT_EQ(seen[0], 1);
+  EXPECT_EQ(mean[0], all_maps.column<double>(*every.find("map_mean")).last(mean.size())[0]);
+  EXPECT_EQ(covariance[3],
+            all_maps.column<double>(*every.find("map_covariance")).last(covariance.size())[3]);
 }
 
 TEST(Recorder, StoresAssociationsWhereTheyAreAskedFor) {

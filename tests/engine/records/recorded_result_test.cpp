@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/records/h5.hpp"
+#include "engine/records/merge.hpp"
+#include "engine/records/posix_file.hpp"
+#include "engine/records/result_file.hpp"
+#include "engine/records/result_slabs.hpp"
+#include "tests/doubles/result_writing.hpp"
+#include "tests/doubles/same_results.hpp"
+
+#include <gmock/gmock.h>
+
+namespace montecarta {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// The scripted drive as if it had been recorded: nobody knows the truth, two instruments saw it.
+class Recording final : public DriveSource {
+ public:
+  Recording() : drives_(24), itinerary_(drives_.itinerary()) {
+    itinerary_.has_truth = false;
+    itinerary_.references = {{"compass", {0.0, 0.3}, {{1.0, 2.0}, {3.0, 4.0}}, {0.1, -0.2}},
+                             {"gps", {0.1, 0.2, 0.4}, {{5.0, 6.0}, {7.0, 8.0}, {9.0, 10.0}}, {}}};
+  }
+  const Itinerary& itinerary() const override { return itinerary_; }
+  void generate(std::uint64_t run, Drive& drive) const override {
+    drives_.generate(run, drive);
+    drive.truth.clear();
+  }
+
+ private:
+  ScriptedDrives drives_;
+  Itinerary itinerary_;
+};
+
+class RecordedResult : public ResultWriting {
+ protected:
+  RecordedResult() { plan_.drives = std::make_shared<Recording>(); }
+};
+
+TEST_F(RecordedResult, HandsBackItsReferencesAndNoTruth) {
+  write_result(path_, plan_);
+  const ResultFile file(path_);
+  EXPECT_FALSE(file.has_truth());
+  EXPECT_FALSE(h5::has(h5::open_file(path_), "truth"));
+  ASSERT_EQ(file.references().size(), 2U);
+  const ReferencePath& compass = file.references()[0];
+  EXPECT_EQ(compass.name, "compass");
+  EXPECT_THAT(compass.time, ElementsAre(0.0, 0.3));
+  EXPECT_THAT(compass.heading, ElementsAre(0.1, -0.2));
+  const ReferencePath& gps = file.references()[1];
+  EXPECT_EQ(gps.name, "gps");
+  EXPECT_TRUE(gps.heading.empty());
+  EXPECT_THAT(gps.position,
+              ElementsAre(Eigen::Vector2d(5, 6), Eigen::Vector2d(7, 8), Eigen::Vector2d(9, 10)));
+}
+
+TEST_F(RecordedResult, ASimulatedOneHasTruthAndNoReferences) {
+  plan_ = small_result_plan();
+  write_result(path_, plan_);
+  const ResultFile file(path_);
+  EXPECT_TRUE(file.has_truth());
+  EXPECT_TRUE(file.references().empty());
+}
+
+TEST_F(RecordedResult, ResumesAndMergesLikeAnyOther) {
+  write_result(folder_ / "whole.h5", plan_);
+  const ResultFile whole(folder_ / "whole.h5");
+  begin();
+  {
+    ResultWriter writer = resume();
+    for (std::uint64_t run = 1; run < plan_.runs; ++run) store_run(writer, plan_, run);
+    writer.finish();
+  }
+  EXPECT_EQ(difference(whole, ResultFile(path_)), "");
+
+  write_result(folder_ / "a.h5", part_of_plan(plan_, 0, 2));
+  write_result(folder_ / "b.h5", part_of_plan(plan_, 1, 3));
+  merge_results(folder_ / "merged.h5", {folder_ / "a.h5", folder_ / "b.h5"}, Existing::refuse);
+  EXPECT_EQ(difference(whole, ResultFile(folder_ / "merged.h5")), "");
+}
+
+TEST_F(RecordedResult, DamageIsFoundWithoutATruthToo) {
+  write_result(folder_ / "a.h5", part_of_plan(plan_, 0, 2));
+  write_result(folder_ / "b.h5", part_of_plan(plan_, 2, 3));
+  {
+    const PosixFile file(folder_ / "a.h5", PosixFile::Mode::write);
+    const auto slabs = find_slabs(folder_ / "a.h5", describe(part_of_plan(plan_, 0, 2), {}));
+    const std::byte wrong{1};
+    file.write_at(slabs.cells[0].columns[0].at(1), std::span(&wrong, 1));
+  }
+  const std::string said = message<RunError>([&] {
+    merge_results(folder_ / "merged.h5", {folder_ / "a.h5", folder_ / "b.h5"}, Existing::refuse);
+  });
+  EXPECT_THAT(said, HasSubstr("run 1 is damaged"));
+}
+
+}  // namespace
+}  // namespace montecarta
