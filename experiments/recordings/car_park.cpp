@@ -57,6 +57,7 @@ DriveLog read_car_park(const fs::path& folder) {
   const fs::path poles = folder / "beac_juan3.mat";
   if (fs::exists(poles)) log.landmarks = poles_in(poles);
   const Eigen::Vector2d& first = log.references.front().position.front();
+  log.start_time = log.references.front().time.front();
   log.start = {.x = first.x(), .y = first.y(), .heading = kStartHeading};
   check_events({file.series("Time"), file.series("Sensor"), file.series("Index")},
                {log.references.front().time, wheel_times, laser_times}, file.place());

@@ -110,6 +110,20 @@ void check_references(const DriveLog& log, const std::string& place) {
   }
 }
 
+/// A scan before the start has no pose to be seen from; odometry all before it moves nothing.
+void check_start(const DriveLog& log, const std::string& place) {
+  const std::string start = to_text(log.start_time) + " s";
+  if (log.scans.front().time < log.start_time) {
+    throw StudyError(place + " (scans): the first is at " + to_text(log.scans.front().time) +
+                     " s, before the start at " + start +
+                     " (nobody knows where it was taken): give an earlier start, or leave it out");
+  }
+  if (log.odometry.back().time < log.start_time) {
+    throw StudyError(place + " (odometry): all of it is before the start at " + start +
+                     " (the vehicle would never move): correct the time of the start");
+  }
+}
+
 }  // namespace
 
 void check_odometry(std::span<const Odometry> odometry, const std::string& place) {
@@ -156,6 +170,7 @@ void check_landmarks(std::span<const Eigen::Vector2d> landmarks, const std::stri
 
 void check_log(const DriveLog& log, const std::string& place) {
   const std::string start = place + " (start)";
+  Record{start, 0}.limit(log.start_time, kLatestTime, "time", "seconds, a finite number");
   Record{start, 0}.place_on_map({log.start.x, log.start.y});
   Record{start, 0}.limit(log.start.heading, 1e3 * kPi, "heading", "radians");
   check_odometry(log.odometry, place + " (odometry)");
@@ -163,6 +178,7 @@ void check_log(const DriveLog& log, const std::string& place) {
   check_references(log, place);
   check_landmarks(log.landmarks, place + " (landmarks)");
   check_identities(log, place + " (scans)");
+  check_start(log, place);
 }
 
 }  // namespace montecarta

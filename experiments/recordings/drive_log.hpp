@@ -26,7 +26,9 @@ struct LoggedScan {
 /// A recorded drive as it was measured, whatever files it came in. Times of one log share an
 /// origin.
 struct DriveLog {
-  Pose start;                              ///< where the vehicle stood at the first odometry
+  /// [s] when the vehicle was at `start`; what it did before nobody knows.
+  double start_time = 0.0;
+  Pose start;
   std::vector<Odometry> odometry;          ///< in increasing time
   std::vector<LoggedScan> scans;           ///< in increasing time
   std::vector<ReferencePath> references;   ///< at least one; the first one leads

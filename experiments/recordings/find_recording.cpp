@@ -43,8 +43,8 @@ class Bytes {
 }  // namespace
 
 fs::path find_recording(const std::string& path, const std::vector<fs::path>& folders) {
-  std::vector<fs::path> places = {""};
-  places.insert(places.end(), folders.begin(), folders.end());
+  std::vector<fs::path> places = folders;
+  places.emplace_back();
   if (const char* data = std::getenv("MONTECARTA_DATA")) {
     for (const std::string& folder : split(data, ':')) places.emplace_back(folder);
   }
@@ -52,13 +52,14 @@ fs::path find_recording(const std::string& path, const std::vector<fs::path>& fo
     if (fs::is_directory(place / path)) return place / path;
   }
   throw StudyError("no folder '" + path +
-                   "' (looked here, beside the study, and in $MONTECARTA_DATA; recorded drives are "
+                   "' (looked beside the study, here, and in $MONTECARTA_DATA; recorded drives are "
                    "not part of montecarta): correct scenario.path, or set MONTECARTA_DATA to the "
                    "folder that holds it");
 }
 
 std::string fingerprint_of(const DriveLog& log) {
   Bytes bytes;
+  bytes.add(log.start_time);
   bytes.add(log.start);
   bytes.add(log.odometry);
   bytes.add(log.scans);

@@ -9,7 +9,7 @@
 
 namespace montecarta {
 
-/// The folder that a study means by `path`: as it is, or below one of `folders`, or below a folder
+/// The folder that a study means by `path`: below one of `folders`, or as it is, or below a folder
 /// of the environment variable MONTECARTA_DATA (separated by colons). Throws StudyError where there
 /// is none.
 std::filesystem::path find_recording(const std::string& path,

@@ -10,7 +10,7 @@ namespace montecarta::log_csv {
 /// Headers of each file of a log: without and with its optional last column.
 using Headers = std::array<std::string, 2>;
 
-inline const std::array<std::string, 1> kStart = {"x_m,y_m,heading_rad"};
+inline const std::array<std::string, 1> kStart = {"time_s,x_m,y_m,heading_rad"};
 inline const std::array<std::string, 1> kOdometry = {"time_s,speed_mps,steer_rad"};
 inline const Headers kDetections = {"time_s,range_m,bearing_rad",
                                     "time_s,range_m,bearing_rad,identity"};

@@ -15,14 +15,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Pose read_start(const fs::path& path) {
+void read_start(const fs::path& path, DriveLog& log) {
   CsvRows rows(path, log_csv::kStart);
   const bool has_row = rows.next();
-  const Pose start = has_row ? Pose{.x = rows.number(0, "coordinate"),
-                                    .y = rows.number(1, "coordinate"),
-                                    .heading = rows.number(2, "heading")}
-                             : Pose{};
-  if (has_row && !rows.next()) return start;
+  if (has_row) {
+    log.start_time = rows.number(0, "time");
+    log.start = {.x = rows.number(1, "coordinate"),
+                 .y = rows.number(2, "coordinate"),
+                 .heading = rows.number(3, "heading")};
+    if (!rows.next()) return;
+  }
   throw StudyError(path.string() + ": " + (has_row ? "more than one row" : "no row") +
                    " (a drive starts at one pose): write one row");
 }
@@ -143,7 +145,7 @@ std::vector<ReferencePath> read_references(const fs::path& folder) {
 
 DriveLog read_log_csv(const fs::path& folder) {
   DriveLog log;
-  log.start = read_start(folder / "start.csv");
+  read_start(folder / "start.csv", log);
   log.odometry = read_odometry(folder / "odometry.csv");
   log.scans = read_scans(folder / "detections.csv");
   log.references = read_references(folder);

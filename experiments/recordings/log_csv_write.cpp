@@ -38,9 +38,9 @@ class Table {
   std::string text_;
 };
 
-Table start_table(const Pose& start) {
+Table start_table(double time, const Pose& start) {
   Table table(log_csv::kStart[0]);
-  table.add({start.x, start.y, start.heading});
+  table.add({time, start.x, start.y, start.heading});
   return table;
 }
 
@@ -114,7 +114,7 @@ void write_log_csv(const DriveLog& log, const fs::path& folder) {
   check_log(log, folder.string());
   check_order(log, folder.string());
   make_folder(folder);
-  start_table(log.start).save(folder / "start.csv");
+  start_table(log.start_time, log.start).save(folder / "start.csv");
   odometry_table(log.odometry).save(folder / "odometry.csv");
   detection_table(log).save(folder / "detections.csv");
   for (const ReferencePath& reference : log.references) {

@@ -1,55 +1,43 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/recordings/recorded_drive.hpp"
 
-#include "engine/errors.hpp"
-
 #include <algorithm>
+#include <iterator>
+#include <limits>
 
 namespace montecarta {
-namespace {
-
-double first_event(const DriveLog& log) {
-  const double odometry = log.odometry.front().time;
-  return log.scans.empty() ? odometry : std::min(odometry, log.scans.front().time);
-}
-
-}  // namespace
-
-RecordedDrive::RecordedDrive(const DriveLog& log, double max_range) {
-  expect(!log.odometry.empty(), "a drive without odometry");
+RecordedDrive::RecordedDrive(const DriveLog& log, double max_range, double scan_delay) {
   itinerary_.start = log.start;
   itinerary_.has_truth = false;
   itinerary_.landmarks = log.landmarks;
   itinerary_.references = log.references;
-  const double origin = first_event(log);
   for (ReferencePath& path : itinerary_.references) {
-    for (double& time : path.time) time -= origin;
+    for (double& time : path.time) time -= log.start_time;
   }
-  merge(log, max_range);
+  merge(log, max_range, scan_delay);
 }
 
-void RecordedDrive::merge(const DriveLog& log, double max_range) {
-  const double origin = first_event(log);
-  const std::vector<Odometry>& odometry = log.odometry;
+void RecordedDrive::merge(const DriveLog& log, double max_range, double scan_delay) {
   drive_.scan_begin.assign(1, 0);
   Control control;  // the vehicle stands until it says otherwise
-  std::size_t o = 0;
-  for (const LoggedScan& scan : log.scans) {
-    for (; o < odometry.size() && odometry[o].time < scan.time; ++o) {
-      end_step(odometry[o].time - origin, control);
-      control = odometry[o].control;
+  auto odometry = log.odometry.begin();
+  const auto drive_until = [&](double time) {
+    for (; odometry != log.odometry.end() && odometry->time < time; ++odometry) {
+      end_step(odometry->time - log.start_time, control);
+      control = odometry->control;
     }
-    end_step(scan.time - origin, control);
+  };
+  for (const LoggedScan& scan : log.scans) {
+    const double time = scan.time - scan_delay;
+    drive_until(time);
+    end_step(time - log.start_time, control);
     take_scan(scan, max_range);
   }
-  for (; o < odometry.size(); ++o) {
-    end_step(odometry[o].time - origin, control);
-    control = odometry[o].control;
-  }
+  drive_until(std::numeric_limits<double>::infinity());
 }
 
-/// Nothing happens between two events at one time; only the first event of all may be at zero, and
-/// counts where it is a scan.
+/// Nothing happens between two events at one time, and nothing is known of what came before the
+/// start but the odometry that still holds then.
 void RecordedDrive::end_step(double time, const Control& control) {
   const double before = itinerary_.step_time.empty() ? 0.0 : itinerary_.step_time.back();
   if (time <= before) return;
@@ -58,7 +46,7 @@ void RecordedDrive::end_step(double time, const Control& control) {
 }
 
 void RecordedDrive::take_scan(const LoggedScan& scan, double max_range) {
-  if (itinerary_.step_time.empty()) {  // before the vehicle first moves
+  if (itinerary_.step_time.empty()) {  // at the start
     itinerary_.step_time.push_back(0.0);
     drive_.controls.emplace_back();
   }

@@ -6,19 +6,21 @@
 namespace montecarta {
 
 /// A recorded drive as the engine takes it: odometry, scans and fixes merged by their times, which
-/// are counted from the first event. A step ends wherever odometry or a scan comes in, so that no
+/// are counted from the start. A step ends wherever odometry or a scan comes in, so that no
 /// step has two scans, and drives by the odometry that came in last. Before the first odometry the
-/// vehicle stands. All runs are the same: they differ by the filter's random numbers alone.
+/// vehicle stands. Scans that a delay puts before the start are taken there. All runs are the same:
+/// they differ by the filter's random numbers alone.
 class RecordedDrive final : public DriveSource {
  public:
-  /// Detections beyond `max_range` [m] are left out. The log must have passed check_log().
-  RecordedDrive(const DriveLog& log, double max_range);
+  /// Detections beyond `max_range` [m] are left out; scans happened `scan_delay` [s] before the log
+  /// has them (a laser scanner takes its time to send). The log must have passed check_log().
+  RecordedDrive(const DriveLog& log, double max_range, double scan_delay = 0.0);
 
   const Itinerary& itinerary() const override { return itinerary_; }
   void generate(std::uint64_t run, Drive& drive) const override;
 
  private:
-  void merge(const DriveLog& log, double max_range);
+  void merge(const DriveLog& log, double max_range, double scan_delay);
   void end_step(double time, const Control& control);
   void take_scan(const LoggedScan& scan, double max_range);
 

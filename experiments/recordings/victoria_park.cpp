@@ -149,6 +149,7 @@ DriveLog read_victoria_park(const fs::path& folder, Steering steering) {
   log.scans = scans_in(folder);
   log.references = references_in(folder);
   const Eigen::Vector2d& first = log.references.front().position.front();
+  log.start_time = log.references.front().time.front();
   log.start = {.x = first.x(), .y = first.y(), .heading = kStartHeading};
   const fs::path manager = folder / "Sensors_manager.txt";
   if (fs::exists(manager)) check_manager(manager, log, steering);

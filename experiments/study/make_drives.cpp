@@ -96,7 +96,8 @@ std::shared_ptr<const DriveSource> drives_of(const Study& study, std::uint64_t s
   if (study.log == nullptr)
     return std::make_shared<SimulatedDrive>(study.world, scenario_of(s), seed);
   if (identities_of(study) == 0) refuse_use_of_identities(s);
-  return std::make_shared<RecordedDrive>(*study.log, s.number("scenario", "max_range"));
+  return std::make_shared<RecordedDrive>(*study.log, s.number("scenario", "max_range"),
+                                         s.number("scenario", "scan_delay"));
 }
 
 }  // namespace montecarta

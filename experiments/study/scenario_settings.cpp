@@ -47,6 +47,9 @@ void add_recording(std::vector<Setting>& table) {
       only_for(recorded_kinds(), text(s, "data_sha256", "fingerprint of the drive, filled in")));
   table.push_back(only_for(recorded_kinds(),
                            text(s, "reference", "the one to judge by; all of them where empty")));
+  table.push_back(only_for(
+      recorded_kinds(),
+      number(s, "scan_delay", "s", "0", -10, 10, "how much later than it was a scan is stamped")));
   table.push_back(only_for({"victoria_park"}, choice(s, "steering", {"calibrated", "raw"},
                                                      "of the text release, or as measured")));
 }

@@ -123,6 +123,7 @@ inline void write_small_car_park(const std::filesystem::path& folder) {
 /// A log that uses everything a log can hold, with numbers that do not end in decimals.
 inline DriveLog full_log() {
   DriveLog log;
+  log.start_time = 1.0 / 11;
   log.start = {.x = 1.0 / 3, .y = -0.0, .heading = -2.0 / 3};
   log.odometry = {{0.1, {.speed = 1.0 / 7, .steer = -1e-17}},
                   {0.30000000000000004, {.speed = -0.5, .steer = 1.0 / 9}}};

@@ -20,7 +20,7 @@ class Recording final : public DriveSource {
  public:
   Recording() : drives_(24), itinerary_(drives_.itinerary()) {
     itinerary_.has_truth = false;
-    itinerary_.references = {{"compass", {0.0, 0.3}, {{1.0, 2.0}, {3.0, 4.0}}, {0.1, -0.2}},
+    itinerary_.references = {{"sun", {0.0, 0.3}, {{1.0, 2.0}, {3.0, 4.0}}, {0.1, -0.2}},
                              {"gps", {0.1, 0.2, 0.4}, {{5.0, 6.0}, {7.0, 8.0}, {9.0, 10.0}}, {}}};
   }
   const Itinerary& itinerary() const override { return itinerary_; }
@@ -45,10 +45,10 @@ TEST_F(RecordedResult, HandsBackItsReferencesAndNoTruth) {
   EXPECT_FALSE(file.has_truth());
   EXPECT_FALSE(h5::has(h5::open_file(path_), "truth"));
   ASSERT_EQ(file.references().size(), 2U);
-  const ReferencePath& compass = file.references()[0];
-  EXPECT_EQ(compass.name, "compass");
-  EXPECT_THAT(compass.time, ElementsAre(0.0, 0.3));
-  EXPECT_THAT(compass.heading, ElementsAre(0.1, -0.2));
+  const ReferencePath& sun = file.references()[0];
+  EXPECT_EQ(sun.name, "sun");
+  EXPECT_THAT(sun.time, ElementsAre(0.0, 0.3));
+  EXPECT_THAT(sun.heading, ElementsAre(0.1, -0.2));
   const ReferencePath& gps = file.references()[1];
   EXPECT_EQ(gps.name, "gps");
   EXPECT_TRUE(gps.heading.empty());

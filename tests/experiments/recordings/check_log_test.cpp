@@ -74,6 +74,10 @@ TEST(CheckLog, WantsNumbersThatCanBe) {
               HasSubstr("record 2: heading nan"));
   EXPECT_THAT(complaint_after([](DriveLog& log) { log.start.heading = kNan; }),
               HasSubstr("yard (start)"));
+  EXPECT_THAT(complaint_after([](DriveLog& log) { log.start_time = 0.15; }),
+              HasSubstr("yard (scans): the first is at 0.1 s, before the start"));
+  EXPECT_THAT(complaint_after([](DriveLog& log) { log.start_time = 0.4, log.scans.clear(); }),
+              HasSubstr("yard (scans): no records"));
 }
 
 TEST(CheckLog, WantsIdentitiesForAllOrNone) {

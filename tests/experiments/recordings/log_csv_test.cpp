@@ -21,7 +21,7 @@ using testing::HasSubstr;
 class LogCsv : public testing::Test {
  protected:
   LogCsv() {
-    write("start.csv", "x_m,y_m,heading_rad\n1,2,0.5 # by the gate\n");
+    write("start.csv", "time_s,x_m,y_m,heading_rad\n0.1,1,2,0.5 # by the gate\n");
     write("odometry.csv", "time_s, speed_mps, steer_rad\n# slow\n0.1,1,0\n\n0.2,1,0.1\n");
     write("detections.csv", "time_s,range_m,bearing_rad\n0.1,5,0.2\n0.1,6,-0.2\n0.2,,\n");
     write("reference_gps.csv", "time_s,x_m,y_m\n0,0,0\n1,2,3\n");
@@ -40,6 +40,7 @@ class LogCsv : public testing::Test {
 
 TEST_F(LogCsv, ReadsRowsOfOneTimeAsOneScan) {
   const DriveLog log = read();
+  EXPECT_EQ(log.start_time, 0.1);
   EXPECT_EQ(log.start.heading, 0.5);
   EXPECT_EQ(log.odometry[1].control.steer, 0.1);
   ASSERT_EQ(log.scans.size(), 2U);
@@ -117,10 +118,10 @@ TEST_F(LogCsv, NamesMistakesOfOtherFiles) {
   std::filesystem::remove(folder_ / "landmarks.csv");
   EXPECT_THAT(complaint("landmark.csv", "x_m,y_m\n"), HasSubstr("no file of a log"));
   std::filesystem::remove(folder_ / "landmark.csv");
-  EXPECT_THAT(complaint("start.csv", "x_m,y_m,heading_rad\n"), HasSubstr("no row"));
-  EXPECT_THAT(complaint("start.csv", "x_m,y_m,heading_rad\n1,2,3\n4,5,6\n"),
+  EXPECT_THAT(complaint("start.csv", "time_s,x_m,y_m,heading_rad\n"), HasSubstr("no row"));
+  EXPECT_THAT(complaint("start.csv", "time_s,x_m,y_m,heading_rad\n0,1,2,3\n0,4,5,6\n"),
               HasSubstr("more than one row"));
-  write("start.csv", "x_m,y_m,heading_rad\n1,2,3\n");
+  write("start.csv", "time_s,x_m,y_m,heading_rad\n0,1,2,3\n");
   std::filesystem::remove(folder_ / "reference_gps.csv");
   EXPECT_THAT(complaint_of([this] { read(); }), HasSubstr("no reference"));
   EXPECT_THAT(complaint_of([this] { read_log_csv(folder_ / "absent"); }),

@@ -16,6 +16,7 @@ std::vector<Detection> one_at(double range) { return {{range, 0.1, Detection::kU
 /// Odometry at 10, 10.1 and 10.2 s, scans before, with and between.
 DriveLog small_log() {
   DriveLog log;
+  log.start_time = 9.9;
   log.start = {1.0, 2.0, 0.5};
   log.odometry = {{10.0, {1.0, 0.1}}, {10.1, {2.0, 0.2}}, {10.2, {3.0, 0.3}}};
   log.scans = {{9.9, one_at(5.0)}, {10.1, one_at(40.0)}, {10.15, one_at(7.0)}, {10.3, {}}};
@@ -69,12 +70,23 @@ TEST(RecordedDrive, AllRunsAreTheSameWhateverTheBufferHeld) {
   EXPECT_TRUE(second.truth.empty());
 }
 
-TEST(RecordedDrive, BeginsWithTheOdometryWhereThatComesFirst) {
+TEST(RecordedDrive, BeginsAtTheStartWithTheOdometryThatHoldsThen) {
   DriveLog log = small_log();
+  log.start_time = 10.05;
   log.scans.erase(log.scans.begin());
-  const RecordedDrive drive(log, 30.0);
-  expect_near(drive.itinerary().step_time, {0.1, 0.15, 0.2, 0.3});
-  EXPECT_THAT(drive.itinerary().scan_step, ElementsAre(0, 1, 3));
+  const RecordedDrive source(log, 30.0);
+  Drive drive;
+  source.generate(0, drive);
+  expect_near(source.itinerary().step_time, {0.05, 0.1, 0.15, 0.25});
+  EXPECT_THAT(source.itinerary().scan_step, ElementsAre(0, 1, 3));
+  EXPECT_THAT(speeds(drive), ElementsAre(1.0, 2.0, 2.0, 3.0));
+}
+
+TEST(RecordedDrive, TakesScansAsMuchEarlierAsTheyWereLate) {
+  const RecordedDrive drive(small_log(), 30.0, 0.05);
+  const Itinerary& itinerary = drive.itinerary();
+  expect_near(itinerary.step_time, {0.0, 0.1, 0.15, 0.2, 0.3, 0.35});
+  EXPECT_THAT(itinerary.scan_step, ElementsAre(0, 2, 3, 5));
 }
 
 TEST(FingerprintOfALog, ChangesWithEveryNumberOfIt) {
@@ -86,6 +98,7 @@ TEST(FingerprintOfALog, ChangesWithEveryNumberOfIt) {
     return fingerprint_of(log) != original;
   };
   EXPECT_TRUE(changed([](DriveLog& log) { log.start.x += 1e-9; }));
+  EXPECT_TRUE(changed([](DriveLog& log) { log.start_time = 9.0; }));
   EXPECT_TRUE(changed([](DriveLog& log) { log.odometry[1].control.steer = 0.0; }));
   EXPECT_TRUE(changed([](DriveLog& log) { log.scans[0].detections[0].identity = 3; }));
   EXPECT_TRUE(changed([](DriveLog& log) { log.scans[3].detections = one_at(1.0); }));
