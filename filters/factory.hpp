@@ -17,7 +17,7 @@ namespace montecarta {
 
 /// What the filter believes about vehicle and sensor (study file: [belief], default [scenario]).
 struct Belief {
-  Vehicle vehicle;
+  Vehicle vehicle = {};
   double sigma_speed = 0.3;     ///< [m/s]
   double sigma_steer = 0.05;    ///< [rad]
   double sigma_range = 0.1;     ///< [m]

@@ -21,7 +21,7 @@ struct Scenario {
   std::uint32_t loops = 1;           ///< times round the way-points
   std::uint32_t steps_per_scan = 8;  ///< control_rate / scan_rate
   double control_rate = 40.0;        ///< [Hz]
-  Vehicle vehicle;
+  Vehicle vehicle = {};
   double speed = 3.0;                            ///< [m/s]
   double sigma_speed = 0.3;                      ///< [m/s]
   double sigma_steer = 3.0 * kPi / 180.0;        ///< [rad]

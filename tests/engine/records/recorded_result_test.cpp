@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/errors.hpp"
 #include "engine/records/h5.hpp"
 #include "engine/records/merge.hpp"
 #include "engine/records/posix_file.hpp"

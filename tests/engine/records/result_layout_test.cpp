@@ -53,6 +53,7 @@ TEST(ResultLayout, IsThatOfTheGoldenFile) {
   plan.cells[1].particles = 0;  // a Kalman filter
   plan.cells[1].mixture = false;
   plan.columns.association = true;
+  plan.columns.final_map = true;
   lay_out(folder / "out.h5", describe(plan, {{"host", "nowhere"}}));
   std::ostringstream listing;
   list(h5::open_file(folder / "out.h5"), "", listing);

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/reference_scores.hpp"
+#include "engine/runs/step_context.hpp"
+#include "experiments/study/make_plan.hpp"
+#include "experiments/study/study.hpp"
+#include "tests/doubles/published_data.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace montecarta {
+namespace {
+
+/// One filter driven once along a published drive: its path, its map, and what they are judged by.
+struct Journey {
+  std::vector<double> times, path;  ///< {step}, {step, 3}
+  Itinerary itinerary;
+  std::vector<Eigen::Vector2d> map;
+  std::size_t detections = 0;
+
+  /// Against reference `r`, over fixes until `end` [s].
+  ReferenceScores scores(std::size_t r, double end = 1e9) const {
+    ReferencePath fixes = itinerary.references.at(r);
+    const auto last = std::ranges::upper_bound(fixes.time, end) - fixes.time.begin();
+    fixes.time.resize(static_cast<std::size_t>(last));
+    fixes.position.resize(static_cast<std::size_t>(last));
+    return measure_against(PathAtFixes(fixes, times, itinerary.start), path).scores;
+  }
+  double nearest_to(const Eigen::Vector2d& pole) const {
+    double nearest = 1e9;
+    for (const Eigen::Vector2d& landmark : map)
+      nearest = std::min(nearest, (landmark - pole).norm());
+    return nearest;
+  }
+};
+
+void note_map(const SlamFilter& filter, std::vector<Eigen::Vector2d>& map) {
+  std::vector<std::optional<LandmarkEstimate>> landmarks(1000);
+  filter.map(landmarks);
+  for (const auto& landmark : landmarks) {
+    if (landmark) map.push_back(landmark->mean);
+  }
+}
+
+Journey journey(const std::string& kind, const std::string& cell, const std::string& association) {
+  const Study study =
+      parse_study("[study]\nname = trial\nruns = 1\n[scenario]\nkind = " + kind +
+                      "\npath = " + published_data(kind).string() + "\n[association]\n" +
+                      association + "[cells]\ncell = " + cell + "\n",
+                  "trial.ini", ".");
+  const StudyPlan plan = make_plan(study, std::nullopt);
+  Journey made;
+  made.itinerary = plan.drives->itinerary();
+  Drive drive;
+  plan.drives->generate(0, drive);
+  made.detections = drive.detections.size();
+  const auto filter = plan.cells[0].make_filter();
+  filter->start(made.itinerary.start);
+  for (std::size_t k = 0, s = 0; k < made.itinerary.steps(); ++k) {
+    const StepContext context(1, 0, static_cast<std::uint32_t>(k), Parallel::serial());
+    if (!drive.controls[k].stands())
+      filter->predict(context, drive.controls[k], made.itinerary.duration(k));
+    if (s < made.itinerary.scans() && made.itinerary.scan_step[s] == k)
+      filter->update(context, drive.scan(s++));
+    const Pose pose = filter->estimate().spread.mean;
+    made.times.push_back(made.itinerary.step_time[k]);
+    made.path.insert(made.path.end(), {pose.x, pose.y, pose.heading});
+  }
+  note_map(*filter, made.map);
+  return made;
+}
+
+/// Wider gates than for a simulation: trees and poles lie far apart.
+const std::string kGates = "gate_sigma = 4.6\nnew_gate_sigma = 14\n";
+
+TEST(PublishedDrives, DeadReckoningThroughTheCarParkHasTheShapeOfThePath) {
+  if (published_data("car_park").empty()) GTEST_SKIP() << "the published data is not at hand";
+  const Journey reckoned = journey("car_park", "dead_reckoning", "");
+  EXPECT_NEAR(reckoned.scores(0, 60.0).aligned_rms, 0.10, 0.01);
+}
+
+TEST(PublishedDrives, EkfSlamFindsEveryPoleOfTheCarPark) {
+  if (published_data("car_park").empty()) GTEST_SKIP() << "the published data is not at hand";
+  const Journey slam = journey("car_park", "ekf_slam", "");
+  EXPECT_LE(slam.scores(0).rms, 0.65);
+  EXPECT_LE(slam.scores(0).aligned_rms, 0.2);
+  ASSERT_EQ(slam.itinerary.landmarks.size(), 15U);
+  for (const Eigen::Vector2d& pole : slam.itinerary.landmarks)
+    EXPECT_LT(slam.nearest_to(pole), 1.2);
+}
+
+TEST(PublishedDrives, EkfSlamKeepsItsMapOfVictoriaPark) {
+  if (published_data("victoria_park").empty()) GTEST_SKIP() << "the published data is not at hand";
+  const Journey slam = journey("victoria_park", "ekf_slam", kGates);
+  EXPECT_LE(slam.scores(0).rms, 2.6);
+  EXPECT_LE(slam.scores(0).aligned_rms, 1.7);
+  EXPECT_NEAR(static_cast<double>(slam.map.size()), 240.0, 25.0);
+}
+
+}  // namespace
+}  // namespace montecarta

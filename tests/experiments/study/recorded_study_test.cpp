@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/study/recorded_study.hpp"
+
+#include "experiments/recordings/log_csv.hpp"
+#include "experiments/study/make_plan.hpp"
+#include "experiments/study/study_of_log.hpp"
+#include "tests/doubles/scratch_folder.hpp"
+#include "tests/doubles/small_drives.hpp"
+#include "tests/experiments/study/study_text.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace montecarta {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string kStudy = R"([study]
+name = trial
+runs = 2
+[scenario]
+kind = log
+path = drive
+[cells]
+cell = ekf_slam
+)";
+
+/// A folder with a small drive in `drive`, whose detections nobody identified.
+class RecordedStudy : public ::testing::Test {
+ protected:
+  RecordedStudy() {
+    log_ = full_log();
+    for (LoggedScan& scan : log_.scans) {
+      for (Detection& detection : scan.detections) detection.identity = Detection::kUnidentified;
+    }
+    write_log_csv(log_, folder_ / "drive");
+  }
+  Study read(const std::string& text, const std::vector<std::string>& overrides = {}) const {
+    return parse_study(text, "trial.ini", folder_.path(), overrides);
+  }
+  std::string complaint(const std::vector<std::string>& overrides) const {
+    try {
+      make_plan(read(kStudy, overrides), std::nullopt);
+    } catch (const StudyError& error) {
+      return error.what();
+    }
+    return "no complaint";
+  }
+  ScratchFolder folder_;
+  DriveLog log_;
+};
+
+TEST_F(RecordedStudy, ReadsItsDriveBesideTheStudyAndFillsInWhatSuitsIt) {
+  const Study study = read(kStudy);
+  ASSERT_NE(study.log, nullptr);
+  EXPECT_EQ(study.log->odometry.size(), log_.odometry.size());
+  EXPECT_EQ(study.settings.text("association", "kind"), "nearest");
+  EXPECT_EQ(study.settings.text("record", "rate"), "scan");
+  EXPECT_EQ(study.settings.text("scenario", "path"), "drive");
+  EXPECT_EQ(study.settings.text("scenario", "data_sha256").size(), 64U);
+  const StudyPlan plan = make_plan(study, std::nullopt);
+  EXPECT_FALSE(plan.drives->itinerary().has_truth);
+  EXPECT_TRUE(plan.columns.final_map);
+}
+
+TEST_F(RecordedStudy, IsCalledTheSameWhereverItsDriveLies) {
+  std::filesystem::create_directory(folder_ / "elsewhere");
+  std::filesystem::rename(folder_ / "drive", folder_ / "elsewhere/drive");
+  const std::string moved = resolved_text(read(kStudy, {"scenario.path=elsewhere/drive"}));
+  std::filesystem::rename(folder_ / "elsewhere/drive", folder_ / "drive");
+  EXPECT_EQ(moved, resolved_text(read(kStudy)));
+  EXPECT_EQ(moved, resolved_text(read(moved))) << "the resolved text is a study of its own";
+  EXPECT_THAT(moved, AllOf(Not(HasSubstr("world")), Not(HasSubstr("loops"))));
+}
+
+TEST_F(RecordedStudy, RefusesAnotherDriveThanItWasMadeWith) {
+  const std::string resolved = resolved_text(read(kStudy));
+  std::filesystem::remove_all(folder_ / "drive");
+  log_.odometry[1].control.speed += 1e-9;
+  write_log_csv(log_, folder_ / "drive");
+  try {
+    read(resolved);
+    ADD_FAILURE() << "it was read";
+  } catch (const StudyError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("is another one than the study was made with"));
+  }
+}
+
+TEST_F(RecordedStudy, SaysWhatDoesNotFitARecordedDrive) {
+  EXPECT_THAT(complaint({}), "no complaint");
+  EXPECT_THAT(complaint({"scenario.loops=2"}),
+              HasSubstr("scenario.loops says nothing of a scenario of kind log (it is for "
+                        "simulated): remove it"));
+  EXPECT_THAT(complaint({"scenario.sigma_speed=2"}), HasSubstr("give it under [belief]"));
+  EXPECT_THAT(complaint({"scenario.steering=raw"}), HasSubstr("it is for victoria_park"));
+  EXPECT_THAT(complaint({"scenario.path=nowhere"}),
+              AllOf(HasSubstr("no folder 'nowhere'"), HasSubstr("MONTECARTA_DATA")));
+  EXPECT_THAT(complaint({"scenario.reference=gpz"}), HasSubstr("did you mean gps?"));
+  EXPECT_THAT(complaint({"association.kind=known"}), HasSubstr("carry no identity"));
+  EXPECT_THAT(complaint({"record.columns=pose, association"}), HasSubstr("carry no identity"));
+  EXPECT_THAT(complaint({"scenario.kind=simulated"}), HasSubstr("scenario.world is missing"));
+}
+
+TEST_F(RecordedStudy, JudgesByTheReferenceThatItNames) {
+  const Study study = read(kStudy, {"scenario.reference=gps"});
+  ASSERT_EQ(study.log->references.size(), 1U);
+  EXPECT_EQ(study.log->references[0].name, "gps");
+  EXPECT_EQ(study.settings.text("scenario", "data_sha256"),
+            read(kStudy).settings.text("scenario", "data_sha256"))
+      << "the drive is the same";
+}
+
+TEST_F(RecordedStudy, AStudyOfTheLogIsTheSameStudyOfTheSameDrive) {
+  const Study study = read(kStudy);
+  const Study again = parse_study(study_of_log(study), "study.ini", folder_ / "drive");
+  EXPECT_EQ(again.settings.text("scenario", "data_sha256"),
+            study.settings.text("scenario", "data_sha256"));
+  EXPECT_EQ(again.cells.size(), 1U);
+  EXPECT_EQ(again.settings.section("belief"), study.settings.section("belief"));
+}
+
+TEST_F(RecordedStudy, TakesKnownIdentitiesWhereTheLogHasThem) {
+  std::filesystem::remove_all(folder_ / "drive");
+  write_log_csv(full_log(), folder_ / "drive");
+  EXPECT_EQ(complaint({"association.kind=known"}), "no complaint");
+}
+
+}  // namespace
+}  // namespace montecarta
