@@ -4,6 +4,11 @@
 #include <algorithm>
 
 namespace montecarta {
+namespace {
+
+constexpr std::string_view kFinalMapSeen = "final_map_seen";
+
+}  // namespace
 
 RunReader::RunReader(const ResultFile& file, const StoredCell& cell)
     : file_(&file), cell_(&cell), cpu_seconds_(file.cpu_seconds(cell)) {}
@@ -18,6 +23,8 @@ void RunReader::keep_scans(std::span<const double> all, std::size_t width,
 }
 
 void RunReader::read_truth(std::size_t i, std::vector<double>& out, Scratch& scratch) const {
+  out.clear();
+  if (!file_->has_truth()) return;
   scratch.resize(file_->times().size() * 3);
   {
     const std::lock_guard lock(reading_);
@@ -36,6 +43,29 @@ void RunReader::read_at_scans(std::string_view column, std::size_t width, std::s
     file_->read(*cell_, column, i, std::span(scratch));
   }
   keep_scans(scratch, width, out);
+}
+
+void RunReader::read_path(std::size_t i, std::vector<double>& out) const {
+  out.clear();
+  if (file_->references().empty()) return;
+  out.resize(file_->times().size() * 3);
+  const bool mixture = cell_->has("pose_mean_mixture");
+  const std::lock_guard lock(reading_);
+  file_->read(*cell_, mixture ? "pose_mean_mixture" : "pose_mean", i, std::span(out));
+}
+
+void RunReader::read_final_map(std::size_t i, RunRows& rows) const {
+  rows.final_map.reset();
+  const auto seen_column = std::ranges::find(cell_->columns, kFinalMapSeen, &Column::name);
+  if (seen_column == cell_->columns.end()) return;
+  std::vector<double> seen(seen_column->elements()), mean(2 * seen.size());
+  const std::lock_guard lock(reading_);
+  file_->read(*cell_, kFinalMapSeen, i, std::span(seen));
+  file_->read(*cell_, "final_map_mean", i, std::span(mean));
+  rows.final_map.emplace();
+  for (std::size_t l = 0; l < seen.size(); ++l) {
+    if (seen[l] != 0.0) rows.final_map->emplace_back(mean[2 * l], mean[2 * l + 1]);
+  }
 }
 
 template <class Number>
@@ -60,6 +90,9 @@ void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
   read_scans("association_new_again", 1, i, rows.association.new_again);
   read_scans("association_missed", 1, i, rows.association.missed);
   read_scans("association_clutter", 1, i, rows.association.clutter);
+  read_path(i, rows.path);
+  read_scans("map_size", 1, i, rows.map_size);
+  read_final_map(i, rows);
   rows.cpu_seconds = cpu_seconds_[i];
   rows.ess.clear();
   rows.resampled.clear();

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/study_analysis.hpp"
 
-#include "analysis/metrics/cell_accumulator.hpp"
-#include "analysis/metrics/run_metrics.hpp"
+#include "analysis/measured_run.hpp"
 #include "analysis/run_reader.hpp"
 #include "engine/errors.hpp"
 
@@ -11,13 +10,6 @@
 
 namespace montecarta {
 namespace {
-
-/// One run being read and measured while others are.
-struct Slot {
-  RunRows rows;
-  RunReader::Scratch scratch;
-  RunMetrics metrics;
-};
 
 /// Run indices in the file of the complete runs; counts and names the others in `cell`.
 std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell& stored,
@@ -38,25 +30,25 @@ std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell&
 
 /// Measures runs at once, a slot each, and adds them up in order, whoever was first.
 void accumulate(const RunReader& reader, std::span<const std::size_t> runs, std::size_t particles,
-                std::span<const double> times, const Parallel& parallel, std::vector<Slot>& slots,
-                CellAccumulator& sums) {
+                const Yardsticks& sticks, const Parallel& parallel, std::vector<MeasuredRun>& slots,
+                CellSums& sums) {
   for (std::size_t first = 0; first < runs.size(); first += slots.size()) {
     const std::size_t here = std::min(slots.size(), runs.size() - first);
     parallel.for_each(here, [&](std::size_t k) {
       reader.read(runs[first + k], slots[k].rows, slots[k].scratch);
-      slots[k].metrics.measure(slots[k].rows, particles, times);
+      slots[k].measure(sticks, particles);
     });
-    for (std::size_t k = 0; k < here; ++k) sums.add(slots[k].rows, slots[k].metrics);
+    for (std::size_t k = 0; k < here; ++k) sums.add(slots[k]);
   }
 }
 
-CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& stored, double level,
-                          const Parallel& parallel, std::vector<Slot>& slots) {
+CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& stored,
+                          const Yardsticks& sticks, const Parallel& parallel,
+                          std::vector<MeasuredRun>& slots) {
   CellAnalysis outcome;
   const auto complete = complete_runs(file, stored, outcome);
-  CellAccumulator sums(file.scan_times(), level);
-  accumulate(RunReader(file, stored), complete, stored.particles, file.scan_times(), parallel,
-             slots, sums);
+  CellSums sums(sticks);
+  accumulate(RunReader(file, stored), complete, stored.particles, sticks, parallel, slots, sums);
   CellAnalysis cell = sums.result();
   for (const std::size_t i : complete) cell.runs.push_back(file.runs()[i]);
   cell.label = stored.label;
@@ -68,14 +60,8 @@ CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& stored, doub
   return cell;
 }
 
-}  // namespace
-
-bool StudyAnalysis::has_failures() const {
-  return std::ranges::any_of(cells, [](const CellAnalysis& c) { return !c.failures.empty(); });
-}
-
-StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& parallel) {
-  nees_bounds(1, 1, level);  // refuses a wrong level before the work
+/// All that the file says of itself.
+StudyAnalysis begin(const ResultFile& file, double level) {
   StudyAnalysis study;
   study.file = file.path().filename().string();
   study.study_name = file.study_name();
@@ -88,15 +74,33 @@ StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& para
   study.printed = printed_in(file.study_text());
   study.times = file.scan_times();
   study.duration = study.times.empty() ? 0.0 : study.times.back();
+  study.has_truth = file.has_truth();
+  study.beacons = file.landmarks().size();
+  return study;
+}
+
+}  // namespace
+
+bool StudyAnalysis::has_failures() const {
+  return std::ranges::any_of(cells, [](const CellAnalysis& c) { return !c.failures.empty(); });
+}
+
+StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& parallel) {
+  nees_bounds(1, 1, level);  // refuses a wrong level before the work
+  StudyAnalysis study = begin(file, level);
   if (study.times.empty()) {
     throw StudyError(file.path().string() +
                      ": no scans (metrics are taken at scans): choose "
                      "another file");
   }
-  std::vector<Slot> slots(
+  const Yardsticks sticks = yardsticks_of(file, level);
+  for (const PathAtFixes& fixes : sticks.references) {
+    study.references.push_back({fixes.name(), fixes.times(), !fixes.headings().empty()});
+  }
+  std::vector<MeasuredRun> slots(
       parallel.threads() == 1 ? 1 : 4 * static_cast<std::size_t>(parallel.threads()));
   for (const StoredCell& cell : file.cells()) {
-    study.cells.push_back(analyze_cell(file, cell, level, parallel, slots));
+    study.cells.push_back(analyze_cell(file, cell, sticks, parallel, slots));
   }
   return study;
 }

@@ -12,6 +12,13 @@
 
 namespace montecarta {
 
+/// An independent measurement of the path, as far as estimates are judged by it.
+struct JudgedReference {
+  std::string name;
+  std::vector<double> times;  ///< [s] of the fixes within the drive
+  bool has_heading = false;
+};
+
 /// Metrics of every cell of a result file, evaluated at its scans, just after each update.
 struct StudyAnalysis {
   std::string file;  ///< name of the result file, without folders
@@ -24,6 +31,9 @@ struct StudyAnalysis {
   double level = 0.95;           ///< of all NEES bounds
   double duration = 0.0;         ///< [s] time of the last scan
   std::vector<double> times;     ///< [s] of the scans
+  bool has_truth = true;         ///< whether the true path is known: without it no errors, no NEES
+  std::vector<JudgedReference> references;  ///< of a recorded drive; the first one leads
+  std::size_t beacons = 0;                  ///< landmarks whose true positions are known
   std::vector<CellAnalysis> cells;
   Printed printed;  ///< what the study repeats; empty where it repeats nothing
 

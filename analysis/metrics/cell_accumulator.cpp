@@ -82,6 +82,7 @@ void CellAccumulator::add_over_time(const RunRows& rows, const RunMetrics& metri
   squared_position_.add(metrics.squared_position());
   squared_heading_.add(metrics.squared_heading());
   if (!rows.ess.empty()) ess_.add(rows.ess);
+  if (rows.truth.empty() && !rows.map_size.empty()) map_size_.add(rows.map_size);
   if (metrics.diversity() == nullptr) return;
   last_resampling_.add(metrics.diversity()->last_resampling);
   lag_.add(metrics.diversity()->lag);
@@ -142,6 +143,7 @@ CellAnalysis CellAccumulator::result() const {
   cell.weights = weights();
   cell.diversity = diversity();
   cell.association = association();
+  cell.map_size_over_time = map_size_.mean();
   cell.scores = scores_;
   cell.cpu_seconds = over_runs(&RunScores::cpu_seconds);
   cell.numerical_faults = over_runs(&RunScores::numerical_faults);
@@ -153,6 +155,14 @@ const NeesResult* CellAnalysis::find_nees(ErrorBlock block, Moments moments) con
     return candidate.block == block && candidate.moments == moments;
   });
   return found == nees.end() ? nullptr : &*found;
+}
+
+Spread CellAnalysis::known_over_runs(double RunScores::*score) const {
+  std::vector<double> values;
+  for (const RunScores& run : scores) {
+    if (!std::isnan(run.*score)) values.push_back(run.*score);
+  }
+  return spread_of(values);
 }
 
 Consistency CellAnalysis::consistency() const {

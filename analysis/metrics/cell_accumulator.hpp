@@ -73,7 +73,7 @@ class CellAccumulator {
   std::vector<NeesAccumulator> nees_;  ///< leading first
   Moments leading_ = Moments::spread;
   std::vector<RunScores> scores_;  ///< {run}
-  MeanOverTime squared_position_, squared_heading_, ess_, last_resampling_, lag_, root_;
+  MeanOverTime squared_position_, squared_heading_, ess_, last_resampling_, lag_, root_, map_size_;
 };
 
 }  // namespace montecarta

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/metrics/consistency.hpp"
+#include "analysis/metrics/reference_analysis.hpp"
 #include "analysis/metrics/run_scores.hpp"
 #include "analysis/metrics/summary.hpp"
 
@@ -80,13 +81,17 @@ struct CellAnalysis {
   std::optional<WeightSummary> weights;
   std::optional<DiversitySummary> diversity;
   std::optional<AssociationSummary> association;
-  std::vector<std::uint64_t> runs;  ///< numbers of the complete runs, increasing
-  std::vector<RunScores> scores;    ///< of each of them
-  Summary cpu_seconds;              ///< [s] of each complete run's own thread over its steps
-  Summary numerical_faults;         ///< factorisations answered by a fallback, per run
+  std::vector<ReferenceAnalysis> references;  ///< one for each of the drive's, the leading first
+  std::vector<double> map_size_over_time;  ///< [1] {scan} mean over runs; of a drive without truth
+  std::vector<std::uint64_t> runs;         ///< numbers of the complete runs, increasing
+  std::vector<RunScores> scores;           ///< of each of them
+  Summary cpu_seconds;                     ///< [s] of each complete run's own thread over its steps
+  Summary numerical_faults;                ///< factorisations answered by a fallback, per run
 
   /// nullptr where it is not stored.
   const NeesResult* find_nees(ErrorBlock block, Moments moments) const;
+  /// A score over the complete runs that have it: a map without beacons has no beacon error.
+  Spread known_over_runs(double RunScores::*score) const;
   /// The verdict on the pose by the leading moments; untested where there is none.
   Consistency consistency() const;
 };

@@ -41,7 +41,8 @@ struct NeesRows {
 /// What one run says, scan by scan. Keeps its memory from run to run; one per thread.
 class RunMetrics {
  public:
-  /// Reads `rows` of a complete run with `particles` (0: none); `times` [s] of the scans.
+  /// Reads `rows` of a complete run with `particles` (0: none); `times` [s] of the scans. Without
+  /// truth there are no errors and no NEES: their rows are empty.
   void measure(const RunRows& rows, std::size_t particles, std::span<const double> times);
 
   const NeesRows& nees(Moments moments) const {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
+
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace montecarta {
@@ -21,7 +24,7 @@ struct AssociationRows {
 /// What analysis needs of one run, as plain arrays: where they come from does not matter. Columns
 /// that are not stored are empty.
 struct RunRows {
-  std::vector<double> truth;  ///< {scan, 3} [m, m, rad]
+  std::vector<double> truth;  ///< {scan, 3} [m, m, rad]; empty where nobody knows it
   MomentRows spread;          ///< its mean is always there
   MomentRows mixture;
   std::vector<double> ess;                      ///< {scan}
@@ -29,6 +32,10 @@ struct RunRows {
   std::vector<std::uint32_t> numerical_faults;  ///< {scan}
   std::vector<std::uint32_t> ancestor;          ///< {scan, particle}
   AssociationRows association;
+  std::vector<double> path;      ///< {row, 3} [m, m, rad] leading mean, also between scans; only
+                                 ///< where the drive has references
+  std::vector<double> map_size;  ///< {scan} landmarks in the map
+  std::optional<std::vector<Eigen::Vector2d>> final_map;  ///< [m] those seen, at the last scan
   double cpu_seconds = 0.0;
 };
 

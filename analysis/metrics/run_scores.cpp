@@ -37,6 +37,7 @@ double mean_of_finite(const std::vector<double>& values) {
 }
 
 void score_errors(const RunMetrics& metrics, RunScores& scores) {
+  if (metrics.squared_position().empty()) return;  // nobody knows the truth
   scores.position_mse = mean_of(metrics.squared_position());
   scores.position_rmse = std::sqrt(scores.position_mse);
   scores.position_mean = mean_of_roots(metrics.squared_position());
@@ -59,6 +60,14 @@ void score_association(const AssociationRows& rows, RunScores& scores) {
   scores.new_again = sum_of(rows.new_again);
   scores.missed = sum_of(rows.missed);
   scores.clutter = sum_of(rows.clutter);
+}
+
+void score_map(const RunRows& rows, RunScores& scores) {
+  if (!rows.map_size.empty()) {
+    scores.map_landmarks = rows.map_size.back();
+  } else if (rows.final_map) {
+    scores.map_landmarks = static_cast<double>(rows.final_map->size());
+  }
 }
 
 constexpr ScoreName kNames[] = {
@@ -85,6 +94,23 @@ constexpr ScoreName kNames[] = {
     {"association_new_again", "1", "detections made new again", &RunScores::new_again},
     {"association_missed", "1", "detections left out", &RunScores::missed},
     {"association_clutter", "1", "false alarms accepted", &RunScores::clutter},
+    {"reference_rms", "m", "RMS distance to the reference", &RunScores::reference_rms},
+    {"reference_median", "m", "median distance to the reference", &RunScores::reference_median},
+    {"reference_gated_rms", "m", "RMS distance to the reference without outliers",
+     &RunScores::reference_gated_rms},
+    {"reference_aligned_rms", "m", "RMS distance to the reference, aligned",
+     &RunScores::reference_aligned_rms},
+    {"reference_aligned_median", "m", "median distance to the reference, aligned",
+     &RunScores::reference_aligned_median},
+    {"reference_aligned_gated_rms", "m", "RMS distance to the reference without outliers, aligned",
+     &RunScores::reference_aligned_gated_rms},
+    {"reference_heading_rmse", "rad", "heading RMSE to the reference",
+     &RunScores::reference_heading_rmse},
+    {"map_landmarks", "1", "landmarks in the final map", &RunScores::map_landmarks},
+    {"beacons_found", "1", "surveyed beacons found", &RunScores::beacons_found},
+    {"beacon_rms", "m", "RMS error of the beacons found", &RunScores::beacon_rms},
+    {"beacon_aligned_rms", "m", "RMS error of the beacons found, aligned",
+     &RunScores::beacon_aligned_rms},
     {"numerical_faults", "1", "factorisations answered by a fallback",
      &RunScores::numerical_faults},
     {"cpu_seconds", "s", "processor time of a run", &RunScores::cpu_seconds},
@@ -104,6 +130,7 @@ RunScores scores_of(const RunRows& rows, const RunMetrics& metrics) {
   }
   if (metrics.diversity() != nullptr) score_diversity(*metrics.diversity(), scores);
   if (!rows.association.correct.empty()) score_association(rows.association, scores);
+  score_map(rows, scores);
   scores.numerical_faults = sum_of(rows.numerical_faults);
   scores.cpu_seconds = rows.cpu_seconds;
   return scores;

@@ -34,8 +34,20 @@ struct RunScores {
   double new_again = kNone;
   double missed = kNone;
   double clutter = kNone;
-  double numerical_faults = kNone;  ///< [1] sum over scans
-  double cpu_seconds = kNone;       ///< [s]
+  double reference_rms = kNone;  ///< [m] of the leading reference, as the next six
+                                 ///< (ReferenceScores)
+  double reference_median = kNone;
+  double reference_gated_rms = kNone;
+  double reference_aligned_rms = kNone;
+  double reference_aligned_median = kNone;
+  double reference_aligned_gated_rms = kNone;
+  double reference_heading_rmse = kNone;  ///< [rad]
+  double map_landmarks = kNone;           ///< [1] in the map after the last scan
+  double beacons_found = kNone;           ///< [1] (BeaconScores)
+  double beacon_rms = kNone;              ///< [m]
+  double beacon_aligned_rms = kNone;      ///< [m]
+  double numerical_faults = kNone;        ///< [1] sum over scans
+  double cpu_seconds = kNone;             ///< [s]
 };
 
 RunScores scores_of(const RunRows& rows, const RunMetrics& metrics);

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/metrics/beacon_scores.hpp"
+#include "analysis/metrics/cell_accumulator.hpp"
+#include "analysis/metrics/path_at_fixes.hpp"
+#include "analysis/metrics/reference_analysis.hpp"
+#include "analysis/run_reader.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// What runs are measured by, common to all cells of a file, which must outlive it.
+struct Yardsticks {
+  std::span<const double> times;  ///< [s] of the scans
+  double level = 0.95;            ///< of NEES bounds
+  std::vector<PathAtFixes> references;
+  std::vector<Eigen::Vector2d> beacons;  ///< [m]
+};
+
+Yardsticks yardsticks_of(const ResultFile& file, double level);
+
+/// One run being read and measured while others are. Keeps its memory from run to run.
+struct MeasuredRun {
+  RunRows rows;
+  RunReader::Scratch scratch;
+  RunMetrics metrics;
+  std::vector<ReferenceRun> references;
+  std::optional<BeaconScores> beacons;  ///< where the final map is stored and beacons are known
+
+  /// Of `rows` of a complete run.
+  void measure(const Yardsticks& sticks, std::size_t particles);
+};
+
+/// Adds up complete runs of one cell in the order of the calls.
+class CellSums {
+ public:
+  explicit CellSums(const Yardsticks& sticks)
+      : sums_(sticks.times, sticks.level), references_(sticks.references.size()) {}
+
+  void add(const MeasuredRun& run);
+  /// Fills all that complete runs say; label, failures and missing runs are the caller's.
+  CellAnalysis result() const;
+
+ private:
+  CellAccumulator sums_;
+  std::vector<ReferenceAccumulator> references_;
+  std::vector<std::optional<BeaconScores>> beacons_;  ///< {run}
+};
+
+}  // namespace montecarta

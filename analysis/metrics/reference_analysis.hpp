@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/metrics/reference_scores.hpp"
+#include "analysis/metrics/run_scores.hpp"
+#include "analysis/metrics/spread.hpp"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// The complete runs of a cell against one reference.
+struct ReferenceAnalysis {
+  std::vector<ReferenceScores> runs;    ///< {run}
+  std::vector<double> error_over_time;  ///< [m] {fix} raw distance, RMS over runs
+
+  Spread over_runs(double ReferenceScores::*score) const;
+  /// Runs that lost the map.
+  std::size_t lost() const;
+  /// Runs whose aligned RMS is below `baseline` [m].
+  std::size_t better_than(double baseline) const;
+};
+
+/// Adds up runs against one reference in the order of the calls. Memory depends on fixes, and grows
+/// by a few numbers with every run.
+class ReferenceAccumulator {
+ public:
+  void add(const ReferenceRun& run);
+  ReferenceAnalysis result() const;
+
+ private:
+  std::vector<ReferenceScores> runs_;
+  std::vector<double> squared_;  ///< [m^2] {fix} sum over runs
+};
+
+/// Gives every run, among its other scores, those of the leading reference.
+void put_leading_scores(const ReferenceAnalysis& leading, std::span<RunScores> scores);
+
+}  // namespace montecarta

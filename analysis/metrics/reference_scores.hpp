@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/metrics/path_at_fixes.hpp"
+
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// A fix counts for gated numbers where its error is at most so many times the run's own median
+/// error: a GPS fix may be 136 m off, and a gate that the run itself sets hides no filter that
+/// diverges.
+inline constexpr double kReferenceGate = 4.0;
+/// A run has lost the map where the median of its aligned errors is larger [m].
+inline constexpr double kLostBeyond = 10.0;
+
+/// How far the estimate of one run is from the fixes of a reference (SPEC 20: at fixes only). The
+/// distances are raw, or aligned: after the rigid motion that brings the estimate nearest to all
+/// fixes, which takes away what nobody knows of the start's position and heading. NaN of no fixes.
+struct ReferenceScores {
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+  double rms = kNone;                  ///< [m] raw
+  double median = kNone;               ///< [m] raw
+  double gated_rms = kNone;            ///< [m] raw, over fixes within kReferenceGate medians
+  double gated_share = kNone;          ///< [1] of fixes within
+  double aligned_rms = kNone;          ///< [m]
+  double aligned_median = kNone;       ///< [m]
+  double aligned_gated_rms = kNone;    ///< [m]
+  double aligned_gated_share = kNone;  ///< [1]
+  double heading_rmse = kNone;         ///< [rad] raw; NaN where the reference has no heading
+
+  bool lost() const { return !(aligned_median <= kLostBeyond); }
+};
+
+/// One run against one reference.
+struct ReferenceRun {
+  ReferenceScores scores;
+  std::vector<double> squared_error;  ///< [m^2] {fix} raw
+};
+
+/// `path` {row, 3} [m, m, rad] over the rows that `fixes` were made for.
+ReferenceRun measure_against(const PathAtFixes& fixes, std::span<const double> path);
+
+}  // namespace montecarta

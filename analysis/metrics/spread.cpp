@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/spread.hpp"
+
+#include <algorithm>
+
+namespace montecarta {
+namespace {
+
+bool is_nan(double value) { return std::isnan(value); }
+
+}  // namespace
+
+double median_of(std::vector<double> values) {
+  if (values.empty() || std::ranges::any_of(values, is_nan)) return Spread{}.median;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*std::max_element(values.begin(), middle) + *middle);
+}
+
+Spread spread_of(std::span<const double> values) {
+  Spread spread;
+  SummaryOf sums;
+  for (const double value : values) sums.add(value);
+  spread.summary = sums.result();
+  if (values.empty() || std::ranges::any_of(values, is_nan)) return spread;
+  spread.median = median_of({values.begin(), values.end()});
+  const auto [least, greatest] = std::ranges::minmax(values);
+  spread.least = least;
+  spread.greatest = greatest;
+  return spread;
+}
+
+}  // namespace montecarta

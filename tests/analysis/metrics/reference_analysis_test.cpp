@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/reference_analysis.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace montecarta {
+namespace {
+
+using testing::ElementsAre;
+
+/// A run whose aligned RMS and median are `aligned` [m] and whose raw errors are `errors` [m].
+ReferenceRun run_with(double aligned, const std::vector<double>& errors) {
+  ReferenceRun run;
+  run.scores.rms = errors.front();
+  run.scores.aligned_rms = run.scores.aligned_median = aligned;
+  for (const double error : errors) run.squared_error.push_back(error * error);
+  return run;
+}
+
+ReferenceAnalysis four_runs() {
+  ReferenceAccumulator sums;
+  sums.add(run_with(1.0, {1.0, 0.0}));
+  sums.add(run_with(2.0, {7.0, 0.0}));
+  sums.add(run_with(10.0, {5.0, 4.0}));
+  sums.add(run_with(11.0, {5.0, 4.0}));
+  return sums.result();
+}
+
+TEST(ReferenceAnalysis, CountsRunsThatLoseTheMapOrBeatABaseline) {
+  const ReferenceAnalysis cell = four_runs();
+  EXPECT_EQ(cell.lost(), 1u);  // ten metres are not yet lost
+  EXPECT_EQ(cell.better_than(2.0), 1u);
+  EXPECT_EQ(cell.better_than(2.1), 2u);
+}
+
+TEST(ReferenceAnalysis, GivesMeanMiddleAndExtremesOverRuns) {
+  const Spread rms = four_runs().over_runs(&ReferenceScores::aligned_rms);
+  EXPECT_DOUBLE_EQ(rms.summary.mean, 6.0);
+  EXPECT_NEAR(rms.summary.standard_error(), std::sqrt((25.0 + 16.0 + 16.0 + 25.0) / 3.0 / 4.0),
+              1e-12);
+  EXPECT_DOUBLE_EQ(rms.median, 6.0);
+  EXPECT_EQ(rms.least, 1.0);
+  EXPECT_EQ(rms.greatest, 11.0);
+}
+
+TEST(ReferenceAnalysis, TakesTheRootOfTheMeanSquareAtEveryFix) {
+  EXPECT_THAT(four_runs().error_over_time, ElementsAre(5.0, std::sqrt(8.0)));
+}
+
+TEST(ReferenceAnalysis, GivesRunsTheScoresThatStudiesName) {
+  std::vector<RunScores> scores(4);
+  put_leading_scores(four_runs(), scores);
+  EXPECT_EQ(scores[1].reference_rms, 7.0);
+  EXPECT_EQ(scores[1].reference_aligned_rms, 2.0);
+  EXPECT_EQ(scores[3].reference_aligned_median, 11.0);
+  const auto named = [](const std::string& name) {
+    for (const ScoreName& score : score_names()) {
+      if (score.name == name) return score.value;
+    }
+    return &RunScores::cpu_seconds;
+  };
+  EXPECT_EQ(named("reference_rms"), &RunScores::reference_rms);
+  EXPECT_EQ(named("reference_aligned_rms"), &RunScores::reference_aligned_rms);
+  EXPECT_EQ(named("reference_median"), &RunScores::reference_median);
+  EXPECT_EQ(named("reference_aligned_median"), &RunScores::reference_aligned_median);
+  EXPECT_EQ(named("map_landmarks"), &RunScores::map_landmarks);
+  EXPECT_EQ(named("beacons_found"), &RunScores::beacons_found);
+}
+
+TEST(Spread, IsUnknownOfNoneAndOfNaN) {
+  EXPECT_TRUE(std::isnan(spread_of({}).median));
+  const Spread spread = spread_of(std::vector{1.0, RunScores::kNone, 2.0});
+  EXPECT_EQ(spread.summary.n, 3u);
+  EXPECT_TRUE(std::isnan(spread.summary.mean));
+  EXPECT_TRUE(std::isnan(spread.least));
+  EXPECT_EQ(median_of({3.0, 1.0, 2.0}), 2.0);
+}
+
+}  // namespace
+}  // namespace montecarta
