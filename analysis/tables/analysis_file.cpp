@@ -2,6 +2,7 @@
 #include "analysis/tables.hpp"
 #include "analysis/tables/cell_series.hpp"
 #include "analysis/tables/csv_file.hpp"
+#include "analysis/tables/reference_files.hpp"
 #include "analysis/tables/verdict_table.hpp"
 #include "engine/records/h5.hpp"
 
@@ -21,8 +22,37 @@ void write_series(const h5::Handle& group, const NamedSeries& series, const h5::
   h5::attach_scale(dataset, time, 0);
 }
 
-void write_cell(const h5::Handle& cells, const CellAnalysis& cell, double level,
-                const h5::Handle& time) {
+/// Scales over which series of a cell go.
+struct Times {
+  h5::Handle scans;
+  std::vector<h5::Handle> fixes;  ///< {reference}
+};
+
+h5::Handle write_times(const h5::Handle& group, const std::string& name,
+                       const std::vector<double>& times) {
+  auto scale = h5::create_dataset(group, name, Element::f64, {times.size()});
+  h5::write(scale, Element::f64, times.data());
+  h5::put_text(scale, "units", "s");
+  h5::make_scale(scale, name);
+  return scale;
+}
+
+void write_references(const h5::Handle& cell_group, const StudyAnalysis& study,
+                      const CellAnalysis& cell, const Times& times) {
+  if (cell.references.empty()) return;
+  const auto references = h5::create_group(cell_group, "references");
+  for (std::size_t r = 0; r < cell.references.size(); ++r) {
+    const auto group = h5::create_group(references, study.references[r].name);
+    for (const NamedNumber& number : reference_numbers(cell, r)) write_number(group, number);
+    if (cell.complete == 0 || study.references[r].times.empty()) continue;
+    write_series(group, {"error_over_time", "m", cell.references[r].error_over_time},
+                 times.fixes[r]);
+  }
+}
+
+void write_cell(const h5::Handle& cells, const StudyAnalysis& study, const CellAnalysis& cell,
+                const Times& times) {
+  const double level = study.level;
   const auto group = h5::create_group(cells, cell.label);
   h5::put_text(group, "filter", cell.filter);
   h5::put_text(group, "long_name", cell.long_name);
@@ -37,7 +67,8 @@ void write_cell(const h5::Handle& cells, const CellAnalysis& cell, double level,
     for (const NamedNumber& number : numbers_of(cell, nees, level)) write_number(test, number);
   }
   const auto series = h5::create_group(group, "series");
-  for (const NamedSeries& one : series_of(cell)) write_series(series, one, time);
+  for (const NamedSeries& one : series_of(cell)) write_series(series, one, times.scans);
+  write_references(group, study, cell, times);
 }
 
 }  // namespace
@@ -51,12 +82,16 @@ void write_analysis_file(const StudyAnalysis& study, const std::filesystem::path
   h5::put_text(file, "study_sha256", study.study_sha256);
   h5::put_text(file, "results", study.file);
   {
-    const auto time = h5::create_dataset(file, "time", Element::f64, {study.times.size()});
-    h5::write(time, Element::f64, study.times.data());
-    h5::put_text(time, "units", "s");
-    h5::make_scale(time, "time");
+    Times times{write_times(file, "time", study.times), {}};
+    for (const JudgedReference& reference : study.references) {
+      if (reference.times.empty()) {
+        times.fixes.emplace_back(-1);  // a scale has a length
+        continue;
+      }
+      times.fixes.push_back(write_times(file, "fix_" + reference.name, reference.times));
+    }
     const auto cells = h5::create_group(file, "cells");
-    for (const CellAnalysis& cell : study.cells) write_cell(cells, cell, study.level, time);
+    for (const CellAnalysis& cell : study.cells) write_cell(cells, study, cell, times);
   }
   write_text(path, h5::image_of(file));
 }

@@ -39,9 +39,14 @@ void add(const std::string& name, const std::string& units, const Summary& summa
 std::vector<NamedSeries> series_of(const CellAnalysis& cell) {
   std::vector<NamedSeries> all;
   if (cell.complete == 0) return all;
-  all.push_back({"position_rmse", "m", cell.error.position_over_time});
-  all.push_back({"heading_rmse", "rad", cell.error.heading_over_time});
+  if (!cell.error.position_over_time.empty()) {
+    all.push_back({"position_rmse", "m", cell.error.position_over_time});
+    all.push_back({"heading_rmse", "rad", cell.error.heading_over_time});
+  }
   for (const NeesResult& nees : cell.nees) add_nees(nees, all);
+  if (!cell.map_size_over_time.empty()) {
+    all.push_back({"map_landmarks", "1", cell.map_size_over_time});
+  }
   if (cell.weights) all.push_back({"ess", "1", cell.weights->ess_over_time});
   if (cell.diversity) {
     all.push_back({"ancestors_last_resampling", "1", cell.diversity->last_resampling_over_time});

@@ -4,6 +4,7 @@
 #include "analysis/tables/cell_series.hpp"
 #include "analysis/tables/csv_file.hpp"
 #include "analysis/tables/number_text.hpp"
+#include "analysis/tables/reference_files.hpp"
 #include "analysis/tables/verdict_table.hpp"
 
 namespace montecarta {
@@ -14,6 +15,8 @@ constexpr const char* kCells = "cells.csv";
 constexpr const char* kConsistency = "consistency.csv";
 constexpr const char* kPrinted = "printed.csv";
 constexpr const char* kClaims = "claims.csv";
+constexpr const char* kReferences = "references.csv";
+constexpr const char* kReferenceErrors = "reference_errors.csv";
 std::string series_name(const std::string& label) { return "series_" + label + ".csv"; }
 
 /// The unit belongs to the name where there is one: position_rmse_mean [m].
@@ -87,7 +90,8 @@ void write_series(const StudyAnalysis& study, const CellAnalysis& cell,
 }  // namespace
 
 std::vector<std::string> csv_names(const std::vector<std::string>& labels) {
-  std::vector<std::string> names = {kFailures, kCells, kConsistency, kPrinted, kClaims};
+  std::vector<std::string> names = {kFailures, kCells,      kConsistency,    kPrinted,
+                                    kClaims,   kReferences, kReferenceErrors};
   for (const std::string& label : labels) names.push_back(series_name(label));
   return names;
 }
@@ -99,6 +103,10 @@ void write_csv(const StudyAnalysis& study, const std::filesystem::path& director
   write_consistency(study, directory / kConsistency);
   write_table(printed_value_table(study), directory / kPrinted);
   write_table(printed_claim_table(study), directory / kClaims);
+  if (!study.references.empty()) {
+    write_references(study, directory / kReferences);
+    write_reference_errors(study, directory / kReferenceErrors);
+  }
   for (const CellAnalysis& cell : study.cells) {
     write_series(study, cell, directory / series_name(cell.label));
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/printed/comparison.hpp"
 #include "analysis/tables.hpp"
+#include "analysis/tables/reference_table.hpp"
 #include "analysis/tables/verdict_table.hpp"
 
 #include <algorithm>
@@ -80,6 +81,27 @@ void print_warnings(std::ostream& out, const StudyAnalysis& study) {
   }
 }
 
+void print_judged_by_truth(std::ostream& out, const StudyAnalysis& study) {
+  print(out, verdict_table(study));
+  out << '\n';
+  print(out, accuracy_table(study));
+  out << '\n';
+  print_warnings(out, study);
+}
+
+void print_judged_by_references(std::ostream& out, const StudyAnalysis& study) {
+  if (!study.has_truth) {
+    print_wrapped(out, no_truth_sentence());
+    out << '\n';
+  }
+  for (const TextTable& table : {reference_table(study), baseline_table(study), map_table(study)}) {
+    if (table.rows.empty()) continue;
+    print(out, table);
+    out << '\n';
+  }
+  for (const std::string& note : reference_notes(study)) print_wrapped(out, note);
+}
+
 /// What a paper printed against what was measured, and what had to be assumed.
 void print_printed(std::ostream& out, const StudyAnalysis& study) {
   if (study.printed.empty()) return;
@@ -100,17 +122,16 @@ void print_tables(std::ostream& out, const StudyAnalysis& study) {
   out << study.study_name << ": " << study.runs_here << " of " << study.study_runs << " runs, "
       << study.times.size() << " scans each, seed " << study.seed << "\n\n";
   if (study.has_failures()) print_failures(out, study);
-  print(out, verdict_table(study));
-  out << '\n';
-  print(out, accuracy_table(study));
-  out << '\n';
-  print_warnings(out, study);
+  if (study.has_truth) print_judged_by_truth(out, study);
+  if (!study.has_truth || !study.references.empty()) print_judged_by_references(out, study);
   if (const TextTable table = association_table(study); !table.rows.empty()) {
     print(out, table);
     out << '\n';
     for (const std::string& note : association_notes()) print_wrapped(out, note);
   }
-  for (const std::string& note : verdict_notes(study)) print_wrapped(out, note);
+  if (study.has_truth) {
+    for (const std::string& note : verdict_notes(study)) print_wrapped(out, note);
+  }
   print_printed(out, study);
 }
 

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/tables/reference_files.hpp"
+
+#include "analysis/tables/csv_file.hpp"
+#include "analysis/tables/number_text.hpp"
+
+#include <string>
+
+namespace montecarta {
+namespace {
+
+void add(const std::string& name, const std::string& units, const Spread& spread,
+         std::vector<NamedNumber>& all) {
+  all.push_back({name + "_mean", units, spread.summary.mean});
+  all.push_back({name + "_standard_error", units, spread.summary.standard_error()});
+  all.push_back({name + "_median", units, spread.median});
+  all.push_back({name + "_least", units, spread.least});
+  all.push_back({name + "_greatest", units, spread.greatest});
+}
+
+/// Of the map, which is the same against every reference.
+bool is_of_the_map(const std::string& name) {
+  return name.starts_with("map_") || name.starts_with("beacon");
+}
+
+std::string heading(const NamedNumber& number) {
+  return number.units == "1" ? number.name : number.name + " [" + number.units + "]";
+}
+
+}  // namespace
+
+std::vector<NamedNumber> reference_numbers(const CellAnalysis& cell, std::size_t reference) {
+  const ReferenceAnalysis& against = cell.references[reference];
+  const auto count = [](std::size_t n) { return static_cast<double>(n); };
+  std::vector<NamedNumber> all = {{"runs_failed", "1", count(cell.failures.size())},
+                                  {"runs_complete", "1", count(cell.complete)},
+                                  {"runs_lost", "1", count(against.lost() + cell.failures.size())}};
+  const auto one = [&](const char* name, const char* units, double ReferenceScores::*score) {
+    add(name, units, against.over_runs(score), all);
+  };
+  one("rms", "m", &ReferenceScores::rms);
+  one("median_error", "m", &ReferenceScores::median);
+  one("gated_rms", "m", &ReferenceScores::gated_rms);
+  one("gated_share", "1", &ReferenceScores::gated_share);
+  one("aligned_rms", "m", &ReferenceScores::aligned_rms);
+  one("aligned_median_error", "m", &ReferenceScores::aligned_median);
+  one("aligned_gated_rms", "m", &ReferenceScores::aligned_gated_rms);
+  one("aligned_gated_share", "1", &ReferenceScores::aligned_gated_share);
+  one("heading_rmse", "rad", &ReferenceScores::heading_rmse);
+  for (const ScoreName& score : score_names()) {
+    if (!is_of_the_map(score.name)) continue;
+    add(score.name, score.units, cell.known_over_runs(score.value), all);
+  }
+  all.push_back({"cpu_seconds_mean", "s", cell.cpu_seconds.mean});
+  return all;
+}
+
+void write_references(const StudyAnalysis& study, const std::filesystem::path& path) {
+  CsvFile file(path);
+  bool first = true;
+  for (const CellAnalysis& cell : study.cells) {
+    for (std::size_t r = 0; r < cell.references.size(); ++r) {
+      std::vector<std::string> headings = {"cell", "filter", "reference"};
+      std::vector<std::string> fields = {cell.label, cell.filter, study.references[r].name};
+      for (const NamedNumber& number : reference_numbers(cell, r)) {
+        headings.push_back(heading(number));
+        fields.push_back(exact_text(number.value));
+      }
+      if (first) file.row(headings);
+      file.row(fields);
+      first = false;
+    }
+  }
+  file.close();
+}
+
+void write_reference_errors(const StudyAnalysis& study, const std::filesystem::path& path) {
+  CsvFile file(path);
+  std::vector<std::string> headings = {"time [s]"};
+  std::vector<const std::vector<double>*> columns;
+  for (const CellAnalysis& cell : study.cells) {
+    if (cell.complete == 0) continue;
+    headings.push_back(cell.label + " [m]");
+    columns.push_back(&cell.references.front().error_over_time);
+  }
+  file.row(headings);
+  const std::vector<double>& times = study.references.front().times;
+  for (std::size_t f = 0; f < times.size(); ++f) {
+    std::vector<double> numbers = {times[f]};
+    for (const auto* column : columns) numbers.push_back((*column)[f]);
+    file.row(numbers);
+  }
+  file.close();
+}
+
+}  // namespace montecarta

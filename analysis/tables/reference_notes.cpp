@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/beacon_scores.hpp"
+#include "analysis/tables/number_text.hpp"
+#include "analysis/tables/reference_table.hpp"
+
+namespace montecarta {
+namespace {
+
+std::string fixes_note(const StudyAnalysis& study) {
+  std::string sentence =
+      "Estimates are compared with each reference at its fixes only, interpolated linearly in time "
+      "between the steps:";
+  for (const JudgedReference& reference : study.references) {
+    sentence += " " + reference.name + " has " + std::to_string(reference.times.size()) +
+                " fixes within the drive" + (&reference == &study.references.back() ? "." : ",");
+  }
+  return sentence;
+}
+
+std::string baseline_note(const StudyAnalysis& study) {
+  const CellAnalysis* baseline = baseline_of(study);
+  if (baseline == nullptr) return "No cell runs EKF-SLAM, so there is no baseline to beat.";
+  const Spread aligned = baseline->references.front().over_runs(&ReferenceScores::aligned_rms);
+  return "A run beats EKF-SLAM where its aligned RMS to " + study.references.front().name +
+         " is below the mean of " + baseline->label + ", " + readable(aligned.summary.mean) +
+         " m; failed runs beat nothing.";
+}
+
+std::vector<std::string> distance_notes() {
+  return {
+      "'raw' compares as it stands; 'aligned' first turns and shifts the estimated path as a whole "
+      "(no stretching, no mirroring) to where it fits all fixes best, since nobody knows exactly "
+      "where the drive began and which way the vehicle looked.",
+      "The median is the middle fix and cares little for wild fixes; 'gated' is the RMS over the "
+      "fixes within " +
+          readable(kReferenceGate, 1) +
+          " times the run's own median error, with the share kept: a single fix may be more than a "
+          "hundred metres off, and a gate relative to the run hides no filter that diverges.",
+      "Runs see the same drive and differ by the filter's own randomness alone: numbers are means "
+      "over runs +- their standard error, then the middle run and the two ends.",
+      "A run lost the map where it failed or the median of its aligned errors exceeds " +
+          readable(kLostBeyond, 2) + " m."};
+}
+
+}  // namespace
+
+std::string no_truth_sentence() {
+  return "This drive was recorded: nobody knows its true path, so there is no verdict on "
+         "consistency (NEES) and no true error; estimates are judged by independent measurements "
+         "of the path.";
+}
+
+std::vector<std::string> reference_notes(const StudyAnalysis& study) {
+  std::vector<std::string> notes;
+  if (!study.references.empty()) {
+    notes = distance_notes();
+    notes.insert(notes.begin(), fixes_note(study));
+    notes.push_back(baseline_note(study));
+  }
+  if (study.beacons > 0) {
+    notes.push_back("A surveyed beacon is found where the final map has a landmark within " +
+                    readable(kFoundWithin, 1) +
+                    " m of it, as it stands; its error is the RMS over the beacons found.");
+  }
+  notes.push_back(
+      "Landmarks are those in the map after the last scan; ESS is the effective number of "
+      "particles, roots how many of the first particles still have descendants at the end, CPU the "
+      "filter's own time in a run; all of complete runs only.");
+  return notes;
+}
+
+}  // namespace montecarta
