@@ -2,6 +2,7 @@
 #include "analysis/report.hpp"
 
 #include "analysis/figures/path_figure.hpp"
+#include "analysis/figures/reference_figures.hpp"
 #include "analysis/figures/time_figures.hpp"
 #include "analysis/html.hpp"
 #include "analysis/printed/comparison.hpp"
@@ -9,10 +10,12 @@
 #include "analysis/tables.hpp"
 #include "analysis/tables/csv_file.hpp"
 #include "analysis/tables/latex.hpp"
+#include "analysis/tables/reference_table.hpp"
 #include "engine/errors.hpp"
 
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 namespace montecarta {
 namespace {
@@ -86,6 +89,7 @@ std::string association_section(const StudyAnalysis& study) {
 }
 
 std::string consistency_section(const StudyAnalysis& study) {
+  if (!study.has_truth) return "";
   return section(
       "The whole test",
       html_table(consistency_table(study)) +
@@ -134,18 +138,43 @@ std::string origin(const ResultFile& file, const StudyAnalysis& study) {
                      html_escape(file.study_text()) + "</pre></details>\n");
 }
 
+std::string verdict_section(const StudyAnalysis& study) {
+  if (!study.has_truth) return "";
+  return section("Verdict", html_table(verdict_table(study)) + html_table(accuracy_table(study)) +
+                                paragraphs(verdict_notes(study)));
+}
+
+std::string reference_section(const StudyAnalysis& study) {
+  if (study.has_truth && study.references.empty()) return "";
+  std::string body;
+  if (!study.has_truth) body += "<p>" + html_escape(no_truth_sentence()) + "</p>\n";
+  for (const TextTable& table : {reference_table(study), baseline_table(study), map_table(study)}) {
+    if (!table.rows.empty()) body += html_table(table);
+  }
+  return section("Judged by references", body + paragraphs(reference_notes(study)));
+}
+
+void write_latex(const TextTable& table, const fs::path& path) {
+  if (!table.rows.empty()) write_text(path, latex_tabular(table));
+}
+
 void write_tables(const StudyAnalysis& study, const fs::path& directory) {
   write_csv(study, directory);
-  write_text(directory / "verdict.tex", latex_table(study));
-  write_text(directory / "accuracy.tex", latex_tabular(accuracy_table(study)));
+  if (study.has_truth) {
+    write_text(directory / "verdict.tex", latex_table(study));
+    write_text(directory / "accuracy.tex", latex_tabular(accuracy_table(study)));
+    write_text(directory / "consistency.tex", latex_tabular(consistency_table(study)));
+  }
+  if (!study.has_truth || !study.references.empty()) {
+    write_latex(reference_table(study), directory / "reference.tex");
+    write_latex(baseline_table(study), directory / "baseline.tex");
+    write_latex(map_table(study), directory / "map.tex");
+  }
   if (!study.printed.empty()) {
     write_text(directory / "printed.tex", latex_tabular(printed_value_table(study)));
     write_text(directory / "claims.tex", latex_tabular(printed_claim_table(study)));
   }
-  if (const TextTable table = association_table(study); !table.rows.empty()) {
-    write_text(directory / "association.tex", latex_tabular(table));
-  }
-  write_text(directory / "consistency.tex", latex_tabular(consistency_table(study)));
+  write_latex(association_table(study), directory / "association.tex");
 }
 
 }  // namespace
@@ -153,15 +182,14 @@ void write_tables(const StudyAnalysis& study, const fs::path& directory) {
 void write_report(const ResultFile& file, const fs::path& directory, const ReportOptions& options) {
   refuse_existing(directory, options.existing);
   const StudyAnalysis study = analyze(file, options.level, *options.parallel);
-  std::vector<Figure> figures = time_figures(study);
+  std::vector<Figure> figures = reference_figures(study);
+  for (Figure& figure : time_figures(study)) figures.push_back(std::move(figure));
   Figure paths = path_figure(file, options.run);
   if (!paths.data.empty()) figures.insert(figures.begin(), std::move(paths));
   make_directory(directory);
   write_tables(study, directory / "tables");
   std::string body =
-      head(study) + failures(study) +
-      section("Verdict", html_table(verdict_table(study)) + html_table(accuracy_table(study)) +
-                             paragraphs(verdict_notes(study)));
+      head(study) + failures(study) + verdict_section(study) + reference_section(study);
   for (const Figure& figure : figures) {
     draw(figure, directory);
     body += figure_section(figure, directory);

@@ -31,6 +31,7 @@ Range range_of(const Panel& panel) {
     range.greatest = std::max(range.greatest, value);
   };
   for (const Curve& curve : panel.curves) std::ranges::for_each(curve.values, include);
+  range.least = std::max(range.least, panel.least);
   for (const Band& band : panel.bands) {
     range.least = std::clamp(range.least, kBelowBand * band.lower, 0.5 * band.lower);
     range.greatest = std::clamp(range.greatest, band.upper, kAboveBand * band.upper);

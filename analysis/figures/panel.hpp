@@ -39,6 +39,7 @@ struct Panel {
   std::vector<Curve> curves;
   std::vector<Band> bands;
   Scale scale = Scale::from_zero;
+  double least = 0.0;  ///< a logarithmic axis begins here at the earliest
 };
 
 /// Adds panels one above the other, with one time axis and one legend, to a figure.

@@ -12,6 +12,8 @@ namespace montecarta {
 namespace {
 
 constexpr std::size_t kMostPoints = 500;
+constexpr std::size_t kMostRecorded = 1500;  // a recorded drive is kilometres long
+constexpr std::size_t kMostFixes = 600;
 
 const std::vector<std::string> kEllipseHeadings = {"x [m]", "y [m]", "major diameter [m]",
                                                    "minor diameter [m]", "angle [deg]"};
@@ -22,9 +24,21 @@ const std::vector<double>& leading_mean(const RunRows& run) {
   return run.mixture.mean.empty() ? run.spread.mean : run.mixture.mean;
 }
 
+FigureData recorded_path(const ResultFile& file, const StoredCell& cell, const RunRows& run) {
+  FigureData data{"path_" + cell.label + ".csv", {"time [s]", "x [m]", "y [m]"}, {}};
+  const auto& times = file.scan_times();
+  const auto& mean = leading_mean(run);
+  const std::size_t stride = 1 + times.size() / kMostRecorded;
+  for (std::size_t s = 0; s < times.size(); s += stride) {
+    data.rows.push_back({times[s], mean[3 * s], mean[3 * s + 1]});
+  }
+  return data;
+}
+
 }  // namespace
 
 FigureData path_data(const ResultFile& file, const StoredCell& cell, const RunRows& run) {
+  if (run.truth.empty()) return recorded_path(file, cell, run);
   FigureData data{"path_" + cell.label + ".csv",
                   {"time [s]", "true x [m]", "true y [m]", "x [m]", "y [m]"},
                   {}};
@@ -51,21 +65,32 @@ FigureData pose_ellipses(const StoredCell& cell, const RunRows& run) {
   return data;
 }
 
-/// Landmarks that the filter has at the last scan.
 FigureData map_data(const ResultFile& file, const StoredCell& cell, std::size_t run_index) {
   FigureData data{"map_" + cell.label + ".csv", kEllipseHeadings, {}};
-  const auto column = std::ranges::find(cell.columns, std::string("map_seen"), &Column::name);
+  const std::string prefix = cell.has("map_seen") ? "map_" : "final_map_";
+  const auto column = std::ranges::find(cell.columns, prefix + "seen", &Column::name);
   if (column == cell.columns.end()) return data;
   const std::size_t all = column->elements(), landmarks = column->shape.back();
   std::vector<double> mean(2 * all), covariance(4 * all), seen(all);
-  file.read(cell, "map_mean", run_index, std::span(mean));
-  file.read(cell, "map_covariance", run_index, std::span(covariance));
-  file.read(cell, "map_seen", run_index, std::span(seen));
+  file.read(cell, prefix + "mean", run_index, std::span(mean));
+  file.read(cell, prefix + "covariance", run_index, std::span(covariance));
+  file.read(cell, prefix + "seen", run_index, std::span(seen));
   for (std::size_t k = all - landmarks; k < all; ++k) {
     if (seen[k] == 0.0) continue;
     const double* P = covariance.data() + 4 * k;
     data.rows.push_back(
         ellipse_row(two_sigma_ellipse(mean[2 * k], mean[2 * k + 1], P[0], P[2], P[3])));
+  }
+  return data;
+}
+
+FigureData fix_data(const ResultFile& file) {
+  if (file.references().empty()) return {"fixes.csv", {"time [s]", "x [m]", "y [m]"}, {}};
+  const ReferencePath& path = file.references().front();
+  FigureData data{"fixes_" + path.name + ".csv", {"time [s]", "x [m]", "y [m]"}, {}};
+  const std::size_t stride = 1 + path.time.size() / kMostFixes;
+  for (std::size_t f = 0; f < path.time.size(); f += stride) {
+    data.rows.push_back({path.time[f], path.position[f].x(), path.position[f].y()});
   }
   return data;
 }

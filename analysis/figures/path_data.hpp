@@ -12,13 +12,16 @@ namespace montecarta {
 /// How many ellipses of the pose lie along a path.
 inline constexpr std::size_t kPoseEllipses = 16;
 
-/// (time, true x, true y, x, y) at up to some hundred scans of a run.
+/// (time, true x, true y, x, y) at up to some hundred scans of a run; (time, x, y) where nobody
+/// knows the truth.
 FigureData path_data(const ResultFile& file, const StoredCell& cell, const RunRows& run);
 /// Two-sigma ellipses of the pose at kPoseEllipses moments; no rows without covariance.
 FigureData pose_ellipses(const StoredCell& cell, const RunRows& run);
-/// Two-sigma ellipses of the landmarks that the filter has at the last scan; no rows where no map
-/// is stored.
+/// Two-sigma ellipses of the landmarks that the filter has at the last scan; no rows where neither
+/// the map nor the final map is stored.
 FigureData map_data(const ResultFile& file, const StoredCell& cell, std::size_t run_index);
+/// (time, x, y) of up to some hundred fixes of the leading reference; no rows where there is none.
+FigureData fix_data(const ResultFile& file);
 /// True landmarks.
 FigureData landmark_data(const ResultFile& file);
 

@@ -10,7 +10,8 @@
 namespace montecarta {
 
 /// The true and the estimated path of one run, a panel a cell, with landmarks (estimated ones where
-/// the map is stored) and ellipses of two standard deviations. Without `run`: the first run that is
+/// the map is stored) and ellipses of two standard deviations; of a recorded drive the fixes of the
+/// leading reference in place of the truth. Without `run`: the first run that is
 /// complete in every cell, else in most. No data where no cell is complete. Throws StudyError where
 /// the file does not hold `run`.
 Figure path_figure(const ResultFile& file, std::optional<std::uint64_t> run);

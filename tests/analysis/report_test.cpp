@@ -3,6 +3,7 @@
 
 #include "analysis/html.hpp"
 #include "engine/errors.hpp"
+#include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/synthetic_result.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 
@@ -49,6 +50,35 @@ TEST(Report, HoldsEverySectionAndNeedsNothingElse) {
   }
   EXPECT_THAT(read(folder / "report/tables/verdict.tex"), HasSubstr("\\bottomrule"));
   EXPECT_TRUE(std::filesystem::exists(folder / "report/data/anees_pose.csv"));
+}
+
+TEST(Report, JudgesARecordedDriveByItsReferences) {
+  const ScratchFolder folder;
+  write_recorded_result(folder / "out.h5", 4, 400);
+  write_report(ResultFile(folder / "out.h5"), folder / "report");
+  const std::string page = read(folder / "report/index.html");
+  for (const char* heading :
+       {"Failed runs", "Judged by references", "Where did the filter think it was?",
+        "How far from the reference over time?", "Do more particles help?",
+        "How does the map grow?", "How many different histories survive?",
+        "How many particles still count?", "Where this comes from"}) {
+    EXPECT_THAT(page, HasSubstr(std::string("<h2>") + heading));
+  }
+  for (const char* heading : {"Verdict", "Is the filter right about its own errors?",
+                              "How large are the errors?", "The whole test"}) {
+    EXPECT_THAT(page, Not(HasSubstr(std::string("<h2>") + heading)));
+  }
+  EXPECT_THAT(page, HasSubstr("nobody knows its true path"));
+  for (const char* name : {"paths", "reference_error", "reference_particles", "map_size"}) {
+    EXPECT_THAT(read(folder / (std::string("report/figures/") + name + ".svg")),
+                HasSubstr("</svg>"))
+        << name;
+  }
+  for (const char* name : {"reference.tex", "baseline.tex", "map.tex", "references.csv"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder / (std::string("report/tables/") + name))) << name;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "report/tables/verdict.tex"));
+  EXPECT_THAT(read(folder / "report/data/map_ekf_slam.csv"), HasSubstr("\n20.3,5,"));
 }
 
 TEST(Report, IsNotOverwrittenUnasked) {

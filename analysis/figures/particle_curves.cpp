@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/figures/particle_curves.hpp"
+
+#include "analysis/figures/gnuplot.hpp"
+#include "analysis/tables/number_text.hpp"
+#include "analysis/tables/reference_table.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace montecarta {
+namespace {
+
+/// "fastslam2_gps" of "fastslam2_m100_gps" with 100 particles.
+std::string without_particles(const CellAnalysis& cell) {
+  const std::string part = "_m" + std::to_string(cell.particles);
+  std::string label = cell.label;
+  for (std::size_t at = 0; (at = label.find(part, at)) != label.npos; ++at) {
+    const std::size_t end = at + part.size();
+    if (end != label.size() && label[end] != '_') continue;
+    return label.erase(at, part.size());
+  }
+  return label;
+}
+
+ParticleCurve::Point point_of(const CellAnalysis& cell) {
+  const ReferenceAnalysis& leading = cell.references.front();
+  return {cell.particles, cell.complete, leading.over_runs(&ReferenceScores::rms),
+          leading.over_runs(&ReferenceScores::aligned_rms)};
+}
+
+ParticleCurve& curve_named(const std::string& legend, std::size_t style,
+                           std::vector<ParticleCurve>& curves) {
+  const auto found = std::ranges::find(curves, legend, &ParticleCurve::legend);
+  if (found != curves.end()) return *found;
+  return curves.emplace_back(ParticleCurve{legend, style, {}});
+}
+
+FigureData data_of(const ParticleCurve& curve) {
+  FigureData data{"rms_" + curve.legend + ".csv", {"particles", "runs"}, {}};
+  for (const std::string what : {"raw", "aligned"}) {
+    for (const std::string which : {"mean", "standard error", "median", "least", "greatest"}) {
+      data.headings.push_back(what + " RMS, " + which + " [m]");
+    }
+  }
+  for (const auto& point : curve.points) {
+    std::vector<double> row = {static_cast<double>(point.particles),
+                               static_cast<double>(point.runs)};
+    for (const Spread* spread : {&point.raw, &point.aligned}) {
+      row.insert(row.end(), {spread->summary.mean, spread->summary.standard_error(), spread->median,
+                             spread->least, spread->greatest});
+    }
+    data.rows.push_back(std::move(row));
+  }
+  return data;
+}
+
+/// Ticks at the numbers of particles that there are, and the range with some room beside them.
+std::string particle_axis(const std::vector<ParticleCurve>& curves) {
+  std::vector<std::size_t> numbers;
+  for (const ParticleCurve& curve : curves) {
+    for (const auto& point : curve.points) numbers.push_back(point.particles);
+  }
+  std::ranges::sort(numbers);
+  const auto repeated = std::ranges::unique(numbers);
+  numbers.erase(repeated.begin(), repeated.end());
+  std::string ticks;
+  for (const std::size_t n : numbers) ticks += (ticks.empty() ? "" : ",") + std::to_string(n);
+  const auto end = [](std::size_t n, double factor) {
+    return exact_text(static_cast<double>(n) * factor);
+  };
+  return "set logscale x\nset xtics (" + ticks + ")\nset xrange [" + end(numbers.front(), 0.8) +
+         ":" + end(numbers.back(), 1.25) + "]\nset xlabel 'particles' offset 0,0.4\n";
+}
+
+/// Common to both panels: from zero, or logarithmic where runs differ by more than two decades.
+std::string error_axis(const std::vector<ParticleCurve>& curves,
+                       const std::optional<std::array<double, 2>>& baseline) {
+  double least = std::numeric_limits<double>::infinity(), greatest = 0.0;
+  const auto include = [&](double value) {
+    least = std::min(least, value);
+    greatest = std::max(greatest, value);
+  };
+  for (const ParticleCurve& curve : curves) {
+    for (const auto& point : curve.points) {
+      for (const Spread* spread : {&point.raw, &point.aligned}) {
+        include(spread->least);
+        include(spread->greatest);
+      }
+    }
+  }
+  if (baseline) std::ranges::for_each(*baseline, include);
+  const bool wide = greatest > 100.0 * least;
+  return std::string(wide ? "set logscale y\n" : "") + "set yrange [" +
+         exact_text(wide ? 0.8 * least : 0.0) + ":" + exact_text(1.1 * greatest) + "]\n";
+}
+
+/// One panel; columns of a data file's mean and, three further, its least and greatest.
+std::string panel_of(const std::vector<ParticleCurve>& curves, std::size_t mean_column,
+                     const std::optional<double>& baseline, bool legend) {
+  const auto title = [&](const std::string& text) {
+    return legend ? " title " + gnuplot_quoted(text) : std::string(" notitle");
+  };
+  const std::string mean = std::to_string(mean_column), least = std::to_string(mean_column + 3),
+                    greatest = std::to_string(mean_column + 4);
+  std::string script = "plot ";
+  if (baseline) {
+    script += exact_text(*baseline) + " with lines linewidth 1.2 dashtype 2 linecolor rgb 'black'" +
+              title("EKF-SLAM") + ", \\\n  ";
+  }
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const std::string file = gnuplot_quoted("../data/rms_" + curves[i].legend + ".csv");
+    // Bars of neighbouring curves must not cover each other.
+    const double aside =
+        1.0 + 0.02 * (static_cast<double>(i) - 0.5 * static_cast<double>(curves.size() - 1));
+    const std::string x = "($1*" + exact_text(aside) + ")", style = line_style(curves[i].style);
+    script += file + " using " + x + ":" + mean + ":" + least + ":" + greatest +
+              " with yerrorbars pointtype 7 pointsize 0.5 " + style + " notitle, \\\n  " + file +
+              " using " + x + ":" + mean + " with lines " + style + title(curves[i].legend) +
+              (i + 1 < curves.size() ? ", \\\n  " : "\n");
+  }
+  return script;
+}
+
+}  // namespace
+
+std::vector<ParticleCurve> particle_curves(const StudyAnalysis& study) {
+  std::vector<ParticleCurve> curves;
+  if (study.references.empty() || study.references.front().times.empty()) return curves;
+  for (std::size_t i = 0; i < study.cells.size(); ++i) {
+    const CellAnalysis& cell = study.cells[i];
+    if (cell.particles == 0 || cell.complete == 0) continue;
+    curve_named(without_particles(cell), i, curves).points.push_back(point_of(cell));
+  }
+  for (ParticleCurve& curve : curves) {
+    std::ranges::sort(curve.points, {}, &ParticleCurve::Point::particles);
+  }
+  const bool several = std::ranges::any_of(
+      curves, [](const ParticleCurve& curve) { return curve.points.size() > 1; });
+  return several ? curves : std::vector<ParticleCurve>{};
+}
+
+std::optional<std::array<double, 2>> baseline_errors(const StudyAnalysis& study) {
+  const CellAnalysis* baseline = baseline_of(study);
+  if (baseline == nullptr) return std::nullopt;
+  const ReferenceAnalysis& leading = baseline->references.front();
+  return std::array{leading.over_runs(&ReferenceScores::rms).summary.mean,
+                    leading.over_runs(&ReferenceScores::aligned_rms).summary.mean};
+}
+
+void draw_particle_curves(const std::vector<ParticleCurve>& curves,
+                          const std::optional<std::array<double, 2>>& baseline, Figure& figure) {
+  for (const ParticleCurve& curve : curves) figure.data.push_back(data_of(curve));
+  const auto base = [&](std::size_t which) {
+    return baseline ? std::optional((*baseline)[which]) : std::nullopt;
+  };
+  figure.script = particle_axis(curves) + error_axis(curves, baseline) +
+                  "set key at screen 0.085,0.985 left top horizontal Left reverse\n"
+                  "set multiplot layout 1,2 margins 0.085,0.985,0.17,0.76 spacing 0.04\n"
+                  "set title 'as it stands' offset 0,-0.5\n"
+                  "set ylabel 'RMS distance [m]' offset 1.5,0\n" +
+                  panel_of(curves, 3, base(0), true) +
+                  "set key off\nset title 'aligned' offset 0,-0.5\nunset ylabel\n"
+                  "set format y ''\n" +
+                  panel_of(curves, 8, base(1), false) + "unset multiplot\n";
+}
+
+}  // namespace montecarta

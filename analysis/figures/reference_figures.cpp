@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/figures/reference_figures.hpp"
+
+#include "analysis/figures/panel.hpp"
+#include "analysis/figures/particle_curves.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace montecarta {
+namespace {
+
+/// Nearer than this a reference cannot tell [m]: satellite positions are good to a centimetre.
+constexpr double kLeastError = 0.01;
+constexpr double kTwoDecades = 100.0;
+
+/// The axis of errors from kLeastError on.
+Scale scale_of(const std::vector<Curve>& curves) {
+  double least = std::numeric_limits<double>::infinity(), greatest = 0.0;
+  for (const Curve& curve : curves) {
+    for (const double value : curve.values) {
+      least = std::min(least, std::max(value, kLeastError));
+      greatest = std::max(greatest, value);
+    }
+  }
+  return greatest > kTwoDecades * least ? Scale::logarithmic : Scale::from_zero;
+}
+
+}  // namespace
+
+Figure reference_error_figure(const StudyAnalysis& study) {
+  Figure figure{"reference_error", "How far from the reference over time?", "", 900, 360, "", {}};
+  if (study.references.empty()) return figure;
+  const JudgedReference& reference = study.references.front();
+  figure.sentence = "Distance between the estimate as it stands and each fix of " + reference.name +
+                    ", root mean square over runs: lower is better, but no curve can be nearer "
+                    "than the reference itself is right. Peaks that all filters have are wild "
+                    "fixes; a curve that climbs and stays belongs to a filter that lost the map.";
+  std::vector<Curve> curves;
+  for (std::size_t i = 0; i < study.cells.size(); ++i) {
+    const CellAnalysis& cell = study.cells[i];
+    if (cell.complete == 0 || reference.times.empty()) continue;
+    curves.push_back({cell.label, i, cell.references.front().error_over_time});
+  }
+  if (curves.empty()) return figure;
+  const Scale scale = scale_of(curves);
+  add_panels({{"reference_error",
+               "distance to " + reference.name + " [m]",
+               std::move(curves),
+               {},
+               scale,
+               kLeastError}},
+             reference.times, figure);
+  return figure;
+}
+
+Figure map_size_figure(const StudyAnalysis& study) {
+  Figure figure{"map_size", "How does the map grow?", "", 900, 260, "", {}};
+  figure.sentence =
+      "Landmarks in the map, mean over runs (of a particle filter: over its weighted particles). "
+      "It should level off where the vehicle meets known ground: a map that goes on growing there "
+      "takes known landmarks for new ones.";
+  std::vector<Curve> curves;
+  for (std::size_t i = 0; i < study.cells.size(); ++i) {
+    const CellAnalysis& cell = study.cells[i];
+    if (cell.map_size_over_time.empty()) continue;
+    curves.push_back({cell.label, i, cell.map_size_over_time});
+  }
+  if (curves.empty()) return figure;
+  add_panels({{"map_size", "landmarks", std::move(curves), {}, Scale::from_zero}}, study.times,
+             figure);
+  return figure;
+}
+
+Figure particles_figure(const StudyAnalysis& study) {
+  Figure figure{"reference_particles", "Do more particles help?", "", 900, 400, "", {}};
+  const std::vector<ParticleCurve> curves = particle_curves(study);
+  if (curves.empty()) return figure;
+  figure.sentence = "RMS distance to " + study.references.front().name +
+                    " against the number of particles, one curve a filter: left as it stands, "
+                    "right after the best turn and shift of the whole path. Points are means over "
+                    "runs, bars reach from the best run to the worst, the dashed line is EKF-SLAM.";
+  draw_particle_curves(curves, baseline_errors(study), figure);
+  return figure;
+}
+
+std::vector<Figure> reference_figures(const StudyAnalysis& study) {
+  std::vector<Figure> figures = {reference_error_figure(study), particles_figure(study),
+                                 map_size_figure(study)};
+  std::erase_if(figures, [](const Figure& figure) { return figure.data.empty(); });
+  return figures;
+}
+
+}  // namespace montecarta
