@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace montecarta {
@@ -62,11 +61,11 @@ class PanelScript {
 };
 
 constexpr const char* kTruth = "with lines linewidth 3 linecolor rgb '#aaaaaa'";
-constexpr const char* kFix = "with points pointtype 7 pointsize 0.18 linecolor rgb '#999999'";
+constexpr const char* kFix = "with points pointtype 7 pointsize 0.35 linecolor rgb '#aaaaaa'";
 constexpr const char* kLandmark = "with points pointtype 1 pointsize 0.6 linecolor rgb 'black'";
 
 std::string estimated_landmark(std::size_t style) {
-  return "with points pointtype 6 pointsize 0.35 " + line_style(style);
+  return "with points pointtype 6 pointsize 0.5 " + line_style(style);
 }
 
 /// What all panels show besides the estimate.
@@ -152,17 +151,18 @@ Bounds bounds_of_fixes(const FigureData& fixes) {
   return bounds;
 }
 
-/// A filter that is lost may be anywhere: the paths reach no farther than a third beyond the fixes.
+/// A filter that is lost may be anywhere: paths and maps reach no farther than a quarter beyond the
+/// fixes.
 Bounds recorded_bounds(const std::vector<FigureData>& all, const Surroundings& around) {
-  Bounds paths;
-  include(all, "path_", 1, paths);
   Bounds bounds = bounds_of_fixes(around.fixes);
-  if (bounds.empty()) return paths.widened();
-  const Bounds limit = bounds.grown(1.0 / 3.0);
-  for (const auto& [x, y] :
-       {std::pair(paths.left, paths.low), std::pair(paths.right, paths.high)}) {
-    const auto near = limit.nearest(x, y);
-    bounds.include(near.first, near.second);
+  const Bounds limit = bounds.grown(0.25);
+  const bool limited = !bounds.empty();
+  for (const FigureData& data : all) {
+    const std::size_t x = data.name.starts_with("path_") ? 1 : 0;
+    if (x == 0 && !data.name.starts_with("map_")) continue;
+    for (const auto& row : data.rows) {
+      if (!limited || limit.contains(row[x], row[x + 1])) bounds.include(row[x], row[x + 1]);
+    }
   }
   include({around.landmarks}, "landmarks.csv", 0, bounds);
   return bounds.widened();
@@ -198,15 +198,20 @@ void draw_paths(const ResultFile& file, const std::vector<std::size_t>& cells,
 
 void draw_recorded_paths(const ResultFile& file, const std::vector<std::size_t>& cells,
                          const Surroundings& around, Figure& figure) {
-  figure.sentence = "Run " + std::to_string(file.runs()[around.run]) +
-                    ", as it stands, not aligned: the filter's path in colour over the fixes of "
-                    "the reference as grey dots, with the landmarks of its map at the end. The "
-                    "panels end where the fixes do: a filter that lost the map may leave them.";
+  figure.sentence =
+      "Run " + std::to_string(file.runs()[around.run]) +
+      ", as it stands, not aligned: the filter's path in colour over the fixes of "
+      "the reference as grey dots, with the landmarks of its map at the end. The "
+      "panels reach no farther than a quarter beyond the fixes: a filter that lost "
+      "the map may leave them." +
+      (cells.size() == kMostRecordedPanels
+           ? " The first " + std::to_string(cells.size()) + " cells that completed the run."
+           : "");
   std::vector<std::string> panels;
   for (const std::size_t c : cells) panels.push_back(add_recorded_panel(file, c, around, figure));
   std::vector<LegendEntry> legend = {{"with lines " + line_style(0), "estimate"}};
   if (!around.fixes.rows.empty()) {
-    legend.emplace_back("with points pointtype 7 pointsize 0.5 linecolor rgb '#999999'",
+    legend.emplace_back("with points pointtype 7 pointsize 0.5 linecolor rgb '#aaaaaa'",
                         "fix of " + file.references().front().name);
   }
   legend.emplace_back("with points pointtype 6 pointsize 0.8 " + line_style(0),

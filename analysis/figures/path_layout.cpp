@@ -125,10 +125,6 @@ Bounds Bounds::grown(double share) const {
   return wide;
 }
 
-std::pair<double, double> Bounds::nearest(double x, double y) const {
-  return {std::clamp(x, left, right), std::clamp(y, low, high)};
-}
-
 void lay_out_maps(const Bounds& bounds, const std::vector<std::string>& panels,
                   const std::vector<LegendEntry>& legend, Figure& figure) {
   figure.script = layout_of(panels.size(), bounds, figure);

@@ -24,8 +24,9 @@ struct Bounds {
   Bounds widened() const;
   /// `share` of the longer side farther in every direction.
   Bounds grown(double share) const;
-  /// The point of the rectangle that is nearest.
-  std::pair<double, double> nearest(double x, double y) const;
+  bool contains(double x, double y) const {
+    return x >= left && x <= right && y >= low && y <= high;
+  }
 };
 
 /// An entry of a legend: how gnuplot draws it, and its words.

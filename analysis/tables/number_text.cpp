@@ -45,6 +45,13 @@ std::string with_error(double mean, double standard_error) {
   return printed("%.*f", decimals, mean) + " +- " + printed("%.*f", decimals, standard_error);
 }
 
+std::string with_error_to(int decimals, double mean, double standard_error) {
+  if (std::isnan(mean)) return "-";
+  const std::string text = printed("%.*f", decimals, mean);
+  if (std::isnan(standard_error)) return text;
+  return text + " +- " + printed("%.*f", decimals, standard_error);
+}
+
 std::string exact_text(double value) {
   if (std::isnan(value)) return "nan";
   std::array<char, 64> text{};

@@ -16,6 +16,9 @@ std::string compact(double value);
 /// error. "-" where there is none; without error where it is of one run.
 std::string with_error(double mean, double standard_error);
 
+/// As with_error() with a fixed number of decimals, for numbers that are not known any better.
+std::string with_error_to(int decimals, double mean, double standard_error);
+
 /// The shortest text that reads back as the same number; "nan", "inf".
 std::string exact_text(double value);
 

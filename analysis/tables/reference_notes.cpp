@@ -31,13 +31,15 @@ std::vector<std::string> distance_notes() {
       "'raw' compares as it stands; 'aligned' first turns and shifts the estimated path as a whole "
       "(no stretching, no mirroring) to where it fits all fixes best, since nobody knows exactly "
       "where the drive began and which way the vehicle looked.",
-      "The median is the middle fix and cares little for wild fixes; 'gated' is the RMS over the "
+      "The median is the middle fix and cares little for wild fixes; 'gated' is the aligned RMS "
+      "over the "
       "fixes within " +
           readable(kReferenceGate, 1) +
           " times the run's own median error, with the share kept: a single fix may be more than a "
           "hundred metres off, and a gate relative to the run hides no filter that diverges.",
       "Runs see the same drive and differ by the filter's own randomness alone: numbers are means "
-      "over runs +- their standard error, then the middle run and the two ends.",
+      "over runs +- their standard error; 'middle run' is the median over runs of the aligned RMS, "
+      "with the best and the worst run.",
       "A run lost the map where it failed or the median of its aligned errors exceeds " +
           readable(kLostBeyond, 2) + " m."};
 }

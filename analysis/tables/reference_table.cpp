@@ -10,15 +10,20 @@
 namespace montecarta {
 namespace {
 
+/// No fix is known better than to a centimetre, no heading than to a hundredth of a degree.
 std::string mean_text(const Spread& spread, double factor = 1.0) {
-  return with_error(factor * spread.summary.mean, factor * spread.summary.standard_error());
+  return with_error_to(2, factor * spread.summary.mean, factor * spread.summary.standard_error());
+}
+
+std::string count_text(const Spread& spread) {
+  return with_error_to(1, spread.summary.mean, spread.summary.standard_error());
 }
 
 /// The middle run and the two ends: "1.55 [1.41, 2.20]".
 std::string runs_text(const Spread& spread) {
   if (std::isnan(spread.median)) return "-";
-  return readable(spread.median) + " [" + readable(spread.least) + ", " +
-         readable(spread.greatest) + "]";
+  const auto text = [](double value) { return with_error_to(2, value, RunScores::kNone); };
+  return text(spread.median) + " [" + text(spread.least) + ", " + text(spread.greatest) + "]";
 }
 
 std::string of_text(std::size_t k, std::size_t n) {
@@ -64,11 +69,12 @@ std::vector<std::string> map_row(const StudyAnalysis& study, const CellAnalysis&
   const auto text = [&](double RunScores::*score) {
     return mean_text(cell.known_over_runs(score));
   };
-  std::vector<std::string> row = {cell.label, text(&RunScores::map_landmarks)};
+  const Spread found = cell.known_over_runs(&RunScores::beacons_found);
+  std::vector<std::string> row = {cell.label,
+                                  count_text(cell.known_over_runs(&RunScores::map_landmarks))};
   if (study.beacons > 0) {
-    const bool known = cell.known_over_runs(&RunScores::beacons_found).summary.n > 0;
-    row.push_back(known ? text(&RunScores::beacons_found) + " of " + std::to_string(study.beacons)
-                        : "-");
+    row.push_back(
+        found.summary.n == 0 ? "-" : count_text(found) + " of " + std::to_string(study.beacons));
     row.push_back(text(&RunScores::beacon_rms));
     row.push_back(text(&RunScores::beacon_aligned_rms));
   }
@@ -116,8 +122,8 @@ TextTable reference_table(const StudyAnalysis& study) {
   table.headings = {{"cell", Align::left},  {"reference", Align::left},
                     {"runs", Align::left},  {"lost"},
                     {"raw RMS [m]"},        {"raw median [m]"},
-                    {"aligned RMS [m]"},    {"middle run [least, greatest]"},
-                    {"aligned median [m]"}, {"gated aligned RMS [m] (kept)"}};
+                    {"aligned RMS [m]"},    {"middle run [ends]"},
+                    {"aligned median [m]"}, {"gated [m] (kept)"}};
   if (any_heading(study)) table.headings.push_back({"heading RMSE [deg]"});
   for (const CellAnalysis& cell : study.cells) {
     for (std::size_t r = 0; r < cell.references.size(); ++r) {

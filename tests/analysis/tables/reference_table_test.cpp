@@ -82,9 +82,9 @@ TEST(BaselineTable, NeedsABaseline) {
 TEST(MapTable, CountsLandmarksAndBeacons) {
   const StudyAnalysis study = recorded_study();
   const TextTable table = map_table(study);
-  EXPECT_EQ(table.rows[1][1], "9.00");  // a hundred scans
-  EXPECT_EQ(table.rows[1][2], "3.00 of 4");
-  EXPECT_EQ(table.rows[1][3], "0.300");
+  EXPECT_EQ(table.rows[1][1], "9.0 +- 0.0");  // a hundred scans
+  EXPECT_EQ(table.rows[1][2], "3.0 +- 0.0 of 4");
+  EXPECT_EQ(table.rows[1][3], "0.30 +- 0.00");
 }
 
 TEST(PrintTables, SayOfARecordedDriveWhyThereIsNoVerdict) {
