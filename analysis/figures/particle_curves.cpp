@@ -122,6 +122,20 @@ std::string panel_of(const std::vector<ParticleCurve>& curves, std::size_t mean_
   return script;
 }
 
+/// Two panels below a legend of two columns, for which the figure grows: gnuplot gives a legend the
+/// width of its own panel.
+std::string layout_of(std::size_t entries, Figure& figure) {
+  constexpr std::size_t kLegendPixels = 22, kTitlePixels = 40, kAxisPixels = 66;
+  const std::size_t top = (entries + 1) / 2 * kLegendPixels + kTitlePixels;
+  figure.height += top;
+  const auto share = [&](std::size_t pixels) {
+    return readable(static_cast<double>(pixels) / static_cast<double>(figure.height), 5);
+  };
+  return "set key at screen 0.085,0.985 left top horizontal Left reverse maxcols 2\n"
+         "set multiplot layout 1,2 margins 0.085,0.985," +
+         share(kAxisPixels) + "," + share(figure.height - top) + " spacing 0.04\n";
+}
+
 }  // namespace
 
 std::vector<ParticleCurve> particle_curves(const StudyAnalysis& study) {
@@ -155,8 +169,7 @@ void draw_particle_curves(const std::vector<ParticleCurve>& curves,
     return baseline ? std::optional((*baseline)[which]) : std::nullopt;
   };
   figure.script = particle_axis(curves) + error_axis(curves, baseline) +
-                  "set key at screen 0.085,0.985 left top horizontal Left reverse\n"
-                  "set multiplot layout 1,2 margins 0.085,0.985,0.17,0.76 spacing 0.04\n"
+                  layout_of(curves.size() + (baseline ? 1 : 0), figure) +
                   "set title 'as it stands' offset 0,-0.5\n"
                   "set ylabel 'RMS distance [m]' offset 1.5,0\n" +
                   panel_of(curves, 3, base(0), true) +

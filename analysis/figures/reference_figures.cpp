@@ -74,7 +74,7 @@ Figure map_size_figure(const StudyAnalysis& study) {
 }
 
 Figure particles_figure(const StudyAnalysis& study) {
-  Figure figure{"reference_particles", "Do more particles help?", "", 900, 400, "", {}};
+  Figure figure{"reference_particles", "Do more particles help?", "", 900, 340, "", {}};
   const std::vector<ParticleCurve> curves = particle_curves(study);
   if (curves.empty()) return figure;
   figure.sentence = "RMS distance to " + study.references.front().name +

@@ -32,9 +32,11 @@ std::string heading(const NamedNumber& number) {
 std::vector<NamedNumber> reference_numbers(const CellAnalysis& cell, std::size_t reference) {
   const ReferenceAnalysis& against = cell.references[reference];
   const auto count = [](std::size_t n) { return static_cast<double>(n); };
+  const bool judged = cell.complete == 0 || !against.error_over_time.empty();
+  const std::size_t lost = against.lost() + cell.failures.size();
   std::vector<NamedNumber> all = {{"runs_failed", "1", count(cell.failures.size())},
                                   {"runs_complete", "1", count(cell.complete)},
-                                  {"runs_lost", "1", count(against.lost() + cell.failures.size())}};
+                                  {"runs_lost", "1", judged ? count(lost) : RunScores::kNone}};
   const auto one = [&](const char* name, const char* units, double ReferenceScores::*score) {
     add(name, units, against.over_runs(score), all);
   };

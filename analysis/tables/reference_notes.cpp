@@ -18,6 +18,10 @@ std::string fixes_note(const StudyAnalysis& study) {
 }
 
 std::string baseline_note(const StudyAnalysis& study) {
+  if (study.references.front().times.empty()) {
+    return "No fix of " + study.references.front().name +
+           " lies within the drive, so nothing can be said by it.";
+  }
   const CellAnalysis* baseline = baseline_of(study);
   if (baseline == nullptr) return "No cell runs EKF-SLAM, so there is no baseline to beat.";
   const Spread aligned = baseline->references.front().over_runs(&ReferenceScores::aligned_rms);

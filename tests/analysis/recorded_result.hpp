@@ -79,6 +79,8 @@ inline void put_map(const RecordedDrives& drives, RunRecord& record) {
     mean[2 * l + 1] = place.y();
     seen[l] = 1;
   }
+  mean[10] = beacons[3].x();  // not in the map, whatever stands here
+  mean[11] = beacons[3].y();
   for (std::size_t s = 0; s < size.size(); ++s) {
     size[s] = std::min(20.0, std::floor(static_cast<double>(s) / 10.0));
   }

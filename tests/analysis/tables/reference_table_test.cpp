@@ -79,6 +79,15 @@ TEST(BaselineTable, NeedsABaseline) {
   EXPECT_THAT(reference_notes(study), Contains(HasSubstr("no baseline")));
 }
 
+TEST(ReferenceTable, SaysNothingByAReferenceWithoutFixesInTheDrive) {
+  StudyAnalysis study = recorded_study();
+  study.references.front().times.clear();
+  EXPECT_EQ(reference_table(study).rows[2][3], "-");
+  EXPECT_EQ(reference_table(study).rows[3][3], "1 of 4");
+  EXPECT_THAT(baseline_table(study).rows, testing::IsEmpty());
+  EXPECT_THAT(reference_notes(study), Contains(HasSubstr("No fix of gps lies within the drive")));
+}
+
 TEST(MapTable, CountsLandmarksAndBeacons) {
   const StudyAnalysis study = recorded_study();
   const TextTable table = map_table(study);
