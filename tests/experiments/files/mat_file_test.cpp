@@ -19,7 +19,7 @@ using testing::HasSubstr;
 TEST(MatFile, ReadsEachClassCompressedOrNot) {
   const ScratchFolder folder;
   for (const auto compression : {MAT_COMPRESSION_NONE, MAT_COMPRESSION_ZLIB}) {
-    const auto path = folder / ("m" + std::to_string(compression) + ".mat");
+    const auto path = folder / (compression == MAT_COMPRESSION_NONE ? "plain.mat" : "packed.mat");
     add_matrix<double>(path, "a_long_name", {0.5, -2, 1e300, 4, 5, 6}, 2, MAT_C_DOUBLE,
                        MAT_T_DOUBLE, compression);
     add_matrix<std::int32_t>(path, "t", {-7, 2'000'000'000}, 1, MAT_C_INT32, MAT_T_INT32,
