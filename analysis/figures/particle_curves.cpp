@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/figures/particle_curves.hpp"
 
+#include "analysis/figures/cell_panels.hpp"
 #include "analysis/figures/gnuplot.hpp"
 #include "analysis/tables/number_text.hpp"
 #include "analysis/tables/reference_table.hpp"
@@ -11,29 +12,10 @@
 namespace montecarta {
 namespace {
 
-/// "fastslam2_gps" of "fastslam2_m100_gps" with 100 particles.
-std::string without_particles(const CellAnalysis& cell) {
-  const std::string part = "_m" + std::to_string(cell.particles);
-  std::string label = cell.label;
-  for (std::size_t at = 0; (at = label.find(part, at)) != label.npos; ++at) {
-    const std::size_t end = at + part.size();
-    if (end != label.size() && label[end] != '_') continue;
-    return label.erase(at, part.size());
-  }
-  return label;
-}
-
 ParticleCurve::Point point_of(const CellAnalysis& cell) {
   const ReferenceAnalysis& leading = cell.references.front();
   return {cell.particles, cell.complete, leading.over_runs(&ReferenceScores::rms),
           leading.over_runs(&ReferenceScores::aligned_rms)};
-}
-
-ParticleCurve& curve_named(const std::string& legend, std::size_t style,
-                           std::vector<ParticleCurve>& curves) {
-  const auto found = std::ranges::find(curves, legend, &ParticleCurve::legend);
-  if (found != curves.end()) return *found;
-  return curves.emplace_back(ParticleCurve{legend, style, {}});
 }
 
 FigureData data_of(const ParticleCurve& curve) {
@@ -112,7 +94,7 @@ std::string panel_of(const std::vector<ParticleCurve>& curves, std::size_t mean_
     const std::string file = gnuplot_quoted("../data/rms_" + curves[i].legend + ".csv");
     // Bars of neighbouring curves must not cover each other.
     const double aside =
-        1.0 + 0.02 * (static_cast<double>(i) - 0.5 * static_cast<double>(curves.size() - 1));
+        1.0 + 0.03 * (static_cast<double>(i) - 0.5 * static_cast<double>(curves.size() - 1));
     const std::string x = "($1*" + exact_text(aside) + ")", style = line_style(curves[i].style);
     script += file + " using " + x + ":" + mean + ":" + least + ":" + greatest +
               " with yerrorbars pointtype 7 pointsize 0.5 " + style + " notitle, \\\n  " + file +
@@ -141,11 +123,14 @@ std::string layout_of(std::size_t entries, Figure& figure) {
 std::vector<ParticleCurve> particle_curves(const StudyAnalysis& study) {
   std::vector<ParticleCurve> curves;
   if (study.references.empty() || study.references.front().times.empty()) return curves;
-  for (std::size_t i = 0; i < study.cells.size(); ++i) {
-    const CellAnalysis& cell = study.cells[i];
+  const std::vector<std::string> labels = filter_labels(study);
+  for (std::size_t i = 0; i < labels.size(); ++i) curves.push_back({labels[i], i, {}});
+  for (const CellAnalysis& cell : study.cells) {
     if (cell.particles == 0 || cell.complete == 0) continue;
-    curve_named(without_particles(cell), i, curves).points.push_back(point_of(cell));
+    const std::string label = label_without_particles(cell);
+    std::ranges::find(curves, label, &ParticleCurve::legend)->points.push_back(point_of(cell));
   }
+  std::erase_if(curves, [](const ParticleCurve& curve) { return curve.points.empty(); });
   for (ParticleCurve& curve : curves) {
     std::ranges::sort(curve.points, {}, &ParticleCurve::Point::particles);
   }

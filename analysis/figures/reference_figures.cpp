@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/figures/reference_figures.hpp"
 
-#include "analysis/figures/panel.hpp"
+#include "analysis/figures/cell_panels.hpp"
 #include "analysis/figures/particle_curves.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -15,16 +16,27 @@ namespace {
 constexpr double kLeastError = 0.01;
 constexpr double kTwoDecades = 100.0;
 
-/// The axis of errors from kLeastError on.
-Scale scale_of(const std::vector<Curve>& curves) {
+/// One axis for all panels, which begins at kLeastError where it is logarithmic.
+Scale scale_of(const std::vector<Panel>& panels) {
   double least = std::numeric_limits<double>::infinity(), greatest = 0.0;
-  for (const Curve& curve : curves) {
-    for (const double value : curve.values) {
-      least = std::min(least, std::max(value, kLeastError));
-      greatest = std::max(greatest, value);
+  for (const Panel& panel : panels) {
+    for (const Curve& curve : panel.curves) {
+      for (const double value : curve.values) {
+        if (std::isnan(value)) continue;
+        least = std::min(least, std::max(value, kLeastError));
+        greatest = std::max(greatest, value);
+      }
     }
   }
   return greatest > kTwoDecades * least ? Scale::logarithmic : Scale::from_zero;
+}
+
+/// Adds panels to a figure, which grows where there are several.
+void add(const std::vector<Panel>& panels, const std::vector<double>& times, Figure& figure) {
+  constexpr std::size_t kPanelPixels = 220;
+  figure.height += (panels.size() - 1) * kPanelPixels;
+  if (panels.size() > 1) figure.sentence += " One panel for each number of particles M.";
+  add_panels(panels, times, figure);
 }
 
 }  // namespace
@@ -37,21 +49,15 @@ Figure reference_error_figure(const StudyAnalysis& study) {
                     ", root mean square over runs: lower is better, but no curve can be nearer "
                     "than the reference itself is right. Peaks that all filters have are wild "
                     "fixes; a curve that climbs and stays belongs to a filter that lost the map.";
-  std::vector<Curve> curves;
-  for (std::size_t i = 0; i < study.cells.size(); ++i) {
-    const CellAnalysis& cell = study.cells[i];
-    if (cell.complete == 0 || reference.times.empty()) continue;
-    curves.push_back({cell.label, i, cell.references.front().error_over_time});
-  }
-  if (curves.empty()) return figure;
-  const Scale scale = scale_of(curves);
-  add_panels({{"reference_error",
-               "distance to " + reference.name + " [m]",
-               std::move(curves),
-               {},
-               scale,
-               kLeastError}},
-             reference.times, figure);
+  const Panel blank{"reference_error", "distance to " + reference.name + " [m]", {}, {}, {},
+                    kLeastError};
+  std::vector<Panel> panels = cell_panels(study, blank, [](const CellAnalysis& cell) {
+    return cell.complete == 0 ? std::vector<double>{} : cell.references.front().error_over_time;
+  });
+  if (panels.empty()) return figure;
+  const Scale scale = scale_of(panels);
+  for (Panel& panel : panels) panel.scale = scale;
+  add(panels, reference.times, figure);
   return figure;
 }
 
@@ -61,15 +67,10 @@ Figure map_size_figure(const StudyAnalysis& study) {
       "Landmarks in the map, mean over runs (of a particle filter: over its weighted particles). "
       "It should level off where the vehicle meets known ground: a map that goes on growing there "
       "takes known landmarks for new ones.";
-  std::vector<Curve> curves;
-  for (std::size_t i = 0; i < study.cells.size(); ++i) {
-    const CellAnalysis& cell = study.cells[i];
-    if (cell.map_size_over_time.empty()) continue;
-    curves.push_back({cell.label, i, cell.map_size_over_time});
-  }
-  if (curves.empty()) return figure;
-  add_panels({{"map_size", "landmarks", std::move(curves), {}, Scale::from_zero}}, study.times,
-             figure);
+  const std::vector<Panel> panels =
+      cell_panels(study, {"map_size", "landmarks", {}, {}, Scale::from_zero},
+                  [](const CellAnalysis& cell) { return cell.map_size_over_time; });
+  if (!panels.empty()) add(panels, study.times, figure);
   return figure;
 }
 

@@ -90,6 +90,24 @@ TEST(ReferenceFigures, GoByPowersOfTenBeyondTwoDecades) {
   EXPECT_THAT(script_of(1e-9, 60.0), HasSubstr("set yrange [0.01:"));
 }
 
+TEST(ReferenceFigures, SpreadManyCellsOverAPanelForEachNumberOfParticles) {
+  std::vector<CellAnalysis> cells = {cell_of("ekf_slam", "ekf_slam", 0, 1.0)};
+  for (const std::string filter : {"a", "b", "c", "d"}) {
+    cells.push_back(cell_of(filter + "_m3", filter, 3, 2.0));
+    if (filter != "b") cells.push_back(cell_of(filter + "_m20", filter, 20, 3.0));
+  }
+  EXPECT_EQ(reference_error_figure(study_of(cells)).data.size(), 1u);  // eight are told apart
+  cells.push_back(cell_of("e_m20", "e", 20, 5.0));
+  const Figure figure = reference_error_figure(study_of(cells));
+  ASSERT_EQ(figure.data.size(), 2u);
+  EXPECT_EQ(figure.data[0].name, "reference_error_m3.csv");
+  EXPECT_THAT(figure.data[1].headings,
+              ElementsAre("time [s]", "ekf_slam", "a", "b", "c", "d", "e"));
+  EXPECT_THAT(figure.data[1].rows[0], ElementsAre(0.5, 1.0, 3.0, testing::IsNan(), 3.0, 3.0, 5.0));
+  EXPECT_THAT(figure.data[0].rows[0], ElementsAre(0.5, 1.0, 2.0, 2.0, 2.0, 2.0, testing::IsNan()));
+  EXPECT_THAT(figure.script, HasSubstr("distance to gps [m], M = 20"));
+}
+
 TEST(ReferenceFigures, AreNotDrawnWithoutReferences) {
   StudyAnalysis study = study_of({cell_of("a", "a", 0, 1.0)});
   study.references.clear();
