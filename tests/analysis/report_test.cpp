@@ -78,6 +78,10 @@ TEST(Report, JudgesARecordedDriveByItsReferences) {
     EXPECT_TRUE(std::filesystem::exists(folder / (std::string("report/tables/") + name))) << name;
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "report/tables/verdict.tex"));
+  const std::string paths = read(folder / "report/figures/paths.gp");
+  EXPECT_THAT(paths, HasSubstr("'../data/fixes_gps.csv' using 2:3"));
+  EXPECT_THAT(paths, HasSubstr("'surveyed landmark'"));
+  EXPECT_THAT(paths, Not(HasSubstr("true path")));
   EXPECT_THAT(read(folder / "report/data/map_ekf_slam.csv"), HasSubstr("\n20.3,5,"));
 }
 
