@@ -20,7 +20,8 @@ void MeasuredRun::measure(const Yardsticks& sticks, std::size_t particles) {
   }
   beacons.reset();
   if (sticks.beacons.empty() || !rows.final_map) return;
-  beacons = beacon_scores(*rows.final_map, sticks.beacons);
+  const RigidMotion alignment = references.empty() ? RigidMotion() : references.front().alignment;
+  beacons = beacon_scores(*rows.final_map, sticks.beacons, alignment);
 }
 
 void CellSums::add(const MeasuredRun& run) {

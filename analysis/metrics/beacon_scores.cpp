@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/beacon_scores.hpp"
 
-#include "analysis/metrics/rigid_alignment.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -18,11 +16,12 @@ struct Pair {
 };
 
 std::vector<Pair> near_pairs(std::span<const Eigen::Vector2d> map,
-                             std::span<const Eigen::Vector2d> beacons) {
+                             std::span<const Eigen::Vector2d> beacons,
+                             const RigidMotion& alignment) {
   std::vector<Pair> pairs;
   for (std::size_t b = 0; b < beacons.size(); ++b) {
     for (std::size_t l = 0; l < map.size(); ++l) {
-      const double squared = (map[l] - beacons[b]).squaredNorm();
+      const double squared = (alignment(map[l]) - beacons[b]).squaredNorm();
       if (squared <= kFoundWithin * kFoundWithin) pairs.push_back({squared, l, b});
     }
   }
@@ -39,10 +38,10 @@ double rms(const Points& map, const Points& beacons, const RigidMotion& motion) 
 }  // namespace
 
 BeaconScores beacon_scores(std::span<const Eigen::Vector2d> map,
-                           std::span<const Eigen::Vector2d> beacons) {
+                           std::span<const Eigen::Vector2d> beacons, const RigidMotion& alignment) {
   std::vector<bool> landmark_taken(map.size()), beacon_found(beacons.size());
   Points estimated, surveyed;
-  for (const Pair& pair : near_pairs(map, beacons)) {
+  for (const Pair& pair : near_pairs(map, beacons, alignment)) {
     if (landmark_taken[pair.landmark] || beacon_found[pair.beacon]) continue;
     landmark_taken[pair.landmark] = beacon_found[pair.beacon] = true;
     estimated.push_back(map[pair.landmark]);
@@ -50,7 +49,7 @@ BeaconScores beacon_scores(std::span<const Eigen::Vector2d> map,
   }
   if (estimated.empty()) return {};
   return {static_cast<double>(estimated.size()), rms(estimated, surveyed, {}),
-          rms(estimated, surveyed, rigid_alignment(estimated, surveyed))};
+          rms(estimated, surveyed, alignment)};
 }
 
 }  // namespace montecarta

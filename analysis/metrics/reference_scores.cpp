@@ -47,8 +47,7 @@ Points positions_of(const std::vector<Pose>& poses) {
   return points;
 }
 
-Points aligned(const Points& estimate, const Points& fixes) {
-  const RigidMotion motion = rigid_alignment(estimate, fixes);
+Points moved_by(const RigidMotion& motion, const Points& estimate) {
   Points moved;
   for (const Eigen::Vector2d& point : estimate) moved.push_back(motion(point));
   return moved;
@@ -72,8 +71,9 @@ ReferenceRun measure_against(const PathAtFixes& fixes, std::span<const double> p
   if (poses.empty()) return run;
   run.squared_error = squared_distances(estimate, fixes.positions());
   const Distances raw = in_numbers(run.squared_error);
+  run.alignment = rigid_alignment(estimate, fixes.positions());
   const Distances fitted =
-      in_numbers(squared_distances(aligned(estimate, fixes.positions()), fixes.positions()));
+      in_numbers(squared_distances(moved_by(run.alignment, estimate), fixes.positions()));
   run.scores = {raw.rms,          raw.median,         raw.gated_rms,
                 raw.gated_share,  fitted.rms,         fitted.median,
                 fitted.gated_rms, fitted.gated_share, heading_rmse(poses, fixes.headings())};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/metrics/path_at_fixes.hpp"
+#include "analysis/metrics/rigid_alignment.hpp"
 
 #include <limits>
 #include <span>
@@ -39,6 +40,7 @@ struct ReferenceScores {
 struct ReferenceRun {
   ReferenceScores scores;
   std::vector<double> squared_error;  ///< [m^2] {fix} raw
+  RigidMotion alignment;              ///< of the path onto the fixes
 };
 
 /// `path` {row, 3} [m, m, rad] over the rows that `fixes` were made for.

@@ -64,9 +64,11 @@ std::vector<std::string> reference_notes(const StudyAnalysis& study) {
     notes.push_back(baseline_note(study));
   }
   if (study.beacons > 0) {
-    notes.push_back("A surveyed beacon is found where the final map has a landmark within " +
-                    readable(kFoundWithin, 1) +
-                    " m of it, as it stands; its error is the RMS over the beacons found.");
+    notes.push_back(
+        "A surveyed beacon is found where the final map, aligned like the path, has a landmark "
+        "within " +
+        readable(kFoundWithin, 1) +
+        " m of it; its error is the RMS over the beacons found, as the map stands and aligned.");
   }
   notes.push_back(
       "Landmarks are those in the map after the last scan; ESS is the effective number of "

@@ -65,9 +65,10 @@ inline void put_path(const RecordedDrives& drives, const RecordedCell& cell, std
   }
 }
 
-/// Overwrites a record's maps: three of four beacons 0.3 m off, one 5 m off, one landmark that is
-/// none; the map grows by one landmark in ten scans up to 20.
-inline void put_map(const RecordedDrives& drives, RunRecord& record) {
+/// Overwrites a record's maps, which lie as far off as the path: three of four beacons another 0.3
+/// m off, one 5 m off, one landmark that is none; the map grows by one landmark in ten scans up
+/// to 20.
+inline void put_map(const RecordedDrives& drives, const RecordedCell& cell, RunRecord& record) {
   const auto mean = record.column<double>(*record.layout().find("final_map_mean"));
   const auto seen = record.column<std::uint8_t>(*record.layout().find("final_map_seen"));
   const auto size = record.column<double>(*record.layout().find("map_size"));
@@ -75,11 +76,11 @@ inline void put_map(const RecordedDrives& drives, RunRecord& record) {
   std::ranges::fill(seen, std::uint8_t{0});
   for (std::size_t l = 0; l < 5; ++l) {
     const Eigen::Vector2d place = l < 4 ? beacons[l] : Eigen::Vector2d(0.0, -70.0);
-    mean[2 * l] = place.x() + (l == 3 ? 5.0 : 0.3);
+    mean[2 * l] = place.x() + cell.shift + (l == 3 ? 5.0 : 0.3);
     mean[2 * l + 1] = place.y();
     seen[l] = 1;
   }
-  mean[10] = beacons[3].x();  // not in the map, whatever stands here
+  mean[10] = beacons[3].x() + cell.shift;  // not in the map, whatever stands here
   mean[11] = beacons[3].y();
   for (std::size_t s = 0; s < size.size(); ++s) {
     size[s] = std::min(20.0, std::floor(static_cast<double>(s) / 10.0));
@@ -101,7 +102,7 @@ inline void write_recorded_result(const std::filesystem::path& path, std::uint64
       RunRecord record(layout);
       fill_record(plan, c, run, drive, record);
       put_path(drives, recorded_cells()[c], run, record);
-      put_map(drives, record);
+      put_map(drives, recorded_cells()[c], record);
       if (static_cast<std::ptrdiff_t>(run) == recorded_cells()[c].failed) {
         record.mark_failed(5, "the map has more than 1000 landmarks", 1.0);
       }

@@ -55,7 +55,7 @@ inline Ranges sweep_of_tree(std::size_t beam) {
 
 inline std::string laser_record(double time, const Ranges& ranges) {
   std::string text = to_text(time);
-  for (const double range : ranges) text += "\t" + to_text(range);
+  for (const double range : ranges) text.append("\t").append(to_text(range));
   return text + "\t";
 }
 
@@ -108,14 +108,14 @@ inline void write_small_car_park(const std::filesystem::path& folder) {
   add_doubles(path, "Time_VS", {45.0, 45.025, 45.05}, 1);
   add_doubles(path, "Velocity", {2.0, 2.1, 2.2}, 1);
   add_doubles(path, "Steering", {0.1, 0.2, 0.3}, 1);
-  add_doubles(path, "TimeLaser", {45.01, 45.04}, 1);
+  add_doubles(path, "TimeLaser", {45.02, 45.04}, 1);
   add_doubles(path, "Laser", ranges, 2);
   add_doubles(path, "Intensity", levels, 2);
-  add_doubles(path, "TimeGPS", {45.02, 45.22}, 1);
+  add_doubles(path, "TimeGPS", {45.01, 45.22}, 1);
   add_doubles(path, "GPSLon", {5.0, 5.5}, 1);
   add_doubles(path, "GPSLat", {4.0, 3.5}, 1);
   add_doubles(path, "Time", {45.0, 45.01, 45.02, 45.025, 45.04, 45.05, 45.22}, 1);
-  add_doubles(path, "Sensor", {2, 3, 1, 2, 3, 2, 1}, 1);
+  add_doubles(path, "Sensor", {2, 1, 3, 2, 3, 2, 1}, 1);
   add_doubles(path, "Index", {1, 1, 1, 2, 2, 3, 2}, 1);
   add_doubles(folder / "beac_juan3.mat", "estbeac", {1, 2, 10, 20}, 2);
 }

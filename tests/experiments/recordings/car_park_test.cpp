@@ -41,6 +41,7 @@ TEST(CarPark, ReadsPolesAndSurvey) {
   EXPECT_NEAR(log.scans[0].detections[0].range, 10.03, 1e-12);
   EXPECT_TRUE(log.scans[1].detections.empty());
   EXPECT_EQ(log.references.at(0).name, "gps");
+  EXPECT_EQ(log.start_time, 45.01);
   EXPECT_EQ(log.start.x, 5.0) << "East";
   EXPECT_EQ(log.start.y, 4.0) << "North";
   EXPECT_NEAR(log.start.heading, -2.1904, 1e-4);
@@ -62,7 +63,7 @@ TEST(CarPark, NamesFileAndRecordOfAMistake) {
               HasSubstr("data_set.mat: record 3: time 45.025 s comes after"));
   EXPECT_THAT(complaint_with("Velocity", {1, 2}, 1), HasSubstr("'Velocity' has 2 records of 3"));
   EXPECT_THAT(complaint_with("Velocity", {1, 2, 3, 4}, 2), HasSubstr("'Velocity' is 2 x 2"));
-  EXPECT_THAT(complaint_with("Sensor", {2, 3, 1, 2, 2, 2, 1}, 1), HasSubstr("record 5 (odometry)"));
+  EXPECT_THAT(complaint_with("Sensor", {2, 1, 3, 2, 2, 2, 1}, 1), HasSubstr("record 5 (odometry)"));
 }
 
 TEST(PublishedCarPark, HoldsItsCheckValues) {

@@ -95,8 +95,9 @@ TEST_F(VictoriaPark, NamesFileAndRecordOfAMistake) {
               AllOf(HasSubstr("DRS.txt: record 2"), HasSubstr("times must increase")));
   EXPECT_THAT(complaint("DRS.txt", ""), HasSubstr("DRS.txt: no records"));
   EXPECT_THAT(complaint("GPS.txt", "0 0 0\n1 nan 2\n"), HasSubstr("GPS.txt: record 2: 'nan'"));
-  EXPECT_THAT(complaint("DRS.txt", "1 2 " + std::string(1'000'000, '9') + "\n"),
-              HasSubstr("is no finite number"));
+  std::string endless = "1 2 ";
+  endless.append(1'000'000, '9').append("\n");
+  EXPECT_THAT(complaint("DRS.txt", endless), HasSubstr("is no finite number"));
 }
 
 TEST_F(VictoriaPark, NamesTheScanOfAMistake) {
