@@ -107,14 +107,12 @@ void read_axes(const h5::Handle& file, ResultDescription& result) {
 void read_references(const h5::Handle& scenario, ResultDescription& result) {
   if (!h5::has(scenario, format::kReferences)) return;
   const h5::Handle references = h5::open_group(scenario, format::kReferences);
-  const std::vector<std::string> names = h5::members(references);
-  result.references.resize(names.size());
-  for (const std::string& name : names) {
+  for (const std::string& name : h5::members(references)) {
     const h5::Handle group = h5::open_group(references, name);
     ReferencePath path{name, read_all<double>(group, "fix", Element::f64), {}, {}};
     for (const auto& [x, y] : read_points(group, "position")) path.position.emplace_back(x, y);
     if (h5::has(group, "heading")) path.heading = read_all<double>(group, "heading", Element::f64);
-    result.references.at(h5::numbers(group, "order").at(0)) = std::move(path);
+    result.references.push_back(std::move(path));
   }
 }
 

@@ -58,10 +58,8 @@ void add_points(const h5::Handle& group, const std::string& one, const Points& p
   h5::write(dataset, Element::f64, points.data());
 }
 
-void add_reference(const h5::Handle& references, const ReferencePath& path, std::uint64_t order,
-                   Scales& scales) {
+void add_reference(const h5::Handle& references, const ReferencePath& path, Scales& scales) {
   const h5::Handle group = h5::create_group(references, path.name);
-  h5::put_numbers(group, "order", std::array{order});
   add_scale(group, "fix", path.time, {"s", "time of the fix"}, scales);
   const auto position =
       add_dataset(group, "position", Element::f64, {path.position.size(), 2}, {"fix", "coordinate"},
@@ -84,9 +82,7 @@ void add_scenario(const h5::Handle& file, const ResultDescription& result, Scale
   add_points(group, "waypoint", result.waypoints, "position of the way-point", scales);
   if (result.references.empty()) return;
   const h5::Handle references = h5::create_group(group, format::kReferences);
-  std::uint64_t order = 0;
-  for (const ReferencePath& path : result.references)
-    add_reference(references, path, order++, scales);
+  for (const ReferencePath& path : result.references) add_reference(references, path, scales);
 }
 
 /// Bookkeeping must not depend on what happens to lie in the new file.
