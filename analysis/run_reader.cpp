@@ -59,6 +59,8 @@ void RunReader::read_final_map(std::size_t i, RunRows& rows) const {
   const auto seen_column = std::ranges::find(cell_->columns, kFinalMapSeen, &Column::name);
   if (seen_column == cell_->columns.end()) return;
   std::vector<double> seen(seen_column->elements()), mean(2 * seen.size());
+  if (!rows.map_size.empty() && rows.map_size.back() > static_cast<double>(seen.size()))
+    return;  // record.map_rows left part of it out
   const std::lock_guard lock(reading_);
   file_->read(*cell_, kFinalMapSeen, i, std::span(seen));
   file_->read(*cell_, "final_map_mean", i, std::span(mean));

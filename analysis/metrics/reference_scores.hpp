@@ -11,8 +11,8 @@
 namespace montecarta {
 
 /// A fix counts for gated numbers where its error is at most so many times the run's own median
-/// error: a GPS fix may be 136 m off, and a gate that the run itself sets hides no filter that
-/// diverges.
+/// error: a GPS fix may be 136 m off. To be read with the share: a filter that leaves the path half
+/// way keeps few fixes.
 inline constexpr double kReferenceGate = 4.0;
 /// A run has lost the map where the median of its aligned errors is larger [m].
 inline constexpr double kLostBeyond = 10.0;

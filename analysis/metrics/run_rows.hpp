@@ -35,7 +35,7 @@ struct RunRows {
   std::vector<double> path;      ///< {row, 3} [m, m, rad] leading mean, also between scans; only
                                  ///< where the drive has references
   std::vector<double> map_size;  ///< {scan} landmarks in the map
-  std::optional<std::vector<Eigen::Vector2d>> final_map;  ///< [m] those seen, at the last scan
+  std::optional<std::vector<Eigen::Vector2d>> final_map;  ///< [m] at the last scan, if whole
   double cpu_seconds = 0.0;
 };
 

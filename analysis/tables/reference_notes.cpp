@@ -9,7 +9,7 @@ namespace {
 std::string fixes_note(const StudyAnalysis& study) {
   std::string sentence =
       "Estimates are compared with each reference at its fixes only, interpolated linearly in time "
-      "between the steps:";
+      "between the poses that are stored:";
   for (const JudgedReference& reference : study.references) {
     sentence += " " + reference.name + " has " + std::to_string(reference.times.size()) +
                 " fixes within the drive" + (&reference == &study.references.back() ? "." : ",");
@@ -40,7 +40,9 @@ std::vector<std::string> distance_notes() {
       "fixes within " +
           readable(kReferenceGate, 1) +
           " times the run's own median error, with the share kept: a single fix may be more than a "
-          "hundred metres off, and a gate relative to the run hides no filter that diverges.",
+          "hundred metres off. A filter that leaves the path half way keeps few fixes: read it "
+          "with the "
+          "share.",
       "Runs see the same drive and differ by the filter's own randomness alone: numbers are means "
       "over runs +- their standard error; 'middle run' is the median over runs of the aligned RMS, "
       "with the best and the worst run.",

@@ -87,7 +87,7 @@ std::vector<std::string> map_row(const StudyAnalysis& study, const CellAnalysis&
 std::string against_baseline(std::size_t better, std::size_t runs) {
   if (runs == 0) return "not tested";
   if (better == runs) return "better in every run";
-  if (better == 0) return "worse in every run";
+  if (better == 0) return "better in no run";
   return 2 * better == runs  ? "better in half of the runs"
          : 2 * better > runs ? "better in most runs"
                              : "worse in most runs";

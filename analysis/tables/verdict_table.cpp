@@ -149,7 +149,8 @@ TextTable association_table(const StudyAnalysis& study) {
 
 std::vector<std::string> association_notes() {
   return {
-      "Detections of landmarks in a run, counted against the simulator's identities, as the "
+      "Detections of landmarks in a run, counted against the identities that come with them, as "
+      "the "
       "filter's weighted particles took them: 'correct' went to their own landmark or were "
       "rightly made new, 'wrong' to another one, 'new again' were made new although the map had "
       "theirs, 'left out' were not used; 'false accepted' are false alarms in a run that were "

@@ -32,7 +32,7 @@ struct Detection {
       kClutter;  ///< landmark of the world; a filter may estimate by it only with known association
 };
 
-/// All detections of one instant, in increasing identity; may be empty.
+/// All detections of one instant, no identity twice but clutter and the unidentified; may be empty.
 using Scan = std::span<const Detection>;
 
 /// An independent measurement of the vehicle's path, by which a recorded drive is judged.

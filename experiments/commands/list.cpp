@@ -93,7 +93,7 @@ void list_columns() {
        {"particles", "particle_pose, log_weight at every scan"},
        {"association",
         "association_correct, _wrong, _new_again, _missed, _clutter: what became of detections, "
-        "by the simulator's identities"},
+        "by the identities that come with them"},
        {"map", "map_mean, map_covariance, map_seen at every scan"},
        {"final_map", "final_map_mean, final_map_covariance, final_map_seen at the last scan"}},
       0);

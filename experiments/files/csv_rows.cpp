@@ -34,12 +34,22 @@ CsvRows::CsvRows(const std::filesystem::path& path, std::span<const std::string>
 
 std::string CsvRows::place() const { return path_ + ":" + std::to_string(line_); }
 
+/// A file that was cut short may end in a number that reads as another one.
+void CsvRows::refuse_open_end(std::string_view line) const {
+  if (trimmed(line.substr(0, line.find('#'))).empty()) return;
+  throw StudyError(place() +
+                   ": the last row has no end (the file may have been cut short): end it "
+                   "with a line break if it is whole");
+}
+
 std::optional<std::string_view> CsvRows::take_row() {
   while (!rest_.empty()) {
     const std::size_t length = std::min(rest_.find('\n'), rest_.size());
     const std::string_view line = rest_.substr(0, length);
+    const bool ended = length < rest_.size();
     rest_.remove_prefix(std::min(length + 1, rest_.size()));
     ++line_;
+    if (!ended) refuse_open_end(line);
     const std::string_view row = trimmed(line.substr(0, line.find('#')));
     if (!row.empty()) return row;
   }

@@ -36,6 +36,7 @@ class CsvRows {
  private:
   /// Takes the next row that is not empty; nullopt at the end.
   std::optional<std::string_view> take_row();
+  void refuse_open_end(std::string_view line) const;
   void read_header(std::span<const std::string> headers);
 
   std::string path_;

@@ -71,6 +71,11 @@ void NumberRecords::fill_from_line() {
 }
 
 double NumberRecords::number(std::string_view word) const {
+  if (word.end() == text_.data() + text_.size()) {
+    throw StudyError(place() + ": '" + excerpt(word) +
+                     "' ends with the file (it may have been cut short within the number): take "
+                     "the whole file as published");
+  }
   if (const std::optional<double> value = to_number(word)) return *value;
   throw StudyError(place() + ": '" + excerpt(word) +
                    "' is no finite number (only numbers stand here): correct it or take the " +

@@ -26,8 +26,10 @@ std::vector<LoggedScan> scans_in(const MatFile& file, const std::vector<double>&
   }
   return scans_of(file, times, ranges.scans(), [&](std::size_t s) {
     const auto sweep = ranges.sweep(s);
+    const auto intensity = intensities.sweep(s);
     check_sweep(sweep, scan_place(file, s));
-    return detect_reflectors(sweep, intensities.sweep(s));
+    check_sweep(intensity, scan_place(file, s) + " ('Intensity')");
+    return detect_reflectors(sweep, intensity);
   });
 }
 

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kLatestTime = 1e10;  ///< [s] beyond are nanoseconds
 constexpr double kFastest = 1e3;      ///< [m/s]
+constexpr double kLongestHold = 5.0;  ///< [s] that scans may outlast the odometry
 
 /// A record of one file, for errors.
 struct Record {
@@ -69,6 +70,7 @@ void check_detection(const Detection& detection, const Record& record) {
 void check_identities(const DriveLog& log, const std::string& place) {
   bool identified = false, unidentified = false;
   for (std::size_t s = 0; s < log.scans.size(); ++s) {
+    std::set<std::int32_t> here;
     for (const Detection& detection : log.scans[s].detections) {
       const bool unknown = detection.identity == Detection::kUnidentified;
       (unknown ? unidentified : identified) = true;
@@ -76,6 +78,10 @@ void check_identities(const DriveLog& log, const std::string& place) {
       if (identified && unidentified) {
         record.refuse("some detections have an identity, others not (all or none): " +
                       std::string("give it for all"));
+      }
+      if (detection.identity >= 0 && !here.insert(detection.identity).second) {
+        record.refuse("identity " + std::to_string(detection.identity) +
+                      " twice (a scan sees a landmark once): correct one of the two");
       }
       if (log.landmarks.empty() || detection.identity < 0) continue;
       if (static_cast<std::size_t>(detection.identity) >= log.landmarks.size()) {
@@ -108,6 +114,16 @@ void check_references(const DriveLog& log, const std::string& place) {
                      ": no reference (a drive is judged by one): add the fixes of a GPS, or "
                      "another measurement of the path");
   }
+}
+
+/// Odometry holds until the next record: where none follows for so long, the file was cut.
+void check_end(const DriveLog& log, const std::string& place) {
+  const double last_scan = log.scans.back().time, last_move = log.odometry.back().time;
+  if (last_scan <= last_move + kLongestHold) return;
+  throw StudyError(place + " (odometry): the last record is at " + to_text(last_move) +
+                   " s, the last scan at " + to_text(last_scan) +
+                   " s (nobody knows how the vehicle moved in between; was the file cut short?): "
+                   "take the whole file, or leave out the scans");
 }
 
 /// A scan before the start has no pose to be seen from; odometry all before it moves nothing.
@@ -179,6 +195,7 @@ void check_log(const DriveLog& log, const std::string& place) {
   check_landmarks(log.landmarks, place + " (landmarks)");
   check_identities(log, place + " (scans)");
   check_start(log, place);
+  check_end(log, place);
 }
 
 }  // namespace montecarta

@@ -6,6 +6,7 @@
 #include "experiments/text/words.hpp"
 
 #include <cstdlib>
+#include <system_error>
 
 namespace montecarta {
 namespace {
@@ -49,7 +50,8 @@ fs::path find_recording(const std::string& path, const std::vector<fs::path>& fo
     for (const std::string& folder : split(data, ':')) places.emplace_back(folder);
   }
   for (const fs::path& place : places) {
-    if (fs::is_directory(place / path)) return place / path;
+    std::error_code ignored;  // what cannot be looked at is not there
+    if (fs::is_directory(place / path, ignored)) return place / path;
   }
   throw StudyError("no folder '" + path +
                    "' (looked beside the study, here, and in $MONTECARTA_DATA; recorded drives are "

@@ -103,6 +103,9 @@ std::vector<Eigen::Vector2d> read_landmarks(const fs::path& path) {
     const auto identity = rows.header() == 1 ? identity_in(rows, 2).value_or(-1) : next;
     landmarks.push_back({identity, {rows.number(0, "coordinate"), rows.number(1, "coordinate")}});
   }
+  if (landmarks.empty()) {
+    throw StudyError(path.string() + ": no landmarks (it is empty): add them, or remove the file");
+  }
   std::ranges::stable_sort(landmarks, {}, [](const auto& landmark) { return landmark.first; });
   std::vector<Eigen::Vector2d> places;
   for (const auto& [identity, place] : landmarks) {

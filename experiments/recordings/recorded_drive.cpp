@@ -7,7 +7,7 @@
 
 namespace montecarta {
 RecordedDrive::RecordedDrive(const DriveLog& log, double max_range, double scan_delay) {
-  itinerary_.start = log.start;
+  itinerary_.start = {log.start.x, log.start.y, wrap(log.start.heading)};
   itinerary_.has_truth = false;
   itinerary_.landmarks = log.landmarks;
   itinerary_.references = log.references;

@@ -71,6 +71,42 @@ void refuse_use_of_identities(const Settings& s) {
   }
 }
 
+/// Scans before the start would all be taken there, at one time and with the same random numbers.
+void refuse_early_scans(const Study& study) {
+  const Settings& s = study.settings;
+  const double most = study.log->scans.front().time - study.log->start_time;
+  if (s.number("scenario", "scan_delay") <= most) return;
+  throw StudyError(s.place("scenario", "scan_delay") +
+                   ": scan_delay = " + s.text("scenario", "scan_delay") +
+                   " puts the first scan before the start of the drive (nobody knows where that "
+                   "was): at most " +
+                   to_text(most) + " s");
+}
+
+/// Steering at which the measured wheel all but stands still, beyond which the model has no answer.
+void refuse_impossible_steering(const Study& study) {
+  const Vehicle vehicle = vehicle_of(study.settings, "belief");
+  for (std::size_t i = 0; i < study.log->odometry.size(); ++i) {
+    const double steer = study.log->odometry[i].control.steer;
+    if (turns_about_its_wheel(vehicle, steer)) {
+      throw StudyError(
+          study.settings.place("belief", "wheel_left") + ": odometry record " +
+          std::to_string(i + 1) + " steers by " + to_text(steer) +
+          " rad (the vehicle of [belief] then turns about its measured wheel): correct "
+          "the log, or wheelbase and wheel_left");
+    }
+  }
+}
+
+/// The log with the reference alone that the study judges by, if it names one.
+DriveLog judged(const Study& study) {
+  DriveLog log = *study.log;
+  const std::string& name = study.settings.text("scenario", "reference");
+  if (!name.empty())
+    std::erase_if(log.references, [&](const ReferencePath& path) { return path.name != name; });
+  return log;
+}
+
 }  // namespace
 
 Vehicle vehicle_of(const Settings& s, const char* in) {
@@ -96,7 +132,9 @@ std::shared_ptr<const DriveSource> drives_of(const Study& study, std::uint64_t s
   if (study.log == nullptr)
     return std::make_shared<SimulatedDrive>(study.world, scenario_of(s), seed);
   if (identities_of(study) == 0) refuse_use_of_identities(s);
-  return std::make_shared<RecordedDrive>(*study.log, s.number("scenario", "max_range"),
+  refuse_early_scans(study);
+  refuse_impossible_steering(study);
+  return std::make_shared<RecordedDrive>(judged(study), s.number("scenario", "max_range"),
                                          s.number("scenario", "scan_delay"));
 }
 

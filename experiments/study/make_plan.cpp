@@ -56,11 +56,12 @@ ColumnSelection columns_of(const Settings& s) {
 }
 
 /// Rows of the map columns: with unknown association landmarks are numbered by birth, and there may
-/// be more than the world has.
+/// be more than the world has, of which a recorded drive knows nothing.
 std::size_t map_rows_of(const FilterSetup& setup, const Settings& s) {
   const std::uint64_t asked = s.count("record", "map_rows");
-  if (setup.association.kind == Association::known || asked == 0) return setup.landmarks;
-  return asked;
+  if (setup.association.kind == Association::known) return setup.landmarks;
+  if (asked > 0) return asked;
+  return s.scenario_kind() == "simulated" ? setup.landmarks : setup.association.most_landmarks;
 }
 
 std::size_t particles_of(const CellSpec& spec) {

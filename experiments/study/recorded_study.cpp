@@ -34,14 +34,13 @@ DriveLog read_drive(const Settings& settings, const fs::path& folder) {
   return read_victoria_park(folder, is_raw ? Steering::raw : Steering::calibrated);
 }
 
-/// Keeps the reference that the study judges by, if it names one.
-void choose_reference(const Settings& settings, DriveLog& log) {
+/// The drive has the reference that the study judges by, if it names one.
+void expect_reference(const Settings& settings, const DriveLog& log) {
   const std::string& name = settings.text(kScenario, "reference");
   if (name.empty()) return;
   std::vector<std::string> known;
   for (const ReferencePath& path : log.references) known.push_back(path.name);
-  std::erase_if(log.references, [&](const ReferencePath& path) { return path.name != name; });
-  if (!log.references.empty()) return;
+  if (std::ranges::find(known, name) != known.end()) return;
   throw StudyError(settings.place(kScenario, "reference") + ": reference = " + name +
                    " (the drive has none of that name): " + nearest_spelling(name, known));
 }
@@ -55,11 +54,6 @@ void expect_same_drive(const Settings& settings, const std::string& fingerprint,
                    fingerprint + "): give the same files, or remove data_sha256");
 }
 
-std::string own_name_of(const fs::path& folder) {
-  const fs::path whole = fs::weakly_canonical(folder);
-  return whole.has_filename() ? whole.filename().string() : whole.parent_path().filename().string();
-}
-
 }  // namespace
 
 std::shared_ptr<const DriveLog> read_drive_of(Settings& settings, const fs::path& study_folder) {
@@ -67,9 +61,9 @@ std::shared_ptr<const DriveLog> read_drive_of(Settings& settings, const fs::path
   DriveLog log = read_drive(settings, folder);
   const std::string fingerprint = fingerprint_of(log);
   expect_same_drive(settings, fingerprint, folder);
-  choose_reference(settings, log);
+  expect_reference(settings, log);
   settings.replace(kScenario, "data_sha256", fingerprint);
-  settings.replace(kScenario, "path", own_name_of(folder));
+  settings.replace(kScenario, "path", settings.scenario_kind());
   return std::make_shared<const DriveLog>(std::move(log));
 }
 

@@ -10,7 +10,7 @@
 namespace montecarta {
 
 /// The recorded drive that the settings of a study name; `folder` is where relative paths may
-/// begin. Fills in scenario.path, as the folder's own name, and scenario.data_sha256: what a study
+/// begin. Fills in scenario.data_sha256, and scenario.path by the kind of the drive: what a study
 /// is called does not depend on where its data lie. Throws StudyError where the drive cannot be
 /// read or is not the one that the study was made with.
 std::shared_ptr<const DriveLog> read_drive_of(Settings& settings,

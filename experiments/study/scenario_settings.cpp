@@ -70,6 +70,12 @@ Setting of_car(Setting setting, const char* value) {
   return but_for("victoria_park", value, but_for("car_park", value, std::move(setting)));
 }
 
+/// Follows the scenario in a simulation; of a drive of the user's own nobody else knows it.
+Setting of_own_log(Setting setting, const char* example) {
+  setting.example = example;
+  return but_for("simulated", kFromScenario, but_for("log", kRequired, std::move(setting)));
+}
+
 }  // namespace
 
 void add_scenario(std::vector<Setting>& table) {
@@ -85,19 +91,19 @@ void add_scenario(std::vector<Setting>& table) {
 void add_belief(std::vector<Setting>& table) {
   const char* s = "belief";
   const auto add = [&](const char* value, Setting setting) {
-    table.push_back(of_car(but_for("simulated", "scenario", std::move(setting)), value));
+    table.push_back(of_car(but_for("simulated", kFromScenario, std::move(setting)), value));
   };
   const char* meaning = "what the filter takes it to be";
   add("rear_wheel", choice(s, "vehicle", kVehicles, meaning));
-  add("2.83", number(s, "wheelbase", "m", "4", 1e-3, 1000, meaning));
+  table.push_back(
+      of_car(of_own_log(number(s, "wheelbase", "m", "4", 1e-3, 1000, meaning), "2.83"), "2.83"));
   add("0.76", number(s, "wheel_left", "m", "0", -1000, 1000, meaning));
   add("3.78", number(s, "sensor_ahead", "m", "0", -1000, 1000, meaning));
   add("0.5", number(s, "sensor_left", "m", "0", -1000, 1000, meaning));
   // Victoria Park: Ankishan 2016, Simulation IV. Car park: what is customary there.
   const auto noise = [&](const char* park, const char* car_park, Setting setting) {
-    table.push_back(but_for(
-        "victoria_park", park,
-        but_for("car_park", car_park, but_for("simulated", "scenario", std::move(setting)))));
+    table.push_back(but_for("victoria_park", park,
+                            but_for("car_park", car_park, of_own_log(std::move(setting), park))));
   };
   noise("0.4", "0.7", number(s, "sigma_speed", "m/s", "0.3", 0, 1000, meaning));
   noise("1.4", "7", number(s, "sigma_steer_deg", "deg", "3", 0, 180, meaning));

@@ -74,7 +74,8 @@ bool Setting::is_for(std::string_view scenario_kind) const {
 
 std::optional<std::string> Setting::fallback_for(std::string_view scenario_kind) const {
   for (const auto& [of_kind, value] : fallback_of_kind) {
-    if (of_kind == scenario_kind) return value;
+    if (of_kind != scenario_kind) continue;
+    return value == kRequired ? std::nullopt : std::optional(value);
   }
   return fallback;
 }

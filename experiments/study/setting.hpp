@@ -12,6 +12,9 @@
 
 namespace montecarta {
 
+inline constexpr const char* kFromScenario = "scenario";
+inline constexpr const char* kRequired = "(required)";
+
 /// One thing that a study file may say. The table of them drives parsing, checking, the resolved
 /// text, and `montecarta list settings`.
 struct Setting {
@@ -34,8 +37,8 @@ struct Setting {
   std::string example = {};  ///< offered as remedy where there is no fallback
   /// Kinds of scenario (scenario.kind) that it says something of; empty: all.
   std::vector<std::string> kinds = {};
-  /// (kind of scenario, its fallback) where that differs. "scenario": the scenario's value of that
-  /// key.
+  /// (kind of scenario, its fallback) where that differs. kFromScenario: the scenario's value of
+  /// that key; kRequired: must be given.
   std::vector<std::pair<std::string, std::string>> fallback_of_kind = {};
 
   bool is_for(std::string_view scenario_kind) const;

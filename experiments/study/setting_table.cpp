@@ -42,10 +42,9 @@ void add_record(std::vector<Setting>& table) {
   table.push_back(for_recorded(
       choice(s, "rate", {"control", "scan"}, "store poses at every control step or at scans only"),
       "scan"));
-  table.push_back(
-      for_recorded(count(s, "map_rows", "0", 0, 100'000,
-                         "rows of map columns with unknown association; 0: as many as the world"),
-                   "1000"));
+  table.push_back(count(s, "map_rows", "0", 0, 100'000,
+                        "rows of map columns with unknown association; 0: as many as the world "
+                        "has, or most_landmarks"));
 }
 
 std::vector<Setting> make_table() {

@@ -75,7 +75,8 @@ void Settings::fill_in(const std::string& name) {
                        setting.meaning + "): add " + setting.key + " = " + setting.example +
                        " under [" + setting.section + "]");
     }
-    const std::string value = *fallback == "scenario" ? copied_from_scenario(setting) : *fallback;
+    const std::string value =
+        *fallback == kFromScenario ? copied_from_scenario(setting) : *fallback;
     const std::string place = name + ": " + setting.section + "." + setting.key + " (not given)";
     values_[{setting.section, setting.key}] = {checked_value(setting, value, place), name};
   }

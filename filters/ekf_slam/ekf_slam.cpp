@@ -14,6 +14,8 @@
 namespace montecarta {
 namespace {
 
+/// Landmarks that are reserved before any is seen; identities may be sparse.
+constexpr std::size_t kRoomAtFirst = 300;
 constexpr std::uint32_t kUnseen = std::numeric_limits<std::uint32_t>::max();
 
 Eigen::Vector2d innovation_of(const Detection& detection, const ExpectedSight& expected) {
@@ -25,7 +27,7 @@ class EkfSlam final : public SlamFilter {
   EkfSlam(const FilterSetup& setup, Retraction retraction)
       : association_(setup.association),
         log_new_density_(log_new_density(setup.association, setup.belief)),
-        gaussian_(setup.belief, retraction, setup.landmarks),
+        gaussian_(setup.belief, retraction, std::min(setup.landmarks, kRoomAtFirst)),
         slot_of_identity_(setup.landmarks, kUnseen) {}
 
   void start(const Pose& start) override {

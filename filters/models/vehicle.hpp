@@ -3,6 +3,9 @@
 
 #include "engine/numbers/real.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace montecarta {
 
 /// A car steered at the front: which of its points the pose is of, and what its controls mean.
@@ -17,6 +20,16 @@ struct Vehicle {
   double sensor_ahead = 0.0;  ///< a [m] of the sensor, from the middle of the rear axle
   double sensor_left = 0.0;   ///< b [m] likewise
 };
+
+/// The least share of the rear axle's speed that the measured wheel may have (SPEC 2.2: a guard).
+/// Nearer to the point about which the vehicle turns, that wheel says nothing of the vehicle.
+inline constexpr double kLeastWheelShare = 0.1;
+
+/// Whether at this steering angle [rad] the measured wheel is that near.
+inline bool turns_about_its_wheel(const Vehicle& vehicle, double steer) {
+  return vehicle.kind == Vehicle::Kind::rear_wheel &&
+         1.0 - vehicle.wheel_left / vehicle.wheelbase * std::tan(steer) < kLeastWheelShare;
+}
 
 /// A step as the vehicle sees it from where it was; where that is in the world does not matter.
 template <class Real>
@@ -38,7 +51,8 @@ BodyStep<Real> body_step(const Vehicle& vehicle, const Real& speed, const Real& 
     return {way * wheel.cosine, left, left * Real(1.0 / vehicle.wheelbase)};
   }
   const Real tangent = wheel.sine / wheel.cosine;
-  const Real slower = Real(1.0) - Real(vehicle.wheel_left / vehicle.wheelbase) * tangent;
+  const Real slower = max(Real(1.0) - Real(vehicle.wheel_left / vehicle.wheelbase) * tangent,
+                          Real(kLeastWheelShare));
   const Real of_axle = way / slower;
   const Real turn = of_axle * tangent * Real(1.0 / vehicle.wheelbase);
   return {of_axle - Real(vehicle.sensor_left) * turn, Real(vehicle.sensor_ahead) * turn, turn};
@@ -55,7 +69,7 @@ inline BodyStep<double> steer_derivative(const Vehicle& vehicle, double speed, d
   }
   const double tangent = wheel.sine / wheel.cosine;
   const double by_steer = 1.0 + tangent * tangent;  // of the tangent
-  const double slower = 1.0 - vehicle.wheel_left / L * tangent;
+  const double slower = std::max(1.0 - vehicle.wheel_left / L * tangent, kLeastWheelShare);
   const double of_axle = way * vehicle.wheel_left / L * by_steer / (slower * slower);
   const double turn = way * by_steer / (slower * slower * L);  // of v tan G, in one term
   return {of_axle - vehicle.sensor_left * turn, vehicle.sensor_ahead * turn, turn};

@@ -42,7 +42,7 @@ inline StudyPlan recorded_plan(std::uint64_t runs, std::size_t steps) {
   plan.drives = std::make_shared<RecordedDrives>(steps);
   for (const RecordedCell& cell : recorded_cells()) {
     plan.cells.push_back(scripted_cell(
-        cell.label, {.particles = std::max<std::size_t>(1, cell.particles), .landmarks = 6}));
+        cell.label, {.particles = std::max<std::size_t>(1, cell.particles), .landmarks = 20}));
     plan.cells.back().filter = cell.filter;
     plan.cells.back().particles = cell.particles;
   }

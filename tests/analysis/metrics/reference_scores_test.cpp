@@ -87,7 +87,7 @@ TEST(ReferenceScores, TheGateLeavesOneWildFixOut) {
   EXPECT_LT(scores.aligned_gated_rms, 0.2 * scores.aligned_rms);
 }
 
-TEST(ReferenceScores, TheGateHidesNoFilterThatDiverges) {
+TEST(ReferenceScores, AFilterThatIsWrongEverywhereIsSoWithinTheGate) {
   ReferencePath fixes = fixes_on(arc());
   RngStream draw({.seed = 2, .purpose = Draw::test});
   for (Eigen::Vector2d& position : fixes.position) position.x() += 50.0 * draw.normal();
@@ -95,6 +95,15 @@ TEST(ReferenceScores, TheGateHidesNoFilterThatDiverges) {
   EXPECT_GT(scores.gated_rms, 30.0);
   EXPECT_TRUE(scores.lost());
   EXPECT_FALSE(measured(fixes_on(arc())).scores.lost());
+}
+
+TEST(ReferenceScores, AFilterThatLeavesThePathKeepsFewFixes) {
+  ReferencePath fixes = fixes_on(arc());
+  for (std::size_t f = 6 * fixes.position.size() / 10; f < fixes.position.size(); ++f)
+    fixes.position[f].x() += 200.0;
+  const ReferenceScores scores = measured(fixes).scores;
+  EXPECT_NEAR(scores.gated_share, 0.6, 0.02);
+  EXPECT_GT(scores.rms, 100.0);
 }
 
 TEST(ReferenceScores, AreUnknownWithoutFixesOrHeadings) {

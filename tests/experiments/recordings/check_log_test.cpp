@@ -80,6 +80,26 @@ TEST(CheckLog, WantsNumbersThatCanBe) {
               HasSubstr("yard (scans): no records"));
 }
 
+TEST(CheckLog, RefusesScansLongAfterTheLastOdometry) {
+  EXPECT_THAT(complaint_after([](DriveLog& log) {
+                log.scans.push_back({5.4, {}});
+              }),
+              AllOf(HasSubstr("yard (odometry): the last record is at 0.3"),
+                    HasSubstr("the last scan at 5.4 s")));
+  EXPECT_EQ(complaint_after([](DriveLog& log) { log.scans.push_back({5.2, {}}); }), "nothing");
+}
+
+TEST(CheckLog, RefusesALandmarkTwiceInAScan) {
+  EXPECT_THAT(complaint_after([](DriveLog& log) {
+                log.scans[1].detections.push_back({4.0, 0.0, 1});
+              }),
+              HasSubstr("(scans): record 2: identity 1 twice"));
+  EXPECT_EQ(complaint_after([](DriveLog& log) {
+              log.scans[1].detections.push_back({4.0, 0.0, Detection::kClutter});
+            }),
+            "nothing");
+}
+
 TEST(CheckLog, WantsIdentitiesForAllOrNone) {
   const auto identify = [](std::int32_t identity) {
     return complaint_after([=](DriveLog& log) { log.scans[2].detections[0].identity = identity; });

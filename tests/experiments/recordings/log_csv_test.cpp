@@ -112,9 +112,20 @@ TEST_F(LogCsv, NamesMistakesOfScans) {
   EXPECT_EQ(read().scans[0].detections[0].identity, Detection::kClutter);
 }
 
+TEST_F(LogCsv, RefusesAFileThatWasCutShortInItsLastRow) {
+  const std::string whole = "time_s,speed_mps,steer_rad\n0.1,1,0\n0.2,1,0.15\n";
+  for (std::size_t length = 1; length < whole.size(); ++length) {
+    const bool at_a_row = whole[length - 1] == '\n' && length > 30;
+    if (at_a_row) continue;  // whole rows that nothing tells apart from a shorter drive
+    EXPECT_NE(complaint("odometry.csv", whole.substr(0, length)), "nothing") << length;
+  }
+  EXPECT_EQ(complaint("odometry.csv", whole), "nothing");
+}
+
 TEST_F(LogCsv, NamesMistakesOfOtherFiles) {
   EXPECT_THAT(complaint("landmarks.csv", "x_m,y_m,identity\n1,2,0\n3,4,2\n"),
               HasSubstr("no landmark of identity 1"));
+  EXPECT_THAT(complaint("landmarks.csv", "x_m,y_m\n"), HasSubstr("no landmarks"));
   std::filesystem::remove(folder_ / "landmarks.csv");
   EXPECT_THAT(complaint("landmark.csv", "x_m,y_m\n"), HasSubstr("no file of a log"));
   std::filesystem::remove(folder_ / "landmark.csv");

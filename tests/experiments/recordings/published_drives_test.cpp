@@ -76,7 +76,9 @@ const std::string kGates = "gate_sigma = 4.6\nnew_gate_sigma = 14\n";
 TEST(PublishedDrives, DeadReckoningThroughTheCarParkHasTheShapeOfThePath) {
   if (published_data("car_park").empty()) GTEST_SKIP() << "the published data is not at hand";
   const Journey reckoned = journey("car_park", "dead_reckoning", "");
+  // Raw it is 0.44 m: the fixes trail the vehicle by about 0.2 s, which is a shift of the start.
   EXPECT_NEAR(reckoned.scores(0, 60.0).aligned_rms, 0.10, 0.01);
+  EXPECT_LE(reckoned.scores(0, 60.0).rms, 0.5);
 }
 
 TEST(PublishedDrives, EkfSlamFindsEveryPoleOfTheCarPark) {

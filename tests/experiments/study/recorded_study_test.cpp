@@ -26,6 +26,12 @@ runs = 2
 [scenario]
 kind = log
 path = drive
+[belief]
+wheelbase = 2.5
+sigma_speed = 0.4
+sigma_steer_deg = 2
+sigma_range = 0.3
+sigma_bearing_deg = 1
 [cells]
 cell = ekf_slam
 )";
@@ -61,7 +67,7 @@ TEST_F(RecordedStudy, ReadsItsDriveBesideTheStudyAndFillsInWhatSuitsIt) {
   EXPECT_EQ(study.log->odometry.size(), log_.odometry.size());
   EXPECT_EQ(study.settings.text("association", "kind"), "nearest");
   EXPECT_EQ(study.settings.text("record", "rate"), "scan");
-  EXPECT_EQ(study.settings.text("scenario", "path"), "drive");
+  EXPECT_EQ(study.settings.text("scenario", "path"), "log");
   EXPECT_EQ(study.settings.text("scenario", "data_sha256").size(), 64U);
   const StudyPlan plan = make_plan(study, std::nullopt);
   EXPECT_FALSE(plan.drives->itinerary().has_truth);
@@ -70,11 +76,12 @@ TEST_F(RecordedStudy, ReadsItsDriveBesideTheStudyAndFillsInWhatSuitsIt) {
 
 TEST_F(RecordedStudy, IsCalledTheSameWhereverItsDriveLies) {
   std::filesystem::create_directory(folder_ / "elsewhere");
-  std::filesystem::rename(folder_ / "drive", folder_ / "elsewhere/drive");
-  const std::string moved = resolved_text(read(kStudy, {"scenario.path=elsewhere/drive"}));
-  std::filesystem::rename(folder_ / "elsewhere/drive", folder_ / "drive");
+  std::filesystem::rename(folder_ / "drive", folder_ / "elsewhere/tuesday");
+  const std::string moved = resolved_text(read(kStudy, {"scenario.path=elsewhere/tuesday"}));
+  std::filesystem::rename(folder_ / "elsewhere/tuesday", folder_ / "drive");
   EXPECT_EQ(moved, resolved_text(read(kStudy)));
-  EXPECT_EQ(moved, resolved_text(read(moved))) << "the resolved text is a study of its own";
+  EXPECT_EQ(moved, resolved_text(read(moved, {"scenario.path=drive"})))
+      << "the resolved text is a study of its own";
   EXPECT_THAT(moved, AllOf(Not(HasSubstr("world")), Not(HasSubstr("loops"))));
 }
 
@@ -84,7 +91,7 @@ TEST_F(RecordedStudy, RefusesAnotherDriveThanItWasMadeWith) {
   log_.odometry[1].control.speed += 1e-9;
   write_log_csv(log_, folder_ / "drive");
   try {
-    read(resolved);
+    read(resolved, {"scenario.path=drive"});
     ADD_FAILURE() << "it was read";
   } catch (const StudyError& error) {
     EXPECT_THAT(error.what(), HasSubstr("is another one than the study was made with"));
@@ -103,25 +110,52 @@ TEST_F(RecordedStudy, SaysWhatDoesNotFitARecordedDrive) {
   EXPECT_THAT(complaint({"scenario.reference=gpz"}), HasSubstr("did you mean gps?"));
   EXPECT_THAT(complaint({"association.kind=known"}), HasSubstr("carry no identity"));
   EXPECT_THAT(complaint({"record.columns=pose, association"}), HasSubstr("carry no identity"));
-  EXPECT_THAT(complaint({"scenario.kind=simulated"}), HasSubstr("scenario.world is missing"));
+  std::string endless = "scenario.path=";
+  EXPECT_THAT(complaint({endless.append(300, 'x')}), HasSubstr("no folder"));
+  EXPECT_THAT(complaint({"scenario.scan_delay=0.01"}),
+              AllOf(HasSubstr("before the start of the drive"), HasSubstr("at most 0.009")));
+  EXPECT_THAT(complaint({"belief.vehicle=rear_wheel", "belief.wheel_left=25"}),
+              HasSubstr("odometry record 2 steers by"));
 }
 
 TEST_F(RecordedStudy, JudgesByTheReferenceThatItNames) {
   const Study study = read(kStudy, {"scenario.reference=gps"});
-  ASSERT_EQ(study.log->references.size(), 1U);
-  EXPECT_EQ(study.log->references[0].name, "gps");
+  const StudyPlan plan = make_plan(study, std::nullopt);
+  ASSERT_EQ(plan.drives->itinerary().references.size(), 1U);
+  EXPECT_EQ(plan.drives->itinerary().references[0].name, "gps");
   EXPECT_EQ(study.settings.text("scenario", "data_sha256"),
             read(kStudy).settings.text("scenario", "data_sha256"))
       << "the drive is the same";
 }
 
 TEST_F(RecordedStudy, AStudyOfTheLogIsTheSameStudyOfTheSameDrive) {
-  const Study study = read(kStudy);
-  const Study again = parse_study(study_of_log(study), "study.ini", folder_ / "drive");
+  const Study study = read(kStudy, {"scenario.reference=gps"});
+  write_log_csv(*study.log, folder_ / "copy");
+  const Study again = parse_study(study_of_log(study), "study.ini", folder_ / "copy");
   EXPECT_EQ(again.settings.text("scenario", "data_sha256"),
             study.settings.text("scenario", "data_sha256"));
   EXPECT_EQ(again.cells.size(), 1U);
   EXPECT_EQ(again.settings.section("belief"), study.settings.section("belief"));
+}
+
+TEST_F(RecordedStudy, AsksForTheVehicleAndNoiseOfADriveOfTheUsersOwn) {
+  for (const char* key : {"wheelbase", "sigma_speed", "sigma_bearing_deg"}) {
+    std::string text = kStudy;
+    const std::size_t begin = text.find(key);
+    text.erase(begin, text.find('\n', begin) + 1 - begin);
+    try {
+      read(text);
+      ADD_FAILURE() << key;
+    } catch (const StudyError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("belief." + std::string(key) + " is missing"));
+    }
+  }
+}
+
+TEST_F(RecordedStudy, HasRoomForTheWholeMap) {
+  EXPECT_EQ(
+      make_plan(read(kStudy, {"association.most_landmarks=77"}), std::nullopt).cells[0].landmarks,
+      77U);
 }
 
 TEST_F(RecordedStudy, TakesKnownIdentitiesWhereTheLogHasThem) {

@@ -107,6 +107,17 @@ TEST(Ackermann, TheCarMovesAsItsModelIsPublished) {
   }
 }
 
+TEST(Ackermann, TheWheelAboutWhichTheCarTurnsSaysNothingOfIt) {
+  const double pole = std::atan(kCar.wheelbase / kCar.wheel_left);
+  for (const double steer : {pole - 1e-3, pole, pole + 1e-3}) {
+    EXPECT_TRUE(turns_about_its_wheel(kCar, steer));
+    const Case c{{}, {1.0, steer}, kCar};
+    EXPECT_LT(boxminus(moved(c), c.pose).norm(), 1.5);  // ten times the way, turning by 19 deg
+  }
+  EXPECT_FALSE(turns_about_its_wheel(kCar, 1.2));
+  EXPECT_FALSE(turns_about_its_wheel(kFront, pole));
+}
+
 TEST(Ackermann, BothVehiclesAreOneWhereTheirPointsAreTheSame) {
   RngStream draw({.seed = 25, .purpose = Draw::test});
   const Vehicle same{.kind = Vehicle::Kind::rear_wheel, .wheelbase = 4.0, .sensor_ahead = 4.0};
