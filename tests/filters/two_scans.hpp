@@ -9,15 +9,16 @@ namespace montecarta {
 
 inline SmallWorldSettings settings_of_two_scans() { return {.seed = 77, .landmarks = 40}; }
 
-/// Two scans with a short drive between: from where the filter knows to stand, then again.
-inline SmallWorld drive_of_two_scans() {
-  const SmallWorldSettings settings = settings_of_two_scans();
+/// Two scans with a short drive between: from where the filter knows to stand, then again. It is
+/// told to drive at 3 m/s, steering by 0.15 rad; what the vehicle does is `driven`.
+inline SmallWorld drive_of_two_scans(const SmallWorldSettings& settings = settings_of_two_scans(),
+                                     const Control& driven = {3.0, 0.15}) {
   SmallWorld world{.itinerary = {}, .drive = {}, .seed = settings.seed};
   place_landmarks(settings, world);
   world.drive.scan_begin.push_back(0);
   look_around(settings, 0, Pose{}, world);
   Pose truth;
-  for (int step = 0; step < 8; ++step) truth = move(truth, Control{3.0, 0.15}, 0.025, Vehicle());
+  for (int step = 0; step < 8; ++step) truth = move(truth, driven, 0.025, Vehicle());
   look_around(settings, 8, truth, world);
   return world;
 }
