@@ -76,15 +76,34 @@ inline SmallWorld small_world(const SmallWorldSettings& settings) {
   return world;
 }
 
+/// `pose` in a world that is turned about the origin by the heading of `start` and shifted to it.
+inline Pose turned(const Pose& pose, const Pose& start) {
+  const Direction<double> turn = direction_of(start.heading);
+  return {start.x + turn.cosine * pose.x - turn.sine * pose.y,
+          start.y + turn.sine * pose.x + turn.cosine * pose.y, wrap(pose.heading + start.heading)};
+}
+
+/// The same drive in a world that is turned about the origin by the heading of `start` and shifted
+/// to it.
+inline SmallWorld turned(const SmallWorld& world, const Pose& start) {
+  SmallWorld other = world;
+  for (Eigen::Vector2d& f : other.itinerary.landmarks) {
+    const Pose place = turned(Pose{f.x(), f.y(), 0.0}, start);
+    f = {place.x, place.y};
+  }
+  other.itinerary.start = start;
+  return other;
+}
+
 /// Drives `filter` through the world as the engine does; calls after_scan(scan number) behind every
 /// update.
 template <class Filter, class AfterScan>
 void drive_through(Filter& filter, const SmallWorld& world, const Pose& start,
-                   const AfterScan& after_scan) {
+                   const AfterScan& after_scan, const Parallel& parallel = Parallel::serial()) {
   filter.start(start);
   std::size_t scan = 0;
   for (std::size_t step = 0; step < world.itinerary.steps(); ++step) {
-    const StepContext context(world.seed, 0, static_cast<std::uint32_t>(step), Parallel::serial());
+    const StepContext context(world.seed, 0, static_cast<std::uint32_t>(step), parallel);
     filter.predict(context, world.drive.controls[step], world.itinerary.duration(step));
     if (scan == world.itinerary.scans() || world.itinerary.scan_step[scan] != step) continue;
     filter.update(context, world.drive.scan(scan));
