@@ -42,7 +42,7 @@ std::string class_of(const std::string& text, Align align) {
   std::string names = align == Align::right ? "right" : "";
   const bool bad = text.starts_with("inconsistent") || text.starts_with("optimistic") ||
                    text.starts_with("not reproduced") || text.starts_with("contradicted") ||
-                   text.starts_with("worse in every") || text.find("FAILED") != std::string::npos;
+                   text.starts_with("better in no") || text.find("FAILED") != std::string::npos;
   if (bad) names += " bad";
   const bool good = text == "consistent" || text.starts_with("agrees") ||
                     text.starts_with("holds") || text.starts_with("better in every");

@@ -106,8 +106,11 @@ TEST_F(VictoriaPark, NamesTheScanOfAMistake) {
   ranges[7] = -3.0;
   EXPECT_THAT(complaint("LASER.txt", good + laser_record(1.02, ranges)),
               HasSubstr("LASER.txt: record 2: range -3 of beam 7"));
-  EXPECT_THAT(complaint("LASER.txt", good + good.substr(0, good.size() / 2)),
+  const std::size_t middle = good.rfind('\t', good.size() / 2);
+  EXPECT_THAT(complaint("LASER.txt", good + good.substr(0, middle + 1)),
               AllOf(HasSubstr("LASER.txt: record 2: "), HasSubstr("of 362 numbers")));
+  EXPECT_THAT(complaint("LASER.txt", good + good.substr(0, middle)),
+              HasSubstr("LASER.txt: record 2: '10' ends with the file"));
   EXPECT_THAT(complaint("LASER.txt", good + "1.02\tnan\t"),
               HasSubstr("LASER.txt: record 2: 'nan'"));
 }

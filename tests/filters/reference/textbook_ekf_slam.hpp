@@ -17,7 +17,8 @@ class TextbookEkfSlam {
   explicit TextbookEkfSlam(const Belief& belief) : belief_(belief) {}
 
   void start(const Pose& start) {
-    mean = Eigen::Vector3d(start.x, start.y, start.heading);
+    mean.resize(3);
+    mean << start.x, start.y, start.heading;
     covariance = Eigen::MatrixXd::Zero(3, 3);
     identities.clear();
   }
