@@ -3,6 +3,7 @@
 #include "analysis/tables.hpp"
 #include "analysis/tables/cell_series.hpp"
 #include "analysis/tables/csv_file.hpp"
+#include "analysis/tables/named_rows.hpp"
 #include "analysis/tables/number_text.hpp"
 #include "analysis/tables/reference_files.hpp"
 #include "analysis/tables/verdict_table.hpp"
@@ -19,45 +20,25 @@ constexpr const char* kReferences = "references.csv";
 constexpr const char* kReferenceErrors = "reference_errors.csv";
 std::string series_name(const std::string& label) { return "series_" + label + ".csv"; }
 
-/// The unit belongs to the name where there is one: position_rmse_mean [m].
-std::string heading(const std::string& name, const std::string& units) {
-  return units == "1" ? name : name + " [" + units + "]";
-}
-
-void append(std::vector<std::string>& headings, std::vector<std::string>& fields,
-            const std::vector<NamedNumber>& numbers) {
-  for (const NamedNumber& number : numbers) {
-    headings.push_back(heading(number.name, number.units));
-    fields.push_back(exact_text(number.value));
-  }
-}
-
 void write_cells(const StudyAnalysis& study, const std::filesystem::path& path) {
-  CsvFile file(path);
-  bool first = true;
+  NamedRows file(path);
   for (const CellAnalysis& cell : study.cells) {
-    std::vector<std::string> headings = {"cell", "filter", "verdict"};
-    std::vector<std::string> fields = {cell.label, cell.filter, in_words(cell.consistency())};
-    append(headings, fields, numbers_of(cell));
-    if (first) file.row(headings);
-    file.row(fields);
-    first = false;
+    file.row(
+        {{"cell", cell.label}, {"filter", cell.filter}, {"verdict", in_words(cell.consistency())}},
+        numbers_of(cell));
   }
   file.close();
 }
 
 void write_consistency(const StudyAnalysis& study, const std::filesystem::path& path) {
-  CsvFile file(path);
-  bool first = true;
+  NamedRows file(path);
   for (const CellAnalysis& cell : study.cells) {
     for (const NeesResult& nees : cell.nees) {
-      std::vector<std::string> headings = {"cell", "error", "covariance", "verdict"};
-      std::vector<std::string> fields = {cell.label, name_of(nees.block), name_of(nees.moments),
-                                         in_words(nees.consistency)};
-      append(headings, fields, numbers_of(cell, nees, study.level));
-      if (first) file.row(headings);
-      file.row(fields);
-      first = false;
+      file.row({{"cell", cell.label},
+                {"error", name_of(nees.block)},
+                {"covariance", name_of(nees.moments)},
+                {"verdict", in_words(nees.consistency)}},
+               numbers_of(cell, nees, study.level));
     }
   }
   file.close();

@@ -2,7 +2,7 @@
 #include "analysis/tables/reference_files.hpp"
 
 #include "analysis/tables/csv_file.hpp"
-#include "analysis/tables/number_text.hpp"
+#include "analysis/tables/named_rows.hpp"
 
 #include <string>
 
@@ -21,10 +21,6 @@ void add(const std::string& name, const std::string& units, const Spread& spread
 /// Of the map, which is the same against every reference.
 bool is_of_the_map(const std::string& name) {
   return name.starts_with("map_") || name.starts_with("beacon");
-}
-
-std::string heading(const NamedNumber& number) {
-  return number.units == "1" ? number.name : number.name + " [" + number.units + "]";
 }
 
 }  // namespace
@@ -58,19 +54,12 @@ std::vector<NamedNumber> reference_numbers(const CellAnalysis& cell, std::size_t
 }
 
 void write_references(const StudyAnalysis& study, const std::filesystem::path& path) {
-  CsvFile file(path);
-  bool first = true;
+  NamedRows file(path);
   for (const CellAnalysis& cell : study.cells) {
     for (std::size_t r = 0; r < cell.references.size(); ++r) {
-      std::vector<std::string> headings = {"cell", "filter", "reference"};
-      std::vector<std::string> fields = {cell.label, cell.filter, study.references[r].name};
-      for (const NamedNumber& number : reference_numbers(cell, r)) {
-        headings.push_back(heading(number));
-        fields.push_back(exact_text(number.value));
-      }
-      if (first) file.row(headings);
-      file.row(fields);
-      first = false;
+      file.row(
+          {{"cell", cell.label}, {"filter", cell.filter}, {"reference", study.references[r].name}},
+          reference_numbers(cell, r));
     }
   }
   file.close();

@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/tables/csv_file.hpp"
 #include "engine/errors.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/study/study.hpp"
 #include "experiments/study/study_of_log.hpp"
 
-#include <fstream>
 #include <iostream>
 
 namespace montecarta {
 namespace {
 
 namespace fs = std::filesystem;
-
-void write_study(const Study& study, const fs::path& path) {
-  std::ofstream file(path);
-  file << study_of_log(study);
-  if (!file.flush()) throw RunError(path.string() + ": could not be written (disk full?)");
-}
 
 int convert(const Arguments& arguments) {
   const std::string& name = arguments.operands().front();
@@ -31,7 +25,7 @@ int convert(const Arguments& arguments) {
                      "convert): give a study of a recorded drive");
   }
   write_log_csv(*study.log, folder);
-  write_study(study, folder / "study.ini");
+  write_text(folder / "study.ini", study_of_log(study));
   std::cerr << "montecarta: " << study.log->odometry.size() << " odometry records and "
             << study.log->scans.size() << " scans, stored in " << folder.string()
             << "; the same study of them is " << (folder / "study.ini").string() << "\n";

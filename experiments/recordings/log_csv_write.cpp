@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/tables/csv_file.hpp"
 #include "engine/errors.hpp"
 #include "experiments/recordings/check_log.hpp"
 #include "experiments/recordings/log_csv.hpp"
@@ -6,9 +7,7 @@
 #include "experiments/text/numbers.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <initializer_list>
-#include <system_error>
 
 namespace montecarta {
 namespace {
@@ -27,12 +26,7 @@ class Table {
     }
     text_ += rest + "\n";
   }
-  void save(const fs::path& path) const {
-    std::ofstream file(path, std::ios::binary);
-    file << text_;
-    file.close();
-    if (!file) throw RunError(path.string() + ": cannot be written (disk full?): free some space");
-  }
+  void save(const fs::path& path) const { write_text(path, text_); }
 
  private:
   std::string text_;
@@ -97,12 +91,7 @@ void check_order(const DriveLog& log, const std::string& place) {
 }
 
 void make_folder(const fs::path& folder) {
-  std::error_code failure;
-  fs::create_directories(folder, failure);
-  if (failure) {
-    throw RunError(folder.string() + ": cannot be made (" + failure.message() +
-                   "): name another folder");
-  }
+  make_directory(folder);
   if (fs::is_empty(folder)) return;
   throw StudyError(folder.string() +
                    ": not empty (what lies there would be read with the log): name a new folder");

@@ -18,7 +18,6 @@ struct Journey {
   std::vector<double> times, path;  ///< {step}, {step, 3}
   Itinerary itinerary;
   std::vector<Eigen::Vector2d> map;
-  std::size_t detections = 0;
 
   /// Against reference `r`, over fixes until `end` [s].
   ReferenceScores scores(std::size_t r, double end = 1e9) const {
@@ -53,7 +52,6 @@ Journey journey(const std::string& kind, const std::string& cell, const std::str
   made.itinerary = plan.drives->itinerary();
   Drive drive;
   plan.drives->generate(0, drive);
-  made.detections = drive.detections.size();
   const auto filter = plan.cells[0].make_filter();
   filter->start(made.itinerary.start);
   for (std::size_t k = 0, s = 0; k < made.itinerary.steps(); ++k) {

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/tables/cell_series.hpp"
+#include "analysis/tables/csv_file.hpp"
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace montecarta {
+
+/// The unit belongs to the name where there is one: position_rmse_mean [m].
+std::string heading(const std::string& name, const std::string& units);
+
+/// A CSV file of rows that begin with texts and go on with numbers, all under names: the first row
+/// gives the headings, and every row has the same ones.
+class NamedRows {
+ public:
+  explicit NamedRows(const std::filesystem::path& path) : file_(path) {}
+  /// `texts` are (name, text).
+  void row(const std::vector<std::pair<std::string, std::string>>& texts,
+           const std::vector<NamedNumber>& numbers);
+  /// Throws RunError where the disk did not take it all.
+  void close() { file_.close(); }
+
+ private:
+  CsvFile file_;
+  bool is_headed_ = false;
+};
+
+}  // namespace montecarta
