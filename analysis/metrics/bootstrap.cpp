@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/bootstrap.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/random/stream.hpp"
+
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace montecarta {
+namespace {
+
+constexpr std::size_t kMostReplicates = 2000, kFewestReplicates = 400;
+constexpr std::size_t kMostDraws = 20'000'000;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+double normal_quantile(double p) { return boost::math::quantile(boost::math::normal(), p); }
+double normal_share(double z) { return boost::math::cdf(boost::math::normal(), z); }
+
+/// Mean, and skewness divided by 6 sqrt(n): how fast the spread of a mean changes with the mean.
+struct Shape {
+  double mean = 0.0;
+  double acceleration = 0.0;
+};
+
+Shape shape_of(std::span<const double> values) {
+  const auto n = static_cast<double>(values.size());
+  Shape shape;
+  for (const double value : values) shape.mean += value / n;
+  double squares = 0.0, cubes = 0.0;
+  for (const double value : values) {
+    const double d = value - shape.mean;
+    squares += d * d;
+    cubes += d * d * d;
+  }
+  if (squares > 0.0) shape.acceleration = cubes / (6.0 * squares * std::sqrt(squares));
+  return shape;
+}
+
+/// How far out, in normal deviates, the tails of Student's t lie for so many runs.
+double widened_deviate(std::size_t runs, double level) {
+  const auto n = static_cast<double>(runs);
+  const boost::math::students_t t(n - 1.0);
+  return std::sqrt(n / (n - 1.0)) * boost::math::quantile(t, 0.5 + 0.5 * level);
+}
+
+/// Share of the replicates below the mean, in normal deviates; ties count half.
+double bias_deviate(const std::vector<double>& sorted, double mean) {
+  const auto [first, last] = std::ranges::equal_range(sorted, mean);
+  const auto below = static_cast<double>(first - sorted.begin());
+  const auto equal = static_cast<double>(last - first);
+  const auto n = static_cast<double>(sorted.size());
+  return normal_quantile(std::clamp((below + 0.5 * equal) / n, 0.5 / n, 1.0 - 0.5 / n));
+}
+
+/// The value below which a share `p` of the replicates lies, between its neighbours.
+double quantile_of(const std::vector<double>& sorted, double p) {
+  const auto last = static_cast<double>(sorted.size() - 1);
+  const double place = std::clamp(p * (last + 1.0) - 0.5, 0.0, last);
+  const auto low = static_cast<std::size_t>(place);
+  const std::size_t high = std::min(low + 1, sorted.size() - 1);
+  return std::lerp(sorted[low], sorted[high], place - std::floor(place));
+}
+
+Interval accelerated_interval(std::vector<double>& means, const Shape& shape, double deviate) {
+  std::ranges::sort(means);
+  const double bias = bias_deviate(means, shape.mean);
+  const auto end = [&](double z) {
+    const double shifted = bias + z;
+    return quantile_of(means, normal_share(bias + shifted / (1.0 - shape.acceleration * shifted)));
+  };
+  return {end(-deviate), end(deviate)};
+}
+
+bool all_finite(std::span<const double> values) {
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
+}  // namespace
+
+std::size_t bootstrap_replicates(std::size_t runs) {
+  return std::clamp(kMostDraws / std::max<std::size_t>(runs, 1), kFewestReplicates,
+                    kMostReplicates);
+}
+
+void draw_runs(std::size_t runs, std::size_t b, std::vector<std::uint32_t>& drawn) {
+  RngStream draw({.seed = 0,
+                  .run = 0,
+                  .step = 0,
+                  .index = static_cast<std::uint32_t>(b),
+                  .purpose = Draw::analysis_bootstrap});
+  drawn.resize(runs);
+  for (std::uint32_t& index : drawn) index = draw.below(static_cast<std::uint32_t>(runs));
+}
+
+std::vector<Interval> bootstrap_means(std::span<const std::vector<double>> columns, double level) {
+  std::vector<Interval> intervals(columns.size(), {kNaN, kNaN});
+  const std::size_t runs = columns.empty() ? 0 : columns.front().size();
+  if (runs < 2) return intervals;
+  const std::size_t replicates = bootstrap_replicates(runs);
+  std::vector<std::vector<double>> means(columns.size(), std::vector<double>(replicates));
+  std::vector<std::uint32_t> drawn;
+  for (std::size_t b = 0; b < replicates; ++b) {
+    draw_runs(runs, b, drawn);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      expect(columns[c].size() == runs, "columns of a bootstrap have a value a run");
+      double sum = 0.0;
+      for (const std::uint32_t i : drawn) sum += columns[c][i];
+      means[c][b] = sum / static_cast<double>(runs);
+    }
+  }
+  const double deviate = widened_deviate(runs, level);
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    if (!all_finite(columns[c])) continue;
+    intervals[c] = accelerated_interval(means[c], shape_of(columns[c]), deviate);
+  }
+  return intervals;
+}
+
+Interval bootstrap_mean(std::span<const double> values, double level) {
+  const std::vector<double> column(values.begin(), values.end());
+  return bootstrap_means(std::span(&column, 1), level).front();
+}
+
+}  // namespace montecarta
