@@ -66,10 +66,13 @@ std::string latex_tabular(const TextTable& table) {
   return latex + "\\bottomrule\n\\end{tabular}\n";
 }
 
-std::string latex_table(const StudyAnalysis& study) {
+std::string latex_table(const StudyAnalysis& study, const TextTable& table) {
   return "% " + study.study_name + ", seed " + std::to_string(study.seed) + ", study " +
-         study.study_sha256 + "; needs \\usepackage{booktabs}\n" +
-         latex_tabular(verdict_table(study));
+         study.study_sha256 + "; needs \\usepackage{booktabs}\n" + latex_tabular(table);
+}
+
+std::string latex_table(const StudyAnalysis& study) {
+  return latex_table(study, verdict_table(study));
 }
 
 }  // namespace montecarta

@@ -13,4 +13,7 @@ std::string latex_escape(const std::string& text);
 /// A tabular in booktabs style, without float or caption.
 std::string latex_tabular(const TextTable& table);
 
+/// The same below a comment that says which study it is of.
+std::string latex_table(const StudyAnalysis& study, const TextTable& table);
+
 }  // namespace montecarta

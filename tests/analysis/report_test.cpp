@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/report.hpp"
 
-#include "analysis/html.hpp"
 #include "engine/errors.hpp"
 #include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/synthetic_result.hpp"
@@ -102,18 +101,6 @@ TEST(Report, RefusesARunThatIsNotThere) {
   options.run = 99;
   EXPECT_THROW(write_report(ResultFile(folder / "out.h5"), folder / "report", options), StudyError);
   EXPECT_FALSE(std::filesystem::exists(folder / "report/index.html"));
-}
-
-TEST(Html, EscapesText) {
-  EXPECT_EQ(html_escape("a < b & \"c\" 3 +- 1"), "a &lt; b &amp; &quot;c&quot; 3 &plusmn; 1");
-}
-
-TEST(Html, GivesEveryDrawingItsOwnIdentifiersAndTheColourOfTheText) {
-  const std::string svg =
-      "<?xml?><svg><g id=\"a\" fill='rgb(  0,   0,   0)'/><use href='#a'/></svg>";
-  EXPECT_EQ(inline_svg(svg, "rmse", "what"),
-            "<svg role=\"img\" aria-label=\"what\"><g id=\"rmse_a\" fill='currentColor'/><use "
-            "href='#rmse_a'/></svg>");
 }
 
 }  // namespace

@@ -1,41 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/html.hpp"
+#include "analysis/page/html.hpp"
+
+#include "analysis/page/assets.hpp"
 
 namespace montecarta {
 namespace {
-
-// gnuplot draws in black: on a dark page the style turns that into the colour of the text.
-constexpr const char* kStyle = R"(
-:root { color-scheme: light dark; --page: #fff; --text: #1a1a1a; --soft: #5a5a5a; --line: #d5d5d5;
-  --bad: #b3261e; --good: #0b6b3a; }
-@media (prefers-color-scheme: dark) {
-  :root { --page: #15171a; --text: #e8e8e8; --soft: #a8a8a8; --line: #3a3d42; --bad: #ff8a80;
-    --good: #6fd49b; }
-}
-body { margin: 0 auto; padding: 1rem; max-width: 78rem; background: var(--page);
-  color: var(--text); font: 1rem/1.5 system-ui, sans-serif; }
-h1 { font-size: 1.5rem; line-height: 1.25; margin: .5rem 0; }
-h2 { font-size: 1.15rem; margin: 2.2rem 0 .5rem; }
-p { margin: .5rem 0; max-width: 60rem; }
-.soft, figcaption { color: var(--soft); font-size: .92rem; }
-.scroll { overflow-x: auto; margin-bottom: .8rem; }
-table { border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabular-nums; }
-th, td { padding: .3rem .5rem; white-space: nowrap; border-bottom: 1px solid var(--line); }
-th { text-align: left; font-weight: 600; border-bottom: 2px solid var(--text); }
-@media (max-width: 40rem) { td:not(.right) { white-space: normal; min-width: 5rem; } }
-.right { text-align: right; }
-.bad { color: var(--bad); font-weight: 600; }
-.good { color: var(--good); font-weight: 600; }
-ul { max-width: 60rem; padding-left: 1.2rem; }
-figure { margin: .5rem 0; }
-figcaption { max-width: 60rem; }
-figure svg { width: 100%; height: auto; display: block; color: var(--text); }
-svg [color="black"] { color: inherit; }
-svg [fill="black"] { fill: currentColor; }
-a { color: inherit; }
-pre { overflow-x: auto; font-size: .8rem; border-left: 3px solid var(--line); padding-left: .8rem; }
-summary { cursor: pointer; font-weight: 600; margin-top: 1rem; }
-)";
 
 /// Verdicts and failures are seen at a glance; the word itself says the same without the colour.
 std::string class_of(const std::string& text, Align align) {
@@ -131,8 +100,8 @@ std::string inline_svg(const std::string& svg, const std::string& name,
 std::string html_page(const std::string& title, const std::string& body) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-         html_escape(title) + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n" + body +
-         "</body>\n</html>\n";
+         html_escape(title) + "</title>\n<style>\n" + std::string(page_style()) +
+         "</style>\n</head>\n<body>\n" + body + "</body>\n</html>\n";
 }
 
 }  // namespace montecarta

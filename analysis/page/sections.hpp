@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/page/section.hpp"
+#include "analysis/study_analysis.hpp"
+#include "engine/records/result_file.hpp"
+
+namespace montecarta {
+
+/// The page's heading: which study, how much of it.
+Section title_section(const StudyAnalysis& study);
+/// Which runs failed, and why.
+Section failure_section(const StudyAnalysis& study);
+/// What is consistent, until when, and how accurate; not of a recorded drive.
+Section verdict_section(const StudyAnalysis& study);
+/// A recorded drive judged by its references.
+Section reference_section(const StudyAnalysis& study);
+/// What became of the detections, where that was counted.
+Section association_section(const StudyAnalysis& study);
+/// Every definition of error and covariance.
+Section consistency_section(const StudyAnalysis& study);
+/// Study, scenario and provenance.
+Section origin_section(const ResultFile& file, const StudyAnalysis& study);
+/// What a paper printed beside what was measured.
+Section printed_section(const StudyAnalysis& study);
+
+}  // namespace montecarta

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/page/sections.hpp"
+
+namespace montecarta {
+
+Section verdict_section(const StudyAnalysis& study) {
+  if (!study.has_truth) return {};
+  Section section{"Verdict"};
+  add_table("verdict", verdict_table(study), section);
+  add_table("accuracy", accuracy_table(study), section);
+  add_notes(verdict_notes(study), section);
+  return section;
+}
+
+}  // namespace montecarta

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/page/html.hpp"
+
+#include "analysis/page/assets.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace montecarta {
+namespace {
+
+TEST(Html, EscapesText) {
+  EXPECT_EQ(html_escape("a < b & \"c\" 3 +- 1"), "a &lt; b &amp; &quot;c&quot; 3 &plusmn; 1");
+}
+
+TEST(Html, GivesEveryDrawingItsOwnIdentifiersAndTheColourOfTheText) {
+  const std::string svg =
+      "<?xml?><svg><g id=\"a\" fill='rgb(  0,   0,   0)'/><use href='#a'/></svg>";
+  EXPECT_EQ(inline_svg(svg, "rmse", "what"),
+            "<svg role=\"img\" aria-label=\"what\"><g id=\"rmse_a\" fill='currentColor'/><use "
+            "href='#rmse_a'/></svg>");
+}
+
+TEST(Html, HoldsTheWholeStyleSheet) {
+  const std::string page = html_page("title", "body");
+  EXPECT_THAT(page, testing::HasSubstr(std::string(page_style())));
+  EXPECT_THAT(page_style(), testing::HasSubstr("color-scheme: light dark"));
+  EXPECT_THAT(page_style(), testing::EndsWith("}\n"));
+}
+
+}  // namespace
+}  // namespace montecarta
