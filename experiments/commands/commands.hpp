@@ -11,7 +11,7 @@
 namespace montecarta {
 
 /// Exit codes that users and scripts rely on; those of an interrupted study come from exit_code().
-inline constexpr int kDone = 0, kFailed = 1, kWrongInput = 2;
+inline constexpr int kDone = 0, kFailed = 1, kWrongInput = 2, kDifferent = 4;
 
 /// One command of the program: how it is called and what it does. Returns the exit code.
 struct Command {
@@ -26,6 +26,8 @@ Command status_command();
 Command merge_command();
 Command analyze_command();
 Command report_command();
+Command verify_command();
+Command replay_command();
 Command bounds_command();
 Command convert_command();
 Command list_command();

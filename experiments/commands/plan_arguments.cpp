@@ -2,6 +2,7 @@
 #include "experiments/commands/plan_arguments.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/records/provenance.hpp"
 #include "engine/runs/thread_budget.hpp"
 #include "experiments/study/make_plan.hpp"
 
@@ -39,6 +40,16 @@ Parallel parallel_of(const Arguments& arguments) {
   const int threads = thread_budget(arguments.text("threads")).threads;
   if (backend == "serial") return Parallel::serial();
   return Parallel(backend == "openmp" ? Backend::openmp : Backend::tbb, threads);
+}
+
+TextPairs provenance_of(const std::string& command, const Arguments& arguments) {
+  std::string line = "montecarta " + command;
+  for (const std::string& word : arguments.words()) line += " " + shell_quoted(word);
+  TextPairs provenance = collect_provenance();
+  provenance.emplace_back("command_line", line);
+  provenance.emplace_back("backend", arguments.choice("backend", {"tbb", "openmp", "serial"}));
+  provenance.emplace_back("threads", std::to_string(parallel_of(arguments).threads()));
+  return provenance;
 }
 
 }  // namespace montecarta

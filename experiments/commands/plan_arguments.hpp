@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/records/result_description.hpp"
 #include "engine/runs/parallel.hpp"
 #include "engine/runs/plan.hpp"
 #include "experiments/commands/arguments.hpp"
 
+#include <string>
 #include <vector>
 
 namespace montecarta {
@@ -17,5 +19,7 @@ std::vector<OptionSpec> plan_options();
 StudyPlan plan_of(const Arguments& arguments);
 /// As --threads, --backend and the environment have it.
 Parallel parallel_of(const Arguments& arguments);
+/// How `command` makes a file, for the file: this build and machine, the command line, threads.
+TextPairs provenance_of(const std::string& command, const Arguments& arguments);
 
 }  // namespace montecarta

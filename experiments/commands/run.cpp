@@ -3,7 +3,6 @@
 #include "analysis/tables.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/output_path.hpp"
-#include "engine/records/provenance.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
 #include "engine/runs/thread_budget.hpp"
@@ -30,12 +29,6 @@ ProgressStyle progress_of(const Arguments& arguments) {
   return style == "plain"  ? ProgressStyle::plain
          : style == "none" ? ProgressStyle::none
                            : ProgressStyle::automatic;
-}
-
-std::string command_line(const Arguments& arguments) {
-  std::string line = "montecarta run";
-  for (const std::string& word : arguments.words()) line += " " + shell_quoted(word);
-  return line;
 }
 
 /// What a user types to go on where this command stopped.
@@ -65,11 +58,7 @@ RunOptions options_of(const Arguments& arguments) {
   options.time_budget = arguments.number("time-budget", kLeastBudget, 1e9);
   options.progress = progress_of(arguments);
   options.quiet = arguments.has("quiet");
-  options.provenance = collect_provenance();
-  options.provenance.emplace_back("command_line", command_line(arguments));
-  options.provenance.emplace_back("backend",
-                                  arguments.choice("backend", {"tbb", "openmp", "serial"}));
-  options.provenance.emplace_back("threads", std::to_string(options.parallel.threads()));
+  options.provenance = provenance_of("run", arguments);
   return options;
 }
 

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/runs/recompute.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/records/open_result.hpp"
+#include "engine/records/recorder.hpp"
+#include "engine/runs/run_one.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+
+namespace montecarta {
+namespace {
+
+using Bytes = std::span<const std::byte>;
+
+template <class T>
+T value_at(Bytes bytes, std::size_t i) {
+  T value{};
+  std::memcpy(&value, bytes.data() + i * sizeof(T), sizeof(T));
+  return value;
+}
+
+std::string text_of(Bytes bytes, Element element, std::size_t i) {
+  switch (element) {
+    case Element::u8:
+      return std::to_string(value_at<std::uint8_t>(bytes, i));
+    case Element::u16:
+      return std::to_string(value_at<std::uint16_t>(bytes, i));
+    case Element::u32:
+      return std::to_string(value_at<std::uint32_t>(bytes, i));
+    case Element::u64:
+      return std::to_string(value_at<std::uint64_t>(bytes, i));
+    case Element::f64:
+      break;
+  }
+  char digits[32];
+  const auto end = std::to_chars(digits, digits + sizeof digits, value_at<double>(bytes, i)).ptr;
+  return {digits, end};
+}
+
+/// "time 12, component 1" of element `i`.
+std::string position_text(const Column& column, std::size_t i) {
+  std::string text;
+  std::size_t block = column.elements();
+  for (std::size_t a = 0; a < column.axes.size(); ++a) {
+    block /= column.shape[a];
+    text += (a == 0 ? "" : ", ") + std::string(name_of(column.axes[a])) + " " +
+            std::to_string(i / block);
+    i %= block;
+  }
+  return text;
+}
+
+/// Which numbers of a column differ; nullopt where every bit is the same.
+std::optional<std::string> compare(const Column& column, Bytes stored, Bytes computed) {
+  if (std::ranges::equal(stored, computed)) return std::nullopt;
+  const std::size_t width = size_of(column.element);
+  std::size_t first = column.elements(), count = 0;
+  for (std::size_t i = 0; i < column.elements(); ++i) {
+    if (std::ranges::equal(stored.subspan(i * width, width), computed.subspan(i * width, width)))
+      continue;
+    first = std::min(first, i);
+    ++count;
+  }
+  return column.name + " differs in " + std::to_string(count) + " of " +
+         std::to_string(column.elements()) + " numbers, first at (" + position_text(column, first) +
+         "): stored " + text_of(stored, column.element, first) + ", computed " +
+         text_of(computed, column.element, first);
+}
+
+std::vector<std::byte> read_run(const PosixFile& file, const Slab& slab, std::size_t run_index) {
+  std::vector<std::byte> bytes(slab.run_bytes);
+  file.read_at(slab.at(run_index), bytes);
+  return bytes;
+}
+
+bool equals(const PosixFile& file, const Slab& slab, std::size_t run_index, Bytes computed) {
+  return std::ranges::equal(read_run(file, slab, run_index), computed);
+}
+
+Column truth_column(std::size_t rows) {
+  return {"true pose", Element::f64, {Axis::time, Axis::component}, {rows, 3}, "m, m, rad", ""};
+}
+
+ResultDescription comparable(const StudyPlan& plan, const ResultDescription& stored) {
+  ResultDescription planned = describe(plan, {});
+  planned.study_sha256 = stored.study_sha256;  // a later version may spell the same study otherwise
+  return planned;
+}
+
+}  // namespace
+
+Recomputation::Recomputation(const std::filesystem::path& path, const ResultDescription& stored,
+                             const StudyPlan& plan)
+    : stored_(stored), plan_(plan), file_(path, PosixFile::Mode::read) {
+  if (const auto differs = montecarta::difference(comparable(plan, stored), stored, path))
+    throw StudyError(*differs);
+  slabs_ = find_slabs(path, stored);
+  for (const Cell& cell : plan.cells)
+    layouts_.emplace_back(cell, plan.columns, plan.drives->itinerary());
+}
+
+std::optional<std::string> Recomputation::difference(StoredRun which) const {
+  const std::uint64_t run = stored_.runs.at(which.run_index);
+  const Cell& cell = plan_.cells.at(which.cell);
+  Drive drive;
+  plan_.drives->generate(run, drive);
+  auto differs = difference(drive, which.run_index);
+  if (!differs) {
+    const std::unique_ptr<SlamFilter> filter = cell.make_filter();
+    RunRecord record(layouts_[which.cell]);
+    Recorder recorder(record);
+    const SpareThreads none(Parallel::serial(), 1);
+    const StopRequest never;
+    const RunConditions conditions{plan_.seed, run, plan_.drives->itinerary(), drive, none, never};
+    expect(run_one(conditions, *filter, recorder, record) == RunEnd::recorded, "nobody dropped it");
+    differs = difference(record, which);
+  }
+  if (!differs) return std::nullopt;
+  std::vector<std::byte> buffer;
+  const bool whole = truth_is_whole(file_, slabs_, which.run_index, buffer) &&
+                     run_is_whole(file_, slabs_.cells[which.cell], which.run_index, buffer);
+  return cell.label + ", run " + std::to_string(run) + ": " + *differs +
+         (whole ? "" : " (and the stored bytes do not fit their fingerprint: damaged, or altered)");
+}
+
+std::optional<std::string> Recomputation::difference(const Drive& drive,
+                                                     std::size_t run_index) const {
+  if (!slabs_.truth) return std::nullopt;
+  const Itinerary& itinerary = plan_.drives->itinerary();
+  std::vector<Pose> truth = drive.truth;
+  if (plan_.columns.scans_only) {
+    truth.clear();
+    for (std::uint32_t step : itinerary.scan_step) truth.push_back(drive.truth[step]);
+  }
+  return compare(truth_column(truth.size()), read_run(file_, slabs_.truth->pose, run_index),
+                 std::as_bytes(std::span(truth)));
+}
+
+std::optional<std::string> Recomputation::difference(const RunRecord& record,
+                                                     StoredRun which) const {
+  const CellSlabs& slabs = slabs_.cells[which.cell];
+  const std::size_t i = which.run_index;
+  const RunStatus status = record.status();
+  const std::uint32_t step = record.failure_step();
+  if (!equals(file_, slabs.status, i, std::as_bytes(std::span(&status, 1))))
+    return "one of them failed, the stored or the computed one";
+  if (!equals(file_, slabs.failure_step, i, std::as_bytes(std::span(&step, 1))) ||
+      !equals(file_, slabs.failure_reason, i, std::as_bytes(record.failure_text())))
+    return "it failed at another step or for another reason";
+  const std::vector<Column>& columns = record.layout().columns();
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    if (auto differs = compare(columns[c], read_run(file_, slabs.columns[c], i), record.bytes(c)))
+      return differs;
+  }
+  return std::nullopt;
+}
+
+}  // namespace montecarta

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/records/record_layout.hpp"
+#include "engine/records/result_description.hpp"
+#include "engine/records/result_slabs.hpp"
+#include "engine/records/run_record.hpp"
+#include "engine/runs/plan.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// One run of one cell as a file holds it.
+struct StoredRun {
+  std::size_t cell;       ///< in the order of the file, which is the plan's
+  std::size_t run_index;  ///< within the file
+};
+
+/// Computes stored runs again, each by itself, and compares every byte under /cells and /truth.
+class Recomputation {
+ public:
+  /// `stored` describes the file at `path`, `plan` is the plan of the study it holds; both must
+  /// outlive this. Throws StudyError where the plan would lay a file out otherwise.
+  Recomputation(const std::filesystem::path& path, const ResultDescription& stored,
+                const StudyPlan& plan);
+
+  /// What differs in a run that is stored as complete or failed, worded for the user; nullopt where
+  /// every byte is the same. Thread-safe.
+  std::optional<std::string> difference(StoredRun which) const;
+
+ private:
+  std::optional<std::string> difference(const Drive& drive, std::size_t run_index) const;
+  std::optional<std::string> difference(const RunRecord& record, StoredRun which) const;
+
+  const ResultDescription& stored_;
+  const StudyPlan& plan_;
+  PosixFile file_;
+  ResultSlabs slabs_;
+  std::vector<RecordLayout> layouts_;  ///< one per cell
+};
+
+}  // namespace montecarta

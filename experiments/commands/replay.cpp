@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/errors.hpp"
+#include "engine/runs/monte_carlo.hpp"
+#include "engine/runs/recompute.hpp"
+#include "experiments/commands/commands.hpp"
+#include "experiments/commands/output_guard.hpp"
+#include "experiments/commands/plan_arguments.hpp"
+#include "experiments/commands/stored_result.hpp"
+#include "experiments/commands/stored_study.hpp"
+#include "experiments/study/make_drives.hpp"
+#include "experiments/study/make_plan.hpp"
+#include "experiments/study/setting.hpp"
+#include "experiments/text/table.hpp"
+#include "experiments/text/words.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+
+namespace montecarta {
+namespace {
+
+std::string needed(const Arguments& arguments, const std::string& option, const char* remedy) {
+  const auto given = arguments.text(option);
+  if (!given) throw StudyError("replay: --" + option + " is missing: " + remedy);
+  return *given;
+}
+
+std::size_t cell_of(const Study& study, const std::string& label) {
+  std::vector<std::string> known;
+  for (const CellSpec& cell : study.cells) known.push_back(cell.label);
+  const auto found = std::ranges::find(known, label);
+  if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
+  throw StudyError("--cell " + label +
+                   ": no cell of this study: " + nearest_spelling(label, known));
+}
+
+/// Every column there is. Who cannot say which landmark was seen cannot count mistakes either.
+std::string all_columns(const Study& study) {
+  std::vector<std::string> columns;
+  for (const Setting& setting : study_settings()) {
+    if (setting.section == "record" && setting.key == "columns") columns = setting.choices;
+  }
+  if (identities_of(study) == 0) std::erase(columns, "association");
+  return joined(columns, ", ");
+}
+
+/// The study of one cell alone that keeps all it can.
+Study recording_everything(Study study, std::size_t cell) {
+  study.cells = {study.cells[cell]};
+  study.printed = {};  // what a paper says of cells that are not there
+  study.settings.replace("record", "columns", all_columns(study));
+  study.settings.replace("record", "rate", "control");
+  return study;
+}
+
+/// What differs from the run as it is stored; nullopt where nothing does or it is not stored.
+std::optional<std::string> departure(const ResultFile& file, const Study& study, std::size_t cell,
+                                     std::uint64_t run) {
+  const auto held = std::ranges::find(file.runs(), run);
+  const auto index = static_cast<std::size_t>(held - file.runs().begin());
+  if (held == file.runs().end() ||
+      file.status(file.cells().at(cell))[index] == RunStatus::missing) {
+    std::cerr << "montecarta: " << file.path().string() << " does not hold this run yet\n";
+    return std::nullopt;
+  }
+  const StudyPlan plan = make_plan(study);
+  return Recomputation(file.path(), file.description(), plan).difference({cell, index});
+}
+
+RunOptions options_of(const Arguments& arguments, const std::string& output) {
+  RunOptions options;
+  options.output = output;
+  options.parallel = parallel_of(arguments);
+  options.force = arguments.has("force");
+  options.quiet = true;
+  options.provenance = provenance_of("replay", arguments);
+  return options;
+}
+
+int replay(const Arguments& arguments) {
+  const std::string output = needed(arguments, "output", "add -o ONE.h5");
+  const std::string label = needed(arguments, "cell", "add --cell C; montecarta info names them");
+  needed(arguments, "run", "add --run R, a number from 0");
+  const ResultFile file = open_stored(arguments.operands().front());
+  const std::uint64_t run = arguments.count("run", 0, file.study_runs() - 1).value();
+  refuse_input_as_output(output, arguments.operands());
+  refuse_to_replace_other_kinds(output);
+  const Study study = study_in(file, arguments);
+  const std::size_t cell = cell_of(study, label);
+  const auto departs = departure(file, study, cell, run);
+  const StudyPlan plan = make_plan(recording_everything(study, cell), RunRange{run, run + 1});
+  const RunOutcome outcome = run_study(plan, options_of(arguments, output));
+  if (outcome.missing() > 0) return exit_code(outcome, runs_under_scheduler());
+  std::cerr << "montecarta: run " << run << " of " << label << " with everything recorded, "
+            << bytes_text(static_cast<double>(std::filesystem::file_size(output))) << ", stored in "
+            << output << "\n";
+  if (!departs) return exit_code(outcome, runs_under_scheduler());
+  std::cout << *departs << "\n";
+  return kDifferent;
+}
+
+}  // namespace
+
+Command replay_command() {
+  return {
+      {.name = "replay",
+       .summary = "repeats one run of a file with everything recorded: particles, weights, maps",
+       .operands = {{"FILE.h5"}},
+       .options = {{"output", "o", {"ONE.h5"}, "where it goes"},
+                   {"cell", "", {"C"}, "label of the cell"},
+                   {"run", "", {"R"}, "number of the run, from 0"},
+                   data_option(),
+                   {"force", "", {}, "replace ONE.h5"},
+                   {"threads", "", {"N"}, "default: what this process may use"},
+                   {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},
+       .details = "Exit code 4 where the run is not, byte for byte, the one that FILE.h5 holds; "
+                  "ONE.h5 is written all the same.\n"},
+      replay};
+}
+
+}  // namespace montecarta

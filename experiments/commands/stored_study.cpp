@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/commands/stored_study.hpp"
+
+#include "engine/records/open_result.hpp"
+#include "engine/records/provenance.hpp"
+#include "engine/records/sha256.hpp"
+
+#include <iostream>
+
+namespace montecarta {
+
+OptionSpec data_option() {
+  return {"data", "", {"FOLDER"}, "where the recorded drive of the study lies"};
+}
+
+Study study_in(const ResultFile& file, const Arguments& arguments) {
+  std::vector<std::string> overrides;
+  if (const auto folder = arguments.text("data"))
+    overrides.push_back("scenario.path=" + std::filesystem::absolute(*folder).string());
+  const std::string name = file.path().string() + " (the study in it)";
+  const Study study = parse_study(file.study_text(), name, file.path().parent_path(), overrides);
+  if (sha256(resolved_text(study)) != file.study_sha256())
+    std::cerr << "montecarta: another version of montecarta made " << file.path().string()
+              << "; settings that it did not know have their defaults\n";
+  for (const std::string& note : build_differences(file.provenance(), collect_provenance()))
+    std::cerr << "montecarta: " << note << "\n";
+  return study;
+}
+
+}  // namespace montecarta

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/errors.hpp"
+#include "engine/records/fingerprint.hpp"
+#include "engine/runs/recompute.hpp"
+#include "experiments/commands/commands.hpp"
+#include "experiments/commands/plan_arguments.hpp"
+#include "experiments/commands/stored_result.hpp"
+#include "experiments/commands/stored_study.hpp"
+#include "experiments/study/make_plan.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+
+namespace montecarta {
+namespace {
+
+constexpr std::uint64_t kSample = 10;
+
+std::vector<StoredRun> runs_stored(const ResultFile& file) {
+  std::vector<StoredRun> stored;
+  for (std::size_t c = 0; c < file.cells().size(); ++c) {
+    const std::vector<RunStatus> status = file.status(file.cells()[c]);
+    for (std::size_t i = 0; i < status.size(); ++i) {
+      if (status[i] != RunStatus::missing) stored.push_back({c, i});
+    }
+  }
+  return stored;
+}
+
+/// Where a run stands in the shuffle that `seed` names.
+std::uint64_t lot(std::uint64_t seed, const StoredRun& run) {
+  Fingerprint lot;
+  lot.add(std::as_bytes(std::span(&seed, 1)));
+  lot.add(std::as_bytes(std::span(&run, 1)));
+  return lot.value();
+}
+
+/// `count` of the runs, or all, chosen by `seed`.
+std::vector<StoredRun> sample(std::vector<StoredRun> runs, std::uint64_t count,
+                              std::uint64_t seed) {
+  std::ranges::sort(runs, {}, [&](const StoredRun& run) { return lot(seed, run); });
+  if (runs.size() > count) runs.resize(count);
+  return runs;
+}
+
+/// Another sample at every call, unless one is asked for again.
+std::uint64_t seed_of(const Arguments& arguments) {
+  const auto now = std::chrono::system_clock::now().time_since_epoch().count();
+  return arguments.count("seed", 0, UINT64_MAX)
+      .value_or(static_cast<std::uint64_t>(now) % 1'000'000);
+}
+
+int verify(const Arguments& arguments) {
+  const std::uint64_t seed = seed_of(arguments);
+  const std::uint64_t count = arguments.count("sample", 1, UINT64_MAX).value_or(kSample);
+  const ResultFile file = open_stored(arguments.operands().front());
+  const std::vector<StoredRun> stored = runs_stored(file);
+  if (stored.empty())
+    throw StudyError(file.path().string() +
+                     ": holds no run yet (nothing to compute again): run the study first");
+  const std::vector<StoredRun> chosen = sample(stored, count, seed);
+  const StudyPlan plan = make_plan(study_in(file, arguments));
+  const Recomputation again(file.path(), file.description(), plan);
+  std::vector<std::optional<std::string>> differences(chosen.size());
+  parallel_of(arguments).for_each(
+      chosen.size(), [&](std::size_t i) { differences[i] = again.difference(chosen[i]); });
+  const auto equal = std::ranges::count_if(differences, [](const auto& d) { return !d; });
+  for (const auto& difference : differences) {
+    if (difference) std::cout << *difference << "\n";
+  }
+  std::cout << equal << " of " << chosen.size()
+            << " runs computed again are the same bytes, out of " << stored.size()
+            << " stored (sample " << seed << ")\n";
+  return equal == std::ssize(chosen) ? kDone : kDifferent;
+}
+
+}  // namespace
+
+Command verify_command() {
+  return {
+      {.name = "verify",
+       .summary =
+           "computes stored runs again and compares every byte; exit code 4 where one differs",
+       .operands = {{"FILE.h5"}},
+       .options = {{"sample", "", {"K"}, "how many runs of cells, chosen at random; default 10"},
+                   {"seed", "", {"S"}, "take the sample that an earlier call named"},
+                   data_option(),
+                   {"threads", "", {"N"}, "default: what this process may use"},
+                   {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},
+       .details = "The study is taken from the file. The same bytes are promised to one build on "
+                  "one instruction set:\nthe file names its own (montecarta info FILE.h5).\n"},
+      verify};
+}
+
+}  // namespace montecarta

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// verify and replay, which compute stored runs again.
+#include "engine/records/h5.hpp"
+#include "engine/records/read_description.hpp"
+#include "engine/records/result_file.hpp"
+#include "engine/records/result_slabs.hpp"
+#include "tests/experiments/commands/program.hpp"
+
+#include <gmock/gmock.h>
+
+namespace montecarta {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class Verify : public Program {
+ protected:
+  Verify() {
+    write("blink.ini", kBlink + "cell = marginal particles=5\n");
+    write("blink.csv", kBlinkWorld);
+  }
+  void run(const std::vector<std::string>& more) const {
+    std::vector<std::string> words{"run", "blink.ini", "-o", "out.h5", "--quiet"};
+    words.insert(words.end(), more.begin(), more.end());
+    ASSERT_EQ(call(words).code, 0);
+    std::filesystem::remove(folder_ / "blink.ini");
+    std::filesystem::remove(folder_ / "blink.csv");  // the file alone must do
+  }
+  /// Turns one byte of run index `run` of a cell's column into another.
+  void alter(const std::string& label, const std::string& column, std::size_t run) const {
+    const std::filesystem::path path = folder_ / "out.h5";
+    const ResultDescription file = read_description(h5::open_file(path), path);
+    const auto cell = std::ranges::find(file.cells, label, &StoredCell::label);
+    const auto found = std::ranges::find(cell->columns, column, &Column::name);
+    const ResultSlabs slabs = find_slabs(path, file);
+    const Slab& slab = slabs.cells[static_cast<std::size_t>(cell - file.cells.begin())]
+                           .columns[static_cast<std::size_t>(found - cell->columns.begin())];
+    const PosixFile writable(path, PosixFile::Mode::write);
+    std::byte byte{};
+    writable.read_at(slab.at(run), std::span(&byte, 1));
+    byte ^= std::byte{1};
+    writable.write_at(slab.at(run), std::span(&byte, 1));
+  }
+};
+
+TEST_F(Verify, AFileAloneIsEnough) {
+  run({});
+  const Called called = call({"verify", "out.h5", "--sample", "100"});
+  EXPECT_EQ(called.code, 0) << called.err;
+  EXPECT_THAT(called.out, StartsWith("9 of 9 runs computed again are the same bytes, out of 9"));
+}
+
+TEST_F(Verify, ShardsAndRowsAtScansOnly) {
+  run({"--runs", "1:3", "--set", "record.rate=scan", "--set", "record.columns=pose"});
+  EXPECT_THAT(
+      call({"verify", "out.h5", "--sample", "5", "--seed", "17"}).out,
+      StartsWith("5 of 5 runs computed again are the same bytes, out of 6 stored (sample 17)"));
+}
+
+TEST_F(Verify, OneAlteredBitIsFoundNamedAndExitCode4) {
+  run({});
+  alter("fastslam2_m10", "ess", 2);
+  const Called called = call({"verify", "out.h5", "--sample", "9"});
+  EXPECT_EQ(called.code, 4) << called.err;
+  EXPECT_THAT(called.out, AllOf(StartsWith("fastslam2_m10, run 2: ess differs in 1 of "),
+                                HasSubstr("first at (scan 0): stored "), HasSubstr("fingerprint"),
+                                HasSubstr("\n8 of 9 runs")));
+  EXPECT_EQ(
+      call({"replay", "out.h5", "--cell", "fastslam2_m10", "--run", "2", "-o", "two.h5"}).code, 4);
+  EXPECT_EQ(
+      call({"replay", "out.h5", "--cell", "fastslam2_m10", "--run", "1", "-o", "one.h5"}).code, 0);
+}
+
+TEST_F(Verify, WrongInputIsNamed) {
+  run({});
+  EXPECT_EQ(call({"verify", "out.h5", "--sample", "0"}).code, 2);
+  EXPECT_THAT(
+      call({"replay", "out.h5", "--cell", "fastslam2_m1", "--run", "1", "-o", "one.h5"}).err,
+      HasSubstr("did you mean fastslam2_m10?"));
+  EXPECT_THAT(call({"replay", "out.h5", "--cell", "ekf_slam", "--run", "3", "-o", "one.h5"}).err,
+              HasSubstr("from 0 to 2"));
+  EXPECT_THAT(call({"replay", "out.h5", "--cell", "ekf_slam", "--run", "1"}).err,
+              HasSubstr("--output is missing"));
+  EXPECT_EQ(call({"replay", "out.h5", "--cell", "ekf_slam", "--run", "1", "-o", "out.h5"}).code, 2);
+  EXPECT_FALSE(exists("one.h5"));
+}
+
+TEST_F(Verify, AReplayHoldsEverythingAndTheSameNumbers) {
+  run({"--set", "record.columns=pose", "--set", "record.rate=scan"});
+  const Called called =
+      call({"replay", "out.h5", "--cell", "fastslam2_m10", "--run", "2", "-o", "one.h5"});
+  ASSERT_EQ(called.code, 0) << called.err;
+  const ResultFile stored(folder_ / "out.h5"), replayed(folder_ / "one.h5");
+  const StoredCell& cell = replayed.cells().front();
+  EXPECT_EQ(replayed.cells().size(), 1U);
+  EXPECT_EQ(replayed.runs(), std::vector<std::uint64_t>{2});
+  for (const char* column : {"pose_mean", "pose_covariance", "ancestor", "particle_pose",
+                             "log_weight", "association_wrong", "map_mean", "final_map_seen"})
+    EXPECT_TRUE(cell.has(column)) << column;
+  EXPECT_GT(replayed.times().size(), stored.times().size());
+  std::vector<double> before(stored.scan_times().size()), again(before.size());
+  stored.read(stored.cells().at(1), "ess", 2, before);
+  replayed.read(cell, "ess", 0, again);
+  EXPECT_EQ(stored.cells().at(1).label, cell.label);
+  EXPECT_EQ(before, again);
+}
+
+TEST_F(Verify, ARecordedDriveIsFoundByDataOrMissedByName) {
+  std::filesystem::create_directories(folder_ / "here/drive");
+  write("here/drive/start.csv", "time_s,x_m,y_m,heading_rad\n0,0,0,0\n");
+  write("here/drive/odometry.csv", "time_s,speed_mps,steer_rad\n0,1,0\n1,1,0.1\n2,1,0\n");
+  write("here/drive/detections.csv", "time_s,range_m,bearing_rad\n0.5,5,0.2\n1.5,4,0.3\n");
+  write("here/drive/reference.csv", "time_s,x_m,y_m\n0.5,0.5,0\n1.5,1.5,0\n");
+  write("here/log.ini",
+        "[study]\nname = log\nruns = 2\n[scenario]\nkind = log\npath = drive\n[belief]\nwheelbase "
+        "= 2\n"
+        "sigma_speed = 0.1\nsigma_steer_deg = 1\nsigma_range = 0.1\nsigma_bearing_deg = 1\n"
+        "[cells]\ncell = fastslam2 particles=10\n");
+  const Called ran = call({"run", "here/log.ini", "-o", "log.h5", "--quiet"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const Called lost = call({"verify", "log.h5"});
+  EXPECT_EQ(lost.code, 2);
+  EXPECT_THAT(lost.err, AllOf(HasSubstr("log.h5 (the study in it)"), HasSubstr("MONTECARTA_DATA")));
+  EXPECT_EQ(call({"verify", "log.h5", "--data", "here/drive"}).code, 0);
+  const Called replayed = call({"replay", "log.h5", "--cell", "fastslam2_m10", "--run", "0", "-o",
+                                "one.h5", "--data", "here/drive"});
+  EXPECT_EQ(replayed.code, 0) << replayed.err;
+}
+
+}  // namespace
+}  // namespace montecarta
