@@ -7,13 +7,6 @@
 namespace montecarta {
 namespace {
 
-/// Cosine of half the field of view; exactly 0 for half a turn, below -1 (never a limit) for a full
-/// one.
-double view_limit(double field_of_view) {
-  if (field_of_view == kPi) return 0.0;
-  return field_of_view >= kTwoPi ? -2.0 : std::cos(field_of_view / 2.0);
-}
-
 StreamIdentity with(StreamIdentity place, Draw purpose, std::int32_t index) {
   place.purpose = purpose;
   place.index = static_cast<std::uint32_t>(index);
@@ -31,9 +24,9 @@ std::uint32_t poisson(double mean, RngStream& draw) {
 }  // namespace
 
 Sensor::Sensor(const Scenario& scenario)
-    : max_range_(scenario.max_range),
+    : view_(scenario.max_range, scenario.field_of_view),
+      max_range_(scenario.max_range),
       field_of_view_(scenario.field_of_view),
-      cos_half_view_(view_limit(scenario.field_of_view)),
       sigma_range_(scenario.sigma_range),
       sigma_bearing_(scenario.sigma_bearing),
       miss_probability_(scenario.miss_probability),

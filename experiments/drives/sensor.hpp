@@ -4,6 +4,7 @@
 #include "engine/random/stream.hpp"
 #include "engine/runs/drive.hpp"
 #include "experiments/drives/scenario.hpp"
+#include "filters/models/field_of_view.hpp"
 
 #include <Eigen/Core>
 
@@ -33,17 +34,10 @@ class Sensor {
   /// Calls visit(sight) for everything in view from `pose`, in increasing identity.
   template <class Visit>
   void see(const Pose& pose, std::span<const Eigen::Vector2d> landmarks, const Visit& visit) const {
-    const double cosine = std::cos(pose.heading);
-    const double sine = std::sin(pose.heading);
-    for (std::size_t i = 0; i < landmarks.size(); ++i) {
-      const double dx = landmarks[i].x() - pose.x;
-      const double dy = landmarks[i].y() - pose.y;
-      const double squared = dx * dx + dy * dy;
-      if (squared >= max_range_ * max_range_) continue;
-      const double range = std::sqrt(squared);
-      if (dx * cosine + dy * sine <= range * cos_half_view_) continue;
-      visit(Sight{static_cast<std::int32_t>(i), range, wrap(std::atan2(dy, dx) - pose.heading)});
-    }
+    view_.look(pose, landmarks, [&](const InView& seen) {
+      visit(Sight{static_cast<std::int32_t>(seen.landmark), seen.range,
+                  wrap(std::atan2(seen.dy, seen.dx) - pose.heading)});
+    });
   }
 
   /// Appends the detection of `sight`, with noise, unless it is missed. `place` names study seed,
@@ -54,9 +48,9 @@ class Sensor {
   void add_clutter(const StreamIdentity& place, std::vector<Detection>& detections) const;
 
  private:
+  FieldOfView view_;
   double max_range_;
   double field_of_view_;
-  double cos_half_view_;
   double sigma_range_;
   double sigma_bearing_;
   double miss_probability_;
