@@ -2,6 +2,7 @@
 #include "engine/errors.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/shipped_files.hpp"
+#include "experiments/study/cell_spec.hpp"
 #include "experiments/study/ini_text.hpp"
 #include "experiments/study/setting.hpp"
 #include "experiments/study/settings.hpp"
@@ -18,16 +19,22 @@
 namespace montecarta {
 namespace {
 
+void list_options(std::span<const FilterOption> options) {
+  std::vector<TableRow> rows;
+  for (const FilterOption& option : options) {
+    rows.push_back(
+        {option.name + "=" + option.fallback, option.meaning, demand_of(setting_of(option))});
+  }
+  std::cout << aligned(rows, 4);
+}
+
 void list_filters() {
   for (const FilterKind& filter : filter_kinds()) {
     std::cout << filter.name << "  " << filter.long_name << "  " << filter.source << "\n";
-    std::vector<TableRow> rows;
-    for (const FilterOption& option : filter.options) {
-      rows.push_back(
-          {option.name + "=" + option.fallback, option.meaning, demand_of(setting_of(option))});
-    }
-    std::cout << aligned(rows, 4);
+    list_options(filter.options);
   }
+  std::cout << "every filter  told wrong noise, to see what it makes of it\n";
+  list_options(mismatch_options());
 }
 
 /// The default, and those of kinds of scenario that have another.

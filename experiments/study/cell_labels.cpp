@@ -34,6 +34,10 @@ void describe(const std::vector<CellSpec>& cells, const CellSpec& cell, std::str
     distinction +=
         (distinction.empty() ? "" : ", ") + (particles ? value + " particles" : key + " " + value);
   }
+  for (const auto& [key, factor] : cell.mismatch) {
+    label += "_" + key + "_" + label_part(factor);
+    distinction += (distinction.empty() ? "" : ", ") + ("believes " + key + " x " + factor);
+  }
 }
 
 }  // namespace

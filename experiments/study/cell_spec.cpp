@@ -33,6 +33,10 @@ const FilterOption& known_option(const FilterKind& filter, const std::string& ke
     if (option.name == key) return option;
     known.push_back(option.name);
   }
+  for (const FilterOption& option : mismatch_options()) {
+    if (option.name == key) return option;
+    known.push_back(option.name);
+  }
   throw StudyError(place + ": " + filter.name + " has no option '" + key +
                    "' (nothing would come of it): " + nearest_spelling(key, known));
 }
@@ -68,21 +72,38 @@ void take_word(const std::string& word, const FilterKind& filter, CellSpec& cell
   }
 }
 
+/// Every cell once for each value that the line lists for an option, or with its default.
+template <class Take>
+void multiply(const FilterOption& option, const Lists& lists, const Take& take,
+              std::vector<CellSpec>& cells) {
+  const auto given = lists.find(option.name);
+  const Setting setting = setting_of(option);
+  const std::vector<std::string> fallback{
+      checked_value(setting, option.fallback, cells.front().place)};
+  std::vector<CellSpec> longer;
+  for (const CellSpec& cell : cells) {
+    for (const std::string& value : given == lists.end() ? fallback : given->second) {
+      longer.push_back(cell);
+      take(longer.back(), value);
+    }
+  }
+  cells = std::move(longer);
+}
+
 /// All combinations, the last option varying fastest.
-std::vector<CellSpec> combinations(const CellSpec& line, Lists lists) {
+std::vector<CellSpec> combinations(const CellSpec& line, const Lists& lists) {
   std::vector<CellSpec> cells{line};
   for (const FilterOption& option : line.filter->options) {
-    const auto& values = lists[option.name];
-    const std::vector<std::string> fallback{
-        values.empty() ? checked_value(setting_of(option), option.fallback, line.place) : ""};
-    std::vector<CellSpec> longer;
-    for (const CellSpec& cell : cells) {
-      for (const std::string& value : values.empty() ? fallback : values) {
-        longer.push_back(cell);
-        longer.back().options.emplace_back(option.name, value);
-      }
-    }
-    cells = std::move(longer);
+    const auto take = [&](CellSpec& cell, const std::string& value) {
+      cell.options.emplace_back(option.name, value);
+    };
+    multiply(option, lists, take, cells);
+  }
+  for (const FilterOption& option : mismatch_options()) {
+    const auto take = [&](CellSpec& cell, const std::string& value) {
+      if (value != option.fallback) cell.mismatch.emplace_back(option.name, value);
+    };
+    multiply(option, lists, take, cells);
   }
   return cells;
 }
@@ -101,7 +122,7 @@ std::vector<CellSpec> read_line(const IniEntry& entry, std::span<const FilterKin
                 .place = entry.place};
   Lists lists;
   for (std::size_t i = 1; i < words.size(); ++i) take_word(words[i], *line.filter, line, lists);
-  std::vector<CellSpec> cells = combinations(line, std::move(lists));
+  std::vector<CellSpec> cells = combinations(line, lists);
   if (!line.label.empty() && cells.size() > 1) {
     throw StudyError(entry.place + ": one label for " + std::to_string(cells.size()) +
                      " cells (labels are unique): remove label or the lists");
@@ -143,6 +164,7 @@ std::vector<CellSpec> read_cells(std::span<const IniEntry> entries, const std::s
 std::string cell_line(const CellSpec& cell) {
   std::string line = cell.filter->name + " label=" + cell.label;
   for (const auto& [key, value] : cell.options) line += " " + key + "=" + value;
+  for (const auto& [key, value] : cell.mismatch) line += " " + key + "=" + value;
   return line;
 }
 

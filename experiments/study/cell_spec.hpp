@@ -6,6 +6,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -17,10 +18,18 @@ struct CellSpec {
   const FilterKind* filter = nullptr;
   std::vector<std::pair<std::string, std::string>>
       options;  ///< every one, in the filter's order, one spelling
+  std::vector<std::pair<std::string, std::string>> mismatch =
+      {};  ///< the factors of mismatch_options() that are not 1
   std::string
       distinction;    ///< what tells it from others of its filter, for legends: "100 particles"
   std::string place;  ///< "file:line"
 };
+
+/// What every filter takes besides its own options: factors on the standard deviations that it
+/// believes, so that a study can ask what becomes of a filter that is told wrong noise.
+std::span<const FilterOption> mismatch_options();
+/// The factor of that name; 1 where it is not in the list.
+double mismatch_of(const CellSpec& cell, std::string_view name);
 
 /// The cells of all `cell = FILTER key=value,... label=NAME` lines: one for every combination of
 /// listed values. Throws StudyError at unknown filters, options and values, and where two cells are

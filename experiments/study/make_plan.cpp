@@ -12,13 +12,16 @@
 namespace montecarta {
 namespace {
 
-Belief belief_of(const Settings& s) {
+/// What the study says that filters believe, times what the cell says of its own.
+Belief belief_of(const Settings& s, const CellSpec& spec) {
   const char* in = "belief";
+  const double motion = mismatch_of(spec, "motion_noise");
+  const double sensor = mismatch_of(spec, "sensor_noise");
   return {.vehicle = vehicle_of(s, in),
-          .sigma_speed = s.number(in, "sigma_speed"),
-          .sigma_steer = s.radians(in, "sigma_steer_deg"),
-          .sigma_range = s.number(in, "sigma_range"),
-          .sigma_bearing = s.radians(in, "sigma_bearing_deg")};
+          .sigma_speed = motion * s.number(in, "sigma_speed"),
+          .sigma_steer = motion * s.radians(in, "sigma_steer_deg"),
+          .sigma_range = sensor * s.number(in, "sigma_range"),
+          .sigma_bearing = sensor * s.radians(in, "sigma_bearing_deg")};
 }
 
 /// The chi-square gate, 2 degrees of freedom, that accepts as often as k sigma of a normal: the
@@ -70,9 +73,15 @@ std::size_t particles_of(const CellSpec& spec) {
   return to_count(std::ranges::find_if(spec.options, named)->second).value();
 }
 
+std::vector<std::pair<std::string, std::string>> settings_of(const CellSpec& spec) {
+  auto settings = spec.options;
+  settings.insert(settings.end(), spec.mismatch.begin(), spec.mismatch.end());
+  return settings;
+}
+
 Cell cell_of(const CellSpec& spec, const Study& study) {
   std::map<std::string, std::string, std::less<>> values(spec.options.begin(), spec.options.end());
-  const FilterSetup setup{.belief = belief_of(study.settings),
+  const FilterSetup setup{.belief = belief_of(study.settings, spec),
                           .association = association_of(study.settings),
                           .options = FilterOptions(std::move(values)),
                           .landmarks = identities_of(study)};
@@ -83,7 +92,7 @@ Cell cell_of(const CellSpec& spec, const Study& study) {
           .particles = particles_of(spec),
           .mixture = filter.has_mixture,
           .landmarks = map_rows_of(setup, study.settings),
-          .settings = spec.options,
+          .settings = settings_of(spec),
           .make_filter = [make = filter.make, setup] { return make(setup); }};
 }
 

@@ -87,5 +87,20 @@ TEST(Cells, RefuseWhatAFilterDoesNotTake) {
   EXPECT_THAT(complaint_about("bold particles=3,4 label=a"), HasSubstr("one label for 2 cells"));
 }
 
+TEST(Cells, AreToldWrongNoiseWhereTheLineSaysSo) {
+  EXPECT_THAT(labels_of({"plain motion_noise=0.5,1 sensor_noise=2,1"}),
+              ElementsAre("plain_motion_noise_0p5_sensor_noise_2", "plain_motion_noise_0p5",
+                          "plain_sensor_noise_2", "plain"));
+  const auto filters = paper_filters();
+  const auto cells = cells_of(filters, {"plain motion_noise=0.5,1.0"});
+  EXPECT_EQ(cell_line(cells[0]),
+            "plain label=plain_motion_noise_0p5 threshold=0.5 motion_noise=0.5");
+  EXPECT_EQ(cell_line(cells[1]), "plain label=plain threshold=0.5");
+  EXPECT_EQ(cells[0].distinction, "believes motion_noise x 0.5");
+  EXPECT_EQ(mismatch_of(cells[0], "motion_noise"), 0.5);
+  EXPECT_EQ(mismatch_of(cells[0], "sensor_noise"), 1.0);
+  EXPECT_THAT(complaint_about("plain motion_noise=0"), HasSubstr("motion_noise = 0"));
+}
+
 }  // namespace
 }  // namespace montecarta

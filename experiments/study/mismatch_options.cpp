@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/study/cell_spec.hpp"
+#include "experiments/text/numbers.hpp"
+
+#include <algorithm>
+
+namespace montecarta {
+
+std::span<const FilterOption> mismatch_options() {
+  using Kind = FilterOption::Kind;
+  static const std::vector<FilterOption> options = {
+      {"motion_noise",
+       Kind::number,
+       "1",
+       1e-3,
+       1e3,
+       {},
+       "factor on the believed sigma_speed and sigma_steer"},
+      {"sensor_noise",
+       Kind::number,
+       "1",
+       1e-3,
+       1e3,
+       {},
+       "factor on the believed sigma_range and sigma_bearing"}};
+  return options;
+}
+
+double mismatch_of(const CellSpec& cell, std::string_view name) {
+  const auto found =
+      std::ranges::find_if(cell.mismatch, [&](const auto& factor) { return factor.first == name; });
+  return found == cell.mismatch.end() ? 1.0 : to_number(found->second).value();
+}
+
+}  // namespace montecarta
