@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/runs/drive.hpp"
+#include "engine/runs/pose.hpp"
+#include "filters/models/point.hpp"
+#include "filters/models/vehicle.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// The Cramer-Rao bound on pose and landmarks together, as a covariance that is carried along a
+/// known path: the recursion of a Kalman filter with all Jacobians at the truth, and nothing known
+/// of a landmark before its first sight. The pose is known exactly at the start.
+class JointBound {
+ public:
+  /// Room for all `landmarks`; nothing is allocated later. `control_variance`: (speed, steering).
+  JointBound(std::size_t landmarks, const Vehicle& vehicle, const Eigen::Vector2d& control_variance,
+             const Eigen::Vector2d& sight_variance);
+
+  /// One control step from the true `pose`; returns where it leads.
+  Pose move(const Pose& pose, const Control& control, double duration);
+  /// A scan from the true `pose` that detects `landmarks`, true positions with their identities.
+  /// False where the noise is so small that numbers do not hold it; the bound is spoilt then.
+  struct Seen {
+    std::size_t identity = 0;
+    Point point;
+  };
+  [[nodiscard]] bool scan(const Pose& pose, std::span<const Seen> landmarks);
+
+  const Eigen::Matrix3d& pose() const { return pose_; }
+  /// How many landmarks have been seen.
+  std::size_t seen() const { return static_cast<std::size_t>(size_ - 3) / 2; }
+  /// [m^2] Mean of the squared position error over the landmarks seen; NaN where none is.
+  double mean_map_variance() const;
+  /// All that is known, pose first, landmarks in the order of their first sight.
+  Eigen::MatrixXd covariance() const;
+
+ private:
+  void finish_motion();
+  [[nodiscard]] bool correct(const Pose& pose, std::span<const Seen> landmarks);
+  void append(const Pose& pose, const Seen& landmark);
+  Eigen::VectorXd column(Eigen::Index j) const;
+  Eigen::Index& row_of(std::size_t identity) { return row_[identity]; }
+
+  Vehicle vehicle_;
+  Eigen::Vector2d sigma_control_;
+  Eigen::Vector2d sight_variance_;
+  Eigen::Matrix3d pose_ = Eigen::Matrix3d::Zero();  ///< symmetric
+  double pending_x_heading_ = 0.0;                  ///< [m/rad] of Fx since the last scan
+  double pending_y_heading_ = 0.0;                  ///< [m/rad]
+  Eigen::MatrixXd joint_;                           ///< lower triangle; its pose block is in pose_
+  Eigen::Index size_ = 3;                           ///< rows in use
+  std::vector<Eigen::Index> row_;                   ///< of each landmark; 0: never seen
+};
+
+}  // namespace montecarta

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/map/map_scores.hpp"
+#include "analysis/metrics/run_scores.hpp"
+#include "analysis/metrics/summary.hpp"
+#include "analysis/nees_bounds.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// One landmark over the runs that have it in their map.
+struct LandmarkErrors {
+  std::uint32_t runs = 0;                                   ///< with it in the map
+  std::uint32_t valid = 0;                                  ///< of them: with a finite NEES
+  double rms = std::numeric_limits<double>::quiet_NaN();    ///< [m]
+  double anees = std::numeric_limits<double>::quiet_NaN();  ///< [1] of two components
+  Interval bounds{std::numeric_limits<double>::quiet_NaN(),
+                  std::numeric_limits<double>::quiet_NaN()};  ///< of anees, by `valid`
+};
+
+/// Final maps over the complete runs of a cell.
+struct MapErrors {
+  Summary rms;                ///< [m] by identity; without runs where association is unknown
+  Summary nees;               ///< [1] of the two components of a landmark, mean over landmarks
+  Summary gospa;              ///< [m]
+  Summary localisation;       ///< [m] part of GOSPA
+  Summary missed;             ///< [1] landmarks
+  Summary invented;           ///< [1] landmarks
+  std::size_t undefined = 0;  ///< landmarks of runs whose NEES is not a number
+  std::vector<LandmarkErrors> landmarks;  ///< {landmark}; empty where association is unknown
+  std::string missing = {};               ///< why there are no numbers; empty where there are
+
+  /// Of landmarks with a NEES, the share inside their bounds; NaN where there is none.
+  double share_inside() const;
+};
+
+/// Adds up complete runs in the order of the calls.
+class MapErrorSums {
+ public:
+  /// nullopt: the run's map is not stored, or not all of it.
+  void add(const std::optional<MapScores>& run);
+  /// `known`: whether anybody knows where the landmarks are.
+  MapErrors result(double level, bool known) const;
+  /// Copies what is known of every run to its scores, which are in the order of the calls.
+  void put_scores(std::vector<RunScores>& scores) const;
+
+ private:
+  struct Sums {
+    double squares = 0.0, nees = 0.0;
+    std::uint32_t runs = 0, valid = 0;
+  };
+  std::string reason(bool known) const;
+
+  /// A run's map in single numbers.
+  struct RunMap {
+    Gospa gospa;
+    double rms, nees;
+  };
+  Summary over_runs(double (*value_of)(const RunMap&)) const;
+
+  std::vector<std::optional<RunMap>> runs_;  ///< {run}
+  std::vector<Sums> landmarks_;              ///< {landmark}
+  std::size_t undefined_ = 0;
+};
+
+}  // namespace montecarta

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/map/map_errors.hpp"
+
+#include "engine/random/stream.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace montecarta {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::vector<Eigen::Vector2d> kWorld = {{0, 0}, {10, 0}, {20, 0}};
+const std::vector<double> kPath = {0, 0, 0};
+const MapYardstick kSticks{kWorld, {}, true};
+
+FinalMap map_of(std::vector<std::uint32_t> seen, std::vector<Eigen::Vector2d> mean) {
+  const std::vector<Eigen::Matrix2d> covariance(seen.size(), 0.25 * Eigen::Matrix2d::Identity());
+  return {std::move(seen), std::move(mean), covariance};
+}
+
+TEST(MapScores, JudgeTheLandmarksInTheMapByIdentity) {
+  const MapScores scores =
+      map_scores(map_of({1, 1, 0}, {{0.3, 0.4}, {10, 1}, {99, 99}}), kSticks, kPath);
+  EXPECT_DOUBLE_EQ(scores.rms, std::sqrt((0.25 + 1.0) / 2.0));
+  EXPECT_DOUBLE_EQ(scores.nees, (1.0 + 4.0) / 2.0);
+  EXPECT_EQ(scores.gospa.missed, 1.0);
+  EXPECT_EQ(scores.gospa.invented, 0.0);
+  EXPECT_FALSE(scores.landmarks[2].in_map);
+}
+
+TEST(MapScores, LeaveIdentityOutWhereItIsUnknown) {
+  const MapYardstick sticks{kWorld, {}, false};
+  const MapScores scores = map_scores(map_of({1}, {{10, 1}}), sticks, kPath);
+  EXPECT_TRUE(std::isnan(scores.rms));
+  EXPECT_THAT(scores.landmarks, IsEmpty());
+  EXPECT_DOUBLE_EQ(scores.gospa.localisation, 1.0);
+}
+
+TEST(MapScores, MissOnlyWhatCameIntoView) {
+  const MapYardstick sticks{kWorld, FieldOfView(12.0, kPi), true};
+  EXPECT_EQ(map_scores(map_of({0, 0, 0}, kWorld), sticks, kPath).gospa.missed, 1.0)
+      << "the first is not strictly ahead, the last is out of range";
+}
+
+TEST(MapScores, CountACovarianceThatIsNoNumber) {
+  FinalMap map = map_of({1, 1, 1}, kWorld);
+  map.covariance[1].setConstant(std::numeric_limits<double>::quiet_NaN());
+  map.covariance[2].setZero();
+  const MapScores scores = map_scores(map, kSticks, kPath);
+  EXPECT_EQ(scores.undefined, 2u);
+  EXPECT_EQ(scores.nees, 0.0);
+  EXPECT_EQ(scores.rms, 0.0);
+}
+
+/// Runs whose maps are wrong by `inflation` times what they say.
+MapErrors errors_of(std::uint64_t runs, double inflation) {
+  RngStream draw({.seed = 9});
+  MapErrorSums sums;
+  for (std::uint64_t run = 0; run < runs; ++run) {
+    std::vector<Eigen::Vector2d> mean = kWorld;
+    for (Eigen::Vector2d& at : mean) {
+      at += 0.5 * inflation * Eigen::Vector2d(draw.normal(), draw.normal());
+    }
+    sums.add(map_scores(map_of({1, 1, 1}, mean), kSticks, kPath));
+  }
+  return sums.result(0.95, true);
+}
+
+TEST(MapErrors, FindAnHonestMapHonest) {
+  const MapErrors honest = errors_of(400, 1.0);
+  EXPECT_EQ(honest.missing, "");
+  EXPECT_NEAR(honest.nees.mean, 2.0, 5.0 * honest.nees.standard_error());
+  EXPECT_NEAR(honest.rms.mean, std::sqrt(0.5), 0.05);
+  EXPECT_EQ(honest.landmarks[0].runs, 400u);
+  EXPECT_EQ(honest.share_inside(), 1.0);
+  EXPECT_EQ(errors_of(400, 2.0).share_inside(), 0.0);
+}
+
+TEST(MapErrors, SayWhyThereAreNone) {
+  MapErrorSums sums;
+  EXPECT_THAT(sums.result(0.95, true).missing, HasSubstr("no run is complete"));
+  sums.add(std::nullopt);
+  EXPECT_THAT(sums.result(0.95, true).missing, HasSubstr("add final_map to record.columns"));
+  EXPECT_THAT(sums.result(0.95, false).missing, HasSubstr("nobody knows"));
+  sums.add(map_scores(map_of({1, 0, 0}, kWorld), kSticks, kPath));
+  EXPECT_THAT(sums.result(0.95, true).missing, HasSubstr("the maps of 1 runs are not whole"));
+}
+
+TEST(MapErrors, GiveEveryRunItsScores) {
+  MapErrorSums sums;
+  sums.add(std::nullopt);
+  sums.add(map_scores(map_of({1, 0, 0}, kWorld), kSticks, kPath));
+  std::vector<RunScores> scores(2);
+  sums.put_scores(scores);
+  EXPECT_TRUE(std::isnan(scores[0].gospa));
+  EXPECT_DOUBLE_EQ(scores[1].gospa, 5.0);
+  EXPECT_EQ(scores[1].landmarks_missed, 2.0);
+  EXPECT_EQ(scores[1].landmark_rms, 0.0);
+}
+
+}  // namespace
+}  // namespace montecarta
