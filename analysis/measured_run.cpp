@@ -1,10 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/measured_run.hpp"
 
+#include "analysis/bound/simulated_world.hpp"
+
+#include <algorithm>
+
 namespace montecarta {
+namespace {
+
+bool associates_by_identity(const ResultFile& file) {
+  const TextPairs::value_type known{"association.kind", "known"};
+  return std::ranges::count(file.scenario(), known) > 0;
+}
+
+/// Of a drive whose truth is known; a recorded one is judged by its beacons.
+MapYardstick map_yardstick_of(const ResultFile& file) {
+  MapYardstick sticks;
+  if (!file.has_truth()) return sticks;
+  for (const auto& [x, y] : file.landmarks()) sticks.landmarks.emplace_back(x, y);
+  if (const auto world = simulated_world_of(file)) sticks.view = world->view;
+  sticks.identities_known = associates_by_identity(file);
+  return sticks;
+}
+
+}  // namespace
 
 Yardsticks yardsticks_of(const ResultFile& file, double level) {
-  Yardsticks sticks{file.scan_times(), level, {}, {}};
+  Yardsticks sticks{file.scan_times(), level, {}, {}, map_yardstick_of(file)};
   for (const ReferencePath& path : file.references()) {
     sticks.references.emplace_back(path, file.times(), file.description().start);
   }
@@ -18,22 +40,30 @@ void MeasuredRun::measure(const Yardsticks& sticks, std::size_t particles) {
   for (const PathAtFixes& fixes : sticks.references) {
     references.push_back(measure_against(fixes, rows.path));
   }
+  map.reset();
+  if (!sticks.map.landmarks.empty() && rows.final_map) {
+    map = map_scores(*rows.final_map, sticks.map, rows.truth);
+  }
   beacons.reset();
   if (sticks.beacons.empty() || !rows.final_map) return;
+  if (references.empty() && !rows.truth.empty()) return;  // the truth is the better yardstick
   const RigidMotion alignment = references.empty() ? RigidMotion() : references.front().alignment;
-  beacons = beacon_scores(*rows.final_map, sticks.beacons, alignment);
+  beacons = beacon_scores(rows.final_map->places(), sticks.beacons, alignment);
 }
 
 void CellSums::add(const MeasuredRun& run) {
   sums_.add(run.rows, run.metrics);
   for (std::size_t r = 0; r < references_.size(); ++r) references_[r].add(run.references[r]);
   beacons_.push_back(run.beacons);
+  map_.add(run.map);
 }
 
 CellAnalysis CellSums::result() const {
   CellAnalysis cell = sums_.result();
   for (const ReferenceAccumulator& sums : references_) cell.references.push_back(sums.result());
   if (!cell.references.empty()) put_leading_scores(cell.references.front(), cell.scores);
+  cell.map = map_.result(level_, knows_landmarks_);
+  map_.put_scores(cell.scores);
   for (std::size_t i = 0; i < beacons_.size(); ++i) {
     if (!beacons_[i]) continue;
     cell.scores[i].beacons_found = beacons_[i]->found;

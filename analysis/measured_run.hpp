@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/map/map_errors.hpp"
 #include "analysis/metrics/beacon_scores.hpp"
 #include "analysis/metrics/cell_accumulator.hpp"
 #include "analysis/metrics/path_at_fixes.hpp"
@@ -20,6 +21,7 @@ struct Yardsticks {
   double level = 0.95;            ///< of NEES bounds
   std::vector<PathAtFixes> references;
   std::vector<Eigen::Vector2d> beacons;  ///< [m]
+  MapYardstick map;                      ///< of a simulation
 };
 
 Yardsticks yardsticks_of(const ResultFile& file, double level);
@@ -31,6 +33,7 @@ struct MeasuredRun {
   RunMetrics metrics;
   std::vector<ReferenceRun> references;
   std::optional<BeaconScores> beacons;  ///< where the final map is stored and beacons are known
+  std::optional<MapScores> map;         ///< where it is stored and the world is known
 
   /// Of `rows` of a complete run.
   void measure(const Yardsticks& sticks, std::size_t particles);
@@ -40,7 +43,10 @@ struct MeasuredRun {
 class CellSums {
  public:
   explicit CellSums(const Yardsticks& sticks)
-      : sums_(sticks.times, sticks.level), references_(sticks.references.size()) {}
+      : sums_(sticks.times, sticks.level),
+        references_(sticks.references.size()),
+        level_(sticks.level),
+        knows_landmarks_(!sticks.map.landmarks.empty()) {}
 
   void add(const MeasuredRun& run);
   /// Fills all that complete runs say; label, failures and missing runs are the caller's.
@@ -50,6 +56,9 @@ class CellSums {
   CellAccumulator sums_;
   std::vector<ReferenceAccumulator> references_;
   std::vector<std::optional<BeaconScores>> beacons_;  ///< {run}
+  MapErrorSums map_;
+  double level_;
+  bool knows_landmarks_;
 };
 
 }  // namespace montecarta

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/report.hpp"
 
+#include "analysis/figures/mismatch_figure.hpp"
 #include "analysis/figures/path_figure.hpp"
 #include "analysis/figures/reference_figures.hpp"
 #include "analysis/figures/time_figures.hpp"
@@ -31,10 +32,12 @@ std::vector<Section> reading_order(const ResultFile& file, const StudyAnalysis& 
   return {title_section(study),
           failure_section(study),
           verdict_section(study),
+          map_section(study),
           reference_section(study),
           figure_section({path_figure(file, options.run)}),
           figure_section(reference_figures(study)),
           figure_section(time_figures(study)),
+          figure_section({mismatch_figure(study)}),
           association_section(study),
           consistency_section(study),
           origin_section(file, study),

@@ -54,19 +54,28 @@ void RunReader::read_path(std::size_t i, std::vector<double>& out) const {
   file_->read(*cell_, mixture ? "pose_mean_mixture" : "pose_mean", i, std::span(out));
 }
 
-void RunReader::read_final_map(std::size_t i, RunRows& rows) const {
+void RunReader::read_final_map(std::size_t i, RunRows& rows, Scratch& scratch) const {
   rows.final_map.reset();
-  const auto seen_column = std::ranges::find(cell_->columns, kFinalMapSeen, &Column::name);
+  const std::string prefix = cell_->has(kFinalMapSeen) ? "final_map_" : "map_";
+  const auto seen_column = std::ranges::find(cell_->columns, prefix + "seen", &Column::name);
   if (seen_column == cell_->columns.end()) return;
-  std::vector<double> seen(seen_column->elements()), mean(2 * seen.size());
-  if (!rows.map_size.empty() && rows.map_size.back() > static_cast<double>(seen.size()))
+  const std::size_t landmarks = seen_column->shape.back();
+  if (!rows.map_size.empty() && rows.map_size.back() > static_cast<double>(landmarks))
     return;  // record.map_rows left part of it out
+  const auto last = [&](const char* name, std::size_t width) {
+    const auto column = std::ranges::find(cell_->columns, prefix + name, &Column::name);
+    scratch.resize(column->elements());
+    file_->read(*cell_, column->name, i, std::span(scratch));
+    return std::span<const double>(scratch).last(landmarks * width);
+  };
   const std::lock_guard lock(reading_);
-  file_->read(*cell_, kFinalMapSeen, i, std::span(seen));
-  file_->read(*cell_, "final_map_mean", i, std::span(mean));
-  rows.final_map.emplace();
-  for (std::size_t l = 0; l < seen.size(); ++l) {
-    if (seen[l] != 0.0) rows.final_map->emplace_back(mean[2 * l], mean[2 * l + 1]);
+  FinalMap& map = rows.final_map.emplace();
+  for (const double one : last("seen", 1)) map.seen.push_back(one != 0.0 ? 1 : 0);
+  const auto mean = last("mean", 2);
+  for (std::size_t l = 0; l < landmarks; ++l) map.mean.emplace_back(mean[2 * l], mean[2 * l + 1]);
+  const auto covariance = last("covariance", 4);
+  for (std::size_t l = 0; l < landmarks; ++l) {
+    map.covariance.emplace_back(Eigen::Map<const Eigen::Matrix2d>(covariance.data() + 4 * l));
   }
 }
 
@@ -94,7 +103,7 @@ void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
   read_scans("association_clutter", 1, i, rows.association.clutter);
   read_path(i, rows.path);
   read_scans("map_size", 1, i, rows.map_size);
-  read_final_map(i, rows);
+  read_final_map(i, rows, scratch);
   rows.cpu_seconds = cpu_seconds_[i];
   rows.ess.clear();
   rows.resampled.clear();

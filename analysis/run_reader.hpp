@@ -27,7 +27,8 @@ class RunReader {
  private:
   void read_truth(std::size_t i, std::vector<double>& out, Scratch& scratch) const;
   void read_path(std::size_t i, std::vector<double>& out) const;
-  void read_final_map(std::size_t i, RunRows& rows) const;
+  /// The map after the last scan, also of columns that hold every one.
+  void read_final_map(std::size_t i, RunRows& rows, Scratch& scratch) const;
   /// A column over time, of which scans are kept; `width` numbers a row. Empty where not stored.
   void read_at_scans(std::string_view column, std::size_t width, std::size_t i,
                      std::vector<double>& out, Scratch& scratch) const;

@@ -55,6 +55,7 @@ CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& stored,
   cell.filter = stored.filter;
   cell.long_name = stored.long_name;
   cell.particles = stored.particles;
+  cell.mismatch = mismatch_of(stored);
   cell.missing = outcome.missing;
   cell.failures = std::move(outcome.failures);
   return cell;
@@ -102,6 +103,8 @@ StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& para
   for (const StoredCell& cell : file.cells()) {
     study.cells.push_back(analyze_cell(file, cell, sticks, parallel, slots));
   }
+  study.bound = cramer_rao_bound(file, parallel);
+  for (CellAnalysis& cell : study.cells) cell.efficiency = efficiency_of(cell, study.bound);
   return study;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/bound/cramer_rao.hpp"
 #include "analysis/metrics/cell_analysis.hpp"
 #include "analysis/printed/printed.hpp"
 #include "engine/records/result_file.hpp"
@@ -34,6 +35,7 @@ struct StudyAnalysis {
   bool has_truth = true;         ///< whether the true path is known: without it no errors, no NEES
   std::vector<JudgedReference> references;  ///< of a recorded drive; the first one leads
   std::size_t beacons = 0;                  ///< landmarks whose true positions are known
+  CramerRaoBound bound;                     ///< below which no error can be
   std::vector<CellAnalysis> cells;
   Printed printed;  ///< what the study repeats; empty where it repeats nothing
 

@@ -58,6 +58,7 @@ void draw(const Figure& figure, const std::filesystem::path& directory) {
 std::string line_style(std::size_t i) {
   constexpr std::array kColours = {"#0072B2", "#D55E00", "#009E73",
                                    "#CC79A7", "#E69F00", "#56B4E9"};
+  if (i == kYardstickStyle) return "linewidth 1.6 linecolor rgb 'black' dashtype (6,4)";
   return std::string("linewidth 1.4 linecolor rgb '") + kColours[i % kColours.size()] +
          "' dashtype " + std::to_string(1 + i / kColours.size());
 }

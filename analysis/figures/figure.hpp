@@ -34,6 +34,9 @@ void draw(const Figure& figure, const std::filesystem::path& directory);
 /// Line colour and dashes of curve `i`, for gnuplot: told apart by the colour-blind (Okabe and
 /// Ito), and from the seventh on by dashes.
 std::string line_style(std::size_t i);
+/// In place of the number of a curve: of what is no cell, such as a bound; dashed, in the colour of
+/// the text.
+inline constexpr std::size_t kYardstickStyle = static_cast<std::size_t>(-1);
 
 /// The data file of a figure over time.
 FigureData data_over_time(const std::string& name, const ThinnedSeries& thinned);

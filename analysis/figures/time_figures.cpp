@@ -68,6 +68,16 @@ Panel ancestor_panel(const StudyAnalysis& study, const std::string& name, const 
   return {name, label, curves(study, values_of), {}, Scale::logarithmic};
 }
 
+/// The cells' curves and, as the floor below them, the Cramer-Rao bound.
+Panel error_panel(const StudyAnalysis& study, const std::string& name, const std::string& label,
+                  const ValuesOf& values_of, const std::vector<double>& bound) {
+  Panel panel{name, label, curves(study, values_of), {}, Scale::from_zero};
+  if (!bound.empty() && !panel.curves.empty()) {
+    panel.curves.push_back({"Cramer-Rao bound", kYardstickStyle, bound});
+  }
+  return panel;
+}
+
 void add_if_shown(const std::vector<Panel>& panels, const StudyAnalysis& study, Figure& figure) {
   if (!panels.front().curves.empty()) add_panels(panels, study.times, figure);
 }
@@ -112,9 +122,15 @@ Figure rmse_figure(const StudyAnalysis& study) {
   const ValuesOf heading = [&](const CellAnalysis& cell) {
     return scaled(complete(cell, cell.error.heading_over_time), 180.0 / kPi);
   };
+  if (!study.bound.empty()) {
+    figure.sentence +=
+        " The dashed line is the Cramer-Rao bound: no filter without bias can stay below it, so "
+        "the gap is what a better filter could gain.";
+  }
   add_if_shown(
-      {{"rmse_position", "position RMSE [m]", curves(study, position), {}, Scale::from_zero},
-       {"rmse_heading", "heading RMSE [deg]", curves(study, heading), {}, Scale::from_zero}},
+      {error_panel(study, "rmse_position", "position RMSE [m]", position, study.bound.position),
+       error_panel(study, "rmse_heading", "heading RMSE [deg]", heading,
+                   scaled(study.bound.heading, 180.0 / kPi))},
       study, figure);
   return figure;
 }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/bound/efficiency.hpp"
+#include "analysis/map/map_errors.hpp"
 #include "analysis/metrics/consistency.hpp"
 #include "analysis/metrics/reference_analysis.hpp"
 #include "analysis/metrics/run_scores.hpp"
 #include "analysis/metrics/summary.hpp"
+#include "analysis/mismatch/mismatch.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -72,6 +75,7 @@ struct CellAnalysis {
   std::string filter;
   std::string long_name;
   std::size_t particles = 0;  ///< 0: not a particle filter
+  Mismatch mismatch;          ///< what it believes besides what the study tells
   std::size_t complete = 0;
   std::size_t missing = 0;
   std::vector<FailedRun> failures;
@@ -81,6 +85,8 @@ struct CellAnalysis {
   std::optional<WeightSummary> weights;
   std::optional<DiversitySummary> diversity;
   std::optional<AssociationSummary> association;
+  MapErrors map;                              ///< of the final maps
+  Efficiency efficiency;                      ///< against StudyAnalysis::bound
   std::vector<ReferenceAnalysis> references;  ///< one for each of the drive's, the leading first
   std::vector<double> map_size_over_time;  ///< [1] {scan} mean over runs; of a drive without truth
   std::vector<std::uint64_t> runs;         ///< numbers of the complete runs, increasing

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
+#include "analysis/map/final_map.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -35,7 +35,7 @@ struct RunRows {
   std::vector<double> path;      ///< {row, 3} [m, m, rad] leading mean, also between scans; only
                                  ///< where the drive has references
   std::vector<double> map_size;  ///< {scan} landmarks in the map
-  std::optional<std::vector<Eigen::Vector2d>> final_map;  ///< [m] at the last scan, if whole
+  std::optional<FinalMap> final_map;  ///< at the last scan, if stored and whole
   double cpu_seconds = 0.0;
 };
 

@@ -66,7 +66,7 @@ void score_map(const RunRows& rows, RunScores& scores) {
   if (!rows.map_size.empty()) {
     scores.map_landmarks = rows.map_size.back();
   } else if (rows.final_map) {
-    scores.map_landmarks = static_cast<double>(rows.final_map->size());
+    scores.map_landmarks = static_cast<double>(rows.final_map->places().size());
   }
 }
 
@@ -111,6 +111,14 @@ constexpr ScoreName kNames[] = {
     {"beacon_rms", "m", "RMS error of the beacons found", &RunScores::beacon_rms},
     {"beacon_aligned_rms", "m", "RMS error of the beacons found, aligned",
      &RunScores::beacon_aligned_rms},
+    {"landmark_rms", "m", "RMS error of the landmarks in the final map", &RunScores::landmark_rms},
+    {"landmark_nees", "1", "NEES of a landmark in the final map, mean over landmarks",
+     &RunScores::landmark_nees},
+    {"gospa", "m", "GOSPA of the final map", &RunScores::gospa},
+    {"gospa_localisation", "m", "localisation part of GOSPA", &RunScores::gospa_localisation},
+    {"landmarks_missed", "1", "landmarks missed by the final map", &RunScores::landmarks_missed},
+    {"landmarks_invented", "1", "landmarks invented by the final map",
+     &RunScores::landmarks_invented},
     {"numerical_faults", "1", "factorisations answered by a fallback",
      &RunScores::numerical_faults},
     {"cpu_seconds", "s", "processor time of a run", &RunScores::cpu_seconds},

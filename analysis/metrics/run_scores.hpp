@@ -46,6 +46,12 @@ struct RunScores {
   double beacons_found = kNone;           ///< [1] (BeaconScores)
   double beacon_rms = kNone;              ///< [m]
   double beacon_aligned_rms = kNone;      ///< [m]
+  double landmark_rms = kNone;            ///< [m] of the final map by identity (MapScores)
+  double landmark_nees = kNone;           ///< [1] of two components, mean over landmarks
+  double gospa = kNone;                   ///< [m] (Gospa)
+  double gospa_localisation = kNone;      ///< [m]
+  double landmarks_missed = kNone;        ///< [1]
+  double landmarks_invented = kNone;      ///< [1]
   double numerical_faults = kNone;        ///< [1] sum over scans
   double cpu_seconds = kNone;             ///< [s]
 };

@@ -13,6 +13,8 @@ Section title_section(const StudyAnalysis& study);
 Section failure_section(const StudyAnalysis& study);
 /// What is consistent, until when, and how accurate; not of a recorded drive.
 Section verdict_section(const StudyAnalysis& study);
+/// How far the final maps are from the true landmarks; not of a recorded drive.
+Section map_section(const StudyAnalysis& study);
 /// A recorded drive judged by its references.
 Section reference_section(const StudyAnalysis& study);
 /// What became of the detections, where that was counted.

@@ -50,6 +50,15 @@ void write_references(const h5::Handle& cell_group, const StudyAnalysis& study,
   }
 }
 
+void write_bound(const h5::Handle& file, const CramerRaoBound& bound, const h5::Handle& time) {
+  if (bound.empty()) return;
+  const auto group = h5::create_group(file, "bound");
+  write_series(group, {"position", "m", bound.position}, time);
+  write_series(group, {"heading", "rad", bound.heading}, time);
+  write_number(group, {"map", "m", bound.map});
+  write_number(group, {"runs", "1", static_cast<double>(bound.runs)});
+}
+
 void write_cell(const h5::Handle& cells, const StudyAnalysis& study, const CellAnalysis& cell,
                 const Times& times) {
   const double level = study.level;
@@ -90,6 +99,7 @@ void write_analysis_file(const StudyAnalysis& study, const std::filesystem::path
       }
       times.fixes.push_back(write_times(file, "fix_" + reference.name, reference.times));
     }
+    write_bound(file, study.bound, times.scans);
     const auto cells = h5::create_group(file, "cells");
     for (const CellAnalysis& cell : study.cells) write_cell(cells, study, cell, times);
   }

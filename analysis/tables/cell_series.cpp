@@ -83,6 +83,16 @@ std::vector<NamedNumber> numbers_of(const CellAnalysis& cell) {
   add("association_new_again", "1", association.new_again, all);
   add("association_missed", "1", association.missed, all);
   add("association_clutter", "1", association.clutter, all);
+  all.push_back({"position_efficiency", "1", cell.efficiency.position});
+  all.push_back({"heading_efficiency", "1", cell.efficiency.heading});
+  all.push_back({"map_efficiency", "1", cell.efficiency.map});
+  add("landmark_rms", "m", cell.map.rms, all);
+  add("landmark_nees", "1", cell.map.nees, all);
+  add("gospa", "m", cell.map.gospa, all);
+  add("gospa_localisation", "m", cell.map.localisation, all);
+  add("landmarks_missed", "1", cell.map.missed, all);
+  add("landmarks_invented", "1", cell.map.invented, all);
+  all.push_back({"landmarks_undefined", "1", count(cell.map.undefined)});
   add("numerical_faults", "1", cell.numerical_faults, all);
   add("cpu_seconds", "s", cell.cpu_seconds, all);
   return all;

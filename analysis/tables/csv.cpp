@@ -3,6 +3,8 @@
 #include "analysis/tables.hpp"
 #include "analysis/tables/cell_series.hpp"
 #include "analysis/tables/csv_file.hpp"
+#include "analysis/tables/map_error_table.hpp"
+#include "analysis/tables/map_files.hpp"
 #include "analysis/tables/named_rows.hpp"
 #include "analysis/tables/number_text.hpp"
 #include "analysis/tables/reference_files.hpp"
@@ -18,6 +20,8 @@ constexpr const char* kPrinted = "printed.csv";
 constexpr const char* kClaims = "claims.csv";
 constexpr const char* kReferences = "references.csv";
 constexpr const char* kReferenceErrors = "reference_errors.csv";
+constexpr const char* kBound = "bound.csv";
+constexpr const char* kLandmarks = "landmarks.csv";
 std::string series_name(const std::string& label) { return "series_" + label + ".csv"; }
 
 void write_cells(const StudyAnalysis& study, const std::filesystem::path& path) {
@@ -71,8 +75,8 @@ void write_series(const StudyAnalysis& study, const CellAnalysis& cell,
 }  // namespace
 
 std::vector<std::string> csv_names(const std::vector<std::string>& labels) {
-  std::vector<std::string> names = {kFailures, kCells,      kConsistency,    kPrinted,
-                                    kClaims,   kReferences, kReferenceErrors};
+  std::vector<std::string> names = {kFailures,   kCells,           kConsistency, kPrinted,  kClaims,
+                                    kReferences, kReferenceErrors, kBound,       kLandmarks};
   for (const std::string& label : labels) names.push_back(series_name(label));
   return names;
 }
@@ -88,6 +92,8 @@ void write_csv(const StudyAnalysis& study, const std::filesystem::path& director
     write_references(study, directory / kReferences);
     write_reference_errors(study, directory / kReferenceErrors);
   }
+  if (!study.bound.empty()) write_bound(study, directory / kBound);
+  if (has_map_errors(study)) write_landmarks(study, directory / kLandmarks);
   for (const CellAnalysis& cell : study.cells) {
     write_series(study, cell, directory / series_name(cell.label));
   }

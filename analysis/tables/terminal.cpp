@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/printed/comparison.hpp"
 #include "analysis/tables.hpp"
+#include "analysis/tables/map_error_table.hpp"
 #include "analysis/tables/reference_table.hpp"
 #include "analysis/tables/verdict_table.hpp"
 
@@ -86,6 +87,10 @@ void print_judged_by_truth(std::ostream& out, const StudyAnalysis& study) {
   out << '\n';
   print(out, accuracy_table(study));
   out << '\n';
+  if (const TextTable table = map_error_table(study); !table.rows.empty()) {
+    print(out, table);
+    out << '\n';
+  }
   print_warnings(out, study);
 }
 
@@ -131,6 +136,8 @@ void print_tables(std::ostream& out, const StudyAnalysis& study) {
   }
   if (study.has_truth) {
     for (const std::string& note : verdict_notes(study)) print_wrapped(out, note);
+    for (const std::string& note : bound_notes(study)) print_wrapped(out, note);
+    for (const std::string& note : map_error_notes(study)) print_wrapped(out, note);
   }
   print_printed(out, study);
 }

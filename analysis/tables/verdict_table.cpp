@@ -51,6 +51,7 @@ std::vector<std::string> accuracy_row(const CellAnalysis& cell) {
   return {cell.label,
           with_error(cell.error.position_rmse.mean, cell.error.position_rmse.standard_error()),
           in_degrees(cell.error.heading_rmse),
+          percent(cell.efficiency.position),
           cell.weights ? readable(cell.weights->ess.mean) : "-",
           cell.diversity ? readable(cell.diversity->final_root.mean) : "-",
           readable(cell.cpu_seconds.mean)};
@@ -130,6 +131,7 @@ TextTable accuracy_table(const StudyAnalysis& study) {
   table.headings = {{"cell", Align::left},
                     {"position RMSE [m]"},
                     {"heading RMSE [deg]"},
+                    {"efficiency"},
                     {"ESS"},
                     {"roots"},
                     {"CPU [s]"}};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/page/sections.hpp"
+#include "analysis/tables/map_error_table.hpp"
 
 namespace montecarta {
 
@@ -9,6 +10,7 @@ Section verdict_section(const StudyAnalysis& study) {
   add_table("verdict", verdict_table(study), section);
   add_table("accuracy", accuracy_table(study), section);
   add_notes(verdict_notes(study), section);
+  add_notes(bound_notes(study), section);
   return section;
 }
 
