@@ -38,15 +38,33 @@ std::vector<Shard> open_shards(const std::vector<fs::path>& paths, ResultDescrip
   return shards;
 }
 
-/// "3:5, 8:9" for the runs 3, 4 and 8.
-std::string ranges(const std::vector<std::uint64_t>& runs) {
-  std::string text;
+/// {"3:5", "8:9"} for the runs 3, 4 and 8.
+std::vector<std::string> ranges(const std::vector<std::uint64_t>& runs) {
+  std::vector<std::string> found;
   for (std::size_t begin = 0, end = 0; begin < runs.size(); begin = end) {
     while (end < runs.size() && runs[end] == runs[begin] + (end - begin)) ++end;
-    text += (text.empty() ? "" : ", ") + std::to_string(runs[begin]) + ":" +
-            std::to_string(runs[end - 1] + 1);
+    found.push_back(std::to_string(runs[begin]) + ":" + std::to_string(runs[end - 1] + 1));
   }
-  return text;
+  return found;
+}
+
+/// Names what is missing, and the commands that fill the first gaps.
+[[noreturn]] void refuse_gaps(const std::vector<std::uint64_t>& missing, std::uint64_t runs,
+                              const fs::path& shard) {
+  std::string named, commands;
+  const std::vector<std::string> gaps = ranges(missing);
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    named += (i == 0 ? "" : ", ") + gaps[i];
+    if (i < 3)
+      commands +=
+          "\n  montecarta run study.ini -o missing_" + std::to_string(i) + ".h5 --runs " + gaps[i];
+  }
+  throw StudyError("merge: runs " + named + " are in none of the shards (" +
+                   std::to_string(missing.size()) + " of " + std::to_string(runs) +
+                   " missing; nothing was written): compute them, then merge again:\n  montecarta "
+                   "info " +
+                   shard.string() + " --text > study.ini" + commands +
+                   (gaps.size() > 3 ? "\n  ..." : ""));
 }
 
 /// For every run of the study which shard gives it. Runs held twice must be equal.
@@ -68,11 +86,8 @@ std::vector<std::size_t> choose_sources(const std::vector<Shard>& shards, std::u
   for (std::uint64_t run = 0; run < runs; ++run) {
     if (source[run] == none) missing.push_back(run);
   }
-  if (missing.empty()) return source;
-  throw StudyError("merge: runs " + ranges(missing) + " are in none of the shards (" +
-                   std::to_string(missing.size()) + " of " + std::to_string(runs) +
-                   " missing; nothing was written): compute them with 'montecarta run "
-                   "STUDY.ini -o SHARD.h5 --runs A:B', then merge again");
+  if (!missing.empty()) refuse_gaps(missing, runs, shards.front().path);
+  return source;
 }
 
 /// The description of the whole study: that of the first shard with all runs.
@@ -93,16 +108,27 @@ void note_builds(const std::vector<Shard>& shards, MergeSummary& summary) {
   }
 }
 
+/// The runs that shard `s` gives, in stretches.
+std::vector<RunSpan> given_by(const Shard& shard, std::size_t s,
+                              const std::vector<std::size_t>& source) {
+  std::vector<RunSpan> spans;
+  for (std::uint64_t run : shard.complete_runs) {
+    if (source[run] != s) continue;
+    if (spans.empty() || spans.back().first + spans.back().count != run) spans.push_back({run, 0});
+    ++spans.back().count;
+  }
+  return spans;
+}
+
 void copy_runs(const std::vector<Shard>& shards, const std::vector<std::size_t>& source,
                const PosixFile& file, const ResultSlabs& slabs, MergeSummary& summary) {
   std::vector<std::byte> buffer;
   for (std::size_t s = 0; s < shards.size(); ++s) {
     const PosixFile from(shards[s].path, PosixFile::Mode::read);
-    for (std::uint64_t run : shards[s].complete_runs) {
-      if (source[run] != s) continue;
-      expect_whole(from, shards[s], run, buffer);
-      summary.failed += copy_run(from, shards[s], run, file, slabs);
-    }
+    // Also those that another shard gives: equal by fingerprints that fit both.
+    for (std::uint64_t run : shards[s].complete_runs) expect_whole(from, shards[s], run, buffer);
+    for (const RunSpan& runs : given_by(shards[s], s, source))
+      summary.failed += copy_runs(from, shards[s], runs, file, slabs);
   }
   double seconds = 0.0;
   for (const Shard& shard : shards) seconds += shard.wall_seconds;

@@ -61,6 +61,11 @@ ResultWriter ResultWriter::resume(const std::filesystem::path& path, const Study
   return ResultWriter(std::make_unique<Work>(path, resume_result(path, plan, provenance), plan));
 }
 
+ResultWriter ResultWriter::attempt(const std::filesystem::path& path, const StudyPlan& plan,
+                                   const TextPairs& provenance) {
+  return ResultWriter(std::make_unique<Work>(path, attempt_result(path, plan, provenance), plan));
+}
+
 RunStatus ResultWriter::status(std::size_t cell, std::size_t run_index) const {
   return work_->status[cell][run_index].load(std::memory_order_acquire);
 }
@@ -121,7 +126,9 @@ void ResultWriter::note_wall_seconds(double seconds) {
 }
 
 void ResultWriter::suspend() {
-  if (!work_->finished()) work_->result.file.sync();
+  if (work_->finished()) return;
+  work_->result.file.sync();
+  if (work_->result.claim == Claim::attempt) hand_over(work_->result, work_->path);
 }
 
 void ResultWriter::finish() {
@@ -131,6 +138,7 @@ void ResultWriter::finish() {
   }
   if (work_->finished()) return;
   work_->result.file.sync();
+  if (work_->result.claim == Claim::attempt) return complete_attempt(work_->result, work_->path);
   work_->result.file.rename(work_->path, work_->result.target);
 }
 

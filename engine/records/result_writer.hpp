@@ -35,6 +35,12 @@ class ResultWriter {
   /// it. Stored runs whose fingerprint does not fit (a power cut) count as missing again.
   static ResultWriter resume(const std::filesystem::path& path, const StudyPlan& plan,
                              const TextPairs& provenance);
+  /// One of several attempts at one result, perhaps on a machine that was given up for dead: works
+  /// under a name of its own, OUT.h5.part.*, goes on from what others left or still write, checked
+  /// and copied, and never disturbs them. The first that is complete becomes OUT.h5. Finds OUT.h5
+  /// finished as resume() does.
+  static ResultWriter attempt(const std::filesystem::path& path, const StudyPlan& plan,
+                              const TextPairs& provenance);
   ~ResultWriter();
   ResultWriter(ResultWriter&&) noexcept;
   ResultWriter& operator=(ResultWriter&&) noexcept;
@@ -52,8 +58,8 @@ class ResultWriter {
   /// Adds to the wall time of all sittings [s] in /timing.
   void note_wall_seconds(double seconds);
 
-  /// Flushes what is written to the disk; the file stays OUT.h5.part, to be resumed. Call before an
-  /// early exit.
+  /// Flushes what is written to the disk; the file stays, or as an attempt becomes, OUT.h5.part, to
+  /// be resumed. Call before an early exit.
   void suspend();
   /// Every run is there: flushes, renames OUT.h5.part to OUT.h5. Throws std::logic_error where one
   /// is missing.

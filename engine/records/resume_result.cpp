@@ -131,18 +131,18 @@ void expect_finished(const OpenResult& result) {
 
 }  // namespace
 
-OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance) {
-  const bool begun = is_there(part_of(path));
-  if (!begun && !is_there(path)) return create_result(path, plan, provenance, Existing::refuse);
-  const ResultDescription planned = describe(plan, provenance);
+OpenResult finished_result(const fs::path& path, const ResultDescription& planned) {
   ResultDescription stored;
-  if (!begun) {
-    OpenResult finished = open_existing(path, PosixFile::Mode::read, planned, stored);
-    expect_finished(finished);
-    finished.notes.push_back(path.string() + " is complete already");
-    return finished;
-  }
-  OpenResult result = open_existing(part_of(path), PosixFile::Mode::write, planned, stored);
+  OpenResult finished = open_existing(path, PosixFile::Mode::read, planned, stored);
+  expect_finished(finished);
+  finished.notes.push_back(path.string() + " is complete already");
+  return finished;
+}
+
+OpenResult continued_work(const fs::path& work, const fs::path& path,
+                          const ResultDescription& planned) {
+  ResultDescription stored;
+  OpenResult result = open_existing(work, PosixFile::Mode::write, planned, stored);
   expect_replaceable(path, planned, stored);
   if (is_there(path)) result.target = PosixFile::Target::replace;
   const std::size_t torn = forget_torn_runs(result);
@@ -150,10 +150,17 @@ OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const Text
     result.notes.push_back(std::to_string(torn) +
                            " stored runs were damaged (a power cut?) and are computed again");
   }
-  for (std::string& note : build_differences(stored.provenance, provenance))
+  for (std::string& note : build_differences(stored.provenance, planned.provenance))
     result.notes.push_back(std::move(note));
-  log_sitting(result, differences(stored.provenance, provenance));
+  log_sitting(result, differences(stored.provenance, planned.provenance));
   return result;
+}
+
+OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance) {
+  const bool begun = is_there(part_of(path));
+  if (!begun && !is_there(path)) return create_result(path, plan, provenance, Existing::refuse);
+  const ResultDescription planned = describe(plan, provenance);
+  return begun ? continued_work(part_of(path), path, planned) : finished_result(path, planned);
 }
 
 }  // namespace montecarta

@@ -11,15 +11,23 @@
 namespace montecarta {
 namespace {
 
+/// What is stored of a true path.
+std::vector<Slab> slabs_of_truth(const ResultSlabs& slabs) {
+  if (!slabs.truth) return {};
+  return {slabs.truth->pose, slabs.truth->fingerprint};
+}
+
+/// What is stored of a run of a cell, and what it cost, but its status.
+void add_slabs(const CellSlabs& cell, std::vector<Slab>& all) {
+  all.insert(all.end(), cell.columns.begin(), cell.columns.end());
+  all.insert(all.end(),
+             {cell.failure_reason, cell.failure_step, cell.fingerprint, cell.cpu_seconds});
+}
+
 /// Everything stored of one run under /cells and /truth, and what it cost; statuses last.
 std::vector<Slab> slabs_of_run(const ResultSlabs& slabs) {
-  std::vector<Slab> all;
-  if (slabs.truth) all = {slabs.truth->pose, slabs.truth->fingerprint};
-  for (const CellSlabs& cell : slabs.cells) {
-    all.insert(all.end(), cell.columns.begin(), cell.columns.end());
-    all.insert(all.end(),
-               {cell.failure_reason, cell.failure_step, cell.fingerprint, cell.cpu_seconds});
-  }
+  std::vector<Slab> all = slabs_of_truth(slabs);
+  for (const CellSlabs& cell : slabs.cells) add_slabs(cell, all);
   for (const CellSlabs& cell : slabs.cells) all.push_back(cell.status);
   return all;
 }
@@ -29,6 +37,27 @@ std::vector<Slab> fingerprints(const ResultSlabs& slabs) {
   if (slabs.truth) all.push_back(slabs.truth->fingerprint);
   for (const CellSlabs& cell : slabs.cells) all.push_back(cell.fingerprint);
   return all;
+}
+
+std::vector<Slab> slabs_of_cell(const CellSlabs& cell) {
+  std::vector<Slab> all;
+  add_slabs(cell, all);
+  all.push_back(cell.status);
+  return all;
+}
+
+/// Runs of a file that follow each other.
+struct Stretch {
+  const PosixFile& file;
+  const std::vector<Slab>& slabs;
+  std::size_t first;  ///< run index
+};
+
+/// Copies slab by slab: runs that follow each other lie in one piece.
+void copy_slabs(const Stretch& from, const Stretch& to, std::size_t runs) {
+  for (std::size_t i = 0; i < from.slabs.size(); ++i)
+    to.file.copy_at(to.slabs[i].at(to.first), from.file, from.slabs[i].at(from.first),
+                    runs * from.slabs[i].run_bytes);
 }
 
 template <class T>
@@ -89,18 +118,28 @@ void expect_whole(const PosixFile& file, const Shard& shard, std::uint64_t run,
                  " is damaged (its bytes do not fit its fingerprint): compute this shard anew");
 }
 
-std::uint64_t copy_run(const PosixFile& from, const Shard& shard, std::uint64_t run,
-                       const PosixFile& to, const ResultSlabs& slabs) {
-  const auto sources = slabs_of_run(shard.slabs);
-  const auto sinks = slabs_of_run(slabs);
-  for (std::size_t i = 0; i < sources.size(); ++i)
-    to.copy_at(sinks[i].at(run), from, sources[i].at(shard.index(run)), sources[i].run_bytes);
+std::uint64_t copy_runs(const PosixFile& from, const Shard& shard, RunSpan runs,
+                        const PosixFile& to, const ResultSlabs& slabs) {
+  const std::size_t first = shard.index(runs.first);
+  copy_slabs({from, slabs_of_run(shard.slabs), first}, {to, slabs_of_run(slabs), runs.first},
+             runs.count);
+  std::vector<RunStatus> status(runs.count);
   std::uint64_t failed = 0;
-  for (const CellSlabs& cell : shard.slabs.cells)
-    failed += read_value<RunStatus>(from, cell.status.at(shard.index(run))) == RunStatus::failed
-                  ? 1U
-                  : 0U;
+  for (const CellSlabs& cell : shard.slabs.cells) {
+    from.read_at(cell.status.at(first), std::as_writable_bytes(std::span(status)));
+    failed += static_cast<std::uint64_t>(std::ranges::count(status, RunStatus::failed));
+  }
   return failed;
+}
+
+void copy_cell(const PosixFile& from, const CellSlabs& source, const PosixFile& to,
+               const CellSlabs& sink, std::size_t run_index) {
+  copy_slabs({from, slabs_of_cell(source), run_index}, {to, slabs_of_cell(sink), run_index}, 1);
+}
+
+void copy_truth(const PosixFile& from, const ResultSlabs& source, const PosixFile& to,
+                const ResultSlabs& sink, std::size_t run_index) {
+  copy_slabs({from, slabs_of_truth(source), run_index}, {to, slabs_of_truth(sink), run_index}, 1);
 }
 
 }  // namespace montecarta

@@ -31,9 +31,21 @@ void expect_equal(const Shard& a, const Shard& b, std::uint64_t run);
 /// Throws RunError where a run does not fit its fingerprints.
 void expect_whole(const PosixFile& file, const Shard& shard, std::uint64_t run,
                   std::vector<std::byte>& buffer);
-/// Copies all cells of a run and its true path to a file of the whole study; tells how many cells
-/// failed in it.
-std::uint64_t copy_run(const PosixFile& from, const Shard& shard, std::uint64_t run,
-                       const PosixFile& to, const ResultSlabs& slabs);
+/// Runs of the study that follow each other.
+struct RunSpan {
+  std::uint64_t first = 0;
+  std::size_t count = 0;
+};
+
+/// Copies all cells of some runs and their true paths to a file of the whole study; tells how many
+/// runs of cells failed.
+std::uint64_t copy_runs(const PosixFile& from, const Shard& shard, RunSpan runs,
+                        const PosixFile& to, const ResultSlabs& slabs);
+/// Copies one run of one cell between files that hold the same runs, its status last.
+void copy_cell(const PosixFile& from, const CellSlabs& source, const PosixFile& to,
+               const CellSlabs& sink, std::size_t run_index);
+/// The same for its true path; nothing where there is none to store.
+void copy_truth(const PosixFile& from, const ResultSlabs& source, const PosixFile& to,
+                const ResultSlabs& sink, std::size_t run_index);
 
 }  // namespace montecarta

@@ -12,17 +12,21 @@ namespace {
 // A signal handler can reach nothing but globals.
 std::atomic<int> received{0};
 std::atomic<bool> installed{false};
+std::atomic<bool> repeats_terms{false};
 static_assert(std::atomic<int>::is_always_lock_free, "a handler may not wait for a lock");
 
 extern "C" void note_signal(int signal) {
   int none = 0;
-  if (!received.compare_exchange_strong(none, signal)) _exit(128 + signal);
+  if (received.compare_exchange_strong(none, signal)) return;
+  if (signal == SIGTERM && repeats_terms) return;
+  _exit(128 + signal);
 }
 
 }  // namespace
 
-Interruption::Interruption() {
+Interruption::Interruption(From from) {
   expect(!installed.exchange(true), "two interruptions at once");
+  repeats_terms = from == From::scheduler;
   received = 0;
   struct sigaction action {};
   action.sa_handler = note_signal;

@@ -6,11 +6,13 @@
 namespace montecarta {
 
 /// While one lives, the first SIGINT or SIGTERM is only noted, so that the program can close its
-/// file; the second ends the program at once with exit code 128 + signal. One at a time: signals
-/// belong to the process.
+/// file; the second ends the program at once with exit code 128 + signal. A scheduler, unlike a
+/// person, repeats itself: from it a second SIGTERM says nothing new. One at a time: signals belong
+/// to the process.
 class Interruption {
  public:
-  Interruption();
+  enum class From { person, scheduler };
+  explicit Interruption(From from = From::person);
   ~Interruption();
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;

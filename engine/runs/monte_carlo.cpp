@@ -14,6 +14,7 @@ namespace montecarta {
 namespace {
 
 ResultWriter open_output(const StudyPlan& plan, const RunOptions& options) {
+  if (options.attempt) return ResultWriter::attempt(options.output, plan, options.provenance);
   if (options.resume) return ResultWriter::resume(options.output, plan, options.provenance);
   return ResultWriter::create(options.output, plan, options.provenance,
                               options.force ? Existing::replace : Existing::refuse);
@@ -114,7 +115,8 @@ void tell(const std::vector<std::string>& notes) {
 
 RunOutcome run_study(const StudyPlan& plan, const RunOptions& options) {
   const Stopwatch stopwatch;
-  const Interruption interruption;
+  const Interruption interruption(runs_under_scheduler() ? Interruption::From::scheduler
+                                                         : Interruption::From::person);
   ResultWriter writer = open_output(plan, options);
   if (!options.quiet) tell(writer.notes());
   const RunOutcome before = take_stock(plan, writer);

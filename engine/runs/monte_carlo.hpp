@@ -18,6 +18,7 @@ struct RunOptions {
   Parallel parallel = Parallel::serial();
   bool resume = false;                  ///< go on with an unfinished file
   bool force = false;                   ///< replace a finished or unfinished one
+  bool attempt = false;                 ///< one of several, perhaps at the same time
   std::optional<double> time_budget{};  ///< [s], then stop at a checkpoint
   ProgressStyle progress = ProgressStyle::automatic;
   bool quiet = false;      ///< neither progress nor notes on standard error

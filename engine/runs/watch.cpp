@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/runs/watch.hpp"
 
+#include "engine/runs/run_outcome.hpp"
+
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
@@ -48,8 +50,8 @@ void Watch::keep_watch() {
 /// Closing the file may take seconds, in which a user would wonder whether Ctrl-C was heard.
 void Watch::acknowledge_signal() const {
   if (interruption_.signal() == 0 || stop_.made()) return;
-  std::fputs("\nmontecarta: stopping, what is done is kept (a second signal ends it at once)\n",
-             stderr);
+  std::fputs("\nmontecarta: stopping, what is done is kept", stderr);
+  std::fputs(runs_under_scheduler() ? "\n" : " (a second signal ends it at once)\n", stderr);
 }
 
 void Watch::look() {

@@ -37,17 +37,17 @@ std::string resuming_command(const Arguments& arguments) {
   for (const std::string& word : arguments.words()) {
     if (word != "--force" && word != "--resume") line += " " + shell_quoted(word);
   }
-  return line + " --resume";
+  return arguments.has("attempt") ? line : line + " --resume";
 }
 
 RunOptions options_of(const Arguments& arguments) {
   const auto output = arguments.text("output");
   if (!output)
     throw StudyError("run: -o OUT.h5 is missing (results need a name): add e.g. -o results.h5");
-  if (arguments.has("resume") && arguments.has("force")) {
-    throw StudyError(
-        "--resume and --force: one contradicts the other (go on, or begin anew?): remove one of "
-        "them");
+  if (arguments.has("force") && (arguments.has("resume") || arguments.has("attempt"))) {
+    throw StudyError("--force and " +
+                     std::string(arguments.has("resume") ? "--resume" : "--attempt") +
+                     ": one contradicts the other (go on, or begin anew?): remove one of them");
   }
   refuse_to_replace_other_kinds(*output);
   RunOptions options;
@@ -55,6 +55,7 @@ RunOptions options_of(const Arguments& arguments) {
   options.parallel = parallel_of(arguments);
   options.resume = arguments.has("resume");
   options.force = arguments.has("force");
+  options.attempt = arguments.has("attempt");
   options.time_budget = arguments.number("time-budget", kLeastBudget, 1e9);
   options.progress = progress_of(arguments);
   options.quiet = arguments.has("quiet");
@@ -118,6 +119,10 @@ Command run_command() {
   for (const OptionSpec& option : plan_options()) spec.options.push_back(option);
   const std::vector<OptionSpec> more = {
       {"resume", "", {}, "go on with OUT.h5.part: compute only what is missing"},
+      {"attempt",
+       "",
+       {},
+       "as --resume, where another attempt may be running: see cluster/README.md"},
       {"force", "", {}, "replace OUT.h5 and OUT.h5.part"},
       {"time-budget", "", {"SECONDS"}, "stop at a checkpoint (exit code 85) after so long"},
       {"quiet", "", {}, "neither progress nor verdict"},

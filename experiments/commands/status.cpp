@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/errors.hpp"
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/status_line.hpp"
 #include "experiments/commands/stored_result.hpp"
 #include "experiments/text/table.hpp"
 
@@ -51,6 +52,11 @@ class StudyStatus {
 };
 
 int status(const Arguments& arguments) {
+  if (arguments.has("each")) {
+    const Depth depth = arguments.has("whole") ? Depth::every_byte : Depth::statuses;
+    for (const std::string& name : arguments.operands()) std::cout << status_line(name, depth);
+    return kDone;
+  }
   std::optional<StudyStatus> status;
   for (const std::string& name : arguments.operands()) {
     const ResultFile file = open_stored(name);
@@ -68,8 +74,13 @@ Command status_command() {
       {.name = "status",
        .summary = "counts done, failed and missing runs of each cell, over one file or many shards",
        .operands = {{"FILE.h5", 1, SIZE_MAX}},
-       .options = {},
-       .details = {}},
+       .options = {{"each", "", {}, "one line a file for scripts, instead of one a cell"},
+                   {"whole", "", {}, "with --each: read every byte, not the statuses alone"}},
+       .details =
+           "A line of --each, separated by tabs: file, state (complete, unfinished or damaged), "
+           "SHA-256 of the study,\nruns of cells complete, failed and missing, seconds of wall "
+           "time, "
+           "what is wrong.\n"},
       status};
 }
 

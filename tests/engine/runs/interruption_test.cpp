@@ -41,6 +41,13 @@ TEST(Interruption, RefusesASecondOneAtATime) {
   EXPECT_THROW(Interruption(), std::logic_error);
 }
 
+TEST(Interruption, ASchedulerMayRepeatItself) {
+  const Interruption interruption(Interruption::From::scheduler);
+  raise(SIGTERM);
+  raise(SIGTERM);
+  EXPECT_EQ(interruption.signal(), SIGTERM);
+}
+
 void be_signalled_twice(int signal) {
   const Interruption interruption;
   raise(signal);
