@@ -161,9 +161,14 @@ class PrivateSlurm:
     def kill_node(self, name):
         """The node dies: its slurmd, its slurmstepds and all that its jobs run."""
         self.kill(name)
-        for pid in pids(lambda p: f"{self.folder}/log/slurmd.{name}" in open_files(p)) + \
-                self.tasks_on(name):
-            kill(pid, signal.SIGKILL)
+        self.kill_steps(name)
+
+    def kill_steps(self, name):
+        """First the slurmstepds, which hold the log of their node open, then what they run."""
+        log = f"{self.folder}/log/slurmd.{name}"
+        for pid in pids(lambda process: log in open_files(process)) + self.tasks_on(name):
+            if pid != self.daemons[name].pid:
+                kill(pid, signal.SIGKILL)
 
     def cut_node(self, name):
         """Nobody reaches the node any more, and its jobs go on."""
@@ -182,8 +187,7 @@ class PrivateSlurm:
         for daemon in self.daemons.values():
             daemon.send_signal(signal.SIGCONT)
         for name in self.names:
-            for pid in self.tasks_on(name):
-                kill(pid, signal.SIGKILL)
+            self.kill_steps(name)
         for daemon in self.daemons.values():
             daemon.terminate()
         for daemon in self.daemons.values():

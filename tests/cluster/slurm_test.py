@@ -12,35 +12,13 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import private_slurm
-from private_slurm import kill, wait_for
-
-TOP = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(TOP / "cluster"))
-import shards as of_study  # noqa: E402  (what submit itself asks the scheduler)
-
-SECONDS = []  # [s] from SIGTERM to exit
-LIMIT = 120  # [s] for whatever a scenario waits for
-
-# A shard of six runs takes a second or more of one processor: long enough to be caught at work.
-STUDY = """[study]
-name = faults
-runs = 24
-[scenario]
-world = dense_loop
-loops = 1
-[cells]
-cell = ufastslam particles={particles}
-cell = ekf_slam
-[record]
-columns = pose
-rate = scan
-"""
+from private_slurm import is_alive, kill, wait_for
+from submitted_study import LIMIT, STUDY, TOP, Case, Ground, call, of_study
 
 PARTITIONS = {
     "main": ("n[1-4]", "Default=YES"),
@@ -54,104 +32,8 @@ PARTITIONS = {
 }
 
 
-def call(words, code=0, **more):
-    """Standard output and error of a command that must end with `code`."""
-    done = subprocess.run([str(word) for word in words], stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, **more)
-    if done.returncode != code:
-        raise AssertionError(f"{words}: exit code {done.returncode}, not {code}:\n{done.stdout}")
-    return done.stdout
-
-
-class Case:
-    """A folder in which the study is submitted to a partition."""
-
-    def __init__(self, name, shards=4, partition=None):
-        self.name, self.shards, self.partition = name, shards, partition or name
-        self.folder = FOLDER / name
-
-    def submit(self, *more, code=0):
-        return call([TOP / "cluster/submit", FOLDER / "study.ini", "-o", self.folder, "--shards",
-                     self.shards, "-p", self.partition, "--time=5", *more], code)
-
-    def status(self):
-        return call([TOP / "cluster/status", self.folder])
-
-    def log(self, name):
-        path = self.folder / "logs" / name
-        return path.read_text() if path.exists() else ""
-
-    def tasks(self):
-        """What the scheduler has not finished with, merge included."""
-        name = of_study.job_name(self.folder)
-        return of_study.queue(name) + of_study.queue(name + "-merge")
-
-    def half_done(self, shard):
-        """Whether an attempt at a shard has stored some of its runs and not all."""
-        files = [str(p) for p in (self.folder / "shards").glob(f"shard_{shard:04d}.h5.part*")
-                 if not p.name.endswith(".new")]
-        lines = call([PROGRAM, "status", "--each"] + files).splitlines() if files else []
-        return any(line.split("\t")[1] == "unfinished" and line.split("\t")[3] != "0"
-                   for line in lines)
-
-    def at_work(self, node):
-        """[(process, shard)] on a node."""
-        lines = [(pid, private_slurm.command(Path(f"/proc/{pid}")))
-                 for pid in SLURM.tasks_on(node, program=PROGRAM)]
-        return [(pid, int(re.search(r"--shard (\d+)/", line).group(1))) for pid, line in lines
-                if f" {self.folder}/" in line]
-
-    def copy_on(self, node, shard):
-        return shard in [at for _, at in self.at_work(node)]
-
-    def caught(self, node):
-        """(process, shard) at work on a node, frozen when it has stored some runs and not all."""
-        def found():
-            for pid, shard in self.at_work(node):
-                kill(pid, signal.SIGSTOP)
-                if self.half_done(shard):
-                    return pid, shard
-                kill(pid, signal.SIGCONT)
-            return None
-        return wait_for(f"{self.name}: a task at work on {node}", found, LIMIT)
-
-    def checkpointed(self, pid, shard):
-        """Lets a frozen task hear the SIGTERM that is due, and waits for its checkpoint."""
-        wait_for(f"{self.name}: SIGTERM", lambda: private_slurm.is_pending(pid, signal.SIGTERM), LIMIT)
-        began = time.monotonic()
-        kill(pid, signal.SIGCONT)
-        wait_for(f"{self.name}: an end", lambda: not private_slurm.is_alive(pid), LIMIT)
-        SECONDS.append(time.monotonic() - began)
-        wait_for(f"{self.name}: a checkpoint",
-                 lambda: "task: checkpoint" in self.log(f"shard_{shard:04d}.log"), LIMIT)
-
-    def idle(self):
-        """Waits until the scheduler has nothing more to do here."""
-        wait_for(f"{self.name}: an end", lambda: not self.tasks(), LIMIT)
-
-    def finish(self):
-        """Nothing is left to the scheduler; submit again until the result is there; compare."""
-        self.idle()
-        for _ in range(3):
-            if (self.folder / "result.h5").exists():
-                break
-            self.submit()
-            self.idle()
-        equal(self.folder / "result.h5")
-        left = sorted(p.name for p in (self.folder / "shards").iterdir() if ".part" in p.name)
-        if left:
-            raise AssertionError(f"{self.name}: left over: {left}")
-        if not self.submit().startswith("complete: "):
-            raise AssertionError(f"{self.name}: not complete")
-
-
-def equal(path):
-    for group in ("/cells", "/truth", "/scenario"):
-        call(["h5diff", path, FOLDER / "single.h5", group, group])
-
-
-def array_of_eight():
-    case = Case("main", shards=8)
+def array_of_eight(ground):
+    case = Case(ground, "main", shards=8)
     told = case.submit("--dry-run")
     assert "--array=0-7" in told and "afterany:JOB" in told and not case.folder.exists(), told
     told = case.submit()
@@ -166,8 +48,8 @@ def array_of_eight():
     assert not list((case.folder / "logs").glob("shard_*")), "no log of a task that went well"
 
 
-def killed_then_requeued_then_truncated():
-    case = Case("crash")
+def killed_then_requeued_then_truncated(ground):
+    case = Case(ground, "crash")
     case.submit()
     pid, shard = case.caught("n5")
     kill(pid, signal.SIGKILL)
@@ -187,31 +69,31 @@ def killed_then_requeued_then_truncated():
     case.finish()
 
 
-def node_dies():
-    case = Case("dying")
+def node_dies(ground):
+    case = Case(ground, "dying")
     case.submit()
     _, shard = case.caught("n6")
-    SLURM.kill_node("n6")
+    ground.slurm.kill_node("n6")
     wait_for("the task elsewhere", lambda: case.copy_on("n7", shard), LIMIT)
-    SLURM.start_node("n6")
+    ground.slurm.start_node("n6")
     case.finish()
 
 
-def node_is_cut_off():
+def node_is_cut_off(ground):
     """Two copies of one shard at the same time, one of which nobody can reach."""
-    case = Case("cut")
+    case = Case(ground, "cut")
     case.submit()
     pid, shard = case.caught("n8")
-    SLURM.cut_node("n8")
+    ground.slurm.cut_node("n8")
     wait_for("the second copy", lambda: case.copy_on("n9", shard), LIMIT)
     kill(pid, signal.SIGCONT)
-    wait_for("the end of the cut-off copy", lambda: not private_slurm.is_alive(pid), LIMIT)
-    SLURM.heal_node("n8")
+    wait_for("the end of the cut-off copy", lambda: not is_alive(pid), LIMIT)
+    ground.slurm.heal_node("n8")
     case.finish()
 
 
-def preempted():
-    case = Case("low")
+def preempted(ground):
+    case = Case(ground, "low")
     case.submit("--no-kill")
     pid, shard = case.caught("n10")
     call(["sbatch", "-p", "high", "-o", "/dev/null", "--wrap", "sleep 2"])
@@ -219,15 +101,15 @@ def preempted():
     case.finish()
 
 
-def walltime():
-    case = Case("short", shards=1)
+def walltime(ground):
+    case = Case(ground, "short", shards=1)
     case.submit("--time=1", "--signal=B:TERM@28")  # Slurm takes up to 30 s more: soon after the start
     case.checkpointed(*case.caught("n11"))
     case.finish()
 
 
-def full_disk():
-    case = Case("full")
+def full_disk(ground):
+    case = Case(ground, "full")
     small = case.folder / "shards"
     small.mkdir(parents=True)
     mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=32k", "none", str(small)],
@@ -245,8 +127,8 @@ def full_disk():
     return None
 
 
-def cancelled():
-    case = Case("cancel", partition="short")
+def cancelled(ground):
+    case = Case(ground, "cancel", partition="short")
     case.submit()
     pid, shard = case.caught("n11")
     told = call([TOP / "cluster/cancel", case.folder])
@@ -257,19 +139,19 @@ def cancelled():
     case.finish()
 
 
-def controller_dies():
+def controller_dies(ground):
     """After all others, for whom it would be one fault too many."""
-    case = Case("controller", partition="main")
+    case = Case(ground, "controller", partition="main")
     case.submit()
     pid, _ = case.caught("n1")
-    SLURM.kill("slurmctld")
+    ground.slurm.kill("slurmctld")
     assert "cannot be asked" in case.submit(code=2)
     kill(pid, signal.SIGCONT)
     assert "cannot be asked" in case.status()
-    wait_for("the end of the task", lambda: not private_slurm.is_alive(pid), LIMIT)
-    SLURM.start_controller()
-    wait_for("the controller", lambda: SLURM.states(), 30)
-    for name in SLURM.names:
+    wait_for("the end of the task", lambda: not is_alive(pid), LIMIT)
+    ground.slurm.start_controller()
+    wait_for("the controller", lambda: ground.slurm.states(), 30)
+    for name in ground.slurm.names:
         subprocess.run(["scontrol", "update", f"nodename={name}", "state=resume"],
                        stderr=subprocess.DEVNULL)
     case.finish()
@@ -283,9 +165,9 @@ class Slurm(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.pool = ThreadPoolExecutor(len(SCENARIOS))
-        cls.running = {scenario: cls.pool.submit(scenario) for scenario in SCENARIOS}
+        cls.running = {scenario: cls.pool.submit(scenario, cls.ground) for scenario in SCENARIOS}
         cls.running[cancelled] = cls.pool.submit(lambda: (cls.running[walltime].exception(),
-                                                          cancelled()))
+                                                          cancelled(cls.ground)))
 
     def outcome(self, scenario):
         reason = self.running[scenario].result()
@@ -317,51 +199,49 @@ class Slurm(unittest.TestCase):
         self.outcome(cancelled)
 
     def test_1_wrong_input_is_named(self):
-        case = Case("wrong", shards=102, partition="main")
+        case = Case(self.ground, "wrong", shards=102, partition="main")
         self.assertIn("more runs", case.submit(code=2).replace("one of the study's", "more runs"))
-        (FOLDER / "many.ini").write_text(STUDY.format(particles=10).replace("runs = 24", "runs = 900"))
-        many = call([TOP / "cluster/submit", FOLDER / "many.ini", "-o", case.folder, "--shards", "102"],
+        (self.ground.folder / "many.ini").write_text(STUDY.format(particles=10).replace("runs = 24", "runs = 900"))
+        many = call([TOP / "cluster/submit", self.ground.folder / "many.ini", "-o", case.folder, "--shards", "102"],
                     2)
         self.assertIn("MaxArraySize is 101", many)
         self.assertIn("choose --shards 101 or fewer, of 9 runs or more", many)
         self.assertFalse(case.folder.exists())
-        refused = Case("refused", partition="nowhere").submit(code=2)
+        refused = Case(self.ground, "refused", partition="nowhere").submit(code=2)
         self.assertIn("sbatch refused", refused)
-        other = Case("main", shards=4).submit(code=2)
+        other = Case(self.ground, "main", shards=4).submit(code=2)
         self.assertIn("is cut into 8", other)
 
     def test_2_the_controller_dies(self):
         for running in self.running.values():
             running.exception()
-        controller_dies()
-        print(f"SIGTERM to exit: {min(SECONDS):.2f} to {max(SECONDS):.2f} s, {len(SECONDS)} times")
+        controller_dies(self.ground)
+        times = self.ground.stopped_in
+        print("SIGTERM to exit [s]:", ", ".join(f"{seconds:.2f}" for seconds in times))
 
 
 def main():
-    global FOLDER, SLURM, PROGRAM
-    PROGRAM = os.environ["MONTECARTA"] = str(Path(sys.argv.pop(1)).resolve())
     reason = private_slurm.why_not()
     if reason:
         print(f"skipped: no private Slurm here: {reason}")
         sys.exit(77)
-    os.environ.update(MONTECARTA_MERGE_WAIT="2", MONTECARTA_THREADS="1")
+    program = str(Path(sys.argv.pop(1)).resolve())
     for name in [name for name in os.environ if name.startswith(("SLURM_", "SBATCH_"))]:
         del os.environ[name]
+    os.environ.update(MONTECARTA=program, MONTECARTA_MERGE_WAIT="2", MONTECARTA_THREADS="1")
     with tempfile.TemporaryDirectory(prefix="montecarta-slurm-") as folder:
-        FOLDER = Path(folder)
-        (FOLDER / "study.ini").write_text(STUDY.format(particles=300))
-        call([PROGRAM, "run", FOLDER / "study.ini", "-o", FOLDER / "single.h5", "--quiet"])
-        SLURM = private_slurm.PrivateSlurm(FOLDER / "slurm", 12, PARTITIONS)
+        Slurm.ground = Ground(folder, program)
+        slurm = Slurm.ground.slurm = private_slurm.PrivateSlurm(f"{folder}/slurm", 12, PARTITIONS)
         try:
             try:
-                SLURM.up()
+                slurm.up()
             except (OSError, TimeoutError) as error:
                 print(f"skipped: no private Slurm here: {error}")
                 sys.exit(77)
-            program = unittest.main(exit=False, verbosity=2)
+            tests = unittest.main(exit=False, verbosity=2)
         finally:
-            SLURM.down()
-    sys.exit(not program.result.wasSuccessful())
+            slurm.down()
+    sys.exit(not tests.result.wasSuccessful())
 
 
 if __name__ == "__main__":
