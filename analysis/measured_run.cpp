@@ -2,6 +2,7 @@
 #include "analysis/measured_run.hpp"
 
 #include "analysis/bound/simulated_world.hpp"
+#include "analysis/metrics/score_intervals.hpp"
 
 #include <algorithm>
 
@@ -26,7 +27,8 @@ MapYardstick map_yardstick_of(const ResultFile& file) {
 }  // namespace
 
 Yardsticks yardsticks_of(const ResultFile& file, double level) {
-  Yardsticks sticks{file.scan_times(), level, {}, {}, map_yardstick_of(file)};
+  const std::size_t scans = file.has_truth() ? file.scan_times().size() : 0;
+  Yardsticks sticks{file.scan_times(), level, {}, {}, map_yardstick_of(file), BandWalks(scans)};
   for (const ReferencePath& path : file.references()) {
     sticks.references.emplace_back(path, file.times(), file.description().start);
   }
@@ -58,7 +60,7 @@ void CellSums::add(const MeasuredRun& run) {
   map_.add(run.map);
 }
 
-CellAnalysis CellSums::result() const {
+CellAnalysis CellSums::result() {
   CellAnalysis cell = sums_.result();
   for (const ReferenceAccumulator& sums : references_) cell.references.push_back(sums.result());
   if (!cell.references.empty()) put_leading_scores(cell.references.front(), cell.scores);
@@ -70,6 +72,7 @@ CellAnalysis CellSums::result() const {
     cell.scores[i].beacon_rms = beacons_[i]->rms;
     cell.scores[i].beacon_aligned_rms = beacons_[i]->aligned_rms;
   }
+  put_score_intervals(cell, level_);
   return cell;
 }
 

@@ -22,6 +22,7 @@ struct Yardsticks {
   std::vector<PathAtFixes> references;
   std::vector<Eigen::Vector2d> beacons;  ///< [m]
   MapYardstick map;                      ///< of a simulation
+  BandWalks walks;                       ///< of as many scans where there is a truth
 };
 
 Yardsticks yardsticks_of(const ResultFile& file, double level);
@@ -43,14 +44,14 @@ struct MeasuredRun {
 class CellSums {
  public:
   explicit CellSums(const Yardsticks& sticks)
-      : sums_(sticks.times, sticks.level),
+      : sums_(sticks.times, sticks.level, sticks.walks),
         references_(sticks.references.size()),
         level_(sticks.level),
         knows_landmarks_(!sticks.map.landmarks.empty()) {}
 
   void add(const MeasuredRun& run);
   /// Fills all that complete runs say; label, failures and missing runs are the caller's.
-  CellAnalysis result() const;
+  CellAnalysis result();
 
  private:
   CellAccumulator sums_;

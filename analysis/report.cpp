@@ -5,6 +5,7 @@
 #include "analysis/figures/path_figure.hpp"
 #include "analysis/figures/reference_figures.hpp"
 #include "analysis/figures/time_figures.hpp"
+#include "analysis/figures/why_figures.hpp"
 #include "analysis/page/page.hpp"
 #include "analysis/page/sections.hpp"
 #include "analysis/study_analysis.hpp"
@@ -37,8 +38,12 @@ std::vector<Section> reading_order(const ResultFile& file, const StudyAnalysis& 
           figure_section({path_figure(file, options.run)}),
           figure_section(reference_figures(study)),
           figure_section(time_figures(study)),
+          figure_section(why_figures(study)),
           figure_section({mismatch_figure(study)}),
           association_section(study),
+          why_section(study),
+          diversity_section(study),
+          innovation_section(study),
           consistency_section(study),
           origin_section(file, study),
           printed_section(study)};

@@ -101,6 +101,8 @@ void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
   read_scans("association_new_again", 1, i, rows.association.new_again);
   read_scans("association_missed", 1, i, rows.association.missed);
   read_scans("association_clutter", 1, i, rows.association.clutter);
+  read_scans("nis", 1, i, rows.nis);
+  read_scans("nis_dof", 1, i, rows.nis_dof);
   read_path(i, rows.path);
   read_scans("map_size", 1, i, rows.map_size);
   read_final_map(i, rows, scratch);
@@ -108,10 +110,14 @@ void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
   rows.ess.clear();
   rows.resampled.clear();
   rows.ancestor.clear();
+  rows.particle_pose.clear();
+  rows.log_weight.clear();
   if (cell_->particles == 0) return;
   read_scans("ess", 1, i, rows.ess);
   read_scans("resampled", 1, i, rows.resampled);
   read_scans("ancestor", cell_->particles, i, rows.ancestor);
+  read_scans("particle_pose", 3 * cell_->particles, i, rows.particle_pose);
+  read_scans("log_weight", cell_->particles, i, rows.log_weight);
 }
 
 }  // namespace montecarta

@@ -42,6 +42,19 @@ void accumulate(const RunReader& reader, std::span<const std::size_t> runs, std:
   }
 }
 
+/// A failed run is right until the scan at which it failed, at most.
+double failure_time(const ResultFile& file, std::uint32_t step) {
+  const auto& steps = file.description().scan_steps;
+  const auto scan = std::ranges::lower_bound(steps, step) - steps.begin();
+  return file.scan_times()[std::min(static_cast<std::size_t>(scan), steps.size() - 1)];
+}
+
+Survival survival(const CellAnalysis& cell, const ResultFile& file, const Yardsticks& sticks) {
+  std::vector<double> ends = cell.run_exits;
+  for (const FailedRun& failure : cell.failures) ends.push_back(failure_time(file, failure.step));
+  return survival_of(ends, sticks.times, sticks.level);
+}
+
 CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& stored,
                           const Yardsticks& sticks, const Parallel& parallel,
                           std::vector<MeasuredRun>& slots) {
@@ -58,6 +71,7 @@ CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& stored,
   cell.mismatch = mismatch_of(stored);
   cell.missing = outcome.missing;
   cell.failures = std::move(outcome.failures);
+  if (!cell.run_exits.empty()) cell.survival = survival(cell, file, sticks);
   return cell;
 }
 

@@ -102,20 +102,23 @@ std::vector<Interval> bootstrap_means(std::span<const std::vector<double>> colum
   const std::size_t runs = columns.empty() ? 0 : columns.front().size();
   if (runs < 2) return intervals;
   const std::size_t replicates = bootstrap_replicates(runs);
+  std::vector<std::size_t> known;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    expect(columns[c].size() == runs, "columns of a bootstrap have a value a run");
+    if (all_finite(columns[c])) known.push_back(c);
+  }
   std::vector<std::vector<double>> means(columns.size(), std::vector<double>(replicates));
   std::vector<std::uint32_t> drawn;
   for (std::size_t b = 0; b < replicates; ++b) {
     draw_runs(runs, b, drawn);
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      expect(columns[c].size() == runs, "columns of a bootstrap have a value a run");
+    for (const std::size_t c : known) {
       double sum = 0.0;
       for (const std::uint32_t i : drawn) sum += columns[c][i];
       means[c][b] = sum / static_cast<double>(runs);
     }
   }
   const double deviate = widened_deviate(runs, level);
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    if (!all_finite(columns[c])) continue;
+  for (const std::size_t c : known) {
     intervals[c] = accelerated_interval(means[c], shape_of(columns[c]), deviate);
   }
   return intervals;

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <limits>
 
 namespace montecarta {
 std::vector<double> MeanOverTime::mean() const {
@@ -18,64 +18,47 @@ std::vector<double> MeanOverTime::root_mean() const {
   return roots;
 }
 
-NeesAccumulator::NeesAccumulator(ErrorBlock block, Moments moments, std::size_t scans)
-    : block_(block), moments_(moments), sum_(scans), runs_(scans), medians_(scans) {}
-
-void NeesAccumulator::add(const RunMetrics& metrics) {
-  const auto block = static_cast<std::size_t>(block_);
-  const std::vector<double>& value = metrics.nees(moments_).value[block];
-  const std::vector<std::uint8_t>& floored = metrics.nees(moments_).floored[block];
-  samples_ += value.size();
-  for (std::size_t s = 0; s < value.size(); ++s) {
-    floored_ += floored[s];
-    if (!std::isfinite(value[s])) {
-      ++undefined_;
-      continue;
-    }
-    sum_[s] += value[s];
-    ++runs_[s];
-    medians_.add(s, value[s]);
-  }
-}
-
-NeesResult NeesAccumulator::result(std::span<const double> times, double level) const {
-  NeesResult result;
-  result.block = block_;
-  result.moments = moments_;
-  NeesSeries& series = result.series;
-  series.dimension = dimension_of(block_);
-  series.samples = samples_;
-  series.floored = floored_;
-  series.undefined = undefined_;
-  series.runs = runs_;
-  std::map<std::uint32_t, Interval> bounds_of;  // nearly always of one number of runs
-  for (std::size_t s = 0; s < sum_.size(); ++s) {
-    const auto [bounds, is_new] = bounds_of.try_emplace(runs_[s]);
-    if (is_new && runs_[s] > 0) bounds->second = nees_bounds(runs_[s], series.dimension, level);
-    series.bounds.push_back(bounds->second);
-    series.average.push_back(sum_[s] / runs_[s]);  // NaN where no run is valid
-    series.median.push_back(medians_.median(s));
-  }
-  result.consistency = judge(series, times, level);
-  return result;
-}
+CellAccumulator::CellAccumulator(std::span<const double> times, double level,
+                                 const BandWalks& walks)
+    : times_(times),
+      level_(level),
+      walks_(&walks),
+      run_bound_(nees_bounds(1, dimension_of(ErrorBlock::pose), level).upper),
+      exits_(times.size()),
+      credibility_(times.size()),
+      moments_(times.size()),
+      innovations_(times.size()) {}
 
 void CellAccumulator::add(const RunRows& rows, const RunMetrics& metrics) {
   ++complete_;
-  if (!rows.mixture.mean.empty()) leading_ = Moments::mixture;
   add_nees(metrics);
+  if (!metrics.covariances().empty()) add_leading(metrics);
+  if (!rows.nis.empty()) innovations_.add(rows.nis, rows.nis_dof);
+  if (metrics.lineages() != nullptr) lineages_.add(*metrics.lineages());
   add_over_time(rows, metrics);
   scores_.push_back(scores_of(rows, metrics));
 }
 
 void CellAccumulator::add_nees(const RunMetrics& metrics) {
   if (complete_ == 1) {
-    for (const Moments moments : {Moments::mixture, Moments::spread}) {
+    for (const Moments moments : kMoments) {
       if (metrics.nees(moments).value[0].empty()) continue;
       for (const ErrorBlock block : kErrorBlocks) nees_.emplace_back(block, moments, times_.size());
     }
   }
+  if (!nees_.empty()) leading_ = nees_.front().moments();
   for (NeesAccumulator& nees : nees_) nees.add(metrics);
+}
+
+void CellAccumulator::add_leading(const RunMetrics& metrics) {
+  const std::vector<double>& nees = metrics.nees(leading_).value[0];
+  std::vector<bool> above;
+  for (const double value : nees) above.push_back(value > run_bound_);
+  const auto exit = first_lasting(above, kLastingScans);
+  run_exits_.push_back(exit ? times_[*exit] : std::numeric_limits<double>::infinity());
+  exits_.add(nees);
+  credibility_.add(metrics.errors(), nees);
+  moments_.add(metrics.errors(), metrics.covariances());
 }
 
 void CellAccumulator::add_over_time(const RunRows& rows, const RunMetrics& metrics) {
@@ -134,14 +117,31 @@ std::optional<AssociationSummary> CellAccumulator::association() const {
   return summary;
 }
 
-CellAnalysis CellAccumulator::result() const {
+void CellAccumulator::put_leading(CellAnalysis& cell) {
+  if (run_exits_.empty()) return;
+  cell.run_exits = run_exits_;
+  cell.credibility = credibility_.result();
+  cell.anatomy = moments_.result();
+  const auto pose = std::ranges::find_if(cell.nees, [&](const NeesResult& nees) {
+    return nees.block == ErrorBlock::pose && nees.moments == leading_;
+  });
+  const auto exits = exits_.lasting_exits(times_, dimension_of(ErrorBlock::pose), level_);
+  pose->consistency.exit_interval = middle_of(exits, level_);
+}
+
+CellAnalysis CellAccumulator::result() {
   CellAnalysis cell;
   cell.complete = complete_;
   cell.leading = leading_;
-  for (const NeesAccumulator& nees : nees_) cell.nees.push_back(nees.result(times_, level_));
+  for (const NeesAccumulator& nees : nees_) {
+    cell.nees.push_back(nees.result(times_, level_, *walks_));
+  }
+  put_leading(cell);
   cell.error = errors();
   cell.weights = weights();
   cell.diversity = diversity();
+  if (!lineages_.empty()) cell.lineages = lineages_.result();
+  if (!innovations_.empty()) cell.innovations = innovations_.result(level_);
   cell.association = association();
   cell.map_size_over_time = map_size_.mean();
   cell.scores = scores_;

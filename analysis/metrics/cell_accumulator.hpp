@@ -2,9 +2,12 @@
 #pragma once
 
 #include "analysis/metrics/cell_analysis.hpp"
-#include "analysis/metrics/median_table.hpp"
+#include "analysis/metrics/exit_bootstrap.hpp"
+#include "analysis/metrics/lineage_sums.hpp"
+#include "analysis/metrics/nees_accumulator.hpp"
 #include "analysis/metrics/run_metrics.hpp"
 #include "analysis/metrics/run_rows.hpp"
+#include "analysis/metrics/whole_run_band.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -12,22 +15,6 @@
 #include <vector>
 
 namespace montecarta {
-
-/// Adds up the NEES of one block by one definition over runs.
-class NeesAccumulator {
- public:
-  NeesAccumulator(ErrorBlock block, Moments moments, std::size_t scans);
-  void add(const RunMetrics& metrics);
-  NeesResult result(std::span<const double> times, double level) const;
-
- private:
-  ErrorBlock block_;
-  Moments moments_;
-  std::vector<double> sum_;          ///< {scan} of finite NEES
-  std::vector<std::uint32_t> runs_;  ///< {scan} in the sum
-  MedianTable medians_;
-  std::uint64_t samples_ = 0, floored_ = 0, undefined_ = 0;
-};
 
 /// Adds up a number of every scan over runs.
 class MeanOverTime {
@@ -51,28 +38,39 @@ class MeanOverTime {
 /// by a few numbers with every run.
 class CellAccumulator {
  public:
-  CellAccumulator(std::span<const double> times, double level) : times_(times), level_(level) {}
+  /// `times` [s] of the scans and `walks` of as many must outlive it.
+  CellAccumulator(std::span<const double> times, double level, const BandWalks& walks);
 
   /// `metrics` measured on `rows`.
   void add(const RunRows& rows, const RunMetrics& metrics);
   /// Fills all that complete runs say; label, failures and missing runs are the caller's.
-  CellAnalysis result() const;
+  CellAnalysis result();
 
  private:
   void add_nees(const RunMetrics& metrics);
+  void add_leading(const RunMetrics& metrics);
   void add_over_time(const RunRows& rows, const RunMetrics& metrics);
   Summary over_runs(double RunScores::*score) const;
   ErrorSummary errors() const;
   std::optional<WeightSummary> weights() const;
   std::optional<DiversitySummary> diversity() const;
   std::optional<AssociationSummary> association() const;
+  void put_leading(CellAnalysis& cell);
 
   std::span<const double> times_;
   double level_;
+  const BandWalks* walks_;
+  double run_bound_;  ///< upper end of the band of a single run's NEES
   std::size_t complete_ = 0;
   std::vector<NeesAccumulator> nees_;  ///< leading first
   Moments leading_ = Moments::spread;
   std::vector<RunScores> scores_;  ///< {run}
+  std::vector<double> run_exits_;  ///< [s] {run}
+  ExitBootstrap exits_;
+  CredibilitySamples credibility_;
+  ErrorMoments moments_;
+  InnovationSums innovations_;
+  LineageSums lineages_;
   MeanOverTime squared_position_, squared_heading_, ess_, last_resampling_, lag_, root_, map_size_;
 };
 

@@ -4,11 +4,17 @@
 #include "analysis/bound/efficiency.hpp"
 #include "analysis/map/map_errors.hpp"
 #include "analysis/metrics/consistency.hpp"
+#include "analysis/metrics/credibility.hpp"
+#include "analysis/metrics/error_anatomy.hpp"
+#include "analysis/metrics/innovations.hpp"
+#include "analysis/metrics/lineages.hpp"
 #include "analysis/metrics/reference_analysis.hpp"
 #include "analysis/metrics/run_scores.hpp"
 #include "analysis/metrics/summary.hpp"
+#include "analysis/metrics/survival.hpp"
 #include "analysis/mismatch/mismatch.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -57,6 +63,15 @@ struct DiversitySummary {
   std::vector<double> root_over_time;
 };
 
+/// Ancestries over runs (Lineages).
+struct LineageSummary {
+  std::array<double, kLineageLags.size()> ancestors{};  ///< {lag} mean over runs; NaN: too short
+  double coalescence = 0.0;        ///< [s] mean over the runs that have a common ancestor
+  double coalesced_share = 0.0;    ///< of the scans looked at
+  double monte_carlo_share = 0.0;  ///< of the mean squared position error that is due to few
+                                   ///< particles; NaN where particles are not stored
+};
+
 /// What became of detections in a run, in sums over its scans (AssociationCounts).
 struct AssociationSummary {
   Summary correct, wrong, new_again, missed, clutter;
@@ -79,11 +94,16 @@ struct CellAnalysis {
   std::size_t complete = 0;
   std::size_t missing = 0;
   std::vector<FailedRun> failures;
-  Moments leading = Moments::spread;  ///< of errors and verdict: mixture where stored
+  Moments leading = Moments::spread;  ///< of errors and verdict: the first of kMoments there is
   std::vector<NeesResult> nees;       ///< leading first; pose, position, heading; may be empty
   ErrorSummary error;                 ///< of the leading mean
   std::optional<WeightSummary> weights;
   std::optional<DiversitySummary> diversity;
+  std::optional<LineageSummary> lineages;
+  std::optional<Survival> survival;        ///< where there is a leading covariance and a truth
+  std::optional<Credibility> credibility;  ///< likewise
+  std::optional<ErrorAnatomy> anatomy;     ///< likewise
+  std::optional<Innovations> innovations;  ///< where a filter has any
   std::optional<AssociationSummary> association;
   MapErrors map;                              ///< of the final maps
   Efficiency efficiency;                      ///< against StudyAnalysis::bound
@@ -91,8 +111,10 @@ struct CellAnalysis {
   std::vector<double> map_size_over_time;  ///< [1] {scan} mean over runs; of a drive without truth
   std::vector<std::uint64_t> runs;         ///< numbers of the complete runs, increasing
   std::vector<RunScores> scores;           ///< of each of them
-  Summary cpu_seconds;                     ///< [s] of each complete run's own thread over its steps
-  Summary numerical_faults;                ///< factorisations answered by a fallback, per run
+  std::vector<double> run_exits;  ///< [s] of each: its own lasting exit (Survival); infinity: never
+  RunScores lower, upper;         ///< where the mean of each score over infinitely many runs lies
+  Summary cpu_seconds;            ///< [s] of each complete run's own thread over its steps
+  Summary numerical_faults;       ///< factorisations answered by a fallback, per run
 
   /// nullptr where it is not stored.
   const NeesResult* find_nees(ErrorBlock block, Moments moments) const;

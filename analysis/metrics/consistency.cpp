@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/consistency.hpp"
 
+#include "analysis/metrics/bootstrap.hpp"
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/gamma.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +17,7 @@
 namespace montecarta {
 namespace {
 
+constexpr double kLeastVariance = 1e-9;  // of run averages that are equal: times the dimension
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Mean of the values that are numbers, in index order; NaN where there is none.
@@ -24,14 +32,44 @@ double mean_of_numbers(const std::vector<double>& values) {
   return n == 0 ? kNaN : sum / static_cast<double>(n);
 }
 
-/// Twice as often outside as chance has it is still called consistent: neighbouring scans are
-/// correlated, so the share scatters more than independent scans would.
-Verdict verdict(const Consistency& consistency, double level) {
-  if (std::isnan(consistency.share_inside)) return Verdict::untested;
-  if (consistency.lasting_exit) return Verdict::inconsistent;
-  if (1.0 - consistency.share_inside <= 2.0 * (1.0 - level)) return Verdict::consistent;
-  return consistency.share_above >= consistency.share_below ? Verdict::optimistic
-                                                            : Verdict::conservative;
+std::vector<double> numbers_in(const std::vector<double>& values) {
+  std::vector<double> numbers;
+  for (const double value : values) {
+    if (!std::isnan(value)) numbers.push_back(value);
+  }
+  return numbers;
+}
+
+/// Scans against the two bands.
+void compare_scans(const NeesSeries& series, std::span<const double> times, Consistency& result) {
+  std::vector<bool> above(series.average.size());
+  std::size_t tested = 0, n_above = 0, n_below = 0;
+  for (std::size_t s = 0; s < series.average.size(); ++s) {
+    const double average = series.average[s];
+    if (std::isnan(average)) continue;
+    ++tested;
+    above[s] = average > series.bounds[s].upper;
+    n_above += above[s] ? 1 : 0;
+    n_below += average < series.bounds[s].lower ? 1 : 0;
+    const Interval& whole_run = series.whole_run_bounds[s];
+    if (!result.above_from && average > whole_run.upper) result.above_from = times[s];
+    if (!result.below_from && average < whole_run.lower) result.below_from = times[s];
+  }
+  const auto share = [&](std::size_t n) {
+    return tested == 0 ? kNaN : static_cast<double>(n) / static_cast<double>(tested);
+  };
+  result.share_above = share(n_above);
+  result.share_below = share(n_below);
+  result.share_inside = share(tested - n_above - n_below);
+  if (const auto exit = first_lasting(above, kLastingScans)) result.lasting_exit = times[*exit];
+}
+
+Verdict verdict(const Consistency& found) {
+  if (std::isnan(found.share_inside)) return Verdict::untested;
+  const bool above = found.above_from || found.mean > found.average_bounds.upper;
+  const bool below = found.below_from || found.mean < found.average_bounds.lower;
+  if (above) return found.lasting_exit ? Verdict::inconsistent : Verdict::optimistic;
+  return below ? Verdict::conservative : Verdict::consistent;
 }
 
 }  // namespace
@@ -45,27 +83,48 @@ std::optional<std::size_t> first_lasting(const std::vector<bool>& above, std::si
   return std::nullopt;
 }
 
+Interval run_average_bounds(std::span<const double> run_averages, std::size_t dimension,
+                            double level) {
+  const auto n = static_cast<double>(run_averages.size());
+  double mean = 0.0, squares = 0.0;
+  for (const double average : run_averages) mean += average / n;
+  for (const double average : run_averages) squares += (average - mean) * (average - mean);
+  if (n < 3.0) return {0.0, std::numeric_limits<double>::infinity()};
+  const auto d = static_cast<double>(dimension);
+  // Of a right filter the average varies no more than a single scan does; runs that went astray do.
+  const double variance = std::clamp(squares / (n - 1.0), kLeastVariance * d, 2.0 * d) / n;
+  // The variance is an estimate, which Student's t answers.
+  const double deviate = boost::math::quantile(boost::math::students_t(n - 1.0), 0.5 + 0.5 * level);
+  const double tail = boost::math::cdf(boost::math::normal(), -deviate);
+  const boost::math::gamma_distribution<> average(d * d / variance, variance / d);
+  return {boost::math::quantile(average, tail),
+          boost::math::quantile(boost::math::complement(average, tail))};
+}
+
+double right_median(std::size_t dimension) {
+  return boost::math::median(boost::math::chi_squared(static_cast<double>(dimension)));
+}
+
+// The mean of a chi-square between two quantiles, by x f_d(x) = d f_{d+2}(x).
+double right_trimmed(std::size_t dimension) {
+  const auto d = static_cast<double>(dimension);
+  const boost::math::chi_squared nees(d), weighted(d + 2.0);
+  const double low = boost::math::quantile(nees, kTrimmedShare);
+  const double high = boost::math::quantile(nees, 1.0 - kTrimmedShare);
+  const double part = boost::math::cdf(weighted, high) - boost::math::cdf(weighted, low);
+  return d * part / (1.0 - 2.0 * kTrimmedShare);
+}
+
 Consistency judge(const NeesSeries& series, std::span<const double> times, double level) {
-  std::vector<bool> above(series.average.size());
-  std::size_t tested = 0, n_above = 0, n_below = 0;
-  for (std::size_t s = 0; s < series.average.size(); ++s) {
-    if (std::isnan(series.average[s])) continue;
-    ++tested;
-    above[s] = series.average[s] > series.bounds[s].upper;
-    n_above += above[s] ? 1 : 0;
-    n_below += series.average[s] < series.bounds[s].lower ? 1 : 0;
-  }
   Consistency result;
-  const auto share = [&](std::size_t n) {
-    return tested == 0 ? kNaN : static_cast<double>(n) / static_cast<double>(tested);
-  };
   result.mean = mean_of_numbers(series.average);
   result.median = mean_of_numbers(series.median);
-  result.share_above = share(n_above);
-  result.share_below = share(n_below);
-  result.share_inside = share(tested - n_above - n_below);
-  if (const auto exit = first_lasting(above, kLastingScans)) result.lasting_exit = times[*exit];
-  result.verdict = verdict(result, level);
+  result.trimmed = mean_of_numbers(series.trimmed);
+  const std::vector<double> averages = numbers_in(series.run_averages);
+  result.average_bounds = run_average_bounds(averages, series.dimension, series.average_level);
+  result.average_interval = bootstrap_mean(averages, level);
+  compare_scans(series, times, result);
+  result.verdict = verdict(result);
   return result;
 }
 

@@ -15,36 +15,65 @@ namespace montecarta {
 /// consecutive scans (5 s at 5 Hz); a single scan above it means nothing (SPEC 19).
 inline constexpr std::size_t kLastingScans = 25;
 
+/// The trimmed mean of NEES leaves out so large a share of the runs at either end.
+inline constexpr double kTrimmedShare = 0.1;
+
 /// NEES of one definition of error and covariance over scans and runs.
 struct NeesSeries {
   std::size_t dimension = 0;
-  std::vector<double> average;      ///< {scan} over valid runs; NaN where there is none
-  std::vector<double> median;       ///< {scan} over valid runs, to 3 %
-  std::vector<std::uint32_t> runs;  ///< {scan} valid: complete, with a finite NEES
-  std::vector<Interval> bounds;     ///< {scan} of the average, from `runs`
-  std::uint64_t samples = 0;        ///< scans x complete runs
-  std::uint64_t floored = 0;        ///< of them: singular covariance, floor added (SPEC 19)
-  std::uint64_t undefined = 0;      ///< of them: not a number, left out of average and median
+  std::vector<double> average;             ///< {scan} over valid runs; NaN where there is none
+  std::vector<double> median;              ///< {scan} over valid runs, to 3 %
+  std::vector<double> trimmed;             ///< {scan} mean without kTrimmedShare of the runs at
+                                           ///< either end, to 3 %
+  std::vector<std::uint32_t> runs;         ///< {scan} valid: complete, with a finite NEES
+  std::vector<Interval> bounds;            ///< {scan} of the average at that scan, from `runs`
+  std::vector<Interval> whole_run_bounds;  ///< {scan} of the average at all scans together
+  double average_level = 0.0;              ///< of the average over the run, by itself
+  std::vector<double> run_averages;        ///< {run} over its scans; NaN where none is finite
+  std::uint64_t samples = 0;               ///< scans x complete runs
+  std::uint64_t floored = 0;               ///< of them: singular covariance, floor added (SPEC 19)
+  std::uint64_t undefined = 0;  ///< of them: not a number, left out of average and median
 };
 
 enum class Verdict {
   untested,      ///< no covariance stored, or no complete run
-  consistent,    ///< outside the band at most twice as often as chance has it
-  inconsistent,  ///< leaves the band upwards for good
-  optimistic,    ///< outside too often, mostly above: errors larger than the filter says
-  conservative,  ///< outside too often, mostly below: errors smaller than the filter says
+  consistent,    ///< neither a scan nor the whole run is farther off than chance has it
+  inconsistent,  ///< too large, and leaves the pointwise band upwards for good
+  optimistic,    ///< too large at some scan or over the run: errors larger than the filter says
+  conservative,  ///< too small: errors smaller than the filter says
 };
 
-/// What a NeesSeries says in a few numbers.
+/// What a NeesSeries says in a few numbers. The verdict is one test at the level of the study: a
+/// right filter is called consistent with that probability, however many scans a run has. It has
+/// two parts that share the probability of a false alarm (WholeRunTest): the average over runs at
+/// every scan against whole_run_bounds, and the average over runs and scans against average_bounds.
 struct Consistency {
   Verdict verdict = Verdict::untested;
-  double mean = 0.0;          ///< of the averages, over scans
-  double median = 0.0;        ///< of the medians, over scans
-  double share_inside = 0.0;  ///< of scans with a valid run; the three add up to 1
-  double share_above = 0.0;
-  double share_below = 0.0;
+  double mean = 0.0;                 ///< of the averages, over scans
+  double median = 0.0;               ///< of the medians, over scans
+  double trimmed = 0.0;              ///< of the trimmed means, over scans
+  double share_inside = 0.0;         ///< of scans with a valid run; the three add up to 1
+  double share_above = 0.0;          ///< pointwise band, as share_below
+  double share_below = 0.0;          ///< of scans
+  Interval average_bounds = {};      ///< where the mean of a right filter lies
+  Interval average_interval = {};    ///< where the mean over infinitely many runs lies (bootstrap)
+  std::optional<double> above_from;  ///< [s] first scan above whole_run_bounds
+  std::optional<double> below_from;  ///< [s] first scan below them
   std::optional<double> lasting_exit;  ///< [s] first scan of the first kLastingScans above in a row
+  std::optional<Interval> exit_interval;  ///< [s] of lasting_exit, by bootstrap over runs;
+                                          ///< infinity: never; leading moments of the pose only
 };
+
+/// Where the average over runs and scans of a right filter lies with probability `level`: its mean
+/// is `dimension`; its variance that of `run_averages`, but at most what a single scan has; its
+/// shape a gamma (of one scan: the chi-square of nees_bounds()). Everything where there are fewer
+/// than three runs.
+Interval run_average_bounds(std::span<const double> run_averages, std::size_t dimension,
+                            double level);
+
+/// What a right filter has for Consistency::median and ::trimmed.
+double right_median(std::size_t dimension);
+double right_trimmed(std::size_t dimension);
 
 /// Index at which the first `length` consecutive true values begin; nullopt = never.
 std::optional<std::size_t> first_lasting(const std::vector<bool>& above, std::size_t length);

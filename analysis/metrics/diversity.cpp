@@ -35,25 +35,11 @@ void DiversityCounter::find_resamplings(std::size_t scans) {
   }
 }
 
-void DiversityCounter::make_distinct(std::vector<std::uint32_t>& indices) {
-  ++now_;
-  std::size_t kept = 0;
-  for (const std::uint32_t index : indices) {
-    if (stamp_[index] == now_) continue;
-    stamp_[index] = now_;
-    indices[kept++] = index;
-  }
-  indices.resize(kept);
-}
-
 /// Walks from resampling to resampling; between them everyone is their own parent.
 std::uint32_t DiversityCounter::ancestors_before(std::size_t first, std::size_t s) {
-  set_.resize(particles_);
-  std::iota(set_.begin(), set_.end(), 0u);
+  set_.start(particles_);
   for (std::size_t next = resampled_[s]; next > first;) {
-    const Row row = parents(next - 1);
-    for (std::uint32_t& index : set_) index = row[index];
-    make_distinct(set_);
+    set_.step_back(parents(next - 1));
     next = next > 1 ? resampled_[next - 2] : 0;
   }
   return static_cast<std::uint32_t>(set_.size());
@@ -83,14 +69,14 @@ void DiversityCounter::count_lag(std::span<const double> times) {
 }
 
 void DiversityCounter::count_root() {
+  set_.start(particles_);
   root_.resize(particles_);
   std::iota(root_.begin(), root_.end(), 0u);
   for (std::size_t s = 0; s < resampled_.size(); ++s) {
     if (resampled_[s] == s + 1) {
       previous_ = root_;
       for (std::size_t i = 0; i < particles_; ++i) root_[i] = previous_[parents(s)[i]];
-      set_ = root_;
-      make_distinct(set_);
+      set_.assign(root_);
       result_.root[s] = static_cast<std::uint32_t>(set_.size());
     } else if (s > 0) {
       result_.root[s] = result_.root[s - 1];
@@ -103,7 +89,6 @@ const Diversity& DiversityCounter::count(Row ancestor, std::size_t particles,
   expect(ancestor.size() == times.size() * particles, "ancestors are {scan, particle}");
   ancestor_ = ancestor;
   particles_ = particles;
-  stamp_.resize(std::max(stamp_.size(), particles));
   for (auto* column : {&result_.last_resampling, &result_.lag, &result_.root}) {
     column->assign(times.size(), static_cast<std::uint32_t>(particles));
   }

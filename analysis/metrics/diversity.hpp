@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/metrics/ancestor_set.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -34,8 +36,6 @@ class DiversityCounter {
   void count_last_resampling();
   void count_lag(std::span<const double> times);
   void count_root();
-  /// Keeps of `indices` each once.
-  void make_distinct(std::vector<std::uint32_t>& indices);
   /// How many ancestors the particles of scan `s` had before scan `first`.
   std::uint32_t ancestors_before(std::size_t first, std::size_t s);
 
@@ -43,11 +43,9 @@ class DiversityCounter {
   std::size_t particles_ = 0;
   Diversity result_;
   std::vector<std::size_t> resampled_;   ///< {scan} 1 + latest scan whose parents differ; 0: none
-  std::vector<std::uint32_t> set_;       ///< indices being walked back
+  AncestorSet set_;                      ///< being walked back
   std::vector<std::uint32_t> root_;      ///< {particle} ancestor at the start
   std::vector<std::uint32_t> previous_;  ///< root_ one resampling earlier
-  std::vector<std::uint64_t> stamp_;     ///< {index} in which set it was last seen
-  std::uint64_t now_ = 0;                ///< stamp of the set being made
 };
 
 }  // namespace montecarta

@@ -5,6 +5,10 @@
 #include "engine/errors.hpp"
 #include "engine/runs/pose.hpp"
 
+#include <Eigen/Geometry>
+
+#include <algorithm>
+
 namespace montecarta {
 namespace {
 
@@ -29,30 +33,75 @@ void measure_nees(const std::vector<double>& truth, const MomentRows& moments, N
   }
 }
 
+const MomentRows& leading(const RunRows& rows) {
+  return rows.mixture.mean.empty() ? rows.spread : rows.mixture;
+}
+
 }  // namespace
 
 void RunMetrics::measure_errors(const RunRows& rows, std::size_t scans) {
-  const std::vector<double>& mean =
-      rows.mixture.mean.empty() ? rows.spread.mean : rows.mixture.mean;
+  const std::vector<double>& mean = leading(rows).mean;
   squared_position_.clear();
   squared_heading_.clear();
+  errors_.clear();
+  covariances_.clear();
   if (rows.truth.empty()) return;
   expect(rows.truth.size() == 3 * scans && mean.size() == 3 * scans, "poses are {scan, 3}");
-  squared_position_.resize(scans);
-  squared_heading_.resize(scans);
   for (std::size_t s = 0; s < scans; ++s) {
     const Eigen::Vector3d error = boxminus(pose_of(rows.truth, s), pose_of(mean, s));
-    squared_position_[s] = error(0) * error(0) + error(1) * error(1);
-    squared_heading_[s] = error(2) * error(2);
+    squared_position_.push_back(error(0) * error(0) + error(1) * error(1));
+    squared_heading_.push_back(error(2) * error(2));
+    errors_.push_back(error);
+  }
+  turn_into_vehicle(rows);
+}
+
+void RunMetrics::turn_into_vehicle(const RunRows& rows) {
+  const std::vector<double>& covariance = leading(rows).covariance;
+  for (std::size_t s = 0; s < errors_.size(); ++s) {
+    const double heading = pose_of(rows.truth, s).heading;
+    Eigen::Matrix3d vehicle_from_map = Eigen::Matrix3d::Identity();
+    vehicle_from_map.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-heading).toRotationMatrix();
+    errors_[s] = vehicle_from_map * errors_[s];
+    if (covariance.empty()) continue;
+    const Eigen::Matrix3d P = Eigen::Map<const RowMajor3>(covariance.data() + 9 * s);
+    covariances_.push_back(vehicle_from_map * P * vehicle_from_map.transpose());
+  }
+}
+
+const NeesRows* RunMetrics::leading_nees() const {
+  const auto found =
+      std::ranges::find_if(nees_, [](const NeesRows& rows) { return !rows.value[0].empty(); });
+  return found == nees_.end() ? nullptr : &*found;
+}
+
+void RunMetrics::correct_spread(std::size_t particles) {
+  NeesRows& corrected = nees_[static_cast<std::size_t>(Moments::corrected)];
+  const bool possible = particles > dimension_of(ErrorBlock::pose);
+  corrected = possible ? nees(Moments::spread) : NeesRows{};
+  if (!possible) return;
+  if (scales_.empty() || scales_.front().particles() != particles) {
+    scales_.clear();
+    for (const ErrorBlock block : kErrorBlocks) {
+      scales_.emplace_back(dimension_of(block), particles);
+    }
+  }
+  for (std::size_t b = 0; b < scales_.size(); ++b) {
+    for (double& value : corrected.value[b]) value = scales_[b](value);
   }
 }
 
 void RunMetrics::measure(const RunRows& rows, std::size_t particles,
                          std::span<const double> times) {
   measure_errors(rows, times.size());
-  measure_nees(rows.truth, rows.spread, spread_);
-  measure_nees(rows.truth, rows.mixture, mixture_);
-  diversity_ = rows.ancestor.empty() ? nullptr : &counter_.count(rows.ancestor, particles, times);
+  measure_nees(rows.truth, rows.spread, nees_[static_cast<std::size_t>(Moments::spread)]);
+  measure_nees(rows.truth, rows.mixture, nees_[static_cast<std::size_t>(Moments::mixture)]);
+  correct_spread(particles);
+  diversity_ = nullptr;
+  lineages_.reset();
+  if (rows.ancestor.empty()) return;
+  diversity_ = &counter_.count(rows.ancestor, particles, times);
+  lineages_ = walker_.walk(rows, particles, times, squared_position_);
 }
 
 }  // namespace montecarta

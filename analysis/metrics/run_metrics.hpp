@@ -2,10 +2,15 @@
 #pragma once
 
 #include "analysis/metrics/diversity.hpp"
+#include "analysis/metrics/lineages.hpp"
 #include "analysis/metrics/run_rows.hpp"
+#include "analysis/metrics/sampler_scale.hpp"
+
+#include <Eigen/Core>
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,9 +18,13 @@ namespace montecarta {
 
 /// Which mean and covariance of a filter are judged (SPEC 19).
 enum class Moments {
-  mixture,  ///< spread of the particles plus each particle's own covariance, before sampling
-  spread    ///< of the weighted drawn particles; of the Gaussian for a Kalman filter
+  mixture,    ///< spread of the particles plus each particle's own covariance, before sampling
+  corrected,  ///< spread of the particles, its NEES put on the chi-square's scale (SamplerScale)
+  spread      ///< of the weighted drawn particles; of the Gaussian for a Kalman filter
 };
+
+/// In the order in which they lead the verdict, where they are there.
+inline constexpr std::array kMoments = {Moments::mixture, Moments::corrected, Moments::spread};
 
 /// Which components of the pose error are judged.
 enum class ErrorBlock {
@@ -45,23 +54,37 @@ class RunMetrics {
   /// truth there are no errors and no NEES: their rows are empty.
   void measure(const RunRows& rows, std::size_t particles, std::span<const double> times);
 
-  const NeesRows& nees(Moments moments) const {
-    return moments == Moments::mixture ? mixture_ : spread_;
-  }
+  const NeesRows& nees(Moments moments) const { return nees_[static_cast<std::size_t>(moments)]; }
+  /// By the first of kMoments that is there; nullptr where none is.
+  const NeesRows* leading_nees() const;
   /// [m^2] {scan}, of the leading mean: the mixture's where stored.
   const std::vector<double>& squared_position() const { return squared_position_; }
   /// [rad^2] {scan}
   const std::vector<double>& squared_heading() const { return squared_heading_; }
-  /// nullptr where there are no ancestors.
+  /// {scan} errors of the leading mean in the frame of the true vehicle: forward [m], left [m],
+  /// heading [rad].
+  const std::vector<Eigen::Vector3d>& errors() const { return errors_; }
+  /// {scan} the leading covariance in the same frame; empty where none is stored.
+  const std::vector<Eigen::Matrix3d>& covariances() const { return covariances_; }
+  /// nullptr where there are no ancestors, as lineages().
   const Diversity* diversity() const { return diversity_; }
+  const Lineages* lineages() const { return lineages_ ? &*lineages_ : nullptr; }
 
  private:
   void measure_errors(const RunRows& rows, std::size_t scans);
+  void turn_into_vehicle(const RunRows& rows);
 
-  NeesRows spread_, mixture_;
+  void correct_spread(std::size_t particles);
+
+  std::array<NeesRows, kMoments.size()> nees_;  ///< {Moments}
+  std::vector<SamplerScale> scales_;            ///< {block} of the last number of particles
   std::vector<double> squared_position_, squared_heading_;
+  std::vector<Eigen::Vector3d> errors_;
+  std::vector<Eigen::Matrix3d> covariances_;
   DiversityCounter counter_;
   const Diversity* diversity_ = nullptr;
+  LineageWalker walker_;
+  std::optional<Lineages> lineages_;
 };
 
 }  // namespace montecarta

@@ -31,6 +31,10 @@ struct RunRows {
   std::vector<std::uint32_t> resampled;         ///< {scan} 0 or 1
   std::vector<std::uint32_t> numerical_faults;  ///< {scan}
   std::vector<std::uint32_t> ancestor;          ///< {scan, particle}
+  std::vector<double> particle_pose;            ///< {scan, particle, 3} [m, m, rad]
+  std::vector<double> log_weight;               ///< {scan, particle} normalised
+  std::vector<double> nis;                      ///< {scan}
+  std::vector<std::uint32_t> nis_dof;           ///< {scan}
   AssociationRows association;
   std::vector<double> path;      ///< {row, 3} [m, m, rad] leading mean, also between scans; only
                                  ///< where the drive has references

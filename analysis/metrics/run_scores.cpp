@@ -89,6 +89,9 @@ constexpr ScoreName kNames[] = {
     {"ancestors_at_start", "1", "distinct ancestors at the start", &RunScores::root},
     {"ancestors_at_start_at_the_end", "1", "first particles that have descendants at the end",
      &RunScores::final_root},
+    {"coalescence", "s", "time back to the common ancestor", &RunScores::coalescence},
+    {"monte_carlo_variance", "m2", "position variance by few particles",
+     &RunScores::monte_carlo_variance},
     {"association_correct", "1", "detections rightly associated", &RunScores::correct},
     {"association_wrong", "1", "detections given to a wrong landmark", &RunScores::wrong},
     {"association_new_again", "1", "detections made new again", &RunScores::new_again},
@@ -129,14 +132,19 @@ constexpr ScoreName kNames[] = {
 RunScores scores_of(const RunRows& rows, const RunMetrics& metrics) {
   RunScores scores;
   score_errors(metrics, scores);
-  const Moments leading = rows.mixture.mean.empty() ? Moments::spread : Moments::mixture;
-  scores.nees = mean_of_finite(metrics.nees(leading).value[0]);
-  scores.nees_position = mean_of_finite(metrics.nees(leading).value[1]);
+  if (const NeesRows* nees = metrics.leading_nees()) {
+    scores.nees = mean_of_finite(nees->value[0]);
+    scores.nees_position = mean_of_finite(nees->value[1]);
+  }
   if (!rows.ess.empty()) {
     scores.ess = mean_of(rows.ess);
     scores.resampling_rate = mean_of(rows.resampled);
   }
   if (metrics.diversity() != nullptr) score_diversity(*metrics.diversity(), scores);
+  if (const Lineages* lineages = metrics.lineages()) {
+    scores.coalescence = lineages->coalescence;
+    scores.monte_carlo_variance = lineages->monte_carlo_variance;
+  }
   if (!rows.association.correct.empty()) score_association(rows.association, scores);
   score_map(rows, scores);
   scores.numerical_faults = sum_of(rows.numerical_faults);

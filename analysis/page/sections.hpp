@@ -21,6 +21,12 @@ Section reference_section(const StudyAnalysis& study);
 Section association_section(const StudyAnalysis& study);
 /// Every definition of error and covariance.
 Section consistency_section(const StudyAnalysis& study);
+/// Bias or scatter, in which direction, how far.
+Section why_section(const StudyAnalysis& study);
+/// Size and whiteness of the innovations.
+Section innovation_section(const StudyAnalysis& study);
+/// Effective particles and ancestry.
+Section diversity_section(const StudyAnalysis& study);
 /// Study, scenario and provenance.
 Section origin_section(const ResultFile& file, const StudyAnalysis& study);
 /// What a paper printed beside what was measured.

@@ -52,6 +52,22 @@ std::string with_error_to(int decimals, double mean, double standard_error) {
   return text + " +- " + printed("%.*f", decimals, standard_error);
 }
 
+std::string with_interval(double mean, const Interval& interval) {
+  const double half = 0.5 * (interval.upper - interval.lower);
+  if (std::isnan(mean) || !std::isfinite(half) || half <= 0.0) return compact(mean);
+  const auto each = [&](double value) {
+    if (std::abs(mean) >= 1e4) return compact(value);
+    return printed("%.*f", std::clamp(1 - magnitude(half), 0, 12), value);
+  };
+  return each(mean) + " [" + each(interval.lower) + ", " + each(interval.upper) + "]";
+}
+
+std::string time_with_interval(double time, const Interval& interval) {
+  const auto each = [](double t) { return std::isinf(t) ? "never" : printed("%.*f", 1, t); };
+  const std::string seconds = std::isinf(time) ? "" : " s";
+  return each(time) + seconds + " [" + each(interval.lower) + ", " + each(interval.upper) + "]";
+}
+
 std::string exact_text(double value) {
   if (std::isnan(value)) return "nan";
   std::array<char, 64> text{};

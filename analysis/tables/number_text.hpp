@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/nees_bounds.hpp"
+
 #include <string>
 
 namespace montecarta {
@@ -18,6 +20,13 @@ std::string with_error(double mean, double standard_error);
 
 /// As with_error() with a fixed number of decimals, for numbers that are not known any better.
 std::string with_error_to(int decimals, double mean, double standard_error);
+
+/// A mean with the interval that holds it, "3.58 [3.38, 3.79]": all to the second significant digit
+/// of the interval's half width. The mean alone where there is no interval.
+std::string with_interval(double mean, const Interval& interval);
+
+/// A time with its interval, "4.2 s [3.8, never]"; infinity is "never".
+std::string time_with_interval(double time, const Interval& interval);
 
 /// The shortest text that reads back as the same number; "nan", "inf".
 std::string exact_text(double value);

@@ -4,6 +4,7 @@
 #include "analysis/tables/map_error_table.hpp"
 #include "analysis/tables/reference_table.hpp"
 #include "analysis/tables/verdict_table.hpp"
+#include "analysis/tables/why_tables.hpp"
 
 #include <algorithm>
 #include <ostream>
@@ -87,7 +88,9 @@ void print_judged_by_truth(std::ostream& out, const StudyAnalysis& study) {
   out << '\n';
   print(out, accuracy_table(study));
   out << '\n';
-  if (const TextTable table = map_error_table(study); !table.rows.empty()) {
+  for (const TextTable& table : {map_error_table(study), why_table(study), diversity_table(study),
+                                 innovation_table(study)}) {
+    if (table.rows.empty()) continue;
     print(out, table);
     out << '\n';
   }

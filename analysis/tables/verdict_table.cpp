@@ -6,11 +6,13 @@
 #include "engine/numbers/angle.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace montecarta {
 namespace {
 
 constexpr double kDegrees = 180.0 / kPi;
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
 std::string interval_text(const Interval& interval) {
   std::string text(1, '[');
@@ -24,33 +26,38 @@ std::string band_text(const CellAnalysis& cell, std::size_t dimension, double le
 }
 
 std::string exit_text(const Consistency& consistency) {
-  if (consistency.verdict == Verdict::untested) return "-";
-  return consistency.lasting_exit ? readable(*consistency.lasting_exit) + " s" : "never";
+  if (!consistency.exit_interval) return "-";
+  return time_with_interval(consistency.lasting_exit.value_or(kNever), *consistency.exit_interval);
 }
 
-std::string in_degrees(const Summary& radians) {
-  return with_error(kDegrees * radians.mean, kDegrees * radians.standard_error());
+std::string median_exit_text(const CellAnalysis& cell) {
+  if (!cell.survival || cell.survival->runs == 0) return "-";
+  return time_with_interval(cell.survival->median, cell.survival->median_interval);
 }
 
-std::vector<std::string> verdict_row(const CellAnalysis& cell, double level) {
+std::string score_text(const CellAnalysis& cell, double RunScores::*score, double mean,
+                       double factor = 1.0) {
+  return with_interval(factor * mean, {factor * cell.lower.*score, factor * cell.upper.*score});
+}
+
+std::vector<std::string> verdict_row(const CellAnalysis& cell) {
   const Consistency verdict = cell.consistency();
   const bool tested = verdict.verdict != Verdict::untested;
   const auto if_tested = [&](const std::string& text) { return tested ? text : "-"; };
   return {cell.label,
           runs_in_words(cell),
           in_words(verdict),
-          if_tested(compact(verdict.mean)),
-          if_tested(band_text(cell, 3, level)),
+          if_tested(with_interval(verdict.mean, verdict.average_interval)),
+          if_tested(interval_text(verdict.average_bounds)),
           if_tested(percent(verdict.share_inside)),
-          if_tested(percent(verdict.share_above)),
-          if_tested(percent(verdict.share_below)),
-          exit_text(verdict)};
+          exit_text(verdict),
+          median_exit_text(cell)};
 }
 
 std::vector<std::string> accuracy_row(const CellAnalysis& cell) {
   return {cell.label,
-          with_error(cell.error.position_rmse.mean, cell.error.position_rmse.standard_error()),
-          in_degrees(cell.error.heading_rmse),
+          score_text(cell, &RunScores::position_rmse, cell.error.position_rmse.mean),
+          score_text(cell, &RunScores::heading_rmse, cell.error.heading_rmse.mean, kDegrees),
           percent(cell.efficiency.position),
           cell.weights ? readable(cell.weights->ess.mean) : "-",
           cell.diversity ? readable(cell.diversity->final_root.mean) : "-",
@@ -84,7 +91,8 @@ std::vector<std::string> consistency_row(const CellAnalysis& cell, const NeesRes
           name_of(nees.moments),
           in_words(found),
           compact(found.mean),
-          compact(found.median),
+          readable(found.median / right_median(nees.series.dimension)),
+          readable(found.trimmed / right_trimmed(nees.series.dimension)),
           readable(ideal_nees(cell, nees)),
           band_text(cell, nees.series.dimension, level),
           percent(found.share_inside),
@@ -102,7 +110,11 @@ std::string name_of(ErrorBlock block) {
                                          : "heading";
 }
 
-std::string name_of(Moments moments) { return moments == Moments::mixture ? "mixture" : "spread"; }
+std::string name_of(Moments moments) {
+  return moments == Moments::mixture     ? "mixture"
+         : moments == Moments::corrected ? "corrected"
+                                         : "spread";
+}
 
 std::string runs_in_words(const CellAnalysis& cell) {
   std::string words;
@@ -113,16 +125,11 @@ std::string runs_in_words(const CellAnalysis& cell) {
 
 TextTable verdict_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {{"cell", Align::left},
-                    {"runs", Align::left},
-                    {"verdict", Align::left},
-                    {"ANEES"},
-                    {level_text(study.level) + " band"},
-                    {"inside"},
-                    {"above"},
-                    {"below"},
-                    {"leaves at"}};
-  for (const CellAnalysis& cell : study.cells) table.rows.push_back(verdict_row(cell, study.level));
+  table.headings = {{"cell", Align::left},    {"runs", Align::left},
+                    {"verdict", Align::left}, {"ANEES [" + level_text(study.level) + "]"},
+                    {"right within"},         {"scans inside"},
+                    {"leaves for good at"},   {"half the runs lost at"}};
+  for (const CellAnalysis& cell : study.cells) table.rows.push_back(verdict_row(cell));
   return table;
 }
 
@@ -166,7 +173,8 @@ TextTable consistency_table(const StudyAnalysis& study) {
                     {"covariance", Align::left},
                     {"verdict", Align::left},
                     {"ANEES"},
-                    {"median"},
+                    {"median / right"},
+                    {"trimmed / right"},
                     {"ideal"},
                     {level_text(study.level) + " band"},
                     {"inside"},
@@ -196,22 +204,29 @@ TextTable failure_table(const StudyAnalysis& study) {
 
 std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
   const std::string level = level_text(study.level);
-  const std::string rest = level_text(1.0 - study.level);
   return {
       "ANEES compares the errors that happened with the errors the filter expected (its "
-      "covariance), averaged over runs: 3 means it knows how wrong it is (three components: x, "
-      "y, heading), more means it is too sure of itself, less that it is too cautious.",
-      "The band is where chance alone keeps a right filter in " + level +
-          " of scans; it holds for each scan by itself (pointwise), so about " + rest +
-          " of scans outside are expected and neighbouring scans go together.",
-      "'inconsistent from t' means " + std::to_string(kLastingScans) +
-          " scans in a row above the band, the first at t; 'never' means not within the " +
+      "covariance), averaged over runs and scans: 3 means it knows how wrong it is (three "
+      "components: x, y, heading), more means it is too sure of itself, less that it is too "
+      "cautious. The brackets hold what infinitely many runs would give (" +
+          level + ", bootstrap over runs); 'right within' is where chance leaves a right filter.",
+      "The verdict is one test: a right filter is called consistent in " + level +
+          " of studies, however long they are. It fails where the average over runs leaves, at any "
+          "scan, a band that is wide enough for all scans together, or where the average over the "
+          "whole run is too far from 3: 'optimistic' when too large, 'conservative' when too "
+          "small.",
+      "'inconsistent from t' is optimistic for good: " + std::to_string(kLastingScans) +
+          " scans in a row above the pointwise band, the first at t. The brackets behind 'leaves "
+          "for "
+          "good' hold that time for " +
+          level + " of repeated studies; 'never' means not within the " +
           readable(study.duration, 4) +
-          " s of this study. 'optimistic' and 'conservative' mean outside more than twice as "
-          "often as chance has it, mostly above or mostly below.",
-      "RMSE is given as mean over runs +- its standard error; ESS is the effective number of "
-      "particles, roots how many of the first particles still have descendants at the end, CPU "
-      "the filter's own time in a run; all of complete runs only."};
+          " s of this study. A single run is lost when its own NEES does so, or when it fails.",
+      "'scans inside' counts the scans whose average lies in the pointwise band: " + level +
+          " of them are expected of a right filter, and neighbouring scans go together.",
+      "RMSE is the mean over runs, with the interval that holds it for infinitely many; ESS is the "
+      "effective number of particles, roots how many of the first particles still have descendants "
+      "at the end, CPU the filter's own time in a run; all of complete runs only."};
 }
 
 }  // namespace montecarta

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/cell_accumulator.hpp"
 
+#include "analysis/metrics/score_intervals.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +14,8 @@ namespace {
 
 CellAnalysis analyze_runs(const SyntheticStudy& study, std::uint64_t runs) {
   const auto times = study.times();
-  CellAccumulator sums(times, 0.95);
+  const BandWalks walks(times.size());
+  CellAccumulator sums(times, 0.95, walks);
   RunMetrics metrics;
   for (std::uint64_t run = 0; run < runs; ++run) {
     const RunRows rows = study.run(run);
@@ -74,6 +76,26 @@ TEST(CellAccumulator, FindsABiasAndItsRmse) {
   EXPECT_NEAR(nees_of(cell, ErrorBlock::heading).consistency.mean, 1.0, 0.1);
 }
 
+TEST(CellAccumulator, SaysHowSureItIs) {
+  SyntheticStudy study;
+  study.inflation = 1.5;
+  CellAnalysis cell = analyze_runs(study, 30);
+  put_score_intervals(cell, 0.95);
+  const Consistency pose = cell.consistency();
+  EXPECT_LT(pose.average_bounds.upper, 3.2);
+  EXPECT_LT(pose.average_interval.lower, 6.75);
+  EXPECT_GT(pose.average_interval.upper, 6.75);
+  ASSERT_TRUE(pose.exit_interval);
+  EXPECT_DOUBLE_EQ(pose.exit_interval->lower, 0.2);
+  EXPECT_LT(cell.lower.position_rmse, cell.error.position_rmse.mean);
+  EXPECT_GT(cell.upper.position_rmse, cell.error.position_rmse.mean);
+  EXPECT_TRUE(std::isnan(cell.lower.ess));
+  ASSERT_TRUE(cell.credibility && cell.anatomy);
+  EXPECT_NEAR(cell.credibility->inclination, 20.0 * std::log10(1.5), 0.3);
+  EXPECT_NEAR(cell.anatomy->happened[2].back() / cell.anatomy->believed[2].back(), 1.5, 0.5);
+  EXPECT_EQ(cell.run_exits.size(), 30u);
+}
+
 TEST(CellAccumulator, WrapsTheHeading) {
   SyntheticStudy study;  // its heading turns through pi again and again
   const CellAnalysis cell = analyze_runs(study, 10);
@@ -82,7 +104,8 @@ TEST(CellAccumulator, WrapsTheHeading) {
 
 TEST(CellAccumulator, KnowsAPairOfRunsByHand) {
   const std::vector<double> times = {0.2, 0.4};
-  CellAccumulator sums(times, 0.95);
+  const BandWalks walks(times.size());
+  CellAccumulator sums(times, 0.95, walks);
   RunMetrics metrics;
   for (const double error : {1.0, 3.0}) {
     RunRows rows;
@@ -109,7 +132,8 @@ TEST(CellAccumulator, KnowsAPairOfRunsByHand) {
 TEST(CellAccumulator, LetsTheMixtureLeadAndKeepsTheSpread) {
   const SyntheticStudy study;
   const auto times = study.times();
-  CellAccumulator sums(times, 0.95);
+  const BandWalks walks(times.size());
+  CellAccumulator sums(times, 0.95, walks);
   RunMetrics metrics;
   for (std::uint64_t run = 0; run < 30; ++run) {
     RunRows rows = study.run(run);
@@ -130,7 +154,8 @@ TEST(CellAccumulator, CountsWhatIsSingularOrUndefined) {
   SyntheticStudy study;
   study.scans = 3;
   const auto times = study.times();
-  CellAccumulator sums(times, 0.95);
+  const BandWalks walks(times.size());
+  CellAccumulator sums(times, 0.95, walks);
   RunMetrics metrics;
   for (std::uint64_t run = 0; run < 4; ++run) {
     RunRows rows = study.run(run);
@@ -151,7 +176,8 @@ TEST(CellAccumulator, CountsWhatIsSingularOrUndefined) {
 
 TEST(CellAccumulator, SummarisesParticles) {
   const std::vector<double> times = {0.2, 0.4};
-  CellAccumulator sums(times, 0.95);
+  const BandWalks walks(times.size());
+  CellAccumulator sums(times, 0.95, walks);
   RunMetrics metrics;
   RunRows rows;
   rows.truth.assign(6, 0.0);
@@ -171,7 +197,8 @@ TEST(CellAccumulator, SummarisesParticles) {
 
 TEST(CellAccumulator, SumsAssociationsOverARunAndAveragesOverRuns) {
   const std::vector<double> times = {0.2, 0.4};
-  CellAccumulator sums(times, 0.95);
+  const BandWalks walks(times.size());
+  CellAccumulator sums(times, 0.95, walks);
   RunMetrics metrics;
   RunRows rows;
   rows.truth.assign(6, 0.0);
@@ -179,7 +206,7 @@ TEST(CellAccumulator, SumsAssociationsOverARunAndAveragesOverRuns) {
   metrics.measure(rows, 0, times);
   sums.add(rows, metrics);
   EXPECT_FALSE(sums.result().association);
-  CellAccumulator counted(times, 0.95);
+  CellAccumulator counted(times, 0.95, walks);
   for (const double wrong : {1.0, 4.0}) {
     rows.association = {{3.0, 2.5}, {wrong, 0.5}, {0.0, 0.0}, {1.0, 0.0}, {0.0, 2.0}};
     counted.add(rows, metrics);

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/consistency.hpp"
 
+#include "engine/random/stream.hpp"
+
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace montecarta {
@@ -23,7 +27,10 @@ NeesSeries series_of(const std::vector<double>& averages) {
   series.average = averages;
   series.median = averages;
   series.runs.assign(averages.size(), 30);
+  series.trimmed = averages;
   series.bounds.assign(averages.size(), nees_bounds(30, 3, 0.95));
+  series.average_level = 0.975;
+  series.whole_run_bounds.assign(averages.size(), nees_bounds(30, 3, 0.9999));
   return series;
 }
 
@@ -50,25 +57,73 @@ TEST(Judge, CountsSharesOfScans) {
   EXPECT_DOUBLE_EQ(result.share_inside, 0.97);
   EXPECT_DOUBLE_EQ(result.share_above, 0.01);
   EXPECT_DOUBLE_EQ(result.share_below, 0.02);
+}
+
+TEST(Judge, IsNotMovedByScansOutsideThePointwiseBandAlone) {
+  std::vector<double> averages(100, 3.0);
+  averages[3] = 4.2;
+  for (std::size_t s = 50; s < 80; ++s) averages[s] = 4.0;  // goes together: one piece of chance
+  const Consistency result = judge(averages);
   EXPECT_EQ(result.verdict, Verdict::consistent);
   EXPECT_EQ(in_words(result), "consistent");
+  EXPECT_TRUE(result.lasting_exit.has_value());
 }
 
 TEST(Judge, NamesTheTimeOfALastingExit) {
   std::vector<double> averages(100, 3.0);
-  for (std::size_t s = 20; s < 45; ++s) averages[s] = 4.0;
+  for (std::size_t s = 20; s < 45; ++s) averages[s] = 5.2;
   const Consistency result = judge(averages);
   ASSERT_TRUE(result.lasting_exit.has_value());
   EXPECT_DOUBLE_EQ(*result.lasting_exit, 4.2);
+  EXPECT_DOUBLE_EQ(*result.above_from, 4.2);
+  EXPECT_FALSE(result.below_from.has_value());
   EXPECT_EQ(in_words(result), "inconsistent from 4.2 s");
 }
 
 TEST(Judge, TellsOptimisticFromConservative) {
   std::vector<double> averages(100, 3.0);
-  for (std::size_t s = 0; s < 100; s += 5) averages[s] = 4.5;
+  averages[7] = 5.2;
   EXPECT_EQ(judge(averages).verdict, Verdict::optimistic);
-  for (std::size_t s = 0; s < 100; s += 5) averages[s] = 1.5;
+  averages[7] = 1.2;
   EXPECT_EQ(judge(averages).verdict, Verdict::conservative);
+}
+
+TEST(Judge, HearsTheAverageOverTheRunWhereNoScanIsFarOff) {
+  NeesSeries series = series_of(std::vector<double>(100, 3.4));
+  for (int run = 0; run < 30; ++run) series.run_averages.push_back(3.4 + 0.02 * (run % 2));
+  EXPECT_EQ(judge(series, every_fifth_of_a_second(100), 0.95).verdict, Verdict::optimistic);
+  std::ranges::fill(series.average, 2.7);
+  EXPECT_EQ(judge(series, every_fifth_of_a_second(100), 0.95).verdict, Verdict::conservative);
+}
+
+// The average over one scan is the average NEES.
+TEST(RunAverageBounds, AreThoseOfTheChiSquareWhereRunsAreOneScanLong) {
+  RngStream draw({5, 0, 0, 0, Draw::test});
+  std::vector<double> nees(2000);
+  for (double& value : nees) {
+    value = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      const double normal = draw.normal();
+      value += normal * normal;
+    }
+  }
+  const Interval exact = nees_bounds(2000, 3, 0.95);
+  const Interval found = run_average_bounds(nees, 3, 0.95);
+  EXPECT_NEAR(found.lower, exact.lower, 0.01);
+  EXPECT_NEAR(found.upper, exact.upper, 0.01);
+}
+
+TEST(RunAverageBounds, AreNeverWiderThanThoseOfOneScan) {
+  const std::vector<double> astray = {1.0, 2.0, 1e20, 3.0, 4.0};
+  EXPECT_LT(run_average_bounds(astray, 3, 0.95).upper, 10.0);
+  EXPECT_TRUE(std::isinf(run_average_bounds(std::vector<double>{3.0, 3.0}, 3, 0.95).upper));
+}
+
+TEST(RightValues, AreThoseOfTheChiSquare) {
+  EXPECT_NEAR(right_median(3), 2.36597, 1e-5);
+  EXPECT_NEAR(right_median(1), 0.45494, 1e-5);
+  // By adding up quantiles: scipy.stats.chi2.ppf of (k + 0.5) / n between 0.1 and 0.9.
+  EXPECT_NEAR(right_trimmed(3), 2.64820, 1e-4);
 }
 
 TEST(Judge, LeavesOutScansWithoutARunAndBreaksStretchesThere) {

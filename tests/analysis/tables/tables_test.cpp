@@ -30,13 +30,20 @@ CellAnalysis consistent_cell() {
   cell.filter = "ekf_slam";
   cell.complete = 30;
   cell.error.position_rmse = {30, 1.93, 0.06 * std::sqrt(30.0)};
+  cell.lower.position_rmse = 1.81;
+  cell.upper.position_rmse = 2.05;
   NeesResult pose;
   pose.series.dimension = 3;
   pose.series.average = {3.0, 3.5};
   pose.series.median = {2.4, 2.5};
+  pose.series.trimmed = {2.6, 2.7};
   pose.series.runs = {30, 30};
+  for (int run = 0; run < 30; ++run) pose.series.run_averages.push_back(run % 2 == 0 ? 2.0 : 4.5);
+  pose.series.average_level = 0.975;
+  pose.series.whole_run_bounds.assign(2, nees_bounds(30, 3, 0.99));
   pose.series.bounds.assign(2, nees_bounds(30, 3, 0.95));
   pose.consistency = judge(pose.series, std::vector<double>{0.2, 0.4}, 0.95);
+  pose.consistency.exit_interval = Interval{4.2, std::numeric_limits<double>::infinity()};
   cell.nees = {pose};
   cell.error.position_over_time = {0.1, 0.2};
   cell.error.heading_over_time = {0.01, 0.02};
@@ -81,6 +88,10 @@ TEST(NumberText, IsShortAndHonest) {
   EXPECT_EQ(with_error_to(2, 3.5812, 0.0001), "3.58 +- 0.00");
   EXPECT_EQ(with_error_to(1, 242.31, kNaN), "242.3");
   EXPECT_EQ(with_error_to(2, kNaN, kNaN), "-");
+  EXPECT_EQ(with_interval(3.5812, {3.3791, 3.7902}), "3.58 [3.38, 3.79]");
+  EXPECT_EQ(with_interval(3.5812, {kNaN, kNaN}), "3.58");
+  EXPECT_EQ(with_interval(272632.0, {1.0, 500000.0}), "2.73e5 [1.00, 5.00e5]");
+  EXPECT_EQ(time_with_interval(4.21, {3.84, 5.0}), "4.2 s [3.8, 5.0]");
   EXPECT_EQ(percent(0.9456), "94.6 %");
   EXPECT_EQ(level_text(0.95), "95 %");
   EXPECT_EQ(level_text(0.999), "99.9 %");
@@ -96,9 +107,9 @@ TEST(PrintTables, PutFailedRunsFirstAndTheVerdictInWords) {
   EXPECT_THAT(text, HasSubstr("1 FAILED, 3 missing, 0 complete  not tested"));
   EXPECT_THAT(text, HasSubstr("30 complete"));
   EXPECT_THAT(text, HasSubstr("consistent"));
-  EXPECT_THAT(text, HasSubstr("[2.19, 3.94]"));
-  EXPECT_THAT(text, HasSubstr("1.930 +- 0.060"));
-  EXPECT_THAT(text, HasSubstr("pointwise"));
+  EXPECT_THAT(text, HasSubstr("never [4.2, never]"));
+  EXPECT_THAT(text, HasSubstr("1.93 [1.81, 2.05]"));
+  EXPECT_THAT(text, HasSubstr("scans inside"));
 }
 
 TEST(WriteCsv, WritesOneRowACellAndOneRowAScan) {

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/nees_bounds.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// How many scans back innovations are compared.
+inline constexpr std::size_t kInnovationLags = 20;
+
+/// What the normalised innovations squared (NIS) say: a test that needs no truth. A right filter
+/// has 1 for each degree of freedom, and one scan's tells nothing of the next one's (they are
+/// white).
+struct Innovations {
+  std::vector<double> average;   ///< {scan} NIS over degrees of freedom, over runs; NaN: none
+  std::vector<Interval> bounds;  ///< {scan} of the average (chi-square)
+  double share_inside = 0.0;     ///< of scans with a degree of freedom
+  double mean = 0.0;             ///< NIS over degrees of freedom, mean over runs
+  Interval interval = {};        ///< of that mean over infinitely many runs (bootstrap)
+  std::vector<double> autocorrelation;  ///< {lag - 1} of the NIS, mean over runs
+  double bound =
+      0.0;  ///< which white innovations exceed at no lag with the probability of the level
+  bool white = false;  ///< whether they stay within it
+};
+
+/// Adds up the NIS over runs.
+class InnovationSums {
+ public:
+  explicit InnovationSums(std::size_t scans);
+
+  /// One run, {scan}.
+  void add(std::span<const double> nis, std::span<const std::uint32_t> dof);
+  bool empty() const { return run_means_.empty(); }
+  Innovations result(double level) const;
+
+ private:
+  std::vector<double> nis_;           ///< {scan} over runs
+  std::vector<std::uint64_t> dof_;    ///< {scan} over runs
+  std::vector<double> run_means_;     ///< {run} NIS over degrees of freedom
+  std::vector<double> correlations_;  ///< {lag - 1} over runs
+  std::vector<double> pairs_;         ///< {lag - 1} over runs
+  std::vector<double> deviations_;    ///< {scan} of the run at hand; NaN without detections
+};
+
+}  // namespace montecarta

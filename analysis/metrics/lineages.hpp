@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/metrics/ancestor_set.hpp"
+#include "analysis/metrics/run_rows.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// How far back [s] distinct ancestors are counted.
+inline constexpr std::array kLineageLags = {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0};
+
+/// The ancestry of one run, seen from up to 32 of its scans.
+struct Lineages {
+  /// {lag} distinct ancestors so long ago, mean over scans that late; NaN where there is none.
+  std::array<double, kLineageLags.size()> ancestors{};
+  /// [s] back to the youngest common ancestor of all particles, mean over the scans that have one.
+  double coalescence = 0.0;
+  double coalesced_share = 0.0;  ///< of the scans: all particles have one common ancestor
+  /// [m^2] variance of the estimated position that is due to the particles being few, from how far
+  /// families (descendants of one ancestor kDiversityLag ago) differ: Lee and Whiteley 2018, eq.
+  /// (8), with the fixed lag of Olsson and Douc 2019. Mean over scans; NaN where particles are not
+  /// stored.
+  double monte_carlo_variance = 0.0;
+  /// [m^2] squared position error at the same scans, mean.
+  double squared_error = 0.0;
+};
+
+/// Walks a genealogy back from scan to scan. Keeps its memory from run to run.
+class LineageWalker {
+ public:
+  /// `rows` with ancestors of `particles`; `squared_position` {scan} [m^2] may be empty; `times`
+  /// [s].
+  Lineages walk(const RunRows& rows, std::size_t particles, std::span<const double> times,
+                std::span<const double> squared_position);
+
+ private:
+  struct Sums;
+  void walk_from(std::size_t s, const RunRows& rows, std::span<const double> times, Sums& sums);
+  double family_variance(const RunRows& rows, std::size_t s);
+
+  AncestorSet set_;
+  std::vector<std::uint32_t> ancestor_;  ///< {particle} of the scan where the walk began
+  std::vector<double> families_;         ///< {ancestor, 2} weighted deviation of its descendants
+};
+
+}  // namespace montecarta

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/nees_accumulator.hpp"
+
+#include <cmath>
+#include <map>
+
+namespace montecarta {
+namespace {
+
+/// A right filter's NEES is above ten times its mean once in a million samples.
+constexpr double kCapFactor = 10.0;
+
+double mean_of_finite(const std::vector<double>& values) {
+  double sum = 0.0, n = 0.0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    sum += value;
+    n += 1.0;
+  }
+  return sum / n;  // NaN where none is finite
+}
+
+/// Both bands of every scan, from the runs that are valid there: nearly always of one number.
+class BandsOf {
+ public:
+  BandsOf(std::size_t dimension, double level, double whole_run_level)
+      : dimension_(dimension), level_(level), whole_run_level_(whole_run_level) {}
+
+  struct Bands {
+    Interval pointwise, whole_run;
+  };
+  const Bands& of(std::uint32_t runs) {
+    const auto [found, is_new] = known_.try_emplace(runs);
+    if (is_new && runs > 0) {
+      found->second = {nees_bounds(runs, dimension_, level_),
+                       nees_bounds(runs, dimension_, whole_run_level_)};
+    }
+    return found->second;
+  }
+
+ private:
+  std::size_t dimension_;
+  double level_, whole_run_level_;
+  std::map<std::uint32_t, Bands> known_;
+};
+
+}  // namespace
+
+NeesAccumulator::NeesAccumulator(ErrorBlock block, Moments moments, std::size_t scans)
+    : block_(block),
+      moments_(moments),
+      sum_(scans),
+      runs_(scans),
+      table_(scans),
+      neighbours_(scans) {}
+
+void NeesAccumulator::add(const RunMetrics& metrics) {
+  const auto block = static_cast<std::size_t>(block_);
+  const std::vector<double>& value = metrics.nees(moments_).value[block];
+  const std::vector<std::uint8_t>& floored = metrics.nees(moments_).floored[block];
+  samples_ += value.size();
+  for (std::size_t s = 0; s < value.size(); ++s) {
+    floored_ += floored[s];
+    if (!std::isfinite(value[s])) {
+      ++undefined_;
+      continue;
+    }
+    sum_[s] += value[s];
+    ++runs_[s];
+    table_.add(s, value[s]);
+  }
+  neighbours_.add(value, kCapFactor * static_cast<double>(dimension_of(block_)));
+  run_averages_.push_back(mean_of_finite(value));
+}
+
+NeesSeries NeesAccumulator::series(double level, const BandWalks& walks) const {
+  NeesSeries series;
+  series.dimension = dimension_of(block_);
+  series.samples = samples_;
+  series.floored = floored_;
+  series.undefined = undefined_;
+  series.runs = runs_;
+  series.run_averages = run_averages_;
+  const WholeRunTest test = walks.test(neighbours_.result(), level);
+  series.average_level = test.average_level;
+  BandsOf bands(series.dimension, level, std::erf(test.deviate / std::sqrt(2.0)));
+  for (std::size_t s = 0; s < sum_.size(); ++s) {
+    series.bounds.push_back(bands.of(runs_[s]).pointwise);
+    series.whole_run_bounds.push_back(bands.of(runs_[s]).whole_run);
+    series.average.push_back(sum_[s] / runs_[s]);  // NaN where no run is valid
+    series.median.push_back(table_.median(s));
+    series.trimmed.push_back(table_.trimmed_mean(s, kTrimmedShare));
+  }
+  return series;
+}
+
+NeesResult NeesAccumulator::result(std::span<const double> times, double level,
+                                   const BandWalks& walks) const {
+  NeesResult result{block_, moments_, series(level, walks), {}};
+  result.consistency = judge(result.series, times, level);
+  return result;
+}
+
+}  // namespace montecarta

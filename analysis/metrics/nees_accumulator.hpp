@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/metrics/cell_analysis.hpp"
+#include "analysis/metrics/neighbour_correlation.hpp"
+#include "analysis/metrics/quantile_table.hpp"
+#include "analysis/metrics/run_metrics.hpp"
+#include "analysis/metrics/whole_run_band.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// Adds up the NEES of one block by one definition over runs. Memory depends on the scans, and
+/// grows by one number with every run.
+class NeesAccumulator {
+ public:
+  NeesAccumulator(ErrorBlock block, Moments moments, std::size_t scans);
+  Moments moments() const { return moments_; }
+  void add(const RunMetrics& metrics);
+  /// `times` [s] of the scans; `walks` of as many.
+  NeesResult result(std::span<const double> times, double level, const BandWalks& walks) const;
+
+ private:
+  NeesSeries series(double level, const BandWalks& walks) const;
+
+  ErrorBlock block_;
+  Moments moments_;
+  std::vector<double> sum_;          ///< {scan} of finite NEES
+  std::vector<std::uint32_t> runs_;  ///< {scan} in the sum
+  QuantileTable table_;
+  NeighbourCorrelation neighbours_;
+  std::vector<double> run_averages_;  ///< {run}
+  std::uint64_t samples_ = 0, floored_ = 0, undefined_ = 0;
+};
+
+}  // namespace montecarta

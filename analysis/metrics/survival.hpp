@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/nees_bounds.hpp"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// How many runs are still right, each judged by itself: until its own NEES stays above the band of
+/// one run for kLastingScans, or until it fails.
+struct Survival {
+  std::size_t runs = 0;            ///< complete and failed
+  std::size_t lost = 0;            ///< of them: by the end
+  std::vector<double> share;       ///< {scan} of the runs
+  std::vector<Interval> interval;  ///< {scan} of the share (Wilson 1927)
+  double median = 0.0;             ///< [s] when half of them are lost; infinity: never
+  Interval median_interval = {};   ///< [s] from order statistics: no distribution is assumed
+};
+
+/// `ends` [s] of the runs, infinity where a run lasts; `times` [s] of the scans.
+Survival survival_of(std::span<const double> ends, std::span<const double> times, double level);
+
+}  // namespace montecarta

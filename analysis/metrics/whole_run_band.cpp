@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/whole_run_band.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/random/stream.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace montecarta {
+namespace {
+
+constexpr std::size_t kMostWalks = 4000, kFewestWalks = 500;
+constexpr std::size_t kMostNormals = 16'000'000;
+constexpr std::uint32_t kWalks = 0xfffffffeU;  // tells these numbers from those of replicates
+
+std::size_t walks_of(std::size_t scans) {
+  return std::clamp(kMostNormals / std::max<std::size_t>(scans, 1), kFewestWalks, kMostWalks);
+}
+
+/// For each value, the share of all values that are at least as large.
+std::vector<double> shares_not_below(const std::vector<double>& values) {
+  std::vector<double> sorted = values;
+  std::ranges::sort(sorted);
+  const auto n = static_cast<double>(sorted.size());
+  std::vector<double> shares;
+  for (const double value : values) {
+    const auto below = std::ranges::lower_bound(sorted, value) - sorted.begin();
+    shares.push_back((n - static_cast<double>(below)) / n);
+  }
+  return shares;
+}
+
+double lower_quantile(std::vector<double> values, double share) {
+  const auto n = static_cast<double>(values.size());
+  const auto place = std::min(values.size() - 1, static_cast<std::size_t>(share * n));
+  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(place);
+  std::ranges::nth_element(values, nth);
+  return *nth;
+}
+
+}  // namespace
+
+BandWalks::BandWalks(std::size_t scans) : scans_(scans), normals_(walks_of(scans) * scans) {
+  for (std::size_t walk = 0; walk * scans_ < normals_.size(); ++walk) {
+    RngStream draw(
+        {.seed = 0, .run = walk, .step = 0, .index = kWalks, .purpose = Draw::analysis_bootstrap});
+    for (std::size_t s = 0; s < scans_; ++s) {
+      normals_[walk * scans_ + s] = static_cast<float>(draw.normal());
+    }
+  }
+}
+
+BandWalks::Reach BandWalks::reach(std::size_t walk, std::span<const double> correlation,
+                                  std::span<const double> rest) const {
+  const float* const normal = normals_.data() + walk * scans_;
+  double here = normal[0], greatest = std::abs(here), sum = here;
+  for (std::size_t s = 1; s < scans_; ++s) {
+    here = correlation[s - 1] * here + rest[s - 1] * static_cast<double>(normal[s]);
+    greatest = std::max(greatest, std::abs(here));
+    sum += here;
+  }
+  return {greatest, std::abs(sum)};
+}
+
+WholeRunTest BandWalks::test(std::span<const double> correlation, double level) const {
+  expect(scans_ > 0 && correlation.size() + 1 == scans_, "a correlation between any two scans");
+  std::vector<double> rest;
+  for (const double r : correlation) rest.push_back(std::sqrt(1.0 - r * r));
+  const std::size_t walks = normals_.size() / scans_;
+  std::vector<double> heights, averages;
+  for (std::size_t walk = 0; walk < walks; ++walk) {
+    const Reach found = reach(walk, correlation, rest);
+    heights.push_back(found.greatest);
+    averages.push_back(found.average);
+  }
+  std::vector<double> farther = shares_not_below(heights);
+  const std::vector<double> of_averages = shares_not_below(averages);
+  std::ranges::transform(farther, of_averages, farther.begin(), std::ranges::min);
+  const double each = lower_quantile(std::move(farther), 1.0 - level);
+  return {lower_quantile(std::move(heights), 1.0 - each), 1.0 - each};
+}
+
+}  // namespace montecarta

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// A test in two parts that together accuse a right filter with the probability that the level
+/// leaves, each part as often as the other.
+struct WholeRunTest {
+  double deviate = 0.0;        ///< of the band: the process stays within so many deviations
+  double average_level = 0.0;  ///< of the average over the run, by itself
+};
+
+/// Walks of a Gaussian process, drawn once for all bands of a study: 4000 of them, fewer where runs
+/// are so long that memory would suffer (64 MB).
+class BandWalks {
+ public:
+  explicit BandWalks(std::size_t scans);
+
+  /// For a process of variance 1 with `correlation` {scan - 1} in [0, 1) of each scan with the
+  /// next, a Markov chain (first-order autoregression). What goes together for longer than that
+  /// leaves a band less often, so the band errs to the wide side.
+  WholeRunTest test(std::span<const double> correlation, double level) const;
+
+ private:
+  /// How far a walk gets from 0, and its average.
+  struct Reach {
+    double greatest, average;
+  };
+  Reach reach(std::size_t walk, std::span<const double> correlation,
+              std::span<const double> rest) const;
+
+  std::size_t scans_;
+  std::vector<float> normals_;  ///< {walk, scan}
+};
+
+}  // namespace montecarta

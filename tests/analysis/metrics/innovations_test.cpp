@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/innovations.hpp"
+
+#include "engine/random/stream.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace montecarta {
+namespace {
+
+constexpr std::size_t kScans = 300;
+
+/// NIS of four degrees of freedom, `scale` times what they should be; each innovation is `memory`
+/// times the one before, plus news.
+Innovations innovations_of(double scale, double memory, std::uint64_t seed = 23) {
+  InnovationSums sums(kScans);
+  for (std::uint64_t run = 0; run < 40; ++run) {
+    RngStream draw({seed, run, 0, 0, Draw::test});
+    std::vector<double> nis, state(4);
+    for (double& one : state) one = draw.normal();
+    for (std::size_t s = 0; s < kScans; ++s) {
+      nis.push_back(0.0);
+      for (double& one : state) {
+        one = memory * one + std::sqrt(1.0 - memory * memory) * draw.normal();
+        nis.back() += scale * one * one;
+      }
+    }
+    sums.add(nis, std::vector<std::uint32_t>(kScans, 4));
+  }
+  return sums.result(0.95);
+}
+
+TEST(Innovations, OfARightFilterAreWhiteAndOfTheRightSize) {
+  const Innovations found = innovations_of(1.0, 0.0);
+  EXPECT_NEAR(found.mean, 1.0, 5.0 * std::sqrt(2.0 / (4.0 * 40.0 * kScans)));
+  EXPECT_LT(found.interval.lower, 1.0);
+  EXPECT_GT(found.interval.upper, 1.0);
+  EXPECT_NEAR(found.share_inside, 0.95, 5.0 * std::sqrt(0.95 * 0.05 / kScans));
+  EXPECT_TRUE(found.white);
+  EXPECT_LT(found.bound, 0.04);
+}
+
+// 200 studies: one standard error is 0.015.
+TEST(Innovations, AreCalledWhiteAsOftenAsTheLevelSays) {
+  double white = 0.0;
+  for (std::uint64_t study = 0; study < 200; ++study) {
+    white += innovations_of(1.0, 0.0, 100 + study).white ? 1.0 : 0.0;
+  }
+  EXPECT_NEAR(white / 200.0, 0.95, 0.05);
+}
+
+// The squares of an autoregression of memory r go together by r^2.
+TEST(Innovations, ThatRememberAreNotWhite) {
+  const Innovations found = innovations_of(1.0, 0.5);
+  EXPECT_FALSE(found.white);
+  EXPECT_NEAR(found.autocorrelation[0], 0.25, 0.04);
+  EXPECT_NEAR(found.autocorrelation[1], 0.0625, 0.04);
+}
+
+TEST(Innovations, ThatAreTooLargeLeaveTheBand) {
+  const Innovations found = innovations_of(1.5, 0.0);
+  EXPECT_GT(found.interval.lower, 1.4);
+  EXPECT_LT(found.share_inside, 0.2);
+}
+
+TEST(Innovations, ScansWithoutDetectionsAreLeftOut) {
+  InnovationSums sums(3);
+  EXPECT_TRUE(sums.empty());
+  sums.add(std::vector{0.0, 0.0, 0.0}, std::vector<std::uint32_t>{0, 0, 0});
+  EXPECT_TRUE(sums.empty());
+  sums.add(std::vector{2.0, 0.0, 6.0}, std::vector<std::uint32_t>{2, 0, 2});
+  const Innovations found = sums.result(0.95);
+  EXPECT_DOUBLE_EQ(found.mean, 2.0);
+  EXPECT_DOUBLE_EQ(found.average[0], 1.0);
+  EXPECT_TRUE(std::isnan(found.average[1]));
+  EXPECT_DOUBLE_EQ(found.bounds[2].upper, nees_bounds(2, 1, 0.95).upper);
+}
+
+}  // namespace
+}  // namespace montecarta

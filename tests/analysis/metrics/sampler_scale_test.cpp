@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/sampler_scale.hpp"
+
+#include "analysis/metrics/nees.hpp"
+#include "engine/random/stream.hpp"
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace montecarta {
+namespace {
+
+/// NEES by the spread, with 1 / M, of M draws, of a truth drawn from the same normal.
+double ideal_nees(std::size_t particles, RngStream& draw) {
+  const auto point = [&] { return Eigen::Vector3d(draw.normal(), draw.normal(), draw.normal()); };
+  std::vector<Eigen::Vector3d> cloud(particles);
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (Eigen::Vector3d& particle : cloud) mean += particle = point();
+  mean /= static_cast<double>(particles);
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& particle : cloud) {
+    spread += (particle - mean) * (particle - mean).transpose();
+  }
+  return nees<3>(point() - mean, spread / static_cast<double>(particles)).value;
+}
+
+// 20,000 draws: a share has a standard error of at most 0.0036.
+TEST(SamplerScale, MakesTheNeesOfIdealSamplersChiSquare) {
+  for (const std::size_t particles : {6u, 10u, 100u}) {
+    const SamplerScale scale(3, particles);
+    RngStream draw({41, particles, 0, 0, Draw::test});
+    std::vector<double> found;
+    for (int k = 0; k < 20'000; ++k) found.push_back(scale(ideal_nees(particles, draw)));
+    for (const double p : {0.025, 0.5, 0.975, 0.999}) {
+      const double quantile = boost::math::quantile(boost::math::chi_squared(3), p);
+      const auto below = std::ranges::count_if(found, [&](double v) { return v < quantile; });
+      EXPECT_NEAR(static_cast<double>(below) / 20'000.0, p,
+                  5.0 * std::sqrt(p * (1.0 - p) / 20'000.0))
+          << particles << " particles";
+    }
+  }
+}
+
+TEST(SamplerScale, HardlyMovesTheNeesOfManyParticles) {
+  const SamplerScale scale(3, 1'000'000);
+  for (const double nees : {1e-3, 0.7, 3.0, 20.0}) EXPECT_NEAR(scale(nees), nees, 2e-4 * nees);
+}
+
+TEST(SamplerScale, GrowsWithTheNeesAndStaysFinite) {
+  const SamplerScale scale(2, 5);
+  double before = 0.0;
+  for (double nees = 1e-5; nees < 1e20; nees *= 3.0) {
+    EXPECT_GT(scale(nees), before) << nees;
+    before = scale(nees);
+  }
+  EXPECT_EQ(scale(0.0), 0.0);
+  EXPECT_TRUE(std::isnan(scale(std::nan(""))));
+  EXPECT_TRUE(std::isfinite(scale(1e300)));
+}
+
+}  // namespace
+}  // namespace montecarta

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The verdict is a statistical test, so it is held to its level: how often it accuses a right
+// filter, and how often it finds a wrong one.
+#include "analysis/metrics/nees.hpp"
+#include "analysis/metrics/nees_accumulator.hpp"
+#include "tests/analysis/synthetic_runs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace montecarta {
+namespace {
+
+constexpr std::uint64_t kStudies = 1000;
+
+/// Errors of a run whose scans go together by `memory`; deviations `inflation` times as believed.
+struct Law {
+  double memory = 0.0;
+  double inflation = 1.0;
+  double bias = 0.0;  ///< of the first component, in its believed deviations
+};
+
+RunRows draw_run(const Law& law, std::uint64_t study, std::uint64_t run, std::size_t scans) {
+  RngStream draw({study, run, 0, 0, Draw::test});
+  RunRows rows;
+  rows.truth.assign(3 * scans, 0.0);
+  Eigen::Vector3d state(draw.normal(), draw.normal(), draw.normal());
+  const double rest = std::sqrt(1.0 - law.memory * law.memory);
+  for (std::size_t s = 0; s < scans; ++s) {
+    const Eigen::Vector3d news(draw.normal(), draw.normal(), draw.normal());
+    state = law.memory * state + rest * news;
+    const Eigen::Vector3d error = law.inflation * state + law.bias * Eigen::Vector3d::UnitX();
+    for (int c = 0; c < 3; ++c) rows.spread.mean.push_back(-0.01 * error(c));
+    for (int e = 0; e < 9; ++e) rows.spread.covariance.push_back(e % 4 == 0 ? 1e-4 : 0.0);
+  }
+  return rows;
+}
+
+/// A filter that is right, but reports the mean and the spread of few independent draws of what it
+/// knows.
+RunRows draw_clouds(std::size_t particles, std::uint64_t study, std::uint64_t run,
+                    std::size_t scans) {
+  RngStream draw({study, run, 0, 0, Draw::test});
+  const auto point = [&] {
+    return Eigen::Vector3d(0.01 * draw.normal(), 0.02 * draw.normal(), 0.01 * draw.normal());
+  };
+  RunRows rows;
+  for (std::size_t s = 0; s < scans; ++s) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+    for (std::size_t i = 0; i < particles; ++i) {
+      const Eigen::Vector3d particle = point();
+      sum += particle;
+      squares += particle * particle.transpose();
+    }
+    const Eigen::Vector3d truth = point(), mean = sum / static_cast<double>(particles);
+    const Eigen::Matrix3d P = squares / static_cast<double>(particles) - mean * mean.transpose();
+    rows.truth.insert(rows.truth.end(), truth.begin(), truth.end());
+    rows.spread.mean.insert(rows.spread.mean.end(), mean.begin(), mean.end());
+    rows.spread.covariance.insert(rows.spread.covariance.end(), P.data(), P.data() + 9);
+  }
+  return rows;
+}
+
+using DrawRun = std::function<RunRows(std::uint64_t study, std::uint64_t run, std::size_t scans)>;
+
+/// Judges studies of `runs` runs and gives the share of those that are not called consistent.
+double accused(const DrawRun& draw, Moments moments, std::size_t particles, std::uint64_t runs,
+               std::size_t scans, std::uint64_t studies) {
+  std::vector<double> times;
+  for (std::size_t s = 0; s < scans; ++s) times.push_back(0.2 * static_cast<double>(s + 1));
+  const BandWalks walks(scans);
+  RunMetrics metrics;
+  double found = 0.0;
+  for (std::uint64_t study = 0; study < studies; ++study) {
+    NeesAccumulator sums(ErrorBlock::pose, moments, scans);
+    for (std::uint64_t run = 0; run < runs; ++run) {
+      metrics.measure(draw(study, run, scans), particles, times);
+      sums.add(metrics);
+    }
+    const Verdict verdict = sums.result(times, 0.95, walks).consistency.verdict;
+    found += verdict != Verdict::consistent ? 1.0 : 0.0;
+  }
+  return found / static_cast<double>(studies);
+}
+
+double accused(const Law& law, std::uint64_t runs, std::size_t scans, std::uint64_t studies) {
+  const DrawRun draw = [&](std::uint64_t study, std::uint64_t run, std::size_t n) {
+    return draw_run(law, study, run, n);
+  };
+  return accused(draw, Moments::spread, 0, runs, scans, studies);
+}
+
+double accused_clouds(Moments moments, std::size_t particles, std::uint64_t studies) {
+  const DrawRun draw = [&](std::uint64_t study, std::uint64_t run, std::size_t n) {
+    return draw_clouds(particles, study, run, n);
+  };
+  return accused(draw, moments, particles, 30, 40, studies);
+}
+
+// One standard error of 5 % in 1000 studies is 0.7 %: 1 % is what the studies are to show.
+TEST(SlowVerdictLevel, AccusesARightFilterInFivePercentOfStudies) {
+  EXPECT_NEAR(accused({}, 30, 60, kStudies), 0.05, 0.01);
+}
+
+TEST(SlowVerdictLevel, KeepsItWhereScansGoTogether) {
+  EXPECT_NEAR(accused({.memory = 0.95}, 30, 60, kStudies), 0.05, 0.01);
+}
+
+TEST(SlowVerdictLevel, KeepsItForManyRuns) {
+  EXPECT_NEAR(accused({.memory = 0.7}, 60, 40, 2 * kStudies), 0.05, 0.01);
+}
+
+// Without the correction all of them would be called inconsistent.
+TEST(SlowVerdictLevel, DoesNotHoldFewParticlesAgainstARightFilter) {
+  EXPECT_NEAR(accused_clouds(Moments::corrected, 10, kStudies), 0.05, 0.01);
+  EXPECT_EQ(accused_clouds(Moments::spread, 10, 20), 1.0);
+}
+
+// 30 runs of 60 independent scans: the average over the run has a deviation of 0.058, so that
+// errors 1.1 times too large (NEES 1.21 times) lie 11 deviations off.
+TEST(VerdictPower, FindsAFilterThatIsATenthTooSure) {
+  EXPECT_GE(accused({.inflation = 1.1}, 30, 60, 40), 0.975);
+  EXPECT_GE(accused({.inflation = 0.9}, 30, 60, 40), 0.975);
+}
+
+TEST(VerdictPower, FindsABiasOfHalfADeviation) {
+  EXPECT_GE(accused({.bias = 0.5}, 60, 60, 40), 0.975);
+}
+
+}  // namespace
+}  // namespace montecarta
