@@ -49,7 +49,7 @@ bool is_script(const Lines& lines) { return !lines.empty() && lines[0].starts_wi
 
 bool is_source(const std::string& path, const Lines& lines) {
   return is_cpp(path) || path.ends_with("CMakeLists.txt") || path.ends_with(".py") ||
-         is_script(lines);
+         path.ends_with(".js") || path.ends_with(".css") || is_script(lines);
 }
 
 /// Every source file below the rooms of the house.
@@ -206,6 +206,8 @@ TEST(House, TheTreeThatIsReadIsWhole) {
   EXPECT_TRUE(house().contains("tests/house_test.cpp"));
   EXPECT_TRUE(house().contains("tests/run"));
   EXPECT_TRUE(house().contains("filters/CMakeLists.txt"));
+  EXPECT_TRUE(house().contains("analysis/page/page.css"));
+  EXPECT_TRUE(house().contains("analysis/page/script/player.js"));
 }
 
 // The laws above can fail: a house where each is broken once.

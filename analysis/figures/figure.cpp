@@ -22,6 +22,8 @@ set key noenhanced samplen 1.6 spacing 1.15 width 1
 set style fill transparent solid 0.25 noborder
 )";
 
+constexpr std::array kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"};
+
 void write_data(const FigureData& data, const std::filesystem::path& directory) {
   CsvFile file(directory / data.name);
   file.row(data.headings);
@@ -55,12 +57,18 @@ void draw(const Figure& figure, const std::filesystem::path& directory) {
   run_gnuplot(directory / "figures", script);
 }
 
+std::string line_colour(std::size_t i) {
+  return i == kYardstickStyle ? "black" : kColours[i % kColours.size()];
+}
+
+std::size_t line_dashes(std::size_t i) {
+  return i == kYardstickStyle ? 2 : 1 + i / kColours.size();
+}
+
 std::string line_style(std::size_t i) {
-  constexpr std::array kColours = {"#0072B2", "#D55E00", "#009E73",
-                                   "#CC79A7", "#E69F00", "#56B4E9"};
   if (i == kYardstickStyle) return "linewidth 1.6 linecolor rgb 'black' dashtype (6,4)";
-  return std::string("linewidth 1.4 linecolor rgb '") + kColours[i % kColours.size()] +
-         "' dashtype " + std::to_string(1 + i / kColours.size());
+  return "linewidth 1.4 linecolor rgb '" + line_colour(i) + "' dashtype " +
+         std::to_string(line_dashes(i));
 }
 
 FigureData data_over_time(const std::string& name, const ThinnedSeries& thinned) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/figures/chart.hpp"
 #include "analysis/figures/thinning.hpp"
 
 #include <cstddef>
@@ -26,13 +27,17 @@ struct Figure {
   std::size_t height = 360;  ///< [px]
   std::string script;        ///< gnuplot commands behind terminal and style; data lies in ../data/
   std::vector<FigureData> data;
+  Chart chart = {};  ///< the same once more, where it is curves over a common axis
 };
 
 /// Writes figures/<name>.gp and data/ below `directory` and draws figures/<name>.svg and .pdf.
 void draw(const Figure& figure, const std::filesystem::path& directory);
 
-/// Line colour and dashes of curve `i`, for gnuplot: told apart by the colour-blind (Okabe and
-/// Ito), and from the seventh on by dashes.
+/// Line colour of curve `i`, "#0072B2": told apart by the colour-blind (Okabe and Ito).
+std::string line_colour(std::size_t i);
+/// How curve `i` is dashed, from 1, a full line: from the seventh on curves differ by that.
+std::size_t line_dashes(std::size_t i);
+/// Both for gnuplot.
 std::string line_style(std::size_t i);
 /// In place of the number of a curve: of what is no cell, such as a bound; dashed, in the colour of
 /// the text.

@@ -39,32 +39,41 @@ Range range_of(const Panel& panel) {
   return range;
 }
 
-/// Whole decades; near a band no farther than the range itself.
-std::string logarithmic_axis(const Panel& panel, const Range& range) {
+/// Logarithmic: whole decades, near a band no farther than the range itself.
+ChartAxis axis_of(const Panel& panel) {
+  const Range range = range_of(panel);
+  const bool wide = range.greatest > kLogarithmicFrom * range.least;
+  if (panel.scale == Scale::percent) return {false, 0.0, 100.0};
+  if (panel.scale == Scale::from_zero || (panel.scale == Scale::automatic && !wide)) {
+    return {false, 0.0, std::numeric_limits<double>::quiet_NaN()};
+  }
+  if (!panel.bands.empty()) return {true, range.least, range.greatest};
   const double from = std::floor(std::log10(range.least));
   const double to = std::max(from + 1.0, std::ceil(std::log10(range.greatest)));
-  const bool plain = from >= -2.0 && to <= 4.0;
-  const bool near = !panel.bands.empty();
-  return std::string("set logscale y\nset format y '") + (plain ? "%h" : "10^{%T}") +
-         "'\nset yrange [" + exact_text(near ? range.least : std::pow(10.0, from)) + ":" +
-         exact_text(near ? range.greatest : std::pow(10.0, to)) + "]\n";
+  return {true, std::pow(10.0, from), std::pow(10.0, to)};
 }
 
-std::string axes_of(const Panel& panel) {
-  const Range range = range_of(panel);
-  std::string script = "set ylabel " + gnuplot_quoted(panel.label) + " noenhanced offset 1.5,0\n";
-  const bool wide = range.greatest > kLogarithmicFrom * range.least;
-  if (panel.scale == Scale::logarithmic || (panel.scale == Scale::automatic && wide)) {
-    return script + logarithmic_axis(panel, range);
-  }
-  return script + "unset logscale y\nset format y '%h'\nset yrange [0:" +
-         (panel.scale == Scale::percent ? "100" : "*") + "]\n";
+std::string axis_script(const std::string& label, const ChartAxis& axis) {
+  const bool plain = !axis.logarithmic || (axis.low >= 0.01 && axis.high <= 1e4);
+  return "set ylabel " + gnuplot_quoted(label) + " noenhanced offset 1.5,0\n" +
+         (axis.logarithmic ? "set" : "unset") + " logscale y\nset format y '" +
+         (plain ? "%h" : "10^{%T}") + "'\nset yrange [" + exact_text(axis.low) + ":" +
+         (std::isnan(axis.high) ? "*" : exact_text(axis.high)) + "]\n";
 }
 
 ThinnedSeries thinned(const Panel& panel, const std::vector<double>& times) {
   std::vector<NamedSeries> series;
   for (const Curve& curve : panel.curves) series.push_back({curve.legend, "1", curve.values});
   return thin(times, series, kBuckets);
+}
+
+ChartPanel chart_panel(const Panel& panel, const ChartAxis& axis, const ThinnedSeries& series) {
+  ChartPanel chart{panel.label, axis, series.times, {}, panel.bands};
+  for (std::size_t i = 0; i < panel.curves.size(); ++i) {
+    chart.curves.push_back(
+        {panel.curves[i].legend, panel.curves[i].style, series.series[i].values});
+  }
+  return chart;
 }
 
 std::string band_name(const Panel& panel, std::size_t b) {
@@ -139,10 +148,14 @@ void add_panels(const std::vector<Panel>& panels, const std::vector<double>& tim
     figure.script += lowest ? "set xlabel 'time [s]' offset 0,0.4\nset format x '%h'\n"
                             : "unset xlabel\nset format x ''\n";
     if (p > 0) figure.script += "set key off\n";
-    figure.script += axes_of(panels[p]) + plot_of(panels[p], p == 0);
-    figure.data.push_back(data_over_time(panels[p].name + ".csv", thinned(panels[p], times)));
+    const ChartAxis axis = axis_of(panels[p]);
+    const ThinnedSeries series = thinned(panels[p], times);
+    figure.script += axis_script(panels[p].label, axis) + plot_of(panels[p], p == 0);
+    figure.data.push_back(data_over_time(panels[p].name + ".csv", series));
+    figure.chart.panels.push_back(chart_panel(panels[p], axis, series));
   }
   figure.script += "unset multiplot\n";
+  figure.chart.x_to = last;
 }
 
 }  // namespace montecarta

@@ -15,15 +15,6 @@ struct Curve {
   std::vector<double> values;  ///< {scan}
 };
 
-/// A horizontal band, e.g. where a right filter stays. It keeps the vertical axis near: from 0.3
-/// times its lower end to 1000 times its upper one at most, so that it is seen beside a filter that
-/// is off by many powers of ten.
-struct Band {
-  std::string legend;
-  double lower = 0.0;
-  double upper = 0.0;
-};
-
 /// The vertical axis.
 enum class Scale {
   from_zero,

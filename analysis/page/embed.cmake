@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 cmake_minimum_required(VERSION 3.25)
 
-# Writes SOURCE, the C++ that holds the page's own files: STYLES, paths separated by spaces, joined
-# in their order. In pieces of 8000 characters, since a text constant has a limit.
+# Writes SOURCE, the C++ that holds the page's own files: STYLES and SCRIPTS, paths separated by
+# spaces, joined in their order. In pieces of 8000 characters, since a text constant has a limit.
 function(append_text name files)
   set(pieces "")
   foreach(path IN LISTS files)
@@ -21,6 +21,8 @@ function(append_text name files)
 endfunction()
 
 separate_arguments(STYLES)
+separate_arguments(SCRIPTS)
 file(WRITE ${SOURCE} "#include \"analysis/page/assets.hpp\"\n\nnamespace montecarta {\n")
 append_text(page_style "${STYLES}")
+append_text(page_script "${SCRIPTS}")
 file(APPEND ${SOURCE} "\n}  // namespace montecarta\n")

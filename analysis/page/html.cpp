@@ -93,8 +93,13 @@ std::string inline_svg(const std::string& svg, const std::string& name,
   // Black on a light page, light on a dark one; gnuplot writes it in two ways.
   part = replaced(part, "rgb(0,0,0)", "currentColor");
   part = replaced(part, "rgb(  0,   0,   0)", "currentColor");
-  return replaced(part, "<svg",
-                  "<svg role=\"img\" aria-label=\"" + html_escape(description) + "\"");
+  return replaced(
+      part, "<svg",
+      "<svg class=\"drawing\" role=\"img\" aria-label=\"" + html_escape(description) + "\"");
+}
+
+std::string html_data(const std::string& name, const std::string& json) {
+  return "<script type=\"application/json\" class=\"" + name + "\">" + json + "</script>\n";
 }
 
 std::string html_page(const std::string& title, const std::string& body) {

@@ -23,6 +23,9 @@ std::string html_pairs(const std::vector<std::pair<std::string, std::string>>& p
 std::string inline_svg(const std::string& svg, const std::string& name,
                        const std::string& description);
 
+/// JSON for the page's script, which looks for this class.
+std::string html_data(const std::string& name, const std::string& json);
+
 /// A whole self-contained page, for light and dark screens of any width.
 std::string html_page(const std::string& title, const std::string& body);
 

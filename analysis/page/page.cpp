@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/page/page.hpp"
 
+#include "analysis/page/chart_json.hpp"
 #include "analysis/page/html.hpp"
 #include "analysis/tables/csv_file.hpp"
 #include "analysis/tables/latex.hpp"
@@ -25,23 +26,39 @@ std::string html_section(const std::string& title, const std::string& body) {
   return "<section>\n" + heading + body + "</section>\n";
 }
 
+/// A figure's numbers; where there are many files, folded away.
+std::string links_to_numbers(const Figure& figure) {
+  constexpr std::size_t kFew = 4;
+  std::string links;
+  std::size_t count = 0;
+  for (const FigureData& data : figure.data) {
+    if (data.rows.empty()) continue;
+    const std::string name = html_escape(data.name);
+    links += " <a href=\"data/" + name + "\">" + name + "</a>";
+    ++count;
+  }
+  if (count <= kFew) return " &middot; numbers:" + links;
+  return "<details><summary>numbers: " + std::to_string(count) + " files</summary>" + links +
+         "</details>";
+}
+
 /// Where a figure and its numbers can be had.
 std::string links_of(const Figure& figure) {
   const std::string files = "figures/" + figure.name;
-  std::string links = "<a href=\"" + files + ".pdf\">PDF</a> &middot; <a href=\"" + files +
-                      ".svg\">SVG</a> &middot; numbers:";
-  for (const FigureData& data : figure.data) {
-    if (data.rows.empty()) continue;
-    links += " <a href=\"data/" + html_escape(data.name) + "\">" + html_escape(data.name) + "</a>";
-  }
-  return links;
+  return "<a href=\"" + files + ".pdf\">PDF</a> &middot; <a href=\"" + files + ".svg\">SVG</a>" +
+         links_to_numbers(figure);
 }
 
+/// The drawing, and the numbers from which the script makes a drawing that can be asked.
 std::string html_figure(const Figure& figure, const fs::path& directory) {
   const std::string svg = read_text(directory / "figures" / (figure.name + ".svg"));
-  return html_section(figure.title, "<figure>\n" + inline_svg(svg, figure.name, figure.title) +
-                                        "<figcaption>" + html_escape(figure.sentence) + "<br>" +
-                                        links_of(figure) + "</figcaption>\n</figure>\n");
+  const std::string drawing =
+      "<div class=\"scroll\">" + inline_svg(svg, figure.name, figure.title) + "</div>\n";
+  const std::string chart =
+      figure.chart.panels.empty() ? "" : html_data("chart-data", chart_json(figure.chart));
+  return html_section(figure.title, "<figure id=\"figure_" + figure.name + "\">\n" + drawing +
+                                        chart + "<figcaption>" + html_escape(figure.sentence) +
+                                        "<br>" + links_of(figure) + "</figcaption>\n</figure>\n");
 }
 
 std::string html_of(const Section& section, const fs::path& directory) {

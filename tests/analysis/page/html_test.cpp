@@ -17,7 +17,8 @@ TEST(Html, GivesEveryDrawingItsOwnIdentifiersAndTheColourOfTheText) {
   const std::string svg =
       "<?xml?><svg><g id=\"a\" fill='rgb(  0,   0,   0)'/><use href='#a'/></svg>";
   EXPECT_EQ(inline_svg(svg, "rmse", "what"),
-            "<svg role=\"img\" aria-label=\"what\"><g id=\"rmse_a\" fill='currentColor'/><use "
+            "<svg class=\"drawing\" role=\"img\" aria-label=\"what\"><g id=\"rmse_a\" "
+            "fill='currentColor'/><use "
             "href='#rmse_a'/></svg>");
 }
 

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/figures/chart.hpp"
+
+#include <string>
+
+namespace montecarta {
+
+/// A chart as the page's script reads it (page/script/chart.js).
+std::string chart_json(const Chart& chart);
+
+}  // namespace montecarta

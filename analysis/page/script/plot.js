@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One panel of a chart: axes, bands and curves within a box of pixels.
+
+/** The vertical axis that shows all of a panel's curves that are not hidden. */
+function wholeVerticalAxis(panel, isHidden) {
+  const {logarithmic, low, high} = panel.axis;
+  if (high !== null) return {logarithmic, from: low, to: high};
+  let greatest = 0;
+  for (const curve of panel.curves) {
+    if (isHidden(curve)) continue;
+    for (const value of curve.y) {
+      if (value !== null && Number.isFinite(value)) greatest = Math.max(greatest, value);
+    }
+  }
+  for (const band of panel.bands) greatest = Math.max(greatest, band.upper);
+  return {logarithmic, from: low, to: greatest > low ? 1.05 * greatest : low + 1};
+}
+
+/** Index of the first of increasing values that is not below `x`. */
+function firstFrom(values, x) {
+  let low = 0, high = values.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (values[middle] < x) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+class Plot {
+  /** @param panel of the chart's data. @param parent SVG element to draw into. */
+  constructor(panel, parent) {
+    this.panel = panel;
+    this.group = svgElement("g", {class: "panel"}, parent);
+  }
+
+  place(box) {
+    this.box = box;
+  }
+
+  x(value) {
+    return this.box.left + shareOf(this.horizontal, value) * this.box.width;
+  }
+
+  /** Far outside the box is as good as at infinity, and no trouble to a renderer. */
+  y(value) {
+    const share = clamp(shareOf(this.vertical, value), -2, 3);
+    return this.box.top + (1 - share) * this.box.height;
+  }
+
+  draw(horizontal, vertical, isHidden) {
+    this.horizontal = horizontal;
+    this.vertical = vertical;
+    this.group.replaceChildren();
+    this.drawGrid();
+    const inside = svgElement("svg", {x: this.box.left, y: this.box.top, width: this.box.width,
+      height: this.box.height, viewBox: [this.box.left, this.box.top, this.box.width,
+        this.box.height].join(" ")}, this.group);
+    for (const band of this.panel.bands) this.drawBand(band, inside);
+    for (const curve of this.panel.curves) {
+      if (!isHidden(curve)) this.drawCurve(curve, inside);
+    }
+    svgElement("text", {x: this.box.left - this.box.room, y: this.box.top - 8, class: "label",
+      text: this.panel.label}, this.group);
+  }
+
+  drawGrid() {
+    const {left, top, width, height} = this.box;
+    for (const tick of ticksOf(this.vertical, Math.max(2, height / 36))) {
+      svgElement("path", {class: "grid", d: `M${left} ${this.y(tick)}h${width}`}, this.group);
+      svgElement("text", {class: "y tick", x: left - 6, y: this.y(tick) + 4,
+        text: readable(tick)}, this.group);
+    }
+    for (const tick of ticksOf(this.horizontal, Math.max(2, width / 90))) {
+      svgElement("path", {class: "grid", d: `M${this.x(tick)} ${top}v${height}`}, this.group);
+      if (!this.box.lowest) continue;
+      svgElement("text", {class: "x tick", x: this.x(tick), y: top + height + 17,
+        text: readable(tick)}, this.group);
+    }
+    svgElement("path", {class: "frame", d: `M${left} ${top}v${height}h${width}`}, this.group);
+  }
+
+  drawBand(band, parent) {
+    const top = this.y(band.upper), height = Math.max(this.y(band.lower) - top, 1);
+    svgElement("rect", {class: "band", x: this.box.left, y: top, width: this.box.width,
+      height}, parent);
+  }
+
+  drawCurve(curve, parent) {
+    svgElement("path", {class: "curve", "data-cell": curve.legend, d: this.pathOf(curve),
+      ...lineStyle(curve)}, parent);
+  }
+
+  /** What is no number, or not positive on a logarithmic axis, is a gap. */
+  pathOf(curve) {
+    const {x} = this.panel;
+    const begin = Math.max(firstFrom(x, this.horizontal.from) - 1, 0);
+    const end = Math.min(firstFrom(x, this.horizontal.to) + 1, x.length);
+    let path = "", pen = "M";
+    for (let i = begin; i < end; ++i) {
+      const value = curve.y[i];
+      if (value === null || (this.vertical.logarithmic && value <= 0)) {
+        pen = "M";
+        continue;
+      }
+      path += `${pen}${this.x(x[i]).toFixed(1)} ${this.y(value).toFixed(1)}`;
+      pen = "L";
+    }
+    return path;
+  }
+}

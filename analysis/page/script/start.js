@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Brings every figure that has data to life; without scripts its drawing stays.
+
+for (const element of document.querySelectorAll("figure > script.chart-data")) {
+  new ChartFigure(element.parentElement, JSON.parse(element.textContent));
+}

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/page/chart_json.hpp"
+
+#include "analysis/figures/panel.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace montecarta {
+namespace {
+
+using testing::HasSubstr;
+
+Figure figure_of_two_panels() {
+  Figure figure{"name", "title", "sentence", 900, 300, "", {}};
+  add_panels({{"low", "low [m]", {{"a", 0, {1, 2, 3}}, {"b", 7, {2, 3, 4}}}, {}, Scale::from_zero},
+              {"high", "high", {{"a", 0, {1, 10, 900}}}, {{"band", 2, 4}}, Scale::logarithmic}},
+             {1, 2, 3}, figure);
+  return figure;
+}
+
+TEST(ChartJson, HoldsWhatThePanelsShow) {
+  const std::string json = chart_json(figure_of_two_panels().chart);
+  EXPECT_THAT(json, testing::StartsWith(R"({"x_label":"time [s]","x_from":0,"x_to":3,"panels":[)"));
+  EXPECT_THAT(json, HasSubstr(R"({"label":"low [m]","axis":{"logarithmic":false,"low":0,)"
+                              R"("high":null},"bands":[],"x":[1,2,3],"curves":[)"
+                              R"({"legend":"a","colour":"#0072B2","dash":1,"y":[1,2,3]},)"
+                              R"({"legend":"b","colour":"#D55E00","dash":2,"y":[2,3,4]}]})"));
+}
+
+TEST(ChartJson, WritesACommonTimeOnce) {
+  const std::string json = chart_json(figure_of_two_panels().chart);
+  EXPECT_EQ(json.find("\"x\":"), json.rfind("\"x\":"));
+  EXPECT_THAT(json, HasSubstr(R"("bands":[{"legend":"band","lower":2,"upper":4}],"curves")"));
+}
+
+TEST(ChartJson, KeepsTheAxisNearABandAsTheDrawingDoes) {
+  const Figure figure = figure_of_two_panels();
+  const ChartAxis& axis = figure.chart.panels[1].axis;
+  EXPECT_TRUE(axis.logarithmic);
+  EXPECT_DOUBLE_EQ(axis.low, 1.0);
+  EXPECT_DOUBLE_EQ(axis.high, 900.0);
+  EXPECT_THAT(figure.script, HasSubstr("set yrange [1:900]"));
+}
+
+}  // namespace
+}  // namespace montecarta
