@@ -31,10 +31,11 @@ void refuse_existing(const fs::path& directory, ExistingReport existing) {
 std::vector<Section> reading_order(const ResultFile& file, const StudyAnalysis& study,
                                    const ReportOptions& options) {
   return {title_section(study),
-          failure_section(study),
           verdict_section(study),
           map_section(study),
           reference_section(study),
+          failure_section(study),
+          replay_section(file, options.run),
           figure_section({path_figure(file, options.run)}),
           figure_section(reference_figures(study)),
           figure_section(time_figures(study)),

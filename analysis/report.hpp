@@ -15,7 +15,7 @@ enum class ExistingReport { refuse, replace };
 
 struct ReportOptions {
   double level = 0.95;               ///< of the NEES bounds
-  std::optional<std::uint64_t> run;  ///< run number whose paths are drawn; default: first complete
+  std::optional<std::uint64_t> run;  ///< run that is drawn and replayed; default: first complete
   ExistingReport existing = ExistingReport::refuse;
   const Parallel* parallel = &Parallel::serial();
 };

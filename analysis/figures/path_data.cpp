@@ -2,6 +2,7 @@
 #include "analysis/figures/path_data.hpp"
 
 #include "analysis/figures/ellipse.hpp"
+#include "analysis/figures/stored_map.hpp"
 
 #include <algorithm>
 #include <span>
@@ -67,20 +68,9 @@ FigureData pose_ellipses(const StoredCell& cell, const RunRows& run) {
 
 FigureData map_data(const ResultFile& file, const StoredCell& cell, std::size_t run_index) {
   FigureData data{"map_" + cell.label + ".csv", kEllipseHeadings, {}};
-  const std::string prefix = cell.has("map_seen") ? "map_" : "final_map_";
-  const auto column = std::ranges::find(cell.columns, prefix + "seen", &Column::name);
-  if (column == cell.columns.end()) return data;
-  const std::size_t all = column->elements(), landmarks = column->shape.back();
-  std::vector<double> mean(2 * all), covariance(4 * all), seen(all);
-  file.read(cell, prefix + "mean", run_index, std::span(mean));
-  file.read(cell, prefix + "covariance", run_index, std::span(covariance));
-  file.read(cell, prefix + "seen", run_index, std::span(seen));
-  for (std::size_t k = all - landmarks; k < all; ++k) {
-    if (seen[k] == 0.0) continue;
-    const double* P = covariance.data() + 4 * k;
-    data.rows.push_back(
-        ellipse_row(two_sigma_ellipse(mean[2 * k], mean[2 * k + 1], P[0], P[2], P[3])));
-  }
+  const StoredMap map(file, cell, run_index);
+  if (map.scans() == 0) return data;
+  for (const Ellipse& ellipse : map.at(map.scans() - 1)) data.rows.push_back(ellipse_row(ellipse));
   return data;
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/figures/path_figure.hpp"
 
+#include "analysis/figures/chosen_run.hpp"
 #include "analysis/figures/gnuplot.hpp"
 #include "analysis/figures/path_data.hpp"
 #include "analysis/figures/path_layout.hpp"
 #include "analysis/run_reader.hpp"
-#include "engine/errors.hpp"
 
 #include <algorithm>
 #include <string>
@@ -15,34 +15,6 @@ namespace montecarta {
 namespace {
 
 constexpr std::size_t kMostPanels = 8, kMostRecordedPanels = 18;
-
-/// In how many cells each run is complete.
-std::vector<std::size_t> completeness(const ResultFile& file) {
-  std::vector<std::size_t> cells(file.runs().size());
-  for (const StoredCell& cell : file.cells()) {
-    const auto status = file.status(cell);
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      cells[i] += status[i] == RunStatus::complete ? 1 : 0;
-    }
-  }
-  return cells;
-}
-
-/// Index in the file of the run to draw.
-std::optional<std::size_t> choose_run(const ResultFile& file, std::optional<std::uint64_t> run) {
-  if (run) {
-    const auto found = std::ranges::find(file.runs(), *run);
-    if (found == file.runs().end()) {
-      throw StudyError(file.path().string() + ": run " + std::to_string(*run) +
-                       " (the file does not hold it): choose another with --run");
-    }
-    return static_cast<std::size_t>(found - file.runs().begin());
-  }
-  const auto cells = completeness(file);
-  const auto best = std::ranges::max_element(cells);
-  if (best == cells.end() || *best == 0) return std::nullopt;
-  return static_cast<std::size_t>(best - cells.begin());
-}
 
 /// Plots of one panel; an empty data file would be an error to gnuplot.
 class PanelScript {
@@ -225,7 +197,7 @@ void draw_recorded_paths(const ResultFile& file, const std::vector<std::size_t>&
 
 Figure path_figure(const ResultFile& file, std::optional<std::uint64_t> run) {
   Figure figure{"paths", "Where did the filter think it was?", "", 900, 0, "", {}};
-  const auto run_index = choose_run(file, run);
+  const auto run_index = chosen_run(file, run);
   const auto cells = run_index ? drawable_cells(file, *run_index) : std::vector<std::size_t>{};
   if (cells.empty()) return figure;
   const Surroundings around{*run_index, landmark_data(file), fix_data(file)};

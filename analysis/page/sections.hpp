@@ -5,6 +5,9 @@
 #include "analysis/study_analysis.hpp"
 #include "engine/records/result_file.hpp"
 
+#include <cstdint>
+#include <optional>
+
 namespace montecarta {
 
 /// The page's heading: which study, how much of it.
@@ -17,6 +20,8 @@ Section verdict_section(const StudyAnalysis& study);
 Section map_section(const StudyAnalysis& study);
 /// A recorded drive judged by its references.
 Section reference_section(const StudyAnalysis& study);
+/// A player that replays one run, chosen as chosen_run() does, as far as the file holds it.
+Section replay_section(const ResultFile& file, std::optional<std::uint64_t> run);
 /// What became of the detections, where that was counted.
 Section association_section(const StudyAnalysis& study);
 /// Every definition of error and covariance.

@@ -31,14 +31,16 @@ TEST(Report, HoldsEverySectionAndNeedsNothingElse) {
   write_report(ResultFile(folder / "out.h5"), folder / "report");
   const std::string page = read(folder / "report/index.html");
   for (const char* heading :
-       {"Failed runs", "Verdict", "Where did the filter think it was?",
+       {"Failed runs", "Verdict", "What happened in one run?", "Where did the filter think it was?",
         "Is the filter right about its own errors?", "Position or heading: which one goes wrong?",
         "How large are the errors?", "How many different histories survive?",
         "How many particles still count?", "The whole test", "Where this comes from"}) {
     EXPECT_THAT(page, HasSubstr(std::string("<h2>") + heading));
   }
   EXPECT_THAT(page, HasSubstr("gain is &lt;not&gt; a number &amp; worse"));
-  EXPECT_LT(page.find("Failed runs"), page.find("<h2>Verdict"));
+  EXPECT_LT(page.find("<h2>Verdict"), page.find("<h2>Failed runs"));
+  EXPECT_LT(page.find("<h2>Failed runs"), page.find("<h2>What happened"));
+  EXPECT_THAT(page, Not(HasSubstr("to record.columns of the study")));
   EXPECT_THAT(page, Not(HasSubstr("src=")));
   EXPECT_THAT(page, Not(HasSubstr("href=\"http")));
   for (const char* name : {"paths", "anees", "anees_parts", "rmse", "diversity", "ess"}) {
@@ -67,6 +69,8 @@ TEST(Report, JudgesARecordedDriveByItsReferences) {
                               "How large are the errors?", "The whole test"}) {
     EXPECT_THAT(page, Not(HasSubstr(std::string("<h2>") + heading)));
   }
+  EXPECT_THAT(page, HasSubstr("class=\"replay-data\">{\"run\":"));
+  EXPECT_THAT(page, HasSubstr("' to record.columns of the study"));
   EXPECT_THAT(page, HasSubstr("nobody knows its true path"));
   for (const char* name : {"paths", "reference_error", "reference_particles", "map_size"}) {
     EXPECT_THAT(read(folder / (std::string("report/figures/") + name + ".svg")),

@@ -4,3 +4,6 @@
 for (const element of document.querySelectorAll("figure > script.chart-data")) {
   new ChartFigure(element.parentElement, JSON.parse(element.textContent));
 }
+for (const element of document.querySelectorAll(".player > script.replay-data")) {
+  new Player(element.parentElement, JSON.parse(element.textContent));
+}
