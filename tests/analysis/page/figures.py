@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Figures that are zoomed into, asked and thinned out."""
+
+import json
+
+from on_page import CTRL, SHIFT, OnPage
+
+CHART = "#figure_anees svg.chart"
+
+
+class Legend(OnPage):
+
+    def button(self, figure, cell):
+        return f"#figure_{figure} .legend button[data-cell={cell}]"
+
+    def curves(self, figure, cell):
+        return self.count(f"#figure_{figure} svg.chart path.curve[data-cell={cell}]")
+
+    def press(self, figure, cell, modifiers=0):
+        self.page.click(self.page.middle(self.button(figure, cell)), modifiers=modifiers)
+
+    def test_hides_a_cell_everywhere_and_shows_it_again(self):
+        self.assertEqual(self.curves("anees", "ekf_slam"), 1)
+        self.press("anees", "ekf_slam")
+        self.assertEqual([self.curves(figure, "ekf_slam") for figure in ("anees", "rmse")], [0, 0])
+        self.assertEqual(self.curves("anees", "fastslam2_m10"), 1)
+        self.press("rmse", "ekf_slam")
+        self.assertEqual([self.curves(figure, "ekf_slam") for figure in ("anees", "rmse")], [1, 2])
+
+    def test_hides_a_cell_in_one_figure_where_that_is_wanted(self):
+        self.page.click(self.page.middle("#figure_anees .legend input"))
+        self.press("anees", "ekf_slam")
+        self.assertEqual([self.curves(figure, "ekf_slam") for figure in ("anees", "rmse")], [0, 2])
+
+    def test_shows_one_cell_alone(self):
+        self.press("anees", "ekf_slam", SHIFT)
+        self.assertEqual(self.curves("anees", "ekf_slam"), 1)
+        self.assertEqual(self.curves("anees", "fastslam2_m10"), 0)
+
+
+class Zoom(OnPage):
+
+    def times(self):
+        return [float(self.ask(CHART, f"dataset.{end}")) for end in ("from", "to")]
+
+    def ticks(self):
+        return self.page.evaluate(f"[...document.querySelectorAll('{CHART} .tick')]"
+                                  ".map(e => e.textContent)")
+
+    def test_by_a_box_and_back_by_a_double_click(self):
+        whole, ticks = self.times(), self.ticks()
+        self.page.drag(self.page.middle(CHART, 0.3, 0.3), self.page.middle(CHART, 0.5, 0.6))
+        begin, end = self.times()
+        self.assertGreater(begin, whole[0] + 10)
+        self.assertLess(end, whole[1] - 10)
+        self.assertNotEqual(self.ticks(), ticks)
+        self.page.click(self.page.middle(CHART), count=2)
+        self.assertEqual((self.times(), self.ticks()), (whole, ticks))
+
+    def test_by_the_wheel_only_when_it_is_meant(self):
+        whole = self.times()
+        self.page.wheel(self.page.middle(CHART), -300)
+        self.later()  # the page scrolls
+        self.assertEqual(self.times(), whole)
+        self.page.wheel(self.page.middle(CHART), -300, CTRL)
+        self.wait_for(f"Number(document.querySelector('{CHART}').dataset.from) > 0")
+
+    def test_by_keys(self):
+        self.page.evaluate(f"document.querySelector('{CHART}').focus()")
+        self.page.press("+")
+        self.assertGreater(self.times()[0], 0)
+        begin = self.times()[0]
+        self.page.press("ArrowLeft")
+        self.assertLess(self.times()[0], begin)
+        self.page.press("Escape")
+        self.assertEqual(self.times()[0], 0)
+
+
+class Hover(OnPage):
+
+    def said(self):
+        """(time, {cell: value}) of the readout, as it stands there; None where there is none."""
+        return self.page.evaluate("""(() => {
+            const box = document.querySelector("#figure_anees .readout");
+            if (box.hidden) return null;
+            return [box.firstChild.textContent, Object.fromEntries(
+                [...box.querySelectorAll("tr")].map(row => [...row.cells].map(c => c.textContent)))];
+        })()""")
+
+    def time_at(self, place):
+        """What the axis says below a place."""
+        left, width = self.page.evaluate(f"""(() => {{
+            const box = document.querySelector("{CHART} .frame").getBoundingClientRect();
+            return [box.left, box.width];
+        }})()""")
+        return float(self.ask(CHART, "dataset.to")) * (place[0] - left) / width
+
+    def expect_true_values(self, place):
+        time, values = self.said()
+        chart = json.loads(self.ask("#figure_anees .chart-data", "textContent"))
+        panel, wanted = chart["panels"][0], self.time_at(place)
+        i = min(range(len(panel["x"])), key=lambda k: abs(panel["x"][k] - wanted))
+        self.assertAlmostEqual(float(time.removeprefix("time ").removesuffix(" s")), panel["x"][i],
+                               delta=0.006)
+        self.assertEqual(set(values), {"ekf_slam", "fastslam2_m10", "fastslam2_m20"})
+        for curve in panel["curves"]:
+            self.assertAlmostEqual(float(values[curve["legend"]]) / curve["y"][i], 1, delta=1e-3)
+
+    def test_says_the_values_at_the_pointer(self):
+        self.assertIsNone(self.said())
+        seen = []
+        for x in (0.31, 0.36, 0.42, 0.47, 0.53, 0.58, 0.64, 0.69, 0.75):
+            place = self.page.middle(CHART, x, 0.4)
+            self.page.hover(place)
+            self.expect_true_values(place)
+            seen.append(self.said()[0])
+        self.assertEqual(len(set(seen)), len(seen))
+        self.page.hover(self.page.middle("h1"))
+        self.assertIsNone(self.said())
+
+
+class Touch(Hover):
+
+    screen = {"width": 360, "height": 740, "touch": True}
+
+    def test_says_the_values_at_the_pointer(self):
+        place = self.page.middle(CHART, 0.6, 0.4)
+        self.page.touch("touchStart", [place])
+        self.expect_true_values(place)
+        self.page.touch("touchEnd", [])
+
+    def test_two_fingers_zoom(self):
+        left, right = self.page.middle(CHART, 0.4, 0.4), self.page.middle(CHART, 0.6, 0.4)
+        self.page.touch("touchStart", [left, right])
+        self.page.touch("touchMove", [(left[0] - 50, left[1]), (right[0] + 50, right[1])])
+        self.page.touch("touchEnd", [])
+        self.assertGreater(float(self.ask(CHART, "dataset.from")), 5)

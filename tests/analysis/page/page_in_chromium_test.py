@@ -1,0 +1,26 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""A report's page in a real browser: it opens quietly and alone, and everything on it works.
+
+usage: page_in_chromium_test.py MONTECARTA [TEST...]
+Exit code 77: skipped, since there is no Chromium.
+"""
+
+import pathlib
+import sys
+import tempfile
+import unittest
+
+import chromium
+from figures import Hover, Legend, Touch, Zoom  # noqa: F401: found by unittest
+from on_page import OnPage, make_report
+from opening import Opening  # noqa: F401
+from player import Player  # noqa: F401
+
+if __name__ == "__main__":
+    if chromium.find() is None:
+        print("skipped: there is no chromium (Debian package 'chromium'), so no page was opened")
+        sys.exit(77)
+    with tempfile.TemporaryDirectory(prefix="montecarta_page_") as folder:
+        OnPage.html = make_report(sys.argv.pop(1), pathlib.Path(folder))
+        unittest.main(verbosity=2)
