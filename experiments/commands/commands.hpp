@@ -29,6 +29,7 @@ Command report_command();
 Command verify_command();
 Command replay_command();
 Command bounds_command();
+Command plan_command();
 Command convert_command();
 Command list_command();
 

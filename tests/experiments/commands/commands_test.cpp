@@ -76,6 +76,8 @@ TEST_F(Commands, WrongInputIsNamedWithItsRemedy) {
   expect_wrong({"list", "filtres"}, "did you mean filters?");
   expect_wrong({"info", "absent.h5"}, "absent.h5");
   expect_wrong({"bounds", "--runs", "30"}, "--dim D");
+  expect_wrong({"plan", "--dim", "3"}, "--ratio R");
+  expect_wrong({"plan", "--dim", "3", "--ratio", "1"}, "neither 1 nor 0");
 }
 
 TEST_F(Commands, RunStoresAndTellsWhereAndOverwritesNothing) {
@@ -150,6 +152,13 @@ TEST_F(Commands, BoundsAreExact) {
   EXPECT_EQ(call({"bounds", "--match", "2.79"}).code, 2);
   expect_wrong({"bounds", "--runs", "30", "--dim", "3", "--match", "1.3", "2.79"},
                "--match and --runs");
+}
+
+TEST_F(Commands, PlanSaysHowManyRuns) {
+  const std::string out = call({"plan", "--dim", "3", "--ratio", "1.2", "--scans", "100"}).out;
+  EXPECT_THAT(out, testing::ContainsRegex("one scan +209 "));
+  EXPECT_THAT(out, testing::ContainsRegex("any of 100 scans +35 "));
+  EXPECT_THAT(out, HasSubstr("neighbouring scans are correlated"));
 }
 
 TEST_F(Commands, ListsSayWhatThereIs) {
