@@ -2,61 +2,16 @@
 #include "analysis/printed/comparison.hpp"
 #include "analysis/tables.hpp"
 #include "analysis/tables/map_error_table.hpp"
+#include "analysis/tables/print_table.hpp"
 #include "analysis/tables/reference_table.hpp"
 #include "analysis/tables/verdict_table.hpp"
 #include "analysis/tables/why_tables.hpp"
 
 #include <algorithm>
 #include <ostream>
-#include <sstream>
 
 namespace montecarta {
 namespace {
-
-constexpr std::size_t kTextWidth = 100;
-
-std::vector<std::size_t> widths_of(const TextTable& table) {
-  std::vector<std::size_t> widths;
-  for (const auto& heading : table.headings) widths.push_back(heading.text.size());
-  for (const auto& row : table.rows) {
-    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
-  }
-  return widths;
-}
-
-std::string padded(const std::string& text, std::size_t width, Align align) {
-  const std::string space(width - std::min(width, text.size()), ' ');
-  return align == Align::left ? text + space : space + text;
-}
-
-void print(std::ostream& out, const TextTable& table) {
-  const auto widths = widths_of(table);
-  const auto line = [&](const auto& text_of) {
-    std::string printed;
-    for (std::size_t c = 0; c < widths.size(); ++c) {
-      printed += padded(text_of(c), widths[c], table.headings[c].align) + "  ";
-    }
-    printed.erase(printed.find_last_not_of(' ') + 1);
-    out << printed << '\n';
-  };
-  line([&](std::size_t c) { return table.headings[c].text; });
-  line([&](std::size_t c) { return std::string(widths[c], '-'); });
-  for (const auto& row : table.rows) line([&](std::size_t c) { return row[c]; });
-}
-
-/// Breaks a sentence into lines.
-void print_wrapped(std::ostream& out, const std::string& sentence) {
-  std::istringstream words(sentence);
-  std::string line;
-  for (std::string word; words >> word;) {
-    if (!line.empty() && line.size() + 1 + word.size() > kTextWidth) {
-      out << line << '\n';
-      line.clear();
-    }
-    line += (line.empty() ? "" : " ") + word;
-  }
-  out << line << '\n';
-}
 
 /// Failures of a study that fails a thousand times are not worth a thousand lines.
 void print_failures(std::ostream& out, const StudyAnalysis& study) {
@@ -65,7 +20,7 @@ void print_failures(std::ostream& out, const StudyAnalysis& study) {
   const std::size_t all = table.rows.size();
   out << "Failed runs (" << all << "), left out of everything below:\n";
   table.rows.resize(std::min(all, kMost));
-  print(out, table);
+  print_table(out, table);
   if (all > kMost) out << "... and " << all - kMost << " more: see failures.csv (--csv DIR)\n";
   out << '\n';
 }
@@ -84,14 +39,14 @@ void print_warnings(std::ostream& out, const StudyAnalysis& study) {
 }
 
 void print_judged_by_truth(std::ostream& out, const StudyAnalysis& study) {
-  print(out, verdict_table(study));
+  print_table(out, verdict_table(study));
   out << '\n';
-  print(out, accuracy_table(study));
+  print_table(out, accuracy_table(study));
   out << '\n';
   for (const TextTable& table : {map_error_table(study), why_table(study), diversity_table(study),
                                  innovation_table(study)}) {
     if (table.rows.empty()) continue;
-    print(out, table);
+    print_table(out, table);
     out << '\n';
   }
   print_warnings(out, study);
@@ -104,7 +59,7 @@ void print_judged_by_references(std::ostream& out, const StudyAnalysis& study) {
   }
   for (const TextTable& table : {reference_table(study), baseline_table(study), map_table(study)}) {
     if (table.rows.empty()) continue;
-    print(out, table);
+    print_table(out, table);
     out << '\n';
   }
   for (const std::string& note : reference_notes(study)) print_wrapped(out, note);
@@ -117,7 +72,7 @@ void print_printed(std::ostream& out, const StudyAnalysis& study) {
       << study.printed.source << "\n\n";
   for (const TextTable& table : {printed_value_table(study), printed_claim_table(study)}) {
     if (table.rows.empty()) continue;
-    print(out, table);
+    print_table(out, table);
     out << '\n';
   }
   for (const std::string& note : printed_notes(study)) print_wrapped(out, note);
@@ -133,7 +88,7 @@ void print_tables(std::ostream& out, const StudyAnalysis& study) {
   if (study.has_truth) print_judged_by_truth(out, study);
   if (!study.has_truth || !study.references.empty()) print_judged_by_references(out, study);
   if (const TextTable table = association_table(study); !table.rows.empty()) {
-    print(out, table);
+    print_table(out, table);
     out << '\n';
     for (const std::string& note : association_notes()) print_wrapped(out, note);
   }
