@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/report.hpp"
 
+#include "analysis/comparison/comparison_csv.hpp"
 #include "analysis/figures/mismatch_figure.hpp"
 #include "analysis/figures/path_figure.hpp"
 #include "analysis/figures/reference_figures.hpp"
@@ -29,6 +30,7 @@ void refuse_existing(const fs::path& directory, ExistingReport existing) {
 
 /// The page from top to bottom. What a study has nothing of leaves its section empty.
 std::vector<Section> reading_order(const ResultFile& file, const StudyAnalysis& study,
+                                   const StudyComparison& comparison,
                                    const ReportOptions& options) {
   return {title_section(study),
           verdict_section(study),
@@ -41,6 +43,7 @@ std::vector<Section> reading_order(const ResultFile& file, const StudyAnalysis& 
           figure_section(time_figures(study)),
           figure_section(why_figures(study)),
           figure_section({mismatch_figure(study)}),
+          comparison_section(study, comparison),
           association_section(study),
           why_section(study),
           diversity_section(study),
@@ -55,8 +58,11 @@ std::vector<Section> reading_order(const ResultFile& file, const StudyAnalysis& 
 void write_report(const ResultFile& file, const fs::path& directory, const ReportOptions& options) {
   refuse_existing(directory, options.existing);
   const StudyAnalysis study = analyze(file, options.level, *options.parallel);
-  const std::vector<Section> sections = reading_order(file, study, options);
+  const StudyComparison comparison =
+      compare_study(study, study.cells.front().label, usual_scores(study.has_truth));
+  const std::vector<Section> sections = reading_order(file, study, comparison, options);
   write_csv(study, directory / "tables");
+  write_comparison_csv(comparison, directory / "tables");
   write_page(study, sections, directory);
 }
 

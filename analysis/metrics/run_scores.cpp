@@ -79,20 +79,25 @@ constexpr ScoreName kNames[] = {
     {"heading_rmse", "rad", "heading RMSE", &RunScores::heading_rmse},
     {"heading_mse", "rad2", "heading MSE", &RunScores::heading_mse},
     {"heading_error", "rad", "mean absolute heading error", &RunScores::heading_mean},
-    {"nees", "1", "mean NEES of the pose", &RunScores::nees},
-    {"nees_position", "1", "mean NEES of the position", &RunScores::nees_position},
-    {"ess", "1", "effective particles", &RunScores::ess},
-    {"resampling_rate", "1", "share of scans that resample", &RunScores::resampling_rate},
+    {"nees", "1", "mean NEES of the pose", &RunScores::nees, Better::neither},
+    {"nees_position", "1", "mean NEES of the position", &RunScores::nees_position, Better::neither},
+    {"nees_distance", "1", "NEES distance from consistency [doublings]", &RunScores::nees_distance},
+    {"ess", "1", "effective particles", &RunScores::ess, Better::higher},
+    {"resampling_rate", "1", "share of scans that resample", &RunScores::resampling_rate,
+     Better::neither},
     {"ancestors_last_resampling", "1", "distinct particles after a resampling",
-     &RunScores::last_resampling},
-    {"ancestors_10_s_ago", "1", "distinct ancestors 10 s ago", &RunScores::lag},
-    {"ancestors_at_start", "1", "distinct ancestors at the start", &RunScores::root},
+     &RunScores::last_resampling, Better::higher},
+    {"ancestors_10_s_ago", "1", "distinct ancestors 10 s ago", &RunScores::lag, Better::higher},
+    {"ancestors_at_start", "1", "distinct ancestors at the start", &RunScores::root,
+     Better::higher},
     {"ancestors_at_start_at_the_end", "1", "first particles that have descendants at the end",
-     &RunScores::final_root},
-    {"coalescence", "s", "time back to the common ancestor", &RunScores::coalescence},
+     &RunScores::final_root, Better::higher},
+    {"coalescence", "s", "time back to the common ancestor", &RunScores::coalescence,
+     Better::higher},
     {"monte_carlo_variance", "m2", "position variance by few particles",
      &RunScores::monte_carlo_variance},
-    {"association_correct", "1", "detections rightly associated", &RunScores::correct},
+    {"association_correct", "1", "detections rightly associated", &RunScores::correct,
+     Better::higher},
     {"association_wrong", "1", "detections given to a wrong landmark", &RunScores::wrong},
     {"association_new_again", "1", "detections made new again", &RunScores::new_again},
     {"association_missed", "1", "detections left out", &RunScores::missed},
@@ -109,8 +114,9 @@ constexpr ScoreName kNames[] = {
      &RunScores::reference_aligned_gated_rms},
     {"reference_heading_rmse", "rad", "heading RMSE to the reference",
      &RunScores::reference_heading_rmse},
-    {"map_landmarks", "1", "landmarks in the final map", &RunScores::map_landmarks},
-    {"beacons_found", "1", "surveyed beacons found", &RunScores::beacons_found},
+    {"map_landmarks", "1", "landmarks in the final map", &RunScores::map_landmarks,
+     Better::neither},
+    {"beacons_found", "1", "surveyed beacons found", &RunScores::beacons_found, Better::higher},
     {"beacon_rms", "m", "RMS error of the beacons found", &RunScores::beacon_rms},
     {"beacon_aligned_rms", "m", "RMS error of the beacons found, aligned",
      &RunScores::beacon_aligned_rms},
@@ -135,6 +141,7 @@ RunScores scores_of(const RunRows& rows, const RunMetrics& metrics) {
   if (const NeesRows* nees = metrics.leading_nees()) {
     scores.nees = mean_of_finite(nees->value[0]);
     scores.nees_position = mean_of_finite(nees->value[1]);
+    scores.nees_distance = nees_distance(scores.nees, 3);
   }
   if (!rows.ess.empty()) {
     scores.ess = mean_of(rows.ess);
@@ -150,6 +157,10 @@ RunScores scores_of(const RunRows& rows, const RunMetrics& metrics) {
   scores.numerical_faults = sum_of(rows.numerical_faults);
   scores.cpu_seconds = rows.cpu_seconds;
   return scores;
+}
+
+double nees_distance(double nees, std::size_t dimension) {
+  return std::abs(std::log2(nees / static_cast<double>(dimension)));
 }
 
 std::span<const ScoreName> score_names() { return kNames; }

@@ -4,6 +4,7 @@
 #include "analysis/metrics/run_metrics.hpp"
 #include "analysis/metrics/run_rows.hpp"
 
+#include <cstddef>
 #include <limits>
 #include <span>
 
@@ -14,22 +15,23 @@ namespace montecarta {
 struct RunScores {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-  double position_rmse = kNone;         ///< [m]
-  double position_mse = kNone;          ///< [m^2]
-  double position_mean = kNone;         ///< [m] distance, mean over scans
-  double position_variance = kNone;     ///< [m^2] of the distance over scans
-  double heading_rmse = kNone;          ///< [rad]
-  double heading_mse = kNone;           ///< [rad^2]
-  double heading_mean = kNone;          ///< [rad] absolute
-  double nees = kNone;                  ///< [1] of the pose, mean over scans, leading moments
-  double nees_position = kNone;         ///< [1] of the position
-  double ess = kNone;                   ///< [1] mean over scans
-  double resampling_rate = kNone;       ///< [1] share of scans
-  double last_resampling = kNone;       ///< [1] distinct parents in the last resampling, over scans
-  double lag = kNone;                   ///< [1] distinct ancestors kDiversityLag ago, over scans
-  double root = kNone;                  ///< [1] distinct ancestors at the start, over scans
-  double final_root = kNone;            ///< [1] the same at the last scan
-  double coalescence = kNone;           ///< [s] back to the common ancestor (Lineages)
+  double position_rmse = kNone;      ///< [m]
+  double position_mse = kNone;       ///< [m^2]
+  double position_mean = kNone;      ///< [m] distance, mean over scans
+  double position_variance = kNone;  ///< [m^2] of the distance over scans
+  double heading_rmse = kNone;       ///< [rad]
+  double heading_mse = kNone;        ///< [rad^2]
+  double heading_mean = kNone;       ///< [rad] absolute
+  double nees = kNone;               ///< [1] of the pose, mean over scans, leading moments
+  double nees_position = kNone;      ///< [1] of the position
+  double nees_distance = kNone;      ///< [1] doublings between `nees` and its number of components
+  double ess = kNone;                ///< [1] mean over scans
+  double resampling_rate = kNone;    ///< [1] share of scans
+  double last_resampling = kNone;    ///< [1] distinct parents in the last resampling, over scans
+  double lag = kNone;                ///< [1] distinct ancestors kDiversityLag ago, over scans
+  double root = kNone;               ///< [1] distinct ancestors at the start, over scans
+  double final_root = kNone;         ///< [1] the same at the last scan
+  double coalescence = kNone;        ///< [s] back to the common ancestor (Lineages)
   double monte_carlo_variance = kNone;  ///< [m^2] of the position, by few particles (Lineages)
   double correct = kNone;  ///< [1] sum over scans, as the next four (AssociationCounts)
   double wrong = kNone;
@@ -60,12 +62,20 @@ struct RunScores {
 
 RunScores scores_of(const RunRows& rows, const RunMetrics& metrics);
 
+/// How many doublings (or halvings) an average NEES of `dimension` components is away from that of
+/// an honest filter: |log2(nees / dimension)|, 0 where they agree.
+double nees_distance(double nees, std::size_t dimension);
+
+/// Which of two values of a score is the better one; neither: the lower one is counted, no more.
+enum class Better { lower, higher, neither };
+
 /// A score under the name that files and studies give it.
 struct ScoreName {
   const char* name;   ///< e.g. "position_rmse"
   const char* units;  ///< UDUNITS style, "1" where there is none
   const char* words;  ///< for tables
   double RunScores::*value;
+  Better better = Better::lower;
 };
 
 /// All of them.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/comparison/study_comparison.hpp"
 #include "analysis/page/section.hpp"
 #include "analysis/study_analysis.hpp"
 #include "engine/records/result_file.hpp"
@@ -24,6 +25,8 @@ Section reference_section(const StudyAnalysis& study);
 Section replay_section(const ResultFile& file, std::optional<std::uint64_t> run);
 /// What became of the detections, where that was counted.
 Section association_section(const StudyAnalysis& study);
+/// Every cell beside the first one, and what each is worth; where two cells have truth.
+Section comparison_section(const StudyAnalysis& study, const StudyComparison& comparison);
 /// Every definition of error and covariance.
 Section consistency_section(const StudyAnalysis& study);
 /// Bias or scatter, in which direction, how far.

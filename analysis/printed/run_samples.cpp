@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/printed/run_samples.hpp"
 
+#include "analysis/comparison/paired_runs.hpp"
+
 #include <boost/math/distributions/students_t.hpp>
 
 #include <algorithm>
@@ -61,10 +63,7 @@ Sample sample_over(std::span<const double> values) {
 std::vector<std::pair<double, double>> pairs_of(const CellAnalysis& left, const CellAnalysis& right,
                                                 double RunScores::*score) {
   std::vector<std::pair<double, double>> pairs;
-  std::size_t r = 0;
-  for (std::size_t l = 0; l < left.runs.size(); ++l) {
-    while (r < right.runs.size() && right.runs[r] < left.runs[l]) ++r;
-    if (r == right.runs.size() || right.runs[r] != left.runs[l]) continue;
+  for (const auto& [l, r] : common_places(left.runs, right.runs)) {
     pairs.emplace_back(left.scores[l].*score, right.scores[r].*score);
   }
   return pairs;

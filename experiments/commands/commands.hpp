@@ -28,6 +28,7 @@ Command analyze_command();
 Command report_command();
 Command verify_command();
 Command replay_command();
+Command compare_command();
 Command bounds_command();
 Command plan_command();
 Command convert_command();

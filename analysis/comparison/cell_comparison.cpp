@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/comparison/cell_comparison.hpp"
+
+#include "analysis/comparison/paired_runs.hpp"
+#include "analysis/metrics/bootstrap.hpp"
+#include "analysis/metrics/spread.hpp"
+#include "engine/errors.hpp"
+
+#include <algorithm>
+
+namespace montecarta {
+namespace {
+
+Wins wins_of(const PairedRuns& pairs, const ScoreName& score) {
+  Wins wins{pairs.left_alone, pairs.right_alone, pairs.neither};
+  for (std::size_t i = 0; i < pairs.left.size(); ++i) {
+    const double behind = disadvantage(score, pairs.left[i], pairs.right[i]);
+    ++(behind < 0.0 ? wins.won : behind > 0.0 ? wins.lost : wins.tied);
+  }
+  wins.p = wins.p_holm = sign_test(wins.won, wins.lost);
+  return wins;
+}
+
+CellComparison compare_pair(const CellAnalysis& cell, const CellAnalysis& baseline,
+                            const ScoreName& score, double level) {
+  const PairedRuns pairs = paired_runs(cell, baseline, score);
+  const std::vector<double> differences = pairs.differences();
+  CellComparison row{.cell = cell.label, .score = &score};
+  row.pairs = pairs.left.size();
+  row.without = pairs.right_alone;
+  row.baseline_without = pairs.left_alone;
+  row.neither = pairs.neither;
+  row.unpaired = pairs.unpaired;
+  row.mean = spread_of(pairs.left).summary.mean;
+  row.baseline_mean = spread_of(pairs.right).summary.mean;
+  row.difference = spread_of(differences).summary.mean;
+  row.interval = bootstrap_mean(differences, level);
+  row.ratio = row.mean / row.baseline_mean;
+  row.wins = wins_of(pairs, score);
+  row.rank = signed_rank_test(differences);
+  return row;
+}
+
+/// Both tests of every row are one family.
+void adjust(std::vector<CellComparison>& rows) {
+  std::vector<double> p;
+  for (const CellComparison& row : rows) p.insert(p.end(), {row.wins.p, row.rank.p});
+  const std::vector<double> adjusted = holm(p);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].wins.p_holm = adjusted[2 * i];
+    rows[i].rank_p_holm = adjusted[2 * i + 1];
+  }
+}
+
+const CellAnalysis& cell_called(const StudyAnalysis& study, const std::string& label) {
+  const auto found = std::ranges::find(study.cells, label, &CellAnalysis::label);
+  if (found != study.cells.end()) return *found;
+  throw StudyError(label + ": no cell of " + study.file +
+                   " (each is compared with one of its own): choose another");
+}
+
+}  // namespace
+
+double Wins::share() const {
+  const auto all = static_cast<double>(won + lost + tied);
+  return static_cast<double>(won) / all;
+}
+
+std::string CellComparison::verdict(double level) const {
+  const double significant = 1.0 - level;
+  int ahead = 0, behind = 0;
+  if (wins.p_holm < significant) ++(wins.won > wins.lost ? ahead : behind);
+  if (rank_p_holm < significant) {
+    const double towards = disadvantage(*score, rank.positive, rank.negative);
+    ++(towards < 0.0 ? ahead : behind);
+  }
+  if ((ahead > 0) == (behind > 0)) return "undecided";
+  if (score->better == Better::neither) return ahead > 0 ? "lower" : "higher";
+  return ahead > 0 ? "better" : "worse";
+}
+
+double disadvantage(const ScoreName& score, double left, double right) {
+  return score.better == Better::higher ? right - left : left - right;
+}
+
+Wins wins_of(const CellAnalysis& left, const CellAnalysis& right, const ScoreName& score) {
+  return wins_of(paired_runs(left, right, score), score);
+}
+
+Comparisons compare_cells(const StudyAnalysis& study, const std::string& baseline,
+                          std::span<const ScoreName* const> scores) {
+  const CellAnalysis& base = cell_called(study, baseline);
+  Comparisons comparisons{baseline, study.level, {}};
+  for (const ScoreName* score : scores) {
+    for (const CellAnalysis& cell : study.cells) {
+      if (&cell == &base || !is_judged_by(cell, *score) || !is_judged_by(base, *score)) continue;
+      CellComparison row = compare_pair(cell, base, *score, study.level);
+      const bool none = row.pairs + row.without + row.baseline_without == 0;
+      if (!none) comparisons.rows.push_back(std::move(row));
+    }
+  }
+  adjust(comparisons.rows);
+  return comparisons;
+}
+
+std::vector<const ScoreName*> usual_scores(bool has_truth) {
+  const std::vector<std::string> names =
+      has_truth ? std::vector<std::string>{"position_rmse", "heading_rmse", "nees_distance",
+                                           "cpu_seconds"}
+                : std::vector<std::string>{"reference_rms", "reference_aligned_rms", "cpu_seconds"};
+  std::vector<const ScoreName*> scores;
+  for (const std::string& name : names) scores.push_back(find_score(name));
+  return scores;
+}
+
+const ScoreName* find_score(const std::string& name) {
+  const auto names = score_names();
+  const auto found =
+      std::ranges::find_if(names, [&](const ScoreName& score) { return score.name == name; });
+  return found == names.end() ? nullptr : &*found;
+}
+
+}  // namespace montecarta

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/study_analysis.hpp"
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// Cost and merit of something, less is better in both.
+struct Offer {
+  double cost = 0.0;
+  double loss = 0.0;
+};
+
+/// Whether each offer is on the Pareto front: no other is better in one and at least as good in the
+/// other. What is not a number is never on it.
+std::vector<bool> pareto_front(std::span<const Offer> offers);
+
+/// What a cell costs and what it gives, over its complete runs.
+struct CellValue {
+  std::string cell;
+  std::size_t place = 0;   ///< among the study's cells
+  std::size_t failed = 0;  ///< runs, which are in none of the numbers
+  Summary cpu_seconds;
+  Summary position_rmse;         ///< [m]
+  double nees_distance = 0.0;    ///< |log2(ANEES / components)| of the pose (nees_distance())
+  bool accurate_for_it = false;  ///< on the front of position RMSE against CPU time
+  bool honest_for_it = false;    ///< on the front of NEES distance against CPU time
+};
+
+/// Of the cells with complete runs; none where nobody knows the true path.
+std::vector<CellValue> cell_values(const StudyAnalysis& study);
+
+}  // namespace montecarta

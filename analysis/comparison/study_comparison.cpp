@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/comparison/study_comparison.hpp"
+
+#include <utility>
+
+namespace montecarta {
+
+StudyComparison compare_study(const StudyAnalysis& study, const std::string& baseline,
+                              std::span<const ScoreName* const> scores) {
+  StudyComparison comparison{compare_cells(study, baseline, scores), {}, cell_values(study)};
+  for (const ScoreName* score : scores) {
+    WinMatrix matrix = win_matrix(study, *score);
+    if (matrix.cells.size() > 1) comparison.matrices.push_back(std::move(matrix));
+  }
+  return comparison;
+}
+
+}  // namespace montecarta

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/figures/pareto_figure.hpp"
+
+#include "analysis/figures/gnuplot.hpp"
+#include "analysis/tables/number_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace montecarta {
+namespace {
+
+/// One panel: a loss against cost.
+struct Merit {
+  std::string name;  ///< of its data file
+  std::string label;
+  double (*loss)(const CellValue&);
+  bool CellValue::*on_front;
+};
+
+const Merit kMerits[] = {
+    {"pareto_accuracy", "position RMSE [m]",
+     [](const CellValue& value) { return value.position_rmse.mean; }, &CellValue::accurate_for_it},
+    {"pareto_consistency", "NEES distance [doublings]",
+     [](const CellValue& value) { return value.nees_distance; }, &CellValue::honest_for_it}};
+
+double cost_of(const CellValue& value) { return value.cpu_seconds.mean; }
+
+FigureData data_of(std::span<const CellValue> values, const Merit& merit) {
+  FigureData data{merit.name + ".csv", {"cpu_seconds [s]", merit.label, "on the front"}, {}};
+  for (const CellValue& value : values) {
+    data.rows.push_back({cost_of(value), merit.loss(value), value.*merit.on_front ? 1.0 : 0.0});
+  }
+  return data;
+}
+
+/// Ends of an axis.
+struct Range {
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = 0.0;
+
+  void include(double value) {
+    if (!std::isfinite(value)) return;
+    least = std::min(least, value);
+    greatest = std::max(greatest, value);
+  }
+};
+
+/// Of the costs, with room for points.
+Range cost_range(std::span<const CellValue> values) {
+  Range range;
+  for (const CellValue& value : values) range.include(cost_of(value));
+  return {range.least / 1.5, 1.5 * range.greatest};
+}
+
+/// From zero, with room for labels.
+double top_of(std::span<const CellValue> values, const Merit& merit) {
+  Range range;
+  for (const CellValue& value : values) range.include(merit.loss(value));
+  return range.greatest > 0.0 ? 1.15 * range.greatest : 1.0;
+}
+
+/// Logarithmic, with a number at 1, 2 and 5 of each decade.
+std::string cost_axis(const Range& range) {
+  std::string tics;
+  for (double decade = std::pow(10.0, std::floor(std::log10(range.least)));
+       decade <= range.greatest; decade *= 10.0) {
+    for (const double step : {1.0, 2.0, 5.0}) {
+      tics += (tics.empty() ? "" : ",") + readable(step * decade, 1);
+    }
+  }
+  return "set logscale x\nset format x '%h'\nset xtics (" + tics + ")\nset xrange [" +
+         exact_text(range.least) + ":" + exact_text(range.greatest) +
+         "]\nset xlabel 'CPU time of a run [s]' offset 0,0.4\n";
+}
+
+/// The front as steps from edge to edge: what lies above and to the right of it is beaten.
+std::string front_of(std::span<const CellValue> values, const Merit& merit, const Range& costs) {
+  std::vector<std::pair<double, double>> corners;
+  for (const CellValue& value : values) {
+    if (value.*merit.on_front) corners.emplace_back(cost_of(value), merit.loss(value));
+  }
+  std::ranges::sort(corners);
+  if (!corners.empty()) {
+    corners.insert(corners.begin(), {corners.front().first, top_of(values, merit)});
+    corners.emplace_back(costs.greatest, corners.back().second);
+  }
+  std::string script = "$" + merit.name + "_front << EOD\ncost,loss\n";
+  for (const auto& [cost, loss] : corners) {
+    script += exact_text(cost) + "," + exact_text(loss) + "\n";
+  }
+  return script + "EOD\n";
+}
+
+/// On the side where there is room; above and below by turns from the lowest point up, so that
+/// neighbours keep apart.
+std::string labels_of(std::span<const CellValue> values, const Merit& merit, const Range& costs) {
+  std::vector<CellValue> sorted(values.begin(), values.end());
+  std::erase_if(sorted, [&](const CellValue& value) { return !std::isfinite(merit.loss(value)); });
+  std::ranges::stable_sort(sorted, {}, merit.loss);
+  const double middle = std::sqrt(costs.least * costs.greatest);
+  std::string script = "unset label\n";
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const bool left = cost_of(sorted[i]) > middle;
+    script += "set label " + gnuplot_quoted(sorted[i].cell) + " at " +
+              exact_text(cost_of(sorted[i])) + "," + exact_text(merit.loss(sorted[i])) +
+              (left ? " right" : " left") + " noenhanced offset " + (left ? "-0.8" : "0.8") +
+              (i % 2 == 0 ? ",-0.5\n" : ",0.5\n");
+  }
+  return script;
+}
+
+std::string panel_of(std::span<const CellValue> values, const Merit& merit, const Range& costs) {
+  std::string script = "set ylabel " + gnuplot_quoted(merit.label) +
+                       " offset 1.5,0\nset yrange [0:" + exact_text(top_of(values, merit)) + "]\n" +
+                       labels_of(values, merit, costs) + "plot $" + merit.name +
+                       "_front using 1:2 with steps linewidth 1 dashtype 2 linecolor rgb '#666666'";
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    script += ", \\\n  '../data/" + merit.name + ".csv' using 1:2 every ::" + std::to_string(i) +
+              "::" + std::to_string(i) + " with points pointtype 7 pointsize 0.8 " +
+              line_style(values[i].place);
+  }
+  return script + "\n";
+}
+
+}  // namespace
+
+Figure pareto_figure(std::span<const CellValue> values) {
+  Figure figure{"pareto", "What does a better answer cost?", "", 900, 400, "", {}};
+  figure.sentence =
+      "Each point is a cell, over its complete runs: left its position error, right how far its "
+      "NEES is from consistency (0: honest; 1: off by a factor of 2), both against the processor "
+      "time of a run. Down and to the left is better; the dashed line is the Pareto front, and "
+      "whatever lies above it is beaten by a cell on it.";
+  std::vector<CellValue> priced(values.begin(), values.end());
+  std::erase_if(priced, [](const CellValue& value) { return !(cost_of(value) > 0.0); });
+  if (priced.size() < 2) return figure;
+  const Range costs = cost_range(priced);
+  figure.script = "set key off\n";
+  for (const Merit& merit : kMerits) {
+    figure.data.push_back(data_of(priced, merit));
+    figure.script += front_of(priced, merit, costs);
+  }
+  figure.script += cost_axis(costs) +
+                   "set multiplot layout 1,2 margins 0.085,0.985,0.16,0.96 "
+                   "spacing 0.1\n";
+  for (const Merit& merit : kMerits) figure.script += panel_of(priced, merit, costs);
+  figure.script += "unset multiplot\n";
+  return figure;
+}
+
+}  // namespace montecarta

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/comparison/comparison_csv.hpp"
+#include "analysis/comparison/comparison_tables.hpp"
+#include "analysis/tables/print_table.hpp"
+#include "engine/errors.hpp"
+#include "experiments/commands/commands.hpp"
+#include "experiments/commands/output_guard.hpp"
+#include "experiments/commands/plan_arguments.hpp"
+#include "experiments/commands/stored_result.hpp"
+#include "experiments/text/words.hpp"
+
+#include <algorithm>
+#include <iostream>
+
+namespace montecarta {
+namespace {
+
+const ScoreName* score_called(const std::string& name) {
+  if (const ScoreName* score = find_score(name)) return score;
+  std::vector<std::string> known;
+  for (const ScoreName& score : score_names()) known.emplace_back(score.name);
+  throw StudyError("--metric " + name + ": no metric (runs have no number of that name): " +
+                   nearest_spelling(name, known));
+}
+
+std::vector<const ScoreName*> scores_of(const Arguments& arguments, const ResultFile& file) {
+  const auto names = arguments.text("metric");
+  if (!names) return usual_scores(file.has_truth());
+  std::vector<const ScoreName*> scores;
+  for (const std::string& name : split(*names, ',')) scores.push_back(score_called(name));
+  return scores;
+}
+
+/// Before the work, not after it.
+std::string baseline_of(const Arguments& arguments, const ResultFile& file) {
+  std::vector<std::string> labels;
+  for (const StoredCell& cell : file.cells()) labels.push_back(cell.label);
+  const auto baseline = arguments.text("baseline");
+  if (!baseline) {
+    throw StudyError(
+        "compare: --baseline CELL is needed (what the others are compared with): one of " +
+        joined(labels));
+  }
+  if (std::ranges::find(labels, *baseline) != labels.end()) return *baseline;
+  throw StudyError("--baseline " + *baseline + ": no cell of this file (it must be one of them): " +
+                   nearest_spelling(*baseline, labels));
+}
+
+void print(const StudyAnalysis& study, const StudyComparison& comparison) {
+  std::ostream& out = std::cout;
+  const double level = comparison.comparisons.level;
+  print_table(out, comparison_table(comparison.comparisons));
+  out << '\n';
+  for (const std::string& note : comparison_notes(study, comparison.comparisons)) {
+    print_wrapped(out, note);
+  }
+  for (const WinMatrix& matrix : comparison.matrices) {
+    out << '\n';
+    print_table(out, win_table(matrix, level));
+  }
+  out << '\n';
+  if (!comparison.matrices.empty()) print_wrapped(out, win_note(level));
+  if (comparison.values.empty()) return;
+  out << '\n';
+  print_table(out, pareto_table(comparison.values));
+  out << '\n';
+  print_wrapped(out, pareto_note());
+}
+
+int compare(const Arguments& arguments) {
+  const double level = arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(0.95);
+  const ResultFile file = open_stored(arguments.operands().front());
+  const std::string baseline = baseline_of(arguments, file);
+  const std::vector<const ScoreName*> scores = scores_of(arguments, file);
+  const auto directory = arguments.text("csv");
+  if (directory && !arguments.has("force")) refuse_existing(*directory, comparison_csv_names());
+  const StudyAnalysis study = analyze(file, level, parallel_of(arguments));
+  const StudyComparison comparison = compare_study(study, baseline, scores);
+  print(study, comparison);
+  if (directory) write_comparison_csv(comparison, *directory);
+  return kDone;
+}
+
+}  // namespace
+
+Command compare_command() {
+  return {
+      {.name = "compare",
+       .summary = "compares every cell with one of them, run by run in the same worlds",
+       .operands = {{"FILE.h5"}},
+       .options = {{"baseline", "", {"CELL"}, "the cell that the others are compared with"},
+                   {"metric",
+                    "",
+                    {"NAME,..."},
+                    "numbers of a run; default: position_rmse, "
+                    "heading_rmse, nees_distance, cpu_seconds"},
+                   {"level", "", {"L"}, "probability inside the intervals; default 0.95"},
+                   {"csv", "", {"DIR"}, "write comparison.csv, wins.csv and pareto.csv"},
+                   {"force", "", {}, "replace the tables in DIR"},
+                   {"threads", "", {"N"}, "default: what this process may use"},
+                   {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},
+       .details = "example:\n  montecarta compare first_study.h5 --baseline ekf_slam --metric "
+                  "position_rmse,nees_distance\n"},
+      compare};
+}
+
+}  // namespace montecarta

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/comparison/cell_comparison.hpp"
+
+#include "analysis/metrics/bootstrap.hpp"
+#include "engine/errors.hpp"
+#include "engine/random/stream.hpp"
+#include "tests/analysis/comparison/compared_cells.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace montecarta {
+namespace {
+
+std::vector<const ScoreName*> scores(const std::vector<std::string>& names) {
+  std::vector<const ScoreName*> found;
+  for (const std::string& name : names) found.push_back(find_score(name));
+  return found;
+}
+
+/// Runs whose errors have the worlds' share, common to all cells, and the cell's own.
+std::vector<double> errors(std::size_t runs, double mean, std::uint64_t cell) {
+  RngStream world({.seed = 1, .purpose = Draw::test}),
+      own({.seed = 2 + cell, .purpose = Draw::test});
+  std::vector<double> values(runs);
+  for (double& value : values) value = mean + std::abs(world.normal()) + 0.1 * own.normal() + 1.0;
+  return values;
+}
+
+TEST(CompareCells, FindsASmallDifferenceInTheSameWorlds) {
+  const StudyAnalysis study = compared_study({compared_cell("base", errors(200, 1.0, 0)),
+                                              compared_cell("worse", errors(200, 1.1, 1)),
+                                              compared_cell("same", errors(200, 1.0, 2))});
+  const Comparisons found = compare_cells(study, "base", scores({"position_rmse"}));
+  ASSERT_EQ(found.rows.size(), 2u);
+  const CellComparison& worse = found.rows[0];
+  EXPECT_EQ(worse.cell, "worse");
+  EXPECT_EQ(worse.verdict(0.95), "worse");
+  EXPECT_GT(worse.interval.lower, 0.0);
+  EXPECT_LT(worse.interval.lower, 0.1);
+  EXPECT_GT(worse.interval.upper, 0.1);
+  EXPECT_NEAR(worse.difference, worse.mean - worse.baseline_mean, 1e-12);
+  EXPECT_DOUBLE_EQ(worse.ratio, worse.mean / worse.baseline_mean);
+  EXPECT_GE(worse.wins.p_holm, worse.wins.p);
+  EXPECT_EQ(found.rows[1].verdict(0.95), "undecided");
+}
+
+TEST(CompareCells, CountsFailuresAsLostAndLeavesThemOutOfDifferences) {
+  const std::vector<double> base(12, 2.0);
+  std::vector<double> cell(12, 1.0);
+  for (std::size_t i = 0; i < 11; ++i) cell[i] = -1;
+  const Comparisons found =
+      compare_cells(compared_study({compared_cell("base", base), compared_cell("fragile", cell)}),
+                    "base", scores({"position_rmse"}));
+  const CellComparison& row = found.rows.at(0);
+  EXPECT_EQ(row.pairs, 1u);
+  EXPECT_EQ(row.without, 11u);
+  EXPECT_DOUBLE_EQ(row.difference, -1.0);
+  EXPECT_EQ(row.wins.won, 1u);
+  EXPECT_EQ(row.wins.lost, 11u);
+  EXPECT_NEAR(row.wins.share(), 1.0 / 12.0, 1e-15);
+  EXPECT_EQ(row.verdict(0.95), "worse");  // although its one complete run is the better one
+  EXPECT_TRUE(std::isnan(row.interval.lower));
+}
+
+TEST(CompareCells, KnowsWhichSideIsBetter) {
+  CellAnalysis few = compared_cell("few", std::vector<double>(20, 1.0));
+  CellAnalysis many = few;
+  many.label = "many";
+  for (std::size_t i = 0; i < 20; ++i) {
+    few.scores[i].ess = few.scores[i].nees = 5.0 + 0.01 * static_cast<double>(i);
+    many.scores[i].ess = many.scores[i].nees = 50.0;
+  }
+  const Comparisons found =
+      compare_cells(compared_study({few, many}), "few", scores({"ess", "nees"}));
+  EXPECT_EQ(found.rows.at(0).verdict(0.95), "better");
+  EXPECT_EQ(found.rows.at(0).wins.won, 20u);
+  EXPECT_EQ(found.rows.at(1).verdict(0.95), "higher");
+  EXPECT_EQ(found.rows.at(1).wins.lost, 20u);
+}
+
+// EKF-SLAM has no effective particles: no row, rather than one that it loses.
+TEST(CompareCells, LeaveOutWhatDoesNotApply) {
+  const CellAnalysis ekf = compared_cell("ekf", {1.0, 2.0});
+  CellAnalysis particles = compared_cell("particles", {1.0, 2.0});
+  for (RunScores& run : particles.scores) run.ess = 10.0;
+  EXPECT_TRUE(compare_cells(compared_study({ekf, particles}), "ekf", scores({"ess"})).rows.empty());
+  EXPECT_THROW(compare_cells(compared_study({ekf}), "efk", scores({"ess"})), StudyError);
+}
+
+// Two cells without difference, in nine of ten studies at least no false word at 10 %.
+TEST(CompareCells, SaysNothingFalseMoreOftenThanItsLevel) {
+  const std::vector<const ScoreName*> chosen = scores({"position_rmse"});
+  std::size_t false_words = 0;
+  constexpr std::size_t kStudies = 400;
+  for (std::uint64_t s = 0; s < kStudies; ++s) {
+    const auto cell = [&](const char* label, std::uint64_t c) {
+      return compared_cell(label, errors(24, 1.0, 10 + 3 * s + c));
+    };
+    StudyAnalysis study = compared_study({cell("a", 0), cell("b", 1), cell("c", 2)});
+    study.level = 0.9;
+    const Comparisons found = compare_cells(study, "a", chosen);
+    const auto is_false = [&](const CellComparison& row) {
+      return row.verdict(0.9) != "undecided";
+    };
+    false_words += std::ranges::any_of(found.rows, is_false) ? 1 : 0;
+  }
+  EXPECT_LT(static_cast<double>(false_words) / kStudies, 0.1 + 5.0 * std::sqrt(0.09 / kStudies));
+  EXPECT_GT(false_words, 0u);
+}
+
+TEST(NeesDistance, CountsDoublings) {
+  EXPECT_DOUBLE_EQ(nees_distance(3.0, 3), 0.0);
+  EXPECT_DOUBLE_EQ(nees_distance(6.0, 3), 1.0);
+  EXPECT_DOUBLE_EQ(nees_distance(1.5, 3), 1.0);
+  EXPECT_TRUE(std::isnan(nees_distance(RunScores::kNone, 3)));
+}
+
+}  // namespace
+}  // namespace montecarta
