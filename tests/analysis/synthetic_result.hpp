@@ -9,6 +9,8 @@
 #include <Eigen/Core>
 
 #include <filesystem>
+#include <functional>
+#include <limits>
 #include <string>
 
 namespace montecarta {
@@ -35,10 +37,27 @@ inline void perturb(const Drive& drive, std::uint64_t run, double inflation, Run
   }
 }
 
+/// What filters do at their worst, in rows 80 to 199 of the first cell: a covariance of nothing in
+/// run 2, a mean that is no number in run 3, an infinite covariance in run 4.
+inline void spoil_estimates(std::size_t cell, std::uint64_t run, RunRecord& record) {
+  if (cell != 0) return;
+  const auto rows = [&](const std::string& name, std::size_t width) {
+    return record.column<double>(*record.layout().find(name)).subspan(80 * width, 120 * width);
+  };
+  for (const std::string suffix : {"", "_mixture"}) {
+    const auto mean = rows("pose_mean" + suffix, 3),
+               covariance = rows("pose_covariance" + suffix, 9);
+    if (run == 2) std::ranges::fill(covariance, 0.0);
+    if (run == 3) std::ranges::fill(mean, std::numeric_limits<double>::quiet_NaN());
+    if (run == 4) std::ranges::fill(covariance, std::numeric_limits<double>::infinity());
+  }
+}
+
 /// A result with a perfect cell ("scripted_m4") and an overconfident one ("scripted_m3"), whose
-/// last run failed at step 5.
-inline void write_synthetic_result(const std::filesystem::path& path, std::uint64_t runs = 12,
-                                   std::size_t steps = 400) {
+/// last run failed at step 5. `spoil` may change the record of a (cell, run) before it is stored.
+inline void write_synthetic_result(
+    const std::filesystem::path& path, std::uint64_t runs = 12, std::size_t steps = 400,
+    const std::function<void(std::size_t, std::uint64_t, RunRecord&)>& spoil = {}) {
   const StudyPlan plan = small_result_plan(runs, steps);
   ResultWriter writer = ResultWriter::create(path, plan, {{"host", "nowhere"}}, Existing::replace);
   Drive drive;
@@ -50,6 +69,7 @@ inline void write_synthetic_result(const std::filesystem::path& path, std::uint6
       RunRecord record(layout);
       fill_record(plan, cell, run, drive, record);
       perturb(drive, run, cell == 0 ? 1.0 : 3.0, record);
+      if (spoil) spoil(cell, run, record);
       if (cell == 1 && run + 1 == runs) record.mark_failed(5, "gain is <not> a number & worse", 1);
       writer.write(cell, run, record);
     }

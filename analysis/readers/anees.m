@@ -1,0 +1,63 @@
+% SPDX-License-Identifier: BSD-3-Clause
+% Prints the ANEES of every cell as `montecarta analyze` has it: anees('out.h5')
+%
+% At scans, over complete runs (status 1). Mean and covariance are the Gaussian mixture's where the
+% file has them, else the spread of the particles (or the one Gaussian's own). A singular covariance
+% (a variance below 1e-10 of the floor's, or a pivot of the correlation matrix below 1e-12) gets the
+% floor diag(1e-4 m, 1e-4 m, 1e-5 rad)^2 added. What is not a number is left out. Mean over runs, then
+% over scans. Only functions that Octave and MATLAB both have.
+function anees(path)
+  s = load_results(path);
+  labels = fieldnames(s.cells);
+  for k = 1:numel(labels)
+    fprintf('%s %.17g\n', labels{k}, anees_of(s.cells.(labels{k}), s.truth.pose, double(s.scan_row) + 1));
+  end
+end
+
+function value = anees_of(cell, truth, rows)
+  which = '';
+  if isfield(cell, 'pose_mean_mixture'), which = '_mixture'; end
+  mean_pose = cell.(['pose_mean', which]);
+  covariance = cell.(['pose_covariance', which]);
+  complete = find(cell.status(:) == 1);
+  nees = nan(numel(complete), numel(rows));
+  for r = 1:numel(complete)
+    e = truth(:, rows, complete(r)) - mean_pose(:, rows, complete(r));
+    e(3, :) = e(3, :) - 2 * pi * round(e(3, :) / (2 * pi));
+    for k = 1:numel(rows)
+      nees(r, k) = nees_of(e(:, k), covariance(:, :, rows(k), complete(r)));
+    end
+  end
+  average = nan(1, numel(rows));
+  for k = 1:numel(rows), average(k) = mean_of_known(nees(:, k)); end
+  value = mean_of_known(average);
+end
+
+function value = nees_of(e, P)
+  floor_variance = [1e-4; 1e-4; 1e-5] .^ 2;  % [m, m, rad]^2
+  value = quadratic_form(e, P, floor_variance);
+  if isnan(value), value = quadratic_form(e, P + diag(floor_variance), floor_variance); end
+end
+
+% e' P^-1 e by Cholesky of the correlation matrix; NaN where P is singular.
+function value = quadratic_form(e, P, floor_variance)
+  value = NaN;
+  if ~all(diag(P) > 1e-10 * floor_variance) || ~all(isfinite(P(:))), return; end
+  scale = sqrt(diag(P));
+  L = zeros(3);
+  y = zeros(3, 1);
+  for i = 1:3
+    for j = 1:i - 1
+      L(i, j) = (P(i, j) / (scale(i) * scale(j)) - L(i, 1:j - 1) * L(j, 1:j - 1)') / L(j, j);
+    end
+    pivot = 1 - L(i, 1:i - 1) * L(i, 1:i - 1)';
+    if ~(pivot > 1e-12), return; end
+    L(i, i) = sqrt(pivot);
+    y(i) = (e(i) / scale(i) - L(i, 1:i - 1) * y(1:i - 1)) / L(i, i);
+  end
+  value = sum(y .^ 2);
+end
+
+function value = mean_of_known(values)
+  value = mean(values(~isnan(values)));
+end

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Prints the ANEES of every cell as `montecarta analyze` has it: python3 anees.py out.h5 [--xarray]
+
+At scans, over complete runs (status 1). Mean and covariance are the Gaussian mixture's where the file
+has them, else the spread of the particles (or the one Gaussian's own). A singular covariance (a variance
+below 1e-10 of the floor's, or a pivot of the correlation matrix below 1e-12) gets the floor
+diag(1e-4 m, 1e-4 m, 1e-5 rad)^2 added. What is not a number is left out. Mean over runs, then over scans."""
+import sys
+
+import numpy as np
+
+from load_results import load_cell, load_results
+
+FLOOR = np.diag([1e-4, 1e-4, 1e-5]) ** 2  # [m, m, rad]^2
+
+
+def quadratic_form(e, P):
+    """e' P^-1 e by Cholesky of the correlation matrix; NaN where P is singular."""
+    variance = np.diagonal(P, axis1=-2, axis2=-1)
+    regular = (variance > 1e-10 * np.diag(FLOOR)).all(-1) & np.isfinite(P).all((-2, -1))
+    scale = np.sqrt(variance)
+    L, y = np.zeros_like(P), np.zeros_like(e)
+    for i in range(3):
+        for j in range(i):
+            rest = P[..., i, j] / (scale[..., i] * scale[..., j]) - (L[..., i, :j] * L[..., j, :j]).sum(-1)
+            L[..., i, j] = rest / L[..., j, j]
+        pivot = 1.0 - (L[..., i, :i] ** 2).sum(-1)
+        regular &= pivot > 1e-12
+        L[..., i, i] = np.sqrt(pivot)
+        y[..., i] = (e[..., i] / scale[..., i] - (L[..., i, :i] * y[..., :i]).sum(-1)) / L[..., i, i]
+    return np.where(regular, (y**2).sum(-1), np.nan)
+
+
+def anees(cell, truth, scan_row):
+    which = "_mixture" if "pose_mean_mixture" in cell else ""
+    complete = np.flatnonzero(np.asarray(cell["status"]) == 1)
+
+    def at_scans(dataset):
+        return np.asarray(dataset)[complete][:, np.asarray(scan_row)]
+
+    e = at_scans(truth) - at_scans(cell["pose_mean" + which])
+    e[..., 2] -= 2 * np.pi * np.round(e[..., 2] / (2 * np.pi))
+    P = at_scans(cell["pose_covariance" + which])
+    with np.errstate(all="ignore"):
+        nees = quadratic_form(e, P)
+        nees = np.where(np.isnan(nees), quadratic_form(e, P + FLOOR), nees)
+    return np.nanmean(np.nanmean(nees, axis=0))
+
+
+if __name__ == "__main__":
+    results = load_results(sys.argv[1])
+    for label, cell in results["cells"].items():
+        if sys.argv[2:] == ["--xarray"]:
+            cell = load_cell(sys.argv[1], label)
+            print(label, repr(float(anees(cell, cell.truth, cell.scan_row))))
+        else:
+            print(label, repr(float(anees(cell, results["truth"]["pose"], results["scan_row"]))))
