@@ -76,4 +76,22 @@ CellAnalysis CellSums::result() {
   return cell;
 }
 
+std::vector<MeasuredRun> slots_for(const Parallel& parallel) {
+  return std::vector<MeasuredRun>(
+      parallel.threads() == 1 ? 1 : 4 * static_cast<std::size_t>(parallel.threads()));
+}
+
+void add_runs(const RunReader& reader, std::span<const std::size_t> runs, std::size_t particles,
+              const Yardsticks& sticks, const Parallel& parallel, std::vector<MeasuredRun>& slots,
+              CellSums& sums) {
+  for (std::size_t first = 0; first < runs.size(); first += slots.size()) {
+    const std::size_t here = std::min(slots.size(), runs.size() - first);
+    parallel.for_each(here, [&](std::size_t k) {
+      reader.read(runs[first + k], slots[k].rows, slots[k].scratch);
+      slots[k].measure(sticks, particles);
+    });
+    for (std::size_t k = 0; k < here; ++k) sums.add(slots[k]);
+  }
+}
+
 }  // namespace montecarta

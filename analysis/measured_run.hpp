@@ -7,6 +7,7 @@
 #include "analysis/metrics/path_at_fixes.hpp"
 #include "analysis/metrics/reference_analysis.hpp"
 #include "analysis/run_reader.hpp"
+#include "engine/runs/parallel.hpp"
 
 #include <cstddef>
 #include <optional>
@@ -61,5 +62,13 @@ class CellSums {
   double level_;
   bool knows_landmarks_;
 };
+
+/// As many as are worth measuring at once.
+std::vector<MeasuredRun> slots_for(const Parallel& parallel);
+
+/// Measures runs at once, a slot each, and adds them up in order, whoever was first.
+void add_runs(const RunReader& reader, std::span<const std::size_t> runs, std::size_t particles,
+              const Yardsticks& sticks, const Parallel& parallel, std::vector<MeasuredRun>& slots,
+              CellSums& sums);
 
 }  // namespace montecarta

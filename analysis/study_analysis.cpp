@@ -21,25 +21,12 @@ std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell&
   for (std::size_t i = 0; i < status.size(); ++i) {
     if (status[i] == RunStatus::complete) complete.push_back(i);
     if (status[i] == RunStatus::missing) ++cell.missing;
+    if (status[i] == RunStatus::spared) ++cell.spared;
     if (status[i] == RunStatus::failed) {
       cell.failures.push_back({file.runs()[i], steps[i], reasons[i]});
     }
   }
   return complete;
-}
-
-/// Measures runs at once, a slot each, and adds them up in order, whoever was first.
-void accumulate(const RunReader& reader, std::span<const std::size_t> runs, std::size_t particles,
-                const Yardsticks& sticks, const Parallel& parallel, std::vector<MeasuredRun>& slots,
-                CellSums& sums) {
-  for (std::size_t first = 0; first < runs.size(); first += slots.size()) {
-    const std::size_t here = std::min(slots.size(), runs.size() - first);
-    parallel.for_each(here, [&](std::size_t k) {
-      reader.read(runs[first + k], slots[k].rows, slots[k].scratch);
-      slots[k].measure(sticks, particles);
-    });
-    for (std::size_t k = 0; k < here; ++k) sums.add(slots[k]);
-  }
 }
 
 /// A failed run is right until the scan at which it failed, at most.
@@ -61,7 +48,7 @@ CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& stored,
   CellAnalysis outcome;
   const auto complete = complete_runs(file, stored, outcome);
   CellSums sums(sticks);
-  accumulate(RunReader(file, stored), complete, stored.particles, sticks, parallel, slots, sums);
+  add_runs(RunReader(file, stored), complete, stored.particles, sticks, parallel, slots, sums);
   CellAnalysis cell = sums.result();
   for (const std::size_t i : complete) cell.runs.push_back(file.runs()[i]);
   cell.label = stored.label;
@@ -70,6 +57,7 @@ CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& stored,
   cell.particles = stored.particles;
   cell.mismatch = mismatch_of(stored);
   cell.missing = outcome.missing;
+  cell.spared = outcome.spared;
   cell.failures = std::move(outcome.failures);
   if (!cell.run_exits.empty()) cell.survival = survival(cell, file, sticks);
   return cell;
@@ -112,8 +100,7 @@ StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& para
   for (const PathAtFixes& fixes : sticks.references) {
     study.references.push_back({fixes.name(), fixes.times(), !fixes.headings().empty()});
   }
-  std::vector<MeasuredRun> slots(
-      parallel.threads() == 1 ? 1 : 4 * static_cast<std::size_t>(parallel.threads()));
+  std::vector<MeasuredRun> slots = slots_for(parallel);
   for (const StoredCell& cell : file.cells()) {
     study.cells.push_back(analyze_cell(file, cell, sticks, parallel, slots));
   }

@@ -126,6 +126,7 @@ std::vector<NamedNumber> numbers_of(const CellAnalysis& cell) {
   Numbers all = {{"runs_failed", "1", count(cell.failures.size())},
                  {"runs_complete", "1", count(cell.complete)},
                  {"runs_missing", "1", count(cell.missing)},
+                 {"runs_spared", "1", count(cell.spared)},
                  {"particles", "1", count(cell.particles)}};
   add_errors(cell, all);
   add_particles(cell, all);

@@ -120,7 +120,11 @@ std::string runs_in_words(const CellAnalysis& cell) {
   std::string words;
   if (!cell.failures.empty()) words += std::to_string(cell.failures.size()) + " FAILED, ";
   if (cell.missing > 0) words += std::to_string(cell.missing) + " missing, ";
-  return words + std::to_string(cell.complete) + " complete";
+  words += std::to_string(cell.complete) + " complete";
+  if (cell.spared == 0) return words;
+  const std::size_t made = cell.complete + cell.failures.size();
+  return words + ", stopped at " + std::to_string(made) + " of " +
+         std::to_string(made + cell.missing + cell.spared) + ": precise enough";
 }
 
 TextTable verdict_table(const StudyAnalysis& study) {

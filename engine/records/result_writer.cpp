@@ -100,8 +100,7 @@ void ResultWriter::write_truth(std::size_t run_index, const Drive& drive) {
 }
 
 void ResultWriter::write(std::size_t cell, std::size_t run_index, const RunRecord& record) {
-  expect(record.status() != RunStatus::missing,
-         "a record neither complete nor failed was handed in");
+  expect(is_stored(record.status()), "a record neither complete nor failed was handed in");
   expect(status(cell, run_index) == RunStatus::missing, "a run was stored twice");
   const PosixFile& file = work_->result.file;
   const CellSlabs& slabs = work_->result.slabs.cells[cell];
@@ -115,6 +114,16 @@ void ResultWriter::write(std::size_t cell, std::size_t run_index, const RunRecor
   file.write_at(slabs.status.at(run_index), bytes_of(record.status()));
   work_->status[cell][run_index].store(record.status(), std::memory_order_release);
 }
+
+void ResultWriter::spare(std::size_t cell, std::size_t run_index) {
+  expect(status(cell, run_index) == RunStatus::missing, "a run was spared that is there");
+  const RunStatus spared = RunStatus::spared;
+  work_->result.file.write_at(work_->result.slabs.cells[cell].status.at(run_index),
+                              bytes_of(spared));
+  work_->status[cell][run_index].store(spared, std::memory_order_release);
+}
+
+const std::filesystem::path& ResultWriter::unfinished() const { return work_->result.file.path(); }
 
 void ResultWriter::note_wall_seconds(double seconds) {
   if (work_->finished()) return;

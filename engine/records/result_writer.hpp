@@ -55,13 +55,17 @@ class ResultWriter {
   void write_truth(std::size_t run_index, const Drive& drive);
   /// Stores a finished run (complete or failed), once. Thread-safe for different (cell, run).
   void write(std::size_t cell, std::size_t run_index, const RunRecord& record);
+  /// Marks a run as not needed, for good. Between runs.
+  void spare(std::size_t cell, std::size_t run_index);
+  /// The file with what is stored so far, to be read.
+  const std::filesystem::path& unfinished() const;
   /// Adds to the wall time of all sittings [s] in /timing.
   void note_wall_seconds(double seconds);
 
   /// Flushes what is written to the disk; the file stays, or as an attempt becomes, OUT.h5.part, to
   /// be resumed. Call before an early exit.
   void suspend();
-  /// Every run is there: flushes, renames OUT.h5.part to OUT.h5. Throws std::logic_error where one
+  /// No run is missing: flushes, renames OUT.h5.part to OUT.h5. Throws std::logic_error where one
   /// is missing.
   void finish();
 

@@ -70,7 +70,7 @@ std::size_t forget_torn_runs(OpenResult& result) {
   for (std::size_t run = 0; run < result.truth_stored.size(); ++run) {
     result.truth_stored[run] = truth_is_whole(result.file, result.slabs, run, buffer);
     for (std::size_t cell = 0; cell < result.status.size(); ++cell) {
-      if (result.status[cell][run] == RunStatus::missing) continue;
+      if (!is_stored(result.status[cell][run])) continue;
       if (result.truth_stored[run] &&
           run_is_whole(result.file, result.slabs.cells[cell], run, buffer))
         continue;

@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/runs/interruption.hpp"
+#include "engine/runs/rounds.hpp"
 #include "engine/runs/watch.hpp"
 #include "engine/runs/worker.hpp"
 
@@ -34,6 +35,7 @@ CellOutcome outcome_of(const StudyPlan& plan, std::size_t cell, const ResultWrit
     if (status == RunStatus::complete) ++outcome.complete;
     if (status == RunStatus::failed) ++outcome.failed;
     if (status == RunStatus::missing) ++outcome.missing;
+    if (status == RunStatus::spared) ++outcome.spared;
   }
   return outcome;
 }
@@ -92,12 +94,17 @@ void sit(const StudyPlan& plan, const RunOptions& options, const RunOutcome& bef
          ResultWriter& writer, StopRequest& stop, const Watch::Orders& orders) {
   const std::vector<RecordLayout> layouts = layouts_of(plan);
   const std::size_t n_workers = workers_for(plan, options.parallel, before.missing());
-  TaskList tasks(plan, writer);
-  SpareThreads spare(options.parallel, n_workers);
   Progress progress(options.quiet ? ProgressStyle::none : options.progress, counts_of(before));
-  Sitting sitting{plan, layouts, writer, tasks, spare, stop, progress};
   const Watch watch(orders, stop, progress);
-  options.parallel.for_each(n_workers, [&](std::size_t) { man(sitting); });
+  for (const std::uint64_t runs : rounds_of(plan)) {
+    TaskList tasks(plan, runs, writer);
+    SpareThreads spare(options.parallel, n_workers);
+    Sitting sitting{plan, layouts, writer, tasks, spare, stop, progress};
+    options.parallel.for_each(n_workers, [&](std::size_t) { man(sitting); });
+    if (stop.made()) return;
+    if (runs == plan.runs_here()) return;
+    progress.runs_spared(spare_what_is_enough(plan, runs, options.parallel, writer));
+  }
 }
 
 void close_output(ResultWriter& writer, const RunOutcome& outcome) {
@@ -128,7 +135,7 @@ RunOutcome run_study(const StudyPlan& plan, const RunOptions& options) {
   }
   RunOutcome outcome = take_stock(plan, writer);
   if (outcome.missing() > 0) outcome.stopped = stop.reason();
-  outcome.runs_here = before.missing() - outcome.missing();
+  outcome.runs_here = outcome.ended() - before.ended();
   outcome.seconds = stopwatch.seconds();
   close_output(writer, outcome);
   return outcome;

@@ -3,9 +3,12 @@
 
 #include "engine/records/columns.hpp"
 #include "engine/runs/drive.hpp"
+#include "engine/runs/parallel.hpp"
 #include "engine/runs/slam_filter.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -26,6 +29,11 @@ struct Cell {
   std::function<std::unique_ptr<SlamFilter>()> make_filter;   ///< callable from any thread
 };
 
+/// Asked between rounds (rounds.hpp), when the first `runs` runs of a cell have ended, whether they
+/// are enough. Must follow from those runs, as they are stored in `unfinished`, and nothing else.
+using EnoughRuns = std::function<bool(const std::filesystem::path& unfinished, std::size_t cell,
+                                      std::uint64_t runs, const Parallel& parallel)>;
+
 /// A study made ready to run: what experiments hand to the engine. Results are a pure function of
 /// it.
 struct StudyPlan {
@@ -38,6 +46,7 @@ struct StudyPlan {
   std::vector<Cell> cells;
   ColumnSelection columns;
   std::shared_ptr<const DriveSource> drives;
+  EnoughRuns is_enough;  ///< when a cell stops early; empty: never. For files that hold all runs
   std::vector<std::pair<std::string, std::string>> scenario;  ///< resolved settings, for the file
   std::string
       resolved_text;  ///< the study file with everything filled in; its SHA-256 names the study

@@ -45,10 +45,15 @@ void Progress::run_ended(RunStatus status) {
   (status == RunStatus::failed ? failed_ : done_).fetch_add(1, std::memory_order_relaxed);
 }
 
+void Progress::runs_spared(std::uint64_t runs) {
+  spared_.fetch_add(runs, std::memory_order_relaxed);
+}
+
 RunCounts Progress::counts() const {
   RunCounts counts = at_start_;
   counts.done += done_.load(std::memory_order_relaxed);
   counts.failed += failed_.load(std::memory_order_relaxed);
+  counts.total -= spared_.load(std::memory_order_relaxed);
   return counts;
 }
 

@@ -24,6 +24,8 @@ class Progress {
 
   /// A worker has stored a run. Thread-safe, no lock.
   void run_ended(RunStatus status);
+  /// So many runs will not be made.
+  void runs_spared(std::uint64_t runs);
   RunCounts counts() const;
   /// Draws if it is time to.
   void show();
@@ -47,6 +49,7 @@ class Progress {
   std::uint64_t last_tenth_;  ///< of the study, at the last plain line
   std::atomic<std::uint64_t> done_{0};
   std::atomic<std::uint64_t> failed_{0};
+  std::atomic<std::uint64_t> spared_{0};
 };
 
 }  // namespace montecarta

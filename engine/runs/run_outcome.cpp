@@ -23,6 +23,8 @@ std::uint64_t sum(const RunOutcome& outcome, std::uint64_t CellOutcome::*count) 
 std::uint64_t RunOutcome::failed() const { return sum(*this, &CellOutcome::failed); }
 std::uint64_t RunOutcome::missing() const { return sum(*this, &CellOutcome::missing); }
 
+std::uint64_t RunOutcome::ended() const { return sum(*this, &CellOutcome::complete) + failed(); }
+
 int exit_code(const RunOutcome& outcome, bool under_scheduler) {
   switch (outcome.stopped) {
     case StopReason::complete:

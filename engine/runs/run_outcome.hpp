@@ -15,6 +15,7 @@ struct CellOutcome {
   std::uint64_t complete = 0;
   std::uint64_t failed = 0;
   std::uint64_t missing = 0;
+  std::uint64_t spared = 0;  ///< not needed
 };
 
 /// What a sitting of a study left behind.
@@ -26,6 +27,7 @@ struct RunOutcome {
 
   std::uint64_t failed() const;
   std::uint64_t missing() const;
+  std::uint64_t ended() const;  ///< complete or failed
 };
 
 /// Exit code of the program: 0 done, 3 done but some runs failed, 85 stopped at a checkpoint (time

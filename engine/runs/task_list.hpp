@@ -17,12 +17,13 @@ struct Task {
   std::size_t cell;
 };
 
-/// The tasks a file still misses, run by run and within a run cell by cell, handed out one at a
-/// time. Holds nothing but a counter: its memory does not grow with the study.
+/// The tasks a file still misses of its first `runs` runs, run by run and within a run cell by
+/// cell, handed out one at a time. Holds nothing but a counter: its memory does not grow with the
+/// study.
 class TaskList {
  public:
-  TaskList(const StudyPlan& plan, const ResultWriter& writer)
-      : n_cells_(plan.cells.size()), n_tasks_(plan.runs_here() * n_cells_), writer_(&writer) {}
+  TaskList(const StudyPlan& plan, std::uint64_t runs, const ResultWriter& writer)
+      : n_cells_(plan.cells.size()), n_tasks_(runs * n_cells_), writer_(&writer) {}
 
   /// The next missing task, nullopt where there is none. Thread-safe.
   std::optional<Task> take() {

@@ -44,7 +44,8 @@ Estimate print_cells(const StudyPlan& plan) {
 }
 
 int check(const Arguments& arguments) {
-  const StudyPlan plan = plan_of(arguments);
+  const Study study = study_of(arguments);
+  const StudyPlan plan = plan_of(study, arguments);
   if (arguments.has("text")) {
     std::cout << plan.resolved_text;
     return kDone;
@@ -62,9 +63,11 @@ int check(const Arguments& arguments) {
                                   duration_text(itinerary.step_time.back()) + " of driving, " +
                                   std::to_string(itinerary.landmarks.size()) + " landmarks"}})
             << "\n";
+  if (study.until) std::cout << "until: " << in_words(*study.until, plan.runs) << "\n\n";
   const Estimate total = print_cells(plan);
   std::cout << "\n"
-            << aligned({{"time", "about " + duration_text(total.cpu_seconds / threads) + " on " +
+            << aligned({{"time", (study.until ? "at most " : "about ") +
+                                     duration_text(total.cpu_seconds / threads) + " on " +
                                      std::to_string(threads) + " threads (by a short trial)"},
                         {"memory", "about " + bytes_text(total.per_thread * threads + 3e7)},
                         {"disk", bytes_text(total.disk)}});

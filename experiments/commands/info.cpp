@@ -35,13 +35,14 @@ void print_study(const ResultFile& file) {
 }
 
 void print_cells(const ResultFile& file) {
-  std::vector<TableRow> rows{{"cell", "filter", "complete", "failed", "missing"}};
+  std::vector<TableRow> rows{{"cell", "filter", "complete", "failed", "missing", "spared"}};
   for (const StoredCell& cell : file.cells()) {
     const StatusCounts counts = count_status(file.status(cell));
     rows.push_back({cell.label, cell.long_name, std::to_string(counts.complete),
-                    std::to_string(counts.failed), std::to_string(counts.missing)});
+                    std::to_string(counts.failed), std::to_string(counts.missing),
+                    std::to_string(counts.spared)});
   }
-  std::cout << "\ncells\n" << aligned(rows);
+  std::cout << "\ncells\n" << aligned(without_idle_spared(std::move(rows)));
 }
 
 void print_datasets(const ResultFile& file) {

@@ -30,8 +30,11 @@ std::vector<OptionSpec> plan_options() {
           {"backend", "", {"tbb|openmp|serial"}, "how runs are spread over threads; same results"}};
 }
 
-StudyPlan plan_of(const Arguments& arguments) {
-  const Study study = read_study(arguments.operands().front(), arguments.texts("set"));
+Study study_of(const Arguments& arguments) {
+  return read_study(arguments.operands().front(), arguments.texts("set"));
+}
+
+StudyPlan plan_of(const Study& study, const Arguments& arguments) {
   return make_plan(study, range_of(arguments, study.settings.count("study", "runs")));
 }
 

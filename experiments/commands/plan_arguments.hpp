@@ -5,6 +5,7 @@
 #include "engine/runs/parallel.hpp"
 #include "engine/runs/plan.hpp"
 #include "experiments/commands/arguments.hpp"
+#include "experiments/study/study.hpp"
 
 #include <string>
 #include <vector>
@@ -14,9 +15,10 @@ namespace montecarta {
 /// Options that choose what part of a study runs and on how many threads: --set, --runs, --shard,
 /// --threads, --backend.
 std::vector<OptionSpec> plan_options();
-/// The plan of the study file that is the first operand, changed by --set and cut by --runs or
-/// --shard.
-StudyPlan plan_of(const Arguments& arguments);
+/// The study file that is the first operand, changed by --set.
+Study study_of(const Arguments& arguments);
+/// Its plan, cut by --runs or --shard.
+StudyPlan plan_of(const Study& study, const Arguments& arguments);
 /// As --threads, --backend and the environment have it.
 Parallel parallel_of(const Arguments& arguments);
 /// How `command` makes a file, for the file: this build and machine, the command line, threads.

@@ -48,7 +48,9 @@ std::string all_columns(const Study& study) {
 /// The study of one cell alone that keeps all it can.
 Study recording_everything(Study study, std::size_t cell) {
   study.cells = {study.cells[cell]};
-  study.printed = {};  // what a paper says of cells that are not there
+  study.printed = {};   // what a paper says of cells that are not there
+  study.until.reset();  // one run decides nothing
+  study.settings.replace("study", "until", "");
   study.settings.replace("record", "columns", all_columns(study));
   study.settings.replace("record", "rate", "control");
   return study;
@@ -59,8 +61,7 @@ std::optional<std::string> departure(const ResultFile& file, const Study& study,
                                      std::uint64_t run) {
   const auto held = std::ranges::find(file.runs(), run);
   const auto index = static_cast<std::size_t>(held - file.runs().begin());
-  if (held == file.runs().end() ||
-      file.status(file.cells().at(cell))[index] == RunStatus::missing) {
+  if (held == file.runs().end() || !is_stored(file.status(file.cells().at(cell))[index])) {
     std::cerr << "montecarta: " << file.path().string() << " does not hold this run yet\n";
     return std::nullopt;
   }

@@ -82,7 +82,7 @@ void tell_verdict(const RunOptions& options) {
 
 int run(const Arguments& arguments) {
   const RunOptions options = options_of(arguments);
-  const StudyPlan plan = plan_of(arguments);
+  const StudyPlan plan = plan_of(study_of(arguments), arguments);
   const RunOutcome outcome = run_study(plan, options);
   if (outcome.missing() > 0) {
     tell_how_to_resume(outcome, arguments);

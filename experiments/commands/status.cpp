@@ -36,13 +36,14 @@ class StudyStatus {
   }
 
   void print() const {
-    std::vector<TableRow> rows{{"cell", "complete", "failed", "missing", "of"}};
+    std::vector<TableRow> rows{{"cell", "complete", "failed", "missing", "of", "spared"}};
     for (std::size_t c = 0; c < labels_.size(); ++c) {
       const StatusCounts counts = count_status(status_[c]);
       rows.push_back({labels_[c], std::to_string(counts.complete), std::to_string(counts.failed),
-                      std::to_string(counts.missing), std::to_string(status_[c].size())});
+                      std::to_string(counts.missing), std::to_string(status_[c].size()),
+                      std::to_string(counts.spared)});
     }
-    std::cout << aligned(rows, 0);
+    std::cout << aligned(without_idle_spared(std::move(rows)), 0);
   }
 
  private:

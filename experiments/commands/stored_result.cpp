@@ -20,7 +20,17 @@ StatusCounts count_status(const std::vector<RunStatus>& status) {
   const auto count = [&](RunStatus wanted) {
     return static_cast<std::size_t>(std::ranges::count(status, wanted));
   };
-  return {count(RunStatus::complete), count(RunStatus::failed), count(RunStatus::missing)};
+  return {count(RunStatus::complete), count(RunStatus::failed), count(RunStatus::missing),
+          count(RunStatus::spared)};
+}
+
+std::vector<TableRow> without_idle_spared(std::vector<TableRow> rows) {
+  const auto is_idle = [](const TableRow& row) {
+    return row.back() == "0" || row.back() == "spared";
+  };
+  if (!std::ranges::all_of(rows, is_idle)) return rows;
+  for (TableRow& row : rows) row.pop_back();
+  return rows;
 }
 
 }  // namespace montecarta

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/records/result_file.hpp"
+#include "experiments/text/table.hpp"
 
 #include <string>
 
@@ -16,7 +17,12 @@ struct StatusCounts {
   std::size_t complete = 0;
   std::size_t failed = 0;
   std::size_t missing = 0;
+  std::size_t spared = 0;
 };
 StatusCounts count_status(const std::vector<RunStatus>& status);
+
+/// A table whose last column is of spared runs, without it where no cell spared any: most studies
+/// make all.
+std::vector<TableRow> without_idle_spared(std::vector<TableRow> rows);
 
 }  // namespace montecarta

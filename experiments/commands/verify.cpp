@@ -22,7 +22,7 @@ std::vector<StoredRun> runs_stored(const ResultFile& file) {
   for (std::size_t c = 0; c < file.cells().size(); ++c) {
     const std::vector<RunStatus> status = file.status(file.cells()[c]);
     for (std::size_t i = 0; i < status.size(); ++i) {
-      if (status[i] != RunStatus::missing) stored.push_back({c, i});
+      if (is_stored(status[i])) stored.push_back({c, i});
     }
   }
   return stored;

@@ -107,9 +107,18 @@ std::vector<std::pair<std::string, std::string>> scenario_facts(const Settings& 
   return facts;
 }
 
+/// A cell stops by what all of its first runs say.
+[[noreturn]] void refuse_part(const Study& study) {
+  throw StudyError(study.settings.place("study", "until") + ": until = " + text_of(*study.until) +
+                   " and only part of the runs (none of the parts knows when all are precise "
+                   "enough): run the whole study in one piece, or add --set study.until= to make "
+                   "all runs");
+}
+
 }  // namespace
 
 StudyPlan make_plan(const Study& study, std::optional<RunRange> range) {
+  if (range && study.until) refuse_part(study);
   const Settings& settings = study.settings;
   StudyPlan plan;
   plan.name = settings.text("study", "name");
@@ -121,6 +130,7 @@ StudyPlan make_plan(const Study& study, std::optional<RunRange> range) {
   for (const CellSpec& spec : study.cells) plan.cells.push_back(cell_of(spec, study));
   plan.columns = columns_of(settings);
   plan.drives = drives_of(study, plan.seed);
+  if (study.until) plan.is_enough = rule_of(*study.until);
   plan.scenario = scenario_facts(settings);
   plan.resolved_text = resolved_text(study);
   return plan;

@@ -3,6 +3,14 @@
 #include "experiments/study/study.hpp"
 
 namespace montecarta {
+namespace {
+
+/// The text of studies that make all runs is what it was before a study could do otherwise.
+bool is_said(const std::string& key, const std::string& value) {
+  return key != "until" || !value.empty();
+}
+
+}  // namespace
 
 std::string resolved_text(const Study& study) {
   std::string text;
@@ -10,8 +18,9 @@ std::string resolved_text(const Study& study) {
     if (section == "printed" && study.printed.empty()) continue;
     if (section == "world" && study.log != nullptr) continue;
     text += "[" + section + "]\n";
-    for (const auto& [key, value] : study.settings.section(section))
-      text += key + " = " + value + "\n";
+    for (const auto& [key, value] : study.settings.section(section)) {
+      if (is_said(key, value)) text += key + " = " + value + "\n";
+    }
     if (section == "cells") {
       for (const CellSpec& cell : study.cells) text += "cell = " + cell_line(cell) + "\n";
     }

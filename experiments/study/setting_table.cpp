@@ -12,6 +12,8 @@ void add_study(std::vector<Setting>& table) {
   table.push_back(text(s, "title", "one line for figures; the name where empty"));
   table.push_back(count(s, "seed", "1", 0, kMostSeed, "of all random numbers; any will do"));
   table.push_back(required(count(s, "runs", "", 1, 1e7, "repetitions of every cell"), "100"));
+  table.push_back(
+      text(s, "until", "METRIC < HALF-WIDTH: a cell stops when so precise; else empty"));
 }
 
 /// The fallback gates are chi-square 5.991 (95 %) and 25 with two degrees of freedom.

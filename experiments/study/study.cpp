@@ -91,7 +91,7 @@ Study parse_study(const std::string& text, const std::string& name,
   apply(overrides, ini);
   refuse_unknown_sections(ini);
   Study study{
-      Settings(ini.entries, name), read_cells(ini.entries, name, filter_kinds()), {}, {}, {}};
+      Settings(ini.entries, name), read_cells(ini.entries, name, filter_kinds()), {}, {}, {}, {}};
   study.printed = read_printed(ini.entries, study.cells);
   if (study.settings.scenario_kind() == "simulated") {
     study.world = world_of(ini, study.settings, folder);
@@ -100,6 +100,9 @@ Study parse_study(const std::string& text, const std::string& name,
     refuse_world(ini, study.settings);
     study.log = read_drive_of(study.settings, folder);
   }
+  study.until =
+      parse_until(study.settings.text("study", "until"), study.settings.place("study", "until"));
+  if (study.until) study.settings.replace("study", "until", text_of(*study.until));
   if (study.settings.text("study", "title").empty()) {
     study.settings.replace("study", "title", study.settings.text("study", "name"));
   }

@@ -5,10 +5,12 @@
 #include "experiments/recordings/drive_log.hpp"
 #include "experiments/study/cell_spec.hpp"
 #include "experiments/study/settings.hpp"
+#include "experiments/study/until.hpp"
 #include "experiments/worlds/world.hpp"
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,6 +23,7 @@ struct Study {
   std::vector<CellSpec> cells;
   World world;                          ///< of a simulation
   std::shared_ptr<const DriveLog> log;  ///< nullptr in a simulation
+  std::optional<Until> until;           ///< when a cell stops early
   Printed printed;                      ///< what a paper says of it; no result depends on it
 };
 

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/first_values.hpp"
+
+#include "analysis/measured_run.hpp"
+#include "analysis/metrics/summary.hpp"
+#include "analysis/printed/run_samples.hpp"
+
+#include <limits>
+
+namespace montecarta {
+
+std::vector<double> first_values(const ResultFile& file, const StoredCell& cell,
+                                 const ScoreName& score, std::size_t runs,
+                                 const Parallel& parallel) {
+  const std::vector<RunStatus> status = file.status(cell);
+  std::vector<std::size_t> complete;
+  for (std::size_t i = 0; i < runs; ++i) {
+    if (status[i] == RunStatus::complete) complete.push_back(i);
+  }
+  const Yardsticks sticks = yardsticks_of(file, 0.95);
+  std::vector<MeasuredRun> slots = slots_for(parallel);
+  CellSums sums(sticks);
+  add_runs(RunReader(file, cell), complete, cell.particles, sticks, parallel, slots, sums);
+  std::vector<double> values;
+  for (const RunScores& run : sums.result().scores) values.push_back(run.*score.value);
+  return values;
+}
+
+double half_width(const std::vector<double>& values, double level) {
+  if (values.size() < 2) return std::numeric_limits<double>::infinity();
+  SummaryOf sums;
+  for (const double value : values) sums.add(value);
+  return t_quantile(values.size(), level) * sums.result().standard_error();
+}
+
+}  // namespace montecarta

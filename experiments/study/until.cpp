@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/study/until.hpp"
+
+#include "analysis/comparison/cell_comparison.hpp"
+#include "analysis/first_values.hpp"
+#include "engine/errors.hpp"
+#include "engine/records/result_file.hpp"
+#include "engine/runs/rounds.hpp"
+#include "experiments/text/numbers.hpp"
+#include "experiments/text/words.hpp"
+
+namespace montecarta {
+namespace {
+
+constexpr const char* kProcessorTime = "cpu_seconds";
+
+std::vector<std::string> usable_scores() {
+  std::vector<std::string> names;
+  for (const ScoreName& score : score_names()) {
+    if (score.name != std::string(kProcessorTime)) names.emplace_back(score.name);
+  }
+  return names;
+}
+
+const ScoreName* score_called(const std::string& name, const std::string& place) {
+  if (name == kProcessorTime) {
+    throw StudyError(place + ": until = " + name +
+                     " < ... (processor time differs from run to run, and results must not depend "
+                     "on it): choose another metric");
+  }
+  if (const ScoreName* score = find_score(name)) return score;
+  throw StudyError(place + ": until = " + name + " < ... (runs have no number of that name): " +
+                   nearest_spelling(name, usable_scores()));
+}
+
+}  // namespace
+
+std::optional<Until> parse_until(const std::string& text, const std::string& place) {
+  if (text.empty()) return std::nullopt;
+  const std::vector<std::string> sides = split(text, '<');
+  const auto width = sides.size() == 2 ? to_number(sides[1]) : std::nullopt;
+  if (!width || !(*width > 0.0)) {
+    throw StudyError(place + ": until = " + text +
+                     " (METRIC < HALF-WIDTH is needed, the half-width above 0): give e.g. until = "
+                     "position_rmse < 0.02, or nothing to make all runs");
+  }
+  return Until{score_called(sides[0], place), *width};
+}
+
+std::string text_of(const Until& until) {
+  return std::string(until.score->name) + " < " + to_text(until.half_width);
+}
+
+EnoughRuns rule_of(const Until& until) {
+  return [until](const std::filesystem::path& unfinished, std::size_t cell, std::uint64_t runs,
+                 const Parallel& parallel) {
+    const ResultFile file(unfinished);
+    const auto values = first_values(file, file.cells().at(cell), *until.score, runs, parallel);
+    return half_width(values, Until::kLevel) < until.half_width;
+  };
+}
+
+std::string in_words(const Until& until, std::uint64_t runs) {
+  const std::string unit =
+      until.score->units == std::string("1") ? "" : std::string(" ") + until.score->units;
+  return "a cell stops after " + std::to_string(kFirstRound) + ", " +
+         std::to_string(2 * kFirstRound) + ", " + std::to_string(4 * kFirstRound) +
+         ", ... runs when the 95 % interval of its mean " + until.score->name + " is within +- " +
+         to_text(until.half_width) + unit + ", after " + std::to_string(runs) +
+         " runs in any case; failed runs are in no mean";
+}
+
+}  // namespace montecarta

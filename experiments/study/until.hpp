@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/metrics/run_scores.hpp"
+#include "engine/runs/plan.hpp"
+
+#include <optional>
+#include <string>
+
+namespace montecarta {
+
+/// study.until = METRIC < HALF-WIDTH: a cell stops when so precise.
+struct Until {
+  static constexpr double kLevel = 0.95;
+
+  const ScoreName* score = nullptr;
+  double half_width = 0.0;  ///< of the kLevel interval of the mean over runs, in the score's unit
+};
+
+/// nullopt where `text` is empty: all runs are made. Throws StudyError, beginning with `place`,
+/// where it is not understood, or names what no result follows from (processor time).
+std::optional<Until> parse_until(const std::string& text, const std::string& place);
+
+/// In the one spelling that the resolved study uses.
+std::string text_of(const Until& until);
+
+/// The question the engine asks between rounds. Failed runs are in no mean; a score that is not a
+/// number is never precise.
+EnoughRuns rule_of(const Until& until);
+
+/// For `montecarta check`: when a cell stops, in words.
+std::string in_words(const Until& until, std::uint64_t runs);
+
+}  // namespace montecarta

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/doubles/same_results.hpp"
+#include "tests/experiments/commands/program.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace montecarta {
+namespace {
+
+using testing::ContainsRegex;
+using testing::HasSubstr;
+
+class UntilPrecise : public Program {
+ protected:
+  UntilPrecise() {
+    write("blink.ini", kBlink);
+    write("blink.csv", kBlinkWorld);
+  }
+  /// The study with 200 runs, which stops where it is precise to `half_width`.
+  std::vector<std::string> run(const std::string& output, const std::string& half_width,
+                               const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {"run",
+                                      "blink.ini",
+                                      "-o",
+                                      output,
+                                      "--quiet",
+                                      "--set",
+                                      "study.runs=200",
+                                      "--set",
+                                      "study.until=position_rmse < " + half_width};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  std::string difference_of(const std::string& a, const std::string& b) const {
+    return difference(ResultFile(folder_ / a), ResultFile(folder_ / b));
+  }
+};
+
+TEST_F(UntilPrecise, IsShownWhereverRunsAreCounted) {
+  const Called ran = call(run("out.h5", "100"));
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(call({"status", "out.h5"}).out, ContainsRegex("ekf_slam +32 +0 +0 +200 +168"));
+  EXPECT_THAT(call({"info", "out.h5"}).out, ContainsRegex("32 +0 +0 +168"));
+  EXPECT_THAT(call({"analyze", "out.h5"}).out,
+              HasSubstr("32 complete, stopped at 32 of 200: precise enough"));
+  EXPECT_EQ(call({"verify", "out.h5", "--sample", "3"}).code, 0);
+  EXPECT_THAT(call({"verify", "out.h5", "--sample", "1000"}).out, HasSubstr("out of 64 stored"));
+}
+
+TEST_F(UntilPrecise, MakesAllRunsWhereItNeverIs) {
+  ASSERT_EQ(call(run("out.h5", "1e-9")).code, 0);
+  EXPECT_THAT(call({"status", "out.h5"}).out, ContainsRegex("ekf_slam +200 +0 +0 +200\n"));
+}
+
+// A half-width between those of 32 and of 200 runs, so that the answer is not the same at once.
+TEST_F(UntilPrecise, GivesTheSameBitsOnAnyThreadsKilledAndResumed) {
+  ASSERT_EQ(call(run("one.h5", "0.005", {"--threads", "1"})).code, 0);
+  ASSERT_EQ(call(run("two.h5", "0.005", {"--threads", "2"})).code, 0);
+  EXPECT_EQ(difference_of("one.h5", "two.h5"), "");
+  for (const char* seconds : {"0.05", "0.1", "0.2"}) {
+    call(run("killed.h5", "0.005"), "timeout -s KILL " + std::string(seconds) + " ");
+    ASSERT_EQ(call(run("killed.h5", "0.005", {"--resume"})).code, 0);
+    EXPECT_EQ(difference_of("one.h5", "killed.h5"), "") << "killed after " << seconds << " s";
+    std::filesystem::remove(folder_ / "killed.h5");
+  }
+}
+
+TEST_F(UntilPrecise, IsNothingForPartOfTheRuns) {
+  for (const char* part : {"--shard", "--runs"}) {
+    const Called called = call(run("out.h5", "1", {part, part[2] == 's' ? "0/2" : "0:100"}));
+    EXPECT_EQ(called.code, 2);
+    EXPECT_THAT(called.err, HasSubstr("--set study.until="));
+    EXPECT_FALSE(exists("out.h5.part"));
+  }
+}
+
+TEST_F(UntilPrecise, IsExplainedByCheck) {
+  const Called called = call({"check", "blink.ini", "--set", "study.until=position_rmse < 0.02"});
+  EXPECT_EQ(called.code, 0) << called.err;
+  EXPECT_THAT(called.out, HasSubstr("a cell stops after 32, 64, 128, ... runs"));
+}
+
+}  // namespace
+}  // namespace montecarta
