@@ -12,7 +12,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
+#include <thread>
 
 namespace montecarta {
 namespace {
@@ -100,6 +102,7 @@ StudyPlan disturbed_plan(std::size_t at_cell, std::uint64_t at_runs, int signal)
     if (cell == at_cell && runs == at_runs) {
       if (signal == 0) throw RunError("the disk is gone");
       raise(signal);
+      std::this_thread::sleep_for(std::chrono::milliseconds(300));  // until somebody has heard it
     }
     return small_at_64(unfinished, cell, runs, parallel);
   };
