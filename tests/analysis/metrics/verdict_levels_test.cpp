@@ -97,7 +97,7 @@ double accused_clouds(Moments moments, std::size_t particles, std::uint64_t stud
   const DrawRun draw = [&](std::uint64_t study, std::uint64_t run, std::size_t n) {
     return draw_clouds(particles, study, run, n);
   };
-  return accused(draw, moments, particles, 30, 40, studies);
+  return accused(draw, moments, particles, 30, 20, studies);
 }
 
 // One standard error of 5 % in 1000 studies is 0.7 %: 1 % is what the studies are to show.
@@ -115,7 +115,7 @@ TEST(SlowVerdictLevel, KeepsItForManyRuns) {
 
 // Without the correction all of them would be called inconsistent.
 TEST(SlowVerdictLevel, DoesNotHoldFewParticlesAgainstARightFilter) {
-  EXPECT_NEAR(accused_clouds(Moments::corrected, 10, kStudies), 0.05, 0.01);
+  EXPECT_NEAR(accused_clouds(Moments::corrected, 10, 3 * kStudies), 0.05, 0.01);
   EXPECT_EQ(accused_clouds(Moments::spread, 10, 20), 1.0);
 }
 
