@@ -6,6 +6,12 @@
 namespace montecarta {
 namespace {
 
+/// A browser that reads this asks nobody for anything, not even for an icon.
+constexpr const char* kNoNetwork =
+    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+    "style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:\">\n"
+    "<link rel=\"icon\" href=\"data:,\">\n";
+
 /// Verdicts and failures are seen at a glance; the word itself says the same without the colour.
 std::string class_of(const std::string& text, Align align) {
   std::string names = align == Align::right ? "right" : "";
@@ -104,9 +110,11 @@ std::string html_data(const std::string& name, const std::string& json) {
 
 std::string html_page(const std::string& title, const std::string& body) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-         html_escape(title) + "</title>\n<style>\n" + std::string(page_style()) +
-         "</style>\n</head>\n<body>\n" + body + "</body>\n</html>\n";
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n" +
+         std::string(kNoNetwork) + "<title>" + html_escape(title) + "</title>\n<style>\n" +
+         std::string(page_style()) + "</style>\n</head>\n<body>\n" + body +
+         "<script>\n(() => {\n\"use strict\";\n" + std::string(page_script()) +
+         "})();\n</script>\n</body>\n</html>\n";
 }
 
 }  // namespace montecarta

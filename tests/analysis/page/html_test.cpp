@@ -22,11 +22,17 @@ TEST(Html, GivesEveryDrawingItsOwnIdentifiersAndTheColourOfTheText) {
             "href='#rmse_a'/></svg>");
 }
 
-TEST(Html, HoldsTheWholeStyleSheet) {
+TEST(Html, HoldsAllStylesAndScripts) {
   const std::string page = html_page("title", "body");
+  EXPECT_THAT(page, testing::HasSubstr("\"use strict\";\n" + std::string(page_script())));
+  EXPECT_THAT(page_script(), testing::HasSubstr("class Player"));
   EXPECT_THAT(page, testing::HasSubstr(std::string(page_style())));
   EXPECT_THAT(page_style(), testing::HasSubstr("color-scheme: light dark"));
   EXPECT_THAT(page_style(), testing::EndsWith("}\n"));
+}
+
+TEST(Html, ForbidsTheBrowserToAskTheNetwork) {
+  EXPECT_THAT(html_page("title", "body"), testing::HasSubstr("content=\"default-src 'none';"));
 }
 
 }  // namespace
