@@ -59,9 +59,9 @@ class Case:
         self.ground, self.name, self.shards = ground, name, shards
         self.partition, self.folder = partition or name, ground.folder / name
 
-    def submit(self, *more, code=0):
+    def submit(self, *more, code=0, **options):
         return call([TOP / "cluster/submit", self.ground.study, "-o", self.folder, "--shards",
-                     self.shards, "-p", self.partition, "--time=5", *more], code)
+                     self.shards, "-p", self.partition, "--time=5", *more], code, **options)
 
     def status(self):
         return call([TOP / "cluster/status", self.folder])
