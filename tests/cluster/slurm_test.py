@@ -87,6 +87,7 @@ def node_is_cut_off(ground):
     pid, shard = case.caught("n8")
     ground.slurm.cut_node("n8")
     wait_for("the second copy", lambda: case.copy_on("n9", shard), LIMIT)
+    wait_for("a name of its own", lambda: len(case.attempts(shard)) == 2, LIMIT)
     kill(pid, signal.SIGCONT)
     wait_for("the end of the cut-off copy", lambda: not is_alive(pid), LIMIT)
     ground.slurm.heal_node("n8")

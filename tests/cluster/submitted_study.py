@@ -75,10 +75,14 @@ class Case:
         name = of_study.job_name(self.folder)
         return of_study.queue(name) + of_study.queue(name + "-merge")
 
+    def attempts(self, shard):
+        """The files of attempts at a shard."""
+        return [str(p) for p in (self.folder / "shards").glob(f"shard_{shard:04d}.h5.part.*")
+                if not p.name.endswith(".new")]
+
     def half_done(self, shard):
         """Whether an attempt at a shard has stored some of its runs and not all."""
-        files = [str(p) for p in (self.folder / "shards").glob(f"shard_{shard:04d}.h5.part*")
-                 if not p.name.endswith(".new")]
+        files = self.attempts(shard)
         lines = call([self.ground.program, "status", "--each"] + files).splitlines() if files else []
         return any(line.split("\t")[1] == "unfinished" and line.split("\t")[3] != "0"
                    for line in lines)
