@@ -87,7 +87,7 @@ std::size_t salvage(const PosixFile& from, const ResultSlabs& slabs, OpenResult&
   for (std::size_t cell = 0; cell < to.status.size(); ++cell) {
     const auto status = read_statuses(from, slabs.cells[cell], to.truth_stored.size());
     for (std::size_t run = 0; run < status.size(); ++run) {
-      if (status[run] == RunStatus::missing || to.status[cell][run] != RunStatus::missing) continue;
+      if (!is_stored(status[run]) || to.status[cell][run] != RunStatus::missing) continue;
       if (!truth_is_whole(from, slabs, run, buffer) ||
           !run_is_whole(from, slabs.cells[cell], run, buffer))
         continue;

@@ -20,7 +20,7 @@ std::string flaw_of(const ResultFile& file) {
   for (std::size_t c = 0; c < slabs.cells.size(); ++c) {
     const std::vector<RunStatus> status = file.status(file.cells()[c]);
     for (std::size_t i = 0; i < status.size(); ++i) {
-      if (status[i] == RunStatus::missing) continue;
+      if (!is_stored(status[i])) continue;
       if (!truth_is_whole(bytes, slabs, i, buffer) ||
           !run_is_whole(bytes, slabs.cells[c], i, buffer))
         return "run " + std::to_string(file.runs()[i]) + " does not fit its fingerprint";
