@@ -211,6 +211,9 @@ class Slurm(unittest.TestCase):
         self.assertIn("MaxArraySize is 101", many)
         self.assertIn("choose --shards 101 or fewer, of 9 runs or more", many)
         self.assertFalse(case.folder.exists())
+        early = call([TOP / "cluster/submit", self.ground.folder / "many.ini", "-o", case.folder, "--shards", "4",
+                      "--set", "study.until=position_rmse < 1"], 2)
+        self.assertIn("--set study.until=", early)
         refused = Case(self.ground, "refused", partition="nowhere").submit(code=2)
         self.assertIn("sbatch refused", refused)
         other = Case(self.ground, "main", shards=4).submit(code=2)

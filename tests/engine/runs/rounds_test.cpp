@@ -113,7 +113,7 @@ TEST_F(Rounds, GiveTheSameBitsInterruptedAndResumed) {
   const ResultFile whole = results_of(stopping_plan(), options("whole.h5"));
   for (const std::uint64_t at_runs : {32, 64, 128}) {
     RunOptions how = options("interrupted" + std::to_string(at_runs), 2);
-    const RunOutcome first = run_study(disturbed_plan(0, at_runs, SIGINT), how);
+    const RunOutcome first = run_study(disturbed_plan(1, at_runs, SIGINT), how);
     EXPECT_GT(first.missing(), 0U);
     how.resume = true;
     EXPECT_EQ(difference(whole, results_of(stopping_plan(), how)), "") << at_runs;

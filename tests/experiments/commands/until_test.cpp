@@ -55,12 +55,13 @@ TEST_F(UntilPrecise, MakesAllRunsWhereItNeverIs) {
 
 // A half-width between those of 32 and of 200 runs, so that the answer is not the same at once.
 TEST_F(UntilPrecise, GivesTheSameBitsOnAnyThreadsKilledAndResumed) {
-  ASSERT_EQ(call(run("one.h5", "0.005", {"--threads", "1"})).code, 0);
-  ASSERT_EQ(call(run("two.h5", "0.005", {"--threads", "2"})).code, 0);
+  ASSERT_EQ(call(run("one.h5", "0.01", {"--threads", "1"})).code, 0);
+  ASSERT_EQ(call(run("two.h5", "0.01", {"--threads", "2"})).code, 0);
   EXPECT_EQ(difference_of("one.h5", "two.h5"), "");
+  EXPECT_THAT(call({"status", "one.h5"}).out, ContainsRegex(" (64|128) +0 +0 +200 +(136|72)\n"));
   for (const char* seconds : {"0.05", "0.1", "0.2"}) {
-    call(run("killed.h5", "0.005"), "timeout -s KILL " + std::string(seconds) + " ");
-    ASSERT_EQ(call(run("killed.h5", "0.005", {"--resume"})).code, 0);
+    call(run("killed.h5", "0.01"), "timeout -s KILL " + std::string(seconds) + " ");
+    ASSERT_EQ(call(run("killed.h5", "0.01", {"--resume"})).code, 0);
     EXPECT_EQ(difference_of("one.h5", "killed.h5"), "") << "killed after " << seconds << " s";
     std::filesystem::remove(folder_ / "killed.h5");
   }
