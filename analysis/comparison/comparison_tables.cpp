@@ -124,7 +124,9 @@ std::vector<std::string> comparison_notes(const StudyAnalysis& study,
           " tests of the table (Holm): the probability of one false word in all of it is at most " +
           level_text(1.0 - comparisons.level) + ".",
       "'nees_distance' is how many times the mean NEES of the pose of a run must be halved or "
-      "doubled to be 3, what an honest filter has: 0 is honest, 1 is off by a factor of 2."};
+      "doubled to be 3, what an honest filter has: 0 is honest, 1 is off by a factor of 2. It is "
+      "of "
+      "the covariance that the verdict is of: of the mixture, or corrected for few particles."};
   note_failures(study, notes);
   return notes;
 }

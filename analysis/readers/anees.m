@@ -2,7 +2,9 @@
 % Prints the ANEES of every cell as `montecarta analyze` has it: anees('out.h5')
 %
 % At scans, over complete runs (status 1). Mean and covariance are the Gaussian mixture's where the
-% file has them, else the spread of the particles (or the one Gaussian's own). A singular covariance
+% file has them, else the spread of the particles (or the one Gaussian's own): rows `mixture`, or else
+% `spread`, of consistency.csv. (What is called `corrected` there allows for few particles, and is not
+% made here.) A singular covariance
 % (a variance below 1e-10 of the floor's, or a pivot of the correlation matrix below 1e-12) gets the
 % floor diag(1e-4 m, 1e-4 m, 1e-5 rad)^2 added. What is not a number is left out. Mean over runs, then
 % over scans. Only functions that Octave and MATLAB both have.

@@ -58,6 +58,7 @@ class Cell:
         cell, rows = file["cells"][label], file["scan_row"][:]
         self.label, self.status = label, cell["status"][:]
         self.runs = np.flatnonzero(self.status == 1)
+        self.particles = cell.attrs["particles"]
         self.moments = "mixture" if "pose_mean_mixture" in cell else "spread"
         suffix = "_mixture" if self.moments == "mixture" else ""
         error = file["truth/pose"][:] - cell["pose_mean" + suffix][:]
@@ -68,6 +69,10 @@ class Cell:
 
     def nees(self, part, by):
         return np.array([by(e[:, part], P[:, part, part]) for e, P in zip(self.errors, self.covariances)])
+
+    def is_recomputed(self, metric):
+        """Not the NEES of few particles, which montecarta corrects by a table good to 1e-4."""
+        return metric != "nees_distance" or self.moments == "mixture" or self.particles == 0
 
     def scores(self):
         """{metric: value of each complete run}."""
@@ -128,6 +133,10 @@ def wins(cell, other, metric):
     return difference, won, lost
 
 
+def recomputed(cells, metric, *labels):
+    return all(cells[label].is_recomputed(metric) for label in labels)
+
+
 def sign_p(won, lost):
     return stats.binomtest(int(won), int(won + lost), 0.5).pvalue if won + lost else 1.0
 
@@ -135,7 +144,8 @@ def sign_p(won, lost):
 def check_comparison(cells, folder, baseline):
     rows = rows_of(f"{folder}/comparison.csv")
     p_values = []
-    for row in rows:
+    known = [row for row in rows if recomputed(cells, row["metric"], row["cell"], baseline)]
+    for row in known:
         name = f"{row['cell']} against {baseline} by {row['metric']}"
         difference, won, lost = wins(cells[row["cell"]], cells[baseline], row["metric"])
         moved = difference[difference != 0]
@@ -147,9 +157,14 @@ def check_comparison(cells, folder, baseline):
         check(name + ": sign test", float(row["p_sign"]), sign_p(won, lost))
         check(name + ": signed-rank test", float(row["p_rank"]), rank)
         p_values += [sign_p(won, lost), rank]
-    ours = np.ravel([[float(row["p_sign_holm"]), float(row["p_rank_holm"])] for row in rows])
-    check("Holm", ours, holm(p_values))
+    if len(known) < len(rows):
+        print(f"{len(rows) - len(known)} rows and Holm's correction not recomputed: NEES of few particles")
+    else:
+        ours = np.ravel([[float(row["p_sign_holm"]), float(row["p_rank_holm"])] for row in rows])
+        check("Holm", ours, holm(p_values))
     for row in rows_of(f"{folder}/wins.csv"):
+        if not recomputed(cells, row["metric"], row["cell"], row["beaten"]):
+            continue
         _, won, lost = wins(cells[row["cell"]], cells[row["beaten"]], row["metric"])
         check(f"wins by {row['metric']}", [float(row["won"]), float(row["p_sign"])], [won, sign_p(won, lost)])
 
