@@ -149,10 +149,21 @@ class PrivateSlurm:
     def start_node(self, name):
         self.start(name, ["slurmd", "-D", "-N", name, "-L", f"{self.folder}/log/slurmd.{name}"])
 
-    def states(self):
+    def node_states(self):
+        """{node: state}, as the controller sees them; empty where it does not answer."""
         done = subprocess.run(["sinfo", "-h", "-N", "-o", "%N %T"], stdout=subprocess.PIPE,
                               stderr=subprocess.DEVNULL, text=True)
-        return [line.split()[1] for line in sorted(set(done.stdout.splitlines()))]
+        return dict(line.split() for line in done.stdout.splitlines())
+
+    def states(self):
+        return list(self.node_states().values())
+
+    def revive(self):
+        """What an administrator does when the controller left nodes down or drained."""
+        for name, state in self.node_states().items():
+            if state.startswith(("down", "drain")):
+                subprocess.run(["scontrol", "update", f"nodename={name}", "state=resume"],
+                               stderr=subprocess.DEVNULL)
 
     def kill(self, name):
         self.daemons[name].kill()

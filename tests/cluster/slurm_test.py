@@ -30,6 +30,7 @@ PARTITIONS = {
     "high": ("n10", "PriorityTier=10 PreemptMode=OFF"),
     "short": ("n11", ""),
     "full": ("n12", ""),
+    "cancel": ("n13", ""),
 }
 
 
@@ -134,9 +135,9 @@ def full_disk(ground):
 
 
 def cancelled(ground):
-    case = Case(ground, "cancel", partition="short")
+    case = Case(ground, "cancel")
     case.submit()
-    pid, shard = case.caught("n11")
+    pid, shard = case.caught("n13")
     told = call([TOP / "cluster/cancel", case.folder])
     assert re.search(r"\d shards and 1 merges taken back", told), told
     case.checkpointed(pid, shard)
@@ -157,14 +158,12 @@ def controller_dies(ground):
     wait_for("the end of the task", lambda: not is_alive(pid), LIMIT)
     ground.slurm.start_controller()
     wait_for("the controller", lambda: ground.slurm.states(), 30)
-    for name in ground.slurm.names:
-        subprocess.run(["scontrol", "update", f"nodename={name}", "state=resume"],
-                       stderr=subprocess.DEVNULL)
+    wait_for("an end", lambda: ground.slurm.revive() or case.at_rest(), LIMIT)
     case.finish()
 
 
 SCENARIOS = (array_of_eight, killed_then_requeued_then_truncated, node_dies, node_is_cut_off,
-             preempted, walltime, full_disk)
+             preempted, walltime, full_disk, cancelled)
 
 
 class Slurm(unittest.TestCase):
@@ -172,8 +171,6 @@ class Slurm(unittest.TestCase):
     def setUpClass(cls):
         cls.pool = ThreadPoolExecutor(len(SCENARIOS))
         cls.running = {scenario: cls.pool.submit(scenario, cls.ground) for scenario in SCENARIOS}
-        cls.running[cancelled] = cls.pool.submit(lambda: (cls.running[walltime].exception(),
-                                                          cancelled(cls.ground)))
 
     def outcome(self, scenario):
         self.running[scenario].result()
@@ -238,7 +235,7 @@ def main():
     os.environ.update(MONTECARTA=program, MONTECARTA_MERGE_WAIT="2", MONTECARTA_THREADS="1")
     with tempfile.TemporaryDirectory(prefix="montecarta-slurm-") as folder:
         Slurm.ground = Ground(folder, program)
-        slurm = Slurm.ground.slurm = private_slurm.PrivateSlurm(f"{folder}/slurm", 12, PARTITIONS)
+        slurm = Slurm.ground.slurm = private_slurm.PrivateSlurm(f"{folder}/slurm", 13, PARTITIONS)
         try:
             try:
                 slurm.up()

@@ -119,9 +119,18 @@ class Case:
         wait_for(f"{self.name}: a checkpoint",
                  lambda: "task: checkpoint" in self.log(f"shard_{shard:04d}.log"), LIMIT)
 
+    def at_rest(self):
+        """Whether the scheduler has nothing more to do here, or put aside what it had."""
+        tasks = self.tasks()
+        stuck = [task for task in tasks if of_study.is_stuck(task)]
+        return not tasks or (stuck and all(task in stuck or task.reason == "Dependency"
+                                           for task in tasks))
+
     def idle(self):
-        """Waits until the scheduler has nothing more to do here."""
-        wait_for(f"{self.name}: an end", lambda: not self.tasks(), LIMIT)
+        try:
+            wait_for(f"{self.name}: an end", self.at_rest, LIMIT)
+        except TimeoutError as error:
+            raise TimeoutError(f"{error}: {self.tasks()}, nodes {self.ground.slurm.states()}") from None
 
     def finish(self):
         """Nothing is left to the scheduler; submit again until the result is there; compare."""
