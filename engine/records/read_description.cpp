@@ -146,6 +146,7 @@ ResultDescription read_description(const h5::Handle& file, const std::filesystem
   read_axes(file, result);
   read_scenario(file, result);
   result.has_truth = h5::has(file, "truth");
+  result.own_landmarks = result.has_truth && h5::has(h5::open_group(file, "truth"), "landmarks");
   read_provenance(file, result);
   const h5::Handle cells = h5::open_group(file, "cells");
   for (const std::string& label : h5::members(cells))

@@ -52,6 +52,7 @@ bool StoredCell::has(std::string_view column) const {
 
 double ResultDescription::bytes_per_run() const {
   double bytes = has_truth ? static_cast<double>(times.size() * sizeof(Pose)) : 0.0;
+  if (own_landmarks) bytes += static_cast<double>(landmarks.size() * sizeof(Eigen::Vector2d));
   for (const StoredCell& cell : cells) {
     for (const Column& column : cell.columns) bytes += static_cast<double>(column.bytes());
   }
@@ -75,6 +76,7 @@ ResultDescription describe(const StudyPlan& plan, const TextPairs& provenance) {
   result.waypoints = pairs(itinerary.waypoints);
   result.references = itinerary.references;
   result.has_truth = itinerary.has_truth;
+  result.own_landmarks = plan.own_landmarks && !itinerary.landmarks.empty();
   result.scenario = plan.scenario;
   result.provenance = provenance;
   for (const Cell& cell : plan.cells) result.cells.push_back(describe(cell, plan));

@@ -47,6 +47,7 @@ struct ResultDescription {
   std::vector<std::pair<double, double>> waypoints;  ///< [m]; may be empty
   std::vector<ReferencePath> references;             ///< by which a recorded drive is judged
   bool has_truth = true;                             ///< whether true poses are stored
+  bool own_landmarks = false;                        ///< whether true landmarks of runs are stored
   TextPairs scenario;
   TextPairs provenance;
   std::vector<StoredCell> cells;

@@ -16,13 +16,14 @@ struct ResultFile::Contents {
   std::filesystem::path path;
   h5::Handle file;
   ResultDescription description;
-  std::optional<h5::Handle> truth;
+  std::optional<h5::Handle> truth, own_landmarks;
   /// Every column of every cell, opened once.
   std::map<std::string, std::map<std::string, h5::Handle, std::less<>>, std::less<>> columns;
 
   explicit Contents(const std::filesystem::path& given)
       : path(given), file(h5::open_file(path)), description(read_description(file, path)) {
     if (description.has_truth) truth = h5::open_dataset(file, "truth/pose");
+    if (description.own_landmarks) own_landmarks = h5::open_dataset(file, "truth/landmarks");
     for (const StoredCell& cell : description.cells) {
       for (const Column& column : cell.columns) {
         columns[cell.label].emplace(
@@ -142,6 +143,17 @@ void ResultFile::read(const StoredCell& cell, std::string_view column, std::size
 void ResultFile::read_truth(std::size_t i, std::span<double> out) const {
   expect(contents_->truth.has_value(), "the truth was asked for where nobody knows it");
   h5::read_row(*contents_->truth, i, Element::f64, std::as_writable_bytes(out));
+}
+
+bool ResultFile::has_own_landmarks() const { return description().own_landmarks; }
+
+std::vector<Eigen::Vector2d> ResultFile::landmarks_of(std::size_t i) const {
+  std::vector<Eigen::Vector2d> points;
+  for (const auto& [x, y] : landmarks()) points.emplace_back(x, y);
+  if (!has_own_landmarks()) return points;
+  h5::read_row(*contents_->own_landmarks, i, Element::f64,
+               std::as_writable_bytes(std::span(points)));
+  return points;
 }
 
 }  // namespace montecarta

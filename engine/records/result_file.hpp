@@ -68,6 +68,10 @@ class ResultFile {
   /// {time, 3} of run index i; zeros where no cell of that run is complete or failed yet. Only
   /// where has_truth().
   void read_truth(std::size_t i, std::span<double> out) const;
+  /// Whether every run has landmarks of its own.
+  bool has_own_landmarks() const;
+  /// [m] True positions in run index i, by identity: its own, or the world's; empty where unknown.
+  std::vector<Eigen::Vector2d> landmarks_of(std::size_t i) const;
 
  private:
   struct Contents;

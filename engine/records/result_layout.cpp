@@ -95,6 +95,10 @@ void add_truth(const h5::Handle& file, const ResultDescription& result, const Sc
   const h5::Handle group = h5::create_group(file, "truth");
   add_dataset(group, "pose", Element::f64, {result.runs.size(), result.times.size(), 3},
               {"run", "time", "component"}, {"m, m, rad", "true pose"}, scales);
+  if (result.own_landmarks) {
+    add_dataset(group, "landmarks", Element::f64, {result.runs.size(), result.landmarks.size(), 2},
+                {"run", "landmark", "coordinate"}, {"m", "true position of the landmark"}, scales);
+  }
   const auto fingerprint =
       add_dataset(group, "fingerprint", Element::u64, {result.runs.size()}, {"run"},
                   {"1", "XXH3 of the run's pose, 0 where it is missing"}, scales);

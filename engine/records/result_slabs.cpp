@@ -65,7 +65,11 @@ ResultSlabs find_slabs(const std::filesystem::path& path, const ResultDescriptio
   ResultSlabs slabs;
   if (description.has_truth) {
     slabs.truth = {finder.find("truth/pose", description.times.size() * sizeof(Pose)),
-                   finder.find("truth/fingerprint", sizeof(std::uint64_t))};
+                   finder.find("truth/fingerprint", sizeof(std::uint64_t)), std::nullopt};
+    if (description.own_landmarks) {
+      slabs.truth->landmarks =
+          finder.find("truth/landmarks", description.landmarks.size() * sizeof(Eigen::Vector2d));
+    }
   }
   slabs.wall_seconds = finder.find("timing/wall_seconds", sizeof(double));
   slabs.sittings = finder.find("provenance/sittings", format::kSittingsBytes);
@@ -95,6 +99,9 @@ bool truth_is_whole(const PosixFile& file, const ResultSlabs& slabs, std::size_t
   if (!slabs.truth) return true;
   Fingerprint fingerprint;
   add_run(file, slabs.truth->pose, run_index, buffer, fingerprint);
+  if (slabs.truth->landmarks) {
+    add_run(file, *slabs.truth->landmarks, run_index, buffer, fingerprint);
+  }
   return fingerprint.value() == stored_fingerprint(file, slabs.truth->fingerprint, run_index);
 }
 

@@ -29,6 +29,7 @@ struct CellSlabs {
 /// Slabs of the true paths.
 struct TruthSlabs {
   Slab pose, fingerprint;
+  std::optional<Slab> landmarks;  ///< nullopt where all runs have the world's
 };
 
 /// Slabs of a result file: what one needs to move runs without HDF5.

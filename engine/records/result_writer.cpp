@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <functional>
 #include <span>
 
 namespace montecarta {
@@ -25,6 +26,8 @@ struct ResultWriter::Work {
   OpenResult result;
   bool scans_only;
   std::vector<std::uint32_t> scan_steps;
+  std::function<std::vector<Eigen::Vector2d>(std::uint64_t)> own_landmarks;
+  std::uint64_t first_run;
   std::vector<std::vector<std::atomic<RunStatus>>> status;  ///< [cell][run index]
   std::vector<std::atomic<bool>> truth_stored;              ///< [run index]
 
@@ -33,6 +36,8 @@ struct ResultWriter::Work {
         result(std::move(opened)),
         scans_only(plan.columns.scans_only),
         scan_steps(plan.drives->itinerary().scan_step),
+        own_landmarks(plan.own_landmarks),
+        first_run(plan.first_run),
         truth_stored(plan.runs_here()) {
     for (const auto& of_cell : result.status) {
       status.emplace_back(of_cell.size());
@@ -43,6 +48,7 @@ struct ResultWriter::Work {
 
   bool finished() const { return result.file.path() == path; }
   void write_poses(std::size_t run_index, const Drive& drive, Fingerprint& fingerprint) const;
+  void write_landmarks(std::size_t run_index, Fingerprint& fingerprint) const;
 };
 
 ResultWriter::ResultWriter(std::unique_ptr<Work> work) : work_(std::move(work)) {}
@@ -91,11 +97,22 @@ void ResultWriter::Work::write_poses(std::size_t run_index, const Drive& drive,
   }
 }
 
+void ResultWriter::Work::write_landmarks(std::size_t run_index, Fingerprint& fingerprint) const {
+  if (!result.slabs.truth->landmarks) return;
+  const Slab& slab = *result.slabs.truth->landmarks;
+  const std::vector<Eigen::Vector2d> landmarks = own_landmarks(first_run + run_index);
+  const auto bytes = std::as_bytes(std::span(landmarks));
+  expect(bytes.size() == slab.run_bytes, "a map with another number of landmarks");
+  result.file.write_at(slab.at(run_index), bytes);
+  fingerprint.add(bytes);
+}
+
 void ResultWriter::write_truth(std::size_t run_index, const Drive& drive) {
   const std::optional<TruthSlabs>& slabs = work_->result.slabs.truth;
   if (!slabs || work_->truth_stored[run_index].exchange(true)) return;
   Fingerprint fingerprint;
   work_->write_poses(run_index, drive, fingerprint);
+  work_->write_landmarks(run_index, fingerprint);
   work_->result.file.write_at(slabs->fingerprint.at(run_index), bytes_of(fingerprint.value()));
 }
 

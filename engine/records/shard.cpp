@@ -14,7 +14,9 @@ namespace {
 /// What is stored of a true path.
 std::vector<Slab> slabs_of_truth(const ResultSlabs& slabs) {
   if (!slabs.truth) return {};
-  return {slabs.truth->pose, slabs.truth->fingerprint};
+  std::vector<Slab> all = {slabs.truth->pose, slabs.truth->fingerprint};
+  if (slabs.truth->landmarks) all.push_back(*slabs.truth->landmarks);
+  return all;
 }
 
 /// What is stored of a run of a cell, and what it cost, but its status.

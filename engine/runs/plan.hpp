@@ -47,6 +47,9 @@ struct StudyPlan {
   ColumnSelection columns;
   std::shared_ptr<const DriveSource> drives;
   EnoughRuns is_enough;  ///< when a cell stops early; empty: never. For files that hold all runs
+  /// [m] True landmarks of a run, as many as the itinerary's, where every run has its own; empty
+  /// where all have the itinerary's. Callable from any thread.
+  std::function<std::vector<Eigen::Vector2d>(std::uint64_t run)> own_landmarks;
   std::vector<std::pair<std::string, std::string>> scenario;  ///< resolved settings, for the file
   std::string
       resolved_text;  ///< the study file with everything filled in; its SHA-256 names the study

@@ -84,6 +84,10 @@ Column truth_column(std::size_t rows) {
   return {"true pose", Element::f64, {Axis::time, Axis::component}, {rows, 3}, "m, m, rad", ""};
 }
 
+Column landmark_column(std::size_t rows) {
+  return {"true landmark", Element::f64, {Axis::landmark, Axis::coordinate}, {rows, 2}, "m", ""};
+}
+
 ResultDescription comparable(const StudyPlan& plan, const ResultDescription& stored) {
   ResultDescription planned = describe(plan, {});
   planned.study_sha256 = stored.study_sha256;  // a later version may spell the same study otherwise
@@ -135,8 +139,15 @@ std::optional<std::string> Recomputation::difference(const Drive& drive,
     truth.clear();
     for (std::uint32_t step : itinerary.scan_step) truth.push_back(drive.truth[step]);
   }
-  return compare(truth_column(truth.size()), read_run(file_, slabs_.truth->pose, run_index),
-                 std::as_bytes(std::span(truth)));
+  const auto stored = read_run(file_, slabs_.truth->pose, run_index);
+  if (auto differs = compare(truth_column(truth.size()), stored, std::as_bytes(std::span(truth)))) {
+    return differs;
+  }
+  if (!slabs_.truth->landmarks) return std::nullopt;
+  const std::vector<Eigen::Vector2d> landmarks = plan_.own_landmarks(stored_.runs[run_index]);
+  return compare(landmark_column(landmarks.size()),
+                 read_run(file_, *slabs_.truth->landmarks, run_index),
+                 std::as_bytes(std::span(landmarks)));
 }
 
 std::optional<std::string> Recomputation::difference(const RunRecord& record,

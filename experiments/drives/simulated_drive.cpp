@@ -39,6 +39,9 @@ double patience(const Pose& pose, const Eigen::Vector2d& waypoint, const Scenari
 
 SimulatedDrive::SimulatedDrive(World world, const Scenario& scenario, std::uint64_t seed)
     : world_(std::move(world)), scenario_(scenario), seed_(seed), sensor_(scenario) {
+  if (scenario_.map == MapMode::random) {
+    random_map_.emplace(world_.landmarks, scenario_.map_shift, seed_);
+  }
   drive_without_noise();
   fill_itinerary();
   see_along_the_way();
@@ -51,8 +54,15 @@ void SimulatedDrive::generate(std::uint64_t run, Drive& drive) const {
   drive.detections.reserve(expected_detections());
   drive.scan_begin.reserve(itinerary_.scans() + 1);
   drive.scan_begin.assign(1, 0);
+  std::vector<Eigen::Vector2d> own;
+  if (random_map_) own = (*random_map_)(run);
   if (scenario_.noise == NoiseMode::matched) {
-    generate_matched(run, drive);
+    generate_matched(run, random_map_ ? own : world_.landmarks, drive);
+  } else if (random_map_) {
+    move_measured(run, drive);
+    for (const std::uint32_t step : itinerary_.scan_step) {
+      scan(place(run, step), path_[step], own, drive);
+    }
   } else {
     generate_measured(run, drive);
   }
@@ -101,12 +111,17 @@ void SimulatedDrive::see_along_the_way() {
   }
 }
 
-void SimulatedDrive::generate_measured(std::uint64_t run, Drive& drive) const {
+void SimulatedDrive::move_measured(std::uint64_t run, Drive& drive) const {
   drive.truth = path_;
   for (std::size_t k = 0; k < nominal_.size(); ++k) {
     const Control error = noise(run, k);
     drive.controls[k] = {nominal_[k].speed + error.speed, nominal_[k].steer + error.steer};
   }
+}
+
+/// What is in view is the same in all runs.
+void SimulatedDrive::generate_measured(std::uint64_t run, Drive& drive) const {
+  move_measured(run, drive);
   for (std::size_t s = 0; s < itinerary_.scans(); ++s) {
     const StreamIdentity here = place(run, itinerary_.scan_step[s]);
     for (std::size_t i = sight_begin_[s]; i < sight_begin_[s + 1]; ++i) {
@@ -116,7 +131,7 @@ void SimulatedDrive::generate_measured(std::uint64_t run, Drive& drive) const {
   }
 }
 
-void SimulatedDrive::generate_matched(std::uint64_t run, Drive& drive) const {
+void SimulatedDrive::generate_matched(std::uint64_t run, Landmarks landmarks, Drive& drive) const {
   WaypointPilot pilot(world_.waypoints, scenario_);
   Pose pose = scenario_.start;
   for (std::size_t k = 0; k < itinerary_.steps(); ++k) {
@@ -126,12 +141,15 @@ void SimulatedDrive::generate_matched(std::uint64_t run, Drive& drive) const {
     pose = move(pose, Control{scenario_.speed + error.speed, drive.controls[k].steer + error.steer},
                 1.0 / scenario_.control_rate, scenario_.vehicle);
     drive.truth[k] = pose;
-    if ((k + 1) % scenario_.steps_per_scan != 0) continue;
-    const StreamIdentity here = place(run, k);
-    sensor_.see(pose, world_.landmarks,
-                [&](const Sight& sight) { sensor_.detect(sight, here, drive.detections); });
-    end_scan(here, drive);
+    if ((k + 1) % scenario_.steps_per_scan == 0) scan(place(run, k), pose, landmarks, drive);
   }
+}
+
+void SimulatedDrive::scan(const StreamIdentity& here, const Pose& pose, Landmarks landmarks,
+                          Drive& drive) const {
+  sensor_.see(pose, landmarks,
+              [&](const Sight& sight) { sensor_.detect(sight, here, drive.detections); });
+  end_scan(here, drive);
 }
 
 void SimulatedDrive::end_scan(const StreamIdentity& here, Drive& drive) const {

@@ -2,11 +2,14 @@
 #pragma once
 
 #include "engine/runs/drive.hpp"
+#include "experiments/drives/random_map.hpp"
 #include "experiments/drives/scenario.hpp"
 #include "experiments/drives/sensor.hpp"
 #include "experiments/worlds/world.hpp"
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace montecarta {
@@ -32,8 +35,11 @@ class SimulatedDrive final : public DriveSource {
   void drive_without_noise();
   void fill_itinerary();
   void see_along_the_way();
+  using Landmarks = std::span<const Eigen::Vector2d>;
   void generate_measured(std::uint64_t run, Drive& drive) const;
-  void generate_matched(std::uint64_t run, Drive& drive) const;
+  void generate_matched(std::uint64_t run, Landmarks landmarks, Drive& drive) const;
+  void move_measured(std::uint64_t run, Drive& drive) const;
+  void scan(const StreamIdentity& here, const Pose& pose, Landmarks landmarks, Drive& drive) const;
   void end_scan(const StreamIdentity& here, Drive& drive) const;
   std::size_t expected_detections() const;
   Control noise(std::uint64_t run, std::size_t step) const;
@@ -43,6 +49,7 @@ class SimulatedDrive final : public DriveSource {
   Scenario scenario_;
   std::uint64_t seed_;
   Sensor sensor_;
+  std::optional<RandomMap> random_map_;  ///< nullopt: every run has the world's landmarks
   Itinerary itinerary_;
   std::vector<Control> nominal_;            ///< controls of the noise-free drive
   std::vector<Pose> path_;                  ///< its poses after each step

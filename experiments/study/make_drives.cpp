@@ -31,6 +31,8 @@ Scenario scenario_of(const Settings& s) {
   const char* in = "scenario";
   scenario.noise =
       s.text(in, "noise") == "matched" ? NoiseMode::matched : NoiseMode::measured_control;
+  scenario.map = s.text(in, "map") == "random" ? MapMode::random : MapMode::fixed;
+  scenario.map_shift = s.number(in, "map_shift");
   scenario.loops = static_cast<std::uint32_t>(s.count(in, "loops"));
   scenario.steps_per_scan = steps_per_scan(s);
   scenario.control_rate = s.number(in, "control_rate");
@@ -125,6 +127,14 @@ std::size_t identities_of(const Study& study) {
     for (const Detection& detection : scan.detections) last = std::max(last, detection.identity);
   }
   return static_cast<std::size_t>(last + 1);
+}
+
+std::function<std::vector<Eigen::Vector2d>(std::uint64_t run)> own_landmarks_of(
+    const Study& study, std::uint64_t seed) {
+  if (study.log != nullptr) return {};
+  const Scenario scenario = scenario_of(study.settings);
+  if (scenario.map == MapMode::fixed) return {};
+  return RandomMap(study.world.landmarks, scenario.map_shift, seed);
 }
 
 std::shared_ptr<const DriveSource> drives_of(const Study& study, std::uint64_t seed) {

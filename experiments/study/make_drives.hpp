@@ -4,7 +4,9 @@
 #include "experiments/study/study.hpp"
 #include "filters/models/vehicle.hpp"
 
+#include <functional>
 #include <memory>
+#include <vector>
 
 namespace montecarta {
 
@@ -14,5 +16,9 @@ Vehicle vehicle_of(const Settings& settings, const char* section);
 std::size_t identities_of(const Study& study);
 /// The drives of a study. Throws StudyError where its settings do not fit together.
 std::shared_ptr<const DriveSource> drives_of(const Study& study, std::uint64_t seed);
+
+/// Draws the landmarks of a run; empty where all runs have those of the world.
+std::function<std::vector<Eigen::Vector2d>(std::uint64_t run)> own_landmarks_of(const Study& study,
+                                                                                std::uint64_t seed);
 
 }  // namespace montecarta

@@ -131,6 +131,7 @@ StudyPlan make_plan(const Study& study, std::optional<RunRange> range) {
   plan.columns = columns_of(settings);
   plan.drives = drives_of(study, plan.seed);
   if (study.until) plan.is_enough = rule_of(*study.until);
+  plan.own_landmarks = own_landmarks_of(study, plan.seed);
   plan.scenario = scenario_facts(settings);
   plan.resolved_text = resolved_text(study);
   return plan;

@@ -210,5 +210,30 @@ TEST(SimulatedDrive, RepeatsThePublishedBenchmark) {
   EXPECT_EQ(twice.itinerary().scans(), 2172U);
 }
 
+TEST(SimulatedDrive, SeesTheLandmarksOfTheRunsOwnMap) {
+  for (const NoiseMode noise : {NoiseMode::measured_control, NoiseMode::matched}) {
+    const Scenario scenario{.noise = noise,
+                            .map = MapMode::random,
+                            .map_shift = 4.0,
+                            .sigma_range = 0.0,
+                            .sigma_bearing = 0.0};
+    const World world = find_world("web_loop");
+    const SimulatedDrive source(world, scenario, 5);
+    const auto landmarks = RandomMap(world.landmarks, 4.0, 5)(2);
+    Drive drive;
+    source.generate(1, drive);
+    source.generate(2, drive);
+    EXPECT_TRUE(same_numbers(drive, drive_of(source, 2)));
+    EXPECT_FALSE(drive.detections.empty());
+    for (std::size_t s = 0; s < source.itinerary().scans(); ++s) {
+      const Pose& pose = drive.truth[source.itinerary().scan_step[s]];
+      for (const Detection& seen : drive.scan(s)) {
+        const Eigen::Vector2d at = landmarks[static_cast<std::size_t>(seen.identity)];
+        EXPECT_NEAR(std::hypot(at.x() - pose.x, at.y() - pose.y), seen.range, 1e-9);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace montecarta
