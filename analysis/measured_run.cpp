@@ -9,18 +9,22 @@
 namespace montecarta {
 namespace {
 
-bool associates_by_identity(const ResultFile& file) {
-  const TextPairs::value_type known{"association.kind", "known"};
-  return std::ranges::count(file.scenario(), known) > 0;
+bool says(const ResultFile& file, const char* setting, const char* value) {
+  return std::ranges::count(file.scenario(), TextPairs::value_type{setting, value}) > 0;
+}
+
+/// Only then are estimates drawn as filters believe; else no filter can be calibrated.
+bool noise_is_matched(const ResultFile& file) {
+  return file.has_truth() && says(file, "noise", "matched");
 }
 
 /// Of a drive whose truth is known; a recorded one is judged by its beacons.
 MapYardstick map_yardstick_of(const ResultFile& file) {
   MapYardstick sticks;
   if (!file.has_truth()) return sticks;
-  for (const auto& [x, y] : file.landmarks()) sticks.landmarks.emplace_back(x, y);
+  sticks.known = !file.landmarks().empty();
   if (const auto world = simulated_world_of(file)) sticks.view = world->view;
-  sticks.identities_known = associates_by_identity(file);
+  sticks.identities_known = says(file, "association.kind", "known");
   return sticks;
 }
 
@@ -28,7 +32,8 @@ MapYardstick map_yardstick_of(const ResultFile& file) {
 
 Yardsticks yardsticks_of(const ResultFile& file, double level) {
   const std::size_t scans = file.has_truth() ? file.scan_times().size() : 0;
-  Yardsticks sticks{file.scan_times(), level, {}, {}, map_yardstick_of(file), BandWalks(scans)};
+  Yardsticks sticks{file.scan_times(),     level, {}, {}, map_yardstick_of(file), BandWalks(scans),
+                    noise_is_matched(file)};
   for (const ReferencePath& path : file.references()) {
     sticks.references.emplace_back(path, file.times(), file.description().start);
   }
@@ -43,9 +48,13 @@ void MeasuredRun::measure(const Yardsticks& sticks, std::size_t particles) {
     references.push_back(measure_against(fixes, rows.path));
   }
   map.reset();
-  if (!sticks.map.landmarks.empty() && rows.final_map) {
-    map = map_scores(*rows.final_map, sticks.map, rows.truth);
+  if (sticks.map.known && rows.final_map) {
+    map = map_scores(*rows.final_map, sticks.map, rows.landmarks, rows.truth);
   }
+  if (sticks.calibrates)
+    pits = pits_of(rows, rows.run,
+                   sticks.map.identities_known ? std::span<const Eigen::Vector2d>(rows.landmarks)
+                                               : std::span<const Eigen::Vector2d>());
   beacons.reset();
   if (sticks.beacons.empty() || !rows.final_map) return;
   if (references.empty() && !rows.truth.empty()) return;  // the truth is the better yardstick
@@ -58,6 +67,7 @@ void CellSums::add(const MeasuredRun& run) {
   for (std::size_t r = 0; r < references_.size(); ++r) references_[r].add(run.references[r]);
   beacons_.push_back(run.beacons);
   map_.add(run.map);
+  if (calibrates_) calibration_.add(run.pits);
 }
 
 CellAnalysis CellSums::result() {
@@ -66,6 +76,7 @@ CellAnalysis CellSums::result() {
   if (!cell.references.empty()) put_leading_scores(cell.references.front(), cell.scores);
   cell.map = map_.result(level_, knows_landmarks_);
   map_.put_scores(cell.scores);
+  cell.calibration = calibration_.result(times_, level_);
   for (std::size_t i = 0; i < beacons_.size(); ++i) {
     if (!beacons_[i]) continue;
     cell.scores[i].beacons_found = beacons_[i]->found;

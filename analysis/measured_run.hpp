@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/calibration/cell_calibration.hpp"
 #include "analysis/map/map_errors.hpp"
 #include "analysis/metrics/beacon_scores.hpp"
 #include "analysis/metrics/cell_accumulator.hpp"
@@ -24,6 +25,7 @@ struct Yardsticks {
   std::vector<Eigen::Vector2d> beacons;  ///< [m]
   MapYardstick map;                      ///< of a simulation
   BandWalks walks;                       ///< of as many scans where there is a truth
+  bool calibrates = false;               ///< whether calibration is judged: where noise is matched
 };
 
 Yardsticks yardsticks_of(const ResultFile& file, double level);
@@ -36,6 +38,7 @@ struct MeasuredRun {
   std::vector<ReferenceRun> references;
   std::optional<BeaconScores> beacons;  ///< where the final map is stored and beacons are known
   std::optional<MapScores> map;         ///< where it is stored and the world is known
+  RunPits pits;                         ///< where calibration is judged
 
   /// Of `rows` of a complete run.
   void measure(const Yardsticks& sticks, std::size_t particles);
@@ -48,7 +51,9 @@ class CellSums {
       : sums_(sticks.times, sticks.level, sticks.walks),
         references_(sticks.references.size()),
         level_(sticks.level),
-        knows_landmarks_(!sticks.map.landmarks.empty()) {}
+        knows_landmarks_(sticks.map.known),
+        times_(sticks.times),
+        calibrates_(sticks.calibrates) {}
 
   void add(const MeasuredRun& run);
   /// Fills all that complete runs say; label, failures and missing runs are the caller's.
@@ -61,6 +66,9 @@ class CellSums {
   MapErrorSums map_;
   double level_;
   bool knows_landmarks_;
+  std::span<const double> times_;
+  CalibrationSums calibration_;
+  bool calibrates_;
 };
 
 /// As many as are worth measuring at once.

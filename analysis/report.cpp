@@ -43,6 +43,7 @@ std::vector<Section> reading_order(const ResultFile& file, const StudyAnalysis& 
           figure_section(time_figures(study)),
           figure_section(why_figures(study)),
           figure_section({mismatch_figure(study)}),
+          calibration_section(study),
           comparison_section(study, comparison),
           association_section(study),
           why_section(study),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/run_reader.hpp"
 
+#include "analysis/calibration/pit.hpp"
+
 #include <algorithm>
 
 namespace montecarta {
@@ -79,6 +81,26 @@ void RunReader::read_final_map(std::size_t i, RunRows& rows, Scratch& scratch) c
   }
 }
 
+void RunReader::read_cloud(std::size_t i, CloudRows& out, Scratch& scratch) const {
+  out.pose.clear();
+  out.log_weight.clear();
+  if (!file_->has_truth() || !cell_->has("log_weight")) return;
+  const std::size_t scans = file_->scan_times().size();
+  const auto keep = [&](const char* column, std::size_t width, std::vector<double>& kept) {
+    scratch.resize(scans * width);
+    {
+      const std::lock_guard lock(reading_);
+      file_->read(*cell_, column, i, std::span(scratch));
+    }
+    for (const std::size_t scan : calibration_scans(scans)) {
+      const auto row = std::span<const double>(scratch).subspan(scan * width, width);
+      kept.insert(kept.end(), row.begin(), row.end());
+    }
+  };
+  keep("particle_pose", 3 * cell_->particles, out.pose);
+  keep("log_weight", cell_->particles, out.log_weight);
+}
+
 template <class Number>
 void RunReader::read_scans(std::string_view column, std::size_t width, std::size_t i,
                            std::vector<Number>& out) const {
@@ -106,6 +128,12 @@ void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
   read_path(i, rows.path);
   read_scans("map_size", 1, i, rows.map_size);
   read_final_map(i, rows, scratch);
+  read_cloud(i, rows.cloud, scratch);
+  rows.run = file_->runs()[i];
+  {
+    const std::lock_guard lock(reading_);
+    rows.landmarks = file_->landmarks_of(i);
+  }
   rows.cpu_seconds = cpu_seconds_[i];
   rows.ess.clear();
   rows.resampled.clear();

@@ -37,11 +37,12 @@ void move_along(const TruePath& path, std::size_t row, const Vehicle& vehicle, J
   }
 }
 
-std::vector<JointBound::Seen> seen_from(const Pose& pose, const SimulatedWorld& world) {
+std::vector<JointBound::Seen> seen_from(const Pose& pose, const SimulatedWorld& world,
+                                        std::span<const Eigen::Vector2d> landmarks) {
   std::vector<JointBound::Seen> seen;
-  world.view.look(pose, world.landmarks, [&](const InView& one) {
+  world.view.look(pose, landmarks, [&](const InView& one) {
     if (one.range < kLeastDistance) return;  // a bearing without a derivative
-    const Eigen::Vector2d& at = world.landmarks[one.landmark];
+    const Eigen::Vector2d& at = landmarks[one.landmark];
     seen.push_back({one.landmark, {at.x(), at.y()}});
   });
   return seen;
@@ -49,7 +50,7 @@ std::vector<JointBound::Seen> seen_from(const Pose& pose, const SimulatedWorld& 
 
 /// Rows with the control steps between them: each step one row, or each scan.
 TruePath steps_of(const ResultFile& file) {
-  TruePath path{file.description().start, {}, {}, {}, file.scan_rows()};
+  TruePath path{file.description().start, {}, {}, {}, {}, file.scan_rows()};
   const std::vector<double>& times = file.times();
   const bool scans_only = times.size() == file.scan_times().size();
   const std::vector<std::uint32_t>& scan_steps = file.description().scan_steps;
@@ -65,6 +66,7 @@ TruePath steps_of(const ResultFile& file) {
 }
 
 void read_rows(const ResultFile& file, std::size_t run, TruePath& path) {
+  path.landmarks = file.landmarks_of(run);
   std::vector<double> truth(3 * file.times().size());
   file.read_truth(run, truth);
   for (std::size_t r = 0; r < file.times().size(); ++r) {
@@ -122,14 +124,14 @@ CramerRaoBound none_for(const std::string& reason) {
 CramerRaoBound squared_bound(const SimulatedWorld& world, const TruePath& path) {
   // A detection that may be missed brings its information times the chance that it is there.
   const Eigen::Vector2d sight_variance = world.sigma_sight.cwiseAbs2() / world.detected;
-  JointBound joint(world.landmarks.size(), world.vehicle, world.sigma_control.cwiseAbs2(),
+  JointBound joint(path.landmarks.size(), world.vehicle, world.sigma_control.cwiseAbs2(),
                    sight_variance);
   CramerRaoBound bound;
   std::size_t row = 0;
   for (const std::uint32_t scan_row : path.scan_rows) {
     for (; row <= scan_row; ++row) move_along(path, row, world.vehicle, joint);
     const Pose& pose = path.rows[scan_row];
-    if (world.detected > 0.0 && !joint.scan(pose, seen_from(pose, world))) {
+    if (world.detected > 0.0 && !joint.scan(pose, seen_from(pose, world, path.landmarks))) {
       return none_for("the noise is too small to compute with");
     }
     bound.position.push_back(joint.pose()(0, 0) + joint.pose()(1, 1));
@@ -144,8 +146,9 @@ CramerRaoBound cramer_rao_bound(const ResultFile& file, const Parallel& parallel
   const auto world = simulated_world_of(file);
   if (!world) return none_for("the file does not describe a simulated vehicle and its sensor");
   if (!(world->sigma_sight.minCoeff() > 0.0)) return none_for("the sensor has no noise");
+  const bool same = world->same_path && !file.has_own_landmarks();
   std::vector<TruePath> paths;
-  for (const std::size_t run : first_runs(file, world->same_path ? 1 : kBoundRuns)) {
+  for (const std::size_t run : first_runs(file, same ? 1 : kBoundRuns)) {
     read_rows(file, run, paths.emplace_back(steps_of(file)));
   }
   if (paths.empty()) return none_for("no run is complete");

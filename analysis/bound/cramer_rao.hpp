@@ -40,9 +40,10 @@ CramerRaoBound cramer_rao_bound(const ResultFile& file,
 struct TruePath {
   Pose start;
   std::vector<Pose> rows;
-  std::vector<std::size_t> steps;        ///< control steps from the row before, >= 1
-  std::vector<double> durations;         ///< [s] of one of those steps
-  std::vector<std::uint32_t> scan_rows;  ///< row of each scan
+  std::vector<std::size_t> steps;          ///< control steps from the row before, >= 1
+  std::vector<double> durations;           ///< [s] of one of those steps
+  std::vector<Eigen::Vector2d> landmarks;  ///< [m] by identity
+  std::vector<std::uint32_t> scan_rows;    ///< row of each scan
 };
 
 /// Squares of the bound along one path [m^2], [rad^2], [m^2]. Between rows that are several steps

@@ -55,10 +55,8 @@ std::optional<SimulatedWorld> simulated_world_of(const ResultFile& file) {
       .sigma_sight = {facts.number("sigma_range"), facts.radians("sigma_bearing_deg")},
       .detected = 1.0 - facts.number("miss_probability"),
       .view = FieldOfView(facts.number("max_range"), facts.radians("field_of_view_deg")),
-      .same_path = facts.text("noise") != "matched",
-      .landmarks = {}};
+      .same_path = facts.text("noise") != "matched"};
   if (!facts.complete()) return std::nullopt;
-  for (const auto& [x, y] : file.landmarks()) world.landmarks.emplace_back(x, y);
   return world;
 }
 

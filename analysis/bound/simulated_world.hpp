@@ -20,7 +20,6 @@ struct SimulatedWorld {
   double detected = 1.0;          ///< probability that what is in view is detected
   FieldOfView view;
   bool same_path = true;  ///< of all runs: the noise is on the controls that filters are given
-  std::vector<Eigen::Vector2d> landmarks;  ///< [m] by identity
 };
 
 /// What the file says of its world in the attributes of /scenario; nullopt where it is not that of

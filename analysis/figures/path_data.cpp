@@ -85,9 +85,9 @@ FigureData fix_data(const ResultFile& file) {
   return data;
 }
 
-FigureData landmark_data(const ResultFile& file) {
+FigureData landmark_data(const ResultFile& file, std::size_t run_index) {
   FigureData data{"landmarks.csv", {"x [m]", "y [m]"}, {}};
-  for (const auto& [x, y] : file.landmarks()) data.rows.push_back({x, y});
+  for (const auto& at : file.landmarks_of(run_index)) data.rows.push_back({at.x(), at.y()});
   return data;
 }
 

@@ -200,7 +200,7 @@ Figure path_figure(const ResultFile& file, std::optional<std::uint64_t> run) {
   const auto run_index = chosen_run(file, run);
   const auto cells = run_index ? drawable_cells(file, *run_index) : std::vector<std::size_t>{};
   if (cells.empty()) return figure;
-  const Surroundings around{*run_index, landmark_data(file), fix_data(file)};
+  const Surroundings around{*run_index, landmark_data(file, *run_index), fix_data(file)};
   if (file.has_truth()) {
     draw_paths(file, cells, around, figure);
   } else {

@@ -9,16 +9,17 @@ namespace montecarta {
 namespace {
 
 /// The landmarks that came into view on the way.
-std::vector<Eigen::Vector2d> seen_along(std::span<const double> path, const MapYardstick& sticks) {
-  if (!sticks.view) return sticks.landmarks;
-  std::vector<bool> seen(sticks.landmarks.size());
+std::vector<Eigen::Vector2d> seen_along(std::span<const double> path, const MapYardstick& sticks,
+                                        std::span<const Eigen::Vector2d> landmarks) {
+  if (!sticks.view) return {landmarks.begin(), landmarks.end()};
+  std::vector<bool> seen(landmarks.size());
   for (std::size_t s = 0; s + 2 < path.size(); s += 3) {
-    sticks.view->look({path[s], path[s + 1], path[s + 2]}, sticks.landmarks,
+    sticks.view->look({path[s], path[s + 1], path[s + 2]}, landmarks,
                       [&](const InView& one) { seen[one.landmark] = true; });
   }
   std::vector<Eigen::Vector2d> found;
   for (std::size_t l = 0; l < seen.size(); ++l) {
-    if (seen[l]) found.push_back(sticks.landmarks[l]);
+    if (seen[l]) found.push_back(landmarks[l]);
   }
   return found;
 }
@@ -31,12 +32,13 @@ LandmarkScore score(const Eigen::Vector2d& error, const Eigen::Matrix2d& covaria
   return score;
 }
 
-void score_by_identity(const FinalMap& map, const MapYardstick& sticks, MapScores& scores) {
-  scores.landmarks.resize(sticks.landmarks.size());
+void score_by_identity(const FinalMap& map, std::span<const Eigen::Vector2d> landmarks,
+                       MapScores& scores) {
+  scores.landmarks.resize(landmarks.size());
   double squares = 0.0, nees = 0.0, n = 0.0, n_nees = 0.0;
   for (std::size_t l = 0; l < scores.landmarks.size() && l < map.seen.size(); ++l) {
     if (map.seen[l] == 0) continue;
-    const LandmarkScore one = score(map.mean[l] - sticks.landmarks[l], map.covariance[l]);
+    const LandmarkScore one = score(map.mean[l] - landmarks[l], map.covariance[l]);
     scores.landmarks[l] = one;
     squares += one.squared_error;
     n += 1.0;
@@ -54,10 +56,10 @@ void score_by_identity(const FinalMap& map, const MapYardstick& sticks, MapScore
 }  // namespace
 
 MapScores map_scores(const FinalMap& map, const MapYardstick& sticks,
-                     std::span<const double> path) {
+                     std::span<const Eigen::Vector2d> landmarks, std::span<const double> path) {
   MapScores scores;
-  scores.gospa = gospa(map.places(), seen_along(path, sticks));
-  if (sticks.identities_known) score_by_identity(map, sticks, scores);
+  scores.gospa = gospa(map.places(), seen_along(path, sticks, landmarks));
+  if (sticks.identities_known) score_by_identity(map, landmarks, scores);
   return scores;
 }
 

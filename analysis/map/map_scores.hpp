@@ -14,9 +14,9 @@ namespace montecarta {
 
 /// What the final maps of a study are judged by.
 struct MapYardstick {
-  std::vector<Eigen::Vector2d> landmarks;  ///< [m] where they really are; empty: nobody knows
-  std::optional<FieldOfView> view;         ///< of the sensor; without it all count as seen
-  bool identities_known = false;           ///< rows of a map are identities of the world
+  bool known = false;               ///< whether anybody knows where the landmarks really are
+  std::optional<FieldOfView> view;  ///< of the sensor; without it all count as seen
+  bool identities_known = false;    ///< rows of a map are identities of the world
 };
 
 /// One landmark of one run; NaN where it is not in the map.
@@ -36,7 +36,8 @@ struct MapScores {
   std::vector<LandmarkScore> landmarks;  ///< {landmark}; empty where identities are unknown
 };
 
-/// `path`: true poses at scans {scan, 3} [m, m, rad].
-MapScores map_scores(const FinalMap& map, const MapYardstick& sticks, std::span<const double> path);
+/// `landmarks`: [m] where they really are. `path`: true poses at scans {scan, 3} [m, m, rad].
+MapScores map_scores(const FinalMap& map, const MapYardstick& sticks,
+                     std::span<const Eigen::Vector2d> landmarks, std::span<const double> path);
 
 }  // namespace montecarta

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/bound/efficiency.hpp"
+#include "analysis/calibration/cell_calibration.hpp"
 #include "analysis/map/map_errors.hpp"
 #include "analysis/metrics/consistency.hpp"
 #include "analysis/metrics/credibility.hpp"
@@ -106,6 +107,7 @@ struct CellAnalysis {
   std::optional<ErrorAnatomy> anatomy;     ///< likewise
   std::optional<Innovations> innovations;  ///< where a filter has any
   std::optional<AssociationSummary> association;
+  std::vector<PitHistogram> calibration;      ///< where the noise is matched; else empty
   MapErrors map;                              ///< of the final maps
   Efficiency efficiency;                      ///< against StudyAnalysis::bound
   std::vector<ReferenceAnalysis> references;  ///< one for each of the drive's, the leading first

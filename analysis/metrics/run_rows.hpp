@@ -21,6 +21,12 @@ struct AssociationRows {
   std::vector<double> correct, wrong, new_again, missed, clutter;  ///< {scan}
 };
 
+/// Weighted particles at the scans of calibration_scans(); empty where not stored.
+struct CloudRows {
+  std::vector<double> pose;        ///< {moment, particle, 3} [m, m, rad]
+  std::vector<double> log_weight;  ///< {moment, particle}
+};
+
 /// What analysis needs of one run, as plain arrays: where they come from does not matter. Columns
 /// that are not stored are empty.
 struct RunRows {
@@ -40,6 +46,10 @@ struct RunRows {
                                  ///< where the drive has references
   std::vector<double> map_size;  ///< {scan} landmarks in the map
   std::optional<FinalMap> final_map;  ///< at the last scan, if stored and whole
+  CloudRows cloud;
+  std::uint64_t run = 0;                   ///< its number in the study
+  std::vector<Eigen::Vector2d> landmarks;  ///< [m] true positions in this run, by identity; empty
+                                           ///< where unknown
   double cpu_seconds = 0.0;
 };
 

@@ -19,6 +19,8 @@ Section failure_section(const StudyAnalysis& study);
 Section verdict_section(const StudyAnalysis& study);
 /// How far the final maps are from the true landmarks; not of a recorded drive.
 Section map_section(const StudyAnalysis& study);
+/// Where the truth lies in what filters hold for possible; only where the noise is matched.
+Section calibration_section(const StudyAnalysis& study);
 /// A recorded drive judged by its references.
 Section reference_section(const StudyAnalysis& study);
 /// A player that replays one run, chosen as chosen_run() does, as far as the file holds it.

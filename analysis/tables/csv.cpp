@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/printed/comparison.hpp"
 #include "analysis/tables.hpp"
+#include "analysis/tables/calibration_table.hpp"
 #include "analysis/tables/cell_series.hpp"
 #include "analysis/tables/csv_file.hpp"
 #include "analysis/tables/map_error_table.hpp"
@@ -22,6 +23,7 @@ constexpr const char* kReferences = "references.csv";
 constexpr const char* kReferenceErrors = "reference_errors.csv";
 constexpr const char* kBound = "bound.csv";
 constexpr const char* kLandmarks = "landmarks.csv";
+constexpr const char* kCalibration = "calibration.csv";
 std::string series_name(const std::string& label) { return "series_" + label + ".csv"; }
 
 void write_cells(const StudyAnalysis& study, const std::filesystem::path& path) {
@@ -75,8 +77,9 @@ void write_series(const StudyAnalysis& study, const CellAnalysis& cell,
 }  // namespace
 
 std::vector<std::string> csv_names(const std::vector<std::string>& labels) {
-  std::vector<std::string> names = {kFailures,   kCells,           kConsistency, kPrinted,  kClaims,
-                                    kReferences, kReferenceErrors, kBound,       kLandmarks};
+  std::vector<std::string> names = {kFailures,  kCells,      kConsistency,     kPrinted,
+                                    kClaims,    kReferences, kReferenceErrors, kBound,
+                                    kLandmarks, kCalibration};
   for (const std::string& label : labels) names.push_back(series_name(label));
   return names;
 }
@@ -94,6 +97,7 @@ void write_csv(const StudyAnalysis& study, const std::filesystem::path& director
   }
   if (!study.bound.empty()) write_bound(study, directory / kBound);
   if (has_map_errors(study)) write_landmarks(study, directory / kLandmarks);
+  if (has_calibration(study)) write_calibration(study, directory / kCalibration);
   for (const CellAnalysis& cell : study.cells) {
     write_series(study, cell, directory / series_name(cell.label));
   }

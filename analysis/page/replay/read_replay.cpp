@@ -86,9 +86,11 @@ ReplaySize share_of(const ReplaySize& size, std::size_t cells, std::size_t frame
   return share;
 }
 
-void add_surroundings(const ResultFile& file, const Scans& frames, Replay& replay) {
+void add_surroundings(const ResultFile& file, std::size_t run, const Scans& frames,
+                      Replay& replay) {
   for (const std::size_t s : frames) replay.times.push_back(file.scan_times()[s]);
-  for (const auto& row : landmark_data(file).rows) replay.landmarks.emplace_back(row[0], row[1]);
+  for (const auto& row : landmark_data(file, run).rows)
+    replay.landmarks.emplace_back(row[0], row[1]);
   for (const auto& row : fix_data(file).rows) replay.fixes.emplace_back(row[1], row[2]);
 }
 
@@ -110,7 +112,7 @@ Replay read_replay(const ResultFile& file, std::size_t run, const ReplaySize& si
   const Scans frames = frame_scans(file.scan_times().size(), size.frames);
   Replay replay{file.runs()[run]};
   if (frames.empty()) return replay;
-  add_surroundings(file, frames, replay);
+  add_surroundings(file, run, frames, replay);
   read_truth(file, run, frames, replay);
   std::vector<std::size_t> cells;
   for (std::size_t c = 0; c < file.cells().size(); ++c) {

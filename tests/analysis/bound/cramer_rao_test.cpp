@@ -14,19 +14,22 @@ namespace {
 
 constexpr double kStep = 0.1;  // [s]
 
-SimulatedWorld world_with(std::vector<Eigen::Vector2d> landmarks) {
+using Landmarks = std::vector<Eigen::Vector2d>;
+
+SimulatedWorld open_world() {
   return {.vehicle = {.wheelbase = 2.0},
           .sigma_control = {0.3, 0.05},
           .sigma_sight = {0.1, 0.02},
           .detected = 1.0,
           .view = FieldOfView(50.0, kPi),
-          .same_path = true,
-          .landmarks = std::move(landmarks)};
+          .same_path = true};
 }
 
 /// A path under these controls, with a scan after every `every`-th step.
-TruePath path_of(const std::vector<Control>& controls, std::size_t every, const Vehicle& vehicle) {
+TruePath path_of(const std::vector<Control>& controls, std::size_t every, Landmarks landmarks) {
+  const Vehicle vehicle = open_world().vehicle;
   TruePath path;
+  path.landmarks = std::move(landmarks);
   Pose pose = path.start;
   for (std::size_t k = 0; k < controls.size(); ++k) {
     pose = move(pose, controls[k], kStep, vehicle);
@@ -50,6 +53,7 @@ std::vector<Control> bends(std::size_t n, double phase = 0.4) {
 /// sights of each scan, and the pose at the end, for controls and landmarks moved by `unknown`.
 struct Trajectory {
   const SimulatedWorld* world;
+  const Landmarks* landmarks;
   const std::vector<Control>* controls;
   std::size_t every;
   Pose end(const Eigen::VectorXd& unknown, std::vector<double>* sights) const {
@@ -60,9 +64,9 @@ struct Trajectory {
       pose = move(pose, {control.speed + unknown(2 * k), control.steer + unknown(2 * k + 1)}, kStep,
                   world->vehicle);
       if (static_cast<std::size_t>(k + 1) % every != 0 || sights == nullptr) continue;
-      for (Eigen::Index l = 0; l < static_cast<Eigen::Index>(world->landmarks.size()); ++l) {
+      for (Eigen::Index l = 0; l < static_cast<Eigen::Index>(landmarks->size()); ++l) {
         const Eigen::Vector2d at =
-            world->landmarks[static_cast<std::size_t>(l)] + unknown.segment<2>(2 * (n + l));
+            (*landmarks)[static_cast<std::size_t>(l)] + unknown.segment<2>(2 * (n + l));
         const auto sight = predicted_sight(pose, Point{at.x(), at.y()});
         sights->push_back(sight.range / world->sigma_sight(0));
         sights->push_back(sight.bearing / world->sigma_sight(1));
@@ -73,10 +77,10 @@ struct Trajectory {
 };
 
 /// The bound by the joint information matrix of the whole trajectory, derivatives by differences.
-Eigen::Matrix3d reference(const SimulatedWorld& world, const std::vector<Control>& controls,
-                          std::size_t every) {
-  const Trajectory trajectory{&world, &controls, every};
-  const auto n = static_cast<Eigen::Index>(2 * (controls.size() + world.landmarks.size()));
+Eigen::Matrix3d reference(const SimulatedWorld& world, const Landmarks& landmarks,
+                          const std::vector<Control>& controls, std::size_t every) {
+  const Trajectory trajectory{&world, &landmarks, &controls, every};
+  const auto n = static_cast<Eigen::Index>(2 * (controls.size() + landmarks.size()));
   std::vector<double> once;
   trajectory.end(Eigen::VectorXd::Zero(n), &once);
   Eigen::MatrixXd H(once.size(), n);
@@ -101,17 +105,17 @@ Eigen::Matrix3d reference(const SimulatedWorld& world, const std::vector<Control
   return G * information.ldlt().solve(G.transpose());
 }
 
-const std::vector<Eigen::Vector2d> kAhead = {{30, 3}, {31, -6}, {40, 12}};  // always in view
+const Landmarks kAhead = {{30, 3}, {31, -6}, {40, 12}};  // always in view
 
 TEST(CramerRaoBound, IsThatOfTheJointInformationOfTheWholeTrajectory) {
-  const SimulatedWorld world = world_with(kAhead);
+  const SimulatedWorld world = open_world();
   const std::vector<Control> controls = bends(24);
-  const CramerRaoBound bound = squared_bound(world, path_of(controls, 4, world.vehicle));
+  const CramerRaoBound bound = squared_bound(world, path_of(controls, 4, kAhead));
   ASSERT_EQ(bound.position.size(), 6u);
   for (std::size_t s = 0; s < 6; ++s) {
     const std::vector<Control> until(controls.begin(),
                                      controls.begin() + static_cast<std::ptrdiff_t>(4 * (s + 1)));
-    const Eigen::Matrix3d P = reference(world, until, 4);
+    const Eigen::Matrix3d P = reference(world, kAhead, until, 4);
     EXPECT_NEAR(bound.position[s] / (P(0, 0) + P(1, 1)), 1.0, 1e-5) << "scan " << s;
     EXPECT_NEAR(bound.heading[s] / P(2, 2), 1.0, 1e-5) << "scan " << s;
   }
@@ -120,11 +124,11 @@ TEST(CramerRaoBound, IsThatOfTheJointInformationOfTheWholeTrajectory) {
 // On a straight line towards its only landmark, with an error of the speed alone, the problem is
 // linear: a Kalman filter of two numbers, by hand.
 TEST(CramerRaoBound, IsTheKalmanFiltersCovarianceWhereTheProblemIsLinear) {
-  SimulatedWorld world = world_with({{100.0, 0.0}});
+  SimulatedWorld world = open_world();
   world.view = FieldOfView(200.0, kPi);
   world.sigma_control = {0.3, 0.0};
   const std::vector<Control> controls(20, Control{3.0, 0.0});
-  const CramerRaoBound bound = squared_bound(world, path_of(controls, 2, world.vehicle));
+  const CramerRaoBound bound = squared_bound(world, path_of(controls, 2, {{100.0, 0.0}}));
   const double q = 2.0 * 0.3 * 0.3 * kStep * kStep, r = 0.1 * 0.1;
   double x = q, xl = q, l = q + r;  // covariance after the first scan, where the landmark is born
   for (std::size_t s = 0; s < bound.position.size(); ++s) {
@@ -142,10 +146,10 @@ TEST(CramerRaoBound, IsTheKalmanFiltersCovarianceWhereTheProblemIsLinear) {
 }
 
 TEST(CramerRaoBound, NeedsTheScansAloneOnASmoothPath) {
-  const SimulatedWorld world = world_with(kAhead);
+  const SimulatedWorld world = open_world();
   const std::vector<Control> controls = bends(40, 0.1);
-  const TruePath every = path_of(controls, 4, world.vehicle);
-  TruePath scans{every.start, {}, {}, {}, {}};
+  const TruePath every = path_of(controls, 4, kAhead);
+  TruePath scans{every.start, {}, {}, {}, kAhead, {}};
   for (std::size_t s = 0; s < every.scan_rows.size(); ++s) {
     scans.rows.push_back(every.rows[every.scan_rows[s]]);
     scans.steps.push_back(4);
@@ -161,12 +165,12 @@ TEST(CramerRaoBound, NeedsTheScansAloneOnASmoothPath) {
 
 // Half of the information, on the average, is that of twice the variance.
 TEST(CramerRaoBound, LosesTheInformationOfWhatIsMissed) {
-  SimulatedWorld half = world_with(kAhead), worse = half, none = half;
+  SimulatedWorld half = open_world(), worse = half, none = half;
   half.detected = 0.5;
   worse.sigma_sight *= std::sqrt(2.0);
   none.detected = 0.0;
-  const TruePath path = path_of(bends(24), 4, half.vehicle);
-  const CramerRaoBound full = squared_bound(world_with(kAhead), path);
+  const TruePath path = path_of(bends(24), 4, kAhead);
+  const CramerRaoBound full = squared_bound(open_world(), path);
   EXPECT_NEAR(squared_bound(half, path).map, squared_bound(worse, path).map, 1e-12);
   EXPECT_GT(squared_bound(half, path).position.back(), full.position.back());
   EXPECT_GT(squared_bound(none, path).position.back(), squared_bound(half, path).position.back());
@@ -174,9 +178,10 @@ TEST(CramerRaoBound, LosesTheInformationOfWhatIsMissed) {
 }
 
 TEST(CramerRaoBound, KnowsNothingOfWhatIsNotInView) {
-  const TruePath path = path_of(bends(24), 4, Vehicle{.wheelbase = 2.0});
-  const CramerRaoBound behind = squared_bound(world_with({{-5.0, 0.0}, {500.0, 0.0}}), path);
-  EXPECT_EQ(behind.position, squared_bound(world_with({}), path).position);
+  const auto bound_with = [](const Landmarks& landmarks) {
+    return squared_bound(open_world(), path_of(bends(24), 4, landmarks)).position;
+  };
+  EXPECT_EQ(bound_with({{-5.0, 0.0}, {500.0, 0.0}}), bound_with({}));
 }
 
 }  // namespace

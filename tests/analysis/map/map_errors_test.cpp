@@ -17,7 +17,7 @@ using testing::IsEmpty;
 
 const std::vector<Eigen::Vector2d> kWorld = {{0, 0}, {10, 0}, {20, 0}};
 const std::vector<double> kPath = {0, 0, 0};
-const MapYardstick kSticks{kWorld, {}, true};
+const MapYardstick kSticks{true, {}, true};
 
 FinalMap map_of(std::vector<std::uint32_t> seen, std::vector<Eigen::Vector2d> mean) {
   const std::vector<Eigen::Matrix2d> covariance(seen.size(), 0.25 * Eigen::Matrix2d::Identity());
@@ -26,7 +26,7 @@ FinalMap map_of(std::vector<std::uint32_t> seen, std::vector<Eigen::Vector2d> me
 
 TEST(MapScores, JudgeTheLandmarksInTheMapByIdentity) {
   const MapScores scores =
-      map_scores(map_of({1, 1, 0}, {{0.3, 0.4}, {10, 1}, {99, 99}}), kSticks, kPath);
+      map_scores(map_of({1, 1, 0}, {{0.3, 0.4}, {10, 1}, {99, 99}}), kSticks, kWorld, kPath);
   EXPECT_DOUBLE_EQ(scores.rms, std::sqrt((0.25 + 1.0) / 2.0));
   EXPECT_DOUBLE_EQ(scores.nees, (1.0 + 4.0) / 2.0);
   EXPECT_EQ(scores.gospa.missed, 1.0);
@@ -35,16 +35,16 @@ TEST(MapScores, JudgeTheLandmarksInTheMapByIdentity) {
 }
 
 TEST(MapScores, LeaveIdentityOutWhereItIsUnknown) {
-  const MapYardstick sticks{kWorld, {}, false};
-  const MapScores scores = map_scores(map_of({1}, {{10, 1}}), sticks, kPath);
+  const MapYardstick sticks{true, {}, false};
+  const MapScores scores = map_scores(map_of({1}, {{10, 1}}), sticks, kWorld, kPath);
   EXPECT_TRUE(std::isnan(scores.rms));
   EXPECT_THAT(scores.landmarks, IsEmpty());
   EXPECT_DOUBLE_EQ(scores.gospa.localisation, 1.0);
 }
 
 TEST(MapScores, MissOnlyWhatCameIntoView) {
-  const MapYardstick sticks{kWorld, FieldOfView(12.0, kPi), true};
-  EXPECT_EQ(map_scores(map_of({0, 0, 0}, kWorld), sticks, kPath).gospa.missed, 1.0)
+  const MapYardstick sticks{true, FieldOfView(12.0, kPi), true};
+  EXPECT_EQ(map_scores(map_of({0, 0, 0}, kWorld), sticks, kWorld, kPath).gospa.missed, 1.0)
       << "the first is not strictly ahead, the last is out of range";
 }
 
@@ -52,7 +52,7 @@ TEST(MapScores, CountACovarianceThatIsNoNumber) {
   FinalMap map = map_of({1, 1, 1}, kWorld);
   map.covariance[1].setConstant(std::numeric_limits<double>::quiet_NaN());
   map.covariance[2].setZero();
-  const MapScores scores = map_scores(map, kSticks, kPath);
+  const MapScores scores = map_scores(map, kSticks, kWorld, kPath);
   EXPECT_EQ(scores.undefined, 2u);
   EXPECT_EQ(scores.nees, 0.0);
   EXPECT_EQ(scores.rms, 0.0);
@@ -67,7 +67,7 @@ MapErrors errors_of(std::uint64_t runs, double inflation) {
     for (Eigen::Vector2d& at : mean) {
       at += 0.5 * inflation * Eigen::Vector2d(draw.normal(), draw.normal());
     }
-    sums.add(map_scores(map_of({1, 1, 1}, mean), kSticks, kPath));
+    sums.add(map_scores(map_of({1, 1, 1}, mean), kSticks, kWorld, kPath));
   }
   return sums.result(0.95, true);
 }
@@ -88,14 +88,14 @@ TEST(MapErrors, SayWhyThereAreNone) {
   sums.add(std::nullopt);
   EXPECT_THAT(sums.result(0.95, true).missing, HasSubstr("add final_map to record.columns"));
   EXPECT_THAT(sums.result(0.95, false).missing, HasSubstr("nobody knows"));
-  sums.add(map_scores(map_of({1, 0, 0}, kWorld), kSticks, kPath));
+  sums.add(map_scores(map_of({1, 0, 0}, kWorld), kSticks, kWorld, kPath));
   EXPECT_THAT(sums.result(0.95, true).missing, HasSubstr("the maps of 1 runs are not whole"));
 }
 
 TEST(MapErrors, GiveEveryRunItsScores) {
   MapErrorSums sums;
   sums.add(std::nullopt);
-  sums.add(map_scores(map_of({1, 0, 0}, kWorld), kSticks, kPath));
+  sums.add(map_scores(map_of({1, 0, 0}, kWorld), kSticks, kWorld, kPath));
   std::vector<RunScores> scores(2);
   sums.put_scores(scores);
   EXPECT_TRUE(std::isnan(scores[0].gospa));

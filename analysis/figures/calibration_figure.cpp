@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/figures/calibration_figure.hpp"
+
+#include "analysis/figures/gnuplot.hpp"
+#include "analysis/tables/number_text.hpp"
+
+#include <algorithm>
+
+namespace montecarta {
+namespace {
+
+constexpr std::size_t kMostRows = 8, kRowPixels = 150, kFramePixels = 60;
+
+/// A histogram that is drawn.
+struct Drawn {
+  std::size_t cell = 0;
+  std::string label;
+  const PitHistogram* histogram = nullptr;
+};
+
+/// Those of one cell at the end of the run.
+std::vector<Drawn> last_of(const StudyAnalysis& study, std::size_t c, const std::string& by) {
+  std::vector<Drawn> drawn;
+  const CellAnalysis& cell = study.cells[c];
+  for (const PitHistogram& one : cell.calibration) {
+    if (one.by == by && one.time == study.times.back()) drawn.push_back({c, cell.label, &one});
+  }
+  return drawn;
+}
+
+/// Share of runs in every bin, as a multiple of what is expected.
+FigureData data_of(const std::string& name, const Drawn& drawn) {
+  FigureData data{name, {"from", "to", "count / expected", "lower", "upper"}, {}};
+  const Uniformity& test = drawn.histogram->test;
+  double all = 0.0;
+  for (const std::size_t n : test.counts) all += static_cast<double>(n);
+  const auto bins = static_cast<double>(test.counts.size());
+  const double expected = all / bins;
+  for (std::size_t b = 0; b < test.counts.size(); ++b) {
+    data.rows.push_back({static_cast<double>(b) / bins, static_cast<double>(b + 1) / bins,
+                         static_cast<double>(test.counts[b]) / expected,
+                         static_cast<double>(test.band.lower) / expected,
+                         static_cast<double>(test.band.upper) / expected});
+  }
+  return data;
+}
+
+std::string panel_of(const std::string& data_name, const Drawn& drawn, bool first, bool lowest) {
+  const std::string file = gnuplot_quoted("../data/" + data_name);
+  return "set title " +
+         gnuplot_quoted(drawn.histogram->quantity + ": " +
+                        in_words(drawn.histogram->test.verdict)) +
+         " noenhanced offset 0,-0.7\nset ylabel " + gnuplot_quoted(first ? drawn.label : "") +
+         " noenhanced offset 1,0\nset format x '" + (lowest ? "%h" : "") + "'\nplot " + file +
+         " using (0.5*($1+$2)):(0.5*($4+$5)):1:2:4:5 with boxxyerror fillcolor rgb '#707070' "
+         "fillstyle transparent solid 0.45 noborder notitle, \\\n  " +
+         file + " using (0.5*($1+$2)):3:1:2:(0):3 with boxxyerror " + line_style(drawn.cell) +
+         " fillstyle transparent solid 0.35 border notitle\n";
+}
+
+Figure figure_of(const StudyAnalysis& study, const std::string& by, Figure figure) {
+  std::vector<std::vector<Drawn>> rows;
+  for (std::size_t c = 0; c < study.cells.size() && rows.size() < kMostRows; ++c) {
+    if (auto row = last_of(study, c, by); !row.empty()) rows.push_back(std::move(row));
+  }
+  if (rows.empty()) return figure;
+  std::size_t columns = 0;
+  for (const auto& row : rows) columns = std::max(columns, row.size());
+  figure.height = rows.size() * kRowPixels + kFramePixels;
+  figure.script =
+      "set xrange [0:1]\nset yrange [0:*]\nset xtics 0.5\nset ytics 1\n"
+      "set multiplot layout " +
+      std::to_string(rows.size()) + "," + std::to_string(columns) + "\n";
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (std::size_t c = 0; c < columns; ++c) {
+      if (c >= rows[r].size()) {
+        figure.script += "set multiplot next\n";
+        continue;
+      }
+      const std::string name =
+          figure.name + "_" + rows[r][c].label + "_" + std::to_string(c + 1) + ".csv";
+      figure.data.push_back(data_of(name, rows[r][c]));
+      figure.script += panel_of(name, rows[r][c], c == 0, r + 1 == rows.size());
+    }
+  }
+  figure.script += "unset multiplot\n";
+  return figure;
+}
+
+}  // namespace
+
+std::vector<Figure> calibration_figures(const StudyAnalysis& study) {
+  const std::string reading =
+      " Bars are shares of runs, 1 is what they should be; bars that all stay in the grey band "
+      "belong to a calibrated filter. A valley: the filter is too sure of itself; a hill: too "
+      "cautious; a slope: it is off to one side.";
+  Figure gaussian{"calibration", "Does the truth lie where the filter says?", "", 900, 0, "", {}};
+  gaussian.sentence =
+      "Where the truth lies in the Gaussian of the filter at the end of the run, from its lower "
+      "(0) "
+      "to its upper end (1)." +
+      reading;
+  Figure particles{"ranks", "Does the truth lie among the particles?", "", 900, 0, "", {}};
+  particles.sentence =
+      "Which share of the weighted particles lies below the truth at the end of the run." + reading;
+  return {figure_of(study, "Gaussian", gaussian), figure_of(study, "particles", particles)};
+}
+
+}  // namespace montecarta
