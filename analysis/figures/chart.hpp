@@ -13,7 +13,7 @@ namespace montecarta {
 struct Band {
   std::string legend;
   double lower = 0.0;
-  double upper = 0.0;
+  double upper = 0.0;  ///< may be infinite: no end above
 };
 
 /// A vertical axis.

@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t kBuckets = 300;
 constexpr double kBelowBand = 0.3, kAboveBand = 1000.0;  // where the axis ends at the latest
-constexpr double kLogarithmicFrom = 30.0;
+constexpr double kLogarithmicFrom = 30.0, kDecade = 10.0;
+constexpr double kBeyondAnyAxis = 1e100;   // gnuplot knows no infinity
 constexpr std::size_t kAxisPixels = 66;    // below the lowest panel: ticks and label
 constexpr std::size_t kLegendPixels = 22;  // of a row
 
@@ -22,7 +23,8 @@ struct Range {
   double greatest = 0.0;
 };
 
-/// Of all positive values of a panel, bands included; near the bands where there are some.
+/// Of all positive values of a panel, bands included; near the bands where there are some. A decade
+/// from 1 where there are none.
 Range range_of(const Panel& panel) {
   Range range;
   const auto include = [&](double value) {
@@ -34,8 +36,11 @@ Range range_of(const Panel& panel) {
   range.least = std::max(range.least, panel.least);
   for (const Band& band : panel.bands) {
     range.least = std::clamp(range.least, kBelowBand * band.lower, 0.5 * band.lower);
-    range.greatest = std::clamp(range.greatest, band.upper, kAboveBand * band.upper);
+    range.greatest = std::isfinite(band.upper)
+                         ? std::clamp(range.greatest, band.upper, kAboveBand * band.upper)
+                         : std::max(range.greatest, kDecade * band.lower);
   }
+  if (!std::isfinite(range.least)) return {1.0, kDecade};
   return range;
 }
 
@@ -84,8 +89,9 @@ std::string band_name(const Panel& panel, std::size_t b) {
 std::string bands_of(const Panel& panel, double last_time) {
   std::string script;
   for (std::size_t b = 0; b < panel.bands.size(); ++b) {
+    const auto& [legend, lower, upper] = panel.bands[b];
     const std::string ends =
-        "," + exact_text(panel.bands[b].lower) + "," + exact_text(panel.bands[b].upper) + "\n";
+        "," + exact_text(lower) + "," + exact_text(std::min(upper, kBeyondAnyAxis)) + "\n";
     script += band_name(panel, b) + " << EOD\ntime,lower,upper\n0" + ends + exact_text(last_time) +
               ends + "EOD\n";
   }

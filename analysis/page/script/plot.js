@@ -12,7 +12,9 @@ function wholeVerticalAxis(panel, isHidden) {
       if (value !== null && Number.isFinite(value)) greatest = Math.max(greatest, value);
     }
   }
-  for (const band of panel.bands) greatest = Math.max(greatest, band.upper);
+  for (const {upper} of panel.bands) {
+    if (Number.isFinite(upper)) greatest = Math.max(greatest, upper);
+  }
   return {logarithmic, from: low, to: greatest > low ? 1.05 * greatest : low + 1};
 }
 

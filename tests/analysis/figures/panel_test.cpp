@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace montecarta {
 namespace {
 
@@ -27,6 +29,21 @@ TEST(Panels, NumberManyDecadesByTheirPowers) {
   const Figure figure =
       drawn({"count", "particles", {{"one", 0, {1.0, 1e6}}}, {}, Scale::logarithmic});
   EXPECT_THAT(figure.script, HasSubstr("set format y '10^{%T}'"));
+}
+
+TEST(Panels, DrawABandThatHasNoEndAbove) {
+  const double infinite = std::numeric_limits<double>::infinity();
+  const Figure figure = drawn(
+      {"ratio", "ratio", {{"one", 0, {1.5, 300.0}}}, {{"right", 1.0, infinite}}, Scale::automatic});
+  EXPECT_THAT(figure.script, HasSubstr("set yrange [0.5:300]"));
+  EXPECT_THAT(figure.script, HasSubstr("\n0,1,1e+100\n"));
+}
+
+TEST(Panels, HaveAxesAlsoWhereNothingIsPositive) {
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  const Figure figure =
+      drawn({"count", "particles", {{"one", 0, {nothing, 0.0}}}, {}, Scale::logarithmic});
+  EXPECT_THAT(figure.script, HasSubstr("set yrange [1:10]"));
 }
 
 }  // namespace
