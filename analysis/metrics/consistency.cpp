@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/consistency.hpp"
 
-#include "analysis/metrics/bootstrap.hpp"
-
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/gamma.hpp>
 #include <boost/math/distributions/normal.hpp>
@@ -115,14 +113,13 @@ double right_trimmed(std::size_t dimension) {
   return d * part / (1.0 - 2.0 * kTrimmedShare);
 }
 
-Consistency judge(const NeesSeries& series, std::span<const double> times, double level) {
+Consistency judge(const NeesSeries& series, std::span<const double> times) {
   Consistency result;
   result.mean = mean_of_numbers(series.average);
   result.median = mean_of_numbers(series.median);
   result.trimmed = mean_of_numbers(series.trimmed);
   const std::vector<double> averages = numbers_in(series.run_averages);
   result.average_bounds = run_average_bounds(averages, series.dimension, series.average_level);
-  result.average_interval = bootstrap_mean(averages, level);
   compare_scans(series, times, result);
   result.verdict = verdict(result);
   return result;

@@ -4,6 +4,7 @@
 #include "analysis/nees_bounds.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -78,8 +79,8 @@ double right_trimmed(std::size_t dimension);
 /// Index at which the first `length` consecutive true values begin; nullopt = never.
 std::optional<std::size_t> first_lasting(const std::vector<bool>& above, std::size_t length);
 
-/// Judges a series at `level`; `times` [s] of its scans.
-Consistency judge(const NeesSeries& series, std::span<const double> times, double level);
+/// Judges a series by its bounds and its average_level; `times` [s] of its scans.
+Consistency judge(const NeesSeries& series, std::span<const double> times);
 
 /// The verdict as one reads it: "consistent", "inconsistent from 4.2 s", ...
 std::string in_words(const Consistency& consistency);

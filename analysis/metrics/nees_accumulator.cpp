@@ -97,7 +97,7 @@ NeesSeries NeesAccumulator::series(double level, const BandWalks& walks) const {
 NeesResult NeesAccumulator::result(std::span<const double> times, double level,
                                    const BandWalks& walks) const {
   NeesResult result{block_, moments_, series(level, walks), {}};
-  result.consistency = judge(result.series, times, level);
+  result.consistency = judge(result.series, times);
   return result;
 }
 

@@ -12,8 +12,8 @@
 namespace montecarta {
 namespace {
 
-// NEES outside 2^-20 and 2^80 are as far off as those at the ends.
-constexpr double kFirstOctave = -20.0, kLastOctave = 80.0, kStepsPerOctave = 16.0;
+// NEES outside 2^-16 and 2^48 are as far off as those at the ends.
+constexpr double kFirstOctave = -16.0, kLastOctave = 48.0, kStepsPerOctave = 8.0;
 
 double on_chi_square(double nees, double d, double M) {
   const boost::math::fisher_f ideal(d, M - d);

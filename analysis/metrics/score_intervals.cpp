@@ -11,8 +11,13 @@ void put_score_intervals(CellAnalysis& cell, double level) {
     auto& column = columns.emplace_back();
     for (const RunScores& run : cell.scores) column.push_back(run.*name.value);
   }
+  for (const NeesResult& nees : cell.nees) columns.push_back(nees.series.run_averages);
   const std::vector<Interval> intervals = bootstrap_means(columns, level);
-  for (std::size_t k = 0; k < intervals.size(); ++k) {
+  const std::size_t scores = score_names().size();
+  for (std::size_t k = 0; k < cell.nees.size(); ++k) {
+    cell.nees[k].consistency.average_interval = intervals[scores + k];
+  }
+  for (std::size_t k = 0; k < scores; ++k) {
     cell.lower.*score_names()[k].value = intervals[k].lower;
     cell.upper.*score_names()[k].value = intervals[k].upper;
   }

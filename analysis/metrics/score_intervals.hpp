@@ -5,7 +5,8 @@
 
 namespace montecarta {
 
-/// Fills CellAnalysis::lower and ::upper from the scores: bootstrap over runs at `level`.
+/// Fills CellAnalysis::lower and ::upper from the scores, and Consistency::average_interval of
+/// every test from its runs: one bootstrap over runs at `level`.
 void put_score_intervals(CellAnalysis& cell, double level);
 
 }  // namespace montecarta

@@ -4,6 +4,7 @@
 #include "analysis/tables/number_text.hpp"
 
 #include <algorithm>
+#include <map>
 
 namespace montecarta {
 namespace {
@@ -29,6 +30,17 @@ std::string paths_of(const CramerRaoBound& bound) {
   return bound.runs == 1 ? "of the path"
                          : "of " + std::to_string(bound.runs) +
                                " paths (root of the mean of their squares, each given its path)";
+}
+
+/// Reason, and the labels of the cells it is true of: "a, b".
+std::map<std::string, std::string> cells_without_map_errors(const StudyAnalysis& study) {
+  std::map<std::string, std::string> cells;
+  for (const CellAnalysis& cell : study.cells) {
+    if (cell.map.missing.empty()) continue;
+    std::string& labels = cells[cell.map.missing];
+    labels += (labels.empty() ? "" : ", ") + cell.label;
+  }
+  return cells;
 }
 
 }  // namespace
@@ -69,10 +81,12 @@ std::vector<std::string> map_error_notes(const StudyAnalysis& study) {
         " m2 for each landmark missed or invented (farther than " + readable(kGospaCutoff, 1) +
         " m from any partner).");
   }
-  for (const CellAnalysis& cell : study.cells) {
-    if (!cell.map.missing.empty() && study.has_truth && study.beacons > 0) {
-      notes.push_back(cell.label + ": no map errors, since " + cell.map.missing + ".");
+  if (study.has_truth && study.beacons > 0) {
+    for (const auto& [reason, cells] : cells_without_map_errors(study)) {
+      notes.push_back(cells + ": no map errors, since " + reason + ".");
     }
+  }
+  for (const CellAnalysis& cell : study.cells) {
     if (cell.map.undefined == 0) continue;
     notes.push_back(cell.label + ": the NEES of " + std::to_string(cell.map.undefined) +
                     " landmarks was not a number (left out of the average).");

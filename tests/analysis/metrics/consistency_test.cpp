@@ -35,7 +35,7 @@ NeesSeries series_of(const std::vector<double>& averages) {
 }
 
 Consistency judge(const std::vector<double>& averages) {
-  return judge(series_of(averages), every_fifth_of_a_second(averages.size()), 0.95);
+  return judge(series_of(averages), every_fifth_of_a_second(averages.size()));
 }
 
 TEST(FirstLasting, FindsTheBeginningOfTheFirstLongEnoughStretch) {
@@ -91,9 +91,9 @@ TEST(Judge, TellsOptimisticFromConservative) {
 TEST(Judge, HearsTheAverageOverTheRunWhereNoScanIsFarOff) {
   NeesSeries series = series_of(std::vector<double>(100, 3.4));
   for (int run = 0; run < 30; ++run) series.run_averages.push_back(3.4 + 0.02 * (run % 2));
-  EXPECT_EQ(judge(series, every_fifth_of_a_second(100), 0.95).verdict, Verdict::optimistic);
+  EXPECT_EQ(judge(series, every_fifth_of_a_second(100)).verdict, Verdict::optimistic);
   std::ranges::fill(series.average, 2.7);
-  EXPECT_EQ(judge(series, every_fifth_of_a_second(100), 0.95).verdict, Verdict::conservative);
+  EXPECT_EQ(judge(series, every_fifth_of_a_second(100)).verdict, Verdict::conservative);
 }
 
 // The average over one scan is the average NEES.

@@ -42,7 +42,7 @@ CellAnalysis consistent_cell() {
   pose.series.average_level = 0.975;
   pose.series.whole_run_bounds.assign(2, nees_bounds(30, 3, 0.99));
   pose.series.bounds.assign(2, nees_bounds(30, 3, 0.95));
-  pose.consistency = judge(pose.series, std::vector<double>{0.2, 0.4}, 0.95);
+  pose.consistency = judge(pose.series, std::vector<double>{0.2, 0.4});
   pose.consistency.exit_interval = Interval{4.2, std::numeric_limits<double>::infinity()};
   cell.nees = {pose};
   cell.error.position_over_time = {0.1, 0.2};
