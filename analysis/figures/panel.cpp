@@ -50,7 +50,9 @@ ChartAxis axis_of(const Panel& panel) {
   const bool wide = range.greatest > kLogarithmicFrom * range.least;
   if (panel.scale == Scale::percent) return {false, 0.0, 100.0};
   if (panel.scale == Scale::from_zero || (panel.scale == Scale::automatic && !wide)) {
-    return {false, 0.0, std::numeric_limits<double>::quiet_NaN()};
+    const bool endless =
+        std::ranges::any_of(panel.bands, [](const Band& band) { return std::isinf(band.upper); });
+    return {false, 0.0, endless ? 1.05 * range.greatest : std::numeric_limits<double>::quiet_NaN()};
   }
   if (!panel.bands.empty()) return {true, range.least, range.greatest};
   const double from = std::floor(std::log10(range.least));

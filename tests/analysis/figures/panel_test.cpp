@@ -39,6 +39,13 @@ TEST(Panels, DrawABandThatHasNoEndAbove) {
   EXPECT_THAT(figure.script, HasSubstr("\n0,1,1e+100\n"));
 }
 
+TEST(Panels, DoNotFollowABandWithoutAnEndOnALinearAxis) {
+  const double infinite = std::numeric_limits<double>::infinity();
+  const Figure figure = drawn(
+      {"ratio", "ratio", {{"one", 0, {1.5, 20.0}}}, {{"right", 1.0, infinite}}, Scale::automatic});
+  EXPECT_THAT(figure.script, HasSubstr("set yrange [0:21]"));
+}
+
 TEST(Panels, HaveAxesAlsoWhereNothingIsPositive) {
   const double nothing = std::numeric_limits<double>::quiet_NaN();
   const Figure figure =
