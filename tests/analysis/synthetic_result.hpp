@@ -8,6 +8,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -53,6 +55,15 @@ inline void spoil_estimates(std::size_t cell, std::uint64_t run, RunRecord& reco
   }
 }
 
+/// Marks a record as failed at `step`: as FORMAT.md has it, rows behind are not numbers.
+inline void fail_at(std::uint32_t step, const std::string& reason, RunRecord& record) {
+  for (const char* name : {"pose_mean", "pose_mean_mixture"}) {
+    const auto mean = record.column<double>(*record.layout().find(name));
+    std::fill(mean.begin() + 3 * (step + 1), mean.end(), std::numeric_limits<double>::quiet_NaN());
+  }
+  record.mark_failed(step, reason, 1);
+}
+
 /// A result with a perfect cell ("scripted_m4") and an overconfident one ("scripted_m3"), whose
 /// last run failed at step 5. `spoil` may change the record of a (cell, run) before it is stored.
 inline void write_synthetic_result(
@@ -70,7 +81,7 @@ inline void write_synthetic_result(
       fill_record(plan, cell, run, drive, record);
       perturb(drive, run, cell == 0 ? 1.0 : 3.0, record);
       if (spoil) spoil(cell, run, record);
-      if (cell == 1 && run + 1 == runs) record.mark_failed(5, "gain is <not> a number & worse", 1);
+      if (cell == 1 && run + 1 == runs) fail_at(5, "gain is <not> a number & worse", record);
       writer.write(cell, run, record);
     }
   }

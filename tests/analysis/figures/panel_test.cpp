@@ -42,8 +42,8 @@ TEST(Panels, DrawABandThatHasNoEndAbove) {
 TEST(Panels, DoNotFollowABandWithoutAnEndOnALinearAxis) {
   const double infinite = std::numeric_limits<double>::infinity();
   const Figure figure = drawn(
-      {"ratio", "ratio", {{"one", 0, {1.5, 20.0}}}, {{"right", 1.0, infinite}}, Scale::automatic});
-  EXPECT_THAT(figure.script, HasSubstr("set yrange [0:21]"));
+      {"ratio", "ratio", {{"one", 0, {1.5, 10.0}}}, {{"right", 1.0, infinite}}, Scale::automatic});
+  EXPECT_THAT(figure.script, HasSubstr("set yrange [0:10.5]"));
 }
 
 TEST(Panels, HaveAxesAlsoWhereNothingIsPositive) {

@@ -53,7 +53,7 @@ TEST(SamplerScale, HardlyMovesTheNeesOfManyParticles) {
 TEST(SamplerScale, GrowsWithTheNeesAndStaysFinite) {
   const SamplerScale scale(2, 5);
   double before = 0.0;
-  for (double nees = 1e-5; nees < 1e20; nees *= 3.0) {
+  for (double nees = 1e-5; nees < 1e14; nees *= 3.0) {
     EXPECT_GT(scale(nees), before) << nees;
     before = scale(nees);
   }

@@ -51,7 +51,8 @@ TEST_F(ReferenceFiles, HoldARowForEachCellAndReferenceAndForEachFix) {
   const std::string errors = read(folder_ / "csv/reference_errors.csv");
   EXPECT_THAT(errors, StartsWith("time [s],ekf_slam [m],fastslam2_m3 [m],"));
   EXPECT_EQ(std::ranges::count(errors, '\n'), 101);
-  EXPECT_THAT(read(folder_ / "csv/series_ekf_slam.csv"), StartsWith("time [s],map_landmarks\n"));
+  EXPECT_THAT(read(folder_ / "csv/series_ekf_slam.csv"),
+              StartsWith("time [s],map_landmarks,nis_per_component,nis_lower,nis_upper\n"));
   const auto names = csv_names({"ekf_slam"});
   EXPECT_THAT(names, testing::IsSupersetOf({"references.csv", "reference_errors.csv"}));
 }
