@@ -10,7 +10,7 @@ Section calibration_section(const StudyAnalysis& study) {
   Section section{"Calibration"};
   add_table("calibration", calibration_table(study), section);
   add_notes(calibration_notes(study), section);
-  section.figures = calibration_figures(study);
+  section.figures = figure_section(calibration_figures(study)).figures;
   return section;
 }
 
