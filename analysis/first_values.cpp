@@ -3,7 +3,7 @@
 
 #include "analysis/measured_run.hpp"
 #include "analysis/metrics/summary.hpp"
-#include "analysis/printed/run_samples.hpp"
+#include "analysis/metrics/t_quantile.hpp"
 
 #include <limits>
 
@@ -22,7 +22,7 @@ std::vector<double> first_values(const ResultFile& file, const StoredCell& cell,
   CellSums sums(sticks);
   add_runs(RunReader(file, cell), complete, cell.particles, sticks, parallel, slots, sums);
   std::vector<double> values;
-  for (const RunScores& run : sums.result().scores) values.push_back(run.*score.value);
+  for (const RunScores& run : sums.scores()) values.push_back(run.*score.value);
   return values;
 }
 

@@ -70,19 +70,25 @@ void CellSums::add(const MeasuredRun& run) {
   if (calibrates_) calibration_.add(run.pits);
 }
 
+std::vector<RunScores> CellSums::scores() const {
+  std::vector<RunScores> scores = sums_.scores();
+  if (!references_.empty()) put_leading_scores(references_.front().result(), scores);
+  map_.put_scores(scores);
+  for (std::size_t i = 0; i < beacons_.size(); ++i) {
+    if (!beacons_[i]) continue;
+    scores[i].beacons_found = beacons_[i]->found;
+    scores[i].beacon_rms = beacons_[i]->rms;
+    scores[i].beacon_aligned_rms = beacons_[i]->aligned_rms;
+  }
+  return scores;
+}
+
 CellAnalysis CellSums::result() {
   CellAnalysis cell = sums_.result();
   for (const ReferenceAccumulator& sums : references_) cell.references.push_back(sums.result());
-  if (!cell.references.empty()) put_leading_scores(cell.references.front(), cell.scores);
   cell.map = map_.result(level_, knows_landmarks_);
-  map_.put_scores(cell.scores);
   cell.calibration = calibration_.result(times_, level_);
-  for (std::size_t i = 0; i < beacons_.size(); ++i) {
-    if (!beacons_[i]) continue;
-    cell.scores[i].beacons_found = beacons_[i]->found;
-    cell.scores[i].beacon_rms = beacons_[i]->rms;
-    cell.scores[i].beacon_aligned_rms = beacons_[i]->aligned_rms;
-  }
+  cell.scores = scores();
   put_score_intervals(cell, level_);
   return cell;
 }

@@ -56,6 +56,8 @@ class CellSums {
         calibrates_(sticks.calibrates) {}
 
   void add(const MeasuredRun& run);
+  /// {run} All single numbers of every run.
+  std::vector<RunScores> scores() const;
   /// Fills all that complete runs say; label, failures and missing runs are the caller's.
   CellAnalysis result();
 

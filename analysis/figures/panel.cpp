@@ -140,6 +140,7 @@ std::size_t add_legend(const Panel& panel, Figure& figure) {
 
 void add_panels(const std::vector<Panel>& panels, const std::vector<double>& times,
                 Figure& figure) {
+  if (panels.empty() || panels.front().curves.empty()) return;
   const double last = times.back();
   const std::size_t rows = add_legend(panels.front(), figure);
   const std::size_t top = rows * kLegendPixels + 24;

@@ -33,7 +33,8 @@ struct Panel {
   double least = 0.0;  ///< a logarithmic axis begins here at the earliest
 };
 
-/// Adds panels one above the other, with one time axis and one legend, to a figure.
+/// Adds panels one above the other, with one time axis and one legend, to a figure; nothing where
+/// the first has no curves.
 void add_panels(const std::vector<Panel>& panels, const std::vector<double>& times, Figure& figure);
 
 }  // namespace montecarta

@@ -78,10 +78,6 @@ Panel error_panel(const StudyAnalysis& study, const std::string& name, const std
   return panel;
 }
 
-void add_if_shown(const std::vector<Panel>& panels, const StudyAnalysis& study, Figure& figure) {
-  if (!panels.front().curves.empty()) add_panels(panels, study.times, figure);
-}
-
 }  // namespace
 
 Figure anees_figure(const StudyAnalysis& study) {
@@ -91,8 +87,8 @@ Figure anees_figure(const StudyAnalysis& study) {
       "band belongs to a filter whose stated uncertainty fits its real errors; a curve that climbs "
       "above the band and stays there belongs to a filter that is sure of a wrong answer. The axis "
       "ends at 1000 times the band; the numbers hold every value, also of curves beyond the top.";
-  add_if_shown({anees_panel(study, ErrorBlock::pose, "anees_pose", "ANEES of the pose")}, study,
-               figure);
+  add_panels({anees_panel(study, ErrorBlock::pose, "anees_pose", "ANEES of the pose")}, study.times,
+             figure);
   return figure;
 }
 
@@ -102,9 +98,9 @@ Figure anees_parts_figure(const StudyAnalysis& study) {
       "The same test for position alone (two components, right around 2) and heading alone (one "
       "component, right around 1): the curve that leaves its band first shows where trouble "
       "begins.";
-  add_if_shown({anees_panel(study, ErrorBlock::position, "anees_position", "ANEES of position"),
-                anees_panel(study, ErrorBlock::heading, "anees_heading", "ANEES of heading")},
-               study, figure);
+  add_panels({anees_panel(study, ErrorBlock::position, "anees_position", "ANEES of position"),
+              anees_panel(study, ErrorBlock::heading, "anees_heading", "ANEES of heading")},
+             study.times, figure);
   return figure;
 }
 
@@ -127,11 +123,11 @@ Figure rmse_figure(const StudyAnalysis& study) {
         " The dashed line is the Cramer-Rao bound: no filter without bias can stay below it, so "
         "the gap is what a better filter could gain.";
   }
-  add_if_shown(
+  add_panels(
       {error_panel(study, "rmse_position", "position RMSE [m]", position, study.bound.position),
        error_panel(study, "rmse_heading", "heading RMSE [deg]", heading,
                    scaled(study.bound.heading, 180.0 / kPi))},
-      study, figure);
+      study.times, figure);
   return figure;
 }
 
@@ -141,13 +137,13 @@ Figure diversity_figure(const StudyAnalysis& study) {
       "Distinct ancestors of the particles, mean over runs: parents in the last resampling, "
       "ancestors 10 s ago, and ancestors at the start. When few are left, the particles tell one "
       "story in many copies, and the filter cannot know how wrong that story is.";
-  add_if_shown({ancestor_panel(study, "ancestors_last_resampling", "parents, last resampling",
-                               &DiversitySummary::last_resampling_over_time),
-                ancestor_panel(study, "ancestors_10_s_ago", "ancestors, 10 s ago",
-                               &DiversitySummary::lag_over_time),
-                ancestor_panel(study, "ancestors_at_start", "ancestors at the start",
-                               &DiversitySummary::root_over_time)},
-               study, figure);
+  add_panels({ancestor_panel(study, "ancestors_last_resampling", "parents, last resampling",
+                             &DiversitySummary::last_resampling_over_time),
+              ancestor_panel(study, "ancestors_10_s_ago", "ancestors, 10 s ago",
+                             &DiversitySummary::lag_over_time),
+              ancestor_panel(study, "ancestors_at_start", "ancestors at the start",
+                             &DiversitySummary::root_over_time)},
+             study.times, figure);
   return figure;
 }
 
@@ -160,8 +156,8 @@ Figure ess_figure(const StudyAnalysis& study) {
     if (!cell.weights) return std::vector<double>{};
     return scaled(cell.weights->ess_over_time, 100.0 / static_cast<double>(cell.particles));
   };
-  add_if_shown({{"ess_share", "effective particles [%]", curves(study, share), {}, Scale::percent}},
-               study, figure);
+  add_panels({{"ess_share", "effective particles [%]", curves(study, share), {}, Scale::percent}},
+             study.times, figure);
   return figure;
 }
 

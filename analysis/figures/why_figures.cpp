@@ -8,10 +8,6 @@
 namespace montecarta {
 namespace {
 
-void add(const std::vector<Panel>& panels, const StudyAnalysis& study, Figure& figure) {
-  if (!panels.empty()) add_panels(panels, study.times, figure);
-}
-
 std::vector<double> in_percent(std::vector<double> shares) {
   for (double& share : shares) share *= 100.0;
   return shares;
@@ -37,8 +33,9 @@ Figure survival_figure(const StudyAnalysis& study) {
   const CellValues share = [](const CellAnalysis& cell) {
     return cell.survival ? in_percent(cell.survival->share) : std::vector<double>{};
   };
-  add(cell_panels(study, {"runs_right", "runs still right [%]", {}, {}, Scale::percent}, share),
-      study, figure);
+  add_panels(
+      cell_panels(study, {"runs_right", "runs still right [%]", {}, {}, Scale::percent}, share),
+      study.times, figure);
   return figure;
 }
 
@@ -61,7 +58,7 @@ Figure why_figure(const StudyAnalysis& study) {
        cell_panels(study, {"bias_share", "bias in ANEES [%]", {}, {}, Scale::percent}, bias)) {
     panels.push_back(std::move(panel));
   }
-  add(panels, study, figure);
+  add_panels(panels, study.times, figure);
   return figure;
 }
 
@@ -74,8 +71,9 @@ Figure innovation_figure(const StudyAnalysis& study) {
   const CellValues nis = [](const CellAnalysis& cell) {
     return cell.innovations ? cell.innovations->average : std::vector<double>{};
   };
-  add(cell_panels(study, {"nis_per_component", "NIS per component", {}, {}, Scale::automatic}, nis),
-      study, figure);
+  add_panels(
+      cell_panels(study, {"nis_per_component", "NIS per component", {}, {}, Scale::automatic}, nis),
+      study.times, figure);
   return figure;
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/bootstrap.hpp"
 
+#include "analysis/metrics/t_quantile.hpp"
 #include "engine/errors.hpp"
 #include "engine/random/stream.hpp"
 
 #include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -44,8 +44,7 @@ Shape shape_of(std::span<const double> values) {
 /// How far out, in normal deviates, the tails of Student's t lie for so many runs.
 double widened_deviate(std::size_t runs, double level) {
   const auto n = static_cast<double>(runs);
-  const boost::math::students_t t(n - 1.0);
-  return std::sqrt(n / (n - 1.0)) * boost::math::quantile(t, 0.5 + 0.5 * level);
+  return std::sqrt(n / (n - 1.0)) * t_quantile(runs, level);
 }
 
 /// Share of the replicates below the mean, in normal deviates; ties count half.

@@ -43,6 +43,8 @@ class CellAccumulator {
 
   /// `metrics` measured on `rows`.
   void add(const RunRows& rows, const RunMetrics& metrics);
+  /// {run} What a run says by itself.
+  const std::vector<RunScores>& scores() const { return scores_; }
   /// Fills all that complete runs say; label, failures and missing runs are the caller's.
   CellAnalysis result();
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/consistency.hpp"
 
+#include "analysis/metrics/t_quantile.hpp"
+
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/gamma.hpp>
 #include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 
 #include <algorithm>
 #include <array>
@@ -92,7 +93,7 @@ Interval run_average_bounds(std::span<const double> run_averages, std::size_t di
   // Of a right filter the average varies no more than a single scan does; runs that went astray do.
   const double variance = std::clamp(squares / (n - 1.0), kLeastVariance * d, 2.0 * d) / n;
   // The variance is an estimate, which Student's t answers.
-  const double deviate = boost::math::quantile(boost::math::students_t(n - 1.0), 0.5 + 0.5 * level);
+  const double deviate = t_quantile(run_averages.size(), level);
   const double tail = boost::math::cdf(boost::math::normal(), -deviate);
   const boost::math::gamma_distribution<> average(d * d / variance, variance / d);
   return {boost::math::quantile(average, tail),

@@ -2,6 +2,7 @@
 #include "analysis/metrics/innovations.hpp"
 
 #include "analysis/metrics/bootstrap.hpp"
+#include "analysis/metrics/finite_mean.hpp"
 
 #include <boost/math/distributions/normal.hpp>
 
@@ -32,13 +33,8 @@ Products products_at(std::span<const double> values, std::size_t lag) {
 }
 
 void subtract_mean(std::vector<double>& values) {
-  double sum = 0.0, n = 0.0;
-  for (const double value : values) {
-    if (std::isnan(value)) continue;
-    sum += value;
-    n += 1.0;
-  }
-  for (double& value : values) value -= sum / n;
+  const double mean = mean_of_finite(values);
+  for (double& value : values) value -= mean;
 }
 
 /// What white innovations stay below at all lags.

@@ -2,32 +2,22 @@
 #include "analysis/metrics/lineages.hpp"
 
 #include "analysis/metrics/diversity.hpp"
+#include "analysis/metrics/summary.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace montecarta {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kMostScans = 32;
 constexpr double kSameTime = 1e-9;
-
-struct Mean {
-  double sum = 0.0, n = 0.0;
-  void add(double value) {
-    sum += value;
-    n += 1.0;
-  }
-  double value() const { return n > 0.0 ? sum / n : kNaN; }
-};
 
 }  // namespace
 
 struct LineageWalker::Sums {
-  std::array<Mean, kLineageLags.size()> ancestors;
-  Mean coalescence, coalesced, variance, squared_error;
+  std::array<SummaryOf, kLineageLags.size()> ancestors;
+  SummaryOf coalescence, coalesced, variance, squared_error;
 };
 
 /// With `ancestor_` telling the families of the particles of scan `s`.
@@ -90,12 +80,12 @@ Lineages LineageWalker::walk(const RunRows& rows, std::size_t particles,
   }
   Lineages lineages;
   for (std::size_t lag = 0; lag < kLineageLags.size(); ++lag) {
-    lineages.ancestors[lag] = sums.ancestors[lag].value();
+    lineages.ancestors[lag] = sums.ancestors[lag].result().mean;
   }
-  lineages.coalescence = sums.coalescence.value();
-  lineages.coalesced_share = sums.coalesced.value();
-  lineages.monte_carlo_variance = sums.variance.value();
-  lineages.squared_error = sums.squared_error.value();
+  lineages.coalescence = sums.coalescence.result().mean;
+  lineages.coalesced_share = sums.coalesced.result().mean;
+  lineages.monte_carlo_variance = sums.variance.result().mean;
+  lineages.squared_error = sums.squared_error.result().mean;
   return lineages;
 }
 

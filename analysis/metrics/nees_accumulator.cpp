@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/nees_accumulator.hpp"
 
+#include "analysis/metrics/finite_mean.hpp"
+
 #include <cmath>
 #include <map>
 
@@ -9,16 +11,6 @@ namespace {
 
 /// A right filter's NEES is above ten times its mean once in a million samples.
 constexpr double kCapFactor = 10.0;
-
-double mean_of_finite(const std::vector<double>& values) {
-  double sum = 0.0, n = 0.0;
-  for (const double value : values) {
-    if (!std::isfinite(value)) continue;
-    sum += value;
-    n += 1.0;
-  }
-  return sum / n;  // NaN where none is finite
-}
 
 /// Both bands of every scan, from the runs that are valid there: nearly always of one number.
 class BandsOf {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/run_scores.hpp"
 
+#include "analysis/metrics/finite_mean.hpp"
+
 #include <cmath>
 
 namespace montecarta {
@@ -22,18 +24,6 @@ double mean_of_roots(const std::vector<double>& squares) {
   double sum = 0.0;
   for (const double square : squares) sum += std::sqrt(square);
   return sum / static_cast<double>(squares.size());
-}
-
-/// Over the scans that have a NEES.
-double mean_of_finite(const std::vector<double>& values) {
-  double sum = 0.0;
-  std::size_t n = 0;
-  for (const double value : values) {
-    if (!std::isfinite(value)) continue;
-    sum += value;
-    ++n;
-  }
-  return n == 0 ? RunScores::kNone : sum / static_cast<double>(n);
 }
 
 void score_errors(const RunMetrics& metrics, RunScores& scores) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/printed/comparison.hpp"
 
+#include "analysis/metrics/t_quantile.hpp"
 #include "analysis/printed/run_samples.hpp"
 #include "analysis/tables/number_text.hpp"
 

@@ -2,8 +2,7 @@
 #include "analysis/printed/run_samples.hpp"
 
 #include "analysis/comparison/paired_runs.hpp"
-
-#include <boost/math/distributions/students_t.hpp>
+#include "analysis/metrics/t_quantile.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -109,11 +108,6 @@ Sample difference_of(const CellAnalysis* left, const CellAnalysis* right,
   std::vector<double> differences;
   for (const auto& [l, r] : pairs_of(*left, *right, score->value)) differences.push_back(l - r);
   return sample_over(differences);
-}
-
-double t_quantile(std::size_t n, double level) {
-  const boost::math::students_t t(static_cast<double>(n - 1));
-  return boost::math::quantile(t, 0.5 + 0.5 * level);
 }
 
 Interval interval_of(const Sample& sample, double level) {

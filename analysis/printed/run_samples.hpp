@@ -26,8 +26,6 @@ Sample ratio_of(const CellAnalysis* cell, const CellAnalysis* unit, const std::s
 Sample difference_of(const CellAnalysis* left, const CellAnalysis* right,
                      const std::string& metric);
 
-/// Two-sided quantile of Student's t with n - 1 degrees of freedom.
-double t_quantile(std::size_t n, double level);
 /// Of the mean; NaN of fewer than two runs.
 Interval interval_of(const Sample& sample, double level);
 

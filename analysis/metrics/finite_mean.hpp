@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <span>
+
+namespace montecarta {
+
+/// Mean of the finite values, in index order; NaN where there is none.
+inline double mean_of_finite(std::span<const double> values) {
+  double sum = 0.0, n = 0.0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    sum += value;
+    n += 1.0;
+  }
+  return sum / n;
+}
+
+}  // namespace montecarta
