@@ -54,6 +54,17 @@ Block gather_block(std::span<const Block> from, std::span<const std::uint32_t> s
   return block;
 }
 
+/// One particle's numbers out of a block into the same lane of another.
+template <class Real, class Block>
+void copy_lane(const Block& from, Block& to, std::size_t lane) {
+  constexpr std::size_t fields = BlockLayout<Real, Block>::kFields;
+  const double* in = reinterpret_cast<const double*>(&from);
+  double* out = reinterpret_cast<double*>(&to);
+  for (std::size_t f = 0; f < fields; ++f) {
+    out[f * kLanesOf<Real> + lane] = in[f * kLanesOf<Real> + lane];
+  }
+}
+
 /// `to` becomes the population in which particle i is a copy of particle source[i] of `from`.
 template <class Real, class Block>
 void gather(const std::vector<Block>& from, std::span<const std::uint32_t> source,

@@ -45,10 +45,10 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
   /// Moves the cloud, in the modes in which it is one population.
   template <class Matches>
   void prepare(const StepContext& context, const Matches& matches, const Weights<Real>& weights,
-               const std::vector<BasicPose<Real>>& poses) {
+               const std::vector<BasicPose<Real>>& poses, ParticleMaps<Real>& /*maps*/) {
     if (settings_.mode == EvolutionMode::honest) return;
     for (std::size_t b = 0; b < poses.size(); ++b) {
-      predicted_[b] = this->predicted(poses[b]);
+      predicted_[b] = this->predicted(b, poses[b]);
       centres_[b] = predicted_[b].mean;
     }
     if (matches.matches() == 0) return;
@@ -64,7 +64,7 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
   template <class Matches, class Note>
   Weighing<Real> weigh_and_draw(const StepContext& context, const Matches& matches, std::size_t b,
                                 BasicPose<Real>& pose, const Note& note) {
-    const PoseGaussian<Real> prior = this->predicted(pose);
+    const PoseGaussian<Real> prior = this->predicted(b, pose);
     PoseGaussian<Real> posterior = prior;
     if (!pays_for_draw()) posterior.mean = centres_[b];
     Evidence<Real> closed, drawn;

@@ -56,8 +56,10 @@ class FastSlam final : public SlamFilter {
   void update(const StepContext& context, Scan scan) override {
     settle();
     after_update_ = true;
-    association_.associate(context, scan, maps_,
-                           [&](std::size_t b) { return proposal_.predicted(poses_[b]); });
+    proposal_.begin_scan(context, poses_);
+    association_.associate(
+        context, scan, maps_, [&](std::size_t b) { return proposal_.predicted(b, poses_[b]); },
+        [&](auto&&... sight) { return proposal_.expected(sight...); });
     report_ = {.ess = weights_.effective()};
     const bool blind = association_.found_nothing();
     if (!blind) weigh_and_draw(context);
@@ -80,7 +82,7 @@ class FastSlam final : public SlamFilter {
     for (std::size_t k = 0; k < matched_weights_.size(); ++k) {
       matched_weights_[k] = association_.matched_weight(k, weights_);
     }
-    proposal_.prepare(context, association_, weights_, poses_);
+    proposal_.prepare(context, association_, weights_, poses_, maps_);
     tasks.run(context,
               [&](std::size_t task, std::size_t b) { weigh_and_draw_block(context, task, b); });
     report_.log_likelihood = weights_.normalise();
@@ -103,9 +105,14 @@ class FastSlam final : public SlamFilter {
   }
 
   void add_new_landmarks() {
-    association_.add_new(maps_, [&](std::size_t b, const RangeBearing<Real>& seen) {
-      return proposal_.birth(poses_[b], seen);
-    });
+    association_.add_new(
+        maps_,
+        [&](std::size_t b, const RangeBearing<Real>& seen) {
+          return proposal_.birth(b, poses_[b], seen);
+        },
+        [&](std::size_t b, std::uint32_t slot, const auto& put) {
+          proposal_.settled(maps_, b, slot, put);
+        });
   }
 
   void decide_on_resampling(const StepContext& context) {
@@ -131,6 +138,7 @@ class FastSlam final : public SlamFilter {
       std::swap(poses_, resampled_poses_);
       maps_.resample(parents_);
       association_.resample(parents_);
+      proposal_.resample(parents_);
       weights_.make_equal();
       ancestors_ = parents_;
     } else {

@@ -19,7 +19,8 @@ void FastSlam<Real, Proposal, Associating>::report_innovations() {
 template <class Real, class Proposal, class Associating>
 void FastSlam<Real, Proposal, Associating>::particles(const ParticleColumns& columns) const {
   for (std::size_t i = 0; i < columns.pose.size() / 3; ++i) {
-    const BasicPose<Real> pose = proposal_.predicted(poses_[i / kLanesOf<Real>]).mean;
+    const std::size_t b = i / kLanesOf<Real>;
+    const BasicPose<Real> pose = proposal_.predicted(b, poses_[b]).mean;
     const std::size_t lane = i % kLanesOf<Real>;
     columns.pose[3 * i] = get(pose.x, lane);
     columns.pose[3 * i + 1] = get(pose.y, lane);

@@ -21,14 +21,15 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
   /// Nothing is to be decided for all particles together.
   template <class Matches>
   void prepare(const StepContext& /*context*/, const Matches& /*matches*/,
-               const Weights<Real>& /*weights*/, const std::vector<BasicPose<Real>>& /*poses*/) {}
+               const Weights<Real>& /*weights*/, const std::vector<BasicPose<Real>>& /*poses*/,
+               ParticleMaps<Real>& /*maps*/) {}
 
   /// Refines, draws and weighs one block and updates its landmarks; returns the log of the weight's
   /// factor.
   template <class Matches, class Note>
   Weighing<Real> weigh_and_draw(const StepContext& context, const Matches& matches, std::size_t b,
                                 BasicPose<Real>& pose, const Note& note) {
-    const PoseGaussian<Real> prior = this->predicted(pose);
+    const PoseGaussian<Real> prior = this->predicted(b, pose);
     PoseGaussian<Real> posterior = prior;
     Evidence<Real> closed, drawn;
     this->refine(matches, b, posterior, closed, note);

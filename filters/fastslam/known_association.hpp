@@ -5,8 +5,10 @@
 #include "engine/runs/drive.hpp"
 #include "engine/runs/slam_filter.hpp"
 #include "filters/fastslam/particle_maps.hpp"
+#include "filters/moments/correlated_map.hpp"
 #include "filters/moments/linearised.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -22,9 +24,9 @@ class KnownAssociation {
   void clear() { std::fill(slot_of_.begin(), slot_of_.end(), kUnseen); }
 
   /// Sorts the scan into known and new landmarks.
-  template <class Predicted>
+  template <class Predicted, class Expected>
   void associate(const StepContext& /*context*/, Scan scan, ParticleMaps<Real>& maps,
-                 const Predicted& /*predicted*/) {
+                 const Predicted& /*predicted*/, const Expected& /*expected*/) {
     slots_.clear(), seen_.clear(), new_.clear();
     for (const Detection& detection : scan) {
       if (detection.identity == Detection::kClutter) continue;
@@ -56,6 +58,21 @@ class KnownAssociation {
     for (std::size_t k = 0; k < slots_.size(); ++k)
       visit(k, opened_[k].at(b), seen_[k], Everywhere());
   }
+  /// visit(slot) for the landmarks of all matches.
+  template <class Visit>
+  void each_slot(const Visit& visit) const {
+    for (const std::uint32_t slot : slots_) visit(slot);
+  }
+  /// Block b of a slot of a match.
+  const LandmarkGaussian<Real>& landmark_in(std::uint32_t slot, std::size_t b) const {
+    const auto found = std::find(slots_.begin(), slots_.end(), slot);
+    return opened_[static_cast<std::size_t>(found - slots_.begin())].fetch(b);
+  }
+  /// Which landmark of a correlated map match k is; index_of(slot) says where that holds a slot.
+  template <class IndexOf>
+  ForAll where(std::size_t /*b*/, std::size_t k, const IndexOf& index_of) const {
+    return {index_of(slots_[k])};
+  }
   /// Nobody errs: clutter is left out, all else goes where it belongs.
   AssociationCounts counts(const Weights<Real>& /*weights*/) const {
     return {.correct = static_cast<double>(slots_.size() + new_.size())};
@@ -67,15 +84,18 @@ class KnownAssociation {
   /// All particles explain the same detections, so there is nothing to make equal.
   Real unmatched_log_weight(std::size_t /*b*/) const { return Real(0.0); }
 
-  /// Gives every new landmark a slot, filled by birth(block, seen).
-  template <class Birth>
-  void add_new(ParticleMaps<Real>& maps, const Birth& birth) {
+  /// Gives every new landmark a slot, filled by birth(block, seen); then settled(block, slot,
+  /// put), where put(from, to) copies the lanes it is new for.
+  template <class Birth, class Settled>
+  void add_new(ParticleMaps<Real>& maps, const Birth& birth, const Settled& settled) {
     for (const Detection& detection : new_) {
       const std::uint32_t slot = maps.add();
       slot_of_[static_cast<std::size_t>(detection.identity)] = static_cast<std::int32_t>(slot);
       const auto blocks = maps.blocks_of(slot);
-      for (std::size_t b = 0; b < blocks.size(); ++b)
+      for (std::size_t b = 0; b < blocks.size(); ++b) {
         blocks[b] = birth(b, sight_of<Real>(detection));
+        settled(b, slot, [](const auto& from, auto& to) { to = from; });
+      }
     }
   }
   void resample(std::span<const std::uint32_t> /*parents*/) {}

@@ -3,6 +3,7 @@
 
 #include "engine/particles/block_tasks.hpp"
 #include "engine/random/normals.hpp"
+#include "filters/fastslam/drawn_poses.hpp"
 #include "filters/models/ackermann.hpp"
 #include "filters/moments/cloud_moments.hpp"
 #include "filters/moments/linearised.hpp"
@@ -14,10 +15,10 @@ namespace montecarta {
 /// FastSLAM I (SPEC 6): every particle moves with control noise of its own at every step; the scan
 /// only weighs it.
 template <class Real>
-class MotionSampling {
+class MotionSampling : public DrawnPoses<Real> {
  public:
   explicit MotionSampling(const Belief& belief)
-      : belief_(belief), noise_(SensorNoise::of(belief)) {}
+      : DrawnPoses<Real>(SensorNoise::of(belief)), belief_(belief) {}
 
   void start(const std::vector<BasicPose<Real>>& /*poses*/) {}
 
@@ -30,11 +31,14 @@ class MotionSampling {
         });
   }
   /// The pose is certain within a particle.
-  PoseGaussian<Real> predicted(const BasicPose<Real>& pose) const { return {pose, {}}; }
+  PoseGaussian<Real> predicted(std::size_t /*b*/, const BasicPose<Real>& pose) const {
+    return {pose, {}};
+  }
 
   template <class Matches>
   void prepare(const StepContext& /*context*/, const Matches& /*matches*/,
-               const Weights<Real>& /*weights*/, const std::vector<BasicPose<Real>>& /*poses*/) {}
+               const Weights<Real>& /*weights*/, const std::vector<BasicPose<Real>>& /*poses*/,
+               ParticleMaps<Real>& /*maps*/) {}
 
   /// Weighs one block by the likelihood at its poses and updates its landmarks.
   template <class Matches, class Note>
@@ -43,12 +47,13 @@ class MotionSampling {
     Evidence<Real> likelihood;
     matches.read(b, [](auto&&...) {});
     matches.update(b, [&](std::size_t k, auto& landmark, const auto& seen, const auto& mask) {
-      note(k, update_landmark(landmark, pose, seen, noise_, mask, likelihood), mask);
+      note(k, update_landmark(landmark, pose, seen, this->noise(), mask, likelihood), mask);
     });
     return {likelihood.log_density(), likelihood.left_out()};
   }
-  LandmarkGaussian<Real> birth(const BasicPose<Real>& pose, const RangeBearing<Real>& seen) const {
-    return new_landmark(pose, seen, noise_);
+  LandmarkGaussian<Real> birth(std::size_t /*b*/, const BasicPose<Real>& pose,
+                               const RangeBearing<Real>& seen) const {
+    return new_landmark(pose, seen, this->noise());
   }
   void end_scan() {}
   void settle() {}
@@ -68,7 +73,6 @@ class MotionSampling {
   }
 
   Belief belief_;
-  SensorNoise noise_;
 };
 
 }  // namespace montecarta

@@ -9,6 +9,7 @@
 #include "filters/association/birth_identities.hpp"
 #include "filters/association/nearest.hpp"
 #include "filters/fastslam/particle_maps.hpp"
+#include "filters/moments/correlated_map.hpp"
 #include "filters/moments/linearised.hpp"
 
 #include <algorithm>
@@ -27,7 +28,6 @@ class NearestAssociation {
                      const Belief& belief)
       : particles_(particles),
         settings_(settings),
-        noise_(SensorNoise::of(belief)),
         log_new_density_(log_new_density(settings, belief)),
         counts_(blocks_for<Real>(particles), Real(0.0)),
         resampled_counts_(counts_),
@@ -38,10 +38,11 @@ class NearestAssociation {
     made_of_.clear();
   }
 
-  /// Judges every detection by every particle's map; predicted(b) is the pose Gaussian of block b.
-  template <class Predicted>
+  /// Judges every detection by every particle's map; predicted(b) is the pose Gaussian of block b,
+  /// expected(b, slot, pose, landmark, sightline) the covariance of what should be seen.
+  template <class Predicted, class Expected>
   void associate(const StepContext& context, Scan scan, ParticleMaps<Real>& maps,
-                 const Predicted& predicted) {
+                 const Predicted& predicted, const Expected& expected) {
     scan_ = scan;
     seen_.clear();
     for (const Detection& detection : scan) seen_.push_back(sight_of<Real>(detection));
@@ -50,7 +51,8 @@ class NearestAssociation {
     maps.open(slots_, opened_);
     pairings_.resize(maps.blocks() * kLanes * seen_.size());
     searches_.resize(pairings_.size());
-    context.parallel_for(maps.blocks(), [&](std::size_t b) { judge_block(b, predicted(b)); });
+    context.parallel_for(maps.blocks(),
+                         [&](std::size_t b) { judge_block(b, predicted(b), expected); });
   }
 
   bool found_nothing() const {
@@ -85,9 +87,33 @@ class NearestAssociation {
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         const Pairing& pairing = pairings_of(b * kLanes + lane)[k];
         if (pairing.verdict == Verdict::matched)
-          copy_lane(landmark, opened_[pairing.landmark].at(b), lane);
+          copy_lane<Real>(landmark, opened_[pairing.landmark].at(b), lane);
       }
     }
+  }
+  /// visit(slot) for the landmarks of all matches, each perhaps many times.
+  template <class Visit>
+  void each_slot(const Visit& visit) const {
+    for (const Pairing& pairing : pairings_) {
+      if (pairing.verdict == Verdict::matched) visit(pairing.landmark);
+    }
+  }
+  /// Block b of any slot.
+  const LandmarkGaussian<Real>& landmark_in(std::uint32_t slot, std::size_t b) const {
+    return opened_[slot].at(b);
+  }
+  /// Which landmark of a correlated map each lane takes detection k for; index_of(slot) says where
+  /// that holds a slot. A lane without a match gets a harmless one.
+  template <class IndexOf>
+  ForEach<Real> where(std::size_t b, std::size_t k, const IndexOf& index_of) const {
+    ForEach<Real> at{};
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const Pairing& pairing = pairings_of(b * kLanes + lane)[k];
+      if (pairing.verdict == Verdict::matched) {
+        at.index[lane] = static_cast<std::uint32_t>(index_of(pairing.landmark));
+      }
+    }
+    return at;
   }
   /// log p0 for every detection that a particle cannot explain, so that all weigh by as many
   /// factors.
@@ -116,10 +142,12 @@ class NearestAssociation {
     return mean;
   }
 
-  template <class Birth>
-  void add_new(ParticleMaps<Real>& maps, const Birth& birth) {
+  /// Adds birth(block, seen) to the maps that have it new; then settled(block, slot, put), where
+  /// put(from, to) copies the one lane that has that slot for it.
+  template <class Birth, class Settled>
+  void add_new(ParticleMaps<Real>& maps, const Birth& birth, const Settled& settled) {
     for (std::size_t k = 0; k < seen_.size(); ++k) {
-      for (std::size_t b = 0; b < maps.blocks(); ++b) add_to_block(maps, b, k, birth);
+      for (std::size_t b = 0; b < maps.blocks(); ++b) add_to_block(maps, b, k, birth, settled);
     }
   }
   void resample(std::span<const std::uint32_t> parents) {
@@ -144,12 +172,13 @@ class NearestAssociation {
     return std::span(pairings_).subspan(particle * seen_.size(), seen_.size());
   }
 
-  void judge_block(std::size_t b, const PoseGaussian<Real>& pose) {
+  template <class Expected>
+  void judge_block(std::size_t b, const PoseGaussian<Real>& pose, const Expected& expected) {
     const std::span<NearestSearch> searches =
         std::span(searches_).subspan(b * kLanes * seen_.size(), kLanes * seen_.size());
     std::ranges::fill(searches, NearestSearch{});
     for (std::size_t j = 0; j < opened_.size(); ++j)
-      offer(b, j, opened_[j].fetch(b), pose, searches);
+      offer(b, j, opened_[j].fetch(b), pose, expected, searches);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::span<Pairing> pairings = pairings_of(b * kLanes + lane);
       for (std::size_t k = 0; k < seen_.size(); ++k) {
@@ -160,14 +189,15 @@ class NearestAssociation {
   }
 
   /// Offers landmark j to every detection of the scan; `searches` {detection, lane}.
+  template <class Expected>
   void offer(std::size_t b, std::size_t j, const LandmarkGaussian<Real>& landmark,
-             const PoseGaussian<Real>& pose, std::span<NearestSearch> searches) const {
+             const PoseGaussian<Real>& pose, const Expected& expected,
+             std::span<NearestSearch> searches) const {
     const Sightline<Real> s = sightline(pose.mean, landmark.mean);
     const auto owned = Real(static_cast<double>(j)) < counts_[b];
     const Real never(std::numeric_limits<double>::infinity());
     // Only the innovation itself differs from detection to detection; most lie far away.
-    const Innovation<Real> spread =
-        innovation_of(pose.covariance, s, RangeBearing<Real>{}, landmark.covariance, noise_);
+    const Innovation<Real> spread = expected(b, static_cast<std::uint32_t>(j), pose, landmark, s);
     for (std::size_t k = 0; k < seen_.size(); ++k) {
       const Real distance = select(owned, spread.squared(residual(seen_[k], s)), never);
       if (!any(distance < Real(settings_.new_gate))) continue;
@@ -194,22 +224,14 @@ class NearestAssociation {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const Pairing& pairing = pairings_of(b * kLanes + lane)[k];
       if (pairing.verdict == Verdict::matched)
-        copy_lane(opened_[pairing.landmark].at(b), landmark, lane);
+        copy_lane<Real>(opened_[pairing.landmark].at(b), landmark, lane);
     }
     return landmark;
   }
 
-  static void copy_lane(const LandmarkGaussian<Real>& from, LandmarkGaussian<Real>& to,
-                        std::size_t lane) {
-    set(to.mean.x, lane, get(from.mean.x, lane));
-    set(to.mean.y, lane, get(from.mean.y, lane));
-    set(to.covariance.xx, lane, get(from.covariance.xx, lane));
-    set(to.covariance.xy, lane, get(from.covariance.xy, lane));
-    set(to.covariance.yy, lane, get(from.covariance.yy, lane));
-  }
-
-  template <class Birth>
-  void add_to_block(ParticleMaps<Real>& maps, std::size_t b, std::size_t k, const Birth& birth) {
+  template <class Birth, class Settled>
+  void add_to_block(ParticleMaps<Real>& maps, std::size_t b, std::size_t k, const Birth& birth,
+                    const Settled& settled) {
     const LandmarkGaussian<Real> born = birth(b, seen_[k]);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::size_t particle = b * kLanes + lane;
@@ -220,15 +242,15 @@ class NearestAssociation {
                        std::to_string(settings_.most_landmarks) + " landmarks");
       }
       if (slot == maps.slots()) maps.add();
-      copy_lane(born, maps.blocks_of(slot)[b], lane);
+      copy_lane<Real>(born, maps.blocks_of(slot)[b], lane);
       set(counts_[b], lane, slot + 1.0);
       made_of_.add(particle, scan_[k].identity);
+      settled(b, slot, [lane](const auto& from, auto& to) { copy_lane<Real>(from, to, lane); });
     }
   }
 
   std::size_t particles_;
   AssociationSettings settings_;
-  SensorNoise noise_;
   double log_new_density_;
   std::vector<Real> counts_, resampled_counts_;
   BirthIdentities made_of_;

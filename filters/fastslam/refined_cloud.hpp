@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "filters/fastslam/drawn_poses.hpp"
 #include "filters/moments/cloud_moments.hpp"
 #include "filters/moments/moment_transforms.hpp"
 
@@ -13,12 +14,12 @@ namespace montecarta {
 /// prediction, refinement, maps, and the estimate between scans. The transforms carry the
 /// Gaussians: `PoseTransform` those of the pose, `MapTransform` those of the landmarks.
 template <class Real, class PoseTransform, class MapTransform>
-class RefinedCloud {
+class RefinedCloud : public DrawnPoses<Real> {
  public:
   RefinedCloud(std::size_t particles, const Belief& belief, const PoseTransform& pose_transform,
                const MapTransform& map_transform)
-      : belief_(belief),
-        noise_(SensorNoise::of(belief)),
+      : DrawnPoses<Real>(SensorNoise::of(belief)),
+        belief_(belief),
         pose_transform_(pose_transform),
         map_transform_(map_transform),
         posterior_(blocks_for<Real>(particles)) {}
@@ -31,9 +32,12 @@ class RefinedCloud {
                const Weights<Real>& /*weights*/, std::vector<BasicPose<Real>>& /*poses*/) {
     pose_transform_.advance(motion_, control, duration, belief_);
   }
-  PoseGaussian<Real> predicted(const BasicPose<Real>& drawn) const { return motion_.from(drawn); }
-  LandmarkGaussian<Real> birth(const BasicPose<Real>& pose, const RangeBearing<Real>& seen) const {
-    return map_transform_.birth(pose, seen, noise_);
+  PoseGaussian<Real> predicted(std::size_t /*b*/, const BasicPose<Real>& drawn) const {
+    return motion_.from(drawn);
+  }
+  LandmarkGaussian<Real> birth(std::size_t /*b*/, const BasicPose<Real>& pose,
+                               const RangeBearing<Real>& seen) const {
+    return map_transform_.birth(pose, seen, this->noise());
   }
   /// All poses were drawn: nothing is uncertain within a particle.
   void end_scan() {
@@ -57,7 +61,7 @@ class RefinedCloud {
   void refine(const Matches& matches, std::size_t b, PoseGaussian<Real>& pose,
               Evidence<Real>& evidence, const Note& note) const {
     matches.read(b, [&](std::size_t k, const auto& landmark, const auto& seen, const auto& mask) {
-      note(k, pose_transform_.refine(pose, landmark, seen, noise_, mask, evidence), mask);
+      note(k, pose_transform_.refine(pose, landmark, seen, this->noise(), mask, evidence), mask);
     });
   }
   /// Absorbs the scan into the landmarks of block b, seen from `pose`.
@@ -65,17 +69,18 @@ class RefinedCloud {
   void update_landmarks(const Matches& matches, std::size_t b, const BasicPose<Real>& pose,
                         Weighed& evidence) const {
     matches.update(b, [&](std::size_t, auto& landmark, const auto& seen, const auto& mask) {
-      map_transform_.update(landmark, pose, seen, noise_, mask, evidence);
+      map_transform_.update(landmark, pose, seen, this->noise(), mask, evidence);
     });
   }
   /// What the particles of block b believed of their poses before they were drawn.
   void keep(std::size_t b, const PoseGaussian<Real>& posterior) { posterior_[b] = posterior; }
 
-  const SensorNoise& noise() const { return noise_; }
+  MotionIncrement& motion() { return motion_; }
+  const MotionIncrement& motion() const { return motion_; }
+  const PoseTransform& pose_transform() const { return pose_transform_; }
 
  private:
   Belief belief_;
-  SensorNoise noise_;
   PoseTransform pose_transform_;
   MapTransform map_transform_;
   MotionIncrement motion_;

@@ -118,28 +118,45 @@ struct Density {
   Real squared, determinant;
 };
 
-/// Kalman update of a pose by an innovation, in the lanes of `use` (SPEC 7.1). The two components
-/// of the innovation are decorrelated first, so both are scalar updates.
+/// The two components of an innovation made independent of each other, so that both are scalar
+/// updates: the range, and what of the bearing it does not tell. Nothing in the lanes without
+/// `use`.
+template <class Real>
+struct Decorrelated {
+  Real per_rr, per_bb;  ///< 1 / variance of each
+  Real slope;           ///< of the bearing by the range
+  Real first, second;   ///< values
+  Density<Real> density;
+
+  template <class Mask>
+  [[gnu::always_inline]] Decorrelated(const Innovation<Real>& v, const Mask& use) {
+    const Real determinant = v.determinant();
+    const Real inverse = select(use, 1.0 / (v.s_rr * determinant), Real(0.0));
+    per_rr = determinant * inverse;
+    per_bb = v.s_rr * v.s_rr * inverse;
+    slope = v.s_rb * per_rr;
+    first = v.value.range;
+    second = v.value.bearing - slope * first;
+    density = {first * first * per_rr + second * second * per_bb,
+               select(use, determinant, Real(1.0))};
+  }
+};
+
+/// Kalman update of a pose by an innovation, in the lanes of `use` (SPEC 7.1).
 template <class Real, class Mask>
 [[gnu::always_inline]] inline Density<Real> condition(PoseGaussian<Real>& pose,
                                                       const Innovation<Real>& v, const Mask& use) {
-  const Real determinant = v.determinant();
-  const Real inverse = select(use, 1.0 / (v.s_rr * determinant), Real(0.0));
-  const Real per_rr = determinant * inverse;
-  const Real per_bb = v.s_rr * v.s_rr * inverse;
-  const Real slope = v.s_rb * per_rr;
-  const Real& first = v.value.range;
-  const Real second = v.value.bearing - slope * first;
-  const Column3<Real> column{v.bearing.x - slope * v.range.x, v.bearing.y - slope * v.range.y,
-                             v.bearing.h - slope * v.range.h};
-  const Column3<Real> range_gain{v.range.x * per_rr, v.range.y * per_rr, v.range.h * per_rr};
-  const Column3<Real> gain{column.x * per_bb, column.y * per_bb, column.h * per_bb};
-  pose.mean.x += range_gain.x * first + gain.x * second;
-  pose.mean.y += range_gain.y * first + gain.y * second;
-  pose.mean.heading += range_gain.h * first + gain.h * second;
+  const Decorrelated<Real> d(v, use);
+  const Column3<Real> column{v.bearing.x - d.slope * v.range.x, v.bearing.y - d.slope * v.range.y,
+                             v.bearing.h - d.slope * v.range.h};
+  const Column3<Real> range_gain{v.range.x * d.per_rr, v.range.y * d.per_rr, v.range.h * d.per_rr};
+  const Column3<Real> gain{column.x * d.per_bb, column.y * d.per_bb, column.h * d.per_bb};
+  pose.mean.x += range_gain.x * d.first + gain.x * d.second;
+  pose.mean.y += range_gain.y * d.first + gain.y * d.second;
+  pose.mean.heading += range_gain.h * d.first + gain.h * d.second;
   subtract_outer(pose.covariance, range_gain, v.range);
   subtract_outer(pose.covariance, gain, column);
-  return {first * first * per_rr + second * second * per_bb, select(use, determinant, Real(1.0))};
+  return d.density;
 }
 
 /// Absorbs one detection into a pose Gaussian by the extended Kalman filter (SPEC 7.1), with the

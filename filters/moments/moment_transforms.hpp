@@ -3,6 +3,7 @@
 
 #include "filters/moments/linearised.hpp"
 #include "filters/moments/motion_increment.hpp"
+#include "filters/moments/sigma_correlated.hpp"
 #include "filters/moments/sigma_landmark.hpp"
 #include "filters/moments/sigma_motion.hpp"
 #include "filters/moments/sigma_pose.hpp"
@@ -37,6 +38,26 @@ struct Linearised {
   LandmarkGaussian<Real> birth(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
                                const SensorNoise& noise) const {
     return new_landmark(pose, seen, noise);
+  }
+
+  // Where pose and map are correlated.
+  template <class Real>
+  [[gnu::always_inline]] StraightSight<Real> straight_sight(const Sightline<Real>& s,
+                                                            const Symmetric2<Real>& /*relative*/,
+                                                            const RangeBearing<Real>& seen,
+                                                            const SensorNoise& noise) const {
+    return {residual(seen, s), Real(0.0), s.per_range,
+            Real(noise.range), Real(0.0), Real(noise.bearing)};
+  }
+  template <class Real>
+  StraightTurn<Real> straight_turn(const Real& /*heading_variance*/) const {
+    return {Real(1.0), Real(1.0), Real(0.0)};
+  }
+  template <class Real>
+  StraightPlace<Real> straight_place(const Real& /*heading_variance*/,
+                                     const RangeBearing<Real>& seen,
+                                     const SensorNoise& noise) const {
+    return {seen.range, seen.range, Real(noise.range)};
   }
 };
 
@@ -79,6 +100,24 @@ class SigmaPoints {
   LandmarkGaussian<Real> birth(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
                                const SensorNoise& noise) const {
     return new_landmark_by_sigma_points(pose, seen, noise, rules_.landmark, ray_);
+  }
+
+  // Where pose and map are correlated.
+  template <class Real>
+  [[gnu::always_inline]] StraightSight<Real> straight_sight(const Sightline<Real>& s,
+                                                            const Symmetric2<Real>& relative,
+                                                            const RangeBearing<Real>& seen,
+                                                            const SensorNoise& noise) const {
+    return sight_by_sigma_points(s, relative, seen, noise, rules_.pose);
+  }
+  template <class Real>
+  StraightTurn<Real> straight_turn(const Real& heading_variance) const {
+    return turn_by_sigma_points(heading_variance, rules_.motion);
+  }
+  template <class Real>
+  StraightPlace<Real> straight_place(const Real& heading_variance, const RangeBearing<Real>& seen,
+                                     const SensorNoise& noise) const {
+    return place_by_sigma_points(heading_variance, seen, noise, rules_.landmark);
   }
 
  private:

@@ -26,9 +26,13 @@ namespace {
 
 std::unique_ptr<SlamFilter> make_default(const FilterKind& kind, std::size_t particles,
                                          const SmallWorldSettings& world,
-                                         Association association = Association::known) {
+                                         Association association = Association::known,
+                                         const std::map<std::string, std::string>& special = {}) {
   std::map<std::string, std::string, std::less<>> values;
-  for (const FilterOption& option : kind.options) values[option.name] = option.fallback;
+  for (const FilterOption& option : kind.options) {
+    const auto wanted = special.find(option.name);
+    values[option.name] = wanted == special.end() ? option.fallback : wanted->second;
+  }
   if (kind.has_particles) values["particles"] = std::to_string(particles);
   return kind.make({.belief = world.noise,
                     .association = {.kind = association},
@@ -85,7 +89,8 @@ TEST_P(EveryFilter, WalkingBackThroughAncestorsNeverJumpsFartherThanTheVehicleCa
                                     .max_range = 80.0,
                                     .noise = {.sigma_range = 1.0, .sigma_bearing = 0.2}};
   const SmallWorld world = small_world(settings);
-  const auto filter = make_default(GetParam(), n, settings);
+  const auto filter =
+      make_default(GetParam(), n, settings, Association::known, {{"draw_every", "1"}});
   std::vector<double> poses(3 * n), before(3 * n, 0.0), log_weights(n);
   std::vector<std::uint32_t> ancestors(n);
   bool resampled = false;

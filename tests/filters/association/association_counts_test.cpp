@@ -2,6 +2,7 @@
 #include "filters/association/association_counts.hpp"
 
 #include "filters/factory.hpp"
+#include "filters/fastslam/drawn_poses.hpp"
 #include "filters/fastslam/nearest_association.hpp"
 #include "tests/filters/small_world.hpp"
 
@@ -57,13 +58,21 @@ AssociationCounts look(NearestAssociation<double>& association, ParticleMaps<dou
                        const Weights<double>& weights, double second,
                        const std::vector<Detection>& scan) {
   const auto x = [second](std::size_t b) { return b == 0 ? 0.0 : second; };
-  association.associate(StepContext(1, 0, 0, Parallel::serial()), scan, maps, [&](std::size_t b) {
-    return PoseGaussian<double>{.mean = {x(b), 0.0, 0.0}, .covariance = {}};
-  });
+  const DrawnPoses<double> certain(SensorNoise{0.01, 1e-4});
+  association.associate(
+      StepContext(1, 0, 0, Parallel::serial()), scan, maps,
+      [&](std::size_t b) {
+        return PoseGaussian<double>{.mean = {x(b), 0.0, 0.0}, .covariance = {}};
+      },
+      [&](auto&&... sight) { return certain.expected(sight...); });
   const AssociationCounts counts = association.counts(weights);
-  association.add_new(maps, [&](std::size_t b, const RangeBearing<double>& seen) {
-    return born_at(x(b) + seen.range * std::cos(seen.bearing), seen.range * std::sin(seen.bearing));
-  });
+  association.add_new(
+      maps,
+      [&](std::size_t b, const RangeBearing<double>& seen) {
+        return born_at(x(b) + seen.range * std::cos(seen.bearing),
+                       seen.range * std::sin(seen.bearing));
+      },
+      [](auto&&...) {});
   return counts;
 }
 

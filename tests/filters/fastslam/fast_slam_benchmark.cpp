@@ -13,7 +13,7 @@
 
 // Particle-observation and particle-step costs of the family, and of the plain Eigen references (of
 // seven dimensions and fifteen points where the filter has points) in the same run: the ratio is
-// the figure to quote. build/benchmarks --benchmark_filter='FastSlam2|UFastSlam|Srcd'
+// the figure to quote. build/benchmarks --benchmark_filter='FastSlam2|UFastSlam|Srcd|Delayed'
 namespace montecarta {
 namespace {
 
@@ -124,6 +124,10 @@ void DeSrcd(benchmark::State& state, Make make, Part part) {
   measure(state, "de_srcd", make, part);
 }
 
+void Delayed(benchmark::State& state, Make make, Part part) {
+  measure(state, "delayed", make, part);
+}
+
 void sizes(benchmark::internal::Benchmark* benchmark) {
   for (const std::int64_t particles : {30, 100, 1000}) benchmark->Arg(particles);
   benchmark->UseManualTime();
@@ -150,6 +154,8 @@ BENCHMARK_CAPTURE(Srcd, prediction_eigen, Make::eigen, Part::prediction)->Apply(
 
 BENCHMARK_CAPTURE(DeSrcd, observation, Make::lanes, Part::scan)->Apply(few);
 BENCHMARK_CAPTURE(DeSrcd, prediction, Make::lanes, Part::prediction)->Apply(few);
+
+BENCHMARK_CAPTURE(Delayed, observation, Make::lanes, Part::scan)->Apply(sizes);
 
 }  // namespace
 }  // namespace montecarta

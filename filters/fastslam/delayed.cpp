@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/fastslam/delayed.hpp"
+
+#include "engine/numbers/angle.hpp"
+
+namespace montecarta {
+
+std::vector<FilterOption> delayed_options() {
+  std::vector<FilterOption> options = fast_slam_options();
+  options.push_back({"draw_every",
+                     FilterOption::Kind::integer,
+                     "10",
+                     0,
+                     1e9,
+                     {},
+                     "scans from one draw of the poses to the next; 1 = FastSLAM II, 0 = never"});
+  options.push_back({"draw_beyond_deg",
+                     FilterOption::Kind::number,
+                     "0",
+                     0,
+                     360,
+                     {},
+                     "also draw where headings are predicted worse than this [deg]; 0 = never"});
+  return options;
+}
+
+DrawTimes draw_times(const FilterOptions& options) {
+  DrawTimes times{.every = options.integer("draw_every")};
+  const double degrees = options.number("draw_beyond_deg");
+  if (degrees > 0.0) times.beyond = degrees * kPi / 180.0;
+  return times;
+}
+
+FilterKind delayed_kind() {
+  return {.name = "delayed",
+          .long_name = "FastSLAM II with delayed draws",
+          .source = "SPEC 24, last lines",
+          .has_particles = true,
+          .has_mixture = true,
+          .options = delayed_options(),
+          .make = make_delayed<Lanes>};
+}
+
+}  // namespace montecarta

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/fastslam/delayed.hpp"
+
+namespace montecarta {
+
+FilterKind delayed_srcd_kind() {
+  std::vector<FilterOption> options = delayed_options();
+  for (FilterOption& option : central_difference_options()) options.push_back(std::move(option));
+  return {.name = "delayed_srcd",
+          .long_name = "SRCD-FastSLAM with delayed draws",
+          .source = "SPEC 10; SPEC 24, last lines",
+          .has_particles = true,
+          .has_mixture = true,
+          .options = std::move(options),
+          .make = make_delayed_srcd<Lanes>};
+}
+
+}  // namespace montecarta

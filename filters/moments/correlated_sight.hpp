@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/moments/correlated_map.hpp"
+#include "filters/moments/linearised.hpp"
+
+namespace montecarta {
+
+/// A sight made straight by the landmark's place relative to the pose, in the frame of the line of
+/// sight: range = along + range_across across, bearing = bearing_across across - heading, with
+/// noise.
+template <class Real>
+struct StraightSight {
+  RangeBearing<Real> innovation;
+  Real range_across{}, bearing_across{};  ///< [1], [rad/m]
+  Real n_rr{}, n_rb{}, n_bb{};            ///< of the sensor, and of what is not straight
+};
+
+/// Covariance of the landmark's place relative to the pose [m^2].
+template <class Real>
+[[gnu::always_inline]] inline Symmetric2<Real> relative_covariance(const Symmetric3<Real>& P,
+                                                                   const Symmetric2<Real>& F,
+                                                                   const PoseCross<Real>& C) {
+  return {P.xx + F.xx - C.x.x - C.x.x, P.xy + F.xy - C.x.y - C.y.x, P.yy + F.yy - C.y.y - C.y.y};
+}
+
+/// Rows of a straight sight by the landmark's place; by the pose's place they are the negatives, by
+/// the heading 0 and -1.
+template <class Real>
+struct SightRows {
+  Real range_x, range_y, bearing_x, bearing_y;
+
+  [[gnu::always_inline]] SightRows(const Sightline<Real>& s, const StraightSight<Real>& straight)
+      : range_x(s.ux - straight.range_across * s.uy),
+        range_y(s.uy + straight.range_across * s.ux),
+        bearing_x(-(straight.bearing_across * s.uy)),
+        bearing_y(straight.bearing_across * s.ux) {}
+
+  /// Covariance with (range, bearing) of a number whose covariance with the relative place and with
+  /// the heading is given.
+  [[gnu::always_inline]] RangeBearing<Real> of(const Real& x, const Real& y,
+                                               const Real& heading) const {
+    return {range_x * x + range_y * y, bearing_x * x + bearing_y * y - heading};
+  }
+};
+
+/// What a sight says of a pose Gaussian that is correlated with the landmark by C.
+template <class Real>
+[[gnu::always_inline]] inline Innovation<Real> correlated_innovation(
+    const Symmetric3<Real>& P, const Symmetric2<Real>& F, const PoseCross<Real>& C,
+    const SightRows<Real>& rows, const StraightSight<Real>& straight) {
+  const RangeBearing<Real> x = rows.of(C.x.x - P.xx, C.y.x - P.xy, P.xh);
+  const RangeBearing<Real> y = rows.of(C.x.y - P.xy, C.y.y - P.yy, P.yh);
+  const RangeBearing<Real> h = rows.of(C.x.h - P.xh, C.y.h - P.yh, P.hh);
+  const RangeBearing<Real> fx = rows.of(F.xx - C.x.x, F.xy - C.x.y, C.x.h);
+  const RangeBearing<Real> fy = rows.of(F.xy - C.y.x, F.yy - C.y.y, C.y.h);
+  const Real dx_r = fx.range - x.range, dy_r = fy.range - y.range;
+  const Real dx_b = fx.bearing - x.bearing, dy_b = fy.bearing - y.bearing;
+  return {straight.innovation,
+          straight.n_rr + rows.range_x * dx_r + rows.range_y * dy_r,
+          straight.n_rb + rows.range_x * dx_b + rows.range_y * dy_b,
+          straight.n_bb + rows.bearing_x * dx_b + rows.bearing_y * dy_b - h.bearing,
+          {x.range, y.range, h.range},
+          {x.bearing, y.bearing, h.bearing}};
+}
+
+/// Turns covariances with an innovation into white gains.
+template <class Real>
+struct Whitening {
+  Real slope, first, second;  ///< of bearing by range; 1 / standard deviations
+
+  [[gnu::always_inline]] explicit Whitening(const Decorrelated<Real>& d)
+      : slope(d.slope), first(sqrt(d.per_rr)), second(sqrt(d.per_bb)) {}
+  [[gnu::always_inline]] WhiteGain<Real> operator()(const Real& range, const Real& bearing) const {
+    return {range * first, (bearing - slope * range) * second};
+  }
+};
+
+template <class Real>
+[[gnu::always_inline]] inline Real operator*(const WhiteGain<Real>& a, const WhiteGain<Real>& b) {
+  return a.first * b.first + a.second * b.second;
+}
+
+/// P <- P - W W' for what is not of the pose alone; the gains of landmarks are in `maps`.
+template <class Real>
+void subtract_gains(CorrelatedMap<Real>& maps, std::size_t b, const WhiteGain<Real>& x,
+                    const WhiteGain<Real>& y, const WhiteGain<Real>& h) {
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    const MapGain<Real> g = maps.gain(i, b);
+    PoseCross<Real>& C = maps.pose_cross(i, b);
+    C = {{C.x.x - g.x * x, C.x.y - g.x * y, C.x.h - g.x * h},
+         {C.y.x - g.y * x, C.y.y - g.y * y, C.y.h - g.y * h}};
+    Symmetric2<Real>& P = maps.landmark(i, b).covariance;
+    P = {P.xx - g.x * g.x, P.xy - g.x * g.y, P.yy - g.y * g.y};
+    for (std::size_t j = 0; j < i; ++j) {
+      const MapGain<Real>& w = maps.gain(j, b);
+      MapCross<Real>& B = maps.map_cross(i, j, b);
+      B = {B.xx - g.x * w.x, B.xy - g.x * w.y, B.yx - g.y * w.x, B.yy - g.y * w.y};
+    }
+  }
+}
+
+/// Absorbs a detection of landmark `at` into pose and map of block b: the update of EKF-SLAM
+/// (SPEC 24), with the model made straight by `transform`. `matched`: which lanes saw it.
+template <class Real, class Where, class Transform, class Mask>
+Innovation<Real> absorb(CorrelatedMap<Real>& maps, std::size_t b, const Where& at,
+                        const Transform& transform, const RangeBearing<Real>& seen,
+                        const SensorNoise& noise, const Mask& matched, Evidence<Real>& evidence) {
+  PoseGaussian<Real>& pose = maps.pose(b);
+  const LandmarkGaussian<Real> f = maps.landmark(at, b);
+  const PoseCross<Real> C = maps.pose_cross(at, b);
+  const Sightline<Real> s = sightline(pose.mean, f.mean);
+  const auto use = matched && is_usable(s);
+  const StraightSight<Real> straight = transform.straight_sight(
+      s, relative_covariance(pose.covariance, f.covariance, C), seen, noise);
+  const SightRows<Real> rows(s, straight);
+  const Innovation<Real> v =
+      correlated_innovation(pose.covariance, f.covariance, C, rows, straight);
+  const Decorrelated<Real> d(v, use);
+  const Whitening<Real> white(d);
+  const WhiteGain<Real> value{d.first * white.first, d.second * white.second};
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    const PoseCross<Real>& own = maps.pose_cross(i, b);
+    const MapCross<Real> V = maps.covariance(i, at, b);
+    const RangeBearing<Real> x = rows.of(V.xx - own.x.x, V.xy - own.x.y, own.x.h);
+    const RangeBearing<Real> y = rows.of(V.yx - own.y.x, V.yy - own.y.y, own.y.h);
+    maps.gain(i, b) = {white(x.range, x.bearing), white(y.range, y.bearing)};
+    BasicPoint<Real>& mean = maps.landmark(i, b).mean;
+    mean.x += maps.gain(i, b).x * value;
+    mean.y += maps.gain(i, b).y * value;
+  }
+  subtract_gains(maps, b, white(v.range.x, v.bearing.x), white(v.range.y, v.bearing.y),
+                 white(v.range.h, v.bearing.h));
+  condition(pose, v, use);
+  pose.mean.heading = wrap(pose.mean.heading);
+  evidence.add(d.density.squared, d.density.determinant, as_number<Real>(use),
+               as_number<Real>(matched));
+  return v;
+}
+
+}  // namespace montecarta
