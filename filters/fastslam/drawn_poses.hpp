@@ -26,9 +26,8 @@ class DrawnPoses {
     return innovation_of(pose.covariance, s, RangeBearing<Real>{}, landmark.covariance, noise_);
   }
   /// A new landmark of block b stands in its slot.
-  template <class Put>
-  void settled(ParticleMaps<Real>& /*maps*/, std::size_t /*b*/, std::uint32_t /*slot*/,
-               const Put& /*put*/) {}
+  template <class Maps, class Put>
+  void settled(Maps& /*maps*/, std::size_t /*b*/, std::uint32_t /*slot*/, const Put& /*put*/) {}
   /// Particle i becomes a copy of particle parents[i].
   void resample(std::span<const std::uint32_t> /*parents*/) {}
 

@@ -43,9 +43,9 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
              OwnEvolution<Real>(settings.population)) {}
 
   /// Moves the cloud, in the modes in which it is one population.
-  template <class Matches>
+  template <class Matches, class Maps>
   void prepare(const StepContext& context, const Matches& matches, const Weights<Real>& weights,
-               const std::vector<BasicPose<Real>>& poses, ParticleMaps<Real>& /*maps*/) {
+               const std::vector<BasicPose<Real>>& poses, Maps& /*maps*/) {
     if (settings_.mode == EvolutionMode::honest) return;
     for (std::size_t b = 0; b < poses.size(); ++b) {
       predicted_[b] = this->predicted(b, poses[b]);

@@ -152,7 +152,7 @@ class FastSlam final : public SlamFilter {
   Associating association_;
   Weights<Real> weights_;
   std::vector<BasicPose<Real>> poses_, resampled_poses_;
-  ParticleMaps<Real> maps_;
+  ParticleMaps<Real, typename Proposal::Landmark> maps_;
   InnovationSums<Real> innovations_;
   std::vector<double> matched_weights_;  ///< of each detection, before the scan
   std::vector<std::uint32_t> parents_;  ///< of the resampling that is decided but not yet in effect

@@ -18,15 +18,15 @@ namespace montecarta {
 template <class Real, class Proposal>
 std::unique_ptr<SlamFilter> make_fast_slam(const FilterSetup& setup,
                                            const FastSlamSettings& settings, Proposal proposal) {
+  using Landmark = typename Proposal::Landmark;
   if (setup.association.kind == Association::known) {
-    using Filter = FastSlam<Real, Proposal, KnownAssociation<Real>>;
-    return std::make_unique<Filter>(settings, std::move(proposal),
-                                    KnownAssociation<Real>(setup.landmarks));
+    using Known = KnownAssociation<Real, Landmark>;
+    return std::make_unique<FastSlam<Real, Proposal, Known>>(settings, std::move(proposal),
+                                                             Known(setup.landmarks));
   }
-  using Filter = FastSlam<Real, Proposal, NearestAssociation<Real>>;
-  return std::make_unique<Filter>(
-      settings, std::move(proposal),
-      NearestAssociation<Real>(settings.particles, setup.association, setup.belief));
+  using Nearest = NearestAssociation<Real, Landmark>;
+  return std::make_unique<FastSlam<Real, Proposal, Nearest>>(
+      settings, std::move(proposal), Nearest(settings.particles, setup.association, setup.belief));
 }
 
 /// FastSLAM whose poses are refined by the scan, each Gaussian carried by a transform of its own.

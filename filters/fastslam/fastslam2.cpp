@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "filters/fastslam/anchored.hpp"
 #include "filters/fastslam/fast_slam_filters.hpp"
 
 namespace montecarta {
@@ -7,13 +8,17 @@ FilterKind fastslam2_kind() {
   std::vector<FilterOption> options = fast_slam_options();
   options.push_back({"weights", FilterOption::Kind::choice, "closed", 0, 0, weight_form_names(),
                      "form of the importance weight (SPEC 7.2 c, r, b)"});
+  options.push_back(landmarks_option());
   return {.name = "fastslam2",
           .long_name = "FastSLAM II",
           .source = "Montemerlo et al. 2003; SPEC 7",
           .has_particles = true,
           .has_mixture = true,
           .options = std::move(options),
-          .make = make_fastslam2<Lanes>};
+          .make = [](const FilterSetup& setup) {
+            return are_anchored(setup.options) ? make_fastslam2_anchored<Lanes>(setup)
+                                               : make_fastslam2<Lanes>(setup);
+          }};
 }
 
 }  // namespace montecarta

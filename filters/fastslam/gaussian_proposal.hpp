@@ -19,10 +19,10 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
       : Cloud(particles, belief, pose_transform, map_transform), form_(form) {}
 
   /// Nothing is to be decided for all particles together.
-  template <class Matches>
+  template <class Matches, class Maps>
   void prepare(const StepContext& /*context*/, const Matches& /*matches*/,
                const Weights<Real>& /*weights*/, const std::vector<BasicPose<Real>>& /*poses*/,
-               ParticleMaps<Real>& /*maps*/) {}
+               Maps& /*maps*/) {}
 
   /// Refines, draws and weighs one block and updates its landmarks; returns the log of the weight's
   /// factor.
@@ -63,7 +63,8 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
     Evidence<Real> evidence;
     if constexpr (std::is_same_v<PoseTransform, Linearised>) {
       matches.read(b, [&](std::size_t, const auto& landmark, const auto& seen, const auto& mask) {
-        refine_pose_in_batch(refined, prior.mean, landmark, seen, this->noise(), mask, evidence);
+        refine_pose_in_batch(refined, prior.mean, as_gaussian(landmark), seen, this->noise(), mask,
+                             evidence);
       });
     }
     return evidence.log_density();

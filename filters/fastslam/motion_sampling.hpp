@@ -6,7 +6,7 @@
 #include "filters/fastslam/drawn_poses.hpp"
 #include "filters/models/ackermann.hpp"
 #include "filters/moments/cloud_moments.hpp"
-#include "filters/moments/linearised.hpp"
+#include "filters/moments/moment_transforms.hpp"
 
 #include <vector>
 
@@ -14,9 +14,10 @@ namespace montecarta {
 
 /// FastSLAM I (SPEC 6): every particle moves with control noise of its own at every step; the scan
 /// only weighs it.
-template <class Real>
+template <class Real, class MapTransform = Linearised>
 class MotionSampling : public DrawnPoses<Real> {
  public:
+  using Landmark = typename MapTransform::template Landmark<Real>;
   explicit MotionSampling(const Belief& belief)
       : DrawnPoses<Real>(SensorNoise::of(belief)), belief_(belief) {}
 
@@ -35,10 +36,10 @@ class MotionSampling : public DrawnPoses<Real> {
     return {pose, {}};
   }
 
-  template <class Matches>
+  template <class Matches, class Maps>
   void prepare(const StepContext& /*context*/, const Matches& /*matches*/,
                const Weights<Real>& /*weights*/, const std::vector<BasicPose<Real>>& /*poses*/,
-               ParticleMaps<Real>& /*maps*/) {}
+               Maps& /*maps*/) {}
 
   /// Weighs one block by the likelihood at its poses and updates its landmarks.
   template <class Matches, class Note>
@@ -47,13 +48,13 @@ class MotionSampling : public DrawnPoses<Real> {
     Evidence<Real> likelihood;
     matches.read(b, [](auto&&...) {});
     matches.update(b, [&](std::size_t k, auto& landmark, const auto& seen, const auto& mask) {
-      note(k, update_landmark(landmark, pose, seen, this->noise(), mask, likelihood), mask);
+      note(k, MapTransform().update(landmark, pose, seen, this->noise(), mask, likelihood), mask);
     });
     return {likelihood.log_density(), likelihood.left_out()};
   }
-  LandmarkGaussian<Real> birth(std::size_t /*b*/, const BasicPose<Real>& pose,
-                               const RangeBearing<Real>& seen) const {
-    return new_landmark(pose, seen, this->noise());
+  Landmark birth(std::size_t /*b*/, const BasicPose<Real>& pose,
+                 const RangeBearing<Real>& seen) const {
+    return MapTransform().birth(pose, seen, this->noise());
   }
   void end_scan() {}
   void settle() {}

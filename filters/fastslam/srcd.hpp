@@ -6,12 +6,16 @@
 
 namespace montecarta {
 
+inline SigmaPoints srcd_points(const FilterSetup& setup) {
+  return central_difference_points(setup, map_uncertainty(setup.options));
+}
+
 /// SRCD-FastSLAM (Ankishan 2016; SPEC 10): FastSLAM II with every Gaussian carried by central
 /// differences. Covariances are kept, and the factor is taken where points are drawn: the same
 /// numbers as the square-root recursion, to rounding.
 template <class Real>
 std::unique_ptr<SlamFilter> make_srcd(const FilterSetup& setup) {
-  const SigmaPoints points = central_difference_points(setup, map_uncertainty(setup.options));
+  const SigmaPoints points = srcd_points(setup);
   return make_refined<Real>(setup, points, points);
 }
 
@@ -26,8 +30,7 @@ std::unique_ptr<SlamFilter> make_srcd_aided(const FilterSetup& setup) {
 /// FastSLAM II.
 template <class Real>
 std::unique_ptr<SlamFilter> make_srcd_pf(const FilterSetup& setup) {
-  return make_refined<Real>(setup, central_difference_points(setup, map_uncertainty(setup.options)),
-                            Linearised());
+  return make_refined<Real>(setup, srcd_points(setup), Linearised());
 }
 
 /// Options of a filter that uses central differences, in the order in which they are documented.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/ufastslam.hpp"
 
+#include "filters/fastslam/anchored.hpp"
+
 namespace montecarta {
 
 FilterKind ufastslam_kind() {
@@ -27,13 +29,18 @@ FilterKind ufastslam_kind() {
                      {},
                      "second spread: alpha^2 (n + kappa) is the square of the points' distance"});
   options.push_back(map_uncertainty_option());
+  options.push_back(landmarks_option());
   return {.name = "ufastslam",
           .long_name = "U-FastSLAM",
           .source = "Kim et al. 2008; SPEC 8",
           .has_particles = true,
           .has_mixture = true,
           .options = std::move(options),
-          .make = make_ufastslam<Lanes>};
+          .make = [](const FilterSetup& setup) {
+            return are_anchored(setup.options)
+                       ? make_sigma_anchored<Lanes>(setup, unscented_points(setup))
+                       : make_ufastslam<Lanes>(setup);
+          }};
 }
 
 }  // namespace montecarta

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "filters/moments/anchored_landmark.hpp"
 #include "filters/moments/linearised.hpp"
 #include "filters/moments/motion_increment.hpp"
 #include "filters/moments/sigma_correlated.hpp"
@@ -8,12 +9,16 @@
 #include "filters/moments/sigma_motion.hpp"
 #include "filters/moments/sigma_pose.hpp"
 
-/// The two ways to carry a Gaussian through motion and sight. Filters of the family differ in which
-/// of them moves the pose and which keeps the map.
+/// The ways to carry a Gaussian through motion and sight. Filters of the family differ in which of
+/// them moves the pose and which keeps the map.
 namespace montecarta {
 
 /// The extended Kalman filter (SPEC 7).
 struct Linearised {
+  /// What a landmark is kept as.
+  template <class Real>
+  using Landmark = LandmarkGaussian<Real>;
+
   void advance(MotionIncrement& motion, const Control& control, double duration,
                const Belief& belief) const {
     motion.advance(control, duration, belief);
@@ -61,9 +66,31 @@ struct Linearised {
   }
 };
 
+/// Landmarks alone: range and bearing from where they were born (SPEC 24, last lines).
+struct Anchored {
+  template <class Real>
+  using Landmark = AnchoredLandmark<Real>;
+
+  template <class Real, class Mask, class Weighed>
+  [[gnu::always_inline]] Innovation<Real> update(AnchoredLandmark<Real>& landmark,
+                                                 const BasicPose<Real>& pose,
+                                                 const RangeBearing<Real>& seen,
+                                                 const SensorNoise& noise, const Mask& matched,
+                                                 Weighed& evidence) const {
+    return update_anchored(landmark, pose, seen, noise, matched, evidence);
+  }
+  template <class Real>
+  AnchoredLandmark<Real> birth(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
+                               const SensorNoise& noise) const {
+    return new_anchored_landmark(pose, seen, noise);
+  }
+};
+
 /// Sigma points: unscented (SPEC 8) or central differences (SPEC 9, 10), by their rules.
 class SigmaPoints {
  public:
+  template <class Real>
+  using Landmark = LandmarkGaussian<Real>;
   struct Rules {
     SigmaRule motion;    ///< of (pose, control noise): 5 dimensions
     SigmaRule pose;      ///< of (pose, landmark): 5

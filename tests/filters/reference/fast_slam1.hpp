@@ -7,7 +7,7 @@ namespace montecarta::reference {
 
 /// FastSLAM I (SPEC 6): poses are drawn from the motion model at every step, and weighed by the
 /// scan.
-class FastSlam1 final : public FastSlam {
+class FastSlam1 : public FastSlam {
  public:
   using FastSlam::FastSlam;
   PoseEstimate estimate() const override { return {drawn(), std::nullopt}; }

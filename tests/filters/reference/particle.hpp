@@ -16,6 +16,10 @@ struct Landmark {
   Eigen::Vector2d mean;
   Eigen::Matrix2d covariance;
   Eigen::Matrix2d factor = Eigen::Matrix2d::Zero();  ///< where the filter keeps square roots
+  /// Where the filter anchors landmarks: the pose of birth, and (range, bearing) from it.
+  Eigen::Vector3d anchor = Eigen::Vector3d::Zero();
+  Eigen::Vector2d sight = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d sight_covariance = Eigen::Matrix2d::Zero();
 };
 
 /// One particle of the FastSLAM family (SPEC 5), with its own map and its own opinion on the scan.

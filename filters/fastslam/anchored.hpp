@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/fastslam/fast_slam_filters.hpp"
+
+/// The family with `landmarks = anchored` (SPEC 24, last lines): what a filter believes of a
+/// landmark is a Gaussian over range and bearing from the pose it was born at. A filter that
+/// differs from another in its landmarks alone is that other then, so srcd_aided and srcd_pf do not
+/// offer it; nor do delayed filters, whose landmarks are born at poses that are not drawn.
+namespace montecarta {
+
+template <class Real>
+std::unique_ptr<SlamFilter> make_fastslam1_anchored(const FilterSetup& setup) {
+  return make_fast_slam<Real>(setup, fast_slam_settings(setup.options),
+                              MotionSampling<Real, Anchored>(setup.belief));
+}
+template <class Real>
+std::unique_ptr<SlamFilter> make_fastslam2_anchored(const FilterSetup& setup) {
+  return make_refined<Real>(setup, Linearised(), Anchored());
+}
+/// Poses by sigma points: U-FastSLAM and SRCD-FastSLAM.
+template <class Real>
+std::unique_ptr<SlamFilter> make_sigma_anchored(const FilterSetup& setup,
+                                                const SigmaPoints& poses) {
+  return make_refined<Real>(setup, poses, Anchored());
+}
+
+// Each compiled apart.
+extern template std::unique_ptr<SlamFilter> make_fastslam1_anchored<Lanes>(const FilterSetup&);
+extern template std::unique_ptr<SlamFilter> make_fastslam2_anchored<Lanes>(const FilterSetup&);
+extern template std::unique_ptr<SlamFilter> make_sigma_anchored<Lanes>(const FilterSetup&,
+                                                                       const SigmaPoints&);
+
+}  // namespace montecarta

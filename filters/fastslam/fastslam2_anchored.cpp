@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/fastslam/anchored.hpp"
+
+namespace montecarta {
+
+template std::unique_ptr<SlamFilter> make_fastslam2_anchored<Lanes>(const FilterSetup&);
+
+}  // namespace montecarta

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tests/filters/reference/particle.hpp"
+
+namespace montecarta::reference {
+
+/// A filter of the family whose landmarks are range and bearing from the pose of birth (SPEC 24,
+/// last lines); its poses see them as the Gaussians they nearly are in the map.
+template <class Filter>
+class AnchoredMaps final : public Filter {
+ public:
+  using Filter::Filter;
+
+ private:
+  void update_map(const Eigen::Vector3d& pose, Landmark& landmark,
+                  const Detection& detection) const override {
+    if (!seen_from(pose, landmark, detection, this->R_)) return;
+    const Eigen::Matrix2d P = landmark.sight_covariance;
+    Eigen::Vector2d q = landmark.sight;
+    Eigen::Matrix2d H, K;
+    for (int step = 0; step < 3; ++step) {
+      const auto place = placed(landmark.anchor, q);
+      const auto at = linearised_sight(as_pose(pose), place.point);
+      H = landmark_jacobian(at) * sight_jacobian(place);
+      const Eigen::Vector2d nu =
+          to_vector(residual(sight_of(detection), at.sight)) + H * (q - landmark.sight);
+      const Eigen::Matrix2d S = H * P * H.transpose() + this->R_;
+      K = S.llt().solve(H * P).transpose();
+      q = landmark.sight + K * nu;
+    }
+    landmark.sight = q;
+    landmark.sight_covariance = P - K * H * P;
+    put_into_map(landmark);
+  }
+  Landmark born(const Eigen::Vector3d& pose, const Detection& detection) const override {
+    Landmark landmark;
+    landmark.anchor = pose;
+    landmark.sight = to_vector(sight_of(detection));
+    landmark.sight_covariance = this->R_;
+    put_into_map(landmark);
+    return landmark;
+  }
+
+  static LinearisedPlace<double> placed(const Eigen::Vector3d& anchor, const Eigen::Vector2d& q) {
+    return linearised_place(as_pose(anchor), RangeBearing<double>{q(0), q(1)});
+  }
+  static void put_into_map(Landmark& landmark) {
+    const auto place = placed(landmark.anchor, landmark.sight);
+    const Eigen::Matrix2d Gz = sight_jacobian(place);
+    landmark.mean = to_vector(place.point);
+    landmark.covariance = Gz * landmark.sight_covariance * Gz.transpose();
+  }
+};
+
+}  // namespace montecarta::reference
