@@ -148,4 +148,11 @@ void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
   read_scans("log_weight", cell_->particles, i, rows.log_weight);
 }
 
+RunRows read_run(const ResultFile& file, const StoredCell& cell, std::size_t i) {
+  RunRows rows;
+  RunReader::Scratch scratch;
+  RunReader(file, cell).read(i, rows, scratch);
+  return rows;
+}
+
 }  // namespace montecarta

@@ -44,4 +44,7 @@ class RunReader {
   mutable std::mutex reading_;  ///< an HDF5 library may be built for one thread
 };
 
+/// One run alone, index `i`.
+RunRows read_run(const ResultFile& file, const StoredCell& cell, std::size_t i);
+
 }  // namespace montecarta

@@ -47,18 +47,11 @@ struct Surroundings {
   FigureData fixes;      ///< of a recorded drive
 };
 
-RunRows rows_of(const ResultFile& file, const StoredCell& cell, std::size_t run) {
-  RunRows rows;
-  RunReader::Scratch scratch;
-  RunReader(file, cell).read(run, rows, scratch);
-  return rows;
-}
-
 /// Adds the data of one cell of the chosen run and returns its plot: truth below, estimate above.
 std::string add_panel(const ResultFile& file, std::size_t cell_index, const Surroundings& around,
                       Figure& figure) {
   const StoredCell& cell = file.cells()[cell_index];
-  const RunRows run = rows_of(file, cell, around.run);
+  const RunRows run = read_run(file, cell, around.run);
   const FigureData path = path_data(file, cell, run), poses = pose_ellipses(cell, run),
                    map = map_data(file, cell, around.run);
   const std::string style = line_style(cell_index);
@@ -77,7 +70,7 @@ std::string add_panel(const ResultFile& file, std::size_t cell_index, const Surr
 std::string add_recorded_panel(const ResultFile& file, std::size_t cell_index,
                                const Surroundings& around, Figure& figure) {
   const StoredCell& cell = file.cells()[cell_index];
-  const RunRows run = rows_of(file, cell, around.run);
+  const RunRows run = read_run(file, cell, around.run);
   const FigureData path = path_data(file, cell, run), map = map_data(file, cell, around.run);
   PanelScript panel(cell.label);
   panel.add(around.fixes, std::string("using 2:3 ") + kFix);

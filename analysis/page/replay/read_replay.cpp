@@ -62,9 +62,7 @@ std::string failure_of(const ResultFile& file, const StoredCell& cell, std::size
 ReplayCell read_cell(const ResultFile& file, std::size_t index, std::size_t run,
                      const Scans& frames, const ReplaySize& size) {
   const StoredCell& cell = file.cells()[index];
-  RunRows rows;
-  RunReader::Scratch scratch;
-  RunReader(file, cell).read(run, rows, scratch);
+  const RunRows rows = read_run(file, cell, run);
   const MomentRows& moments = rows.mixture.mean.empty() ? rows.spread : rows.mixture;
   ReplayCell replay{cell.label, index, failure_of(file, cell, run)};
   replay.x = component(moments.mean, 0, frames);
