@@ -2,6 +2,7 @@
 #include "analysis/report.hpp"
 
 #include "analysis/comparison/comparison_csv.hpp"
+#include "analysis/figures/ancestry_figure.hpp"
 #include "analysis/figures/mismatch_figure.hpp"
 #include "analysis/figures/path_figure.hpp"
 #include "analysis/figures/reference_figures.hpp"
@@ -41,6 +42,7 @@ std::vector<Section> reading_order(const ResultFile& file, const StudyAnalysis& 
           figure_section({path_figure(file, options.run)}),
           figure_section(reference_figures(study)),
           figure_section(time_figures(study)),
+          figure_section({ancestry_figure(file, options.run)}),
           figure_section(why_figures(study)),
           figure_section({mismatch_figure(study)}),
           calibration_section(study),

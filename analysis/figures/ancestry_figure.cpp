@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/figures/ancestry_figure.hpp"
+
+#include "analysis/figures/chosen_run.hpp"
+#include "analysis/figures/gnuplot.hpp"
+#include "analysis/metrics/ancestry_tree.hpp"
+#include "analysis/run_reader.hpp"
+#include "analysis/tables/number_text.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace montecarta {
+namespace {
+
+constexpr std::size_t kMostRows = 8, kMostLeaves = 100;
+constexpr std::size_t kRowPixels = 190, kFramePixels = 50;
+
+/// A cell that is drawn.
+struct Drawn {
+  std::string label;
+  std::size_t style = 0;
+  AncestryTree tree;
+  double end = 0.0;  ///< [s] of the run
+};
+
+std::vector<Drawn> drawn_cells(const ResultFile& file, std::size_t run) {
+  std::vector<Drawn> drawn;
+  for (std::size_t c = 0; c < file.cells().size() && drawn.size() < kMostRows; ++c) {
+    const StoredCell& cell = file.cells()[c];
+    if (cell.particles < 2 || !cell.has("ancestor")) continue;
+    if (file.status(cell)[run] != RunStatus::complete) continue;
+    const RunRows rows = read_run(file, cell, run);
+    drawn.push_back({cell.label, c,
+                     ancestry_tree(rows.ancestor, cell.particles, file.scan_times(), kMostLeaves),
+                     file.scan_times().back()});
+  }
+  return drawn;
+}
+
+/// A row for every branch. A line that comes from the start has no height there but its own.
+FigureData data_of(const Drawn& cell) {
+  FigureData data{"ancestry_" + cell.label + ".csv",
+                  {"from [s]", "to [s]", "height", "height of its parent", "leaves"},
+                  {}};
+  for (const AncestryTree::Branch& branch : cell.tree.branches) {
+    const bool is_root = branch.parent == AncestryTree::kNone;
+    data.rows.push_back({branch.from, branch.to, branch.height,
+                         is_root ? branch.height : cell.tree.branches[branch.parent].height,
+                         static_cast<double>(branch.leaves)});
+  }
+  return data;
+}
+
+std::string title_of(const Drawn& cell) {
+  const AncestryTree& tree = cell.tree;
+  return cell.label + ": " +
+         (tree.leaves < tree.particles ? std::to_string(tree.leaves) + " of " : "") +
+         std::to_string(tree.particles) + " particles";
+}
+
+/// What the youngest common ancestor says of the run.
+std::string title_of_end(const Drawn& cell) {
+  const double since = cell.tree.common_ancestor();
+  if (since == 0.0) return "no common ancestor since the start";
+  return "the last " + readable(cell.end - since, 3) + " s, since their common ancestor";
+}
+
+std::string panel_of(const Drawn& cell, const std::string& title, double from) {
+  const std::string file = gnuplot_quoted("../data/ancestry_" + cell.label + ".csv");
+  const std::string style = " with vectors nohead " + line_style(cell.style) + " notitle";
+  return "set title " + gnuplot_quoted(title) + " noenhanced offset 0,-0.7\nset xrange [" +
+         exact_text(from) + ":" + exact_text(cell.end) +
+         "]\nset yrange [0:" + std::to_string(cell.tree.leaves + 1) + "]\nplot " + file +
+         " using 1:3:($2-$1):(0)" + style + ", \\\n  " + file + " using 1:4:(0):($3-$4)" + style +
+         "\n";
+}
+
+/// Where the second panel of a row begins: shortly before the youngest common ancestor.
+double beginning_of_end(const Drawn& cell) {
+  const double since = cell.tree.common_ancestor();
+  return std::max(0.0, since - 0.08 * (cell.end - since));
+}
+
+}  // namespace
+
+Figure ancestry_figure(const ResultFile& file, std::optional<std::uint64_t> run) {
+  Figure figure{"ancestry", "Whose story do the particles tell?", "", 900, 0, "", {}};
+  const auto run_index = chosen_run(file, run);
+  const auto cells = run_index ? drawn_cells(file, *run_index) : std::vector<Drawn>{};
+  if (cells.empty()) return figure;
+  figure.sentence =
+      "Run " + std::to_string(file.runs()[*run_index]) +
+      ": the lines of descent of the particles at the end of the run (right edge); lines meet in "
+      "a common ancestor, and to the left of the last meeting all particles share one past: what "
+      "the filter got wrong there it cannot doubt any more. On the right the end of the run, "
+      "enlarged.";
+  figure.height = cells.size() * kRowPixels + kFramePixels;
+  figure.script = "set key off\nunset ytics\nset border 1\nset xtics autofreq\n";
+  figure.script += "set multiplot layout " + std::to_string(cells.size()) + ",2\n";
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    if (c + 1 == cells.size()) figure.script += "set xlabel 'time [s]' offset 0,0.4\n";
+    figure.data.push_back(data_of(cells[c]));
+    figure.script += panel_of(cells[c], title_of(cells[c]), 0.0) +
+                     panel_of(cells[c], title_of_end(cells[c]), beginning_of_end(cells[c]));
+  }
+  figure.script += "unset multiplot\n";
+  return figure;
+}
+
+}  // namespace montecarta
