@@ -71,8 +71,9 @@ std::string line_style(std::size_t i) {
          std::to_string(line_dashes(i));
 }
 
-FigureData data_over_time(const std::string& name, const ThinnedSeries& thinned) {
-  FigureData data{name, {"time [s]"}, {}};
+FigureData data_of(const std::string& name, const std::string& heading,
+                   const ThinnedSeries& thinned) {
+  FigureData data{name, {heading}, {}};
   for (const NamedSeries& one : thinned.series) {
     data.headings.push_back(one.units == "1" ? one.name : one.name + " [" + one.units + "]");
   }

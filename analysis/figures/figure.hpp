@@ -43,7 +43,8 @@ std::string line_style(std::size_t i);
 /// the text.
 inline constexpr std::size_t kYardstickStyle = static_cast<std::size_t>(-1);
 
-/// The data file of a figure over time.
-FigureData data_over_time(const std::string& name, const ThinnedSeries& thinned);
+/// The data file of curves over what `heading` says.
+FigureData data_of(const std::string& name, const std::string& heading,
+                   const ThinnedSeries& thinned);
 
 }  // namespace montecarta

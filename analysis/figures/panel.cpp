@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kBuckets = 300;
 constexpr double kBelowBand = 0.3, kAboveBand = 1000.0;  // where the axis ends at the latest
-constexpr double kLogarithmicFrom = 30.0, kDecade = 10.0;
+constexpr double kLogarithmicFrom = 30.0, kDecade = 10.0, kRoom = 1.05;
 constexpr double kBeyondAnyAxis = 1e100;   // gnuplot knows no infinity
 constexpr std::size_t kAxisPixels = 66;    // below the lowest panel: ticks and label
 constexpr std::size_t kLegendPixels = 22;  // of a row
@@ -44,15 +44,30 @@ Range range_of(const Panel& panel) {
   return range;
 }
 
+/// All that is drawn is near zero, on one side or the other.
+ChartAxis around_zero(const Panel& panel) {
+  double farthest = 0.0;
+  for (const Curve& curve : panel.curves) {
+    for (const double value : curve.values) {
+      if (std::isfinite(value)) farthest = std::max(farthest, std::abs(value));
+    }
+  }
+  for (const Band& band : panel.bands) farthest = std::max({farthest, -band.lower, band.upper});
+  const double end = farthest > 0.0 ? kRoom * farthest : 1.0;
+  return {false, -end, end};
+}
+
 /// Logarithmic: whole decades, near a band no farther than the range itself.
 ChartAxis axis_of(const Panel& panel) {
+  if (panel.scale == Scale::around_zero) return around_zero(panel);
   const Range range = range_of(panel);
   const bool wide = range.greatest > kLogarithmicFrom * range.least;
   if (panel.scale == Scale::percent) return {false, 0.0, 100.0};
   if (panel.scale == Scale::from_zero || (panel.scale == Scale::automatic && !wide)) {
     const bool endless =
         std::ranges::any_of(panel.bands, [](const Band& band) { return std::isinf(band.upper); });
-    return {false, 0.0, endless ? 1.05 * range.greatest : std::numeric_limits<double>::quiet_NaN()};
+    return {false, 0.0,
+            endless ? kRoom * range.greatest : std::numeric_limits<double>::quiet_NaN()};
   }
   if (!panel.bands.empty()) return {true, range.least, range.greatest};
   const double from = std::floor(std::log10(range.least));
@@ -68,10 +83,10 @@ std::string axis_script(const std::string& label, const ChartAxis& axis) {
          (std::isnan(axis.high) ? "*" : exact_text(axis.high)) + "]\n";
 }
 
-ThinnedSeries thinned(const Panel& panel, const std::vector<double>& times) {
+ThinnedSeries thinned(const Panel& panel, const std::vector<double>& places) {
   std::vector<NamedSeries> series;
   for (const Curve& curve : panel.curves) series.push_back({curve.legend, "1", curve.values});
-  return thin(times, series, kBuckets);
+  return thin(places, series, kBuckets);
 }
 
 ChartPanel chart_panel(const Panel& panel, const ChartAxis& axis, const ThinnedSeries& series) {
@@ -88,13 +103,13 @@ std::string band_name(const Panel& panel, std::size_t b) {
 }
 
 /// Numbers of the bands, within the script.
-std::string bands_of(const Panel& panel, double last_time) {
+std::string bands_of(const Panel& panel, double last) {
   std::string script;
   for (std::size_t b = 0; b < panel.bands.size(); ++b) {
     const auto& [legend, lower, upper] = panel.bands[b];
     const std::string ends =
         "," + exact_text(lower) + "," + exact_text(std::min(upper, kBeyondAnyAxis)) + "\n";
-    script += band_name(panel, b) + " << EOD\ntime,lower,upper\n0" + ends + exact_text(last_time) +
+    script += band_name(panel, b) + " << EOD\nplace,lower,upper\n0" + ends + exact_text(last) +
               ends + "EOD\n";
   }
   return script;
@@ -138,10 +153,10 @@ std::size_t add_legend(const Panel& panel, Figure& figure) {
 
 }  // namespace
 
-void add_panels(const std::vector<Panel>& panels, const std::vector<double>& times,
+void add_panels(const std::vector<Panel>& panels, const std::vector<double>& places,
                 Figure& figure) {
   if (panels.empty() || panels.front().curves.empty()) return;
-  const double last = times.back();
+  const double last = places.back();
   const std::size_t rows = add_legend(panels.front(), figure);
   const std::size_t top = rows * kLegendPixels + 24;
   figure.height += top;
@@ -154,13 +169,14 @@ void add_panels(const std::vector<Panel>& panels, const std::vector<double>& tim
                    "," + share(figure.height - top) + " spacing 0.05\n";
   for (std::size_t p = 0; p < panels.size(); ++p) {
     const bool lowest = p + 1 == panels.size();
-    figure.script += lowest ? "set xlabel 'time [s]' offset 0,0.4\nset format x '%h'\n"
+    figure.script += lowest ? "set xlabel " + gnuplot_quoted(figure.chart.x_label) +
+                                  " offset 0,0.4\nset format x '%h'\n"
                             : "unset xlabel\nset format x ''\n";
     if (p > 0) figure.script += "set key off\n";
     const ChartAxis axis = axis_of(panels[p]);
-    const ThinnedSeries series = thinned(panels[p], times);
+    const ThinnedSeries series = thinned(panels[p], places);
     figure.script += axis_script(panels[p].label, axis) + plot_of(panels[p], p == 0);
-    figure.data.push_back(data_over_time(panels[p].name + ".csv", series));
+    figure.data.push_back(data_of(panels[p].name + ".csv", figure.chart.x_label, series));
     figure.chart.panels.push_back(chart_panel(panels[p], axis, series));
   }
   figure.script += "unset multiplot\n";

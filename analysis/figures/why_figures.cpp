@@ -2,8 +2,12 @@
 #include "analysis/figures/why_figures.hpp"
 
 #include "analysis/figures/cell_panels.hpp"
+#include "analysis/tables/number_text.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
 
 namespace montecarta {
 namespace {
@@ -20,6 +24,22 @@ Band right_ratios(const StudyAnalysis& study) {
     if (cell.anatomy) fewest = std::min(fewest, cell.complete);
   }
   return {"right filter", 1.0, right_worst_ratio(fewest, study.level)};
+}
+
+/// Where white innovations stay: one band for each number of pairs of scans; where there are none
+/// so far apart, no band.
+std::vector<Band> white_bands(const StudyAnalysis& study) {
+  std::set<double> bounds;
+  for (const CellAnalysis& cell : study.cells) {
+    if (cell.innovations && std::isfinite(cell.innovations->bound))
+      bounds.insert(cell.innovations->bound);
+  }
+  std::vector<Band> bands;
+  for (const double bound : bounds) {
+    bands.push_back(
+        {bands.empty() ? level_text(study.level) + " band of white ones" : "", -bound, bound});
+  }
+  return bands;
 }
 
 }  // namespace
@@ -77,9 +97,29 @@ Figure innovation_figure(const StudyAnalysis& study) {
   return figure;
 }
 
+Figure whiteness_figure(const StudyAnalysis& study) {
+  Figure figure{"whiteness", "Does one surprise foretell the next?", "", 900, 260, "", {}};
+  figure.sentence =
+      "Correlation of the normalised innovations squared of scans that lie so many scans apart, "
+      "mean over runs: inside of the grey band at every distance the innovations are white, one "
+      "tells nothing of the next; a curve above it belongs to a filter that makes the same mistake "
+      "scan after scan.";
+  const CellValues correlation = [](const CellAnalysis& cell) {
+    return cell.innovations ? cell.innovations->autocorrelation : std::vector<double>{};
+  };
+  std::vector<Panel> panels = cell_panels(
+      study, {"whiteness", "correlation of NIS", {}, {}, Scale::around_zero}, correlation);
+  for (Panel& panel : panels) panel.bands = white_bands(study);
+  std::vector<double> lags(kInnovationLags);
+  std::iota(lags.begin(), lags.end(), 1.0);
+  figure.chart.x_label = "scans apart";
+  add_panels(panels, lags, figure);
+  return figure;
+}
+
 std::vector<Figure> why_figures(const StudyAnalysis& study) {
   std::vector<Figure> figures = {survival_figure(study), why_figure(study),
-                                 innovation_figure(study)};
+                                 innovation_figure(study), whiteness_figure(study)};
   std::erase_if(figures, [](const Figure& figure) { return figure.data.empty(); });
   return figures;
 }

@@ -14,6 +14,8 @@ Figure survival_figure(const StudyAnalysis& study);
 Figure why_figure(const StudyAnalysis& study);
 /// NIS per component over time.
 Figure innovation_figure(const StudyAnalysis& study);
+/// Correlation of the NIS over scans apart, with the band of white ones.
+Figure whiteness_figure(const StudyAnalysis& study);
 
 /// All of the above that have something to show.
 std::vector<Figure> why_figures(const StudyAnalysis& study);

@@ -53,5 +53,21 @@ TEST(Panels, HaveAxesAlsoWhereNothingIsPositive) {
   EXPECT_THAT(figure.script, HasSubstr("set yrange [1:10]"));
 }
 
+TEST(Panels, ShowAsMuchBelowZeroAsAbove) {
+  const Figure figure = drawn(
+      {"r", "correlation", {{"one", 0, {1.0, -4.0}}}, {{"white", -2.0, 2.0}}, Scale::around_zero});
+  EXPECT_THAT(figure.script, HasSubstr("set yrange [-4.2:4.2]"));
+  EXPECT_DOUBLE_EQ(figure.chart.panels.front().axis.low, -4.2);
+}
+
+TEST(Panels, CallTheirCommonAxisAsTheFigureWants) {
+  Figure figure;
+  figure.chart.x_label = "scans apart";
+  add_panels({{"r", "correlation", {{"one", 0, {0.1, -0.4}}}, {}, Scale::around_zero}}, {1, 2},
+             figure);
+  EXPECT_THAT(figure.script, HasSubstr("set xlabel 'scans apart'"));
+  EXPECT_EQ(figure.data.front().headings.front(), "scans apart");
+}
+
 }  // namespace
 }  // namespace montecarta
