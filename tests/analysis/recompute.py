@@ -23,10 +23,10 @@ TOLERANCE = 1e-12
 checked, wrong = 0, 0
 
 
-def check(what, ours, theirs):
+def check(what, ours, theirs, tolerance=TOLERANCE):
     global checked, wrong
     ours, theirs = np.atleast_1d(np.asarray(ours, float)), np.atleast_1d(np.asarray(theirs, float))
-    same = np.abs(ours - theirs) <= TOLERANCE * np.abs(theirs)
+    same = np.abs(ours - theirs) <= tolerance * np.abs(theirs)
     same |= np.isnan(ours) & np.isnan(theirs)
     checked += same.size
     wrong += np.count_nonzero(~same)
@@ -44,40 +44,69 @@ def column(rows, name):
 
 
 def ness_by_filterpy(errors, covariances):
-    return np.array([np.dot(x.T, np.linalg.inv(p)).dot(x) for x, p in zip(errors, covariances)])
+    return np.einsum("...i,...ij,...j", errors, np.linalg.inv(covariances), errors)
 
 
 def nees_by_navlie(errors, covariances):
-    return np.array([(e @ np.linalg.solve(P, e)) for e, P in zip(errors, covariances)])
+    return np.einsum("...i,...i", errors, np.linalg.solve(covariances, errors[..., None])[..., 0])
+
+
+def on_chi_square(nees, dof, particles):
+    """What is as probable under the chi-square as `nees` is by Hotelling's F of an ideal sampler."""
+    f = nees * (particles - dof) / (dof * (particles + 1))
+    above = stats.f.sf(f, dof, particles - dof)
+    below = stats.chi2.ppf(stats.f.cdf(f, dof, particles - dof), dof)
+    return np.where(above > 0.5, below, stats.chi2.isf(np.maximum(above, 1e-300), dof))
+
+
+class Corrected:
+    """The NEES by the spread on the chi-square's scale: montecarta has it in a table, linear between
+    eighths of an octave, which this builds once more and compares with the formula itself."""
+
+    def __init__(self, dof, particles):
+        self.octaves = np.linspace(-16, 48, 513)
+        nees = 2**self.octaves
+        self.log_ratios = np.log2(on_chi_square(nees, dof, particles) / nees)
+        between = 2 ** np.linspace(-10, 20, 997)
+        check(f"table for {dof} of {particles}", self(between), on_chi_square(between, dof, particles), 2e-4)
+
+    def __call__(self, nees):
+        octaves = np.clip(np.log2(nees), -16, 48)
+        return 2 ** (octaves + np.interp(octaves, self.octaves, self.log_ratios))
 
 
 class Cell:
-    """Complete runs of one cell at its scans: errors {run, scan, 3} and covariances, leading ones."""
+    """Complete runs of one cell at its scans, by every definition of the moments."""
 
     def __init__(self, file, label):
         cell, rows = file["cells"][label], file["scan_row"][:]
         self.label, self.status = label, cell["status"][:]
         self.runs = np.flatnonzero(self.status == 1)
-        self.particles = cell.attrs["particles"]
-        self.moments = "mixture" if "pose_mean_mixture" in cell else "spread"
-        suffix = "_mixture" if self.moments == "mixture" else ""
-        error = file["truth/pose"][:] - cell["pose_mean" + suffix][:]
-        error[..., 2] = np.arctan2(np.sin(error[..., 2]), np.cos(error[..., 2]))
-        self.errors = error[self.runs][:, rows]
-        self.covariances = cell["pose_covariance" + suffix][:][self.runs][:, rows]
+        self.particles = int(cell.attrs["particles"])
+        at_scans = lambda column: column[:][self.runs][:, rows]
+        truth = at_scans(file["truth/pose"])
+        self.of_moments = {}  # {name: (errors {run, scan, 3}, covariances {run, scan, 3, 3})}
+        for name, suffix in (("mixture", "_mixture"), ("corrected", ""), ("spread", "")):
+            if f"pose_mean{suffix}" not in cell or (name == "corrected" and self.particles <= 3):
+                continue
+            errors = truth - at_scans(cell["pose_mean" + suffix])
+            errors[..., 2] = np.arctan2(np.sin(errors[..., 2]), np.cos(errors[..., 2]))
+            self.of_moments[name] = errors, at_scans(cell["pose_covariance" + suffix])
+        self.moments = list(self.of_moments)  # the first one leads
+        self.errors = self.of_moments[self.moments[0]][0]
+        self.tables = {d: Corrected(d, self.particles) for d in (1, 2, 3) if "corrected" in self.moments}
         self.cpu = file["timing"][label]["cpu_seconds"][:][self.runs]
+        self.scores = self.make_scores()
 
-    def nees(self, part, by):
-        return np.array([by(e[:, part], P[:, part, part]) for e, P in zip(self.errors, self.covariances)])
+    def nees(self, part, moments, by):
+        errors, covariances = self.of_moments[moments]
+        values = by(errors[..., part], covariances[..., part, part])
+        return self.tables[part.stop - part.start](values) if moments == "corrected" else values
 
-    def is_recomputed(self, metric):
-        """Not the NEES of few particles, which montecarta corrects by a table good to 1e-4."""
-        return metric != "nees_distance" or self.moments == "mixture" or self.particles == 0
-
-    def scores(self):
+    def make_scores(self):
         """{metric: value of each complete run}."""
         ees = self.errors**2
-        nees = self.nees(slice(0, 3), nees_by_navlie).mean(axis=1)
+        nees = self.nees(slice(0, 3), self.moments[0], nees_by_navlie).mean(axis=1)
         return {
             "position_rmse": np.sqrt(ees[..., :2].sum(-1).mean(axis=1)),
             "heading_rmse": np.sqrt(ees[..., 2].mean(axis=1)),
@@ -99,18 +128,20 @@ def check_cell(cell, folder):
     series = rows_of(f"{folder}/series_{cell.label}.csv")
     n = len(cell.runs)
     for block, part in (("pose", slice(0, 3)), ("position", slice(0, 2)), ("heading", slice(2, 3))):
-        name, dof = f"{block}_{cell.moments}", part.stop - part.start
-        for by in (ness_by_filterpy, nees_by_navlie):
-            average = cell.nees(part, by).mean(axis=0)
-            check(f"{cell.label} anees_{name} {by.__name__}", column(series, "anees_" + name), average)
-        check(f"{cell.label} lower_{name}", column(series, "lower_" + name), stats.chi2.ppf(0.025, n * dof) / n)
-        check(f"{cell.label} upper_{name}", column(series, "upper_" + name), stats.chi2.isf(0.025, n * dof) / n)
+        dof = part.stop - part.start
+        for moments in cell.moments:
+            name = f"{block}_{moments}"
+            for by in (ness_by_filterpy, nees_by_navlie):
+                average = cell.nees(part, moments, by).mean(axis=0)
+                check(f"{cell.label} anees_{name} {by.__name__}", column(series, "anees_" + name), average)
+            check(f"{cell.label} lower_{name}", column(series, "lower_" + name), stats.chi2.ppf(0.025, n * dof) / n)
+            check(f"{cell.label} upper_{name}", column(series, "upper_" + name), stats.chi2.isf(0.025, n * dof) / n)
     ees = cell.errors**2
     check(f"{cell.label} rmse", column(series, "position_rmse [m]"), np.sqrt(ees[..., :2].sum(-1).mean(axis=0)))
     check(f"{cell.label} rmse", column(series, "heading_rmse [rad]"), np.sqrt(ees[..., 2].mean(axis=0)))
     numbers = {row["cell"]: row for row in rows_of(f"{folder}/cells.csv")}[cell.label]
     for name, unit in (("position_rmse", "m"), ("heading_rmse", "rad")):
-        values = cell.scores()[name]
+        values = cell.scores[name]
         check(f"{cell.label} {name}", float(numbers[f"{name}_mean [{unit}]"]), values.mean())
         check(f"{cell.label} {name}", float(numbers[f"{name}_sd [{unit}]"]), values.std(ddof=1))
 
@@ -125,16 +156,12 @@ def holm(p):
 
 def wins(cell, other, metric):
     """(differences of common complete runs, won, lost); a failed run is lost to a complete one."""
-    mine, its = cell.scores()[metric], other.scores()[metric]
+    mine, its = cell.scores[metric], other.scores[metric]
     both = np.intersect1d(cell.runs, other.runs)
     difference = mine[np.searchsorted(cell.runs, both)] - its[np.searchsorted(other.runs, both)]
     won = np.count_nonzero(difference < 0) + np.count_nonzero((cell.status == 1) & (other.status == 2))
     lost = np.count_nonzero(difference > 0) + np.count_nonzero((cell.status == 2) & (other.status == 1))
     return difference, won, lost
-
-
-def recomputed(cells, metric, *labels):
-    return all(cells[label].is_recomputed(metric) for label in labels)
 
 
 def sign_p(won, lost):
@@ -144,8 +171,7 @@ def sign_p(won, lost):
 def check_comparison(cells, folder, baseline):
     rows = rows_of(f"{folder}/comparison.csv")
     p_values = []
-    known = [row for row in rows if recomputed(cells, row["metric"], row["cell"], baseline)]
-    for row in known:
+    for row in rows:
         name = f"{row['cell']} against {baseline} by {row['metric']}"
         difference, won, lost = wins(cells[row["cell"]], cells[baseline], row["metric"])
         moved = difference[difference != 0]
@@ -157,14 +183,9 @@ def check_comparison(cells, folder, baseline):
         check(name + ": sign test", float(row["p_sign"]), sign_p(won, lost))
         check(name + ": signed-rank test", float(row["p_rank"]), rank)
         p_values += [sign_p(won, lost), rank]
-    if len(known) < len(rows):
-        print(f"{len(rows) - len(known)} rows and Holm's correction not recomputed: NEES of few particles")
-    else:
-        ours = np.ravel([[float(row["p_sign_holm"]), float(row["p_rank_holm"])] for row in rows])
-        check("Holm", ours, holm(p_values))
+    ours = np.ravel([[float(row["p_sign_holm"]), float(row["p_rank_holm"])] for row in rows])
+    check("Holm", ours, holm(p_values))
     for row in rows_of(f"{folder}/wins.csv"):
-        if not recomputed(cells, row["metric"], row["cell"], row["beaten"]):
-            continue
         _, won, lost = wins(cells[row["cell"]], cells[row["beaten"]], row["metric"])
         check(f"wins by {row['metric']}", [float(row["won"]), float(row["p_sign"])], [won, sign_p(won, lost)])
 

@@ -25,6 +25,7 @@ inline void perturb(const Drive& drive, std::uint64_t run, double inflation, Run
   const Eigen::Matrix3d L = P.llt().matrixL();
   RngStream draw({3, run, 0, 0, Draw::test});
   for (const std::string suffix : {"", "_mixture"}) {
+    if (!layout.find("pose_mean" + suffix)) continue;
     const auto mean = record.column<double>(*layout.find("pose_mean" + suffix));
     const auto covariance = record.column<double>(*layout.find("pose_covariance" + suffix));
     for (std::size_t k = 0; k < drive.truth.size(); ++k) {
@@ -58,6 +59,7 @@ inline void spoil_estimates(std::size_t cell, std::uint64_t run, RunRecord& reco
 /// Marks a record as failed at `step`: as FORMAT.md has it, rows behind are not numbers.
 inline void fail_at(std::uint32_t step, const std::string& reason, RunRecord& record) {
   for (const char* name : {"pose_mean", "pose_mean_mixture"}) {
+    if (!record.layout().find(name)) continue;
     const auto mean = record.column<double>(*record.layout().find(name));
     std::fill(mean.begin() + 3 * (step + 1), mean.end(), std::numeric_limits<double>::quiet_NaN());
   }
@@ -65,11 +67,14 @@ inline void fail_at(std::uint32_t step, const std::string& reason, RunRecord& re
 }
 
 /// A result with a perfect cell ("scripted_m4") and an overconfident one ("scripted_m3"), whose
-/// last run failed at step 5. `spoil` may change the record of a (cell, run) before it is stored.
+/// last run failed at step 5. `spoil` may change the record of a (cell, run) before it is stored,
+/// `change` the plan.
 inline void write_synthetic_result(
     const std::filesystem::path& path, std::uint64_t runs = 12, std::size_t steps = 400,
-    const std::function<void(std::size_t, std::uint64_t, RunRecord&)>& spoil = {}) {
-  const StudyPlan plan = small_result_plan(runs, steps);
+    const std::function<void(std::size_t, std::uint64_t, RunRecord&)>& spoil = {},
+    const std::function<void(StudyPlan&)>& change = {}) {
+  StudyPlan plan = small_result_plan(runs, steps);
+  if (change) change(plan);
   ResultWriter writer = ResultWriter::create(path, plan, {{"host", "nowhere"}}, Existing::replace);
   Drive drive;
   for (std::uint64_t run = 0; run < runs; ++run) {
