@@ -134,4 +134,4 @@ class Touch(Hover):
         self.page.touch("touchStart", [left, right])
         self.page.touch("touchMove", [(left[0] - 50, left[1]), (right[0] + 50, right[1])])
         self.page.touch("touchEnd", [])
-        self.assertGreater(float(self.ask(CHART, "dataset.from")), 5)
+        self.wait_for(f"Number(document.querySelector('{CHART}').dataset.from) > 5")

@@ -72,9 +72,9 @@ class OnPage(unittest.TestCase):
         self.page.evaluate(f"new Promise(done => setTimeout(done, {milliseconds}))")
 
     def wait_for(self, condition):
-        """Until an expression is true in the page, or ten seconds have passed."""
+        """Until an expression is true in the page, or two minutes have passed."""
         self.assertTrue(self.page.evaluate(f"""(async () => {{
-            const end = performance.now() + 10000;
+            const end = performance.now() + 120000;
             while (!({condition}) && performance.now() < end)
                 await new Promise(done => setTimeout(done, 20));
             return {condition};

@@ -8,7 +8,9 @@ from on_page import OnPage
 class Opening(OnPage):
 
     def test_takes_less_than_two_seconds(self):
-        self.assertLess(min(self.page.open(self.html) for _ in range(3)), 2.0)
+        work = [self.open().work() for _ in range(3)]
+        self.assertGreater(min(work), 0.01)
+        self.assertLess(min(work), 2.0)
 
     def test_fits_every_screen(self):
         for width in (360, 800, 1400):
