@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -23,26 +24,59 @@ struct ChartAxis {
   double high = 0.0;  ///< NaN: as far as the curves reach
 };
 
+/// What is drawn at places of its own rather than over the panel's common x. The pointer is told
+/// the facts of the nearest.
+struct ChartMarks {
+  enum class Shape { line, points, crosses, ellipses, boxes };
+  /// One value for each place.
+  struct Fact {
+    std::string label;  ///< with unit
+    std::vector<double> values;
+  };
+  std::string name;       ///< what such a mark is
+  std::string cell;       ///< hidden with it; empty: always shown
+  std::size_t style = 0;  ///< for line_colour()
+  Shape shape = Shape::line;
+  double thickness = 0.0;             ///< [px] of lines and points; 0: the usual
+  std::vector<double> x, y;           ///< NaN: a gap in a line
+  std::vector<double> width, height;  ///< of ellipses (diameters) and boxes
+  std::vector<double> angle;          ///< [deg] of ellipses
+  std::vector<std::string> fill;      ///< colour of each box; empty: that of the style, thinly
+  std::vector<std::string> text;      ///< within each box; empty: none
+  std::vector<Fact> facts;            ///< none: the pointer passes over them
+};
+
 /// Axes with curves, ready to draw.
 struct ChartPanel {
   struct Curve {
     std::string legend;          ///< curves of one legend are one cell: a page hides them together
     std::size_t style = 0;       ///< for line_style()
     std::vector<double> values;  ///< one for each of `x`; NaN: a gap
+    std::vector<double> least = {}, greatest = {};  ///< ends of a bar at each value; empty: none
   };
   std::string label;  ///< of the vertical axis, with unit
   ChartAxis axis;
   std::vector<double> x;  ///< increasing
   std::vector<Curve> curves;
   std::vector<Band> bands;
+  std::string cell = {};  ///< a panel of one cell: hidden with it
+  std::vector<ChartMarks> marks = {};
+  std::vector<std::string> x_names = {}, y_names = {};  ///< at 0, 1, 2, ..., in place of numbers
 };
 
 /// What a figure's drawing shows, as numbers: a page with scripts draws it again, to be zoomed into
-/// and asked. Panels lie one above the other over one horizontal axis.
+/// and asked. All panels have one horizontal axis.
 struct Chart {
   std::string x_label = "time [s]";
   double x_from = 0.0, x_to = 0.0;
   std::vector<ChartPanel> panels;  ///< none: the figure has its drawing alone
+  bool x_logarithmic = false;
+  /// Where it begins before it is zoomed; NaN: at x_from.
+  double x_first = std::numeric_limits<double>::quiet_NaN();
+  std::size_t columns = 1;  ///< side by side, where there is room; else one above the other
+  std::size_t least = 0;    ///< [px] the width of a panel
+  double aspect = 0.0;      ///< height of a panel by its width; 0: the usual
+  bool is_map = false;      ///< one scale in both directions, whatever is zoomed
 };
 
 }  // namespace montecarta

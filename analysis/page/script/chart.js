@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A figure that is zoomed into and asked: panels over one horizontal axis, a legend, a readout.
 
-const CHART = {right: 14, top: 26, bottom: 44, narrow: 480};
+const CHART = {right: 14, top: 26, bottom: 44, narrow: 480, widest: 640, lowest: 80};
 
 class ChartFigure {
   constructor(figure, data) {
     this.data = data;
     data.panels.reduce((above, panel) => (panel.x ??= above), null);
-    this.whole = {logarithmic: false, from: data.x_from, to: data.x_to};
-    this.horizontal = {...this.whole};
-    this.verticals = data.panels.map(() => null);
+    this.whole = {logarithmic: data.x_logarithmic ?? false, from: data.x_from, to: data.x_to};
+    this.horizontal = {...this.whole, from: data.x_first ?? data.x_from};
     const live = htmlElement("div", {class: "live"});
     figure.prepend(live);
     figure.classList.add("has-live");
-    this.legend = new Legend(curvesOf(data), bandsOf(data), live, () => this.draw());
+    this.legend = new Legend(cellsOf(data), bandsOf(data), live, () => this.arrange());
     this.stage = htmlElement("div", {class: "stage"}, live);
     this.svg = svgElement("svg", {class: "chart", tabindex: 0, role: "img",
       "aria-label": figure.querySelector("svg.drawing")?.getAttribute("aria-label") ?? "chart"},
     this.stage);
     this.plots = data.panels.map((panel) => new Plot(panel, this.svg));
+    this.x_name = svgElement("text", {class: "x name", text: data.x_label}, this.svg);
     this.cursor = svgElement("path", {class: "cursor"}, this.svg);
     this.drawn_box = svgElement("rect", {class: "selection"}, this.svg);
     this.readout = new Readout(this.stage);
@@ -32,8 +32,8 @@ class ChartFigure {
     const hint = htmlElement("div", {class: "hint"}, parent);
     const words = matchMedia("(pointer: coarse)").matches
       ? "Slide a finger to read values; two fingers zoom, a double tap shows all."
-      : "Point to read values; drag a box to zoom, Shift and drag to move, Ctrl and wheel to zoom "
-        + "in time; a double click shows all.";
+      : "Point to read values; drag a box to zoom, Shift and drag to move, Ctrl and wheel to "
+        + "zoom; a double click shows all.";
     htmlElement("span", {text: words}, hint);
     this.all = htmlElement("button", {type: "button", text: "show all", hidden: ""}, hint);
     this.all.addEventListener("click", () => this.reset());
@@ -43,28 +43,37 @@ class ChartFigure {
     const width = Math.max(this.stage.clientWidth, 200);
     if (width === this.width) return;
     this.width = width;
-    const is_narrow = width < CHART.narrow;
-    const room = is_narrow ? 44 : 58;
-    const single = this.plots.length === 1;
-    const height = is_narrow ? (single ? 210 : 150) : (single ? 300 : 180);
-    this.plots.forEach((plot, p) => plot.place({left: room, room: room - 4, height,
-      top: CHART.top + p * (height + CHART.top), width: width - room - CHART.right,
-      lowest: p + 1 === this.plots.length}));
-    this.height = this.plots.length * (height + CHART.top) + CHART.bottom;
-    this.svg.setAttribute("width", width);
-    this.svg.setAttribute("height", this.height);
+    this.arrange();
+  }
+
+  /** Panels side by side as far as there is room; those of hidden cells leave theirs to others. */
+  arrange() {
+    const isShown = ({panel}) => !this.legend.hidden.has(panel.cell);
+    this.shown = this.plots.filter(isShown);
+    for (const plot of this.plots) plot.group.toggleAttribute("hidden", !isShown(plot));
+    const {columns: most = 1, least = 0, aspect} = this.data;
+    const columns = clamp(Math.floor(this.width / least), 1, Math.min(most, this.shown.length || 1));
+    const each = Math.min(this.width / columns, aspect ? CHART.widest : Infinity);
+    const room = this.width < CHART.narrow ? 44 : 58;
+    const width = each - room - CHART.right;
+    const height = aspect ? Math.max(aspect * width, CHART.lowest) : this.usualHeight();
+    this.shown.forEach((plot, p) => plot.place({left: room + (p % columns) * each, room: room - 4,
+      top: CHART.top + Math.floor(p / columns) * (height + CHART.top), width, height,
+      lowest: p + columns >= this.shown.length}));
+    const rows = Math.ceil(this.shown.length / columns);
+    this.height = rows * (height + CHART.top) + CHART.bottom;
+    fill(this.svg, {width: this.width, height: this.height});
+    fill(this.x_name, {x: room + (columns * each - room - CHART.right) / 2, y: this.height - 8});
     this.draw();
   }
 
+  usualHeight() {
+    const single = this.plots.length === 1;
+    return this.width < CHART.narrow ? (single ? 210 : 150) : (single ? 300 : 180);
+  }
+
   draw() {
-    const isHidden = (curve) => this.legend.isHidden(curve);
-    this.plots.forEach((plot, p) => {
-      plot.whole = wholeVerticalAxis(plot.panel, isHidden);
-      plot.draw(this.horizontal, this.verticals[p] ?? plot.whole, isHidden);
-    });
-    const last = this.plots.at(-1);
-    svgElement("text", {class: "x name", x: last.box.left + last.box.width / 2,
-      y: this.height - 8, text: this.data.x_label}, last.group);
+    for (const plot of this.shown) plot.draw(this.horizontal, (curve) => this.legend.isHidden(curve));
     this.svg.dataset.from = this.horizontal.from;
     this.svg.dataset.to = this.horizontal.to;
     this.all.hidden = this.isWhole();
@@ -73,51 +82,57 @@ class ChartFigure {
 
   isWhole() {
     return this.horizontal.from === this.whole.from && this.horizontal.to === this.whole.to
-      && this.verticals.every((axis) => axis === null);
+      && this.plots.every(({zoomed}) => zoomed === null);
   }
 
-  plotAt(y) {
-    return this.plots.find(({box}) => y >= box.top - CHART.top / 2
-      && y <= box.top + box.height + CHART.top / 2) ?? null;
-  }
-
-  share(x) {
-    const {box} = this.plots[0];
-    return (x - box.left) / box.width;
+  plotAt({x, y}) {
+    return this.shown.find(({box}) => y >= box.top - CHART.top / 2
+      && y <= box.top + box.height + CHART.top / 2
+      && x >= box.left - box.room && x <= box.left + box.width + CHART.right) ?? null;
   }
 
   point(at) {
-    const plot = at && this.plotAt(at.y);
-    const share = at ? this.share(at.x) : -1;
-    this.cursor.toggleAttribute("hidden", true);
-    if (!plot || share < 0 || share > 1) {
+    const plot = at && this.plotAt(at);
+    const isHidden = (curve) => this.legend.isHidden(curve);
+    const found = plot && (plot.panel.marks ? markAt(plot, at, isHidden, this.data)
+                                            : valuesAt(plot, at, isHidden, this.data.x_label));
+    this.cursor.toggleAttribute("hidden", !found);
+    if (!found) {
       this.readout.hide();
       return;
     }
-    const i = nearest(plot.panel.x, valueAt(this.horizontal, share));
-    const x = plot.x(plot.panel.x[i]);
-    this.cursor.toggleAttribute("hidden", false);
-    this.cursor.setAttribute("d", this.plots.map(({box}) => `M${x} ${box.top}v${box.height}`)
-      .join(""));
-    this.readout.show(plot, i, this.data.x_label, {x, y: plot.box.top},
-                      (curve) => this.legend.isHidden(curve));
+    this.cursor.setAttribute("d", found.outline ?? this.shown.map(({box}, p) =>
+      `M${this.shown[p].x(found.value)} ${box.top}v${box.height}`).join(""));
+    this.readout.show(found);
   }
 
   zoom(at, factor) {
-    this.show(zoomed(this.horizontal, clamp(this.share(at.x), 0, 1), factor));
+    const plot = this.plotAt(at) ?? this.shown[0];
+    if (!plot) return;
+    const about = plot.sharesOf(at);
+    this.show(zoomed(this.horizontal, clamp(about.x, 0, 1), factor),
+              this.data.is_map && zoomed(plot.vertical, clamp(about.y, 0, 1), factor));
   }
 
   move(dx, dy) {
-    const {box} = this.plots[0];
-    const by = -dx / box.width;
-    if (dy !== 0) this.verticals = this.verticals.map((axis) =>
-      axis && stretch(axis, dy / box.height, 1 + dy / box.height));
-    this.show(stretch(this.horizontal, by, 1 + by));
+    if (this.shown.length === 0) return;
+    const {box, vertical} = this.shown[0];
+    const by = -dx / box.width, up = dy / box.height;
+    const moved = (axis) => stretch(axis, up, 1 + up);
+    if (!this.data.is_map) for (const plot of this.plots) plot.zoomed &&= moved(plot.zoomed);
+    this.show(stretch(this.horizontal, by, 1 + by), this.data.is_map && moved(vertical));
   }
 
-  show(horizontal) {
+  /** All panels of a map show the same place, each other panel its own height. */
+  show(horizontal, vertical = null) {
     if (!isWideEnough(horizontal, this.whole)) return;
     this.horizontal = within(horizontal, this.whole);
+    if (vertical) {
+      for (const plot of this.plots) plot.zoomed = within(vertical, plot.whole);
+      if (this.horizontal.from === this.whole.from && this.horizontal.to === this.whole.to) {
+        for (const plot of this.plots) plot.zoomed = null;
+      }
+    }
     this.draw();
   }
 
@@ -129,34 +144,38 @@ class ChartFigure {
       width: Math.abs(to.x - from.x), height: Math.abs(to.y - from.y)});
   }
 
-  /** A flat box zooms in time alone, a narrow one in height alone. */
+  /** A flat box zooms in time alone, a narrow one in height alone; on a map both alike. */
   select(from, to) {
-    const plot = this.plotAt((from.y + to.y) / 2);
-    const order = (a, b) => [Math.min(a, b), Math.max(a, b)];
-    const flat = Math.abs(to.y - from.y) < 24, narrow = Math.abs(to.x - from.x) < 24;
-    if (plot && !flat) {
-      const up = (y) => clamp((plot.box.top + plot.box.height - y) / plot.box.height, 0, 1);
-      this.verticals[this.plots.indexOf(plot)] = stretch(plot.vertical, ...order(up(from.y), up(to.y)));
+    const plot = this.plotAt({x: (from.x + to.x) / 2, y: (from.y + to.y) / 2});
+    if (!plot) return;
+    const [a, b] = [plot.sharesOf(from), plot.sharesOf(to)];
+    if (this.data.is_map) {
+      const half = Math.max(Math.abs(a.x - b.x), Math.abs(a.y - b.y)) / 2;
+      const about = (axis, middle) => stretch(axis, middle - half, middle + half);
+      this.show(about(this.horizontal, (a.x + b.x) / 2), about(plot.vertical, (a.y + b.y) / 2));
+      return;
     }
-    const [first, last] = order(this.share(from.x), this.share(to.x));
-    this.show(narrow && !flat ? this.horizontal : stretch(this.horizontal, first, last));
+    const order = (s, t) => [Math.min(s, t), Math.max(s, t)];
+    const flat = Math.abs(to.y - from.y) < 24, narrow = Math.abs(to.x - from.x) < 24;
+    if (!flat) plot.zoomed = stretch(plot.vertical, ...order(clamp(a.y, 0, 1), clamp(b.y, 0, 1)));
+    this.show(narrow && !flat ? this.horizontal : stretch(this.horizontal, ...order(a.x, b.x)));
   }
 
   reset() {
-    this.verticals.fill(null);
+    for (const plot of this.plots) plot.zoomed = null;
     this.show(this.whole);
   }
 }
 
-/** The first curve of each cell, over all panels. */
-function curvesOf(data) {
-  const curves = new Map();
-  for (const panel of data.panels) {
-    for (const curve of panel.curves) {
-      if (!curves.has(curve.legend)) curves.set(curve.legend, curve);
+/** The first curve or mark of each cell, over all panels: a sample for its button. */
+function cellsOf(data) {
+  const cells = new Map();
+  for (const {curves, marks = []} of data.panels) {
+    for (const one of [...curves, ...marks]) {
+      if (one.legend && !cells.has(one.legend)) cells.set(one.legend, one);
     }
   }
-  return [...curves.values()];
+  return [...cells.values()];
 }
 
 function bandsOf(data) {

@@ -71,8 +71,7 @@ class Gestures {
     const middle = ([a, b]) => ({x: (a.x + b.x) / 2, y: (a.y + b.y) / 2});
     const apart = ([a, b]) => Math.max(Math.hypot(a.x - b.x, a.y - b.y), 10);
     this.handler.zoom(middle(before), apart(before) / apart(after));
-    this.handler.move(middle(after).x - middle(before).x,
-                      this.drag === "move" ? middle(after).y - middle(before).y : 0);
+    this.handler.move(middle(after).x - middle(before).x, middle(after).y - middle(before).y);
   }
 
   up(event) {

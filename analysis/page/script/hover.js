@@ -8,6 +8,19 @@ function nearest(values, x) {
   return x - values[before] < values[after] - x ? before : after;
 }
 
+/** What all curves of a plot that are shown say at the value nearest to the pointer. */
+function valuesAt(plot, at, isHidden, x_label) {
+  const share = plot.sharesOf(at).x;
+  if (share < 0 || share > 1) return null;
+  const {x, curves} = plot.panel;
+  const i = nearest(x, valueAt(plot.horizontal, share));
+  const text = ({y, least, greatest}) => readable(y[i]) + (least && y[i] !== null
+    ? ` (${readable(least[i])} to ${readable(greatest[i])})` : "");
+  const rows = curves.filter((curve) => !isHidden(curve))
+    .map((curve) => ({sample: curve, name: curve.legend, text: text(curve)}));
+  return {title: sentence(x_label, x[i]), rows, value: x[i], x: plot.x(x[i]), y: plot.box.top};
+}
+
 class Readout {
   constructor(parent) {
     this.element = htmlElement("div", {class: "readout", hidden: "", "aria-live": "off"}, parent);
@@ -17,23 +30,23 @@ class Readout {
     this.element.hidden = true;
   }
 
-  /** Values of all curves of `plot` that are shown, at index `i`, beside the place `at`. */
-  show(plot, i, x_label, at, isHidden) {
+  /** A title over rows {name, text, sample: a curve, if there is one}, beside the place (x, y). */
+  show({title, rows, x, y}) {
     this.element.replaceChildren();
-    const {panel} = plot;
-    htmlElement("div", {class: "soft", text: sentence(x_label, panel.x[i])}, this.element);
+    htmlElement("div", {class: "soft", text: title}, this.element);
     const table = htmlElement("table", {}, this.element);
-    for (const curve of panel.curves) {
-      if (isHidden(curve)) continue;
+    for (const {sample, name, text} of rows) {
       const row = htmlElement("tr", {}, table);
       const key = htmlElement("td", {}, row);
-      const sample = svgElement("svg", {width: 16, height: 8, "aria-hidden": "true"}, key);
-      svgElement("path", {class: "curve", d: "M0 4H16", ...lineStyle(curve)}, sample);
-      key.append(curve.legend);
-      htmlElement("td", {class: "right", text: readable(curve.y[i])}, row);
+      if (sample) {
+        const drawing = svgElement("svg", {width: 16, height: 8, "aria-hidden": "true"}, key);
+        svgElement("path", {class: "curve", d: "M0 4H16", ...lineStyle(sample)}, drawing);
+      }
+      key.append(name);
+      htmlElement("td", {class: "right", text}, row);
     }
     this.element.hidden = false;
-    this.place(at);
+    this.place({x, y});
   }
 
   /** Beside the pointer, on the side where there is more room. */
@@ -46,8 +59,12 @@ class Readout {
   }
 }
 
-/** "time [s]" and 12.5 as "time 12.5 s". */
-function sentence(label, value) {
+/** "time [s]" and 12.5 as ["time", "12.5 s"]. */
+function nameAndText(label, value, digits) {
   const [, name, unit] = /^(.*?)(?: \[(.*)\])?$/.exec(label);
-  return `${name} ${readable(value, 5)}${unit && unit !== "1" ? ` ${unit}` : ""}`;
+  return [name, `${readable(value, digits)}${unit && unit !== "1" ? ` ${unit}` : ""}`];
+}
+
+function sentence(label, value) {
+  return nameAndText(label, value, 5).join(" ");
 }

@@ -34,6 +34,7 @@ class Plot {
   constructor(panel, parent) {
     this.panel = panel;
     this.group = svgElement("g", {class: "panel"}, parent);
+    this.zoomed = null;  // the vertical axis, where it does not show everything
   }
 
   place(box) {
@@ -50,9 +51,16 @@ class Plot {
     return this.box.top + (1 - share) * this.box.height;
   }
 
-  draw(horizontal, vertical, isHidden) {
+  /** Where a place lies between the ends of both axes. */
+  sharesOf({x, y}) {
+    const {left, top, width, height} = this.box;
+    return {x: (x - left) / width, y: (top + height - y) / height};
+  }
+
+  draw(horizontal, isHidden) {
+    this.whole = wholeVerticalAxis(this.panel, isHidden);
     this.horizontal = horizontal;
-    this.vertical = vertical;
+    this.vertical = this.zoomed ?? this.whole;
     this.group.replaceChildren();
     this.drawGrid();
     const inside = svgElement("svg", {x: this.box.left, y: this.box.top, width: this.box.width,
@@ -62,22 +70,34 @@ class Plot {
     for (const curve of this.panel.curves) {
       if (!isHidden(curve)) this.drawCurve(curve, inside);
     }
-    svgElement("text", {x: this.box.left - this.box.room, y: this.box.top - 8, class: "label",
-      text: this.panel.label}, this.group);
+    for (const marks of this.panel.marks ?? []) {
+      if (!isHidden(marks)) drawMarks(marks, this, inside);
+    }
+    this.drawLabel();
+  }
+
+  /** As much as there is room for. */
+  drawLabel() {
+    const {left, room, top, width} = this.box;
+    const most = Math.floor((room + width) / 6.7);
+    const {label} = this.panel;
+    const text = label.length > most ? `${label.slice(0, most - 1)}…` : label;
+    svgElement("text", {x: left - room, y: top - 8, class: "label", text}, this.group);
   }
 
   drawGrid() {
     const {left, top, width, height} = this.box;
-    for (const tick of ticksOf(this.vertical, Math.max(2, height / 36))) {
+    const {x_names, y_names} = this.panel;
+    for (const tick of namedTicks(this.vertical, y_names, Math.max(2, height / 36))) {
       svgElement("path", {class: "grid", d: `M${left} ${this.y(tick)}h${width}`}, this.group);
       svgElement("text", {class: "y tick", x: left - 6, y: this.y(tick) + 4,
-        text: readable(tick)}, this.group);
+        text: y_names?.[tick] ?? readable(tick)}, this.group);
     }
-    for (const tick of ticksOf(this.horizontal, Math.max(2, width / 90))) {
+    for (const tick of namedTicks(this.horizontal, x_names, Math.max(2, width / 90))) {
       svgElement("path", {class: "grid", d: `M${this.x(tick)} ${top}v${height}`}, this.group);
       if (!this.box.lowest) continue;
       svgElement("text", {class: "x tick", x: this.x(tick), y: top + height + 17,
-        text: readable(tick)}, this.group);
+        text: x_names?.[tick] ?? readable(tick)}, this.group);
     }
     svgElement("path", {class: "frame", d: `M${left} ${top}v${height}h${width}`}, this.group);
   }
@@ -91,6 +111,14 @@ class Plot {
   drawCurve(curve, parent) {
     svgElement("path", {class: "curve", "data-cell": curve.legend, d: this.pathOf(curve),
       ...lineStyle(curve)}, parent);
+    if (!curve.least) return;
+    const {x} = this.panel;
+    const known = x.map((_, i) => i).filter((i) => curve.y[i] !== null);
+    const at = (i, value) => `M${this.x(x[i]).toFixed(1)} ${this.y(value).toFixed(1)}`;
+    const bars = known.map((i) => `${at(i, curve.least[i])}V${this.y(curve.greatest[i]).toFixed(1)}`);
+    svgElement("path", {class: "curve", d: bars.join(""), stroke: lineStyle(curve).stroke}, parent);
+    svgElement("path", {class: "curve dots", d: known.map((i) => `${at(i, curve.y[i])}h0`).join(""),
+      stroke: lineStyle(curve).stroke}, parent);
   }
 
   /** What is no number, or not positive on a logarithmic axis, is a gap. */

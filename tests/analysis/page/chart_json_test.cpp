@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace montecarta {
 namespace {
 
@@ -32,6 +34,29 @@ TEST(ChartJson, WritesACommonTimeOnce) {
   const std::string json = chart_json(figure_of_two_panels().chart);
   EXPECT_EQ(json.find("\"x\":"), json.rfind("\"x\":"));
   EXPECT_THAT(json, HasSubstr(R"("bands":[{"legend":"band","lower":2,"upper":4}],"curves")"));
+}
+
+TEST(ChartJson, HoldsMarksWithTheirFacts) {
+  Chart chart{"x [m]", -1, 1, {}};
+  ChartPanel& panel = chart.panels.emplace_back();
+  panel.cell = "a";
+  panel.y_names = {"low", "high"};
+  ChartMarks& marks = panel.marks.emplace_back();
+  marks.name = "tile";
+  marks.cell = "a";
+  marks.shape = ChartMarks::Shape::boxes;
+  marks.x = {0, std::numeric_limits<double>::quiet_NaN()};
+  marks.y = {1, 2};
+  marks.fill = {"#123456", "#000000"};
+  marks.facts = {{"time [s]", {3, 4}}};
+  const std::string json = chart_json(chart);
+  EXPECT_THAT(json, HasSubstr(R"({"shape":"boxes","name":"tile","legend":"a","colour":"#0072B2",)"
+                              R"("dash":1,"x":[0,null],"y":[1,2],"fill":["#123456","#000000"],)"
+                              R"("facts":[{"label":"time [s]","values":[3,4]}]})"));
+  EXPECT_THAT(json, HasSubstr(R"("y_names":["low","high"])"));
+  EXPECT_THAT(json, testing::Not(HasSubstr("x_first")));
+  chart.x_first = 0.5;
+  EXPECT_THAT(chart_json(chart), HasSubstr(R"("x_first":0.5)"));
 }
 
 TEST(ChartJson, KeepsTheAxisNearABandAsTheDrawingDoes) {
