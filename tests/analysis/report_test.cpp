@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/report.hpp"
 
+#include "analysis/study_analysis.hpp"
 #include "engine/errors.hpp"
 #include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/synthetic_result.hpp"
@@ -34,6 +35,7 @@ TEST(Report, HoldsEverySectionAndNeedsNothingElse) {
        {"Failed runs", "Verdict", "What happened in one run?", "Where did the filter think it was?",
         "Is the filter right about its own errors?", "Position or heading: which one goes wrong?",
         "How large are the errors?", "How many different histories survive?",
+        "Whose story do the particles tell?", "Does one surprise foretell the next?",
         "How many particles still count?", "The whole test", "Where this comes from"}) {
     EXPECT_THAT(page, HasSubstr(std::string("<h2>") + heading));
   }
@@ -43,7 +45,8 @@ TEST(Report, HoldsEverySectionAndNeedsNothingElse) {
   EXPECT_THAT(page, Not(HasSubstr("to record.columns of the study")));
   EXPECT_THAT(page, Not(HasSubstr("src=")));
   EXPECT_THAT(page, Not(HasSubstr("href=\"http")));
-  for (const char* name : {"paths", "anees", "anees_parts", "rmse", "diversity", "ess"}) {
+  for (const char* name :
+       {"paths", "anees", "anees_parts", "rmse", "diversity", "ess", "ancestry", "whiteness"}) {
     const auto figures = folder.path() / "report/figures";
     EXPECT_THAT(read(figures / (std::string(name) + ".svg")), HasSubstr("</svg>")) << name;
     EXPECT_THAT(read(figures / (std::string(name) + ".pdf")), testing::StartsWith("%PDF")) << name;
@@ -86,6 +89,31 @@ TEST(Report, JudgesARecordedDriveByItsReferences) {
   EXPECT_THAT(paths, HasSubstr("'surveyed landmark'"));
   EXPECT_THAT(paths, Not(HasSubstr("true path")));
   EXPECT_THAT(read(folder / "report/data/map_ekf_slam.csv"), HasSubstr("\n20.3,5,"));
+}
+
+/// A bank of Gaussians, which has a mixture and no particles, and a filter of a few weighted
+/// hypotheses that have no ancestry to speak of.
+TEST(Report, KnowsMixturesWithoutParticlesAndWithFew) {
+  const ScratchFolder folder;
+  const auto banks = [](StudyPlan& plan) {
+    plan.cells[0].particles = 0;
+    plan.cells[0].label = "bank";
+    plan.columns.ancestry = false;
+  };
+  write_synthetic_result(folder / "out.h5", 4, 120, {}, banks);
+  const ResultFile file(folder / "out.h5");
+  const StudyAnalysis study = analyze(file);
+  EXPECT_EQ(study.cells[0].leading, Moments::mixture);
+  EXPECT_EQ(study.cells[0].consistency().verdict, Verdict::consistent);
+  EXPECT_EQ(study.cells[0].find_nees(ErrorBlock::pose, Moments::corrected), nullptr);
+  EXPECT_FALSE(study.cells[0].weights.has_value());
+  EXPECT_FALSE(study.cells[1].diversity.has_value());
+  EXPECT_TRUE(study.cells[1].weights.has_value());
+  write_report(file, folder / "report");
+  const std::string page = read(folder / "report/index.html");
+  EXPECT_THAT(page, HasSubstr("<h2>How many particles still count?"));
+  EXPECT_THAT(page, Not(HasSubstr("<h2>Whose story do the particles tell?")));
+  EXPECT_THAT(page, Not(HasSubstr("<h2>How many different histories survive?")));
 }
 
 TEST(Report, IsNotOverwrittenUnasked) {
