@@ -8,6 +8,7 @@
 #include "analysis/tables/number_text.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,8 @@ namespace montecarta {
 namespace {
 
 constexpr std::size_t kMostRows = 8, kMostLeaves = 100;
-constexpr std::size_t kRowPixels = 190, kFramePixels = 50;
+constexpr std::size_t kThinFrom = 50;  // so many leaves need thinner lines
+constexpr std::size_t kTreePixels = 150, kGapPixels = 64, kTopPixels = 34, kBottomPixels = 48;
 
 /// A cell that is drawn.
 struct Drawn {
@@ -64,12 +66,14 @@ std::string title_of(const Drawn& cell) {
 std::string title_of_end(const Drawn& cell) {
   const double since = cell.tree.common_ancestor();
   if (since == 0.0) return "no common ancestor since the start";
-  return "the last " + readable(cell.end - since, 3) + " s, since their common ancestor";
+  return "common ancestor " + readable(cell.end - since, 3) + " s before the end";
 }
 
 std::string panel_of(const Drawn& cell, const std::string& title, double from) {
   const std::string file = gnuplot_quoted("../data/ancestry_" + cell.label + ".csv");
-  const std::string style = " with vectors nohead " + line_style(cell.style) + " notitle";
+  const std::string style = " with vectors nohead linewidth " +
+                            std::string(cell.tree.leaves < kThinFrom ? "1.4" : "0.6") +
+                            " linecolor rgb '" + line_colour(cell.style) + "' notitle";
   return "set title " + gnuplot_quoted(title) + " noenhanced offset 0,-0.7\nset xrange [" +
          exact_text(from) + ":" + exact_text(cell.end) +
          "]\nset yrange [0:" + std::to_string(cell.tree.leaves + 1) + "]\nplot " + file +
@@ -77,10 +81,54 @@ std::string panel_of(const Drawn& cell, const std::string& title, double from) {
          "\n";
 }
 
+/// The tree as one line with gaps: from its parent's height to its own, and on to its end.
+ChartMarks lines_of(const Drawn& cell, const FigureData& data) {
+  constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
+  ChartMarks lines;
+  lines.cell = cell.label;
+  lines.style = cell.style;
+  lines.facts = {{"from [s]", {}}, {"to [s]", {}}, {"descendants at the end", {}}};
+  for (const auto& row : data.rows) {
+    const double from = row[0], to = row[1], height = row[2], parent = row[3], leaves = row[4];
+    lines.x.insert(lines.x.end(), {from, from, to, kGap});
+    lines.y.insert(lines.y.end(), {parent, height, height, kGap});
+    for (int corner = 0; corner < 4; ++corner) {
+      const bool is_gap = corner == 3;
+      lines.facts[0].values.push_back(is_gap ? kGap : from);
+      lines.facts[1].values.push_back(is_gap ? kGap : to);
+      lines.facts[2].values.push_back(is_gap ? kGap : leaves);
+    }
+  }
+  return lines;
+}
+
+ChartPanel chart_panel(const Drawn& cell, const FigureData& data) {
+  const bool some = cell.tree.leaves < cell.tree.particles;
+  ChartPanel panel{(some ? title_of(cell) : cell.label) + ", " + title_of_end(cell),
+                   {false, 0.0, static_cast<double>(cell.tree.leaves + 1)},
+                   {},
+                   {},
+                   {},
+                   cell.label};
+  panel.marks.push_back(lines_of(cell, data));
+  return panel;
+}
+
 /// Where the second panel of a row begins: shortly before the youngest common ancestor.
 double beginning_of_end(const Drawn& cell) {
   const double since = cell.tree.common_ancestor();
   return std::max(0.0, since - 0.08 * (cell.end - since));
+}
+
+/// Two columns; sets the figure's height.
+std::string layout_of(std::size_t rows, Figure& figure) {
+  figure.height = kTopPixels + rows * kTreePixels + (rows - 1) * kGapPixels + kBottomPixels;
+  const auto share = [&](std::size_t pixels) {
+    return readable(static_cast<double>(pixels) / static_cast<double>(figure.height), 5);
+  };
+  return "set key off\nunset ytics\nset border 1\nset multiplot layout " + std::to_string(rows) +
+         ",2 margins 0.02,0.985," + share(kBottomPixels) + "," + share(figure.height - kTopPixels) +
+         " spacing 0.05," + share(kGapPixels) + "\n";
 }
 
 }  // namespace
@@ -94,14 +142,15 @@ Figure ancestry_figure(const ResultFile& file, std::optional<std::uint64_t> run)
       "Run " + std::to_string(file.runs()[*run_index]) +
       ": the lines of descent of the particles at the end of the run (right edge); lines meet in "
       "a common ancestor, and to the left of the last meeting all particles share one past: what "
-      "the filter got wrong there it cannot doubt any more. On the right the end of the run, "
+      "the filter got wrong there it cannot doubt any more. The end of the run, since then, is "
       "enlarged.";
-  figure.height = cells.size() * kRowPixels + kFramePixels;
-  figure.script = "set key off\nunset ytics\nset border 1\nset xtics autofreq\n";
-  figure.script += "set multiplot layout " + std::to_string(cells.size()) + ",2\n";
+  figure.chart.x_to = figure.chart.x_first = cells.front().end;
+  figure.script = layout_of(cells.size(), figure);
   for (std::size_t c = 0; c < cells.size(); ++c) {
     if (c + 1 == cells.size()) figure.script += "set xlabel 'time [s]' offset 0,0.4\n";
     figure.data.push_back(data_of(cells[c]));
+    figure.chart.panels.push_back(chart_panel(cells[c], figure.data.back()));
+    figure.chart.x_first = std::min(figure.chart.x_first, beginning_of_end(cells[c]));
     figure.script += panel_of(cells[c], title_of(cells[c]), 0.0) +
                      panel_of(cells[c], title_of_end(cells[c]), beginning_of_end(cells[c]));
   }

@@ -58,6 +58,41 @@ std::string panel_of(const std::string& data_name, const Drawn& drawn, bool firs
          " fillstyle transparent solid 0.35 border notitle\n";
 }
 
+/// The same as numbers, from the rows of data_of(). The band is that of all bins.
+ChartPanel chart_panel(const Drawn& drawn, const FigureData& data) {
+  ChartPanel panel{drawn.histogram->quantity + ": " + in_words(drawn.histogram->test.verdict),
+                   {false, 0.0, 0.0},
+                   {},
+                   {},
+                   {{"band of a calibrated filter", data.rows.front()[3], data.rows.front()[4]}},
+                   drawn.label};
+  ChartMarks& bars = panel.marks.emplace_back();
+  bars.cell = drawn.label;
+  bars.name = drawn.histogram->quantity;
+  bars.style = drawn.cell;
+  bars.shape = ChartMarks::Shape::boxes;
+  bars.facts = {{"from", {}}, {"to", {}}, {"count / expected", {}}};
+  double highest = panel.bands.front().upper;
+  for (const auto& row : data.rows) {
+    bars.x.push_back(0.5 * (row[0] + row[1]));
+    bars.y.push_back(0.5 * row[2]);
+    bars.width.push_back(row[1] - row[0]);
+    bars.height.push_back(row[2]);
+    for (std::size_t f = 0; f < bars.facts.size(); ++f) bars.facts[f].values.push_back(row[f]);
+    highest = std::max(highest, row[2]);
+  }
+  panel.axis.high = 1.1 * highest;
+  return panel;
+}
+
+Chart empty_chart(std::size_t columns) {
+  Chart chart{"from the lower (0) to the upper end (1)", 0.0, 1.0, {}};
+  chart.columns = columns;
+  chart.least = 150;
+  chart.aspect = 0.5;
+  return chart;
+}
+
 Figure figure_of(const StudyAnalysis& study, const std::string& by, Figure figure) {
   std::vector<std::vector<Drawn>> rows;
   for (std::size_t c = 0; c < study.cells.size() && rows.size() < kMostRows; ++c) {
@@ -67,6 +102,7 @@ Figure figure_of(const StudyAnalysis& study, const std::string& by, Figure figur
   std::size_t columns = 0;
   for (const auto& row : rows) columns = std::max(columns, row.size());
   figure.height = rows.size() * kRowPixels + kFramePixels;
+  figure.chart = empty_chart(columns);
   figure.script =
       "set xrange [0:1]\nset yrange [0:*]\nset xtics 0.5\nset ytics 1\n"
       "set multiplot layout " +
@@ -81,6 +117,7 @@ Figure figure_of(const StudyAnalysis& study, const std::string& by, Figure figur
           figure.name + "_" + rows[r][c].label + "_" + std::to_string(c + 1) + ".csv";
       figure.data.push_back(data_of(name, rows[r][c]));
       figure.script += panel_of(name, rows[r][c], c == 0, r + 1 == rows.size());
+      figure.chart.panels.push_back(chart_panel(rows[r][c], figure.data.back()));
     }
   }
   figure.script += "unset multiplot\n";

@@ -58,10 +58,12 @@ void draw(const Figure& figure, const std::filesystem::path& directory) {
 }
 
 std::string line_colour(std::size_t i) {
+  if (i == kTruthStyle) return "#999999";
   return i == kYardstickStyle ? "black" : kColours[i % kColours.size()];
 }
 
 std::size_t line_dashes(std::size_t i) {
+  if (i == kTruthStyle) return 1;
   return i == kYardstickStyle ? 2 : 1 + i / kColours.size();
 }
 

@@ -42,6 +42,8 @@ std::string line_style(std::size_t i);
 /// In place of the number of a curve: of what is no cell, such as a bound; dashed, in the colour of
 /// the text.
 inline constexpr std::size_t kYardstickStyle = static_cast<std::size_t>(-1);
+/// Of the truth, below what filters think of it; for charts.
+inline constexpr std::size_t kTruthStyle = static_cast<std::size_t>(-2);
 
 /// The data file of curves over what `heading` says.
 FigureData data_of(const std::string& name, const std::string& heading,

@@ -6,21 +6,56 @@
 #include "analysis/tables/number_text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 namespace montecarta {
 namespace {
+
+using Colour = std::array<int, 3>;  ///< red, green, blue
 
 constexpr std::size_t kMostColumns = 3, kRowPixels = 330, kColumnPixels = 330;
 
 /// Blue, white and red (ColorBrewer's RdBu, safe for the colour-blind), light enough for dark
 /// numbers at both ends; 1 is white, ten times and a tenth are the ends.
-constexpr const char* kColours =
-    "set palette defined (-1 '#4393c3', -0.5 '#a6cfe3', 0 '#f7f7f7', 0.5 '#f6b799', 1 '#d6604d')\n"
+constexpr std::array kPalette = {Colour{0x43, 0x93, 0xc3}, Colour{0xa6, 0xcf, 0xe3},
+                                 Colour{0xf7, 0xf7, 0xf7}, Colour{0xf6, 0xb7, 0x99},
+                                 Colour{0xd6, 0x60, 0x4d}};
+
+constexpr const char* kColourAxis =
     "set style fill solid 1 noborder\n"
     "set cbrange [-1:1]\n"
     "set cbtics ('0.1' -1, '0.3' -0.5229, '1' 0, '3' 0.4771, '10' 1)\n"
     "set cblabel 'ANEES / components'\n";
+
+std::string hexadecimal(const Colour& colour) {
+  char text[8];
+  std::snprintf(text, sizeof text, "#%02x%02x%02x", colour[0], colour[1], colour[2]);
+  return text;
+}
+
+/// The palette, from -1 to 1.
+std::string palette() {
+  std::string script = "set palette defined (";
+  for (std::size_t i = 0; i < kPalette.size(); ++i) {
+    const double at = 2.0 * static_cast<double>(i) / (kPalette.size() - 1) - 1.0;
+    script += (i == 0 ? "" : ", ") + exact_text(at) + " '" + hexadecimal(kPalette[i]) + "'";
+  }
+  return script + ")\n";
+}
+
+/// Of the palette at `at`, from -1 to 1.
+std::string colour_at(double at) {
+  const double place = 0.5 * (at + 1.0) * (kPalette.size() - 1);
+  const auto low = std::min(static_cast<std::size_t>(place), kPalette.size() - 2);
+  Colour colour{};
+  for (std::size_t c = 0; c < colour.size(); ++c) {
+    colour[c] = static_cast<int>(std::lround(
+        std::lerp(kPalette[low][c], kPalette[low + 1][c], place - static_cast<double>(low))));
+  }
+  return hexadecimal(colour);
+}
 
 FigureData data_of(const MismatchGrid& grid) {
   FigureData data{"mismatch_" + grid.family + ".csv",
@@ -62,6 +97,48 @@ std::string panel_of(const MismatchGrid& grid) {
          "'#111111' notitle\n";
 }
 
+std::vector<std::string> names_of(const std::vector<double>& factors) {
+  std::vector<std::string> names;
+  for (const double factor : factors) names.push_back(exact_text(factor));
+  return names;
+}
+
+/// The same as numbers, from the rows of data_of().
+ChartPanel chart_panel(const MismatchGrid& grid, const FigureData& data) {
+  const auto rows = static_cast<double>(grid.sensor_noise.size());
+  ChartPanel panel{
+      grid.family + ", sensor noise, believed by told", {false, -0.5, rows - 0.5}, {}, {}, {}};
+  panel.x_names = names_of(grid.motion_noise);
+  panel.y_names = names_of(grid.sensor_noise);
+  ChartMarks& tiles = panel.marks.emplace_back();
+  tiles.name = grid.family;
+  tiles.shape = ChartMarks::Shape::boxes;
+  tiles.facts = {{"motion noise", {}}, {"sensor noise", {}}, {"ANEES by components", {}}};
+  for (const auto& row : data.rows) {
+    tiles.x.push_back(row[3]);
+    tiles.y.push_back(row[4]);
+    tiles.fill.push_back(colour_at(row[5]));
+    tiles.text.push_back(readable(row[2], 3));
+    for (std::size_t f = 0; f < tiles.facts.size(); ++f) tiles.facts[f].values.push_back(row[f]);
+  }
+  tiles.width.assign(tiles.x.size(), 0.98);
+  tiles.height = tiles.width;
+  return panel;
+}
+
+Chart chart_of(const std::vector<MismatchGrid>& grids, const std::vector<FigureData>& data) {
+  std::size_t most = 0;
+  for (const MismatchGrid& grid : grids) most = std::max(most, grid.motion_noise.size());
+  Chart chart{"motion noise, believed by told", -0.5, static_cast<double>(most) - 0.5, {}};
+  chart.columns = kMostColumns;
+  chart.least = 260;
+  chart.aspect = 0.7;
+  for (std::size_t g = 0; g < grids.size(); ++g) {
+    chart.panels.push_back(chart_panel(grids[g], data[g]));
+  }
+  return chart;
+}
+
 }  // namespace
 
 Figure mismatch_figure(const StudyAnalysis& study) {
@@ -78,7 +155,7 @@ Figure mismatch_figure(const StudyAnalysis& study) {
   const std::size_t rows = (grids.size() + columns - 1) / columns;
   figure.width = std::max<std::size_t>(420, columns * kColumnPixels);
   figure.height = rows * kRowPixels;
-  figure.script = std::string(kColours) +
+  figure.script = palette() + kColourAxis +
                   "set xlabel 'motion noise, believed by told'\n"
                   "set ylabel 'sensor noise, believed by told'\nunset grid\nset multiplot layout " +
                   std::to_string(rows) + "," + std::to_string(columns) + "\n";
@@ -87,6 +164,7 @@ Figure mismatch_figure(const StudyAnalysis& study) {
     figure.data.push_back(data_of(grid));
   }
   figure.script += "unset multiplot\n";
+  figure.chart = chart_of(grids, figure.data);
   return figure;
 }
 

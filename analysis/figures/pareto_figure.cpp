@@ -77,9 +77,11 @@ std::string cost_axis(const Range& range) {
          "]\nset xlabel 'CPU time of a run [s]' offset 0,0.4\n";
 }
 
-/// The front as steps from edge to edge: what lies above and to the right of it is beaten.
-std::string front_of(std::span<const CellValue> values, const Merit& merit, const Range& costs) {
-  std::vector<std::pair<double, double>> corners;
+using Corners = std::vector<std::pair<double, double>>;  ///< (cost, loss)
+
+/// The front from edge to edge: what lies above and to the right of it is beaten.
+Corners corners_of(std::span<const CellValue> values, const Merit& merit, const Range& costs) {
+  Corners corners;
   for (const CellValue& value : values) {
     if (value.*merit.on_front) corners.emplace_back(cost_of(value), merit.loss(value));
   }
@@ -88,8 +90,13 @@ std::string front_of(std::span<const CellValue> values, const Merit& merit, cons
     corners.insert(corners.begin(), {corners.front().first, top_of(values, merit)});
     corners.emplace_back(costs.greatest, corners.back().second);
   }
+  return corners;
+}
+
+/// As steps.
+std::string front_of(std::span<const CellValue> values, const Merit& merit, const Range& costs) {
   std::string script = "$" + merit.name + "_front << EOD\ncost,loss\n";
-  for (const auto& [cost, loss] : corners) {
+  for (const auto& [cost, loss] : corners_of(values, merit, costs)) {
     script += exact_text(cost) + "," + exact_text(loss) + "\n";
   }
   return script + "EOD\n";
@@ -126,6 +133,47 @@ std::string panel_of(std::span<const CellValue> values, const Merit& merit, cons
   return script + "\n";
 }
 
+ChartMarks front_marks(std::span<const CellValue> values, const Merit& merit, const Range& costs) {
+  ChartMarks front;
+  front.style = kYardstickStyle;
+  double above = 0.0;
+  for (const auto& [cost, loss] : corners_of(values, merit, costs)) {
+    if (!front.x.empty()) {
+      front.x.push_back(cost);
+      front.y.push_back(above);
+    }
+    front.x.push_back(cost);
+    front.y.push_back(above = loss);
+  }
+  return front;
+}
+
+/// The same as numbers.
+ChartPanel chart_panel(std::span<const CellValue> values, const Merit& merit, const Range& costs) {
+  ChartPanel panel{merit.label, {false, 0.0, top_of(values, merit)}, {}, {}, {}};
+  panel.marks.push_back(front_marks(values, merit, costs));
+  for (const CellValue& value : values) {
+    ChartMarks& point = panel.marks.emplace_back();
+    point.cell = value.cell;
+    point.style = value.place;
+    point.shape = ChartMarks::Shape::points;
+    point.thickness = 10.0;
+    point.x = {cost_of(value)};
+    point.y = {merit.loss(value)};
+    point.facts = {{merit.label, point.y}, {"CPU time of a run [s]", point.x}};
+  }
+  return panel;
+}
+
+Chart chart_of(std::span<const CellValue> values, const Range& costs) {
+  Chart chart{"CPU time of a run [s]", costs.least, costs.greatest, {}, true};
+  chart.columns = std::size(kMerits);
+  chart.least = 300;
+  chart.aspect = 0.65;
+  for (const Merit& merit : kMerits) chart.panels.push_back(chart_panel(values, merit, costs));
+  return chart;
+}
+
 }  // namespace
 
 Figure pareto_figure(std::span<const CellValue> values) {
@@ -149,6 +197,7 @@ Figure pareto_figure(std::span<const CellValue> values) {
                    "spacing 0.1\n";
   for (const Merit& merit : kMerits) figure.script += panel_of(priced, merit, costs);
   figure.script += "unset multiplot\n";
+  figure.chart = chart_of(priced, costs);
   return figure;
 }
 

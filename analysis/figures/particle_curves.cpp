@@ -37,8 +37,8 @@ FigureData data_of(const ParticleCurve& curve) {
   return data;
 }
 
-/// Ticks at the numbers of particles that there are, and the range with some room beside them.
-std::string particle_axis(const std::vector<ParticleCurve>& curves) {
+/// The numbers of particles that there are.
+std::vector<std::size_t> particle_numbers(const std::vector<ParticleCurve>& curves) {
   std::vector<std::size_t> numbers;
   for (const ParticleCurve& curve : curves) {
     for (const auto& point : curve.points) numbers.push_back(point.particles);
@@ -46,18 +46,32 @@ std::string particle_axis(const std::vector<ParticleCurve>& curves) {
   std::ranges::sort(numbers);
   const auto repeated = std::ranges::unique(numbers);
   numbers.erase(repeated.begin(), repeated.end());
+  return numbers;
+}
+
+/// An empty chart over them, with some room at both ends.
+Chart empty_chart(const std::vector<std::size_t>& numbers) {
+  Chart chart{"particles",
+              0.8 * static_cast<double>(numbers.front()),
+              1.25 * static_cast<double>(numbers.back()),
+              {},
+              true};
+  chart.columns = 2;
+  chart.least = 300;
+  chart.aspect = 0.65;
+  return chart;
+}
+
+std::string particle_axis(const std::vector<std::size_t>& numbers, const Chart& chart) {
   std::string ticks;
   for (const std::size_t n : numbers) ticks += (ticks.empty() ? "" : ",") + std::to_string(n);
-  const auto end = [](std::size_t n, double factor) {
-    return exact_text(static_cast<double>(n) * factor);
-  };
-  return "set logscale x\nset xtics (" + ticks + ")\nset xrange [" + end(numbers.front(), 0.8) +
-         ":" + end(numbers.back(), 1.25) + "]\nset xlabel 'particles' offset 0,0.4\n";
+  return "set logscale x\nset xtics (" + ticks + ")\nset xrange [" + exact_text(chart.x_from) +
+         ":" + exact_text(chart.x_to) + "]\nset xlabel 'particles' offset 0,0.4\n";
 }
 
 /// Common to both panels: from zero, or logarithmic where runs differ by more than two decades.
-std::string error_axis(const std::vector<ParticleCurve>& curves,
-                       const std::optional<std::array<double, 2>>& baseline) {
+ChartAxis error_axis(const std::vector<ParticleCurve>& curves,
+                     const std::optional<std::array<double, 2>>& baseline) {
   double least = std::numeric_limits<double>::infinity(), greatest = 0.0;
   const auto include = [&](double value) {
     least = std::min(least, value);
@@ -73,8 +87,37 @@ std::string error_axis(const std::vector<ParticleCurve>& curves,
   }
   if (baseline) std::ranges::for_each(*baseline, include);
   const bool wide = greatest > 100.0 * least;
-  return std::string(wide ? "set logscale y\n" : "") + "set yrange [" +
-         exact_text(wide ? 0.8 * least : 0.0) + ":" + exact_text(1.1 * greatest) + "]\n";
+  return {wide, wide ? 0.8 * least : 0.0, 1.1 * greatest};
+}
+
+std::string script_of(const ChartAxis& axis) {
+  return std::string(axis.logarithmic ? "set logscale y\n" : "") + "set yrange [" +
+         exact_text(axis.low) + ":" + exact_text(axis.high) + "]\n";
+}
+
+/// One panel as numbers.
+ChartPanel chart_panel(const std::vector<ParticleCurve>& curves,
+                       Spread ParticleCurve::Point::*error, const std::optional<double>& baseline,
+                       const std::vector<std::size_t>& numbers, ChartPanel panel) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  panel.x.assign(numbers.begin(), numbers.end());
+  for (const ParticleCurve& curve : curves) {
+    const std::vector<double> nothing(numbers.size(), kNone);
+    auto& drawn = panel.curves.emplace_back(curve.legend, curve.style, nothing, nothing, nothing);
+    for (const ParticleCurve::Point& point : curve.points) {
+      const auto at = static_cast<std::size_t>(std::ranges::lower_bound(numbers, point.particles) -
+                                               numbers.begin());
+      const Spread& spread = point.*error;
+      drawn.values[at] = spread.summary.mean;
+      drawn.least[at] = spread.least;
+      drawn.greatest[at] = spread.greatest;
+    }
+  }
+  if (baseline) {
+    panel.curves.push_back(
+        {"EKF-SLAM", kYardstickStyle, std::vector<double>(numbers.size(), *baseline)});
+  }
+  return panel;
 }
 
 /// One panel; columns of a data file's mean and, three further, its least and greatest.
@@ -153,7 +196,14 @@ void draw_particle_curves(const std::vector<ParticleCurve>& curves,
   const auto base = [&](std::size_t which) {
     return baseline ? std::optional((*baseline)[which]) : std::nullopt;
   };
-  figure.script = particle_axis(curves) + error_axis(curves, baseline) +
+  const std::vector<std::size_t> numbers = particle_numbers(curves);
+  const ChartAxis axis = error_axis(curves, baseline);
+  figure.chart = empty_chart(numbers);
+  figure.chart.panels = {chart_panel(curves, &ParticleCurve::Point::raw, base(0), numbers,
+                                     {"RMS distance as it stands [m]", axis, {}, {}, {}}),
+                         chart_panel(curves, &ParticleCurve::Point::aligned, base(1), numbers,
+                                     {"aligned [m]", axis, {}, {}, {}})};
+  figure.script = particle_axis(numbers, figure.chart) + script_of(axis) +
                   layout_of(curves.size() + (baseline ? 1 : 0), figure) +
                   "set title 'as it stands' offset 0,-0.5\n"
                   "set ylabel 'RMS distance [m]' offset 1.5,0\n" +

@@ -3,6 +3,7 @@
 
 #include "analysis/figures/chosen_run.hpp"
 #include "analysis/figures/gnuplot.hpp"
+#include "analysis/figures/path_chart.hpp"
 #include "analysis/figures/path_data.hpp"
 #include "analysis/figures/path_layout.hpp"
 #include "analysis/run_reader.hpp"
@@ -47,37 +48,36 @@ struct Surroundings {
   FigureData fixes;      ///< of a recorded drive
 };
 
-/// Adds the data of one cell of the chosen run and returns its plot: truth below, estimate above.
-std::string add_panel(const ResultFile& file, std::size_t cell_index, const Surroundings& around,
-                      Figure& figure) {
+DrawnPath drawn_path(const ResultFile& file, std::size_t cell_index, std::size_t run_index) {
   const StoredCell& cell = file.cells()[cell_index];
-  const RunRows run = read_run(file, cell, around.run);
-  const FigureData path = path_data(file, cell, run), poses = pose_ellipses(cell, run),
-                   map = map_data(file, cell, around.run);
-  const std::string style = line_style(cell_index);
+  const RunRows run = read_run(file, cell, run_index);
+  DrawnPath drawn{
+      cell.label, cell_index, path_data(file, cell, run), {}, map_data(file, cell, run_index)};
+  // On a recorded drive they would be far smaller than a line is thick.
+  if (file.has_truth()) drawn.poses = pose_ellipses(cell, run);
+  return drawn;
+}
+
+/// Truth below, estimate above.
+std::string panel_of(const DrawnPath& cell, const Surroundings& around) {
+  const std::string style = line_style(cell.style);
   const std::string ellipses = "using 1:2:3:4:5 with ellipses fillstyle empty border " + style;
   PanelScript panel(cell.label);
-  panel.add(path, std::string("using 2:3 ") + kTruth);
+  panel.add(cell.path, std::string("using 2:3 ") + kTruth);
   panel.add(around.landmarks, std::string("using 1:2 ") + kLandmark);
-  panel.add(map, ellipses);
-  panel.add(path, "using 4:5 with lines " + style);
-  panel.add(poses, ellipses);
-  figure.data.insert(figure.data.end(), {path, poses, map});
+  panel.add(cell.map, ellipses);
+  panel.add(cell.path, "using 4:5 with lines " + style);
+  panel.add(cell.poses, ellipses);
   return panel.text();
 }
 
 /// The same of a recorded drive, many times larger than any ellipse: fixes below, estimate above.
-std::string add_recorded_panel(const ResultFile& file, std::size_t cell_index,
-                               const Surroundings& around, Figure& figure) {
-  const StoredCell& cell = file.cells()[cell_index];
-  const RunRows run = read_run(file, cell, around.run);
-  const FigureData path = path_data(file, cell, run), map = map_data(file, cell, around.run);
+std::string recorded_panel_of(const DrawnPath& cell, const Surroundings& around) {
   PanelScript panel(cell.label);
   panel.add(around.fixes, std::string("using 2:3 ") + kFix);
-  panel.add(path, "using 2:3 with lines " + line_style(cell_index));
-  panel.add(map, "using 1:2 " + estimated_landmark(cell_index));
+  panel.add(cell.path, "using 2:3 with lines " + line_style(cell.style));
+  panel.add(cell.map, "using 1:2 " + estimated_landmark(cell.style));
   panel.add(around.landmarks, std::string("using 1:2 ") + kLandmark);
-  figure.data.insert(figure.data.end(), {path, map});
   return panel.text();
 }
 
@@ -133,16 +133,17 @@ Bounds recorded_bounds(const std::vector<FigureData>& all, const Surroundings& a
   return bounds.widened();
 }
 
-std::vector<std::size_t> drawable_cells(const ResultFile& file, std::size_t run_index) {
+std::vector<DrawnPath> drawn_cells(const ResultFile& file, std::size_t run_index) {
   const std::size_t most = file.has_truth() ? kMostPanels : kMostRecordedPanels;
-  std::vector<std::size_t> cells;
+  std::vector<DrawnPath> cells;
   for (std::size_t c = 0; c < file.cells().size() && cells.size() < most; ++c) {
-    if (file.status(file.cells()[c])[run_index] == RunStatus::complete) cells.push_back(c);
+    if (file.status(file.cells()[c])[run_index] != RunStatus::complete) continue;
+    cells.push_back(drawn_path(file, c, run_index));
   }
   return cells;
 }
 
-void draw_paths(const ResultFile& file, const std::vector<std::size_t>& cells,
+void draw_paths(const ResultFile& file, const std::vector<DrawnPath>& cells,
                 const Surroundings& around, Figure& figure) {
   figure.sentence = "Run " + std::to_string(file.runs()[around.run]) +
                     ": the true path in grey, the filter's in colour. Ellipses hold two standard "
@@ -151,9 +152,11 @@ void draw_paths(const ResultFile& file, const std::vector<std::size_t>& cells,
                     " moments, and of landmarks at the end: where the filter is honest, the truth "
                     "is seldom outside.";
   std::vector<std::string> panels;
-  for (const std::size_t c : cells) panels.push_back(add_panel(file, c, around, figure));
+  for (const DrawnPath& cell : cells) panels.push_back(panel_of(cell, around));
   figure.data.push_back(around.landmarks);
-  lay_out_maps(bounds_of(figure.data), panels,
+  const Bounds bounds = bounds_of(figure.data);
+  figure.chart = path_chart(cells, around.landmarks, {}, bounds);
+  lay_out_maps(bounds, panels,
                {{kTruth, "true path"},
                 {kLandmark, "landmark"},
                 {"with lines " + line_style(0), "estimate"},
@@ -161,7 +164,7 @@ void draw_paths(const ResultFile& file, const std::vector<std::size_t>& cells,
                figure);
 }
 
-void draw_recorded_paths(const ResultFile& file, const std::vector<std::size_t>& cells,
+void draw_recorded_paths(const ResultFile& file, const std::vector<DrawnPath>& cells,
                          const Surroundings& around, Figure& figure) {
   figure.sentence =
       "Run " + std::to_string(file.runs()[around.run]) +
@@ -173,7 +176,7 @@ void draw_recorded_paths(const ResultFile& file, const std::vector<std::size_t>&
            ? " The first " + std::to_string(cells.size()) + " cells that completed the run."
            : "");
   std::vector<std::string> panels;
-  for (const std::size_t c : cells) panels.push_back(add_recorded_panel(file, c, around, figure));
+  for (const DrawnPath& cell : cells) panels.push_back(recorded_panel_of(cell, around));
   std::vector<LegendEntry> legend = {{"with lines " + line_style(0), "estimate"}};
   if (!around.fixes.rows.empty()) {
     legend.emplace_back("with points pointtype 7 pointsize 0.5 linecolor rgb '#aaaaaa'",
@@ -183,7 +186,9 @@ void draw_recorded_paths(const ResultFile& file, const std::vector<std::size_t>&
                       "estimated landmark");
   if (!around.landmarks.rows.empty()) legend.emplace_back(kLandmark, "surveyed landmark");
   figure.data.insert(figure.data.end(), {around.fixes, around.landmarks});
-  lay_out_maps(recorded_bounds(figure.data, around), panels, legend, figure);
+  const Bounds bounds = recorded_bounds(figure.data, around);
+  figure.chart = path_chart(cells, around.landmarks, around.fixes, bounds);
+  lay_out_maps(bounds, panels, legend, figure);
 }
 
 }  // namespace
@@ -191,8 +196,12 @@ void draw_recorded_paths(const ResultFile& file, const std::vector<std::size_t>&
 Figure path_figure(const ResultFile& file, std::optional<std::uint64_t> run) {
   Figure figure{"paths", "Where did the filter think it was?", "", 900, 0, "", {}};
   const auto run_index = chosen_run(file, run);
-  const auto cells = run_index ? drawable_cells(file, *run_index) : std::vector<std::size_t>{};
+  const auto cells = run_index ? drawn_cells(file, *run_index) : std::vector<DrawnPath>{};
   if (cells.empty()) return figure;
+  for (const DrawnPath& cell : cells) {
+    figure.data.insert(figure.data.end(), {cell.path, cell.map});
+    if (file.has_truth()) figure.data.push_back(cell.poses);
+  }
   const Surroundings around{*run_index, landmark_data(file, *run_index), fix_data(file)};
   if (file.has_truth()) {
     draw_paths(file, cells, around, figure);

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Figures that are zoomed into, asked and thinned out."""
 
-import json
-
 from on_page import CTRL, SHIFT, OnPage
 
 CHART = "#figure_anees svg.chart"
@@ -78,15 +76,6 @@ class Zoom(OnPage):
 
 class Hover(OnPage):
 
-    def said(self):
-        """(time, {cell: value}) of the readout, as it stands there; None where there is none."""
-        return self.page.evaluate("""(() => {
-            const box = document.querySelector("#figure_anees .readout");
-            if (box.hidden) return null;
-            return [box.firstChild.textContent, Object.fromEntries(
-                [...box.querySelectorAll("tr")].map(row => [...row.cells].map(c => c.textContent)))];
-        })()""")
-
     def time_at(self, place):
         """What the axis says below a place."""
         left, width = self.page.evaluate(f"""(() => {{
@@ -96,9 +85,8 @@ class Hover(OnPage):
         return float(self.ask(CHART, "dataset.to")) * (place[0] - left) / width
 
     def expect_true_values(self, place):
-        time, values = self.said()
-        chart = json.loads(self.ask("#figure_anees .chart-data", "textContent"))
-        panel, wanted = chart["panels"][0], self.time_at(place)
+        time, values = self.said("anees")
+        panel, wanted = self.chart("anees")["panels"][0], self.time_at(place)
         i = min(range(len(panel["x"])), key=lambda k: abs(panel["x"][k] - wanted))
         self.assertAlmostEqual(float(time.removeprefix("time ").removesuffix(" s")), panel["x"][i],
                                delta=0.006)
@@ -107,16 +95,16 @@ class Hover(OnPage):
             self.assertAlmostEqual(float(values[curve["legend"]]) / curve["y"][i], 1, delta=1e-3)
 
     def test_says_the_values_at_the_pointer(self):
-        self.assertIsNone(self.said())
+        self.assertIsNone(self.said("anees"))
         seen = []
         for x in (0.31, 0.36, 0.42, 0.47, 0.53, 0.58, 0.64, 0.69, 0.75):
             place = self.page.middle(CHART, x, 0.4)
             self.page.hover(place)
             self.expect_true_values(place)
-            seen.append(self.said()[0])
+            seen.append(self.said("anees")[0])
         self.assertEqual(len(set(seen)), len(seen))
         self.page.hover(self.page.middle("h1"))
-        self.assertIsNone(self.said())
+        self.assertIsNone(self.said("anees"))
 
 
 class Touch(Hover):

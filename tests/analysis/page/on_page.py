@@ -26,13 +26,40 @@ cell = ekf_slam
 [record]
 columns = pose, covariance, ancestry, particles, map
 """
+# Four filters that differ in what they believe, each tested for calibration.
+TILES = """[study]
+name = tiles
+runs = 40
+[scenario]
+world = inline
+noise = matched
+speed = 2
+control_rate = 10
+scan_rate = 5
+wheelbase = 1
+steer_rate_limit_deg = 90
+[cells]
+cell = ekf_slam motion_noise=1,2 sensor_noise=1,2
+[record]
+columns = pose, covariance, final_map
+[world]
+waypoint = 10, 0
+waypoint = 10, 10
+waypoint = 0, 10
+waypoint = 0, 0
+landmark = 5, 3
+landmark = 13, 5
+landmark = 6, 13
+landmark = -3, 6
+"""
 CTRL, SHIFT = 2, 8  # modifiers of a key or click
 
 
-def make_report(montecarta, folder):
+def make_report(montecarta, folder, text=STUDY):
     """Runs a small study and returns its report's page."""
+    folder.mkdir(exist_ok=True)
     study, result = folder / "study.ini", folder / "out.h5"
-    study.write_text(STUDY)
+    study.write_text(text)
     for command in (["run", study, "-o", result, "--quiet"], ["report", result, "-o", folder / "a"],
                     ["report", result, "-o", folder / "b"]):
         subprocess.run([montecarta, *command], check=True, stdout=subprocess.DEVNULL)
@@ -42,13 +69,15 @@ def make_report(montecarta, folder):
 class OnPage(unittest.TestCase):
     """A test that must leave the console empty and the network alone."""
 
-    html = None  # the page that is opened
+    reports = {}  # {study: its page}
+    study = "page"
     screen = {}
 
     @classmethod
     def setUpClass(cls):
         cls.browser = chromium.Browser()
         cls.addClassCleanup(cls.browser.close)
+        cls.html = cls.reports[cls.study]
 
     def setUp(self):
         self.page = self.open()
@@ -67,6 +96,33 @@ class OnPage(unittest.TestCase):
 
     def count(self, selector):
         return self.page.evaluate(f"document.querySelectorAll({json.dumps(selector)}).length")
+
+    def place_of(self, figure, panel, x, y):
+        """Where a panel of a chart has its values (x, y), in pixels of the window."""
+        self.page.middle(f"#figure_{figure} svg.chart")
+        return self.page.evaluate(f"""(() => {{
+            const svg = document.querySelector("#figure_{figure} svg.chart");
+            const group = svg.querySelectorAll("g.panel")[{panel}], box = svg.getBoundingClientRect();
+            const along = (name, attribute, wanted) => {{
+                const ticks = [...group.querySelectorAll(`.${{name}}.tick`)].map(tick =>
+                    [Number(tick.textContent.replace("−", "-")), Number(tick.getAttribute(attribute))]);
+                const [[a, at_a], [b, at_b]] = [ticks[0], ticks.at(-1)];
+                return at_a + (wanted - a) / (b - a) * (at_b - at_a);
+            }};
+            return [box.left + along("x", "x", {x}), box.top + along("y", "y", {y}) - 4];
+        }})()""")
+
+    def said(self, figure):
+        """(title, {name: text}) of a figure's readout, as it stands there; None where there is none."""
+        return self.page.evaluate(f"""(() => {{
+            const box = document.querySelector("#figure_{figure} .readout");
+            if (box.hidden) return null;
+            return [box.firstChild.textContent, Object.fromEntries(
+                [...box.querySelectorAll("tr")].map(row => [...row.cells].map(c => c.textContent)))];
+        }})()""")
+
+    def chart(self, figure):
+        return json.loads(self.ask(f"#figure_{figure} .chart-data", "textContent"))
 
     def later(self, milliseconds=300):
         self.page.evaluate(f"new Promise(done => setTimeout(done, {milliseconds}))")

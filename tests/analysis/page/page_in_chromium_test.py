@@ -13,7 +13,8 @@ import unittest
 
 import chromium
 from figures import Hover, Legend, Touch, Zoom  # noqa: F401: found by unittest
-from on_page import OnPage, make_report
+from marks import Maps, Points, Tiles, Tree  # noqa: F401
+from on_page import STUDY, TILES, OnPage, make_report
 from opening import Opening  # noqa: F401
 from player import Player  # noqa: F401
 
@@ -22,5 +23,7 @@ if __name__ == "__main__":
         print("skipped: there is no chromium (Debian package 'chromium'), so no page was opened")
         sys.exit(77)
     with tempfile.TemporaryDirectory(prefix="montecarta_page_") as folder:
-        OnPage.html = make_report(sys.argv.pop(1), pathlib.Path(folder))
+        montecarta = sys.argv.pop(1)
+        for name, text in (("page", STUDY), ("tiles", TILES)):
+            OnPage.reports[name] = make_report(montecarta, pathlib.Path(folder) / name, text)
         unittest.main(verbosity=2)

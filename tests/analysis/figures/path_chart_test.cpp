@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/figures/path_chart.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+namespace montecarta {
+namespace {
+
+using testing::ElementsAre;
+
+const FigureData kLandmarks{"landmarks.csv", {"x [m]", "y [m]"}, {{1.0, 2.0}}};
+
+Bounds bounds_of_test() {
+  Bounds bounds;
+  bounds.include(-10.0, 0.0);
+  bounds.include(30.0, 20.0);
+  return bounds;
+}
+
+const ChartMarks* find(const ChartPanel& panel, const std::string& name) {
+  const auto found = std::ranges::find(panel.marks, name, &ChartMarks::name);
+  return found == panel.marks.end() ? nullptr : &*found;
+}
+
+TEST(PathChart, TellsTimeAndErrorOfTheEstimateAndHidesItWithItsCell) {
+  const DrawnPath drawn{
+      "ekf",
+      4,
+      {"path_ekf.csv",
+       {"time [s]", "true x [m]", "true y [m]", "x [m]", "y [m]"},
+       {{0.5, 0.0, 0.0, 0.0, 0.0}, {1.0, 10.0, 5.0, 13.0, 9.0}}},
+      {},
+      {"map_ekf.csv", {"x", "y", "major [m]", "minor [m]", "angle"}, {{7.0, 8.0, 2.0, 1.0, 30.0}}}};
+  const Chart chart = path_chart({drawn}, kLandmarks, {}, bounds_of_test());
+  EXPECT_TRUE(chart.is_map);
+  EXPECT_DOUBLE_EQ(chart.aspect, 0.5);
+  ASSERT_EQ(chart.panels.size(), 1u);
+  const ChartPanel& panel = chart.panels.front();
+  EXPECT_EQ(panel.cell, "ekf");
+  EXPECT_EQ(panel.axis.low, 0.0);
+  EXPECT_EQ(panel.axis.high, 20.0);
+  const ChartMarks* estimate = find(panel, "estimate");
+  ASSERT_NE(estimate, nullptr);
+  EXPECT_EQ(estimate->cell, "ekf");
+  EXPECT_THAT(estimate->x, ElementsAre(0.0, 13.0));
+  EXPECT_THAT(estimate->facts.at(0).values, ElementsAre(0.5, 1.0));
+  EXPECT_THAT(estimate->facts.at(1).values, ElementsAre(0.0, 5.0));
+  ASSERT_NE(find(panel, "true path"), nullptr);
+  EXPECT_EQ(find(panel, "true path")->cell, "");
+  EXPECT_THAT(find(panel, "true path")->y, ElementsAre(0.0, 5.0));
+  EXPECT_THAT(find(panel, "landmark of the map")->angle, ElementsAre(30.0));
+  EXPECT_EQ(find(panel, "2 sigma of the pose"), nullptr);
+  EXPECT_EQ(find(panel, "true landmark")->style, kYardstickStyle);
+}
+
+TEST(PathChart, OfARecordedDriveHasFixesAndNoTruth) {
+  const DrawnPath drawn{
+      "ekf", 0, {"path_ekf.csv", {"time [s]", "x [m]", "y [m]"}, {{0.5, 3.0, 4.0}}}, {}, {}};
+  const FigureData fixes{"fixes_gps.csv", {"time [s]", "x [m]", "y [m]"}, {{2.0, 5.0, 6.0}}};
+  const Chart chart = path_chart({drawn}, {}, fixes, bounds_of_test());
+  const ChartPanel& panel = chart.panels.front();
+  EXPECT_EQ(find(panel, "true path"), nullptr);
+  EXPECT_THAT(find(panel, "estimate")->x, ElementsAre(3.0));
+  EXPECT_EQ(find(panel, "estimate")->facts.size(), 1u);
+  EXPECT_THAT(find(panel, "fix")->y, ElementsAre(6.0));
+  EXPECT_THAT(find(panel, "fix")->facts.at(0).values, ElementsAre(2.0));
+}
+
+}  // namespace
+}  // namespace montecarta

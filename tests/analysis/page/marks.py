@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Figures of marks at places of their own: maps, points, trees, bars and tiles."""
+
+from on_page import OnPage
+
+MAP = "#figure_paths svg.chart"
+
+
+class Maps(OnPage):
+
+    def scales(self):
+        """Pixels a metre of the first panel, across and upwards."""
+        a, b = self.place_of("paths", 0, 0, 0), self.place_of("paths", 0, 1, 1)
+        return b[0] - a[0], a[1] - b[1]
+
+    def panels(self):
+        return self.count(f"{MAP} g.panel:not([hidden])")
+
+    def test_say_time_place_and_error_of_the_estimate(self):
+        marks = {mark["name"]: mark for mark in self.chart("paths")["panels"][1]["marks"]}
+        estimate = marks["estimate"]
+        i = len(estimate["x"]) // 3
+        self.page.hover(self.place_of("paths", 1, estimate["x"][i], estimate["y"][i]))
+        title, facts = self.said("paths")
+        self.assertIn(title, ("fastslam2_m20: estimate", "true path", "fastslam2_m20: 2 sigma of the pose"))
+        self.assertAlmostEqual(float(facts["x"].replace("−", "-").split()[0]), estimate["x"][i], delta=0.5)
+        self.assertAlmostEqual(float(facts["y"].replace("−", "-").split()[0]), estimate["y"][i], delta=0.5)
+        self.page.hover(self.page.middle("h1"))
+        self.assertIsNone(self.said("paths"))
+
+    def test_keep_one_scale_while_they_are_zoomed_together(self):
+        whole = self.scales()
+        self.assertAlmostEqual(whole[0] / whole[1], 1, delta=0.01)
+        self.page.drag(self.page.middle(MAP, 0.1, 0.3), self.page.middle(MAP, 0.2, 0.6))
+        near = self.scales()
+        self.assertGreater(near[0], 1.5 * whole[0])
+        self.assertAlmostEqual(near[0] / near[1], 1, delta=0.02)
+        self.page.click(self.page.middle(MAP), count=2)
+        self.assertEqual(self.scales(), whole)
+
+    def test_leave_their_place_where_their_cell_is_hidden(self):
+        self.assertEqual(self.panels(), 3)
+        self.page.click(self.page.middle("#figure_paths .legend button[data-cell=ekf_slam]"))
+        self.assertEqual(self.panels(), 2)
+        self.assertEqual(self.count("#figure_anees svg.chart path.curve[data-cell=ekf_slam]"), 0)
+        self.page.click(self.page.middle("#figure_paths .legend button[data-cell=ekf_slam]"))
+        self.assertEqual(self.panels(), 3)
+
+
+class Points(OnPage):
+
+    def test_say_whose_they_are_and_what_they_cost(self):
+        for panel, chart in enumerate(self.chart("pareto")["panels"]):
+            for mark in chart["marks"][1:]:
+                box = self.page.evaluate(f"""(() => {{
+                    const group = document.querySelectorAll("#figure_pareto g.panel")[{panel}];
+                    group.scrollIntoView({{block: "center", behavior: "instant"}});
+                    const dot = group.querySelector("g.marks[data-cell={mark["legend"]}] path");
+                    const box = dot.getBoundingClientRect();
+                    return [box.left + box.width / 2, box.top + box.height / 2];
+                }})()""")
+                self.page.hover(box)
+                title, facts = self.said("pareto")
+                self.assertEqual(title, mark["legend"])
+                for fact in mark["facts"]:
+                    name, unit = fact["label"].rstrip("]").split(" [")
+                    self.assertAlmostEqual(float(facts[name].split()[0]) / fact["values"][0], 1, delta=1e-3)
+                    self.assertTrue(facts[name].endswith(unit))
+
+
+class Tree(OnPage):
+
+    def ends(self):
+        return [float(self.ask("#figure_ancestry svg.chart", f"dataset.{end}")) for end in ("from", "to")]
+
+    def test_begins_where_all_lines_have_met_and_shows_the_whole_run_when_asked(self):
+        chart = self.chart("ancestry")
+        self.assertEqual(self.ends(), [chart["x_first"], chart["x_to"]])
+        self.assertGreater(chart["x_first"], 0)
+        self.page.click(self.page.middle("#figure_ancestry .hint button"))
+        self.assertEqual(self.ends(), [0, chart["x_to"]])
+
+    def test_says_how_many_descend_from_a_line(self):
+        chart = self.chart("ancestry")
+        lines = chart["panels"][1]["marks"][0]
+        leaves = lines["facts"][2]["values"]
+        trunk = max(range(len(leaves)), key=lambda i: leaves[i] or 0)
+        self.assertEqual(leaves[trunk], 20)
+        end = next(i for i in range(trunk, len(leaves)) if leaves[i] is None) - 1
+        before_its_fork = 0.5 * (chart["x_first"] + lines["x"][end])
+        self.page.hover(self.place_of("ancestry", 1, before_its_fork, lines["y"][end]))
+        title, facts = self.said("ancestry")
+        self.assertEqual(title, "fastslam2_m20")
+        self.assertEqual(facts["descendants at the end"], "20")
+
+
+class Tiles(OnPage):
+
+    study = "tiles"
+
+    def test_say_what_the_filter_believed(self):
+        chart = self.chart("mismatch")
+        tiles = chart["panels"][0]["marks"][0]
+        self.assertEqual(chart["panels"][0]["x_names"], ["1", "2"])
+        for i, (x, y) in enumerate(((0, 0), (0, 1), (1, 0), (1, 1))):
+            tile = f"#figure_mismatch rect.tile:nth-of-type({i + 1})"
+            self.page.hover(self.page.middle(tile))
+            facts = self.said("mismatch")[1]
+            self.assertEqual((facts["motion noise"], facts["sensor noise"]), (str(x + 1), str(y + 1)))
+            value = tiles["facts"][2]["values"][i]
+            self.assertAlmostEqual(float(facts["ANEES by components"]) / value, 1, delta=1e-3)
+
+    def test_bars_say_how_many_runs_they_hold(self):
+        panel = self.chart("calibration")["panels"][0]
+        bars = panel["marks"][0]
+        for i, wanted in enumerate(bars["facts"][2]["values"]):
+            # Above the bar, too: a bin without runs has none to point at.
+            self.page.hover(self.page.middle("#figure_calibration g.panel path.frame",
+                                             x=bars["x"][i], y=0.1))
+            facts = self.said("calibration")[1]
+            self.assertAlmostEqual(float(facts["count / expected"]), wanted, delta=1e-3)
+
+    def test_bars_of_a_hidden_cell_leave(self):
+        panels = "#figure_calibration g.panel:not([hidden])"
+        before = self.count(panels)
+        self.page.click(self.page.middle("#figure_calibration .legend button"))
+        self.assertEqual(self.count(panels), before * 3 // 4)
