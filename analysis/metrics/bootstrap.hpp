@@ -21,7 +21,7 @@ void draw_runs(std::size_t runs, std::size_t b, std::vector<std::uint32_t>& draw
 /// Where the mean over infinitely many runs lies with probability `level`, given one value a run.
 /// Bootstrap over runs, bias-corrected and accelerated (BCa; Efron 1987), with the tails widened as
 /// Student's t is wider than the normal (Hesterberg 2015), so that it holds from ten runs on. NaN
-/// where a value is NaN or there are fewer than two.
+/// where a value is not finite or there are fewer than two.
 Interval bootstrap_mean(std::span<const double> values, double level);
 
 /// The same for several columns {run} of equal length, which share their draws.

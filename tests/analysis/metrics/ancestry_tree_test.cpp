@@ -108,11 +108,14 @@ TEST(AncestryTree, CrossesNoLines) {
 
 TEST(AncestryTree, FollowsSomeOfTooManyParticlesEvenly) {
   // Particles 0 to 4 are one family, 5 to 9 another: three of ten see both.
-  const std::vector<std::uint32_t> ancestor = {0, 0, 0, 0, 0, 5, 5, 5, 5, 5};
-  const AncestryTree tree = ancestry_tree(ancestor, 10, seconds(1), 3);
+  const std::vector<std::uint32_t> ancestor = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9,   // of 1 s
+                                               0, 0, 0, 0, 0, 5, 5, 5, 5, 5};  // of 2 s
+  const AncestryTree tree = ancestry_tree(ancestor, 10, seconds(2), 3);
   EXPECT_EQ(tree.leaves, 3u);
   EXPECT_EQ(tree.particles, 10u);
-  EXPECT_EQ(tree.branches.size(), 4u);  // 0 and 3 meet; 6 stays alone
+  ASSERT_EQ(tree.branches.size(), 4u);  // 0 and 3 meet; 6 stays alone
+  EXPECT_EQ(tree.branches[2].parent, AncestryTree::kNone);
+  EXPECT_EQ(tree.branches[3].leaves, 2u);
   EXPECT_EQ(tree.common_ancestor(), 0.0);
 }
 

@@ -54,6 +54,41 @@ TEST(ErrorAnatomy, TellsBiasFromScatter) {
   EXPECT_NEAR(found.bias[1][0], 2.0, 5.0 / std::sqrt(200.0));
 }
 
+/// Of one scan; an error a run.
+ErrorAnatomy anatomy_of_scan(const std::vector<Eigen::Vector3d>& errors,
+                             const Eigen::Vector3d& variances) {
+  ErrorMoments moments(1);
+  for (const Eigen::Vector3d& error : errors) {
+    moments.add(std::vector{error},
+                std::vector{Eigen::Matrix3d(Eigen::Matrix3d(variances.asDiagonal()))});
+  }
+  return moments.result();
+}
+
+// Errors of 3, 1, 3, 1: NEES 5, of which 4 are the mean's square; a mean of four errors whose
+// scatter is 1 has 1 / 3 by chance.
+TEST(ErrorAnatomy, FreesTheBiasOfWhatAMeanHasByChance) {
+  const std::vector<Eigen::Vector3d> errors = {{3, 0, 0}, {1, 0, 0}, {3, 0, 0}, {1, 0, 0}};
+  EXPECT_NEAR(anatomy_of_scan(errors, {1, 1, 1}).bias_share[0], (4.0 - 1.0 / 3.0) / 5.0, 1e-12);
+}
+
+// Errors along (2, 1, 0) of a filter that believes deviations of (2, 1, 1): each axis has half.
+TEST(ErrorAnatomy, MeasuresTheWorstDirectionInDeviations) {
+  const std::vector<Eigen::Vector3d> errors = {{2, 1, 0}, {-2, -1, 0}, {2, 1, 0}, {-2, -1, 0}};
+  const ErrorAnatomy found = anatomy_of_scan(errors, {4, 1, 1});
+  EXPECT_NEAR(found.worst_ratio[0], 2.0, 1e-9);
+  EXPECT_NEAR(found.worst_direction[0], 0.5, 1e-9);
+  EXPECT_NEAR(found.worst_direction[1], 0.5, 1e-9);
+}
+
+TEST(ErrorAnatomy, NeedsFourRunsWithNumbers) {
+  const std::vector<Eigen::Vector3d> three = {{3, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  EXPECT_TRUE(std::isnan(anatomy_of_scan(three, {1, 1, 1}).bias_share[0]));
+  const std::vector<Eigen::Vector3d> five = {
+      {3, 0, 0}, {1, 0, 0}, {std::nan(""), 0, 0}, {3, 0, 0}, {1, 0, 0}};
+  EXPECT_NEAR(anatomy_of_scan(five, {1, 1, 1}).bias_share[0], (4.0 - 1.0 / 3.0) / 5.0, 1e-12);
+}
+
 TEST(ErrorAnatomy, LeavesOutWhatIsNotFiniteAndSaysNothingOfNothing) {
   ErrorMoments moments(1);
   for (int run = 0; run < 3; ++run) {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -66,6 +67,69 @@ TEST(Innovations, ThatAreTooLargeLeaveTheBand) {
   EXPECT_LT(found.share_inside, 0.2);
 }
 
+/// Of one run.
+Innovations innovations_of_run(const std::vector<double>& nis,
+                               const std::vector<std::uint32_t>& dof) {
+  InnovationSums sums(nis.size());
+  sums.add(nis, dof);
+  return sums.result(0.95);
+}
+
+TEST(Innovations, ThatAreTooLargeMayStillBeWhite) {
+  const Innovations found = innovations_of(1.5, 0.0);
+  EXPECT_NEAR(found.autocorrelation[0], 0.0, 0.04);
+  EXPECT_TRUE(found.white);
+}
+
+// Deviations from their mean are -1/2, 1/2, -1/2, 1/2: three pairs one scan apart, two pairs two
+// scans apart, each product over the mean square of all four.
+TEST(Innovations, GoTogetherByHand) {
+  const Innovations found = innovations_of_run({1.0, 3.0, 1.0, 3.0}, {2, 2, 2, 2});
+  EXPECT_DOUBLE_EQ(found.autocorrelation[0], -1.0);
+  EXPECT_DOUBLE_EQ(found.autocorrelation[1], 1.0);
+}
+
+// Deviations of 2 and 4 are one standard deviation each where a NIS has 2 and 8 degrees of freedom.
+TEST(Innovations, OfManyDegreesOfFreedomCountNoMoreThanOfFew) {
+  const Innovations found = innovations_of_run({4.0, 12.0, 0.0, 4.0}, {2, 8, 2, 8});
+  EXPECT_NEAR(found.autocorrelation[0], 1.0 / 3.0, 1e-12);
+}
+
+// 30 scans have the fewest pairs, 10, where they lie 20 apart: scipy.stats.norm.
+TEST(Innovations, AreBoundByTheFewestPairs) {
+  std::vector<double> nis;
+  for (int s = 0; s < 30; ++s) nis.push_back(s % 2 == 0 ? 0.5 : 1.5);
+  const Innovations found = innovations_of_run(nis, std::vector<std::uint32_t>(30, 1));
+  EXPECT_NEAR(found.bound, 0.953741213645, 1e-9);
+}
+
+// Each step back undoes half of the last one: nothing goes together but neighbours, and those the
+// other way round.
+TEST(Innovations, ThatAlternateAreNotWhite) {
+  InnovationSums sums(kScans);
+  RngStream draw({29, 0, 0, 0, Draw::test});
+  for (int run = 0; run < 40; ++run) {
+    std::vector<double> nis;
+    double before = draw.normal();
+    for (std::size_t s = 0; s < kScans; ++s) {
+      const double now = draw.normal();
+      nis.push_back(4.0 + now - before);
+      before = now;
+    }
+    sums.add(nis, std::vector<std::uint32_t>(kScans, 4));
+  }
+  const Innovations found = sums.result(0.95);
+  EXPECT_NEAR(found.autocorrelation[0], -0.5, 0.05);
+  EXPECT_LT(*std::ranges::max_element(found.autocorrelation), found.bound);
+  EXPECT_FALSE(found.white);
+}
+
+TEST(Innovations, ThatAreNoNumbersAreLeftOut) {
+  const Innovations found = innovations_of_run({2.0, std::nan(""), 6.0}, {2, 2, 2});
+  EXPECT_DOUBLE_EQ(found.mean, 2.0);
+  EXPECT_TRUE(std::isnan(found.average[1]));
+}
+
 TEST(Innovations, ScansWithoutDetectionsAreLeftOut) {
   InnovationSums sums(3);
   EXPECT_TRUE(sums.empty());
@@ -77,6 +141,7 @@ TEST(Innovations, ScansWithoutDetectionsAreLeftOut) {
   EXPECT_DOUBLE_EQ(found.average[0], 1.0);
   EXPECT_TRUE(std::isnan(found.average[1]));
   EXPECT_DOUBLE_EQ(found.bounds[2].upper, nees_bounds(2, 1, 0.95).upper);
+  EXPECT_DOUBLE_EQ(found.share_inside, 1.0);  // of the two that are tested
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ TEST(Lineages, GiveTheVarianceOfAMeanOfIndependentParticles) {
     for (std::uint32_t i = 0; i < kParticles; ++i) {
       rows.ancestor.push_back(i);
       rows.log_weight.push_back(-std::log(static_cast<double>(kParticles)));
-      for (const double value : {2.0 * draw.normal(), 1.0 * draw.normal(), 0.0})
+      for (const double value : {10.0 + 2.0 * draw.normal(), 1.0 * draw.normal() - 5.0, 0.0})
         rows.particle_pose.push_back(value);
     }
   }
@@ -78,6 +78,32 @@ TEST(Lineages, CountFamiliesAsOne) {
   const Lineages found = LineageWalker().walk(rows, kParticles, seconds(kSeconds), {});
   const double of_half = 1.0 / (0.5 * static_cast<double>(kParticles));
   EXPECT_NEAR(found.monte_carlo_variance, of_half, 0.25 * of_half);
+}
+
+// Families {0, 1} and {2} of the last ten seconds, with weights 0.5, 0.2, 0.3 at x = 10, 12, 20:
+// the mean is 13.4, and the families pull it by 1.98 to either side.
+TEST(Lineages, WeighFamiliesByHand) {
+  RunRows rows;
+  for (int s = 0; s < 12; ++s) {
+    rows.ancestor.insert(rows.ancestor.end(), {0, s == 5 ? 0u : 1u, 2});
+    for (const double weight : {0.5, 0.2, 0.3}) rows.log_weight.push_back(std::log(weight));
+    for (const double x : {10.0, 12.0, 20.0}) {
+      rows.particle_pose.insert(rows.particle_pose.end(), {x, 7.0, 0.0});
+    }
+  }
+  const Lineages found = LineageWalker().walk(rows, 3, seconds(12), {});
+  EXPECT_NEAR(found.monte_carlo_variance, 2.0 * 1.98 * 1.98, 1e-9);
+}
+
+// Of 64 scans every second one is looked at, the last one among them.
+TEST(Lineages, LookAtErrorsOfTheSameScans) {
+  RunRows rows;
+  std::vector<double> squares;
+  for (std::uint32_t s = 0; s < 64; ++s) {
+    rows.ancestor.insert(rows.ancestor.end(), {0, 1});
+    squares.push_back(static_cast<double>(s));
+  }
+  EXPECT_DOUBLE_EQ(LineageWalker().walk(rows, 2, seconds(64), squares).squared_error, 32.0);
 }
 
 TEST(LineageSums, AverageWhatRunsHave) {

@@ -5,6 +5,7 @@
 #include "engine/random/stream.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,6 +42,27 @@ TEST(SamplerScale, MakesTheNeesOfIdealSamplersChiSquare) {
       EXPECT_NEAR(static_cast<double>(below) / 20'000.0, p,
                   5.0 * std::sqrt(p * (1.0 - p) / 20'000.0))
           << particles << " particles";
+    }
+  }
+}
+
+/// What is as probable under the chi-square as `nees` under Hotelling's F, without a table.
+double exactly(double nees, double d, double M) {
+  const boost::math::fisher_f ideal(d, M - d);
+  const double above =
+      boost::math::cdf(boost::math::complement(ideal, nees * (M - d) / (d * (M + 1.0))));
+  return boost::math::quantile(boost::math::complement(boost::math::chi_squared(d), above));
+}
+
+TEST(SamplerScale, IsRightToTwoPartsInTenThousandBetweenItsEntries) {
+  for (const std::size_t dimension : {1u, 2u, 3u}) {
+    for (const std::size_t particles : {5u, 30u}) {
+      const SamplerScale scale(dimension, particles);
+      for (double nees = 0.01; nees < 1e3; nees *= 1.037) {
+        const double exact =
+            exactly(nees, static_cast<double>(dimension), static_cast<double>(particles));
+        EXPECT_NEAR(scale(nees) / exact, 1.0, 2e-4) << nees << " of " << particles;
+      }
     }
   }
 }

@@ -39,6 +39,8 @@ TEST(Survival, HoldsTheMedianBetweenOrderStatistics) {
   EXPECT_EQ(found.median, 5.0);
   EXPECT_EQ(found.median_interval.lower, 2.0);
   EXPECT_EQ(found.median_interval.upper, 9.0);
+  EXPECT_EQ(survival_of(ends, kTimes, 0.9).median_interval.lower, 2.0);
+  EXPECT_EQ(survival_of(ends, kTimes, 0.89).median_interval.lower, 3.0);
 }
 
 TEST(Survival, SaysNeverWhereMostRunsLast) {

@@ -29,6 +29,13 @@ TEST(WholeRunTest, IsThatOfOneScanWhereAllAreTheSame) {
   EXPECT_NEAR(test_of(1.0 - 1e-9).average_level, 0.95, 0.004);
 }
 
+// Where a walk that goes far at one scan also has a far average, the parts share false alarms: of
+// 400,000 walks of five scans numpy finds each part to have 4.03 %.
+TEST(WholeRunTest, CountsOnceWhatBothPartsAccuse) {
+  const WholeRunTest found = BandWalks(5).test(std::vector<double>(4, 0.9), 0.95);
+  EXPECT_NEAR(found.average_level, 0.9597, 0.006);
+}
+
 TEST(WholeRunTest, NarrowsAsScansGoTogether) {
   EXPECT_LT(deviate_of(0.9), deviate_of(0.5));
   EXPECT_LT(deviate_of(0.99), deviate_of(0.9));
