@@ -57,6 +57,19 @@ TEST(MismatchGrids, HoldTheTestOfEveryPairOfFactors) {
   ASSERT_EQ(figure.data.size(), 1u);
   EXPECT_THAT(figure.data[0].rows, testing::Contains(ElementsAre(2, 1, 2, 1, 1, std::log10(2.0))));
   EXPECT_THAT(figure.script, HasSubstr("set xtics ('1' 0, '2' 1)"));
+  ASSERT_EQ(figure.chart.panels.size(), 1u);
+  const ChartMarks& tiles = figure.chart.panels[0].marks.at(0);
+  EXPECT_THAT(tiles.text, ElementsAre("3.00", "1.00", "2.00"));
+  EXPECT_EQ(tiles.fill[1], "#f7f7f7") << "1 is white";
+  EXPECT_THAT(tiles.facts.at(2).values, ElementsAre(3.0, 1.0, 2.0));
+  EXPECT_THAT(figure.chart.panels[0].x_names, ElementsAre("1", "2"));
+}
+
+TEST(MismatchGrids, LeaveOutWhatWasNotTested) {
+  StudyAnalysis study;
+  study.cells = {cell_of("a", 2, 1, 6), cell_of("a", 1, 1, 3), cell_of("a", 1, 0.5, 9)};
+  study.cells[1].nees[0].consistency.verdict = Verdict::untested;
+  EXPECT_TRUE(std::isnan(mismatch_grids(study).at(0).anees(0, 1)));
 }
 
 // Until the first landmark is seen again the covariance is that of the motion alone.

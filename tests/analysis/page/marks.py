@@ -31,12 +31,27 @@ class Maps(OnPage):
     def test_keep_one_scale_while_they_are_zoomed_together(self):
         whole = self.scales()
         self.assertAlmostEqual(whole[0] / whole[1], 1, delta=0.01)
-        self.page.drag(self.page.middle(MAP, 0.1, 0.3), self.page.middle(MAP, 0.2, 0.6))
+        begin, end = self.page.middle(MAP, 0.1, 0.3), self.page.middle(MAP, 0.2, 0.6)
+        width, height = self.page.evaluate(f"""(() => {{
+            const box = document.querySelector("{MAP} .frame").getBoundingClientRect();
+            return [box.width, box.height];
+        }})()""")
+        self.page.drag(begin, end)
         near = self.scales()
-        self.assertGreater(near[0], 1.5 * whole[0])
+        # All that was in the box is in sight, and no more of its longer side.
+        share = max((end[0] - begin[0]) / width, (end[1] - begin[1]) / height)
+        self.assertAlmostEqual(near[0] / whole[0] * share, 1, delta=0.03)
         self.assertAlmostEqual(near[0] / near[1], 1, delta=0.02)
         self.page.click(self.page.middle(MAP), count=2)
         self.assertEqual(self.scales(), whole)
+
+    def test_show_all_when_zoomed_out_far_enough(self):
+        self.page.evaluate(f"document.querySelector('{MAP}').focus()")
+        self.page.press("+")
+        self.assertFalse(self.ask("#figure_paths .hint button", "hidden"))
+        for _ in range(3):
+            self.page.press("-")
+        self.assertTrue(self.ask("#figure_paths .hint button", "hidden"))
 
     def test_leave_their_place_where_their_cell_is_hidden(self):
         self.assertEqual(self.panels(), 3)
