@@ -184,5 +184,12 @@ TEST(CramerRaoBound, KnowsNothingOfWhatIsNotInView) {
   EXPECT_EQ(bound_with({{-5.0, 0.0}, {500.0, 0.0}}), bound_with({}));
 }
 
+TEST(CramerRaoBound, OfTheMapIsThatOfTheLandmarksSeen) {
+  const auto map_with = [](const Landmarks& landmarks) {
+    return squared_bound(open_world(), path_of(bends(24), 4, landmarks)).map;
+  };
+  EXPECT_EQ(map_with({{8.0, 3.0}, {500.0, 0.0}}), map_with({{8.0, 3.0}}));
+}
+
 }  // namespace
 }  // namespace montecarta
