@@ -49,12 +49,12 @@ class FastSlam final : public SlamFilter {
   }
 
   void predict(const StepContext& context, const Control& control, double duration) override {
-    settle();
+    settle(context);
     proposal_.predict(context, control, duration, weights_, poses_);
   }
 
   void update(const StepContext& context, Scan scan) override {
-    settle();
+    settle(context);
     after_update_ = true;
     proposal_.begin_scan(context, poses_);
     association_.associate(
@@ -131,7 +131,7 @@ class FastSlam final : public SlamFilter {
 
   /// Ends the time in which the particles of the last scan can be asked for: resampling takes
   /// effect.
-  void settle() {
+  void settle(const StepContext& context) {
     if (!std::exchange(after_update_, false)) return;
     if (report_.resampled) {
       gather<Real>(poses_, parents_, resampled_poses_);
@@ -139,6 +139,7 @@ class FastSlam final : public SlamFilter {
       maps_.resample(parents_);
       association_.resample(parents_);
       proposal_.resample(parents_);
+      proposal_.part(context, maps_, poses_);
       weights_.make_equal();
       ancestors_ = parents_;
     } else {

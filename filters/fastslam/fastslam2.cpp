@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/anchored.hpp"
 #include "filters/fastslam/fast_slam_filters.hpp"
+#include "filters/fastslam/moved.hpp"
 
 namespace montecarta {
 
@@ -9,6 +10,7 @@ FilterKind fastslam2_kind() {
   options.push_back({"weights", FilterOption::Kind::choice, "closed", 0, 0, weight_form_names(),
                      "form of the importance weight (SPEC 7.2 c, r, b)"});
   options.push_back(landmarks_option());
+  options.push_back(move_lag_option());
   return {.name = "fastslam2",
           .long_name = "FastSLAM II",
           .source = "Montemerlo et al. 2003; SPEC 7",
@@ -16,6 +18,7 @@ FilterKind fastslam2_kind() {
           .has_mixture = true,
           .options = std::move(options),
           .make = [](const FilterSetup& setup) {
+            if (move_lag(setup.options) > 0) return make_moved<Lanes>(setup, Linearised());
             return are_anchored(setup.options) ? make_fastslam2_anchored<Lanes>(setup)
                                                : make_fastslam2<Lanes>(setup);
           }};

@@ -58,6 +58,8 @@ class KnownAssociation {
     for (std::size_t k = 0; k < slots_.size(); ++k)
       visit(k, opened_[k].at(b), seen_[k], Everywhere());
   }
+  std::span<const std::uint32_t> slots() const { return slots_; }
+  std::span<const RangeBearing<Real>> seen() const { return seen_; }
   /// visit(slot) for the landmarks of all matches.
   template <class Visit>
   void each_slot(const Visit& visit) const {

@@ -81,6 +81,7 @@ class RefinedCloud : public DrawnPoses<Real> {
   MotionIncrement& motion() { return motion_; }
   const MotionIncrement& motion() const { return motion_; }
   const PoseTransform& pose_transform() const { return pose_transform_; }
+  const MapTransform& map_transform() const { return map_transform_; }
 
  private:
   Belief belief_;

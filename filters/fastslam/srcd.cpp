@@ -2,6 +2,7 @@
 #include "filters/fastslam/srcd.hpp"
 
 #include "filters/fastslam/anchored.hpp"
+#include "filters/fastslam/moved.hpp"
 
 namespace montecarta {
 
@@ -9,6 +10,7 @@ FilterKind srcd_kind() {
   std::vector<FilterOption> options = srcd_options();
   options.push_back(map_uncertainty_option());
   options.push_back(landmarks_option());
+  options.push_back(move_lag_option());
   return {.name = "srcd",
           .long_name = "SRCD-FastSLAM",
           .source = "Ankishan et al. 2016; SPEC 10",
@@ -16,6 +18,9 @@ FilterKind srcd_kind() {
           .has_mixture = true,
           .options = std::move(options),
           .make = [](const FilterSetup& setup) {
+            if (move_lag(setup.options) > 0) {
+              return make_moved<Lanes>(setup, srcd_points(setup));
+            }
             return are_anchored(setup.options)
                        ? make_sigma_anchored<Lanes>(setup, srcd_points(setup))
                        : make_srcd<Lanes>(setup);

@@ -2,6 +2,7 @@
 #include "filters/fastslam/ufastslam.hpp"
 
 #include "filters/fastslam/anchored.hpp"
+#include "filters/fastslam/moved.hpp"
 
 namespace montecarta {
 
@@ -30,6 +31,7 @@ FilterKind ufastslam_kind() {
                      "second spread: alpha^2 (n + kappa) is the square of the points' distance"});
   options.push_back(map_uncertainty_option());
   options.push_back(landmarks_option());
+  options.push_back(move_lag_option());
   return {.name = "ufastslam",
           .long_name = "U-FastSLAM",
           .source = "Kim et al. 2008; SPEC 8",
@@ -37,6 +39,9 @@ FilterKind ufastslam_kind() {
           .has_mixture = true,
           .options = std::move(options),
           .make = [](const FilterSetup& setup) {
+            if (move_lag(setup.options) > 0) {
+              return make_moved<Lanes>(setup, unscented_points(setup));
+            }
             return are_anchored(setup.options)
                        ? make_sigma_anchored<Lanes>(setup, unscented_points(setup))
                        : make_ufastslam<Lanes>(setup);

@@ -44,18 +44,20 @@ class FastSlam : public SlamFilter {
   }
 
   void predict(const StepContext& context, const Control& control, double duration) final {
-    resample();
+    resample(context);
+    note_control(control, duration);
     for (std::uint32_t i = 0; i < particles_.size(); ++i) {
       predict_particle(context, i, particles_[i], control, duration);
     }
   }
 
   void update(const StepContext& context, Scan scan) final {
-    resample();
+    resample(context);
     after_update_ = true;
     for (Particle& p : particles_) associate(p, scan);  // step 1
     report_ = {.ess = effective()};
     if (nothing_to_use()) return;  // step 2
+    note_scan(scan);
     for (std::uint32_t i = 0; i < particles_.size(); ++i) {
       weigh_and_draw(context, i, particles_[i], scan);  // step 3
       if (!known()) particles_[i].log_weight += log_p0_ * unmatched(particles_[i]);
@@ -68,6 +70,7 @@ class FastSlam : public SlamFilter {
       parents_ = draw_parents(settings_.scheme, weights(), context);
     }
     for (Particle& p : particles_) add_new_landmarks(p, scan);  // step 7
+    end_scan();
   }
 
   const ScanReport& report() const final { return report_; }
@@ -102,6 +105,12 @@ class FastSlam : public SlamFilter {
     return new_landmark(pose, detection, R_);
   }
 
+  // For filters that draw past scans anew.
+  virtual void note_control(const Control& /*control*/, double /*duration*/) {}
+  virtual void note_scan(Scan /*scan*/) {}
+  virtual void end_scan() {}
+  virtual void part(const StepContext& /*context*/) {}
+
   bool known() const { return settings_.association.kind == Association::known; }
   PoseMoments drawn() const {
     return mixture_moments(
@@ -115,7 +124,6 @@ class FastSlam : public SlamFilter {
   Eigen::Matrix2d Q_;
   std::vector<Particle> particles_;
 
- private:
   void associate(Particle& p, Scan scan) const {
     p.pairings.assign(scan.size(), {});
     for (std::size_t k = 0; k < scan.size(); ++k) {
@@ -201,7 +209,7 @@ class FastSlam : public SlamFilter {
   }
 
   /// Once between two scans: what the last one decided takes effect.
-  void resample() {
+  void resample(const StepContext& context) {
     if (!std::exchange(after_update_, false)) return;
     for (std::uint32_t i = 0; i < particles_.size(); ++i) particles_[i].ancestor = i;
     if (!report_.resampled) return;
@@ -213,6 +221,7 @@ class FastSlam : public SlamFilter {
       next.back().log_weight = -std::log(static_cast<double>(particles_.size()));
     }
     particles_ = std::move(next);
+    part(context);
   }
 
   ScanReport report_;

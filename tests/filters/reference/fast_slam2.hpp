@@ -28,6 +28,11 @@ class FastSlam2 : public FastSlam {
   }
 
  protected:
+  /// What the pose of particle i is drawn with.
+  virtual RngStream pose_numbers(const StepContext& context, std::uint32_t i) const {
+    return context.stream(Draw::pose_proposal, i);
+  }
+
   /// Carries (p.pose, p.covariance) through one step.
   virtual void move_gaussian(Particle& p, const Control& control, double duration) const {
     const auto step = linearised_move(as_pose(p.pose), control, duration, settings_.belief.vehicle);
@@ -60,7 +65,6 @@ class FastSlam2 : public FastSlam {
     return log_gaussian<2>(seen->nu, seen->S_f);
   }
 
- private:
   void predict_particle(const StepContext&, std::uint32_t, Particle& p, const Control& control,
                         double duration) final {
     move_gaussian(p, control, duration);
@@ -76,7 +80,7 @@ class FastSlam2 : public FastSlam {
     const double log_closed = refine(p, scan);
     p.refined_pose = p.pose;
     p.refined_covariance = p.covariance;
-    draw_pose(context.stream(Draw::pose_proposal, i), p);
+    draw_pose(pose_numbers(context, i), p);
     switch (weight_) {
       case Weight::closed:
         p.log_weight += log_closed;
@@ -90,6 +94,7 @@ class FastSlam2 : public FastSlam {
     }
   }
 
+ private:
   /// One detection after the other, each where the last one led; returns the closed form (c).
   double refine(Particle& p, Scan scan) const {
     double log_evidence = 0.0;

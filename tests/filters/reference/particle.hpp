@@ -34,6 +34,10 @@ struct Particle {
   std::uint32_t ancestor = 0;                ///< index one scan ago
   std::vector<std::optional<Landmark>> map;  ///< by identity where known, else by birth
   std::vector<Pairing> pairings;             ///< one per detection
+
+  /// Where past scans are drawn anew: what it was before each of them, and what each weighed.
+  std::vector<Particle> past = {};
+  std::vector<double> past_log_weights = {};
 };
 
 inline Pose as_pose(const Eigen::Vector3d& x) { return {x(0), x(1), x(2)}; }
