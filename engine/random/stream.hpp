@@ -19,8 +19,10 @@ enum class Draw : std::uint8_t {
   resampling = 18,       ///< index = 0 (systematic) or particle
   evolution = 19,        ///< differential evolution
   kernel_sample = 23,    ///< marginal filters: pose drawn from the chosen kernel, index = particle
+  heading_split = 24,    ///< bank of joint Gaussians: heading drawn, index = particle
   pose_move = 25,        ///< poses of a window proposed anew, index = particle
   move_acceptance = 26,  ///< whether the new ones are taken, index = particle
+  split_stratum = 27,    ///< as heading_split: which stratum it is drawn from
   analysis_bootstrap = 32,
   test = 255,
 };

@@ -2,35 +2,22 @@
 #include "filters/fastslam/fast_slam_options.hpp"
 
 #include "filters/option_choice.hpp"
+#include "filters/resampling_options.hpp"
 
 #include <string>
 
 namespace montecarta {
 namespace {
 
-const std::vector<std::string> kResamplings{"systematic", "stratified", "residual", "multinomial"};
 const std::vector<std::string> kWeightForms{"closed", "ratio", "batch"};
 
 }  // namespace
 
-std::vector<FilterOption> fast_slam_options() {
-  return {
-      {"particles", FilterOption::Kind::integer, "100", 1, 1e6, {}, "number of particles"},
-      {"resampling", FilterOption::Kind::choice, "systematic", 0, 0, kResamplings,
-       "how parents are drawn (SPEC 18)"},
-      {"resample_below",
-       FilterOption::Kind::number,
-       "0.5",
-       0,
-       1,
-       {},
-       "resample where ESS < this times particles; Bailey's simulator has 0.75"},
-  };
-}
+std::vector<FilterOption> fast_slam_options() { return resampling_options("100"); }
 
 FastSlamSettings fast_slam_settings(const FilterOptions& options) {
   return {.particles = options.integer("particles"),
-          .resampling = chosen<Resampling>(options.choice("resampling"), kResamplings),
+          .resampling = chosen_resampling(options),
           .resample_below = options.number("resample_below")};
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/factory.hpp"
 #include "tests/doubles/allocation_count.hpp"
+#include "tests/filters/default_options.hpp"
 #include "tests/filters/small_world.hpp"
 
 #include <gtest/gtest.h>
 
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,11 +14,9 @@ namespace montecarta {
 namespace {
 
 std::unique_ptr<SlamFilter> make(const FilterKind& kind, Association association) {
-  std::map<std::string, std::string, std::less<>> values;
-  for (const FilterOption& option : kind.options) values[option.name] = option.fallback;
   return kind.make({.belief = {},
                     .association = {.kind = association},
-                    .options = FilterOptions(values),
+                    .options = default_options(kind),
                     .landmarks = SmallWorldSettings().landmarks});
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/nees_bounds.hpp"
-#include "filters/ekf_slam/ekf_slam.hpp"
+#include "filters/joint/joint_filters.hpp"
 #include "filters/moments/gaussian_draw.hpp"
+#include "tests/filters/default_options.hpp"
 #include "tests/filters/fastslam/filter_comparison.hpp"
 #include "tests/filters/two_scans.hpp"
 
@@ -88,8 +89,10 @@ Belief fine() {
 
 TEST(Consistency, EkfSlamIsConsistentWhereNoiseIsSmall) {
   constexpr std::uint64_t kRuns = 200;
-  const auto filter = make_ekf_slam(
-      {.belief = fine(), .association = {}, .options = FilterOptions({}), .landmarks = 20});
+  const auto filter = make_ekf_slam({.belief = fine(),
+                                     .association = {},
+                                     .options = default_options(ekf_slam_kind()),
+                                     .landmarks = 20});
   double sum = 0.0;
   for (std::uint64_t run = 0; run < kRuns; ++run) {
     const SmallWorld world = small_world({.seed = 500 + run, .scans = 40, .noise = fine()});
@@ -153,8 +156,10 @@ TEST(FastSlam2, SeeingAgainFromAKnownPoseIsTheKalmanFiltersUpdate) {
   // scan that sees them again is the same Bayesian update for both filters, likelihood included
   // (SPEC 23.5: M = 1).
   const SmallWorld world = drive_of_two_scans();
-  const auto kalman = make_ekf_slam(
-      {.belief = {}, .association = {}, .options = FilterOptions({}), .landmarks = 40});
+  const auto kalman = make_ekf_slam({.belief = {},
+                                     .association = {},
+                                     .options = default_options(ekf_slam_kind()),
+                                     .landmarks = 40});
   const PoseMoments expected = after_two_scans(*kalman, world).spread;
   EXPECT_GE(kalman->report().nis_dof, 4u);
   for (const std::size_t particles : {1, 30}) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/factory.hpp"
 #include "filters/moments/cloud_moments.hpp"
+#include "tests/filters/default_options.hpp"
 #include "tests/filters/small_world.hpp"
 #include "tests/filters/told_bits.hpp"
 
@@ -24,19 +25,14 @@ void PrintTo(const FilterKind& kind, std::ostream* out) { *out << kind.name; }
 
 namespace {
 
-std::unique_ptr<SlamFilter> make_default(const FilterKind& kind, std::size_t particles,
-                                         const SmallWorldSettings& world,
-                                         Association association = Association::known,
-                                         const std::map<std::string, std::string>& special = {}) {
-  std::map<std::string, std::string, std::less<>> values;
-  for (const FilterOption& option : kind.options) {
-    const auto wanted = special.find(option.name);
-    values[option.name] = wanted == special.end() ? option.fallback : wanted->second;
-  }
-  if (kind.has_particles) values["particles"] = std::to_string(particles);
+std::unique_ptr<SlamFilter> make_default(
+    const FilterKind& kind, std::size_t particles, const SmallWorldSettings& world,
+    Association association = Association::known,
+    std::map<std::string, std::string, std::less<>> special = {}) {
+  if (kind.has_particles) special["particles"] = std::to_string(particles);
   return kind.make({.belief = world.noise,
                     .association = {.kind = association},
-                    .options = FilterOptions(values),
+                    .options = default_options(kind, special),
                     .landmarks = world.landmarks});
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/de_srcd.hpp"
 
-#include "filters/ekf_slam/ekf_slam.hpp"
+#include "filters/joint/joint_filters.hpp"
+#include "tests/filters/default_options.hpp"
 #include "tests/filters/fastslam/filter_comparison.hpp"
 #include "tests/filters/two_scans.hpp"
 
@@ -69,8 +70,10 @@ TEST(DeSrcd, WeighsItsDrawsSoThatTheyAreThePosteriorWhereverItDrawsAbout) {
   // much is drawn from. The weights must make up for that.
   const SmallWorldSettings settings = settings_of_two_scans();
   const SmallWorld world = drive_of_two_scans(settings, {3.6, 0.4});
-  const auto kalman = make_ekf_slam(
-      {.belief = {}, .association = {}, .options = FilterOptions({}), .landmarks = 40});
+  const auto kalman = make_ekf_slam({.belief = {},
+                                     .association = {},
+                                     .options = default_options(ekf_slam_kind()),
+                                     .landmarks = 40});
   const PoseMoments expected = after_two_scans(*kalman, world).spread;
 
   for (const char* mode : {"honest", "shared"}) {

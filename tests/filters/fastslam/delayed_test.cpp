@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "filters/ekf_slam/ekf_slam.hpp"
+#include "filters/joint/joint_filters.hpp"
+#include "tests/filters/default_options.hpp"
 #include "tests/filters/fastslam/delayed_variants.hpp"
 #include "tests/filters/reference/delayed_fast_slam.hpp"
 #include "tests/filters/told_bits.hpp"
@@ -39,7 +40,7 @@ TEST(Delayed, OneParticleThatNeverDrawsIsEkfSlam) {
     const Variant variant = delayed("0", 1, association);
     const auto kalman = make_ekf_slam({.belief = {},
                                        .association = {.kind = association},
-                                       .options = FilterOptions({}),
+                                       .options = default_options(ekf_slam_kind()),
                                        .landmarks = settings.landmarks});
     const auto filter = make_production(variant, settings);
     std::vector<PoseMoments> poses;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "filters/ekf_slam/ekf_slam.hpp"
-
 #include "engine/errors.hpp"
+#include "filters/joint/joint_filters.hpp"
+#include "tests/filters/default_options.hpp"
 #include "tests/filters/reference/textbook_ekf_slam.hpp"
 #include "tests/filters/small_world.hpp"
 
@@ -12,8 +12,10 @@ namespace montecarta {
 namespace {
 
 FilterSetup setup_for(std::size_t landmarks, Association kind = Association::known) {
-  FilterSetup setup{
-      .belief = {}, .association = {}, .options = FilterOptions({}), .landmarks = landmarks};
+  FilterSetup setup{.belief = {},
+                    .association = {},
+                    .options = default_options(ekf_slam_kind()),
+                    .landmarks = landmarks};
   setup.association.kind = kind;
   return setup;
 }

@@ -15,6 +15,9 @@ struct InnovationFactor {
   double l00, l10, l11;
 
   double log_det() const { return 2.0 * std::log(l00 * l11); }
+  Eigen::Matrix2d covariance() const {
+    return Eigen::Matrix2d{{l00 * l00, l00 * l10}, {l00 * l10, l10 * l10 + l11 * l11}};
+  }
   /// L^-1 v; its squared norm is D^2.
   Eigen::Vector2d whiten(const Eigen::Vector2d& v) const {
     const double first = v(0) / l00;

@@ -16,8 +16,13 @@ std::unique_ptr<SlamFilter> make_ekf_slam(const FilterSetup& setup);
 /// can observe, where the map lies in the world, no detection is taken to tell.
 std::unique_ptr<SlamFilter> make_riekf_slam(const FilterSetup& setup);
 
+/// Heading-split Rao-Blackwellised bank: many joint Gaussians, of which only the heading is drawn
+/// (SPEC 24).
+std::unique_ptr<SlamFilter> make_hrb(const FilterSetup& setup);
+
 /// Their lines in the table of filters.
 FilterKind ekf_slam_kind();
 FilterKind riekf_slam_kind();
+FilterKind hrb_kind();
 
 }  // namespace montecarta

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/nees_bounds.hpp"
-#include "filters/ekf_slam/ekf_slam.hpp"
-#include "filters/ekf_slam/retraction.hpp"
+#include "filters/joint/joint_filters.hpp"
+#include "filters/joint/retraction.hpp"
+#include "tests/filters/default_options.hpp"
 #include "tests/filters/reference/invariant_ekf_slam.hpp"
 #include "tests/filters/small_world.hpp"
 
@@ -14,8 +15,10 @@ namespace {
 using Make = std::unique_ptr<SlamFilter> (*)(const FilterSetup&);
 
 FilterSetup setup_for(std::size_t landmarks, const Belief& belief = {}) {
-  return {
-      .belief = belief, .association = {}, .options = FilterOptions({}), .landmarks = landmarks};
+  return {.belief = belief,
+          .association = {},
+          .options = default_options(ekf_slam_kind()),
+          .landmarks = landmarks};
 }
 
 /// The literal filter behind the signature of a SlamFilter.

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace montecarta {
+
+/// The number that a standard normal variable stays below with `probability` in (0, 1).
+double normal_quantile(double probability);
+
+}  // namespace montecarta

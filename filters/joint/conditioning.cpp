@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/joint/joint_gaussian.hpp"
+#include "filters/joint/packs.hpp"
+
+#include <cmath>
+#include <utility>
+
+// How a detection or a draw changes a JointGaussian.
+
+namespace montecarta {
+namespace {
+
+/// An iterated detection is settled when the innovation changes by less than this, in its own
+/// standard deviations.
+constexpr double kConverged = 1e-4;
+
+/// L^-T; of the triangular factor, two divisions: S itself is never inverted.
+Eigen::Matrix2d inverse_transposed(const InnovationFactor& L) {
+  Eigen::Matrix2d inverse;
+  inverse << 1.0 / L.l00, -L.l10 / (L.l00 * L.l11), 0.0, 1.0 / L.l11;
+  return inverse;
+}
+
+}  // namespace
+
+/// The step that the detection makes the pose and its landmark take, before any retraction: P H'
+/// S^-1 v.
+JointGaussian::Step JointGaussian::step_of(std::size_t slot, const ExpectedSight& expected,
+                                           const Eigen::Vector2d& innovation) const {
+  const Eigen::Index row = row_of(slot);
+  const Eigen::Vector2d weighed =
+      inverse_transposed(expected.factor) * expected.factor.whiten(innovation);
+  const Eigen::Vector3d pose = expected.pose_jacobian.transpose() * weighed;
+  const Eigen::Vector2d landmark = expected.landmark_jacobian.transpose() * weighed;
+  const auto mixed = cross_.middleRows<2>(row);
+  return {pose_.covariance * pose + mixed.transpose() * landmark,
+          mixed * pose + map_.block<2, 2>(row, row) * landmark};
+}
+
+/// Linearises anew where `step` leads; `expected` then says what the model linearised there
+/// predicts for the present estimate, to which the Gaussian belongs.
+bool JointGaussian::linearise_after(const Step& step, std::size_t slot,
+                                    ExpectedSight& expected) const {
+  const Eigen::Index row = row_of(slot);
+  Eigen::Vector2d pose_way = step.pose.head<2>(), landmark_way = step.landmark;
+  if (retraction_ == Retraction::invariant) {
+    const Eigen::Matrix2d V = exponential_jacobian(step.pose(2));
+    pose_way = V * pose_way;
+    landmark_way = V * landmark_way;
+  }
+  const Pose& from = pose_.mean;
+  const auto at = linearised_sight(
+      Pose{from.x + pose_way(0), from.y + pose_way(1), from.heading + step.pose(2)},
+      Point{map_mean_(row) + landmark_way(0), map_mean_(row + 1) + landmark_way(1)});
+  if (too_near(at.sight)) return false;
+  ExpectedSight next{.pose_jacobian = pose_jacobian(at),
+                     .landmark_jacobian = landmark_jacobian(at),
+                     .sight = at.sight,
+                     .factor = {}};
+  if (retraction_ == Retraction::invariant) {  // the error at the estimate before
+    next.pose_jacobian.col(2) += next.pose_jacobian.leftCols<2>() * (quarter_turn() * pose_way) +
+                                 next.landmark_jacobian * (quarter_turn() * landmark_way);
+  }
+  const auto L = innovation_factor(slot, next);
+  if (!L) return false;
+  next.factor = *L;
+  const Eigen::Vector2d moved =
+      next.pose_jacobian * step.pose + next.landmark_jacobian * step.landmark;
+  next.sight.range -= moved(0);
+  next.sight.bearing -= moved(1);
+  expected = next;
+  return true;
+}
+
+Eigen::Vector2d JointGaussian::absorb(std::size_t slot, const RangeBearing<double>& detected,
+                                      int iterations, ExpectedSight& expected) {
+  Eigen::Vector2d innovation = to_vector(residual(detected, expected.sight));
+  for (int i = 0; i < iterations; ++i) {
+    if (!linearise_after(step_of(slot, expected, innovation), slot, expected)) break;
+    const Eigen::Vector2d before =
+        std::exchange(innovation, to_vector(residual(detected, expected.sight)));
+    if (expected.factor.whiten(innovation - before).norm() < kConverged) break;
+  }
+  whiten_gain(slot, expected);
+  condition(expected.factor.whiten(innovation));
+  return innovation;
+}
+
+void JointGaussian::draw_heading(double keep, double normal) {
+  const double scale = std::sqrt((1.0 - keep * keep) / pose_.covariance(2, 2));
+  gain_pose_ << scale * pose_.covariance.col(2), Eigen::Vector3d::Zero();
+  gain_map_.col(0).head(rows()) = scale * cross_.col(2).head(rows());
+  gain_map_.col(1).head(rows()).setZero();
+  condition({normal, 0.0});
+  if (keep > 0.0) return;
+  pose_.covariance.row(2).setZero();  // exactly, not but for rounding
+  pose_.covariance.col(2).setZero();
+  cross_.col(2).head(rows()).setZero();
+}
+
+/// W = P H' L^-T.
+void JointGaussian::whiten_gain(std::size_t slot, const ExpectedSight& expected) {
+  const Eigen::Matrix2d inverse_Lt = inverse_transposed(expected.factor);
+  const Matrix32 pose_white = expected.pose_jacobian.transpose() * inverse_Lt;
+  const Eigen::Matrix2d landmark_white = expected.landmark_jacobian.transpose() * inverse_Lt;
+  const Eigen::Index row = row_of(slot);
+  copy_columns(map_, row, rows(), seen_);
+  gain_pose_ =
+      pose_.covariance * pose_white + cross_.middleRows<2>(row).transpose() * landmark_white;
+  auto gain = gain_map_.leftCols<2>().topRows(rows());
+  gain.noalias() = cross_.topRows(rows()).lazyProduct(pose_white);
+  gain.noalias() += seen_.topRows(rows()).lazyProduct(landmark_white);
+}
+
+/// m <- m + W white, P <- P - W W', and the error carried along.
+void JointGaussian::condition(const Eigen::Vector2d& white) {
+  pose_.covariance -= gain_pose_ * gain_pose_.transpose();
+  mirror_lower(pose_.covariance);
+  const auto first = gain_map_.col(0).head(rows());
+  const auto second = gain_map_.col(1).head(rows());
+  for (Eigen::Index j = 0; j < 3; ++j) {
+    cross_.col(j).head(rows()) -= first * gain_pose_(j, 0) + second * gain_pose_(j, 1);
+  }
+  const Eigen::Vector2d pose_step = step(white);
+  change_map(retraction_ == Retraction::invariant && carry_error(pose_step));
+}
+
+/// Moves the estimate; returns how far the vehicle's place moved.
+Eigen::Vector2d JointGaussian::step(const Eigen::Vector2d& white) {
+  const Eigen::Vector3d pose_step = gain_pose_ * white;
+  Eigen::Vector2d moved = pose_step.head<2>();
+  auto map_step = map_step_.reshaped().head(rows());
+  map_step = gain_map_.leftCols<2>().topRows(rows()).lazyProduct(white);
+  if (retraction_ == Retraction::invariant) {
+    const Eigen::Matrix2d V = exponential_jacobian(pose_step(2));
+    moved = V * moved;
+    apply(V, map_step_.leftCols(rows() / 2));
+  }
+  pose_.mean = {pose_.mean.x + moved(0), pose_.mean.y + moved(1),
+                wrap(pose_.mean.heading + pose_step(2))};
+  map_mean_.head(rows()) += map_step;
+  return moved;
+}
+
+/// P <- T P T', T = I + d e_heading' with d = J step: the covariance, in the map frame, of an
+/// invariant error that stayed while the estimate moved by `pose_step` and map_step_. Of the
+/// landmarks' share, P + d c' + c d' + d h d' with c and h the covariances with the heading, it
+/// leaves two squares for change_map(), which are exactly symmetric: P - b b' + a a' with b = c /
+/// sqrt(h), a = b + sqrt(h) d. Neither is larger than P, so nothing cancels. False where the
+/// heading is certain and nothing is to be done.
+bool JointGaussian::carry_error(const Eigen::Vector2d& pose_step) {
+  const double variance = pose_.covariance(2, 2);
+  if (!(variance > 0.0)) return false;
+  const double sigma = std::sqrt(variance);
+  const Eigen::Vector2d d = quarter_turn() * pose_step;
+  apply(quarter_turn(), map_step_.leftCols(rows() / 2));
+  const auto map_d = map_step_.reshaped().head(rows());
+  const Eigen::Vector3d heading_row = pose_.covariance.row(2).transpose();
+  gain_map_.col(2).head(rows()) = cross_.col(2).head(rows()) / sigma;
+  gain_map_.col(3).head(rows()) = gain_map_.col(2).head(rows()) + sigma * map_d;
+  auto cross = cross_.topRows(rows());
+  cross += map_d.lazyProduct(heading_row.transpose());
+  cross.col(0) += d(0) * cross.col(2);
+  cross.col(1) += d(1) * cross.col(2);
+  Eigen::Matrix3d T = Eigen::Matrix3d::Identity();
+  T.topRightCorner<2, 1>() = d;
+  pose_.covariance = (T * pose_.covariance * T.transpose()).eval();
+  mirror_lower(pose_.covariance);
+  return true;
+}
+
+/// The landmarks' covariance, in one pass: P <- P - W W' and, where the error was carried, - b b' +
+/// a a'. Whole packs in one order: exactly symmetric.
+void JointGaussian::change_map(bool carries_error) {
+  for (Eigen::Index j = 0; j < row_of(n_landmarks_); ++j) {
+    const Eigen::Index first = pack_of(j), count = rows() - first;
+    const auto gain = gain_map_.middleRows(first, count);
+    auto column = map_.col(j).segment(first, count);
+    if (carries_error) {
+      column += gain.col(3) * gain_map_(j, 3) - gain.col(2) * gain_map_(j, 2) -
+                gain.col(0) * gain_map_(j, 0) - gain.col(1) * gain_map_(j, 1);
+    } else {
+      column -= gain.col(0) * gain_map_(j, 0) + gain.col(1) * gain_map_(j, 1);
+    }
+  }
+}
+
+}  // namespace montecarta

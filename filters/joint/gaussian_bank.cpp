@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/joint/gaussian_bank.hpp"
+
+#include "engine/random/normal_quantile.hpp"
+#include "filters/association/association_counts.hpp"
+#include "filters/joint/mixture.hpp"
+#include "filters/moments/quadrature_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace montecarta {
+
+GaussianBank::GaussianBank(const FilterSetup& setup, const BankSettings& settings)
+    : belief_(setup.belief),
+      settings_(settings),
+      known_(setup.association.kind == Association::known),
+      weights_(settings.particles),
+      slot_of_(settings.particles),
+      parents_(settings.particles),
+      ancestors_(settings.particles),
+      weights_before_scan_(settings.particles) {
+  beliefs_.reserve(settings.particles);
+  for (std::size_t i = 0; i < settings.particles; ++i)
+    beliefs_.emplace_back(setup, settings.retraction, settings.iterations);
+}
+
+void GaussianBank::start(const Pose& start) {
+  motion_.restart();
+  weights_.make_equal();
+  beliefs_.front().start(start);
+  std::fill(slot_of_.begin(), slot_of_.end(), 0U);
+  active_.assign(1, 0U);
+  std::iota(ancestors_.begin(), ancestors_.end(), 0U);
+  report_ = {};
+  after_update_ = false;
+}
+
+void GaussianBank::predict(const StepContext& /*context*/, const Control& control,
+                           double duration) {
+  settle();
+  if (settings_.motion == Motion::quadrature) {
+    motion_ = moved_by_quadrature(motion_, control, duration, belief_);
+  } else {
+    motion_.advance(control, duration, belief_);
+  }
+}
+
+void GaussianBank::update(const StepContext& context, Scan scan) {
+  settle();
+  after_update_ = true;
+  context.parallel_for(active_.size(),
+                       [&](std::size_t a) { beliefs_[active_[a]].absorb(motion_, scan); });
+  motion_.restart();
+  weigh();
+  report_innovations(scan);
+  estimate_of_scan_ = mixture();
+  split(context);
+  context.parallel_for(active_.size(),
+                       [&](std::size_t a) { beliefs_[active_[a]].give_birth(scan); });
+  for (std::size_t i = 0; i < slot_of_.size(); ++i) {
+    report_.map_size +=
+        weights_.linear()[i] * static_cast<double>(belief_of(i).gaussian().landmarks());
+  }
+  decide_on_resampling(context);
+}
+
+/// Every particle's weight is multiplied by what its belief expected of the scan.
+void GaussianBank::weigh() {
+  report_ = {};
+  std::ranges::copy(weights_.linear_scalars(), weights_before_scan_.begin());
+  for (std::size_t i = 0; i < slot_of_.size(); ++i) {
+    weights_.multiply(i, belief_of(i).outcome().log_likelihood);
+  }
+  report_.log_likelihood = weights_.normalise();
+  report_.ess = weights_.effective();
+  for (std::size_t i = 0; i < slot_of_.size(); ++i) {
+    add(belief_of(i).outcome().association, weights_.linear()[i], report_.association);
+  }
+  for (std::uint32_t slot : active_) report_.numerical_faults += beliefs_[slot].outcome().faults;
+}
+
+void GaussianBank::report_innovations(Scan scan) {
+  innovations_.start(1, scan.size());
+  matched_weights_.assign(scan.size(), 0.0);
+  for (std::size_t i = 0; i < slot_of_.size(); ++i) {
+    const double weight = weights_before_scan_[i];
+    for (const auto& [k, v, S] : belief_of(i).sightings()) {
+      innovations_.add(0, k, {{v(0), v(1)}, S(0, 0), S(1, 0), S(1, 1), {}, {}}, weight);
+      matched_weights_[k] += weight;
+    }
+  }
+  for (std::size_t k = 0; k < scan.size(); ++k) {
+    if (matched_weights_[k] < 0.5) continue;  // most of the bank takes it for something else
+    report_.nis += innovations_.normalised_squared(k, matched_weights_[k]);
+    report_.nis_dof += 2;
+  }
+}
+
+/// SPEC 24: the mixture of Gaussians that the heading's draw decomposes is the Gaussian itself, so
+/// no weight changes.
+void GaussianBank::split(const StepContext& context) {
+  if (std::ranges::none_of(active_, [&](std::uint32_t slot) { return is_due(beliefs_[slot]); }))
+    return;
+  give_every_particle_its_own();
+  deal_strata(context);
+  context.parallel_for(strata_.size(), [&](std::size_t stratum) {
+    const std::uint32_t particle = strata_[stratum].second;
+    JointBelief& belief = beliefs_[slot_of_[particle]];
+    if (!is_due(belief)) return;
+    const double within = context.stream(Draw::heading_split, particle).uniform();
+    belief.draw_heading(settings_.keep, normal_quantile((static_cast<double>(stratum) + within) /
+                                                        static_cast<double>(strata_.size())));
+  });
+}
+
+/// The particles in random order: each draws from a stratum of its own of the normal distribution,
+/// so that the bank as a whole is spread as evenly as it can be.
+void GaussianBank::deal_strata(const StepContext& context) {
+  strata_.resize(slot_of_.size());
+  for (std::uint32_t i = 0; i < strata_.size(); ++i) {
+    strata_[i] = {context.stream(Draw::split_stratum, i).uniform(), i};
+  }
+  std::ranges::sort(strata_);
+}
+
+bool GaussianBank::is_due(const JointBelief& belief) const {
+  const double variance = belief.gaussian().pose().covariance(2, 2);
+  if (settings_.split_beyond) return variance > *settings_.split_beyond * *settings_.split_beyond;
+  return 0.5 * variance * belief.gaussian().extent() > belief_.sigma_range;
+}
+
+/// Copies that shared a belief part, the first keeps it.
+void GaussianBank::give_every_particle_its_own() {
+  if (active_.size() == slot_of_.size()) return;
+  std::vector<std::uint32_t>& idle = idle_;
+  idle.clear();
+  for (std::uint32_t slot = 0; slot < beliefs_.size(); ++slot) {
+    if (!std::ranges::binary_search(active_, slot)) idle.push_back(slot);
+  }
+  taken_.assign(beliefs_.size(), false);
+  for (std::uint32_t& slot : slot_of_) {
+    if (!taken_[slot]) {
+      taken_[slot] = true;
+      continue;
+    }
+    beliefs_[idle.back()].become(beliefs_[slot]);
+    slot = idle.back();
+    idle.pop_back();
+  }
+  active_.resize(beliefs_.size());
+  std::iota(active_.begin(), active_.end(), 0U);
+}
+
+void GaussianBank::decide_on_resampling(const StepContext& context) {
+  report_.resampled =
+      report_.ess < settings_.resample_below * static_cast<double>(settings_.particles);
+  if (report_.resampled) {
+    draw_parents(settings_.resampling, weights_.linear_scalars(), context, parents_);
+  }
+}
+
+/// Ends the time in which the particles of the last scan can be asked for: resampling takes effect.
+void GaussianBank::settle() {
+  if (!std::exchange(after_update_, false)) return;
+  if (!report_.resampled) {
+    std::iota(ancestors_.begin(), ancestors_.end(), 0U);
+    return;
+  }
+  ancestors_ = parents_;
+  for (std::size_t i = 0; i < parents_.size(); ++i) parents_[i] = slot_of_[ancestors_[i]];
+  std::swap(slot_of_, parents_);
+  active_ = slot_of_;
+  std::ranges::sort(active_);
+  active_.erase(std::unique(active_.begin(), active_.end()), active_.end());
+  weights_.make_equal();
+}
+
+PoseEstimate GaussianBank::mixture() const {
+  poses_.resize(slot_of_.size());
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    poses_[i] = belief_of(i).gaussian().pose_after(motion_);
+  }
+  const auto of = [&](std::size_t i) -> const PoseMoments& { return poses_[i]; };
+  const auto covariance_of = [&](std::size_t i) -> const Eigen::Matrix3d& {
+    return poses_[i].covariance;
+  };
+  const std::span<const double> weights = weights_.linear_scalars();
+  const Pose mean = mixture_mean(weights, weights_.heaviest(), of);
+  const PoseMoments spread = mixture_spread(weights, mean, of);
+  const Eigen::Matrix3d own =
+      mixture_covariance<Eigen::Matrix3d>(weights, weights_.heaviest(), covariance_of);
+  const PoseMoments whole{mean, own + spread.covariance};
+  if (!settings_.tells_particles) return {whole, std::nullopt};
+  return {spread, whole};
+}
+
+PoseEstimate GaussianBank::estimate() const {
+  return after_update_ ? estimate_of_scan_ : mixture();
+}
+
+void GaussianBank::particles(const ParticleColumns& columns) const {
+  for (std::size_t i = 0; i < columns.pose.size() / 3; ++i) {
+    const Pose pose = belief_of(i).gaussian().pose_after(motion_).mean;
+    columns.pose[3 * i] = pose.x;
+    columns.pose[3 * i + 1] = pose.y;
+    columns.pose[3 * i + 2] = pose.heading;
+  }
+  std::copy_n(weights_.log_scalars().begin(), columns.log_weight.size(),
+              columns.log_weight.begin());
+  std::copy_n(ancestors_.begin(), columns.ancestor.size(), columns.ancestor.begin());
+}
+
+void GaussianBank::map(std::span<std::optional<LandmarkEstimate>> landmarks) const {
+  for (std::size_t k = 0; k < landmarks.size(); ++k) landmarks[k] = landmark(k);
+}
+
+/// Known association: the mixture of all beliefs, by identity. Otherwise the heaviest particle's
+/// map in the order in which it met its landmarks.
+std::optional<LandmarkEstimate> GaussianBank::landmark(std::size_t k) const {
+  const auto about = belief_of(weights_.heaviest()).landmark(k);
+  if (!known_ || !about) return about;
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+  const std::span<const double> weights = weights_.linear_scalars();
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const LandmarkEstimate its = *belief_of(i).landmark(k);
+    const Eigen::Vector2d away = its.mean - about->mean;
+    shift += weights[i] * away;
+    covariance += weights[i] * (its.covariance - about->covariance + away * away.transpose());
+  }
+  return LandmarkEstimate{about->mean + shift,
+                          about->covariance + covariance - shift * shift.transpose()};
+}
+
+}  // namespace montecarta

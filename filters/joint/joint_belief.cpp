@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/joint/joint_belief.hpp"
+
+#include "engine/errors.hpp"
+#include "filters/association/association_counts.hpp"
+#include "filters/models/eigen_jacobians.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+namespace montecarta {
+namespace {
+
+/// Landmarks that are reserved before any is seen; identities may be sparse.
+constexpr std::size_t kRoomAtFirst = 300;
+constexpr std::uint32_t kUnseen = std::numeric_limits<std::uint32_t>::max();
+
+Eigen::Vector2d innovation_of(const Detection& detection, const ExpectedSight& expected) {
+  return to_vector(residual(sight_of(detection), expected.sight));
+}
+
+}  // namespace
+
+JointBelief::JointBelief(const FilterSetup& setup, Retraction retraction, int iterations)
+    : association_(setup.association),
+      log_new_density_(log_new_density(setup.association, setup.belief)),
+      gaussian_(setup.belief, retraction, std::min(setup.landmarks, kRoomAtFirst)),
+      iterations_(iterations),
+      slot_of_identity_(setup.landmarks, kUnseen) {}
+
+void JointBelief::start(const Pose& start) {
+  gaussian_.start(start);
+  std::fill(slot_of_identity_.begin(), slot_of_identity_.end(), kUnseen);
+  made_of_.clear();
+  sightings_.clear();
+  outcome_ = {};
+}
+
+void JointBelief::become(const JointBelief& other) {
+  gaussian_.become(other.gaussian_);
+  slot_of_identity_ = other.slot_of_identity_;
+  made_of_ = other.made_of_;
+  pairings_ = other.pairings_;
+  sightings_ = other.sightings_;
+  outcome_ = other.outcome_;
+}
+
+void JointBelief::absorb(const MotionIncrement& motion, Scan scan) {
+  outcome_ = {};
+  sightings_.clear();
+  gaussian_.move(motion);
+  associate(scan);
+  outcome_.association = association_counts(scan, pairings_, made_of_);
+  for (std::size_t k = 0; k < scan.size(); ++k) {
+    if (pairings_[k].verdict == Verdict::matched) {
+      absorb(k, scan[k]);
+    } else if (!known()) {
+      outcome_.log_likelihood += log_new_density_;  // as every belief does (SPEC 17)
+    }
+  }
+}
+
+void JointBelief::give_birth(Scan scan) {
+  for (std::size_t k = 0; k < scan.size(); ++k) {
+    if (pairings_[k].verdict == Verdict::fresh) give_birth(scan[k]);
+  }
+}
+
+/// Where the map holds landmark k of landmark(); any number beyond the map's size where it does
+/// not.
+std::size_t JointBelief::slot_of(std::size_t k) const {
+  if (!known()) return k;
+  return k < slot_of_identity_.size() ? slot_of_identity_[k] : kUnseen;
+}
+
+std::optional<LandmarkEstimate> JointBelief::landmark(std::size_t k) const {
+  const std::size_t slot = slot_of(k);
+  return slot < gaussian_.landmarks() ? std::optional(gaussian_.landmark(slot)) : std::nullopt;
+}
+
+void JointBelief::associate(Scan scan) {
+  pairings_.assign(scan.size(), {});
+  if (known()) {
+    for (std::size_t k = 0; k < scan.size(); ++k) pairings_[k] = pairing_by_identity(scan[k]);
+  } else {
+    pair_nearest(scan);
+  }
+}
+
+Pairing JointBelief::pairing_by_identity(const Detection& detection) const {
+  if (detection.identity == Detection::kClutter) return {};
+  const std::size_t slot = slot_of(static_cast<std::size_t>(detection.identity));
+  if (slot == kUnseen) return {.verdict = Verdict::fresh};
+  return {.verdict = Verdict::matched, .landmark = static_cast<std::uint32_t>(slot)};
+}
+
+/// Landmark by landmark, since what is expected of one serves all detections.
+void JointBelief::pair_nearest(Scan scan) {
+  searches_.assign(scan.size(), {});
+  ExpectedSight expected;
+  for (std::uint32_t slot = 0; slot < gaussian_.landmarks(); ++slot) {
+    if (!look_at(slot, expected)) continue;
+    const double log_det = expected.factor.log_det();
+    for (std::size_t k = 0; k < scan.size(); ++k) {
+      const double distance =
+          expected.factor.whiten(innovation_of(scan[k], expected)).squaredNorm();
+      searches_[k].offer(slot, distance, distance + log_det, association_.gate);
+    }
+  }
+  for (std::size_t k = 0; k < scan.size(); ++k) pairings_[k] = judge(searches_[k], association_);
+  exclude_rivals(pairings_);
+}
+
+/// False where the landmark gives nothing to weigh by; a fault is counted.
+bool JointBelief::look_at(std::size_t slot, ExpectedSight& expected) {
+  const auto trouble = gaussian_.look_at(slot, expected);
+  if (trouble == JointGaussian::Trouble::faulty) ++outcome_.faults;
+  return trouble == JointGaussian::Trouble::none;
+}
+
+void JointBelief::absorb(std::size_t k, const Detection& detection) {
+  const std::size_t slot = pairings_[k].landmark;
+  ExpectedSight expected;
+  if (!look_at(slot, expected)) return;
+  const Eigen::Vector2d innovation =
+      gaussian_.absorb(slot, sight_of(detection), iterations_, expected);
+  const InnovationFactor& L = expected.factor;
+  sightings_.push_back({k, innovation, L.covariance()});
+  outcome_.log_likelihood += log_normal_density(L.whiten(innovation).squaredNorm(), L);
+}
+
+void JointBelief::give_birth(const Detection& detection) {
+  expect_room_to_grow();
+  if (known()) {
+    const auto identity = static_cast<std::size_t>(detection.identity);
+    if (identity >= slot_of_identity_.size()) slot_of_identity_.resize(identity + 1, kUnseen);
+    slot_of_identity_[identity] = static_cast<std::uint32_t>(gaussian_.landmarks());
+  }
+  gaussian_.append(sight_of(detection));
+  made_of_.push_back(detection.identity);
+}
+
+void JointBelief::expect_room_to_grow() const {
+  if (known() || gaussian_.landmarks() < association_.most_landmarks) return;
+  throw RunError("the map grew beyond " + std::to_string(association_.most_landmarks) +
+                 " landmarks");
+}
+
+}  // namespace montecarta

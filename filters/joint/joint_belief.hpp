@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/association/nearest.hpp"
+#include "filters/joint/joint_gaussian.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// One belief about the whole world: a joint Gaussian over pose and map, and what its detections
+/// are taken for. Detections are absorbed one by one in the order of the scan.
+class JointBelief {
+ public:
+  /// `iterations`: of JointGaussian::absorb().
+  JointBelief(const FilterSetup& setup, Retraction retraction, int iterations);
+
+  /// The vehicle stands at `start`, no landmarks.
+  void start(const Pose& start);
+  /// The vehicle moved by `motion`; decides which landmarks `scan` then shows, and conditions the
+  /// Gaussian on them.
+  void absorb(const MotionIncrement& motion, Scan scan);
+  /// Adds the landmarks that this scan, just absorbed, shows for the first time. Throws RunError
+  /// where the map has run away.
+  void give_birth(Scan scan);
+  void draw_heading(double keep, double normal) { gaussian_.draw_heading(keep, normal); }
+  /// Becomes a copy of `other`, which was made of the same setup.
+  void become(const JointBelief& other);
+
+  const JointGaussian& gaussian() const { return gaussian_; }
+  /// The k-th landmark: of identity k with known association, else of the k-th birth.
+  std::optional<LandmarkEstimate> landmark(std::size_t k) const;
+
+  /// What the last scan was to this belief.
+  struct Outcome {
+    double log_likelihood = 0.0;
+    std::uint32_t faults = 0;
+    AssociationCounts association = {};
+  };
+  const Outcome& outcome() const { return outcome_; }
+  /// A detection that was absorbed.
+  struct Sighting {
+    std::size_t detection;  ///< its place in the scan
+    Eigen::Vector2d innovation;
+    Eigen::Matrix2d covariance;  ///< S = H P H' + R
+  };
+  std::span<const Sighting> sightings() const { return sightings_; }
+
+ private:
+  bool known() const { return association_.kind == Association::known; }
+  std::size_t slot_of(std::size_t k) const;
+  void associate(Scan scan);
+  Pairing pairing_by_identity(const Detection& detection) const;
+  void pair_nearest(Scan scan);
+  bool look_at(std::size_t slot, ExpectedSight& expected);
+  void absorb(std::size_t k, const Detection& detection);
+  void give_birth(const Detection& detection);
+  void expect_room_to_grow() const;
+
+  AssociationSettings association_;
+  double log_new_density_;
+  JointGaussian gaussian_;
+  int iterations_;
+  std::vector<std::uint32_t> slot_of_identity_;  ///< known association only
+  std::vector<std::int32_t> made_of_;            ///< {slot} identity at birth, to count errors
+  std::vector<Pairing> pairings_;                ///< of the current scan
+  std::vector<NearestSearch> searches_;
+  std::vector<Sighting> sightings_;
+  Outcome outcome_;
+};
+
+}  // namespace montecarta

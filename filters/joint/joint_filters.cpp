@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/joint/joint_filters.hpp"
+
+#include "filters/joint/gaussian_bank.hpp"
+#include "filters/option_choice.hpp"
+#include "filters/resampling_options.hpp"
+
+namespace montecarta {
+namespace {
+
+using Kind = FilterOption::Kind;
+
+// In the order of the enumerators.
+const std::vector<std::string> kErrors{"additive", "invariant"};
+const std::vector<std::string> kMotions{"linearised", "quadrature"};
+
+FilterOption iterations_option(const char* fallback) {
+  return {"iterations",
+          Kind::integer,
+          fallback,
+          0,
+          100,
+          {},
+          "times a detection is linearised again where it has moved the estimate to"};
+}
+
+FilterOption motion_option(const char* fallback) {
+  return {"motion",
+          Kind::choice,
+          fallback,
+          0,
+          0,
+          kMotions,
+          "how noise of the control reaches the pose: by derivatives or averaged"};
+}
+
+int iterations(const FilterOptions& options) {
+  return static_cast<int>(options.integer("iterations"));
+}
+
+Motion motion(const FilterOptions& options) {
+  return chosen<Motion>(options.choice("motion"), kMotions);
+}
+
+/// [rad]; nothing for 0.
+std::optional<double> split_beyond(const FilterOptions& options) {
+  const double degrees = options.number("split_beyond_deg");
+  if (degrees == 0.0) return std::nullopt;
+  return degrees * kPi / 180.0;
+}
+
+std::unique_ptr<SlamFilter> one_gaussian(const FilterSetup& setup, Retraction retraction) {
+  return std::make_unique<GaussianBank>(setup, BankSettings{.retraction = retraction,
+                                                            .iterations = iterations(setup.options),
+                                                            .motion = motion(setup.options)});
+}
+
+}  // namespace
+
+std::unique_ptr<SlamFilter> make_ekf_slam(const FilterSetup& setup) {
+  return one_gaussian(setup, Retraction::additive);
+}
+
+std::unique_ptr<SlamFilter> make_riekf_slam(const FilterSetup& setup) {
+  return one_gaussian(setup, Retraction::invariant);
+}
+
+std::unique_ptr<SlamFilter> make_hrb(const FilterSetup& setup) {
+  const FilterOptions& options = setup.options;
+  return std::make_unique<GaussianBank>(
+      setup, BankSettings{.particles = options.integer("particles"),
+                          .retraction = chosen<Retraction>(options.choice("error"), kErrors),
+                          .resampling = chosen_resampling(options),
+                          .resample_below = options.number("resample_below"),
+                          .split_beyond = split_beyond(options),
+                          .keep = options.number("keep"),
+                          .iterations = iterations(options),
+                          .motion = motion(options),
+                          .tells_particles = true});
+}
+
+FilterKind ekf_slam_kind() {
+  return {.name = "ekf_slam",
+          .long_name = "EKF-SLAM",
+          .source = "Smith, Self, Cheeseman 1990; SPEC 24 with one component",
+          .has_particles = false,
+          .has_mixture = false,
+          .options = {iterations_option("0"), motion_option("linearised")},
+          .make = make_ekf_slam};
+}
+
+FilterKind riekf_slam_kind() {
+  return {.name = "riekf_slam",
+          .long_name = "right-invariant EKF-SLAM",
+          .source = "Barrau, Bonnabel 2015",
+          .has_particles = false,
+          .has_mixture = false,
+          .options = {iterations_option("0"), motion_option("linearised")},
+          .make = make_riekf_slam};
+}
+
+FilterKind hrb_kind() {
+  std::vector<FilterOption> options = resampling_options("30");
+  options.insert(
+      options.end(),
+      {{"split_beyond_deg",
+        Kind::number,
+        "0",
+        0,
+        1e9,
+        {},
+        "[degrees] a Gaussian that knows its heading worse than this draws it; 0: where that bends "
+        "its map by more than sigma_range"},
+       {"keep",
+        Kind::number,
+        "0.85",
+        0,
+        0.999,
+        {},
+        "share of the heading's standard deviation that a draw leaves; SPEC 24 has 0"},
+       {"error", Kind::choice, "invariant", 0, 0, kErrors,
+        "what the covariance is of: additive (EKF-SLAM) or invariant (RI-EKF-SLAM)"},
+       iterations_option("5"),
+       motion_option("quadrature")});
+  return {.name = "hrb",
+          .long_name = "heading-split bank",
+          .source = "SPEC 24",
+          .has_particles = true,
+          .has_mixture = true,
+          .options = std::move(options),
+          .make = make_hrb};
+}
+
+}  // namespace montecarta

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/runs/slam_filter.hpp"
+#include "filters/factory.hpp"
+#include "filters/joint/innovation.hpp"
+#include "filters/joint/retraction.hpp"
+#include "filters/models/eigen_jacobians.hpp"
+#include "filters/moments/motion_increment.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <optional>
+
+namespace montecarta {
+
+/// A detection that is expected of a landmark, linearised: innovation v and its covariance S = H P
+/// H' + R.
+struct ExpectedSight {
+  Matrix23 pose_jacobian;
+  Eigen::Matrix2d landmark_jacobian;
+  RangeBearing<double> sight;
+  InnovationFactor factor;  ///< of S
+};
+
+/// One Gaussian over the pose and all landmarks: the state of EKF-SLAM (SPEC 24). Its covariance is
+/// kept in three parts, [pose cross'; cross map]. Landmarks are numbered in order of birth.
+///
+/// The invariant error of Barrau turns pose and map together: xi = e - J p e_heading for every
+/// point p, J = [0 -1; 1 0]. Held is the covariance of e, in the map frame; it is that of xi at the
+/// present estimate. A prediction is then the same for both errors, since Fx carries xi unchanged.
+/// A detection is not: xi keeps its covariance while the estimate steps, so that of e is carried
+/// along.
+class JointGaussian {
+ public:
+  /// `room` landmarks fit without allocation; it grows beyond.
+  JointGaussian(const Belief& belief, Retraction retraction, std::size_t room);
+
+  /// Stands exactly at `start` with an empty map.
+  void start(const Pose& start);
+  /// Becomes a copy of `other`; copies what is used, not what is reserved.
+  void become(const JointGaussian& other);
+
+  const PoseMoments& pose() const { return pose_; }
+  /// What the pose would be after `motion`.
+  PoseMoments pose_after(const MotionIncrement& motion) const;
+  /// The vehicle moved by `motion`. Fx of several steps is again [1 0 a; 0 1 b; 0 0 1] with a and b
+  /// their sums, so one motion for many steps is exact.
+  void move(const MotionIncrement& motion);
+
+  std::size_t landmarks() const { return n_landmarks_; }
+  LandmarkEstimate landmark(std::size_t slot) const;
+  /// [m] from the vehicle to the farthest landmark.
+  double extent() const;
+
+  /// What a detection of landmark `slot` is weighed by; `faulty` where S is not positive definite.
+  enum class Trouble { none, too_near, faulty };
+  [[nodiscard]] Trouble look_at(std::size_t slot, ExpectedSight& expected) const;
+  /// Conditions the Gaussian on `detected`, expected as `expected`. The model is linearised
+  /// again where the detection has moved the estimate to, until that settles or `iterations` times
+  /// (iterated EKF, Bell and Cathey 1993; of invariant errors with the derivative of the
+  /// exponential taken for one); `expected` becomes the last linearisation, with the detection that
+  /// it predicts for the estimate before. Returns the innovation then.
+  Eigen::Vector2d absorb(std::size_t slot, const RangeBearing<double>& detected, int iterations,
+                         ExpectedSight& expected);
+  /// Draws the heading's part of all that is uncertain (SPEC 24): N(m, P) is the mean over standard
+  /// normal z of N(m + g z, P - g g') with g = P e sqrt(1 - keep^2) / sqrt(h), e the heading's axis
+  /// and h its variance. `keep` in [0, 1) is the share of the heading's standard deviation that
+  /// remains; SPEC 24 keeps nothing.
+  void draw_heading(double keep, double normal);
+  /// Adds a landmark seen so, correlated with everything the pose is correlated with.
+  void append(const RangeBearing<double>& sight);
+
+ private:
+  using Columns2 = Eigen::Matrix<double, Eigen::Dynamic, 2>;
+  using Columns3 = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+  using Columns4 = Eigen::Matrix<double, Eigen::Dynamic, 4>;
+
+  /// A step of the pose and of one landmark, and where it leads.
+  struct Step {
+    Eigen::Vector3d pose;
+    Eigen::Vector2d landmark;
+  };
+
+  Eigen::Index rows() const;
+  void grow(std::size_t room);
+  std::optional<InnovationFactor> innovation_factor(std::size_t slot,
+                                                    const ExpectedSight& at) const;
+  Step step_of(std::size_t slot, const ExpectedSight& expected,
+               const Eigen::Vector2d& innovation) const;
+  [[nodiscard]] bool linearise_after(const Step& step, std::size_t slot,
+                                     ExpectedSight& expected) const;
+  void whiten_gain(std::size_t slot, const ExpectedSight& expected);
+  void condition(const Eigen::Vector2d& white);
+  Eigen::Vector2d step(const Eigen::Vector2d& white);
+  bool carry_error(const Eigen::Vector2d& pose_step);
+  void change_map(bool carries_error);
+
+  Belief belief_;
+  Retraction retraction_;
+  PoseMoments pose_;
+  std::size_t n_landmarks_ = 0;
+  Eigen::VectorXd map_mean_;  ///< [m]
+  Columns3 cross_;            ///< covariance of landmarks with (x, y, heading)
+  Eigen::MatrixXd map_;  ///< covariance of landmarks: lower triangle and the packs on the diagonal
+  Columns2 seen_;        ///< scratch: the columns of map_ of one landmark
+  Eigen::Matrix<double, 3, 2> gain_pose_;  ///< P H' L^-T, rows of the pose
+  Columns4 gain_map_;          ///< the same, rows of the map, and two columns of carry_error()
+  Eigen::Matrix2Xd map_step_;  ///< [m] how one detection moves the landmarks
+};
+
+}  // namespace montecarta

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstddef>
+
+namespace montecarta {
+
+// Rows of a map's covariance are stored in packs of eight, and those behind the last landmark are
+// zero. Of the symmetric matrix are kept, column by column, the pack on the diagonal and all below.
+
+inline constexpr Eigen::Index kPack = 8;
+
+/// Rows that so many landmarks take.
+inline Eigen::Index packed(std::size_t n_landmarks) {
+  return (2 * static_cast<Eigen::Index>(n_landmarks) + kPack - 1) / kPack * kPack;
+}
+
+/// First row of a landmark.
+inline Eigen::Index row_of(std::size_t slot) { return 2 * static_cast<Eigen::Index>(slot); }
+
+/// First row of the pack that `row` is in: the first that is kept of this column.
+inline Eigen::Index pack_of(Eigen::Index row) { return row / kPack * kPack; }
+
+/// Makes the upper triangle equal to the lower one.
+inline void mirror_lower(Eigen::Matrix3d& P) {
+  P.triangularView<Eigen::StrictlyUpper>() = P.transpose();
+}
+
+/// Likewise in the diagonal's pack, after the two rows from `row` on were written up to the
+/// diagonal.
+inline void mirror_pack(Eigen::MatrixXd& map, Eigen::Index row) {
+  const Eigen::Index first = pack_of(row);
+  map.block(first, row, row - first, 2) = map.block(row, first, 2, row - first).transpose();
+}
+
+/// The two columns of a landmark in full.
+template <class Columns>
+void copy_columns(const Eigen::MatrixXd& map, Eigen::Index row, Eigen::Index rows,
+                  Columns& columns) {
+  const Eigen::Index first = pack_of(row);
+  columns.topRows(first) = map.block(row, 0, 2, first).transpose();
+  columns.middleRows(first, rows - first) = map.block(first, row, rows - first, 2);
+}
+
+}  // namespace montecarta

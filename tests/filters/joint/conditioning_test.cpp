@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/joint/joint_gaussian.hpp"
+#include "tests/filters/reference/textbook_ekf_slam.hpp"
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace montecarta {
+namespace {
+
+const Belief kRough{.vehicle = {},
+                    .sigma_speed = 1.0,
+                    .sigma_steer = 0.2,
+                    .sigma_range = 0.3,
+                    .sigma_bearing = 0.05};
+const std::vector<Detection> kFirstSight{{8.0, 0.9, 0}, {12.0, -0.7, 1}, {6.0, -1.2, 2}};
+
+/// The same drive for both: out, three landmarks, and on.
+JointGaussian driven(Retraction retraction) {
+  JointGaussian gaussian(kRough, retraction, 3);
+  gaussian.start({1.0, 2.0, 0.5});
+  MotionIncrement motion;
+  for (int step = 0; step < 40; ++step) motion.advance({3.0, 0.2}, 0.025, kRough);
+  gaussian.move(motion);
+  for (const Detection& detection : kFirstSight) gaussian.append(sight_of(detection));
+  gaussian.move(motion);
+  return gaussian;
+}
+
+reference::TextbookEkfSlam textbook_driven() {
+  reference::TextbookEkfSlam textbook(kRough);
+  textbook.start({1.0, 2.0, 0.5});
+  for (int step = 0; step < 40; ++step) textbook.predict({3.0, 0.2}, 0.025);
+  textbook.update(kFirstSight);
+  for (int step = 0; step < 40; ++step) textbook.predict({3.0, 0.2}, 0.025);
+  return textbook;
+}
+
+Eigen::VectorXd mean_of(const JointGaussian& gaussian) {
+  Eigen::VectorXd mean(3 + 2 * static_cast<Eigen::Index>(gaussian.landmarks()));
+  const Pose& pose = gaussian.pose().mean;
+  mean.head<3>() << pose.x, pose.y, pose.heading;
+  for (std::size_t k = 0; k < gaussian.landmarks(); ++k) {
+    mean.segment<2>(3 + 2 * static_cast<Eigen::Index>(k)) = gaussian.landmark(k).mean;
+  }
+  return mean;
+}
+
+TEST(JointGaussian, MovedOnceForManyStepsIsTheTextbookFilterMovedAtEach) {
+  const auto textbook = textbook_driven();
+  const JointGaussian gaussian = driven(Retraction::additive);
+  EXPECT_LT((mean_of(gaussian) - textbook.mean).norm(), 1e-12);
+  EXPECT_LT((gaussian.pose().covariance - textbook.covariance.topLeftCorner<3, 3>()).norm(), 1e-12);
+}
+
+TEST(JointGaussian, AnIteratedDetectionEndsAtTheTopOfThePosterior) {
+  const auto textbook = textbook_driven();
+  JointGaussian gaussian = driven(Retraction::additive);
+  const RangeBearing<double> detected{7.0, -1.6};
+  ExpectedSight expected;
+  ASSERT_EQ(gaussian.look_at(1, expected), JointGaussian::Trouble::none);
+  gaussian.absorb(1, detected, 60, expected);
+  const Eigen::VectorXd x = mean_of(gaussian);
+  const auto at = linearised_sight(Pose{x(0), x(1), x(2)}, Point{x(5), x(6)});
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(2, x.size());
+  H.leftCols<3>() = pose_jacobian(at);
+  H.middleCols<2>(5) = landmark_jacobian(at);
+  const Eigen::Vector2d R(kRough.sigma_range * kRough.sigma_range,
+                          kRough.sigma_bearing * kRough.sigma_bearing);
+  const Eigen::Vector2d miss = to_vector(residual(detected, at.sight));
+  // The gradient of the log posterior, times the prior's covariance, which is singular.
+  const Eigen::VectorXd slope =
+      textbook.covariance * H.transpose() * R.cwiseInverse().asDiagonal() * miss -
+      (x - textbook.mean);
+  EXPECT_LT(slope.norm(), 2e-4);
+  EXPECT_GT((x - textbook.mean).norm(), 0.5) << "hardly moved: no test";
+  JointGaussian once = driven(Retraction::additive);
+  ASSERT_EQ(once.look_at(1, expected), JointGaussian::Trouble::none);
+  once.absorb(1, detected, 0, expected);
+  EXPECT_GT((mean_of(once) - x).norm(), 0.05) << "linear enough for one step: no test";
+}
+
+TEST(JointGaussian, AHeadingsDrawDecomposesTheGaussianExactly) {
+  for (const double keep : {0.0, 0.6}) {
+    const JointGaussian before = driven(Retraction::additive);
+    JointGaussian left = before, right = before;
+    left.draw_heading(keep, 1.0);
+    right.draw_heading(keep, -1.0);
+    const Eigen::VectorXd drawn = 0.5 * (mean_of(left) - mean_of(right));
+    EXPECT_LT((0.5 * (mean_of(left) + mean_of(right)) - mean_of(before)).norm(), 1e-12);
+    const Eigen::Matrix3d pose =
+        left.pose().covariance + drawn.head<3>() * drawn.head<3>().transpose();
+    EXPECT_LT((pose - before.pose().covariance).norm(), 1e-12);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::Vector2d step = drawn.segment<2>(3 + 2 * static_cast<Eigen::Index>(k));
+      const Eigen::Matrix2d landmark = left.landmark(k).covariance + step * step.transpose();
+      EXPECT_LT((landmark - before.landmark(k).covariance).norm(), 1e-12) << "landmark " << k;
+    }
+    EXPECT_NEAR(left.pose().covariance(2, 2), keep * keep * before.pose().covariance(2, 2), 1e-15);
+  }
+}
+
+TEST(JointGaussian, AnInvariantDrawTurnsVehicleAndMapAsOne) {
+  // Nothing was seen twice, so pose and landmarks share all that is known of the heading's past.
+  JointGaussian gaussian(kRough, Retraction::invariant, 2);
+  gaussian.start({});
+  const MotionIncrement turn_on_the_spot(Pose{}, Eigen::Vector3d(0.0, 0.0, 0.09).asDiagonal());
+  gaussian.move(turn_on_the_spot);
+  gaussian.append({10.0, 0.0});
+  gaussian.append({20.0, 1.0});
+  const double spread = (gaussian.landmark(0).mean - gaussian.landmark(1).mean).norm();
+  gaussian.draw_heading(0.0, 2.0);  // by 0.6 rad
+  EXPECT_NEAR(gaussian.pose().mean.heading, 0.6, 1e-12);
+  EXPECT_NEAR(gaussian.landmark(0).mean.norm(), 10.0, 1e-12);
+  EXPECT_NEAR(gaussian.landmark(1).mean.norm(), 20.0, 1e-12);
+  EXPECT_NEAR((gaussian.landmark(0).mean - gaussian.landmark(1).mean).norm(), spread, 1e-12);
+}
+
+TEST(JointGaussian, BecomingAnotherLeavesNothingOfWhatItWas) {
+  const JointGaussian small = driven(Retraction::additive);
+  JointGaussian large = small;
+  for (int k = 0; k < 30; ++k) large.append({5.0 + k, 0.1});
+  large.become(small);
+  JointGaussian copy = small;
+  for (JointGaussian* gaussian : {&large, &copy}) {
+    for (int k = 0; k < 9; ++k) gaussian->append({4.0 + k, 0.3});
+    ExpectedSight expected;
+    ASSERT_EQ(gaussian->look_at(7, expected), JointGaussian::Trouble::none);
+    gaussian->absorb(7, {7.5, 0.28}, 1, expected);
+  }
+  EXPECT_EQ(mean_of(large), mean_of(copy));
+  EXPECT_EQ(large.pose().covariance, copy.pose().covariance);
+  EXPECT_EQ(large.landmark(11).covariance, copy.landmark(11).covariance);
+}
+
+}  // namespace
+}  // namespace montecarta
