@@ -113,7 +113,7 @@ FilterKind hrb_kind() {
         "its map by more than sigma_range"},
        {"keep",
         Kind::number,
-        "0.85",
+        "0.95",
         0,
         0.999,
         {},
