@@ -3,6 +3,7 @@
 
 #include "analysis/metrics/t_quantile.hpp"
 #include "engine/errors.hpp"
+#include "engine/random/normal_quantile.hpp"
 #include "engine/random/stream.hpp"
 
 #include <boost/math/distributions/normal.hpp>
@@ -18,7 +19,6 @@ constexpr std::size_t kMostReplicates = 2000, kFewestReplicates = 400;
 constexpr std::size_t kMostDraws = 20'000'000;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-double normal_quantile(double p) { return boost::math::quantile(boost::math::normal(), p); }
 double normal_share(double z) { return boost::math::cdf(boost::math::normal(), z); }
 
 /// Mean, and skewness divided by 6 sqrt(n): how fast the spread of a mean changes with the mean.

@@ -3,12 +3,14 @@
 
 #include <boost/math/special_functions/erf.hpp>
 
+#include <algorithm>
 #include <numbers>
 
 namespace montecarta {
 
 double normal_quantile(double probability) {
-  return -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * probability);
+  constexpr double kMost = 1.0 - 0x1p-53;  // the number before 1, to which shares may round
+  return -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * std::min(probability, kMost));
 }
 
 }  // namespace montecarta

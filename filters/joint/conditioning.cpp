@@ -37,8 +37,7 @@ JointGaussian::Step JointGaussian::step_of(std::size_t slot, const ExpectedSight
           mixed * pose + map_.block<2, 2>(row, row) * landmark};
 }
 
-/// Linearises anew where `step` leads; `expected` then says what the model linearised there
-/// predicts for the present estimate, to which the Gaussian belongs.
+/// Linearises anew where `step` leads; the Gaussian still belongs to the present estimate.
 bool JointGaussian::linearise_after(const Step& step, std::size_t slot,
                                     ExpectedSight& expected) const {
   const Eigen::Index row = row_of(slot);
@@ -56,7 +55,8 @@ bool JointGaussian::linearise_after(const Step& step, std::size_t slot,
   ExpectedSight next{.pose_jacobian = pose_jacobian(at),
                      .landmark_jacobian = landmark_jacobian(at),
                      .sight = at.sight,
-                     .factor = {}};
+                     .factor = {},
+                     .ahead = {}};
   if (retraction_ == Retraction::invariant) {  // the error at the estimate before
     next.pose_jacobian.col(2) += next.pose_jacobian.leftCols<2>() * (quarter_turn() * pose_way) +
                                  next.landmark_jacobian * (quarter_turn() * landmark_way);
@@ -64,26 +64,21 @@ bool JointGaussian::linearise_after(const Step& step, std::size_t slot,
   const auto L = innovation_factor(slot, next);
   if (!L) return false;
   next.factor = *L;
-  const Eigen::Vector2d moved =
-      next.pose_jacobian * step.pose + next.landmark_jacobian * step.landmark;
-  next.sight.range -= moved(0);
-  next.sight.bearing -= moved(1);
+  next.ahead = next.pose_jacobian * step.pose + next.landmark_jacobian * step.landmark;
   expected = next;
   return true;
 }
 
-Eigen::Vector2d JointGaussian::absorb(std::size_t slot, const RangeBearing<double>& detected,
-                                      int iterations, ExpectedSight& expected) {
-  Eigen::Vector2d innovation = to_vector(residual(detected, expected.sight));
+void JointGaussian::absorb(std::size_t slot, const RangeBearing<double>& detected, int iterations,
+                           ExpectedSight& expected) {
+  Eigen::Vector2d innovation = expected.innovation(detected);
   for (int i = 0; i < iterations; ++i) {
     if (!linearise_after(step_of(slot, expected, innovation), slot, expected)) break;
-    const Eigen::Vector2d before =
-        std::exchange(innovation, to_vector(residual(detected, expected.sight)));
+    const Eigen::Vector2d before = std::exchange(innovation, expected.innovation(detected));
     if (expected.factor.whiten(innovation - before).norm() < kConverged) break;
   }
   whiten_gain(slot, expected);
   condition(expected.factor.whiten(innovation));
-  return innovation;
 }
 
 void JointGaussian::draw_heading(double keep, double normal) {

@@ -23,8 +23,11 @@ GaussianBank::GaussianBank(const FilterSetup& setup, const BankSettings& setting
       ancestors_(settings.particles),
       weights_before_scan_(settings.particles) {
   beliefs_.reserve(settings.particles);
-  for (std::size_t i = 0; i < settings.particles; ++i)
-    beliefs_.emplace_back(setup, settings.retraction, settings.iterations);
+  FilterSetup idle = setup;  // grows when it becomes a copy
+  idle.landmarks = 0;
+  for (std::size_t i = 0; i < settings.particles; ++i) {
+    beliefs_.emplace_back(i == 0 ? setup : idle, settings.retraction, settings.iterations);
+  }
 }
 
 void GaussianBank::start(const Pose& start) {
@@ -75,7 +78,7 @@ void GaussianBank::weigh() {
     weights_.multiply(i, belief_of(i).outcome().log_likelihood);
   }
   report_.log_likelihood = weights_.normalise();
-  report_.ess = weights_.effective();
+  if (settings_.tells_particles) report_.ess = weights_.effective();
   for (std::size_t i = 0; i < slot_of_.size(); ++i) {
     add(belief_of(i).outcome().association, weights_.linear()[i], report_.association);
   }
@@ -99,12 +102,11 @@ void GaussianBank::report_innovations(Scan scan) {
   }
 }
 
-/// SPEC 24: the mixture of Gaussians that the heading's draw decomposes is the Gaussian itself, so
-/// no weight changes.
+/// SPEC 24: the draws decompose the Gaussian (JointGaussian::draw_heading()), so no weight changes.
 void GaussianBank::split(const StepContext& context) {
   if (std::ranges::none_of(active_, [&](std::uint32_t slot) { return is_due(beliefs_[slot]); }))
     return;
-  give_every_particle_its_own();
+  part_those_due();
   deal_strata(context);
   context.parallel_for(strata_.size(), [&](std::size_t stratum) {
     const std::uint32_t particle = strata_[stratum].second;
@@ -132,31 +134,34 @@ bool GaussianBank::is_due(const JointBelief& belief) const {
   return 0.5 * variance * belief.gaussian().extent() > belief_.sigma_range;
 }
 
-/// Copies that shared a belief part, the first keeps it.
-void GaussianBank::give_every_particle_its_own() {
-  if (active_.size() == slot_of_.size()) return;
-  std::vector<std::uint32_t>& idle = idle_;
-  idle.clear();
+/// Of particles that share a belief that is due, the first keeps it, the others get copies.
+void GaussianBank::part_those_due() {
+  idle_.clear();
   for (std::uint32_t slot = 0; slot < beliefs_.size(); ++slot) {
-    if (!std::ranges::binary_search(active_, slot)) idle.push_back(slot);
+    if (!std::ranges::binary_search(active_, slot)) idle_.push_back(slot);
   }
   taken_.assign(beliefs_.size(), false);
   for (std::uint32_t& slot : slot_of_) {
-    if (!taken_[slot]) {
+    if (!taken_[slot] || !is_due(beliefs_[slot])) {
       taken_[slot] = true;
       continue;
     }
-    beliefs_[idle.back()].become(beliefs_[slot]);
-    slot = idle.back();
-    idle.pop_back();
+    beliefs_[idle_.back()].become(beliefs_[slot]);
+    slot = idle_.back();
+    idle_.pop_back();
   }
-  active_.resize(beliefs_.size());
-  std::iota(active_.begin(), active_.end(), 0U);
+  note_active();
+}
+
+void GaussianBank::note_active() {
+  active_ = slot_of_;
+  std::ranges::sort(active_);
+  active_.erase(std::unique(active_.begin(), active_.end()), active_.end());
 }
 
 void GaussianBank::decide_on_resampling(const StepContext& context) {
   report_.resampled =
-      report_.ess < settings_.resample_below * static_cast<double>(settings_.particles);
+      weights_.effective() < settings_.resample_below * static_cast<double>(settings_.particles);
   if (report_.resampled) {
     draw_parents(settings_.resampling, weights_.linear_scalars(), context, parents_);
   }
@@ -172,9 +177,7 @@ void GaussianBank::settle() {
   ancestors_ = parents_;
   for (std::size_t i = 0; i < parents_.size(); ++i) parents_[i] = slot_of_[ancestors_[i]];
   std::swap(slot_of_, parents_);
-  active_ = slot_of_;
-  std::ranges::sort(active_);
-  active_.erase(std::unique(active_.begin(), active_.end()), active_.end());
+  note_active();
   weights_.make_equal();
 }
 
@@ -194,7 +197,7 @@ PoseEstimate GaussianBank::mixture() const {
       mixture_covariance<Eigen::Matrix3d>(weights, weights_.heaviest(), covariance_of);
   const PoseMoments whole{mean, own + spread.covariance};
   if (!settings_.tells_particles) return {whole, std::nullopt};
-  return {spread, whole};
+  return {whole, whole};
 }
 
 PoseEstimate GaussianBank::estimate() const {

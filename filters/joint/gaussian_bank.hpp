@@ -34,11 +34,11 @@ struct BankSettings {
   double keep = 0.0;   ///< share of the heading's standard deviation that a draw leaves
   int iterations = 0;  ///< of the linearisation, after the first
   Motion motion = Motion::linearised;
-  bool tells_particles = false;  ///< whether the estimate tells components from mixture
+  bool tells_particles = false;  ///< whether there is a mixture to tell of
 };
 
-/// A mixture of joint Gaussians over pose and map (SPEC 24). Only the heading is ever drawn, by an
-/// exact split of the Gaussian, and only where it is uncertain: what a component does not draw it
+/// A mixture of joint Gaussians over pose and map (SPEC 24). Only the heading is ever drawn, by a
+/// split of the Gaussian, and only where it is uncertain: what a component does not draw it
 /// keeps in its covariance. One component that never splits is EKF-SLAM.
 ///
 /// Particles that are copies of each other share one belief until they are split; so a bank costs
@@ -64,7 +64,8 @@ class GaussianBank final : public SlamFilter {
   bool is_due(const JointBelief& belief) const;
   void deal_strata(const StepContext& context);
   void split(const StepContext& context);
-  void give_every_particle_its_own();
+  void part_those_due();
+  void note_active();
   void decide_on_resampling(const StepContext& context);
   std::optional<LandmarkEstimate> landmark(std::size_t k) const;
 

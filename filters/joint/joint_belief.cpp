@@ -16,10 +16,6 @@ namespace {
 constexpr std::size_t kRoomAtFirst = 300;
 constexpr std::uint32_t kUnseen = std::numeric_limits<std::uint32_t>::max();
 
-Eigen::Vector2d innovation_of(const Detection& detection, const ExpectedSight& expected) {
-  return to_vector(residual(sight_of(detection), expected.sight));
-}
-
 }  // namespace
 
 JointBelief::JointBelief(const FilterSetup& setup, Retraction retraction, int iterations)
@@ -104,7 +100,7 @@ void JointBelief::pair_nearest(Scan scan) {
     const double log_det = expected.factor.log_det();
     for (std::size_t k = 0; k < scan.size(); ++k) {
       const double distance =
-          expected.factor.whiten(innovation_of(scan[k], expected)).squaredNorm();
+          expected.factor.whiten(expected.innovation(sight_of(scan[k]))).squaredNorm();
       searches_[k].offer(slot, distance, distance + log_det, association_.gate);
     }
   }
@@ -119,15 +115,21 @@ bool JointBelief::look_at(std::size_t slot, ExpectedSight& expected) {
   return trouble == JointGaussian::Trouble::none;
 }
 
+/// Counted is the innovation against the belief before the detection; weighed by is that of the
+/// last linearisation, with which the density of the detection is that of Laplace.
 void JointBelief::absorb(std::size_t k, const Detection& detection) {
   const std::size_t slot = pairings_[k].landmark;
+  const RangeBearing<double> detected = sight_of(detection);
   ExpectedSight expected;
-  if (!look_at(slot, expected)) return;
-  const Eigen::Vector2d innovation =
-      gaussian_.absorb(slot, sight_of(detection), iterations_, expected);
+  if (!look_at(slot, expected)) {
+    if (!known()) outcome_.log_likelihood += log_new_density_;
+    return;
+  }
+  sightings_.push_back({k, expected.innovation(detected), expected.factor.covariance()});
+  gaussian_.absorb(slot, detected, iterations_, expected);
   const InnovationFactor& L = expected.factor;
-  sightings_.push_back({k, innovation, L.covariance()});
-  outcome_.log_likelihood += log_normal_density(L.whiten(innovation).squaredNorm(), L);
+  const double distance = L.whiten(expected.innovation(detected)).squaredNorm();
+  outcome_.log_likelihood += log_normal_density(distance, L);
 }
 
 void JointBelief::give_birth(const Detection& detection) {

@@ -119,7 +119,8 @@ JointGaussian::Trouble JointGaussian::look_at(std::size_t slot, ExpectedSight& e
   expected = {.pose_jacobian = pose_jacobian(at),
               .landmark_jacobian = landmark_jacobian(at),
               .sight = at.sight,
-              .factor = {}};
+              .factor = {},
+              .ahead = Eigen::Vector2d::Zero()};
   const auto L = innovation_factor(slot, expected);
   if (!L) return Trouble::faulty;
   expected.factor = *L;

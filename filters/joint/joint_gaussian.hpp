@@ -20,8 +20,15 @@ namespace montecarta {
 struct ExpectedSight {
   Matrix23 pose_jacobian;
   Eigen::Matrix2d landmark_jacobian;
-  RangeBearing<double> sight;
-  InnovationFactor factor;  ///< of S
+  RangeBearing<double> sight;  ///< at the point of linearisation
+  InnovationFactor factor;     ///< of S
+  /// H times the step from the estimate to the point of linearisation; not wrapped
+  Eigen::Vector2d ahead = Eigen::Vector2d::Zero();
+
+  /// v, with the bearing by the shorter way at the point of linearisation.
+  Eigen::Vector2d innovation(const RangeBearing<double>& detected) const {
+    return to_vector(residual(detected, sight)) + ahead;
+  }
 };
 
 /// One Gaussian over the pose and all landmarks: the state of EKF-SLAM (SPEC 24). Its covariance is
@@ -60,13 +67,13 @@ class JointGaussian {
   /// Conditions the Gaussian on `detected`, expected as `expected`. The model is linearised
   /// again where the detection has moved the estimate to, until that settles or `iterations` times
   /// (iterated EKF, Bell and Cathey 1993; of invariant errors with the derivative of the
-  /// exponential taken for one); `expected` becomes the last linearisation, with the detection that
-  /// it predicts for the estimate before. Returns the innovation then.
-  Eigen::Vector2d absorb(std::size_t slot, const RangeBearing<double>& detected, int iterations,
-                         ExpectedSight& expected);
+  /// exponential taken for one); `expected` becomes the last linearisation.
+  void absorb(std::size_t slot, const RangeBearing<double>& detected, int iterations,
+              ExpectedSight& expected);
   /// Draws the heading's part of all that is uncertain (SPEC 24): N(m, P) is the mean over standard
-  /// normal z of N(m + g z, P - g g') with g = P e sqrt(1 - keep^2) / sqrt(h), e the heading's axis
-  /// and h its variance. `keep` in [0, 1) is the share of the heading's standard deviation that
+  /// normal z of N(m + g z, P - g g'), exactly for the additive error and to first order in the
+  /// turn for the invariant one, with g = P e sqrt(1 - keep^2) / sqrt(h), e the heading's axis and
+  /// h its variance. `keep` in [0, 1) is the share of the heading's standard deviation that
   /// remains; SPEC 24 keeps nothing.
   void draw_heading(double keep, double normal);
   /// Adds a landmark seen so, correlated with everything the pose is correlated with.

@@ -16,7 +16,7 @@ namespace {
 std::unique_ptr<SlamFilter> make(const FilterKind& kind, Association association) {
   return kind.make({.belief = {},
                     .association = {.kind = association},
-                    .options = default_options(kind),
+                    .options = default_options(kind, {{"split_beyond_deg", "0.1"}}),
                     .landmarks = SmallWorldSettings().landmarks});
 }
 

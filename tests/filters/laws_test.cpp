@@ -30,6 +30,8 @@ std::unique_ptr<SlamFilter> make_default(
     Association association = Association::known,
     std::map<std::string, std::string, std::less<>> special = {}) {
   if (kind.has_particles) special["particles"] = std::to_string(particles);
+  special.emplace("split_beyond_deg",
+                  "0.1");  // a small world never needs it, so that nothing were put to the test
   return kind.make({.belief = world.noise,
                     .association = {.kind = association},
                     .options = default_options(kind, special),

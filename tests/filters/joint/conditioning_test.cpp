@@ -82,6 +82,25 @@ TEST(JointGaussian, AnIteratedDetectionEndsAtTheTopOfThePosterior) {
   EXPECT_GT((mean_of(once) - x).norm(), 0.05) << "linear enough for one step: no test";
 }
 
+TEST(JointGaussian, AnIteratedDetectionPassesTheBackwardDirection) {
+  // On its way the estimate passes the landmark, so that the bearing turns by more than half a turn
+  // in all: wrapped may be only what is left to explain.
+  const Belief belief{.vehicle = {},
+                      .sigma_speed = 1.0,
+                      .sigma_steer = 0.2,
+                      .sigma_range = 0.1,
+                      .sigma_bearing = 2.0 * kPi / 180.0};
+  JointGaussian gaussian(belief, Retraction::additive, 1);
+  gaussian.start({});
+  gaussian.append({3.0, 0.0});
+  gaussian.move(MotionIncrement(Pose{}, Eigen::Vector3d(4.0, 4.0, 0.01).asDiagonal()));
+  ExpectedSight expected;
+  ASSERT_EQ(gaussian.look_at(0, expected), JointGaussian::Trouble::none);
+  gaussian.absorb(0, {0.559, 1.107}, 20, expected);
+  EXPECT_NEAR(gaussian.pose().mean.x, 2.75, 0.2);
+  EXPECT_NEAR(gaussian.pose().mean.y, -0.5, 0.2);
+}
+
 TEST(JointGaussian, AHeadingsDrawDecomposesTheGaussianExactly) {
   for (const double keep : {0.0, 0.6}) {
     const JointGaussian before = driven(Retraction::additive);
