@@ -58,5 +58,20 @@ TEST(Allocation, NoFilterAllocatesInASecondRun) {
   }
 }
 
+TEST(Allocation, ResampleMoveAllocatesNothingInASecondRun) {
+  const SmallWorld world = small_world({.scans = 60});
+  for (const FilterKind& kind : filter_kinds()) {
+    if (kind.name != "fastslam2") continue;
+    const auto filter = kind.make({.belief = {},
+                                   .association = {},
+                                   .options = default_options(kind, {{"move_lag", "9"}}),
+                                   .landmarks = SmallWorldSettings().landmarks});
+    drive_through(*filter, world, Pose(), [](std::size_t) {});
+    const std::size_t before = n_allocations;
+    drive_through(*filter, world, Pose(), [](std::size_t) {});
+    EXPECT_EQ(n_allocations, before);
+  }
+}
+
 }  // namespace
 }  // namespace montecarta

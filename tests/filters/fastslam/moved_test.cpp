@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/errors.hpp"
-#include "tests/doubles/allocation_count.hpp"
 #include "tests/filters/fastslam/filter_comparison.hpp"
 #include "tests/filters/reference/moved_fast_slam.hpp"
 #include "tests/filters/told_bits.hpp"
@@ -86,15 +85,6 @@ TEST(Moved, LeavesTheParticlesDistributedAsTheWeightsSay) {
     const double error = std::sqrt(one.spread.covariance(k, k) * (1.0 / one.ess + 1.0 / 4000.0));
     EXPECT_LT(std::abs(apart(k)), 5.0 * error) << "component " << k << ", ess " << one.ess;
   }
-}
-
-TEST(Moved, AllocatesNothingInASecondRun) {
-  const auto filter = make_production(moved("9"), world());
-  const SmallWorld drive = small_world(world());
-  drive_through(*filter, drive, Pose(), [](std::size_t) {});
-  const std::size_t before = n_allocations;
-  drive_through(*filter, drive, Pose(), [](std::size_t) {});
-  EXPECT_EQ(n_allocations, before);
 }
 
 TEST(Moved, SaysWhatItDoesNotGoTogetherWith) {
