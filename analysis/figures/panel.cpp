@@ -14,9 +14,10 @@ namespace {
 constexpr std::size_t kBuckets = 300;
 constexpr double kBelowBand = 0.3, kAboveBand = 1000.0;  // where the axis ends at the latest
 constexpr double kLogarithmicFrom = 30.0, kDecade = 10.0, kRoom = 1.05;
-constexpr double kBeyondAnyAxis = 1e100;   // gnuplot knows no infinity
-constexpr std::size_t kAxisPixels = 66;    // below the lowest panel: ticks and label
-constexpr std::size_t kLegendPixels = 22;  // of a row
+constexpr double kBeyondAnyAxis = 1e100;        // gnuplot knows no infinity
+constexpr std::size_t kAxisPixels = 66;         // below the lowest panel: ticks and label
+constexpr std::size_t kLegendPixels = 22;       // of a row
+constexpr std::size_t kLeastPanelPixels = 170;  // room for the label of its axis
 
 struct Range {
   double least = std::numeric_limits<double>::infinity();
@@ -115,24 +116,37 @@ std::string bands_of(const Panel& panel, double last) {
   return script;
 }
 
+/// Apart from the curves: one without values in this panel has them in another.
+std::string legend_of(const Panel& panel) {
+  std::string script;
+  for (const Curve& curve : panel.curves) {
+    if (curve.legend.empty()) continue;
+    script += ", \\\n  keyentry with lines " + line_style(curve.style) + " title " +
+              gnuplot_quoted(curve.legend);
+  }
+  return script;
+}
+
 std::string plot_of(const Panel& panel, bool legend) {
-  const auto title = [&](const std::string& text) {
-    return text.empty() || !legend ? std::string(" notitle") : " title " + gnuplot_quoted(text);
-  };
   std::string script = "plot ";
   for (std::size_t b = 0; b < panel.bands.size(); ++b) {
     script += band_name(panel, b) +
               " using 1:2:3 with filledcurves fillcolor rgb '#707070' fillstyle transparent solid "
               "0.45 border "
               "linecolor rgb '#666666' linewidth 0.6" +
-              title(panel.bands[b].legend) + ", \\\n  ";
+              (panel.bands[b].legend.empty() || !legend
+                   ? " notitle"
+                   : " title " + gnuplot_quoted(panel.bands[b].legend)) +
+              ", \\\n  ";
   }
   for (std::size_t i = 0; i < panel.curves.size(); ++i) {
     script += (i == 0 ? "'../data/" + panel.name + ".csv'" : "''") +
               " using 1:" + std::to_string(i + 2) + " with lines " +
-              line_style(panel.curves[i].style) + title(panel.curves[i].legend) +
-              (i + 1 < panel.curves.size() ? ", \\\n  " : "\n");
+              line_style(panel.curves[i].style) + " notitle" +
+              (i + 1 < panel.curves.size() ? ", \\\n  " : "");
   }
+  if (legend) script += legend_of(panel);
+  script += "\n";
   return script;
 }
 
@@ -159,7 +173,7 @@ void add_panels(const std::vector<Panel>& panels, const std::vector<double>& pla
   const double last = places.back();
   const std::size_t rows = add_legend(panels.front(), figure);
   const std::size_t top = rows * kLegendPixels + 24;
-  figure.height += top;
+  figure.height = std::max(figure.height, kAxisPixels + panels.size() * kLeastPanelPixels) + top;
   const auto share = [&](std::size_t pixels) {
     return exact_text(static_cast<double>(pixels) / static_cast<double>(figure.height));
   };

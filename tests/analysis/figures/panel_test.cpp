@@ -9,6 +9,7 @@
 namespace montecarta {
 namespace {
 
+using testing::ContainsRegex;
 using testing::HasSubstr;
 
 Figure drawn(const Panel& panel) {
@@ -44,6 +45,20 @@ TEST(Panels, DoNotFollowABandWithoutAnEndOnALinearAxis) {
   const Figure figure = drawn(
       {"ratio", "ratio", {{"one", 0, {1.5, 10.0}}}, {{"right", 1.0, infinite}}, Scale::automatic});
   EXPECT_THAT(figure.script, HasSubstr("set yrange [0:10.5]"));
+}
+
+TEST(Panels, GrowWithTheirNumberAndNameInOneLegendWhatOnlyALowerPanelHolds) {
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  const Panel upper{"upper", "error", {{"one", 0, {1.0, 2.0}}, {"two", 1, {nothing, nothing}}}, {}};
+  const Panel lower{"lower", "error", {{"one", 0, {nothing, nothing}}, {"two", 1, {1.0, 2.0}}}, {}};
+  Figure low, high;
+  low.height = high.height = 200;
+  add_panels({upper}, {0.2, 0.4}, low);
+  add_panels({upper, lower, lower, lower}, {0.2, 0.4}, high);
+  EXPECT_GE(high.height, low.height + 300);
+  // gnuplot leaves the title of a curve without values out.
+  EXPECT_THAT(high.script, ContainsRegex("keyentry with lines [^\n]*title 'one'"));
+  EXPECT_THAT(high.script, ContainsRegex("keyentry with lines [^\n]*title 'two'"));
 }
 
 TEST(Panels, HaveAxesAlsoWhereNothingIsPositive) {
