@@ -10,8 +10,8 @@
 
 namespace montecarta {
 
-/// Base of proposals that draw every pose at every scan, so that pose and map are never correlated
-/// within a particle and there is nothing else to carry along.
+/// What a proposal answers that draws every pose at every scan: pose and map are never correlated
+/// within a particle, and there is nothing else to carry along. Proposals that do answer otherwise.
 template <class Real>
 class DrawnPoses {
  public:

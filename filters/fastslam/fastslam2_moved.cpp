@@ -1,33 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/errors.hpp"
 #include "filters/fastslam/moved.hpp"
 
 namespace montecarta {
-
-FilterOption move_lag_option() {
-  return {"move_lag",
-          FilterOption::Kind::integer,
-          "0",
-          0,
-          1000,
-          {},
-          "scans whose poses are proposed anew after a resampling (resample-move); 0 = none"};
-}
-
-std::size_t move_lag(const FilterOptions& options) { return options.integer("move_lag"); }
-
-void check_move(const FilterSetup& setup) {
-  if (setup.association.kind != Association::known) {
-    throw StudyError(
-        "move_lag: association is nearest (a scan of the past would be paired anew for every "
-        "particle): give association.kind = known or move_lag = 0");
-  }
-  if (are_anchored(setup.options)) {
-    throw StudyError(
-        "move_lag: landmarks = anchored (the two are not made to go together): give landmarks = "
-        "cartesian or move_lag = 0");
-  }
-}
 
 template std::unique_ptr<SlamFilter> make_moved<Lanes>(const FilterSetup&, const Linearised&);
 

@@ -104,17 +104,19 @@ void GaussianBank::report_innovations(Scan scan) {
 
 /// SPEC 24: the draws decompose the Gaussian (JointGaussian::draw_heading()), so no weight changes.
 void GaussianBank::split(const StepContext& context) {
-  if (std::ranges::none_of(active_, [&](std::uint32_t slot) { return is_due(beliefs_[slot]); }))
-    return;
+  is_due_.assign(beliefs_.size(), false);
+  for (const std::uint32_t slot : active_) is_due_[slot] = is_due(beliefs_[slot]);
+  if (std::ranges::find(is_due_, char{true}) == is_due_.end()) return;
   part_those_due();
   deal_strata(context);
   context.parallel_for(strata_.size(), [&](std::size_t stratum) {
     const std::uint32_t particle = strata_[stratum].second;
-    JointBelief& belief = beliefs_[slot_of_[particle]];
-    if (!is_due(belief)) return;
+    const std::uint32_t slot = slot_of_[particle];
+    if (!is_due_[slot]) return;
     const double within = context.stream(Draw::heading_split, particle).uniform();
-    belief.draw_heading(settings_.keep, normal_quantile((static_cast<double>(stratum) + within) /
-                                                        static_cast<double>(strata_.size())));
+    beliefs_[slot].draw_heading(settings_.keep,
+                                normal_quantile((static_cast<double>(stratum) + within) /
+                                                static_cast<double>(strata_.size())));
   });
 }
 
@@ -142,12 +144,13 @@ void GaussianBank::part_those_due() {
   }
   taken_.assign(beliefs_.size(), false);
   for (std::uint32_t& slot : slot_of_) {
-    if (!taken_[slot] || !is_due(beliefs_[slot])) {
+    if (!is_due_[slot] || !taken_[slot]) {
       taken_[slot] = true;
       continue;
     }
     beliefs_[idle_.back()].become(beliefs_[slot]);
     slot = idle_.back();
+    is_due_[slot] = true;
     idle_.pop_back();
   }
   note_active();
@@ -182,20 +185,13 @@ void GaussianBank::settle() {
 }
 
 PoseEstimate GaussianBank::mixture() const {
-  poses_.resize(slot_of_.size());
-  for (std::size_t i = 0; i < poses_.size(); ++i) {
-    poses_[i] = belief_of(i).gaussian().pose_after(motion_);
+  poses_.resize(beliefs_.size());
+  for (const std::uint32_t slot : active_) {
+    poses_[slot] = beliefs_[slot].gaussian().pose_after(motion_);
   }
-  const auto of = [&](std::size_t i) -> const PoseMoments& { return poses_[i]; };
-  const auto covariance_of = [&](std::size_t i) -> const Eigen::Matrix3d& {
-    return poses_[i].covariance;
-  };
-  const std::span<const double> weights = weights_.linear_scalars();
-  const Pose mean = mixture_mean(weights, weights_.heaviest(), of);
-  const PoseMoments spread = mixture_spread(weights, mean, of);
-  const Eigen::Matrix3d own =
-      mixture_covariance<Eigen::Matrix3d>(weights, weights_.heaviest(), covariance_of);
-  const PoseMoments whole{mean, own + spread.covariance};
+  const PoseMoments whole =
+      mixture_of_moments(weights_.linear_scalars(), weights_.heaviest(),
+                         [&](std::size_t i) -> const PoseMoments& { return poses_[slot_of_[i]]; });
   if (!settings_.tells_particles) return {whole, std::nullopt};
   return {whole, whole};
 }

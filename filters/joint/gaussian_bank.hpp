@@ -81,9 +81,10 @@ class GaussianBank final : public SlamFilter {
   std::vector<double> weights_before_scan_;  ///< {particle}
   std::vector<double> matched_weights_;      ///< {detection} of the particles that know it
   std::vector<std::uint32_t> idle_;          ///< scratch
-  std::vector<bool> taken_;                  ///< scratch
+  std::vector<char> taken_;                  ///< scratch: {belief} whether a particle keeps it
+  std::vector<char> is_due_;                 ///< scratch: {belief} whether it is to be split
   std::vector<std::pair<double, std::uint32_t>> strata_;  ///< scratch: particles in random order
-  mutable std::vector<PoseMoments> poses_;                ///< scratch: {particle}
+  mutable std::vector<PoseMoments> poses_;                ///< scratch: {belief}
   MotionIncrement motion_;  ///< since the beliefs last moved, the same for all of them
   InnovationSums<double> innovations_;
   PoseEstimate estimate_of_scan_;  ///< before headings were drawn

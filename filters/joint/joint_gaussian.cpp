@@ -94,12 +94,12 @@ LandmarkEstimate JointGaussian::landmark(std::size_t slot) const {
 }
 
 double JointGaussian::extent() const {
-  double farthest = 0.0;
+  double farthest_squared = 0.0;
   for (Eigen::Index row = 0; row < row_of(n_landmarks_); row += 2) {
-    farthest = std::max(
-        farthest, std::hypot(map_mean_(row) - pose_.mean.x, map_mean_(row + 1) - pose_.mean.y));
+    const double x = map_mean_(row) - pose_.mean.x, y = map_mean_(row + 1) - pose_.mean.y;
+    farthest_squared = std::max(farthest_squared, x * x + y * y);
   }
-  return farthest;
+  return std::sqrt(farthest_squared);
 }
 
 std::optional<InnovationFactor> JointGaussian::innovation_factor(std::size_t slot,

@@ -14,21 +14,21 @@ constexpr std::array<std::pair<double, double>, 3> kNodesAndWeights{
 
 /// Displacement (forward, left, turn) in the frame of the vehicle before the step.
 struct BodyMoments {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  Eigen::Vector3d mean;
   Eigen::Matrix3d covariance;
 };
 
 BodyMoments body_moments(const Control& control, double duration, const Belief& belief) {
-  BodyMoments of_unit_speed{.mean = Eigen::Vector3d::Zero(), .covariance = Eigen::Matrix3d::Zero()};
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();    // at 1 m/s
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();  // likewise, about the origin
   for (const auto& [node, weight] : kNodesAndWeights) {
     const auto step =
         body_step(belief.vehicle, 1.0, control.steer + node * belief.sigma_steer, duration);
     const Eigen::Vector3d way(step.forward, step.left, step.turn);
-    of_unit_speed.mean += weight * way;
-    of_unit_speed.covariance += weight * way * way.transpose();
+    mean += weight * way;
+    second += weight * way * way.transpose();
   }
   const double square = control.speed * control.speed;
-  const auto& [mean, second] = of_unit_speed;
   return {control.speed * mean, (square + belief.sigma_speed * belief.sigma_speed) * second -
                                     square * mean * mean.transpose()};
 }

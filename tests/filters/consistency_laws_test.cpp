@@ -4,6 +4,7 @@
 #include "filters/moments/gaussian_draw.hpp"
 #include "tests/filters/default_options.hpp"
 #include "tests/filters/fastslam/filter_comparison.hpp"
+#include "tests/filters/fine_noise.hpp"
 #include "tests/filters/two_scans.hpp"
 
 #include <Eigen/Dense>
@@ -75,16 +76,6 @@ TEST(Consistency, AMatchedLinearWorldStaysInsideItsBand) {
   EXPECT_NEAR(total / kSteps, 3.0, 0.1);
   EXPECT_GE(inside, 0.94 * kSteps);
   EXPECT_LE(inside, 0.96 * kSteps);
-}
-
-/// Noise so small that the models are linear within it: there EKF-SLAM is the Kalman filter of its
-/// world.
-Belief fine() {
-  return {.vehicle = {},
-          .sigma_speed = 3e-3,
-          .sigma_steer = 5e-4,
-          .sigma_range = 1e-3,
-          .sigma_bearing = 2e-4};
 }
 
 TEST(Consistency, EkfSlamIsConsistentWhereNoiseIsSmall) {

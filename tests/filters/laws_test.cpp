@@ -30,8 +30,7 @@ std::unique_ptr<SlamFilter> make_default(
     Association association = Association::known,
     std::map<std::string, std::string, std::less<>> special = {}) {
   if (kind.has_particles) special["particles"] = std::to_string(particles);
-  special.emplace("split_beyond_deg",
-                  "0.1");  // a small world never needs it, so that nothing were put to the test
+  special.emplace("split_beyond_deg", "0.1");  // by itself a bank never splits in a small world
   return kind.make({.belief = world.noise,
                     .association = {.kind = association},
                     .options = default_options(kind, special),

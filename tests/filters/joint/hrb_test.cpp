@@ -2,6 +2,7 @@
 #include "engine/random/normal_quantile.hpp"
 #include "filters/joint/joint_filters.hpp"
 #include "tests/filters/default_options.hpp"
+#include "tests/filters/fine_noise.hpp"
 #include "tests/filters/small_world.hpp"
 #include "tests/filters/told_bits.hpp"
 
@@ -88,15 +89,6 @@ TEST(Hrb, ThatNeverSplitsIsRightInvariantEkfSlamBitForBit) {
   options["particles"] = "7";
   options["split_beyond_deg"] = "1e9";
   expect_same_bits(told(*make_hrb(setup_of(hrb_kind(), options)), world), told(*one, world));
-}
-
-/// Noise so small that the models are linear within it.
-Belief fine() {
-  return {.vehicle = {},
-          .sigma_speed = 3e-3,
-          .sigma_steer = 5e-4,
-          .sigma_range = 1e-3,
-          .sigma_bearing = 2e-4};
 }
 
 TEST(Hrb, ManySplitsOfALinearModelAreTheKalmanFilter) {
