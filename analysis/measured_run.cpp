@@ -32,8 +32,14 @@ MapYardstick map_yardstick_of(const ResultFile& file) {
 
 Yardsticks yardsticks_of(const ResultFile& file, double level) {
   const std::size_t scans = file.has_truth() ? file.scan_times().size() : 0;
-  Yardsticks sticks{file.scan_times(),     level, {}, {}, map_yardstick_of(file), BandWalks(scans),
-                    noise_is_matched(file)};
+  Yardsticks sticks{.times = file.scan_times(),
+                    .level = level,
+                    .references = {},
+                    .beacons = {},
+                    .map = map_yardstick_of(file),
+                    .joint_scans = file.description().joint_scans,
+                    .walks = BandWalks(scans),
+                    .calibrates = noise_is_matched(file)};
   for (const ReferencePath& path : file.references()) {
     sticks.references.emplace_back(path, file.times(), file.description().start);
   }
@@ -51,6 +57,7 @@ void MeasuredRun::measure(const Yardsticks& sticks, std::size_t particles) {
   if (sticks.map.known && rows.final_map) {
     map = map_scores(*rows.final_map, sticks.map, rows.landmarks, rows.truth);
   }
+  joint = joint_scores(rows.joint, sticks.joint_scans, rows.truth, rows.landmarks);
   if (sticks.calibrates)
     pits = pits_of(rows, rows.run,
                    sticks.map.identities_known ? std::span<const Eigen::Vector2d>(rows.landmarks)
@@ -67,6 +74,8 @@ void CellSums::add(const MeasuredRun& run) {
   for (std::size_t r = 0; r < references_.size(); ++r) references_[r].add(run.references[r]);
   beacons_.push_back(run.beacons);
   map_.add(run.map);
+  joint_.add(run.joint);
+  joint_nees_.push_back(nees_per_component(run.joint));
   if (calibrates_) calibration_.add(run.pits);
 }
 
@@ -74,6 +83,9 @@ std::vector<RunScores> CellSums::scores() const {
   std::vector<RunScores> scores = sums_.scores();
   if (!references_.empty()) put_leading_scores(references_.front().result(), scores);
   map_.put_scores(scores);
+  for (std::size_t i = 0; i < scores.size() && knows_identities_; ++i) {
+    scores[i].joint_nees = joint_nees_[i];
+  }
   for (std::size_t i = 0; i < beacons_.size(); ++i) {
     if (!beacons_[i]) continue;
     scores[i].beacons_found = beacons_[i]->found;
@@ -87,6 +99,7 @@ CellAnalysis CellSums::result() {
   CellAnalysis cell = sums_.result();
   for (const ReferenceAccumulator& sums : references_) cell.references.push_back(sums.result());
   cell.map = map_.result(level_, knows_landmarks_);
+  cell.joint = joint_.result(level_, knows_identities_);
   cell.calibration = calibration_.result(times_, level_);
   cell.scores = scores();
   put_score_intervals(cell, level_);

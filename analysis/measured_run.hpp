@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/calibration/cell_calibration.hpp"
+#include "analysis/joint/joint_nees.hpp"
 #include "analysis/map/map_errors.hpp"
 #include "analysis/metrics/beacon_scores.hpp"
 #include "analysis/metrics/cell_accumulator.hpp"
@@ -22,10 +23,11 @@ struct Yardsticks {
   std::span<const double> times;  ///< [s] of the scans
   double level = 0.95;            ///< of NEES bounds
   std::vector<PathAtFixes> references;
-  std::vector<Eigen::Vector2d> beacons;  ///< [m]
-  MapYardstick map;                      ///< of a simulation
-  BandWalks walks;                       ///< of as many scans where there is a truth
-  bool calibrates = false;               ///< whether calibration is judged: where noise is matched
+  std::vector<Eigen::Vector2d> beacons;        ///< [m]
+  MapYardstick map;                            ///< of a simulation
+  std::span<const std::uint32_t> joint_scans;  ///< of joint estimates
+  BandWalks walks;                             ///< of as many scans where there is a truth
+  bool calibrates = false;  ///< whether calibration is judged: where noise is matched
 };
 
 Yardsticks yardsticks_of(const ResultFile& file, double level);
@@ -38,6 +40,7 @@ struct MeasuredRun {
   std::vector<ReferenceRun> references;
   std::optional<BeaconScores> beacons;  ///< where the final map is stored and beacons are known
   std::optional<MapScores> map;         ///< where it is stored and the world is known
+  std::vector<JointScore> joint;        ///< where joint estimates are stored and identities known
   RunPits pits;                         ///< where calibration is judged
 
   /// Of `rows` of a complete run.
@@ -52,6 +55,7 @@ class CellSums {
         references_(sticks.references.size()),
         level_(sticks.level),
         knows_landmarks_(sticks.map.known),
+        knows_identities_(sticks.map.identities_known),
         times_(sticks.times),
         calibrates_(sticks.calibrates) {}
 
@@ -66,8 +70,11 @@ class CellSums {
   std::vector<ReferenceAccumulator> references_;
   std::vector<std::optional<BeaconScores>> beacons_;  ///< {run}
   MapErrorSums map_;
+  JointNeesSums joint_;
+  std::vector<double> joint_nees_;  ///< {run} per component
   double level_;
   bool knows_landmarks_;
+  bool knows_identities_;
   std::span<const double> times_;
   CalibrationSums calibration_;
   bool calibrates_;

@@ -3,6 +3,7 @@
 
 #include "analysis/comparison/comparison_csv.hpp"
 #include "analysis/figures/ancestry_figure.hpp"
+#include "analysis/figures/joint_figure.hpp"
 #include "analysis/figures/mismatch_figure.hpp"
 #include "analysis/figures/path_figure.hpp"
 #include "analysis/figures/reference_figures.hpp"
@@ -36,12 +37,14 @@ std::vector<Section> reading_order(const ResultFile& file, const StudyAnalysis& 
   return {title_section(study),
           verdict_section(study),
           map_section(study),
+          joint_section(study),
           reference_section(study),
           failure_section(study),
           replay_section(file, options.run),
           figure_section({path_figure(file, options.run)}),
           figure_section(reference_figures(study)),
           figure_section(time_figures(study)),
+          figure_section({joint_figure(study)}),
           figure_section({ancestry_figure(file, options.run)}),
           figure_section(why_figures(study)),
           figure_section({mismatch_figure(study)}),

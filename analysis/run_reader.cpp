@@ -9,6 +9,7 @@ namespace montecarta {
 namespace {
 
 constexpr std::string_view kFinalMapSeen = "final_map_seen";
+constexpr double kRounding = 1e-6;  // [landmarks]
 
 }  // namespace
 
@@ -62,7 +63,8 @@ void RunReader::read_final_map(std::size_t i, RunRows& rows, Scratch& scratch) c
   const auto seen_column = std::ranges::find(cell_->columns, prefix + "seen", &Column::name);
   if (seen_column == cell_->columns.end()) return;
   const std::size_t landmarks = seen_column->shape.back();
-  if (!rows.map_size.empty() && rows.map_size.back() > static_cast<double>(landmarks))
+  // A mean over weights that add up to one but for rounding.
+  if (!rows.map_size.empty() && rows.map_size.back() > static_cast<double>(landmarks) + kRounding)
     return;  // record.map_rows left part of it out
   const auto last = [&](const char* name, std::size_t width) {
     const auto column = std::ranges::find(cell_->columns, prefix + name, &Column::name);
@@ -79,6 +81,19 @@ void RunReader::read_final_map(std::size_t i, RunRows& rows, Scratch& scratch) c
   for (std::size_t l = 0; l < landmarks; ++l) {
     map.covariance.emplace_back(Eigen::Map<const Eigen::Matrix2d>(covariance.data() + 4 * l));
   }
+}
+
+void RunReader::read_joint(std::size_t i, JointRows& out) const {
+  const auto read_whole = [&](std::string_view name, std::vector<double>& values) {
+    values.clear();
+    const auto column = std::ranges::find(cell_->columns, name, &Column::name);
+    if (!file_->has_truth() || column == cell_->columns.end()) return;
+    values.resize(column->elements());
+    const std::lock_guard lock(reading_);
+    file_->read(*cell_, name, i, std::span(values));
+  };
+  read_whole("joint_mean", out.mean);
+  read_whole("joint_covariance", out.covariance);
 }
 
 void RunReader::read_cloud(std::size_t i, CloudRows& out, Scratch& scratch) const {
@@ -129,6 +144,7 @@ void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
   read_scans("map_size", 1, i, rows.map_size);
   read_final_map(i, rows, scratch);
   read_cloud(i, rows.cloud, scratch);
+  read_joint(i, rows.joint);
   rows.run = file_->runs()[i];
   {
     const std::lock_guard lock(reading_);

@@ -76,6 +76,9 @@ StudyAnalysis begin(const ResultFile& file, double level) {
   study.level = level;
   study.printed = printed_in(file.study_text());
   study.times = file.scan_times();
+  for (const std::uint32_t scan : file.description().joint_scans) {
+    study.joint_times.push_back(study.times[scan]);
+  }
   study.duration = study.times.empty() ? 0.0 : study.times.back();
   study.has_truth = file.has_truth();
   study.beacons = file.landmarks().size();

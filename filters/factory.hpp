@@ -75,6 +75,7 @@ struct FilterKind {
   std::string source;         ///< paper and equation
   bool has_particles = true;  ///< whether it takes the option `particles` (always listed first)
   bool has_mixture = false;   ///< whether estimate() carries a mixture
+  bool has_joint = false;     ///< whether joint() gives anything
   std::vector<FilterOption> options;  ///< in the order in which they are documented
   std::function<std::unique_ptr<SlamFilter>(const FilterSetup&)> make;
 };

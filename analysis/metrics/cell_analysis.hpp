@@ -3,6 +3,7 @@
 
 #include "analysis/bound/efficiency.hpp"
 #include "analysis/calibration/cell_calibration.hpp"
+#include "analysis/joint/joint_nees.hpp"
 #include "analysis/map/map_errors.hpp"
 #include "analysis/metrics/consistency.hpp"
 #include "analysis/metrics/credibility.hpp"
@@ -109,6 +110,7 @@ struct CellAnalysis {
   std::optional<AssociationSummary> association;
   std::vector<PitHistogram> calibration;      ///< where the noise is matched; else empty
   MapErrors map;                              ///< of the final maps
+  JointConsistency joint;                     ///< of pose and map together
   Efficiency efficiency;                      ///< against StudyAnalysis::bound
   std::vector<ReferenceAnalysis> references;  ///< one for each of the drive's, the leading first
   std::vector<double> map_size_over_time;  ///< [1] {scan} mean over runs; of a drive without truth

@@ -27,6 +27,14 @@ struct CloudRows {
   std::vector<double> log_weight;  ///< {moment, particle}
 };
 
+/// Pose and map together at the scans of ResultDescription::joint_scans; empty where not stored.
+struct JointRows {
+  std::vector<double> mean;        ///< {joint, state}; NaN of landmarks never seen
+  std::vector<double> covariance;  ///< {joint, state, state}
+
+  std::size_t states() const { return mean.empty() ? 0 : covariance.size() / mean.size(); }
+};
+
 /// What analysis needs of one run, as plain arrays: where they come from does not matter. Columns
 /// that are not stored are empty.
 struct RunRows {
@@ -47,6 +55,7 @@ struct RunRows {
   std::vector<double> map_size;  ///< {scan} landmarks in the map
   std::optional<FinalMap> final_map;  ///< at the last scan, if stored and whole
   CloudRows cloud;
+  JointRows joint;
   std::uint64_t run = 0;                   ///< its number in the study
   std::vector<Eigen::Vector2d> landmarks;  ///< [m] true positions in this run, by identity; empty
                                            ///< where unknown

@@ -113,6 +113,8 @@ constexpr ScoreName kNames[] = {
     {"landmark_rms", "m", "RMS error of the landmarks in the final map", &RunScores::landmark_rms},
     {"landmark_nees", "1", "NEES of a landmark in the final map, mean over landmarks",
      &RunScores::landmark_nees},
+    {"joint_nees", "1", "joint NEES of pose and map per component", &RunScores::joint_nees,
+     Better::neither},
     {"gospa", "m", "GOSPA of the final map", &RunScores::gospa},
     {"gospa_localisation", "m", "localisation part of GOSPA", &RunScores::gospa_localisation},
     {"landmarks_missed", "1", "landmarks missed by the final map", &RunScores::landmarks_missed},

@@ -52,6 +52,7 @@ struct RunScores {
   double beacon_aligned_rms = kNone;      ///< [m]
   double landmark_rms = kNone;            ///< [m] of the final map by identity (MapScores)
   double landmark_nees = kNone;           ///< [1] of two components, mean over landmarks
+  double joint_nees = kNone;              ///< [1] per component of pose and map together
   double gospa = kNone;                   ///< [m] (Gospa)
   double gospa_localisation = kNone;      ///< [m]
   double landmarks_missed = kNone;        ///< [1]

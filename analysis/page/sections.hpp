@@ -19,6 +19,8 @@ Section failure_section(const StudyAnalysis& study);
 Section verdict_section(const StudyAnalysis& study);
 /// How far the final maps are from the true landmarks; not of a recorded drive.
 Section map_section(const StudyAnalysis& study);
+/// Whether filters are right about pose and map together, where that is stored.
+Section joint_section(const StudyAnalysis& study);
 /// Where the truth lies in what filters hold for possible; only where the noise is matched.
 Section calibration_section(const StudyAnalysis& study);
 /// A recorded drive judged by its references.

@@ -82,6 +82,18 @@ void add_maps(const CellAnalysis& cell, Numbers& all) {
   all.push_back({"landmarks_undefined", "1", static_cast<double>(map.undefined)});
 }
 
+/// At the last stored scan.
+void add_joint(const CellAnalysis& cell, Numbers& all) {
+  const JointConsistency& joint = cell.joint;
+  const bool known = joint.verdict != Verdict::untested;
+  const Interval bounds = known ? joint.bounds.back() : Interval{kNaN, kNaN};
+  all.push_back({"joint_components", "1", known ? joint.dimension.back() : kNaN});
+  all.push_back({"joint_nees_per_component", "1", known ? joint.average.back() : kNaN});
+  all.push_back({"joint_nees_lower", "1", bounds.lower});
+  all.push_back({"joint_nees_upper", "1", bounds.upper});
+  all.push_back({"joint_undefined", "1", static_cast<double>(joint.undefined)});
+}
+
 void add_anatomy(const CellAnalysis& cell, Numbers& all) {
   const bool known = cell.anatomy.has_value();
   const ErrorAnatomy anatomy = cell.anatomy.value_or(ErrorAnatomy{});
@@ -133,6 +145,7 @@ std::vector<NamedNumber> numbers_of(const CellAnalysis& cell) {
   add_lineages(cell, all);
   add_association(cell, all);
   add_maps(cell, all);
+  add_joint(cell, all);
   add_anatomy(cell, all);
   add_survival(cell, all);
   add_innovations(cell, all);

@@ -4,6 +4,7 @@
 #include "analysis/tables/calibration_table.hpp"
 #include "analysis/tables/cell_series.hpp"
 #include "analysis/tables/csv_file.hpp"
+#include "analysis/tables/joint_table.hpp"
 #include "analysis/tables/map_error_table.hpp"
 #include "analysis/tables/map_files.hpp"
 #include "analysis/tables/named_rows.hpp"
@@ -23,6 +24,7 @@ constexpr const char* kReferences = "references.csv";
 constexpr const char* kReferenceErrors = "reference_errors.csv";
 constexpr const char* kBound = "bound.csv";
 constexpr const char* kLandmarks = "landmarks.csv";
+constexpr const char* kJointNees = "joint_nees.csv";
 constexpr const char* kCalibration = "calibration.csv";
 std::string series_name(const std::string& label) { return "series_" + label + ".csv"; }
 
@@ -79,7 +81,7 @@ void write_series(const StudyAnalysis& study, const CellAnalysis& cell,
 std::vector<std::string> csv_names(const std::vector<std::string>& labels) {
   std::vector<std::string> names = {kFailures,  kCells,      kConsistency,     kPrinted,
                                     kClaims,    kReferences, kReferenceErrors, kBound,
-                                    kLandmarks, kCalibration};
+                                    kLandmarks, kJointNees,  kCalibration};
   for (const std::string& label : labels) names.push_back(series_name(label));
   return names;
 }
@@ -97,6 +99,7 @@ void write_csv(const StudyAnalysis& study, const std::filesystem::path& director
   }
   if (!study.bound.empty()) write_bound(study, directory / kBound);
   if (has_map_errors(study)) write_landmarks(study, directory / kLandmarks);
+  if (has_joint_nees(study)) write_joint_nees(study, directory / kJointNees);
   if (has_calibration(study)) write_calibration(study, directory / kCalibration);
   for (const CellAnalysis& cell : study.cells) {
     write_series(study, cell, directory / series_name(cell.label));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/printed/comparison.hpp"
 #include "analysis/tables.hpp"
+#include "analysis/tables/joint_table.hpp"
 #include "analysis/tables/map_error_table.hpp"
 #include "analysis/tables/print_table.hpp"
 #include "analysis/tables/reference_table.hpp"
@@ -43,8 +44,8 @@ void print_judged_by_truth(std::ostream& out, const StudyAnalysis& study) {
   out << '\n';
   print_table(out, accuracy_table(study));
   out << '\n';
-  for (const TextTable& table : {map_error_table(study), why_table(study), diversity_table(study),
-                                 innovation_table(study)}) {
+  for (const TextTable& table : {map_error_table(study), joint_table(study), why_table(study),
+                                 diversity_table(study), innovation_table(study)}) {
     if (table.rows.empty()) continue;
     print_table(out, table);
     out << '\n';
@@ -96,6 +97,7 @@ void print_tables(std::ostream& out, const StudyAnalysis& study) {
     for (const std::string& note : verdict_notes(study)) print_wrapped(out, note);
     for (const std::string& note : bound_notes(study)) print_wrapped(out, note);
     for (const std::string& note : map_error_notes(study)) print_wrapped(out, note);
+    for (const std::string& note : joint_notes(study)) print_wrapped(out, note);
   }
   print_printed(out, study);
 }

@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <numeric>
 
@@ -24,6 +25,15 @@ std::size_t size_of(Element element) {
   return 0;
 }
 
+std::vector<std::uint32_t> joint_scans_of(std::size_t all, std::size_t wanted) {
+  const std::size_t count = std::min(all, wanted);
+  std::vector<std::uint32_t> scans(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    scans[k] = static_cast<std::uint32_t>((k + 1) * all / count - 1);
+  }
+  return scans;
+}
+
 std::string_view name_of(Axis axis) {
   switch (axis) {
     case Axis::time:
@@ -42,6 +52,12 @@ std::string_view name_of(Axis axis) {
       return "coordinate";
     case Axis::coordinate_column:
       return "coordinate_column";
+    case Axis::joint:
+      return "joint";
+    case Axis::state:
+      return "state";
+    case Axis::state_column:
+      return "state_column";
   }
   expect(false, "an axis without a name");
   return {};
@@ -50,7 +66,7 @@ std::string_view name_of(Axis axis) {
 std::optional<Axis> axis_named(std::string_view name) {
   using enum Axis;
   for (Axis axis : {time, scan, particle, landmark, component, component_column, coordinate,
-                    coordinate_column}) {
+                    coordinate_column, joint, state, state_column}) {
     if (name_of(axis) == name) return axis;
   }
   return std::nullopt;

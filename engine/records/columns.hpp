@@ -21,7 +21,9 @@ struct ColumnSelection {
   bool association = false;  ///< association_correct, _wrong, _new_again, _missed, _clutter
   bool map = false;          ///< map_mean, map_covariance, map_seen, at every scan
   bool final_map = false;    ///< final_map_mean, final_map_covariance, final_map_seen, at the last
-  bool scans_only = false;   ///< record.rate = scan: rows of `time` only where a scan was taken
+  bool joint = false;        ///< joint_mean, joint_covariance of filters that have a joint estimate
+  std::size_t joint_scans = 16;  ///< record.joint_scans: at so many scans (joint_scans_of())
+  bool scans_only = false;       ///< record.rate = scan: rows of `time` only where a scan was taken
 };
 
 enum class Element : std::uint8_t { f64, u8, u16, u32, u64 };
@@ -36,8 +38,15 @@ enum class Axis : std::uint8_t {
   component,
   component_column,
   coordinate,
-  coordinate_column
+  coordinate_column,
+  joint,  ///< the scans of joint_scans_of()
+  state,  ///< x, y, heading, then x and y of each landmark
+  state_column
 };
+/// The scans of `all` at which joint estimates are stored: the last of each of `wanted` parts, as
+/// equal as can be, of the run.
+std::vector<std::uint32_t> joint_scans_of(std::size_t all, std::size_t wanted);
+
 std::string_view name_of(Axis axis);
 /// The axis of that name; nullopt where there is none.
 std::optional<Axis> axis_named(std::string_view name);

@@ -102,6 +102,9 @@ void read_axes(const h5::Handle& file, ResultDescription& result) {
   result.scan_times = read_all<double>(file, "scan", Element::f64);
   result.scan_steps = read_all<std::uint32_t>(file, "scan_step", Element::u32);
   result.scan_rows = read_all<std::uint32_t>(file, "scan_row", Element::u32);
+  if (h5::has(file, "joint_scan")) {
+    result.joint_scans = read_all<std::uint32_t>(file, "joint_scan", Element::u32);
+  }
 }
 
 void read_references(const h5::Handle& scenario, ResultDescription& result) {

@@ -8,12 +8,16 @@ namespace {
 
 constexpr std::size_t kAlignment = 64;  // a cache line, so that no two columns share one
 
-std::size_t length_of(Axis axis, const Cell& cell, std::size_t rows, std::size_t scans) {
+struct Lengths {
+  std::size_t rows, scans, joint;
+};
+
+std::size_t length_of(Axis axis, const Cell& cell, const Lengths& lengths) {
   switch (axis) {
     case Axis::time:
-      return rows;
+      return lengths.rows;
     case Axis::scan:
-      return scans;
+      return lengths.scans;
     case Axis::particle:
       return cell.particles;
     case Axis::landmark:
@@ -24,6 +28,11 @@ std::size_t length_of(Axis axis, const Cell& cell, std::size_t rows, std::size_t
     case Axis::coordinate:
     case Axis::coordinate_column:
       return 2;
+    case Axis::joint:
+      return lengths.joint;
+    case Axis::state:
+    case Axis::state_column:
+      return 3 + 2 * cell.landmarks;
   }
   return 0;
 }
@@ -173,6 +182,23 @@ std::vector<Column> map_columns(const Cell& cell, const ColumnSelection& selecti
   return columns;
 }
 
+std::vector<Column> joint_columns(const Cell& cell, const ColumnSelection& selection) {
+  using enum Axis;
+  if (!selection.joint || !cell.joint) return {};
+  return {{"joint_mean",
+           Element::f64,
+           {joint, state},
+           {},
+           "m, m, rad, m",
+           "estimated pose and landmarks together"},
+          {"joint_covariance",
+           Element::f64,
+           {joint, state, state_column},
+           {},
+           "(m, m, rad, m)^2",
+           "covariance of the pose and all landmarks together"}};
+}
+
 }  // namespace
 
 RecordLayout::RecordLayout(const Cell& cell, const ColumnSelection& selection,
@@ -182,13 +208,14 @@ RecordLayout::RecordLayout(const Cell& cell, const ColumnSelection& selection,
       scans_(itinerary.scans()),
       particles_(cell.particles),
       landmarks_(cell.landmarks) {
-  for (auto group : {report_columns(), association_columns(selection),
-                     particle_columns(cell, selection), map_columns(cell, selection)})
+  for (auto group :
+       {report_columns(), association_columns(selection), particle_columns(cell, selection),
+        map_columns(cell, selection), joint_columns(cell, selection)})
     columns_.insert(columns_.end(), group.begin(), group.end());
-  const std::size_t rows = scans_only_ ? itinerary.scans() : itinerary.steps();
+  if (selection.joint && cell.joint) joint_scans_ = joint_scans_of(scans_, selection.joint_scans);
+  const Lengths lengths{scans_only_ ? scans_ : itinerary.steps(), scans_, joint_scans_.size()};
   for (Column& column : columns_) {
-    for (Axis axis : column.axes)
-      column.shape.push_back(length_of(axis, cell, rows, itinerary.scans()));
+    for (Axis axis : column.axes) column.shape.push_back(length_of(axis, cell, lengths));
     offsets_.push_back(bytes_);
     bytes_ += (column.bytes() + kAlignment - 1) / kAlignment * kAlignment;
   }

@@ -32,6 +32,8 @@ class RecordLayout {
   std::size_t scans() const { return scans_; }
   std::size_t particles() const { return particles_; }
   std::size_t landmarks() const { return landmarks_; }
+  /// Scans of the rows of the joint columns, in order; empty where there are none.
+  const std::vector<std::uint32_t>& joint_scans() const { return joint_scans_; }
 
  private:
   std::vector<Column> columns_;
@@ -41,6 +43,7 @@ class RecordLayout {
   std::size_t scans_;
   std::size_t particles_;
   std::size_t landmarks_;
+  std::vector<std::uint32_t> joint_scans_;
 };
 
 }  // namespace montecarta

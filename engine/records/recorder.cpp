@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/records/recorder.hpp"
 
+#include "engine/errors.hpp"
+
 #include <algorithm>
 
 namespace montecarta {
@@ -57,6 +59,8 @@ Recorder::Recorder(RunRecord& record) : layout_(&record.layout()) {
   columns_.final_map = {column<double>(record, "final_map_mean"),
                         column<double>(record, "final_map_covariance"),
                         column<std::uint8_t>(record, "final_map_seen")};
+  columns_.joint_mean = column<double>(record, "joint_mean");
+  columns_.joint_covariance = column<double>(record, "joint_covariance");
   const bool any = !columns_.map.mean.empty() || !columns_.final_map.mean.empty();
   landmarks_.resize(any ? layout_->landmarks() : 0);
   choose_ancestor(record);
@@ -83,6 +87,7 @@ const PoseEstimate* Recorder::after_scan(const SlamFilter& filter, std::size_t s
   record_association(filter.report().association, scan);
   record_particles(filter, scan);
   record_map(filter, scan);
+  record_joint(filter, scan);
   return recorded;
 }
 
@@ -136,6 +141,19 @@ void Recorder::record_map(const SlamFilter& filter, std::size_t scan) {
   filter.map(landmarks_);
   if (!columns_.map.mean.empty()) write_map(columns_.map, scan);
   if (!columns_.final_map.mean.empty() && last) write_map(columns_.final_map, 0);
+}
+
+void Recorder::record_joint(const SlamFilter& filter, std::size_t scan) {
+  const auto& scans = layout_->joint_scans();
+  const auto found = std::ranges::lower_bound(scans, scan);
+  if (found == scans.end() || *found != scan) return;
+  const std::optional<JointEstimate> joint = filter.joint(layout_->landmarks());
+  expect(joint.has_value(), "a joint estimate of a filter that has none");
+  const auto row = static_cast<std::size_t>(found - scans.begin());
+  const std::size_t states = columns_.joint_mean.size() / scans.size();
+  std::ranges::copy(joint->mean, row_of(columns_.joint_mean, row, states).begin());
+  std::ranges::copy(joint->covariance.reshaped(),  // symmetric: the order is one and the same
+                    row_of(columns_.joint_covariance, row, states * states).begin());
 }
 
 void Recorder::write_map(const MapColumns& columns, std::size_t row) const {

@@ -42,6 +42,7 @@ class Recorder {
     std::span<std::uint32_t> nis_dof, numerical_faults, ancestor_wide;
     std::span<std::uint16_t> ancestor_narrow;
     MapColumns map, final_map;
+    std::span<double> joint_mean, joint_covariance;
   };
 
   void choose_ancestor(RunRecord& record);
@@ -50,6 +51,7 @@ class Recorder {
   void record_association(const AssociationCounts& counts, std::size_t scan);
   void record_particles(const SlamFilter& filter, std::size_t scan);
   void record_map(const SlamFilter& filter, std::size_t scan);
+  void record_joint(const SlamFilter& filter, std::size_t scan);
   void write_map(const MapColumns& columns, std::size_t row) const;
 
   const RecordLayout* layout_;

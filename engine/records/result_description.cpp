@@ -71,6 +71,9 @@ ResultDescription describe(const StudyPlan& plan, const TextPairs& provenance) {
   result.study_runs = plan.runs;
   number_runs(plan, result);
   describe_time(itinerary, plan.columns.scans_only, result);
+  if (plan.columns.joint) {
+    result.joint_scans = joint_scans_of(itinerary.scans(), plan.columns.joint_scans);
+  }
   result.start = itinerary.start;
   result.landmarks = pairs(itinerary.landmarks);
   result.waypoints = pairs(itinerary.waypoints);

@@ -42,6 +42,7 @@ struct ResultDescription {
   std::vector<double> scan_times;                    ///< [s]
   std::vector<std::uint32_t> scan_steps;             ///< step after which each scan is taken
   std::vector<std::uint32_t> scan_rows;              ///< row of `time` at which each scan is taken
+  std::vector<std::uint32_t> joint_scans;            ///< of which joint estimates are stored
   Pose start;                                        ///< before the first step
   std::vector<std::pair<double, double>> landmarks;  ///< [m] true positions; empty where unknown
   std::vector<std::pair<double, double>> waypoints;  ///< [m]; may be empty

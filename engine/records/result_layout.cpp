@@ -23,12 +23,21 @@ void put_root(const h5::Handle& file, const ResultDescription& result) {
   h5::put_numbers(file, "runs", std::array{result.study_runs});
 }
 
-void add_scan_index(const h5::Handle& file, const std::string& name,
-                    const std::vector<std::uint32_t>& values, const std::string& long_name,
-                    const Scales& scales) {
+void add_indices(const h5::Handle& file, const std::string& name, const std::string& dimension,
+                 const std::vector<std::uint32_t>& values, const std::string& long_name,
+                 const Scales& scales) {
   const auto dataset =
-      add_dataset(file, name, Element::u32, {values.size()}, {"scan"}, {"1", long_name}, scales);
+      add_dataset(file, name, Element::u32, {values.size()}, {dimension}, {"1", long_name}, scales);
   h5::write(dataset, Element::u32, values.data());
+}
+
+void add_joint_axis(const h5::Handle& file, const ResultDescription& result, Scales& scales) {
+  if (result.joint_scans.empty()) return;
+  std::vector<double> times;
+  for (const std::uint32_t scan : result.joint_scans) times.push_back(result.scan_times[scan]);
+  add_scale(file, "joint", times, {"s", "time of the joint estimate"}, scales);
+  add_indices(file, "joint_scan", "joint", result.joint_scans, "scan of the joint estimate",
+              scales);
 }
 
 void add_axes(const h5::Handle& file, const ResultDescription& result, Scales& scales) {
@@ -42,10 +51,11 @@ void add_axes(const h5::Handle& file, const ResultDescription& result, Scales& s
   add_index_scale(file, "coordinate", 2, {"1", coordinates}, scales);
   add_index_scale(file, "coordinate_column", 2, {"1", coordinates}, scales);
   add_index_scale(file, "character", kFailureReasonBytes, {"1", "place in a text"}, scales);
-  add_scan_index(file, "scan_step", result.scan_steps, "control step after which the scan is taken",
-                 scales);
-  add_scan_index(file, "scan_row", result.scan_rows, "row of time at which the scan is taken",
-                 scales);
+  add_indices(file, "scan_step", "scan", result.scan_steps,
+              "control step after which the scan is taken", scales);
+  add_indices(file, "scan_row", "scan", result.scan_rows, "row of time at which the scan is taken",
+              scales);
+  add_joint_axis(file, result, scales);
 }
 
 void add_points(const h5::Handle& group, const std::string& one, const Points& points,
@@ -149,6 +159,9 @@ void add_cell(const h5::Handle& cells, const StoredCell& cell, std::size_t runs,
   for (const auto& [name, value] : cell.settings) h5::put_text(settings, name, value);
   add_own_scale(group, cell, Axis::particle, "index of the particle", scales);
   add_own_scale(group, cell, Axis::landmark, "landmark: its identity, or order of birth", scales);
+  for (const Axis axis : {Axis::state, Axis::state_column}) {
+    add_own_scale(group, cell, axis, "0 x, 1 y, 2 heading, then x and y of each landmark", scales);
+  }
   add_bookkeeping(group, runs, scales);
   for (const Column& column : cell.columns) add_column(group, column, runs, scales);
 }

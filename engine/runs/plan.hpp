@@ -24,6 +24,7 @@ struct Cell {
   std::string long_name;      ///< e.g. "FastSLAM II, 100 particles"
   std::size_t particles = 0;  ///< 0: not a particle filter
   bool mixture = false;       ///< whether estimate() has a mixture between sampling
+  bool joint = false;         ///< whether joint() gives anything
   std::size_t landmarks = 0;  ///< how many rows the map columns have
   std::vector<std::pair<std::string, std::string>> settings;  ///< resolved, every one, for the file
   std::function<std::unique_ptr<SlamFilter>()> make_filter;   ///< callable from any thread

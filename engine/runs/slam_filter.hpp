@@ -68,6 +68,13 @@ struct LandmarkEstimate {
   Eigen::Matrix2d covariance;  ///< [m^2]
 };
 
+/// Pose and map as one Gaussian: rows x, y, heading, then x and y of each landmark [m, m, rad, m,
+/// m, ...].
+struct JointEstimate {
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd covariance;
+};
+
 /// The seam between engine and filters: estimation only, no threads, no files, no clock, no global
 /// generator. The engine calls start(); then for every step predict(), and update() where the step
 /// ends with a scan. A filter may throw; the run then is stored as failed with the step and the
@@ -91,6 +98,12 @@ class SlamFilter {
   virtual void particles(const ParticleColumns& columns) const { (void)columns; }
   /// The map after the last update(), at most `landmarks.size()` of them; nullopt = never seen.
   virtual void map(std::span<std::optional<LandmarkEstimate>> landmarks) const = 0;
+  /// After update(): the belief about the pose and the first `landmarks` landmarks of map()
+  /// together, NaN where never seen. Nothing of a filter that holds no such belief.
+  virtual std::optional<JointEstimate> joint(std::size_t landmarks) const {
+    (void)landmarks;
+    return std::nullopt;
+  }
 };
 
 }  // namespace montecarta

@@ -102,7 +102,10 @@ void list_columns() {
         "association_correct, _wrong, _new_again, _missed, _clutter: what became of detections, "
         "by the identities that come with them"},
        {"map", "map_mean, map_covariance, map_seen at every scan"},
-       {"final_map", "final_map_mean, final_map_covariance, final_map_seen at the last scan"}},
+       {"final_map", "final_map_mean, final_map_covariance, final_map_seen at the last scan"},
+       {"joint",
+        "joint_mean, joint_covariance of pose and map together at record.joint_scans scans, of "
+        "filters that have it (ekf_slam, riekf_slam, hrb)"}},
       0);
 }
 

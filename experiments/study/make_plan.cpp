@@ -55,6 +55,8 @@ ColumnSelection columns_of(const Settings& s) {
           .association = has("association"),
           .map = has("map"),
           .final_map = has("final_map"),
+          .joint = has("joint"),
+          .joint_scans = s.count("record", "joint_scans"),
           .scans_only = s.text("record", "rate") == "scan"};
 }
 
@@ -91,6 +93,7 @@ Cell cell_of(const CellSpec& spec, const Study& study) {
           .long_name = filter.long_name + (spec.distinction.empty() ? "" : ", " + spec.distinction),
           .particles = particles_of(spec),
           .mixture = filter.has_mixture,
+          .joint = filter.has_joint,
           .landmarks = map_rows_of(setup, study.settings),
           .settings = settings_of(spec),
           .make_filter = [make = filter.make, setup] { return make(setup); }};
@@ -105,6 +108,14 @@ std::vector<std::pair<std::string, std::string>> scenario_facts(const Settings& 
       facts.emplace_back(std::string(section) + "." + key, value);
   }
   return facts;
+}
+
+/// Asking for what no cell can give is a mistake.
+void expect_joint_estimates(const StudyPlan& plan, const Settings& settings) {
+  if (!plan.columns.joint || std::ranges::any_of(plan.cells, &Cell::joint)) return;
+  throw StudyError(settings.place("record", "columns") +
+                   ": joint (none of the cells' filters has a joint covariance): take joint out, "
+                   "or add a cell of ekf_slam, riekf_slam or hrb");
 }
 
 /// A cell stops by what all of its first runs say.
@@ -129,6 +140,7 @@ StudyPlan make_plan(const Study& study, std::optional<RunRange> range) {
   plan.last_run = range ? range->last : plan.runs;
   for (const CellSpec& spec : study.cells) plan.cells.push_back(cell_of(spec, study));
   plan.columns = columns_of(settings);
+  expect_joint_estimates(plan, settings);
   plan.drives = drives_of(study, plan.seed);
   if (study.until) plan.is_enough = rule_of(*study.until);
   plan.own_landmarks = own_landmarks_of(study, plan.seed);

@@ -34,10 +34,10 @@ void add_association(std::vector<Setting>& table) {
 
 void add_record(std::vector<Setting>& table) {
   const char* s = "record";
-  Setting columns =
-      choice(s, "columns",
-             {"pose", "covariance", "ancestry", "particles", "association", "map", "final_map"},
-             "what is stored");
+  Setting columns = choice(
+      s, "columns",
+      {"pose", "covariance", "ancestry", "particles", "association", "map", "final_map", "joint"},
+      "what is stored");
   columns.kind = Setting::Kind::choices;
   columns.fallback = "pose, covariance, ancestry";
   table.push_back(for_recorded(columns, "pose, covariance, ancestry, final_map"));
@@ -47,6 +47,8 @@ void add_record(std::vector<Setting>& table) {
   table.push_back(count(s, "map_rows", "0", 0, 100'000,
                         "rows of map columns with unknown association; 0: as many as the world "
                         "has, or most_landmarks"));
+  table.push_back(
+      count(s, "joint_scans", "16", 1, 100'000, "scans at which the column joint is stored"));
 }
 
 std::vector<Setting> make_table() {

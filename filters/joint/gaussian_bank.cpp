@@ -3,6 +3,7 @@
 
 #include "engine/random/normal_quantile.hpp"
 #include "filters/association/association_counts.hpp"
+#include "filters/joint/joint_mixture.hpp"
 #include "filters/joint/mixture.hpp"
 #include "filters/moments/quadrature_motion.hpp"
 
@@ -232,6 +233,21 @@ std::optional<LandmarkEstimate> GaussianBank::landmark(std::size_t k) const {
   }
   return LandmarkEstimate{about->mean + shift,
                           about->covariance + covariance - shift * shift.transpose()};
+}
+
+/// Likewise; headings that were drawn after the scan are in it as they were drawn.
+std::optional<JointEstimate> GaussianBank::joint(std::size_t landmarks) const {
+  const JointBelief& heaviest = belief_of(weights_.heaviest());
+  if (!known_ || active_.size() == 1) return heaviest.joint(landmarks);
+  JointMixture mixture(heaviest.joint(landmarks));
+  for (const std::uint32_t slot : active_) {
+    double weight = 0.0;
+    for (std::size_t i = 0; i < slot_of_.size(); ++i) {
+      if (slot_of_[i] == slot) weight += weights_.linear()[i];
+    }
+    mixture.add(weight, beliefs_[slot].joint(landmarks));
+  }
+  return mixture.result();
 }
 
 }  // namespace montecarta

@@ -54,6 +54,7 @@ class GaussianBank final : public SlamFilter {
   const ScanReport& report() const override { return report_; }
   void particles(const ParticleColumns& columns) const override;
   void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override;
+  std::optional<JointEstimate> joint(std::size_t landmarks) const override;
 
  private:
   const JointBelief& belief_of(std::size_t particle) const { return beliefs_[slot_of_[particle]]; }

@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "filters/association/association_counts.hpp"
+#include "filters/joint/packs.hpp"
 #include "filters/models/eigen_jacobians.hpp"
 
 #include <algorithm>
@@ -73,6 +74,27 @@ std::size_t JointBelief::slot_of(std::size_t k) const {
 std::optional<LandmarkEstimate> JointBelief::landmark(std::size_t k) const {
   const std::size_t slot = slot_of(k);
   return slot < gaussian_.landmarks() ? std::optional(gaussian_.landmark(slot)) : std::nullopt;
+}
+
+JointEstimate JointBelief::joint(std::size_t landmarks) const {
+  std::vector<Eigen::Index> rows = {0, 1, 2};
+  std::vector<Eigen::Index> places = rows;  ///< of these rows in the result
+  for (std::size_t k = 0; k < landmarks; ++k) {
+    const std::size_t slot = slot_of(k);
+    if (slot >= gaussian_.landmarks()) continue;
+    for (const Eigen::Index coordinate : {0, 1}) {
+      rows.push_back(3 + row_of(slot) + coordinate);
+      places.push_back(3 + row_of(k) + coordinate);
+    }
+  }
+  const JointEstimate by_birth = gaussian_.joint();
+  const Eigen::Index size = 3 + row_of(landmarks);
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  JointEstimate joint{Eigen::VectorXd::Constant(size, unknown),
+                      Eigen::MatrixXd::Constant(size, size, unknown)};
+  joint.mean(places) = by_birth.mean(rows);
+  joint.covariance(places, places) = by_birth.covariance(rows, rows);
+  return joint;
 }
 
 void JointBelief::associate(Scan scan) {

@@ -32,6 +32,8 @@ class JointBelief {
   const JointGaussian& gaussian() const { return gaussian_; }
   /// The k-th landmark: of identity k with known association, else of the k-th birth.
   std::optional<LandmarkEstimate> landmark(std::size_t k) const;
+  /// Of the pose and the first `landmarks` of these; NaN where the map has none.
+  JointEstimate joint(std::size_t landmarks) const;
 
   /// What the last scan was to this belief.
   struct Outcome {

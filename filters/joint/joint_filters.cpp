@@ -85,6 +85,7 @@ FilterKind ekf_slam_kind() {
           .source = "Smith, Self, Cheeseman 1990; SPEC 24 with one component",
           .has_particles = false,
           .has_mixture = false,
+          .has_joint = true,
           .options = {iterations_option("0"), motion_option("linearised")},
           .make = make_ekf_slam};
 }
@@ -95,6 +96,7 @@ FilterKind riekf_slam_kind() {
           .source = "Barrau, Bonnabel 2015",
           .has_particles = false,
           .has_mixture = false,
+          .has_joint = true,
           .options = {iterations_option("0"), motion_option("linearised")},
           .make = make_riekf_slam};
 }
@@ -127,6 +129,7 @@ FilterKind hrb_kind() {
           .source = "SPEC 24",
           .has_particles = true,
           .has_mixture = true,
+          .has_joint = true,
           .options = std::move(options),
           .make = make_hrb};
 }

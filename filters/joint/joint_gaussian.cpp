@@ -93,6 +93,18 @@ LandmarkEstimate JointGaussian::landmark(std::size_t slot) const {
   return {map_mean_.segment<2>(at), map_.block<2, 2>(at, at)};
 }
 
+JointEstimate JointGaussian::joint() const {
+  const Eigen::Index map = row_of(n_landmarks_);
+  JointEstimate joint{Eigen::VectorXd(3 + map), Eigen::MatrixXd(3 + map, 3 + map)};
+  joint.mean << pose_.mean.x, pose_.mean.y, pose_.mean.heading, map_mean_.head(map);
+  joint.covariance.topLeftCorner<3, 3>() = pose_.covariance;
+  joint.covariance.bottomLeftCorner(map, 3) = cross_.topRows(map);
+  joint.covariance.topRightCorner(3, map) = cross_.topRows(map).transpose();
+  joint.covariance.bottomRightCorner(map, map) =
+      map_.topLeftCorner(map, map).selfadjointView<Eigen::Lower>();
+  return joint;
+}
+
 double JointGaussian::extent() const {
   double farthest_squared = 0.0;
   for (Eigen::Index row = 0; row < row_of(n_landmarks_); row += 2) {

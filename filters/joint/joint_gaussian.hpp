@@ -58,6 +58,8 @@ class JointGaussian {
 
   std::size_t landmarks() const { return n_landmarks_; }
   LandmarkEstimate landmark(std::size_t slot) const;
+  /// Pose and landmarks together, in order of birth.
+  JointEstimate joint() const;
   /// [m] from the vehicle to the farthest landmark.
   double extent() const;
 

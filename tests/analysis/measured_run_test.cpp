@@ -99,5 +99,41 @@ TEST(ADriveWithTruth, HasNoReferences) {
   }
 }
 
+/// Weights add up to one but for rounding, and so does the mean size of equal maps.
+TEST(ADriveWithTruth, HasWholeMapsDespiteRounding) {
+  const ScratchFolder folder;
+  const auto map_of_size = [&](double size) {
+    write_synthetic_result(folder / "out.h5", 3, 80,
+                           [&](std::size_t, std::uint64_t, RunRecord& record) {
+                             record.column<double>(*record.layout().find("map_size")).back() = size;
+                           });
+    return analyze(ResultFile(folder / "out.h5")).cells[0].map.missing;
+  };
+  EXPECT_EQ(map_of_size(3.0 + 1e-12), "");
+  EXPECT_NE(map_of_size(3.5), "") << "one particle in two has a landmark that is not stored";
+}
+
+TEST(ADriveWithTruth, IsJudgedByPoseAndMapTogetherWhereThatIsStored) {
+  const ScratchFolder folder;
+  const auto joint_of = [&](const char* association) {
+    write_synthetic_result(folder / "out.h5", 3, 80, {}, [&](StudyPlan& plan) {
+      plan.columns.joint = true;
+      plan.scenario.emplace_back("association.kind", association);
+      plan.cells[0].joint = true;
+    });
+    return analyze(ResultFile(folder / "out.h5"));
+  };
+  const StudyAnalysis study = joint_of("known");
+  ASSERT_EQ(study.joint_times.size(), 16u);
+  EXPECT_EQ(study.joint_times.back(), study.times.back());
+  EXPECT_EQ(study.cells[0].joint.verdict, Verdict::optimistic) << "its means are all wrong";
+  EXPECT_EQ(study.cells[0].joint.dimension.back(), 9.0);
+  EXPECT_GT(study.cells[0].scores[1].joint_nees, 1.0);
+  EXPECT_FALSE(study.cells[1].joint.stored);
+  const StudyAnalysis unknown = joint_of("nearest");
+  EXPECT_EQ(unknown.cells[0].joint.verdict, Verdict::untested);
+  EXPECT_TRUE(std::isnan(unknown.cells[0].scores[1].joint_nees));
+}
+
 }  // namespace
 }  // namespace montecarta

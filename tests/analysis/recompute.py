@@ -95,8 +95,25 @@ class Cell:
         self.moments = list(self.of_moments)  # the first one leads
         self.errors = self.of_moments[self.moments[0]][0]
         self.tables = {d: Corrected(d, self.particles) for d in (1, 2, 3) if "corrected" in self.moments}
+        self.joint = self.make_joint(file, cell)
         self.cpu = file["timing"][label]["cpu_seconds"][:][self.runs]
         self.scores = self.make_scores()
+
+    def make_joint(self, file, cell):
+        """(joint NEES, components) {run, joint} of the landmarks in the map; None where not stored."""
+        if "joint_mean" not in cell:
+            return None
+        mean, covariance = cell["joint_mean"][:][self.runs], cell["joint_covariance"][:][self.runs]
+        pose = file["truth/pose"][:][self.runs][:, file["scan_row"][:][file["joint_scan"][:]]]
+        world = file["scenario/landmarks"][:].ravel()
+        errors = mean - np.concatenate([pose, np.broadcast_to(world, pose.shape[:2] + world.shape)], axis=-1)
+        errors[..., 2] = np.arctan2(np.sin(errors[..., 2]), np.cos(errors[..., 2]))
+        nees, components = np.empty(mean.shape[:2]), np.empty(mean.shape[:2])
+        for at in np.ndindex(nees.shape):
+            seen = ~np.isnan(mean[at])
+            nees[at] = errors[at][seen] @ np.linalg.solve(covariance[at][np.ix_(seen, seen)], errors[at][seen])
+            components[at] = seen.sum()
+        return nees, components
 
     def nees(self, part, moments, by):
         errors, covariances = self.of_moments[moments]
@@ -144,6 +161,14 @@ def check_cell(cell, folder):
         values = cell.scores[name]
         check(f"{cell.label} {name}", float(numbers[f"{name}_mean [{unit}]"]), values.mean())
         check(f"{cell.label} {name}", float(numbers[f"{name}_sd [{unit}]"]), values.std(ddof=1))
+
+    if cell.joint:
+        nees, components = cell.joint
+        ours = [row for row in rows_of(f"{folder}/joint_nees.csv") if row["cell"] == cell.label]
+        n, rows = components.sum(axis=0), nees.shape[1]
+        check(f"{cell.label} joint", column(ours, "nees_per_component"), nees.sum(axis=0) / n, 1e-10)
+        check(f"{cell.label} joint lower", column(ours, "lower"), stats.chi2.ppf(0.025 / rows, n) / n)
+        check(f"{cell.label} joint upper", column(ours, "upper"), stats.chi2.isf(0.025 / rows, n) / n)
 
 
 def holm(p):

@@ -30,6 +30,13 @@ void leave_out_mixtures(StudyPlan& plan) {
   for (Cell& cell : plan.cells) cell.mixture = false;
 }
 
+/// Filters that know pose and map together, in a world whose landmarks have names.
+void store_joint_estimates(StudyPlan& plan) {
+  plan.columns.joint = true;
+  plan.scenario.emplace_back("association.kind", "known");
+  for (Cell& cell : plan.cells) cell.joint = true;
+}
+
 class SlowRecompute : public testing::Test {
  protected:
   void SetUp() override {
@@ -81,6 +88,9 @@ TEST_F(SlowRecompute, ManyRunsWithTheNormalApproximation) {
 }
 TEST_F(SlowRecompute, TheSpreadOfFewParticlesCorrected) {
   expect_same_numbers(12, "scripted_m6", leave_out_mixtures);
+}
+TEST_F(SlowRecompute, PoseAndMapTogether) {
+  expect_same_numbers(12, "scripted_m4", store_joint_estimates);
 }
 
 }  // namespace

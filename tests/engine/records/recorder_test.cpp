@@ -172,6 +172,41 @@ TEST(Recorder, StoresAssociationsWhereTheyAreAskedFor) {
   }
 }
 
+TEST(Recorder, StoresJointEstimatesAtTheEndOfEachPartOfTheRun) {
+  StudyPlan plan = small_result_plan();  // of six scans
+  plan.columns.joint = true;
+  plan.columns.joint_scans = 3;
+  EXPECT_FALSE(
+      RecordLayout(plan.cells[0], plan.columns, plan.drives->itinerary()).find("joint_mean"))
+      << "of a filter that has none";
+  plan.cells[0].joint = true;
+  const RecordLayout layout(plan.cells[0], plan.columns, plan.drives->itinerary());
+  EXPECT_THAT(layout.joint_scans(), ElementsAre(1, 3, 5));
+  RunRecord record(layout);
+  Drive drive;
+  plan.drives->generate(2, drive);
+  fill_record(plan, 0, 2, drive, record);
+  const auto mean = record.column<double>(*layout.find("joint_mean"));
+  const auto covariance = record.column<double>(*layout.find("joint_covariance"));
+  ASSERT_EQ(mean.size(), 3u * 9u);
+  ASSERT_EQ(covariance.size(), 3u * 81u);
+  const auto seen = [&](std::size_t until) {
+    std::size_t all = 0;
+    for (std::size_t s = 0; s <= until; ++s) all += drive.scan(s).size();
+    return static_cast<double>(std::min<std::size_t>(3, all));
+  };
+  EXPECT_THAT((std::vector{mean[0], mean[9], mean[18]}), ElementsAre(seen(1), seen(3), seen(5)));
+  EXPECT_EQ(mean[17], 8.0);
+  EXPECT_EQ(covariance[81 + 8], 0.5);
+  EXPECT_EQ(covariance[81 + 10], 1.0);
+}
+
+TEST(JointScans, AreTheLastOfEqualParts) {
+  EXPECT_THAT(joint_scans_of(10, 3), ElementsAre(2, 5, 9));
+  EXPECT_THAT(joint_scans_of(2, 16), ElementsAre(0, 1));
+  EXPECT_THAT(joint_scans_of(0, 16), IsEmpty());
+}
+
 TEST(RunRecord, FingerprintTellsEveryBitApart) {
   const StudyPlan plan = small_result_plan();
   const RecordLayout layout(plan.cells[0], plan.columns, plan.drives->itinerary());

@@ -48,13 +48,16 @@ void list(const h5::Handle& group, const std::string& path, std::ostream& out) {
 /// Renewed on purpose only: MONTECARTA_UPDATE_GOLDEN=1 rewrites and fails.
 TEST(ResultLayout, IsThatOfTheGoldenFile) {
   const std::filesystem::path golden =
-      std::filesystem::path(MONTECARTA_SOURCE_DIR) / "tests/engine/records/golden/result_1_3.txt";
+      std::filesystem::path(MONTECARTA_SOURCE_DIR) / "tests/engine/records/golden/result_1_4.txt";
   const ScratchFolder folder;
   StudyPlan plan = small_result_plan();
   plan.cells[1].particles = 0;  // a Kalman filter
   plan.cells[1].mixture = false;
   plan.columns.association = true;
   plan.columns.final_map = true;
+  plan.columns.joint = true;
+  plan.columns.joint_scans = 2;
+  plan.cells[1].joint = true;
   lay_out(folder / "out.h5", describe(plan, {{"host", "nowhere"}}));
   std::ostringstream listing;
   list(h5::open_file(folder / "out.h5"), "", listing);

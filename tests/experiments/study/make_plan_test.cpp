@@ -67,6 +67,15 @@ TEST(Plan, RefusesSettingsThatDoNotFitTogether) {
               HasSubstr("is not reached within 0.001 m"));
 }
 
+TEST(Plan, RefusesJointEstimatesThatNoCellHas) {
+  const std::string record = "[record]\ncolumns = pose, joint\n[cells]";
+  EXPECT_THAT(plan_complaint(with("[cells]", record)),
+              HasSubstr("trial.ini:7: columns: joint (none of the cells' filters"));
+  const StudyPlan plan = make_plan(parsed(with("[cells]", record) + "cell = hrb\n"));
+  EXPECT_TRUE(plan.cells.back().joint);
+  EXPECT_EQ(plan.columns.joint_scans, 16u);
+}
+
 TEST(Plan, CanScanAsThePublicSimulatorDoes) {
   const StudyPlan plan =
       make_plan(parsed(with("[cells]", "scan_rate = 4.444444444444445\n[cells]")));

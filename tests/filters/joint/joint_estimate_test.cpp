@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Law: what a bank says of pose and map together has, as its parts, what it says of each.
+#include "filters/joint/joint_filters.hpp"
+#include "tests/filters/default_options.hpp"
+#include "tests/filters/small_world.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+
+namespace montecarta {
+namespace {
+
+constexpr std::size_t kLandmarks = 20;
+
+FilterSetup setup_of(const FilterKind& kind, Association association,
+                     const std::map<std::string, std::string, std::less<>>& options) {
+  return {.belief = {},
+          .association = {.kind = association},
+          .options = default_options(kind, options),
+          .landmarks = kLandmarks};
+}
+
+/// Checks after every scan; returns how many landmarks there were in all.
+int expect_parts(SlamFilter& filter, const SmallWorld& world, bool heaviest_only) {
+  int seen = 0;
+  drive_through(filter, world, {}, [&](std::size_t scan) {
+    const auto joint = filter.joint(kLandmarks);
+    ASSERT_TRUE(joint);
+    ASSERT_EQ(joint->mean.size(), 43);
+    const Eigen::Matrix3d of_pose = joint->covariance.topLeftCorner<3, 3>();
+    EXPECT_EQ(of_pose, of_pose.transpose());
+    std::vector<std::optional<LandmarkEstimate>> map(kLandmarks);
+    filter.map(map);
+    std::vector<Eigen::Index> rows = {0, 1, 2};
+    for (std::size_t l = 0; l < kLandmarks; ++l) {
+      const auto row = static_cast<Eigen::Index>(3 + 2 * l);
+      ASSERT_EQ(map[l].has_value(), !std::isnan(joint->mean(row))) << "scan " << scan;
+      if (!map[l]) continue;
+      rows.insert(rows.end(), {row, row + 1});
+      ++seen;
+      EXPECT_TRUE(joint->mean.segment<2>(row).isApprox(map[l]->mean, 1e-12)) << "scan " << scan;
+      const auto block = joint->covariance.block<2, 2>(row, row);
+      EXPECT_TRUE(block.isApprox(map[l]->covariance, 1e-9)) << "scan " << scan;
+    }
+    const Eigen::MatrixXd P = joint->covariance(rows, rows);
+    EXPECT_TRUE(P.isApprox(P.transpose(), 1e-12));
+    EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(P).eigenvalues().minCoeff(), 0.0);
+    if (heaviest_only) return;
+    const PoseEstimate estimate = filter.estimate();
+    const PoseMoments& pose = estimate.mixture ? *estimate.mixture : estimate.spread;
+    EXPECT_NEAR(joint->mean(0), pose.mean.x, 0.2) << "scan " << scan;
+  });
+  return seen;
+}
+
+TEST(JointEstimate, OfOneGaussianHasItsParts) {
+  const SmallWorld world = small_world({.seed = 31, .scans = 60});
+  for (const auto association : {Association::known, Association::nearest}) {
+    const auto filter = make_ekf_slam(setup_of(ekf_slam_kind(), association, {}));
+    EXPECT_GT(expect_parts(*filter, world, false), 100);
+    const Eigen::Matrix3d P = filter->estimate().spread.covariance;
+    EXPECT_TRUE((filter->joint(kLandmarks)->covariance.topLeftCorner<3, 3>().isApprox(P, 1e-12)));
+  }
+}
+
+TEST(JointEstimate, OfABankThatSplitsHasItsParts) {
+  const SmallWorld world = small_world({.seed = 32, .scans = 60});
+  const std::map<std::string, std::string, std::less<>> often{{"particles", "9"},
+                                                              {"split_beyond_deg", "0.1"}};
+  const auto bank = make_hrb(setup_of(hrb_kind(), Association::known, often));
+  EXPECT_GT(expect_parts(*bank, world, false), 100);
+  const auto searching = make_hrb(setup_of(hrb_kind(), Association::nearest, often));
+  EXPECT_GT(expect_parts(*searching, world, true), 100);
+}
+
+}  // namespace
+}  // namespace montecarta
