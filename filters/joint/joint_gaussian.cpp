@@ -75,8 +75,8 @@ PoseMoments JointGaussian::pose_after(const MotionIncrement& motion) const {
   PoseMoments moved;
   moved.mean = {pose_.mean.x + way.x, pose_.mean.y + way.y,
                 wrap(pose_.mean.heading + motion.pose().heading)};
-  moved.covariance =
-      F * pose_.covariance * F.transpose() + turn * motion.covariance() * turn.transpose();
+  moved.covariance = F * pose_.covariance * F.transpose() +
+                     turn * symmetric(motion.covariance()) * turn.transpose();
   mirror_lower(moved.covariance);
   return moved;
 }

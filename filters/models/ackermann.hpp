@@ -56,29 +56,37 @@ BasicPose<Real> move(const BasicPose<Real>& pose, const Control& control, double
   return move(pose, control.speed, control.steer, duration, vehicle);
 }
 
-/// move() with its derivatives at (pose, control); the control is common to all lanes.
+/// move() with its derivatives at (pose, speed, steer), where `heading` and `wheel` are the
+/// directions of the pose and of the steering angle; the control is common to all lanes.
 template <class Real>
-LinearisedMove<Real> linearised_move(const BasicPose<Real>& pose, const Control& control,
-                                     double duration, const Vehicle& vehicle) {
-  const BodyStep<double> step = body_step(vehicle, control.speed, control.steer, duration);
-  const BodyStep<double> by_speed = body_step(vehicle, 1.0, control.steer, duration);
-  const BodyStep<double> by_steer =
-      steer_derivative(vehicle, control.speed, control.steer, duration);
-  const Direction<Real> heading = direction_of(pose.heading);
+LinearisedMove<Real> linearised_move(const BasicPose<Real>& pose, const Direction<Real>& heading,
+                                     double speed, const Direction<double>& wheel, double duration,
+                                     const Vehicle& vehicle) {
+  const BodyStep<double> step = body_step(vehicle, speed, wheel, duration);
+  const BodyStep<double> by_speed = body_step(vehicle, 1.0, wheel, duration);
+  const BodyStep<double> by_steer = steer_derivative(vehicle, speed, wheel, duration);
   const BasicPoint<Real> way = in_world(heading, Real(step.forward), Real(step.left));
-  const BasicPoint<Real> speed = in_world(heading, Real(by_speed.forward), Real(by_speed.left));
-  const BasicPoint<Real> steer = in_world(heading, Real(by_steer.forward), Real(by_steer.left));
+  const BasicPoint<Real> faster = in_world(heading, Real(by_speed.forward), Real(by_speed.left));
+  const BasicPoint<Real> bent = in_world(heading, Real(by_steer.forward), Real(by_steer.left));
   const BasicPose<Real> moved{pose.x + way.x, pose.y + way.y,
                               wrap(Real(pose.heading + Real(step.turn)))};
   return {moved,
           {.x_heading = -way.y,
            .y_heading = way.x,
-           .x_speed = speed.x,
-           .x_steer = steer.x,
-           .y_speed = speed.y,
-           .y_steer = steer.y,
+           .x_speed = faster.x,
+           .x_steer = bent.x,
+           .y_speed = faster.y,
+           .y_steer = bent.y,
            .heading_speed = Real(by_speed.turn),
            .heading_steer = Real(by_steer.turn)}};
+}
+
+/// The same at (pose, control).
+template <class Real>
+LinearisedMove<Real> linearised_move(const BasicPose<Real>& pose, const Control& control,
+                                     double duration, const Vehicle& vehicle) {
+  return linearised_move(pose, direction_of(pose.heading), control.speed,
+                         direction_of(control.steer), duration, vehicle);
 }
 
 }  // namespace montecarta

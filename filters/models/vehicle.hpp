@@ -39,13 +39,13 @@ struct BodyStep {
   Real turn;     ///< [rad] counter-clockwise
 };
 
-/// One control step: `speed` [m/s], `steer` [rad], of one vehicle (double) or one a lane;
-/// `duration` [s]. Linear in the speed. SPEC 2.1 and 2.2, in the frame of the vehicle.
+/// One control step: `speed` [m/s] and the direction of the steered wheel, of one vehicle (double)
+/// or one a lane; `duration` [s]. Linear in the speed. SPEC 2.1 and 2.2, in the frame of the
+/// vehicle.
 template <class Real>
-BodyStep<Real> body_step(const Vehicle& vehicle, const Real& speed, const Real& steer,
+BodyStep<Real> body_step(const Vehicle& vehicle, const Real& speed, const Direction<Real>& wheel,
                          double duration) {
   const Real way = speed * Real(duration);
-  const Direction<Real> wheel = direction_of(steer);
   if (vehicle.kind == Vehicle::Kind::front_axle) {
     const Real left = way * wheel.sine;
     return {way * wheel.cosine, left, left * Real(1.0 / vehicle.wheelbase)};
@@ -58,11 +58,17 @@ BodyStep<Real> body_step(const Vehicle& vehicle, const Real& speed, const Real& 
   return {of_axle - Real(vehicle.sensor_left) * turn, Real(vehicle.sensor_ahead) * turn, turn};
 }
 
+/// The same, of a steering angle [rad].
+template <class Real>
+BodyStep<Real> body_step(const Vehicle& vehicle, const Real& speed, const Real& steer,
+                         double duration) {
+  return body_step(vehicle, speed, direction_of(steer), duration);
+}
+
 /// Derivative of body_step() by the steering angle, each element per rad.
-inline BodyStep<double> steer_derivative(const Vehicle& vehicle, double speed, double steer,
-                                         double duration) {
+inline BodyStep<double> steer_derivative(const Vehicle& vehicle, double speed,
+                                         const Direction<double>& wheel, double duration) {
   const double way = speed * duration;
-  const Direction<double> wheel = direction_of(steer);
   const double L = vehicle.wheelbase;
   if (vehicle.kind == Vehicle::Kind::front_axle) {
     return {-way * wheel.sine, way * wheel.cosine, way * wheel.cosine / L};

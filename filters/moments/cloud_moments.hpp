@@ -100,7 +100,8 @@ class CloudMoments {
  public:
   template <class Real>
   CloudMoments(const Weights<Real>& weights, const std::vector<BasicPose<Real>>& poses)
-      : mean_(weighted_mean<Real>(weights, [&](std::size_t b) { return poses[b]; })) {
+      : mean_(weighted_mean<Real>(weights, [&](std::size_t b) { return poses[b]; })),
+        ahead_(direction_of(mean_.heading)) {
     const auto terms = [&](std::size_t b) {
       const Real x = poses[b].x - mean_.x, y = poses[b].y - mean_.y;
       const Real h = wrap(poses[b].heading - mean_.heading);
@@ -109,19 +110,15 @@ class CloudMoments {
       return std::array<Real, 18>{h,     c,     s,     x * x, x * y, x * h, x * c, x * s, y * y,
                                   y * h, y * c, y * s, h * h, h * c, h * s, c * c, c * s, s * s};
     };
-    const auto S = weighted_sums<Real, 18>(weights, terms);
-    cosine_ = S[1], sine_ = S[2];
-    for (int row = 0, k = 3; row < 5; ++row) {
-      for (int column = row; column < 5; ++column, ++k) {
-        second_(row, column) = second_(column, row) = S[static_cast<std::size_t>(k)];
-      }
-    }
+    const auto [h, c, s, xx, xy, xh, xc, xs, yy, yh, yc, ys, hh, hc, hs, cc, cs, ss] =
+        weighted_sums<Real, 18>(weights, terms);
+    turn_ = {1.0 + c, s};
+    turn_squares_ = {1.0 + 2.0 * c + cc, s + cs, ss};
+    pose_ = {xx, xy, yy, xh, yh, hh};
     // Headings more than half a turn from the mean wrap, so that their mean is not quite zero; they
     // are deviations from the mean heading all the same.
-    const Eigen::Matrix<double, 5, 1> mean{0.0, 0.0, S[0], cosine_, sine_};
-    const Eigen::Matrix<double, 5, 1> origin{0.0, 0.0, 0.0, cosine_, sine_};
-    centred_ = second_ - mean * origin.transpose() - origin * mean.transpose() +
-               origin * origin.transpose();
+    x_ = {xc, xs}, y_ = {yc, ys}, h_ = {hc - h * c, hs - h * s};
+    c_ = {cc - c * c, cs - c * s}, s_ = {cs - c * s, ss - s * s};
   }
 
   /// The estimate after the cloud moved by `increment`.
@@ -129,11 +126,11 @@ class CloudMoments {
 
  private:
   Pose mean_;
-  double cosine_ = 0.0;                                                       ///< mean of cos h - 1
-  double sine_ = 0.0;                                                         ///< mean of sin h
-  Eigen::Matrix<double, 5, 5> second_ = Eigen::Matrix<double, 5, 5>::Zero();  ///< E[v v']
-  Eigen::Matrix<double, 5, 5> centred_ =
-      Eigen::Matrix<double, 5, 5>::Zero();  ///< about the moved mean
+  Direction<double> ahead_;          ///< of the mean heading
+  Direction<double> turn_;           ///< mean of (cos h, sin h)
+  Symmetric2<double> turn_squares_;  ///< mean of their squares and product
+  Symmetric3<double> pose_;          ///< covariance of (x, y, h)
+  Point x_, y_, h_, c_, s_;          ///< of each element of v with (cos h, sin h)
 };
 
 }  // namespace montecarta

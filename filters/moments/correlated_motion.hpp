@@ -34,14 +34,13 @@ DrivenPose<Real> driven(const PoseGaussian<Real>& before, const MotionIncrement&
   const Real way_y = d.sine * step.x + d.cosine * step.y;
   const StraightTurn<Real> turn = transform.straight_turn(P.hh);
   const Real a = -(turn.across * way_y), b = turn.across * way_x;
-  const Symmetric3<Real> own = turned(symmetric_of<Real>(motion.covariance()), d);
-  const Real xh = P.xh + a * P.hh, yh = P.yh + b * P.hh;
+  Symmetric3<Real> moved = sheared(P, a, b) + turned(in_every_lane<Real>(motion.covariance()), d);
+  moved.xx += turn.bend * way_x * way_x;
+  moved.xy += turn.bend * way_x * way_y;
+  moved.yy += turn.bend * way_y * way_y;
   return {{{mean.x + turn.mean * way_x, mean.y + turn.mean * way_y,
             wrap(Real(mean.heading + step.heading))},
-           {P.xx + a * P.xh + a * xh + own.xx + turn.bend * way_x * way_x,
-            P.xy + b * P.xh + a * yh + own.xy + turn.bend * way_x * way_y,
-            P.yy + b * P.yh + b * yh + own.yy + turn.bend * way_y * way_y, xh + own.xh, yh + own.yh,
-            P.hh + own.hh}},
+           moved},
           {a, b}};
 }
 

@@ -19,12 +19,18 @@ struct Symmetric3 {
 
 /// As a matrix.
 inline Eigen::Matrix3d symmetric(const Symmetric3<double>& P) {
-  return Eigen::Matrix3d{{P.xx, P.xy, P.xh}, {P.xy, P.yy, P.yh}, {P.xh, P.yh, P.hh}};
+  Eigen::Matrix3d matrix;
+  matrix << P.xx, P.xy, P.xh, P.xy, P.yy, P.yh, P.xh, P.yh, P.hh;
+  return matrix;
 }
 /// Of a matrix, whose upper triangle is read.
-template <class Real = double>
-Symmetric3<Real> symmetric_of(const Eigen::Matrix3d& P) {
+inline Symmetric3<double> symmetric_of(const Eigen::Matrix3d& P) {
   return {P(0, 0), P(0, 1), P(1, 1), P(0, 2), P(1, 2), P(2, 2)};
+}
+/// The same for every particle.
+template <class Real>
+Symmetric3<Real> in_every_lane(const Symmetric3<double>& P) {
+  return {P.xx, P.xy, P.yy, P.xh, P.yh, P.hh};
 }
 
 /// R P R' for the turn R of (x, y) by the angle of `d`; the heading stays.
@@ -40,6 +46,21 @@ template <class Real>
           .xh = c * P.xh - s * P.yh,
           .yh = s * P.xh + c * P.yh,
           .hh = P.hh};
+}
+
+/// F P F' for F = [1 0 x; 0 1 y; 0 0 1]: a heading that errs bends the way (SPEC 2.1).
+template <class Real>
+[[gnu::always_inline]] inline Symmetric3<Real> sheared(const Symmetric3<Real>& P, const Real& x,
+                                                       const Real& y) {
+  const Real xh = P.xh + x * P.hh, yh = P.yh + y * P.hh;
+  return {
+      P.xx + x * P.xh + x * xh, P.xy + y * P.xh + x * yh, P.yy + y * P.yh + y * yh, xh, yh, P.hh};
+}
+
+template <class Real>
+[[gnu::always_inline]] inline Symmetric3<Real> operator+(const Symmetric3<Real>& A,
+                                                         const Symmetric3<Real>& B) {
+  return {A.xx + B.xx, A.xy + B.xy, A.yy + B.yy, A.xh + B.xh, A.yh + B.yh, A.hh + B.hh};
 }
 
 /// factor P.
@@ -93,6 +114,18 @@ template <class Real>
   P.xh -= gain.x * column.h;
   P.yh -= gain.y * column.h;
   P.hh -= gain.h * column.h;
+}
+
+/// P plus `weight` times column column'.
+[[gnu::always_inline]] inline void add_outer(Symmetric3<double>& P, double weight,
+                                             const Eigen::Vector3d& column) {
+  const double x = weight * column(0), y = weight * column(1);
+  P.xx += x * column(0);
+  P.xy += x * column(1);
+  P.yy += y * column(1);
+  P.xh += x * column(2);
+  P.yh += y * column(2);
+  P.hh += weight * column(2) * column(2);
 }
 
 /// Lower triangular factor; a pivot that is zero but for rounding gives a zero column (SPEC 4).

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/numbers/directions.hpp"
 #include "filters/factory.hpp"
-#include "filters/models/eigen_jacobians.hpp"
+#include "filters/models/ackermann.hpp"
 #include "filters/moments/gaussians.hpp"
-
-#include <Eigen/Core>
 
 namespace montecarta {
 
@@ -17,24 +16,26 @@ namespace montecarta {
 class MotionIncrement {
  public:
   MotionIncrement() = default;
-  MotionIncrement(const Pose& pose, const Eigen::Matrix3d& covariance)
+  MotionIncrement(const Pose& pose, const Symmetric3<double>& covariance)
       : pose_(pose), covariance_(covariance) {}
 
   void restart() { *this = MotionIncrement(); }
 
   /// One control step of `duration` [s], linearised.
   void advance(const Control& control, double duration, const Belief& belief) {
-    const LinearisedMove<double> step = linearised_move(pose_, control, duration, belief.vehicle);
-    const Eigen::Matrix3d F = pose_jacobian(step.jacobians);
-    Matrix32 G = control_jacobian(step.jacobians);
-    G.col(0) *= belief.sigma_speed;
-    G.col(1) *= belief.sigma_steer;
-    covariance_ = F * covariance_ * F.transpose() + G * G.transpose();
-    pose_ = step.pose;
+    const auto [heading, wheel] = directions_of<2>({pose_.heading, control.steer});
+    const auto [pose, F] =
+        linearised_move(pose_, heading, control.speed, wheel, duration, belief.vehicle);
+    covariance_ = sheared(covariance_, F.x_heading, F.y_heading);
+    add_outer(covariance_, belief.sigma_speed * belief.sigma_speed,
+              {F.x_speed, F.y_speed, F.heading_speed});
+    add_outer(covariance_, belief.sigma_steer * belief.sigma_steer,
+              {F.x_steer, F.y_steer, F.heading_steer});
+    pose_ = pose;
   }
 
   const Pose& pose() const { return pose_; }
-  const Eigen::Matrix3d& covariance() const { return covariance_; }
+  const Symmetric3<double>& covariance() const { return covariance_; }
 
   /// What a particle that was at `origin` exactly believes now (SPEC 5: P_i accumulates from zero).
   template <class Real>
@@ -43,12 +44,12 @@ class MotionIncrement {
     return {
         {origin.x + d.cosine * pose_.x - d.sine * pose_.y,
          origin.y + d.sine * pose_.x + d.cosine * pose_.y, wrap(origin.heading + pose_.heading)},
-        turned(symmetric_of<Real>(covariance_), d)};
+        turned(in_every_lane<Real>(covariance_), d)};
   }
 
  private:
   Pose pose_;
-  Eigen::Matrix3d covariance_ = Eigen::Matrix3d::Zero();
+  Symmetric3<double> covariance_;
 };
 
 }  // namespace montecarta

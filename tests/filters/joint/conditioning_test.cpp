@@ -93,7 +93,7 @@ TEST(JointGaussian, AnIteratedDetectionPassesTheBackwardDirection) {
   JointGaussian gaussian(belief, Retraction::additive, 1);
   gaussian.start({});
   gaussian.append({3.0, 0.0});
-  gaussian.move(MotionIncrement(Pose{}, Eigen::Vector3d(4.0, 4.0, 0.01).asDiagonal()));
+  gaussian.move(MotionIncrement(Pose{}, {.xx = 4.0, .yy = 4.0, .hh = 0.01}));
   ExpectedSight expected;
   ASSERT_EQ(gaussian.look_at(0, expected), JointGaussian::Trouble::none);
   gaussian.absorb(0, {0.559, 1.107}, 20, expected);
@@ -125,7 +125,7 @@ TEST(JointGaussian, AnInvariantDrawTurnsVehicleAndMapAsOne) {
   // Nothing was seen twice, so pose and landmarks share all that is known of the heading's past.
   JointGaussian gaussian(kRough, Retraction::invariant, 2);
   gaussian.start({});
-  const MotionIncrement turn_on_the_spot(Pose{}, Eigen::Vector3d(0.0, 0.0, 0.09).asDiagonal());
+  const MotionIncrement turn_on_the_spot(Pose{}, {.hh = 0.09});
   gaussian.move(turn_on_the_spot);
   gaussian.append({10.0, 0.0});
   gaussian.append({20.0, 1.0});

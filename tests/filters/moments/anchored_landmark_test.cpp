@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "filters/models/eigen_jacobians.hpp"
 #include "filters/moments/moment_transforms.hpp"
 #include "tests/filters/moments/random_gaussians.hpp"
 #include "tests/filters/reference/gaussian.hpp"

@@ -142,7 +142,7 @@ TEST(SigmaCorrelated, AnUncertainPoseIsDrivenOnAsAllPointsDo) {
                        at(1) + d.sine * step.x + d.cosine * step.y, wrap(at(2) + step.heading));
     });
     const Eigen::Matrix3d own = symmetric(random_pose_covariance(draw, 0.1, 0.02));
-    drive(c.map, 0, MotionIncrement(step, own), central());
+    drive(c.map, 0, MotionIncrement(step, symmetric_of(own)), central());
     const Symmetric3<double> turned_own =
         turned(symmetric_of(own), direction_of(c.sight.pose.mean.heading));
     Vector<3> moved = c.mean().head<3>() - image.mean;
