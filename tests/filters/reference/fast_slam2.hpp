@@ -65,6 +65,16 @@ class FastSlam2 : public FastSlam {
     return log_gaussian<2>(seen->nu, seen->S_f);
   }
 
+  /// One detection after the other, each where the last one led; returns the closed form (c).
+  double refine(Particle& p, Scan scan) const {
+    double log_evidence = 0.0;
+    for (std::size_t k = 0; k < scan.size(); ++k) {
+      if (p.pairings[k].verdict != Verdict::matched) continue;
+      log_evidence += absorb(p, *p.map[p.pairings[k].landmark], scan[k]).value_or(0.0);
+    }
+    return log_evidence;
+  }
+
   void predict_particle(const StepContext&, std::uint32_t, Particle& p, const Control& control,
                         double duration) final {
     move_gaussian(p, control, duration);
@@ -95,16 +105,6 @@ class FastSlam2 : public FastSlam {
   }
 
  private:
-  /// One detection after the other, each where the last one led; returns the closed form (c).
-  double refine(Particle& p, Scan scan) const {
-    double log_evidence = 0.0;
-    for (std::size_t k = 0; k < scan.size(); ++k) {
-      if (p.pairings[k].verdict != Verdict::matched) continue;
-      log_evidence += absorb(p, *p.map[p.pairings[k].landmark], scan[k]).value_or(0.0);
-    }
-    return log_evidence;
-  }
-
   /// Form (b): the density of the stacked innovation, linearised at the predicted pose.
   double log_batch(const Particle& p, Scan scan) const {
     Eigen::MatrixXd H(2 * scan.size(), 3);

@@ -18,7 +18,7 @@ struct SrcdParts {
 
 /// SRCD-FastSLAM (SPEC 9, 10) as printed and corrected: seven dimensions, fifteen points, and
 /// square roots alone from scan to scan. Covariances are formed for those who only look.
-class SrcdFastSlam final : public FastSlam2 {
+class SrcdFastSlam : public FastSlam2 {
  public:
   SrcdFastSlam(const FastSlamSettings& settings, Weight weight, const SrcdParts& parts)
       : FastSlam2(settings, weight), parts_(parts) {}
