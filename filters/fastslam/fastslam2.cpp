@@ -17,11 +17,13 @@ FilterKind fastslam2_kind() {
           .has_particles = true,
           .has_mixture = true,
           .options = std::move(options),
-          .make = [](const FilterSetup& setup) {
-            if (move_lag(setup.options) > 0) return make_moved<Lanes>(setup, Linearised());
-            return are_anchored(setup.options) ? make_fastslam2_anchored<Lanes>(setup)
-                                               : make_fastslam2<Lanes>(setup);
-          }};
+          .make =
+              [](const FilterSetup& setup) {
+                if (move_lag(setup.options) > 0) return make_moved<Lanes>(setup, Linearised());
+                return are_anchored(setup.options) ? make_fastslam2_anchored<Lanes>(setup)
+                                                   : make_fastslam2<Lanes>(setup);
+              },
+          .check = check_move};
 }
 
 }  // namespace montecarta

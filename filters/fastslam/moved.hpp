@@ -9,8 +9,8 @@ namespace montecarta {
 /// The option `move_lag` of filters whose particles can part again after a resampling.
 FilterOption move_lag_option();
 std::size_t move_lag(const FilterOptions& options);
-/// Throws a StudyError where the setup asks for more than known association and landmarks in the
-/// map.
+/// Throws a StudyError where poses are to be moved and the setup asks for more than known
+/// association and landmarks in the map.
 void check_move(const FilterSetup& setup);
 
 /// FastSLAM II or its sigma-point kin that moves its poses of the last `move_lag` scans.

@@ -17,14 +17,16 @@ FilterKind srcd_kind() {
           .has_particles = true,
           .has_mixture = true,
           .options = std::move(options),
-          .make = [](const FilterSetup& setup) {
-            if (move_lag(setup.options) > 0) {
-              return make_moved<Lanes>(setup, srcd_points(setup));
-            }
-            return are_anchored(setup.options)
-                       ? make_sigma_anchored<Lanes>(setup, srcd_points(setup))
-                       : make_srcd<Lanes>(setup);
-          }};
+          .make =
+              [](const FilterSetup& setup) {
+                if (move_lag(setup.options) > 0) {
+                  return make_moved<Lanes>(setup, srcd_points(setup));
+                }
+                return are_anchored(setup.options)
+                           ? make_sigma_anchored<Lanes>(setup, srcd_points(setup))
+                           : make_srcd<Lanes>(setup);
+              },
+          .check = check_move};
 }
 
 }  // namespace montecarta

@@ -38,14 +38,16 @@ FilterKind ufastslam_kind() {
           .has_particles = true,
           .has_mixture = true,
           .options = std::move(options),
-          .make = [](const FilterSetup& setup) {
-            if (move_lag(setup.options) > 0) {
-              return make_moved<Lanes>(setup, unscented_points(setup));
-            }
-            return are_anchored(setup.options)
-                       ? make_sigma_anchored<Lanes>(setup, unscented_points(setup))
-                       : make_ufastslam<Lanes>(setup);
-          }};
+          .make =
+              [](const FilterSetup& setup) {
+                if (move_lag(setup.options) > 0) {
+                  return make_moved<Lanes>(setup, unscented_points(setup));
+                }
+                return are_anchored(setup.options)
+                           ? make_sigma_anchored<Lanes>(setup, unscented_points(setup))
+                           : make_ufastslam<Lanes>(setup);
+              },
+          .check = check_move};
 }
 
 }  // namespace montecarta

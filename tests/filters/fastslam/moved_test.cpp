@@ -91,8 +91,15 @@ TEST(Moved, SaysWhatItDoesNotGoTogetherWith) {
   Variant nearest = moved("3"), anchored = moved("3");
   nearest.association = Association::nearest;
   anchored.options["landmarks"] = "anchored";
-  for (const Variant& variant : {nearest, anchored}) {
-    EXPECT_THROW(make_production(variant, world()), StudyError);
+  for (Variant variant : {nearest, anchored}) {
+    for (const char* filter : {"fastslam2", "ufastslam", "srcd"}) {
+      variant.filter = filter;
+      variant.options["move_lag"] = "3";
+      EXPECT_THROW(kind_of(variant).check(setup_of(variant, world())), StudyError) << filter;
+      EXPECT_THROW(make_production(variant, world()), StudyError) << filter;
+      variant.options["move_lag"] = "0";
+      EXPECT_NO_THROW(kind_of(variant).check(setup_of(variant, world()))) << filter;
+    }
   }
 }
 
