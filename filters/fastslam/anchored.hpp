@@ -4,9 +4,9 @@
 #include "filters/fastslam/fast_slam_filters.hpp"
 
 /// The family with `landmarks = anchored` (SPEC 24, last lines): what a filter believes of a
-/// landmark is a Gaussian over range and bearing from the pose it was born at. A filter that
-/// differs from another in its landmarks alone is that other then, so srcd_aided and srcd_pf do not
-/// offer it; nor do delayed filters, whose landmarks are born at poses that are not drawn.
+/// landmark is a Gaussian over range and bearing from the pose it was born at. Filters that differ
+/// in their landmarks alone are one filter then: srcd_aided is fastslam2, srcd_pf is srcd. Delayed
+/// filters do not offer it: their landmarks are born at poses that are not drawn.
 namespace montecarta {
 
 template <class Real>

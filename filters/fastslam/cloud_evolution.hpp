@@ -3,6 +3,7 @@
 
 #include "filters/evolution/differential_evolution.hpp"
 #include "filters/fastslam/pose_fitness.hpp"
+#include "filters/moments/anchored_landmark.hpp"
 #include "filters/moments/cloud_moments.hpp"
 
 #include <algorithm>
@@ -32,7 +33,7 @@ class CloudEvolution {
     frame_ = direction_of(moments_.mean.heading);
     for (std::size_t b = 0; b < predicted.size(); ++b) {
       matches.read(b, [&](std::size_t k, const auto& landmark, const auto& seen, const auto& mask) {
-        note(b, k, landmark, seen, as_number<Real>(mask));
+        note(b, k, as_gaussian(landmark), seen, as_number<Real>(mask));
       });
     }
     population_.resize(particles_);

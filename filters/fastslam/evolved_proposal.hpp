@@ -29,13 +29,13 @@ struct EvolvedSettings {
 /// The proposal of SRCD-FastSLAM moved by differential evolution. Where the draw is paid for by the
 /// ratio of SPEC 7.2 r, the weights are right whatever centre evolution found, since it knows
 /// nothing but the past and the scan.
-template <class Real>
-class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
+template <class Real, class MapTransform>
+class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, MapTransform> {
  public:
-  using Cloud = RefinedCloud<Real, SigmaPoints, SigmaPoints>;
+  using Cloud = RefinedCloud<Real, SigmaPoints, MapTransform>;
   EvolvedProposal(std::size_t particles, const Belief& belief, const EvolvedSettings& settings,
-                  const SigmaPoints& points)
-      : Cloud(particles, belief, points, points),
+                  const SigmaPoints& poses, const MapTransform& map)
+      : Cloud(particles, belief, poses, map),
         settings_(settings),
         predicted_(blocks_for<Real>(particles)),
         centres_(predicted_.size()),

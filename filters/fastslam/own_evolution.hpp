@@ -3,6 +3,7 @@
 
 #include "filters/evolution/differential_evolution.hpp"
 #include "filters/fastslam/pose_fitness.hpp"
+#include "filters/moments/anchored_landmark.hpp"
 
 #include <array>
 #include <cmath>
@@ -24,7 +25,7 @@ class OwnEvolution {
   void gather(const Matches& matches, std::size_t b) {
     scan_.clear();
     matches.read(b, [&](std::size_t, const auto& landmark, const auto& seen, const auto& mask) {
-      scan_.push_back({landmark, seen, as_number<Real>(mask)});
+      scan_.push_back({as_gaussian(landmark), seen, as_number<Real>(mask)});
     });
   }
 

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "filters/fastslam/anchored.hpp"
 #include "filters/fastslam/srcd.hpp"
 
 namespace montecarta {
 
 FilterKind srcd_aided_kind() {
   std::vector<FilterOption> options = srcd_options();
+  options.push_back(landmarks_option());
   return {.name = "srcd_aided",
           .long_name = "SRCD-aided FastSLAM",
           .source = "Ankishan et al. 2016, Table 1; SPEC 11",
           .has_particles = true,
           .has_mixture = true,
           .options = std::move(options),
-          .make = make_srcd_aided<Lanes>};
+          .make = [](const FilterSetup& setup) {
+            return are_anchored(setup.options) ? make_fastslam2_anchored<Lanes>(setup)
+                                               : make_srcd_aided<Lanes>(setup);
+          }};
 }
 
 }  // namespace montecarta

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "filters/fastslam/anchored.hpp"
 #include "filters/fastslam/srcd.hpp"
 
 namespace montecarta {
@@ -6,13 +7,18 @@ namespace montecarta {
 FilterKind srcd_pf_kind() {
   std::vector<FilterOption> options = srcd_options();
   options.push_back(map_uncertainty_option());
+  options.push_back(landmarks_option());
   return {.name = "srcd_pf",
           .long_name = "SRCD-PF FastSLAM",
           .source = "Ankishan et al. 2016, Table 1; SPEC 11",
           .has_particles = true,
           .has_mixture = true,
           .options = std::move(options),
-          .make = make_srcd_pf<Lanes>};
+          .make = [](const FilterSetup& setup) {
+            return are_anchored(setup.options)
+                       ? make_sigma_anchored<Lanes>(setup, srcd_points(setup))
+                       : make_srcd_pf<Lanes>(setup);
+          }};
 }
 
 }  // namespace montecarta
