@@ -32,9 +32,9 @@ JointGaussian::Step JointGaussian::step_of(std::size_t slot, const ExpectedSight
       inverse_transposed(expected.factor) * expected.factor.whiten(innovation);
   const Eigen::Vector3d pose = expected.pose_jacobian.transpose() * weighed;
   const Eigen::Vector2d landmark = expected.landmark_jacobian.transpose() * weighed;
-  const auto mixed = cross_.middleRows<2>(row);
+  const auto mixed = map_.cross.middleRows<2>(row);
   return {pose_.covariance * pose + mixed.transpose() * landmark,
-          mixed * pose + map_.block<2, 2>(row, row) * landmark};
+          mixed * pose + map_.covariance.block<2, 2>(row, row) * landmark};
 }
 
 /// Linearises anew where `step` leads; the Gaussian still belongs to the present estimate.
@@ -50,7 +50,7 @@ bool JointGaussian::linearise_after(const Step& step, std::size_t slot,
   const Pose& from = pose_.mean;
   const auto at = linearised_sight(
       Pose{from.x + pose_way(0), from.y + pose_way(1), from.heading + step.pose(2)},
-      Point{map_mean_(row) + landmark_way(0), map_mean_(row + 1) + landmark_way(1)});
+      Point{map_.mean(row) + landmark_way(0), map_.mean(row + 1) + landmark_way(1)});
   if (too_near(at.sight)) return false;
   ExpectedSight next{.pose_jacobian = pose_jacobian(at),
                      .landmark_jacobian = landmark_jacobian(at),
@@ -61,7 +61,7 @@ bool JointGaussian::linearise_after(const Step& step, std::size_t slot,
     next.pose_jacobian.col(2) += next.pose_jacobian.leftCols<2>() * (quarter_turn() * pose_way) +
                                  next.landmark_jacobian * (quarter_turn() * landmark_way);
   }
-  const auto L = innovation_factor(slot, next);
+  const auto L = innovation_factor(point(slot), next);
   if (!L) return false;
   next.factor = *L;
   next.ahead = next.pose_jacobian * step.pose + next.landmark_jacobian * step.landmark;
@@ -84,13 +84,13 @@ void JointGaussian::absorb(std::size_t slot, const RangeBearing<double>& detecte
 void JointGaussian::draw_heading(double keep, double normal) {
   const double scale = std::sqrt((1.0 - keep * keep) / pose_.covariance(2, 2));
   gain_pose_ << scale * pose_.covariance.col(2), Eigen::Vector3d::Zero();
-  gain_map_.col(0).head(rows()) = scale * cross_.col(2).head(rows());
+  gain_map_.col(0).head(rows()) = scale * map_.cross.col(2).head(rows());
   gain_map_.col(1).head(rows()).setZero();
   condition({normal, 0.0});
   if (keep > 0.0) return;
   pose_.covariance.row(2).setZero();  // exactly, not but for rounding
   pose_.covariance.col(2).setZero();
-  cross_.col(2).head(rows()).setZero();
+  map_.cross.col(2).head(rows()).setZero();
 }
 
 /// W = P H' L^-T.
@@ -99,11 +99,11 @@ void JointGaussian::whiten_gain(std::size_t slot, const ExpectedSight& expected)
   const Matrix32 pose_white = expected.pose_jacobian.transpose() * inverse_Lt;
   const Eigen::Matrix2d landmark_white = expected.landmark_jacobian.transpose() * inverse_Lt;
   const Eigen::Index row = row_of(slot);
-  copy_columns(map_, row, rows(), seen_);
+  copy_columns(map_.covariance, row, rows(), seen_);
   gain_pose_ =
-      pose_.covariance * pose_white + cross_.middleRows<2>(row).transpose() * landmark_white;
+      pose_.covariance * pose_white + map_.cross.middleRows<2>(row).transpose() * landmark_white;
   auto gain = gain_map_.leftCols<2>().topRows(rows());
-  gain.noalias() = cross_.topRows(rows()).lazyProduct(pose_white);
+  gain.noalias() = map_.cross.topRows(rows()).lazyProduct(pose_white);
   gain.noalias() += seen_.topRows(rows()).lazyProduct(landmark_white);
 }
 
@@ -114,7 +114,7 @@ void JointGaussian::condition(const Eigen::Vector2d& white) {
   const auto first = gain_map_.col(0).head(rows());
   const auto second = gain_map_.col(1).head(rows());
   for (Eigen::Index j = 0; j < 3; ++j) {
-    cross_.col(j).head(rows()) -= first * gain_pose_(j, 0) + second * gain_pose_(j, 1);
+    map_.cross.col(j).head(rows()) -= first * gain_pose_(j, 0) + second * gain_pose_(j, 1);
   }
   const Eigen::Vector2d pose_step = step(white);
   change_map(retraction_ == Retraction::invariant && carry_error(pose_step));
@@ -133,7 +133,7 @@ Eigen::Vector2d JointGaussian::step(const Eigen::Vector2d& white) {
   }
   pose_.mean = {pose_.mean.x + moved(0), pose_.mean.y + moved(1),
                 wrap(pose_.mean.heading + pose_step(2))};
-  map_mean_.head(rows()) += map_step;
+  map_.mean.head(rows()) += map_step;
   return moved;
 }
 
@@ -151,9 +151,9 @@ bool JointGaussian::carry_error(const Eigen::Vector2d& pose_step) {
   apply(quarter_turn(), map_step_.leftCols(rows() / 2));
   const auto map_d = map_step_.reshaped().head(rows());
   const Eigen::Vector3d heading_row = pose_.covariance.row(2).transpose();
-  gain_map_.col(2).head(rows()) = cross_.col(2).head(rows()) / sigma;
+  gain_map_.col(2).head(rows()) = map_.cross.col(2).head(rows()) / sigma;
   gain_map_.col(3).head(rows()) = gain_map_.col(2).head(rows()) + sigma * map_d;
-  auto cross = cross_.topRows(rows());
+  auto cross = map_.cross.topRows(rows());
   cross += map_d.lazyProduct(heading_row.transpose());
   cross.col(0) += d(0) * cross.col(2);
   cross.col(1) += d(1) * cross.col(2);
@@ -170,7 +170,7 @@ void JointGaussian::change_map(bool carries_error) {
   for (Eigen::Index j = 0; j < row_of(n_landmarks_); ++j) {
     const Eigen::Index first = pack_of(j), count = rows() - first;
     const auto gain = gain_map_.middleRows(first, count);
-    auto column = map_.col(j).segment(first, count);
+    auto column = map_.covariance.col(j).segment(first, count);
     if (carries_error) {
       column += gain.col(3) * gain_map_(j, 3) - gain.col(2) * gain_map_(j, 2) -
                 gain.col(0) * gain_map_(j, 0) - gain.col(1) * gain_map_(j, 1);

@@ -7,6 +7,7 @@
 #include "filters/models/eigen_jacobians.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -49,6 +50,7 @@ void JointBelief::absorb(const MotionIncrement& motion, Scan scan) {
   gaussian_.move(motion);
   associate(scan);
   outcome_.association = association_counts(scan, pairings_, made_of_);
+  attend();
   for (std::size_t k = 0; k < scan.size(); ++k) {
     if (pairings_[k].verdict == Verdict::matched) {
       absorb(k, scan[k]);
@@ -56,6 +58,15 @@ void JointBelief::absorb(const MotionIncrement& motion, Scan scan) {
       outcome_.log_likelihood += log_new_density_;  // as every belief does (SPEC 17)
     }
   }
+}
+
+/// Readies the Gaussian for the landmarks that the scan shows.
+void JointBelief::attend() {
+  matched_.clear();
+  for (const Pairing& pairing : pairings_) {
+    if (pairing.verdict == Verdict::matched) matched_.push_back(pairing.landmark);
+  }
+  gaussian_.attend(matched_);
 }
 
 void JointBelief::give_birth(Scan scan) {
@@ -113,11 +124,17 @@ Pairing JointBelief::pairing_by_identity(const Detection& detection) const {
   return {.verdict = Verdict::matched, .landmark = static_cast<std::uint32_t>(slot)};
 }
 
-/// Landmark by landmark, since what is expected of one serves all detections.
+/// Landmark by landmark, since what is expected of one serves all detections. What is beyond both
+/// gates of all of them need not be looked at.
 void JointBelief::pair_nearest(Scan scan) {
   searches_.assign(scan.size(), {});
+  double range = 0.0;
+  for (const Detection& detection : scan) range = std::max(range, detection.range);
+  const double sigmas = std::sqrt(std::max(association_.gate, association_.new_gate));
+  const auto drift = gaussian_.drift();
   ExpectedSight expected;
   for (std::uint32_t slot = 0; slot < gaussian_.landmarks(); ++slot) {
+    if (gaussian_.is_out_of_reach(slot, drift, range, sigmas)) continue;
     if (!look_at(slot, expected)) continue;
     const double log_det = expected.factor.log_det();
     for (std::size_t k = 0; k < scan.size(); ++k) {
@@ -133,8 +150,8 @@ void JointBelief::pair_nearest(Scan scan) {
 /// False where the landmark gives nothing to weigh by; a fault is counted.
 bool JointBelief::look_at(std::size_t slot, ExpectedSight& expected) {
   const auto trouble = gaussian_.look_at(slot, expected);
-  if (trouble == JointGaussian::Trouble::faulty) ++outcome_.faults;
-  return trouble == JointGaussian::Trouble::none;
+  if (trouble == CompressedGaussian::Trouble::faulty) ++outcome_.faults;
+  return trouble == CompressedGaussian::Trouble::none;
 }
 
 /// Counted is the innovation against the belief before the detection; weighed by is that of the

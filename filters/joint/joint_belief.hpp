@@ -2,7 +2,7 @@
 #pragma once
 
 #include "filters/association/nearest.hpp"
-#include "filters/joint/joint_gaussian.hpp"
+#include "filters/joint/compressed_gaussian.hpp"
 
 #include <cstdint>
 #include <span>
@@ -14,7 +14,7 @@ namespace montecarta {
 /// are taken for. Detections are absorbed one by one in the order of the scan.
 class JointBelief {
  public:
-  /// `iterations`: of JointGaussian::absorb().
+  /// `iterations`: of CompressedGaussian::absorb().
   JointBelief(const FilterSetup& setup, Retraction retraction, int iterations);
 
   /// The vehicle stands at `start`, no landmarks.
@@ -29,7 +29,7 @@ class JointBelief {
   /// Becomes a copy of `other`, which was made of the same setup.
   void become(const JointBelief& other);
 
-  const JointGaussian& gaussian() const { return gaussian_; }
+  const CompressedGaussian& gaussian() const { return gaussian_; }
   /// The k-th landmark: of identity k with known association, else of the k-th birth.
   std::optional<LandmarkEstimate> landmark(std::size_t k) const;
   /// Of the pose and the first `landmarks` of these; NaN where the map has none.
@@ -56,6 +56,7 @@ class JointBelief {
   void associate(Scan scan);
   Pairing pairing_by_identity(const Detection& detection) const;
   void pair_nearest(Scan scan);
+  void attend();
   bool look_at(std::size_t slot, ExpectedSight& expected);
   void absorb(std::size_t k, const Detection& detection);
   void give_birth(const Detection& detection);
@@ -63,12 +64,13 @@ class JointBelief {
 
   AssociationSettings association_;
   double log_new_density_;
-  JointGaussian gaussian_;
+  CompressedGaussian gaussian_;
   int iterations_;
   std::vector<std::uint32_t> slot_of_identity_;  ///< known association only
   std::vector<std::int32_t> made_of_;            ///< {slot} identity at birth, to count errors
   std::vector<Pairing> pairings_;                ///< of the current scan
   std::vector<NearestSearch> searches_;
+  std::vector<std::uint32_t> matched_;  ///< scratch: slots that the current scan shows
   std::vector<Sighting> sightings_;
   Outcome outcome_;
 };

@@ -4,6 +4,7 @@
 #include "engine/runs/slam_filter.hpp"
 #include "filters/factory.hpp"
 #include "filters/joint/innovation.hpp"
+#include "filters/joint/map_moments.hpp"
 #include "filters/joint/retraction.hpp"
 #include "filters/models/eigen_jacobians.hpp"
 #include "filters/moments/motion_increment.hpp"
@@ -49,6 +50,7 @@ class JointGaussian {
   /// Becomes a copy of `other`; copies what is used, not what is reserved.
   void become(const JointGaussian& other);
 
+  const Belief& belief() const { return belief_; }
   const PoseMoments& pose() const { return pose_; }
   /// What the pose would be after `motion`.
   PoseMoments pose_after(const MotionIncrement& motion) const;
@@ -58,14 +60,18 @@ class JointGaussian {
 
   std::size_t landmarks() const { return n_landmarks_; }
   LandmarkEstimate landmark(std::size_t slot) const;
-  /// Pose and landmarks together, in order of birth.
-  JointEstimate joint() const;
-  /// [m] from the vehicle to the farthest landmark.
-  double extent() const;
+  PointMoments point(std::size_t slot) const;
+  const MapMoments& map() const { return map_; }
+  /// Leaves the pose and puts n points in the place of the map, all zero, for the caller to fill
+  /// in.
+  MapMoments& replace_map(std::size_t n_points);
 
   /// What a detection of landmark `slot` is weighed by; `faulty` where S is not positive definite.
   enum class Trouble { none, too_near, faulty };
-  [[nodiscard]] Trouble look_at(std::size_t slot, ExpectedSight& expected) const;
+  [[nodiscard]] Trouble look_at(const PointMoments& landmark, ExpectedSight& expected) const;
+  [[nodiscard]] Trouble look_at(std::size_t slot, ExpectedSight& expected) const {
+    return look_at(point(slot), expected);
+  }
   /// Conditions the Gaussian on `detected`, expected as `expected`. The model is linearised
   /// again where the detection has moved the estimate to, until that settles or `iterations` times
   /// (iterated EKF, Bell and Cathey 1993; of invariant errors with the derivative of the
@@ -83,7 +89,6 @@ class JointGaussian {
 
  private:
   using Columns2 = Eigen::Matrix<double, Eigen::Dynamic, 2>;
-  using Columns3 = Eigen::Matrix<double, Eigen::Dynamic, 3>;
   using Columns4 = Eigen::Matrix<double, Eigen::Dynamic, 4>;
 
   /// A step of the pose and of one landmark, and where it leads.
@@ -94,7 +99,7 @@ class JointGaussian {
 
   Eigen::Index rows() const;
   void grow(std::size_t room);
-  std::optional<InnovationFactor> innovation_factor(std::size_t slot,
+  std::optional<InnovationFactor> innovation_factor(const PointMoments& landmark,
                                                     const ExpectedSight& at) const;
   Step step_of(std::size_t slot, const ExpectedSight& expected,
                const Eigen::Vector2d& innovation) const;
@@ -110,10 +115,8 @@ class JointGaussian {
   Retraction retraction_;
   PoseMoments pose_;
   std::size_t n_landmarks_ = 0;
-  Eigen::VectorXd map_mean_;  ///< [m]
-  Columns3 cross_;            ///< covariance of landmarks with (x, y, heading)
-  Eigen::MatrixXd map_;  ///< covariance of landmarks: lower triangle and the packs on the diagonal
-  Columns2 seen_;        ///< scratch: the columns of map_ of one landmark
+  MapMoments map_;
+  Columns2 seen_;                          ///< scratch: the columns of one landmark
   Eigen::Matrix<double, 3, 2> gain_pose_;  ///< P H' L^-T, rows of the pose
   Columns4 gain_map_;          ///< the same, rows of the map, and two columns of carry_error()
   Eigen::Matrix2Xd map_step_;  ///< [m] how one detection moves the landmarks

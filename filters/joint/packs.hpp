@@ -35,6 +35,21 @@ inline void mirror_pack(Eigen::MatrixXd& map, Eigen::Index row) {
   map.block(first, row, row - first, 2) = map.block(row, first, 2, row - first).transpose();
 }
 
+/// Likewise in all packs of so many rows.
+inline void mirror_packs(Eigen::MatrixXd& map, Eigen::Index rows) {
+  for (Eigen::Index first = 0; first < rows; first += kPack) {
+    auto pack = map.block<kPack, kPack>(first, first);
+    pack.triangularView<Eigen::StrictlyUpper>() = pack.transpose();
+  }
+}
+
+/// Covariance of two points, by their first rows.
+inline Eigen::Matrix2d covariance_of(const Eigen::MatrixXd& map, Eigen::Index row,
+                                     Eigen::Index column) {
+  if (row >= column) return map.block<2, 2>(row, column);
+  return map.block<2, 2>(column, row).transpose();
+}
+
 /// The two columns of a landmark in full.
 template <class Columns>
 void copy_columns(const Eigen::MatrixXd& map, Eigen::Index row, Eigen::Index rows,
@@ -42,6 +57,14 @@ void copy_columns(const Eigen::MatrixXd& map, Eigen::Index row, Eigen::Index row
   const Eigen::Index first = pack_of(row);
   columns.topRows(first) = map.block(row, 0, 2, first).transpose();
   columns.middleRows(first, rows - first) = map.block(first, row, rows - first, 2);
+}
+
+/// Writes them below the diagonal.
+template <class Columns>
+void write_columns(Eigen::MatrixXd& map, Eigen::Index row, Eigen::Index rows,
+                   const Columns& columns) {
+  map.block(row, 0, 2, row) = columns.topRows(row).transpose();
+  map.block(row, row, rows - row, 2) = columns.middleRows(row, rows - row);
 }
 
 }  // namespace montecarta

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/joint/compressed_gaussian.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace montecarta {
+namespace {
+
+/// Up to so many landmarks a map has no far ones: below, expanding costs more than is saved.
+constexpr std::size_t kSmallMap = 100;
+
+double distance_squared(const Pose& pose, const Eigen::Vector2d& place) {
+  return (place - Eigen::Vector2d(pose.x, pose.y)).squaredNorm();
+}
+
+}  // namespace
+
+CompressedGaussian::CompressedGaussian(const Belief& belief, Retraction retraction,
+                                       std::size_t room)
+    : near_(belief, retraction, std::min(room, kSmallMap)),
+      retraction_(retraction),
+      most_near_(kSmallMap) {}
+
+void CompressedGaussian::start(const Pose& start) {
+  near_.start(start);
+  whole_.clear(std::min(rows(), whole_.room()));
+  basis_.clear();
+  stand_ins_ = 0;
+  point_of_.clear();
+  most_near_ = kSmallMap;
+}
+
+void CompressedGaussian::become(const CompressedGaussian& other) {
+  near_.become(other.near_);
+  whole_.clear(std::min(rows(), whole_.room()));
+  point_of_ = other.point_of_;
+  most_near_ = other.most_near_;
+  stand_ins_ = other.stand_ins_;
+  basis_ = other.basis_;
+  far_ = other.far_;
+  if (basis_.size() == 0) return;
+  whole_.make_room(basis_.vectors().rows());
+  whole_.take(other.whole_, basis_.vectors().rows());
+}
+
+Eigen::Vector2d CompressedGaussian::mean_of(std::size_t slot) const {
+  if (is_near(slot)) return near_.map().mean.segment<2>(row_of(point_of_[slot]));
+  const Eigen::Index row = row_of(slot);
+  return whole_.mean.segment<2>(row) + basis_.vectors().middleRows<2>(row) * coefficients_of_mean();
+}
+
+PointMoments CompressedGaussian::far_point(std::size_t slot) const {
+  const Eigen::Index row = row_of(slot);
+  const auto W = basis_.vectors().middleRows<2>(row);
+  const Eigen::Matrix<double, Eigen::Dynamic, 2> YW = coefficients_of_covariance() * W.transpose();
+  PointMoments point{.mean = mean_of(slot),
+                     .cross = W * coefficients_of_cross(),
+                     .covariance = whole_.covariance.block<2, 2>(row, row) + W * YW};
+  point.covariance(0, 1) = point.covariance(1, 0);
+  return point;
+}
+
+LandmarkEstimate CompressedGaussian::landmark(std::size_t slot) const {
+  if (is_near(slot)) return near_.landmark(point_of_[slot]);
+  const PointMoments point = far_point(slot);
+  return {point.mean, point.covariance};
+}
+
+MapMoments CompressedGaussian::map() const {
+  MapMoments map = whole_;
+  map.make_room(rows());
+  expand_into(map);
+  return map;
+}
+
+JointEstimate CompressedGaussian::joint() const {
+  const MapMoments whole = map();
+  const Eigen::Index n = row_of(landmarks());
+  JointEstimate joint{Eigen::VectorXd(3 + n), Eigen::MatrixXd(3 + n, 3 + n)};
+  joint.mean << pose().mean.x, pose().mean.y, pose().mean.heading, whole.mean.head(n);
+  joint.covariance.topLeftCorner<3, 3>() = pose().covariance;
+  joint.covariance.bottomLeftCorner(n, 3) = whole.cross.topRows(n);
+  joint.covariance.topRightCorner(3, n) = whole.cross.topRows(n).transpose();
+  joint.covariance.bottomRightCorner(n, n) =
+      whole.covariance.topLeftCorner(n, n).selfadjointView<Eigen::Lower>();
+  return joint;
+}
+
+/// Far landmarks are asked for their mean only where the bounds leave it open which is farthest.
+double CompressedGaussian::extent() const {
+  const double moved = coefficients_of_mean().norm();
+  double least = 0.0;
+  const auto distance = [&](std::size_t slot) {
+    const Eigen::Vector2d place =
+        is_near(slot) ? mean_of(slot) : Eigen::Vector2d(whole_.mean.segment<2>(row_of(slot)));
+    return std::sqrt(distance_squared(pose().mean, place));
+  };
+  for (std::size_t slot = 0; slot < landmarks(); ++slot) {
+    const double margin = is_near(slot) ? 0.0 : far_[slot].share * moved;
+    least = std::max(least, distance(slot) - margin);
+  }
+  for (std::size_t slot = 0; slot < landmarks(); ++slot) {
+    if (is_near(slot) || distance(slot) + far_[slot].share * moved < least) continue;
+    least = std::max(least, std::sqrt(distance_squared(pose().mean, mean_of(slot))));
+  }
+  return least;
+}
+
+CompressedGaussian::Drift CompressedGaussian::drift() const {
+  return {coefficients_of_mean().norm(), coefficients_of_covariance().toDenseMatrix().norm()};
+}
+
+/// The range alone decides: v^2 / S of it is no more than D^2, and the standard deviation of a
+/// difference no more than the sum of both.
+bool CompressedGaussian::is_out_of_reach(std::size_t slot, const Drift& drift, double range,
+                                         double sigmas) const {
+  if (is_near(slot)) return false;
+  const auto& [share, variance] = far_[slot];
+  const double distance =
+      std::sqrt(distance_squared(pose().mean, whole_.mean.segment<2>(row_of(slot))));
+  const double spread = std::sqrt(variance + share * share * drift.variance) +
+                        std::sqrt(pose().covariance.topLeftCorner<2, 2>().trace());
+  return distance - share * drift.mean - range > sigmas * (spread + near_.belief().sigma_range);
+}
+
+JointGaussian::Trouble CompressedGaussian::look_at(std::size_t slot,
+                                                   ExpectedSight& expected) const {
+  if (is_near(slot)) return near_.look_at(point_of_[slot], expected);
+  return near_.look_at(far_point(slot), expected);
+}
+
+void CompressedGaussian::append(const RangeBearing<double>& sight) {
+  point_of_.push_back(static_cast<std::uint32_t>(near_.landmarks()));
+  near_.append(sight);
+}
+
+void CompressedGaussian::attend(std::span<const std::uint32_t> slots) {
+  const bool all_near = std::ranges::all_of(slots, [&](std::uint32_t k) { return is_near(k); });
+  if (!all_near || near_.landmarks() > most_near_) choose(slots);
+}
+
+}  // namespace montecarta

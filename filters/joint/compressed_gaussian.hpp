@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/joint/basis.hpp"
+#include "filters/joint/joint_gaussian.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace montecarta {
+
+/// A JointGaussian whose detections cost what the vehicle's neighbourhood costs, however large the
+/// map: the compressed filter of Guivant and Nebot, exact for both errors. Small maps are one
+/// neighbourhood.
+///
+/// Far landmarks change only through their covariances C with the pose and the near landmarks, so
+/// all that happens to them while the same ones are near lies in the span W of C: their mean is m +
+/// W z, their covariance P + W Y W', that with pose and near landmarks W X. And z, X and Y obey the
+/// rules that a JointGaussian has for a point that is not seen. So they are points of one,
+/// stand-ins for the far landmarks, which begin with z = 0, Y = 0 and W X = C. The invariant error
+/// turns points: there W is closed under a quarter turn, and coefficients turn in pairs.
+class CompressedGaussian {
+ public:
+  using Trouble = JointGaussian::Trouble;
+
+  CompressedGaussian(const Belief& belief, Retraction retraction, std::size_t room);
+
+  void start(const Pose& start);
+  void become(const CompressedGaussian& other);
+
+  const PoseMoments& pose() const { return near_.pose(); }
+  PoseMoments pose_after(const MotionIncrement& motion) const { return near_.pose_after(motion); }
+  void move(const MotionIncrement& motion) { near_.move(motion); }
+
+  std::size_t landmarks() const { return point_of_.size(); }
+  LandmarkEstimate landmark(std::size_t slot) const;
+  /// The whole map, landmarks in the order of their slots.
+  MapMoments map() const;
+  /// Pose and landmarks together, likewise.
+  JointEstimate joint() const;
+  /// [m] from the vehicle to the farthest landmark.
+  double extent() const;
+  bool is_near(std::size_t slot) const { return point_of_[slot] != kFar; }
+
+  /// Bounds on what has become of a far landmark, for a unit of its `Far::share`.
+  struct Drift {
+    double mean;      ///< [m]
+    double variance;  ///< [m^2]
+  };
+  Drift drift() const;
+  /// Whether no detection up to `range` [m] can come within so many standard deviations of a
+  /// landmark, of which it is far. Quicker than looking at it.
+  bool is_out_of_reach(std::size_t slot, const Drift& drift, double range, double sigmas) const;
+  [[nodiscard]] Trouble look_at(std::size_t slot, ExpectedSight& expected) const;
+
+  /// Makes landmarks near, and others around the vehicle with them; does nothing where they are.
+  void attend(std::span<const std::uint32_t> slots);
+  /// JointGaussian::absorb() of a landmark that is near.
+  void absorb(std::size_t slot, const RangeBearing<double>& detected, int iterations,
+              ExpectedSight& expected) {
+    near_.absorb(point_of_[slot], detected, iterations, expected);
+  }
+  void draw_heading(double keep, double normal) { near_.draw_heading(keep, normal); }
+  void append(const RangeBearing<double>& sight);
+
+ private:
+  using Columns2 = Eigen::Matrix<double, Eigen::Dynamic, 2>;
+
+  static constexpr std::uint32_t kFar = std::numeric_limits<std::uint32_t>::max();
+
+  /// Of a landmark, when the near ones were chosen.
+  struct Far {
+    double share = 0.0;     ///< norm of its rows of the basis
+    double variance = 0.0;  ///< [m^2] trace of its covariance
+  };
+
+  Eigen::Index rows() const { return packed(landmarks()); }
+  auto coefficients_of_mean() const { return near_.map().mean.segment(stand_ins_, basis_.size()); }
+  auto coefficients_of_cross() const {
+    return near_.map().cross.middleRows(stand_ins_, basis_.size());
+  }
+  auto coefficients_of_covariance() const {
+    return near_.map()
+        .covariance.block(stand_ins_, stand_ins_, basis_.size(), basis_.size())
+        .selfadjointView<Eigen::Lower>();
+  }
+  Eigen::Vector2d mean_of(std::size_t slot) const;
+  PointMoments far_point(std::size_t slot) const;
+  void choose(std::span<const std::uint32_t> wanted);
+  void expand_into(MapMoments& map) const;
+  void write_far(MapMoments& map) const;
+  void write_near(MapMoments& map) const;
+  void write_cross_with_far(Eigen::Index at, Columns2& column) const;
+  void gather_near();
+  void span_far();
+  void stand_in();
+  void note_far();
+
+  JointGaussian near_;  ///< pose; near landmarks, stand-ins, landmarks born since
+  Retraction retraction_;
+  std::vector<std::uint32_t> point_of_;  ///< {slot} in near_, or kFar
+  std::size_t most_near_;                ///< beyond so many points it is time to choose anew
+  Eigen::Index stand_ins_ = 0;           ///< their first row in near_
+  Basis basis_;                          ///< W, over the rows of whole_
+  MapMoments whole_;         ///< of far landmarks, when the near ones were chosen; else not in use
+  std::vector<Far> far_;     ///< {slot}
+  Eigen::MatrixXd columns_;  ///< scratch: C, each column over its standard deviation sigma_
+  Eigen::VectorXd sigma_;    ///< scratch
+  MapMoments gathered_;      ///< scratch: the near landmarks
+  std::vector<std::pair<double, std::uint32_t>> by_distance_;  ///< scratch: [m^2], slot
+  std::vector<std::uint32_t> chosen_;                          ///< scratch: slots
+};
+
+}  // namespace montecarta

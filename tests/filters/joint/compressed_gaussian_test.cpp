@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/joint/compressed_gaussian.hpp"
+
+#include "engine/random/stream.hpp"
+#include "tests/filters/small_world.hpp"
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace montecarta {
+namespace {
+
+/// What the two forms are compared in.
+struct Setting {
+  Retraction retraction;
+  int iterations;
+  double keep;  ///< of the heading at every scan; 1: nothing is drawn
+};
+
+constexpr std::size_t kLandmarks = 150;
+/// What a form may differ by, in relation to the covariance: rounding.
+constexpr double kRounding = 1e-9;
+
+/// A vehicle that goes round a map twice, of which it sees a twentieth at a time.
+SmallWorld large_world(std::size_t scans = 570) {
+  return small_world({.seed = 31, .landmarks = kLandmarks, .scans = scans, .max_range = 11.0});
+}
+
+/// A Gaussian and what drives it as a belief does, with known association.
+template <class Gaussian>
+class Driven {
+ public:
+  explicit Driven(const Setting& setting)
+      : gaussian(Belief{}, setting.retraction, 10), setting_(setting) {
+    gaussian.start({});
+  }
+
+  void drive(const SmallWorld& world, std::size_t scan) {
+    MotionIncrement motion;
+    for (std::size_t step = 8 * scan; step < 8 * (scan + 1); ++step) {
+      motion.advance(world.drive.controls[step], world.itinerary.duration(step), Belief{});
+    }
+    gaussian.move(motion);
+    const Scan detections = world.drive.scan(scan);
+    if constexpr (requires { gaussian.attend({}); }) gaussian.attend(slots_in(detections));
+    for (const Detection& detection : detections) absorb(detection);
+    if (setting_.keep < 1.0) {
+      RngStream draw({world.seed, 0, static_cast<std::uint32_t>(scan), 0, Draw::test});
+      gaussian.draw_heading(setting_.keep, draw.normal());
+    }
+    for (const Detection& detection : detections) give_birth(detection);
+  }
+
+  Gaussian gaussian;
+
+ private:
+  static constexpr std::uint32_t kUnseen = 9999;
+
+  std::vector<std::uint32_t> slots_in(Scan scan) const {
+    std::vector<std::uint32_t> slots;
+    for (const Detection& detection : scan) {
+      const std::uint32_t slot = slot_of_[static_cast<std::size_t>(detection.identity)];
+      if (slot != kUnseen) slots.push_back(slot);
+    }
+    return slots;
+  }
+
+  void absorb(const Detection& detection) {
+    const std::uint32_t slot = slot_of_[static_cast<std::size_t>(detection.identity)];
+    ExpectedSight expected;
+    if (slot == kUnseen) return;
+    if (gaussian.look_at(slot, expected) != JointGaussian::Trouble::none) return;
+    gaussian.absorb(slot, sight_of(detection), setting_.iterations, expected);
+  }
+
+  void give_birth(const Detection& detection) {
+    std::uint32_t& slot = slot_of_[static_cast<std::size_t>(detection.identity)];
+    if (slot != kUnseen) return;
+    slot = static_cast<std::uint32_t>(gaussian.landmarks());
+    gaussian.append(sight_of(detection));
+  }
+
+  Setting setting_;
+  std::vector<std::uint32_t> slot_of_ = std::vector<std::uint32_t>(kLandmarks, kUnseen);
+};
+
+void expect_equal_poses(const PoseMoments& a, const PoseMoments& b, std::size_t scan) {
+  EXPECT_LT(boxminus(a.mean, b.mean).norm(), kRounding) << "scan " << scan;
+  EXPECT_LT((a.covariance - b.covariance).norm(), kRounding * a.covariance.norm())
+      << "scan " << scan;
+}
+
+/// Landmark by landmark, and the whole.
+void expect_equal_maps(const JointGaussian& plain, const CompressedGaussian& compressed) {
+  ASSERT_EQ(plain.landmarks(), compressed.landmarks());
+  const MapMoments whole = compressed.map();
+  double farthest = 0.0;
+  for (std::size_t slot = 0; slot < plain.landmarks(); ++slot) {
+    const LandmarkEstimate a = plain.landmark(slot), b = compressed.landmark(slot);
+    EXPECT_LT((a.mean - b.mean).norm(), kRounding) << "landmark " << slot;
+    EXPECT_LT((a.covariance - b.covariance).norm(), kRounding * a.covariance.norm());
+    EXPECT_EQ(b.covariance, b.covariance.transpose());
+    ExpectedSight one, other;
+    ASSERT_EQ(plain.look_at(slot, one), compressed.look_at(slot, other));
+    EXPECT_NEAR(one.factor.log_det(), other.factor.log_det(), kRounding) << "landmark " << slot;
+    const Pose& pose = plain.pose().mean;
+    farthest = std::max(farthest, (a.mean - Eigen::Vector2d(pose.x, pose.y)).norm());
+  }
+  const Eigen::Index rows = 2 * static_cast<Eigen::Index>(plain.landmarks());
+  const Eigen::MatrixXd P = plain.map().covariance.topLeftCorner(rows, rows);
+  const Eigen::MatrixXd Q = whole.covariance.topLeftCorner(rows, rows);
+  const Eigen::MatrixXd away = (P - Q).triangularView<Eigen::Lower>();
+  EXPECT_LT(away.cwiseAbs().maxCoeff(), kRounding * P.diagonal().maxCoeff());
+  EXPECT_LT((plain.map().mean.head(rows) - whole.mean.head(rows)).norm(), kRounding);
+  EXPECT_LT((plain.map().cross.topRows(rows) - whole.cross.topRows(rows)).norm(),
+            kRounding * plain.map().cross.norm());
+  EXPECT_NEAR(compressed.extent(), farthest, kRounding);
+}
+
+class CompressedAndPlain : public testing::TestWithParam<Setting> {};
+
+TEST_P(CompressedAndPlain, AreEqualOverALoop) {
+  const SmallWorld world = large_world();
+  Driven<JointGaussian> plain(GetParam());
+  Driven<CompressedGaussian> compressed(GetParam());
+  std::vector<char> was_far(kLandmarks, false);
+  std::size_t far_at_most = 0, came_back = 0;
+  for (std::size_t scan = 0; scan < world.itinerary.scans(); ++scan) {
+    plain.drive(world, scan);
+    compressed.drive(world, scan);
+    expect_equal_poses(plain.gaussian.pose(), compressed.gaussian.pose(), scan);
+    if (scan % 60 == 59) expect_equal_maps(plain.gaussian, compressed.gaussian);
+    std::size_t far = 0;
+    for (std::size_t slot = 0; slot < compressed.gaussian.landmarks(); ++slot) {
+      const bool is_far = !compressed.gaussian.is_near(slot);
+      far += is_far ? 1 : 0;
+      came_back += was_far[slot] && !is_far ? 1 : 0;
+      was_far[slot] = is_far;
+    }
+    far_at_most = std::max(far_at_most, far);
+  }
+  EXPECT_GT(far_at_most, 80u) << "hardly compressed: no test";
+  EXPECT_GT(came_back, 100u) << "hardly expanded: no test";
+}
+
+INSTANTIATE_TEST_SUITE_P(BothErrors, CompressedAndPlain,
+                         testing::Values(Setting{Retraction::additive, 0, 1.0},
+                                         Setting{Retraction::additive, 3, 0.8},
+                                         Setting{Retraction::additive, 0, 0.0},
+                                         Setting{Retraction::invariant, 0, 1.0},
+                                         Setting{Retraction::invariant, 5, 0.95}));
+
+/// After so many scans the original is copied over something that has the whole map.
+void expect_a_copy_as_good_as_the_original(std::size_t scans) {
+  const SmallWorld world = large_world(380);
+  const Setting setting{Retraction::invariant, 1, 1.0};
+  Driven<CompressedGaussian> original(setting), copy(setting);
+  for (std::size_t scan = 0; scan < 340; ++scan) copy.drive(world, scan);
+  for (std::size_t scan = 0; scan < scans; ++scan) original.drive(world, scan);
+  CompressedGaussian gaussian = copy.gaussian;
+  gaussian.become(original.gaussian);
+  copy = original;
+  copy.gaussian = gaussian;
+  for (std::size_t scan = scans; scan < 380; ++scan) {
+    original.drive(world, scan);
+    copy.drive(world, scan);
+  }
+  EXPECT_EQ(original.gaussian.pose().covariance, copy.gaussian.pose().covariance);
+  for (std::size_t slot = 0; slot < original.gaussian.landmarks(); ++slot) {
+    EXPECT_EQ(original.gaussian.landmark(slot).mean, copy.gaussian.landmark(slot).mean);
+    EXPECT_EQ(original.gaussian.landmark(slot).covariance, copy.gaussian.landmark(slot).covariance);
+  }
+}
+
+TEST(CompressedGaussian, ACopyIsAsGoodAsTheOriginal) {
+  for (const std::size_t scans : {200, 330}) expect_a_copy_as_good_as_the_original(scans);
+}
+
+TEST(CompressedGaussian, ARestartLeavesNothingBehind) {
+  const SmallWorld world = large_world(400);
+  const Setting setting{Retraction::additive, 0, 1.0};
+  Driven<CompressedGaussian> fresh(setting), restarted(setting);
+  for (std::size_t scan = 0; scan < 400; ++scan) fresh.drive(world, scan);
+  restarted.gaussian = fresh.gaussian;
+  restarted.gaussian.start({});
+  for (std::size_t scan = 0; scan < 400; ++scan) restarted.drive(world, scan);
+  EXPECT_EQ(restarted.gaussian.pose().covariance, fresh.gaussian.pose().covariance);
+  EXPECT_EQ(restarted.gaussian.landmark(7).covariance, fresh.gaussian.landmark(7).covariance);
+}
+
+TEST(CompressedGaussian, WhatIsOutOfReachIsBeyondTheGate) {
+  const SmallWorld world = large_world(420);
+  for (const auto retraction : {Retraction::additive, Retraction::invariant}) {
+    Driven<CompressedGaussian> driven({retraction, 0, 0.9});
+    std::size_t out = 0, looked_at = 0;
+    constexpr double kRange = 11.0, kSigmas = 5.0;
+    for (std::size_t scan = 0; scan < 420; ++scan) {
+      driven.drive(world, scan);
+      if (scan < 300) continue;
+      const CompressedGaussian& gaussian = driven.gaussian;
+      const auto drift = gaussian.drift();
+      for (std::size_t slot = 0; slot < gaussian.landmarks(); ++slot) {
+        if (gaussian.is_near(slot)) continue;
+        ++looked_at;
+        if (!gaussian.is_out_of_reach(slot, drift, kRange, kSigmas)) continue;
+        ++out;
+        ExpectedSight expected;
+        ASSERT_EQ(gaussian.look_at(slot, expected), JointGaussian::Trouble::none);
+        const RangeBearing<double> nearest{kRange, expected.sight.bearing};
+        EXPECT_GT(expected.factor.whiten(expected.innovation(nearest)).norm(), kSigmas);
+      }
+    }
+    EXPECT_GT(out, looked_at / 2) << "a bound that leaves out too little";
+  }
+}
+
+TEST(Basis, SpansItsColumnsAndTurnsWithThem) {
+  RngStream draw({.seed = 3, .purpose = Draw::test});
+  Eigen::MatrixXd columns(40, 9);
+  for (double& number : columns.reshaped()) number = draw.normal();
+  columns.col(4) = columns.col(2) - 3.0 * columns.col(7);
+  const Eigen::MatrixXd before = columns;
+  for (const auto& [retraction, size] :
+       {std::pair{Retraction::additive, 8}, std::pair{Retraction::invariant, 16}}) {
+    columns = before;
+    Basis basis;
+    basis.span(columns, retraction);
+    ASSERT_EQ(basis.size(), size);
+    const Eigen::MatrixXd Q = basis.vectors();
+    EXPECT_LT((Q.transpose() * Q - Eigen::MatrixXd::Identity(size, size)).norm(), 1e-12);
+    EXPECT_LT((Q * basis.coefficients() - before).norm(), 1e-12);
+    if (retraction == Retraction::additive) continue;
+    Eigen::MatrixXd turned = before, coefficients = basis.coefficients();
+    for (auto column : turned.colwise()) apply(quarter_turn(), column.reshaped(2, 20));
+    for (auto column : coefficients.colwise()) apply(quarter_turn(), column.reshaped(2, 8));
+    EXPECT_LT((Q * coefficients - turned).norm(), 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace montecarta
