@@ -29,6 +29,9 @@ void CompressedGaussian::start(const Pose& start) {
   stand_ins_ = 0;
   point_of_.clear();
   most_near_ = kSmallMap;
+  absorbed_ = 0;
+  balance_ = 0.0;
+  rests_ = false;
 }
 
 void CompressedGaussian::become(const CompressedGaussian& other) {
@@ -36,6 +39,9 @@ void CompressedGaussian::become(const CompressedGaussian& other) {
   whole_.clear(std::min(rows(), whole_.room()));
   point_of_ = other.point_of_;
   most_near_ = other.most_near_;
+  absorbed_ = other.absorbed_;
+  balance_ = other.balance_;
+  rests_ = other.rests_;
   stand_ins_ = other.stand_ins_;
   basis_ = other.basis_;
   far_ = other.far_;
@@ -53,7 +59,10 @@ Eigen::Vector2d CompressedGaussian::mean_of(std::size_t slot) const {
 PointMoments CompressedGaussian::far_point(std::size_t slot) const {
   const Eigen::Index row = row_of(slot);
   const auto W = basis_.vectors().middleRows<2>(row);
-  const Eigen::Matrix<double, Eigen::Dynamic, 2> YW = coefficients_of_covariance() * W.transpose();
+  Columns2 YW(basis_.size(), 2);
+  for (Eigen::Index j = 0; j < 2; ++j) {
+    YW.col(j).noalias() = coefficients_of_covariance() * W.row(j).transpose();
+  }
   PointMoments point{.mean = mean_of(slot),
                      .cross = W * coefficients_of_cross(),
                      .covariance = whole_.covariance.block<2, 2>(row, row) + W * YW};
@@ -137,7 +146,7 @@ void CompressedGaussian::append(const RangeBearing<double>& sight) {
 
 void CompressedGaussian::attend(std::span<const std::uint32_t> slots) {
   const bool all_near = std::ranges::all_of(slots, [&](std::uint32_t k) { return is_near(k); });
-  if (!all_near || near_.landmarks() > most_near_) choose(slots);
+  if (!all_near || is_time_to_choose()) choose(slots);
 }
 
 }  // namespace montecarta

@@ -14,8 +14,8 @@
 namespace montecarta {
 
 /// A JointGaussian whose detections cost what the vehicle's neighbourhood costs, however large the
-/// map: the compressed filter of Guivant and Nebot, exact for both errors. Small maps are one
-/// neighbourhood.
+/// map: the compressed filter of Guivant and Nebot, exact for both errors. A small map is one
+/// neighbourhood, and so is for a while one where compressing has not paid.
 ///
 /// Far landmarks change only through their covariances C with the pose and the near landmarks, so
 /// all that happens to them while the same ones are near lies in the span W of C: their mean is m +
@@ -62,6 +62,7 @@ class CompressedGaussian {
   /// JointGaussian::absorb() of a landmark that is near.
   void absorb(std::size_t slot, const RangeBearing<double>& detected, int iterations,
               ExpectedSight& expected) {
+    ++absorbed_;
     near_.absorb(point_of_[slot], detected, iterations, expected);
   }
   void draw_heading(double keep, double normal) { near_.draw_heading(keep, normal); }
@@ -90,7 +91,10 @@ class CompressedGaussian {
   }
   Eigen::Vector2d mean_of(std::size_t slot) const;
   PointMoments far_point(std::size_t slot) const;
+  bool is_time_to_choose() const;
   void choose(std::span<const std::uint32_t> wanted);
+  void book();
+  void choose_around(std::span<const std::uint32_t> wanted);
   void expand_into(MapMoments& map) const;
   void write_far(MapMoments& map) const;
   void write_near(MapMoments& map) const;
@@ -104,8 +108,11 @@ class CompressedGaussian {
   Retraction retraction_;
   std::vector<std::uint32_t> point_of_;  ///< {slot} in near_, or kFar
   std::size_t most_near_;                ///< beyond so many points it is time to choose anew
-  Eigen::Index stand_ins_ = 0;           ///< their first row in near_
-  Basis basis_;                          ///< W, over the rows of whole_
+  std::size_t absorbed_ = 0;             ///< detections since the near ones were chosen
+  double balance_ = 0.0;        ///< [detections of the whole map] what compressing has saved
+  bool rests_ = false;          ///< it saves nothing here: all landmarks are near for a while
+  Eigen::Index stand_ins_ = 0;  ///< their first row in near_
+  Basis basis_;                 ///< W, over the rows of whole_
   MapMoments whole_;         ///< of far landmarks, when the near ones were chosen; else not in use
   std::vector<Far> far_;     ///< {slot}
   Eigen::MatrixXd columns_;  ///< scratch: C, each column over its standard deviation sigma_

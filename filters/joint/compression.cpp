@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 // How a CompressedGaussian is expanded, and compressed around other landmarks.
 
@@ -12,6 +13,9 @@ namespace {
 /// So many landmarks around the vehicle are near: a detection costs their square, and with more of
 /// them the time is longer until another one is seen.
 constexpr std::size_t kNear = 30;
+/// [detections of a whole map] so much may compressing cost before the map rests, and so long.
+constexpr double kPatience = 150.0;
+constexpr std::size_t kRest = 5000;
 
 }  // namespace
 
@@ -65,10 +69,42 @@ void CompressedGaussian::write_cross_with_far(Eigen::Index at, Columns2& column)
   }
 }
 
-/// Near are from now on those that are wanted and those around the vehicle.
+/// Whether the near landmarks have become too many, or have rested for long enough.
+bool CompressedGaussian::is_time_to_choose() const {
+  return rests_ ? absorbed_ > kRest : near_.landmarks() > most_near_;
+}
+
+/// Brings the map up to date and parts it anew.
 void CompressedGaussian::choose(std::span<const std::uint32_t> wanted) {
   if (whole_.room() < rows()) whole_.make_room(std::max(2 * whole_.room(), rows()));
   expand_into(whole_);
+  book();
+  rests_ = balance_ < -kPatience;
+  if (rests_) {
+    chosen_.resize(landmarks());
+    std::iota(chosen_.begin(), chosen_.end(), 0U);
+    balance_ = 0.0;
+  } else {
+    choose_around(wanted);
+  }
+  gather_near();
+  span_far();
+  stand_in();
+  note_far();
+  absorbed_ = 0;
+}
+
+/// Books what compressing saved since the near ones were chosen, and that to expand a map takes
+/// about as long as one detection for every row of stand-ins.
+void CompressedGaussian::book() {
+  const double share = static_cast<double>(near_.landmarks()) / static_cast<double>(landmarks());
+  const double saved = static_cast<double>(absorbed_) * (1.0 - share * share);
+  balance_ += saved - static_cast<double>(basis_.size());
+  balance_ = std::min(balance_, kPatience);
+}
+
+/// Near are from now on those that are wanted and those around the vehicle.
+void CompressedGaussian::choose_around(std::span<const std::uint32_t> wanted) {
   by_distance_.clear();
   for (std::uint32_t slot = 0; slot < landmarks(); ++slot) {
     const double x = whole_.mean(row_of(slot)) - pose().mean.x;
@@ -82,10 +118,6 @@ void CompressedGaussian::choose(std::span<const std::uint32_t> wanted) {
   for (std::size_t i = 0; i < nearest; ++i) chosen_.push_back(by_distance_[i].second);
   std::ranges::sort(chosen_);
   chosen_.erase(std::unique(chosen_.begin(), chosen_.end()), chosen_.end());
-  gather_near();
-  span_far();
-  stand_in();
-  note_far();
 }
 
 /// Takes the near landmarks' columns out of whole_, and what near landmarks have of them.

@@ -192,6 +192,36 @@ TEST(CompressedGaussian, ARestartLeavesNothingBehind) {
   EXPECT_EQ(restarted.gaussian.landmark(7).covariance, fresh.gaussian.landmark(7).covariance);
 }
 
+std::size_t first_far(const CompressedGaussian& gaussian) {
+  std::size_t slot = 0;
+  while (slot < gaussian.landmarks() && gaussian.is_near(slot)) ++slot;
+  return slot;
+}
+
+TEST(CompressedGaussian, RestsWhereItSavesNothing) {
+  const SmallWorld world = large_world(340);
+  Driven<CompressedGaussian> driven({Retraction::invariant, 0, 1.0});
+  for (std::size_t scan = 0; scan < 340; ++scan) driven.drive(world, scan);
+  CompressedGaussian& gaussian = driven.gaussian;
+  ASSERT_LT(first_far(gaussian), gaussian.landmarks());
+  const MapMoments before = gaussian.map();
+  for (int look = 0; look < 20 && first_far(gaussian) < gaussian.landmarks(); ++look) {
+    const auto slot = static_cast<std::uint32_t>(first_far(gaussian));
+    gaussian.attend(std::span(&slot, 1));  // one after the other, and nothing is learnt
+  }
+  EXPECT_EQ(first_far(gaussian), gaussian.landmarks());
+  const MapMoments after = gaussian.map();
+  EXPECT_LT((after.mean - before.mean).norm(), kRounding);
+  EXPECT_LT((after.covariance - before.covariance).norm(), kRounding);
+  ExpectedSight expected;
+  for (int look = 0; look < 6000; ++look) {
+    ASSERT_EQ(gaussian.look_at(0, expected), JointGaussian::Trouble::none);
+    gaussian.absorb(0, expected.sight, 0, expected);
+  }
+  gaussian.attend({});
+  EXPECT_LT(first_far(gaussian), gaussian.landmarks());
+}
+
 TEST(CompressedGaussian, WhatIsOutOfReachIsBeyondTheGate) {
   const SmallWorld world = large_world(420);
   for (const auto retraction : {Retraction::additive, Retraction::invariant}) {
