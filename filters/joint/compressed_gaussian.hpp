@@ -4,6 +4,7 @@
 #include "filters/joint/basis.hpp"
 #include "filters/joint/joint_gaussian.hpp"
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -60,10 +61,11 @@ class CompressedGaussian {
   /// Makes landmarks near, and others around the vehicle with them; does nothing where they are.
   void attend(std::span<const std::uint32_t> slots);
   /// JointGaussian::absorb() of a landmark that is near.
-  void absorb(std::size_t slot, const RangeBearing<double>& detected, int iterations,
-              ExpectedSight& expected) {
+  Trouble absorb(std::size_t slot, const RangeBearing<double>& detected, int iterations,
+                 ExpectedSight& expected) {
+    assert(is_near(slot));
     ++absorbed_;
-    near_.absorb(point_of_[slot], detected, iterations, expected);
+    return near_.absorb(point_of_[slot], detected, iterations, expected);
   }
   void draw_heading(double keep, double normal) { near_.draw_heading(keep, normal); }
   void append(const RangeBearing<double>& sight);

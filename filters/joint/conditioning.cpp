@@ -38,8 +38,8 @@ JointGaussian::Step JointGaussian::step_of(std::size_t slot, const ExpectedSight
 }
 
 /// Linearises anew where `step` leads; the Gaussian still belongs to the present estimate.
-bool JointGaussian::linearise_after(const Step& step, std::size_t slot,
-                                    ExpectedSight& expected) const {
+JointGaussian::Trouble JointGaussian::linearise_after(const Step& step, std::size_t slot,
+                                                      ExpectedSight& expected) const {
   const Eigen::Index row = row_of(slot);
   Eigen::Vector2d pose_way = step.pose.head<2>(), landmark_way = step.landmark;
   if (retraction_ == Retraction::invariant) {
@@ -51,7 +51,7 @@ bool JointGaussian::linearise_after(const Step& step, std::size_t slot,
   const auto at = linearised_sight(
       Pose{from.x + pose_way(0), from.y + pose_way(1), from.heading + step.pose(2)},
       Point{map_.mean(row) + landmark_way(0), map_.mean(row + 1) + landmark_way(1)});
-  if (too_near(at.sight)) return false;
+  if (too_near(at.sight)) return Trouble::too_near;
   ExpectedSight next{.pose_jacobian = pose_jacobian(at),
                      .landmark_jacobian = landmark_jacobian(at),
                      .sight = at.sight,
@@ -62,23 +62,26 @@ bool JointGaussian::linearise_after(const Step& step, std::size_t slot,
                                  next.landmark_jacobian * (quarter_turn() * landmark_way);
   }
   const auto L = innovation_factor(point(slot), next);
-  if (!L) return false;
+  if (!L) return Trouble::faulty;
   next.factor = *L;
   next.ahead = next.pose_jacobian * step.pose + next.landmark_jacobian * step.landmark;
   expected = next;
-  return true;
+  return Trouble::none;
 }
 
-void JointGaussian::absorb(std::size_t slot, const RangeBearing<double>& detected, int iterations,
-                           ExpectedSight& expected) {
+JointGaussian::Trouble JointGaussian::absorb(std::size_t slot, const RangeBearing<double>& detected,
+                                             int iterations, ExpectedSight& expected) {
   Eigen::Vector2d innovation = expected.innovation(detected);
+  Trouble trouble = Trouble::none;
   for (int i = 0; i < iterations; ++i) {
-    if (!linearise_after(step_of(slot, expected, innovation), slot, expected)) break;
+    trouble = linearise_after(step_of(slot, expected, innovation), slot, expected);
+    if (trouble != Trouble::none) break;
     const Eigen::Vector2d before = std::exchange(innovation, expected.innovation(detected));
     if (expected.factor.whiten(innovation - before).norm() < kConverged) break;
   }
   whiten_gain(slot, expected);
   condition(expected.factor.whiten(innovation));
+  return trouble;
 }
 
 void JointGaussian::draw_heading(double keep, double normal) {

@@ -165,7 +165,8 @@ void JointBelief::absorb(std::size_t k, const Detection& detection) {
     return;
   }
   sightings_.push_back({k, expected.innovation(detected), expected.factor.covariance()});
-  gaussian_.absorb(slot, detected, iterations_, expected);
+  const auto trouble = gaussian_.absorb(slot, detected, iterations_, expected);
+  if (trouble == CompressedGaussian::Trouble::faulty) ++outcome_.faults;
   const InnovationFactor& L = expected.factor;
   const double distance = L.whiten(expected.innovation(detected)).squaredNorm();
   outcome_.log_likelihood += log_normal_density(distance, L);

@@ -76,8 +76,9 @@ class JointGaussian {
   /// again where the detection has moved the estimate to, until that settles or `iterations` times
   /// (iterated EKF, Bell and Cathey 1993; of invariant errors with the derivative of the
   /// exponential taken for one); `expected` becomes the last linearisation.
-  void absorb(std::size_t slot, const RangeBearing<double>& detected, int iterations,
-              ExpectedSight& expected);
+  /// Tells what ended the iterations too early, if anything: then the one before stands.
+  Trouble absorb(std::size_t slot, const RangeBearing<double>& detected, int iterations,
+                 ExpectedSight& expected);
   /// Draws the heading's part of all that is uncertain (SPEC 24): N(m, P) is the mean over standard
   /// normal z of N(m + g z, P - g g'), exactly for the additive error and to first order in the
   /// turn for the invariant one, with g = P e sqrt(1 - keep^2) / sqrt(h), e the heading's axis and
@@ -103,8 +104,8 @@ class JointGaussian {
                                                     const ExpectedSight& at) const;
   Step step_of(std::size_t slot, const ExpectedSight& expected,
                const Eigen::Vector2d& innovation) const;
-  [[nodiscard]] bool linearise_after(const Step& step, std::size_t slot,
-                                     ExpectedSight& expected) const;
+  [[nodiscard]] Trouble linearise_after(const Step& step, std::size_t slot,
+                                        ExpectedSight& expected) const;
   void whiten_gain(std::size_t slot, const ExpectedSight& expected);
   void condition(const Eigen::Vector2d& white);
   Eigen::Vector2d step(const Eigen::Vector2d& white);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/errors.hpp"
+#include "filters/joint/joint_belief.hpp"
 #include "filters/joint/joint_filters.hpp"
 #include "tests/filters/default_options.hpp"
 #include "tests/filters/reference/textbook_ekf_slam.hpp"
@@ -215,6 +216,21 @@ TEST(EkfSlam, CountsAnInnovationThatIsNotPositiveDefinite) {
   filter->update(context, Scan(&detection, 1));
   EXPECT_EQ(filter->report().numerical_faults, 1u);
   EXPECT_EQ(filter->report().nis_dof, 0u);
+}
+
+TEST(JointBelief, CountsAnInnovationThatIsNotPositiveDefiniteInAnIteration) {
+  FilterSetup setup = setup_for(1);
+  setup.belief.sigma_range = 0.0;
+  JointBelief belief(setup, Retraction::additive, 3);
+  const Detection first{10.0, 0.3, 0}, absurd{1e200, 0.3, 0};  // its square is no number
+  belief.start({});
+  belief.absorb({}, Scan(&first, 1));
+  belief.give_birth(Scan(&first, 1));
+  MotionIncrement motion;
+  motion.advance({3.0, 0.1}, 0.2, setup.belief);
+  belief.absorb(motion, Scan(&absurd, 1));
+  EXPECT_EQ(belief.outcome().faults, 1u);
+  EXPECT_EQ(belief.sightings().size(), 1u);  // absorbed as it was linearised last
 }
 
 }  // namespace
