@@ -4,6 +4,7 @@
 // What a FastSlam tells of itself; included by fast_slam.hpp.
 
 #include "filters/fastslam/fast_slam.hpp"
+#include "filters/tell_particles.hpp"
 
 namespace montecarta {
 
@@ -18,17 +19,11 @@ void FastSlam<Real, Proposal, Associating>::report_innovations() {
 
 template <class Real, class Proposal, class Associating>
 void FastSlam<Real, Proposal, Associating>::particles(const ParticleColumns& columns) const {
-  for (std::size_t i = 0; i < columns.pose.size() / 3; ++i) {
-    const std::size_t b = i / kLanesOf<Real>;
-    const BasicPose<Real> pose = proposal_.predicted(b, poses_[b]).mean;
-    const std::size_t lane = i % kLanesOf<Real>;
-    columns.pose[3 * i] = get(pose.x, lane);
-    columns.pose[3 * i + 1] = get(pose.y, lane);
-    columns.pose[3 * i + 2] = get(pose.heading, lane);
-  }
-  std::copy_n(weights_.log_scalars().begin(), columns.log_weight.size(),
-              columns.log_weight.begin());
-  std::copy_n(ancestors_.begin(), columns.ancestor.size(), columns.ancestor.begin());
+  const auto pose_of = [&](std::size_t i) {
+    return pose_of_particle<Real>(
+        [&](std::size_t b) { return proposal_.predicted(b, poses_[b]).mean; }, i);
+  };
+  tell_particles(columns, pose_of, weights_.log_scalars(), ancestors_);
 }
 
 template <class Real, class Proposal, class Associating>

@@ -6,6 +6,7 @@
 #include "filters/joint/joint_mixture.hpp"
 #include "filters/joint/mixture.hpp"
 #include "filters/moments/quadrature_motion.hpp"
+#include "filters/tell_particles.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -202,15 +203,9 @@ PoseEstimate GaussianBank::estimate() const {
 }
 
 void GaussianBank::particles(const ParticleColumns& columns) const {
-  for (std::size_t i = 0; i < columns.pose.size() / 3; ++i) {
-    const Pose pose = belief_of(i).gaussian().pose_after(motion_).mean;
-    columns.pose[3 * i] = pose.x;
-    columns.pose[3 * i + 1] = pose.y;
-    columns.pose[3 * i + 2] = pose.heading;
-  }
-  std::copy_n(weights_.log_scalars().begin(), columns.log_weight.size(),
-              columns.log_weight.begin());
-  std::copy_n(ancestors_.begin(), columns.ancestor.size(), columns.ancestor.begin());
+  tell_particles(
+      columns, [&](std::size_t i) { return belief_of(i).gaussian().pose_after(motion_).mean; },
+      weights_.log_scalars(), ancestors_);
 }
 
 void GaussianBank::map(std::span<std::optional<LandmarkEstimate>> landmarks) const {

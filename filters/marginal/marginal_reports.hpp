@@ -4,6 +4,7 @@
 // What a MarginalFilter tells of itself; included by marginal_filter.hpp.
 
 #include "filters/marginal/marginal_filter.hpp"
+#include "filters/tell_particles.hpp"
 
 namespace montecarta {
 
@@ -17,16 +18,10 @@ PoseEstimate MarginalFilter<Real>::estimate() const {
 
 template <class Real>
 void MarginalFilter<Real>::particles(const ParticleColumns& columns) const {
-  for (std::size_t i = 0; i < columns.pose.size() / 3; ++i) {
-    const Pose drawn = pose_of_particle<Real>([&](std::size_t b) { return poses_[b]; }, i);
-    const Pose pose = motion_.from(drawn).mean;
-    columns.pose[3 * i] = pose.x;
-    columns.pose[3 * i + 1] = pose.y;
-    columns.pose[3 * i + 2] = pose.heading;
-  }
-  std::copy_n(weights_.log_scalars().begin(), columns.log_weight.size(),
-              columns.log_weight.begin());
-  std::copy_n(ancestors_.begin(), columns.ancestor.size(), columns.ancestor.begin());
+  const auto pose_of = [&](std::size_t i) {
+    return motion_.from(pose_of_particle<Real>([&](std::size_t b) { return poses_[b]; }, i)).mean;
+  };
+  tell_particles(columns, pose_of, weights_.log_scalars(), ancestors_);
 }
 
 template <class Real>
