@@ -4,7 +4,10 @@
 #include "analysis/figures/panel.hpp"
 #include "analysis/tables/number_text.hpp"
 
+#include <cstddef>
 #include <set>
+#include <utility>
+#include <vector>
 
 namespace montecarta {
 namespace {

@@ -48,6 +48,7 @@ std::vector<JointScore> joint_scores(const JointRows& rows, std::span<const std:
   std::vector<JointScore> scores;
   std::vector<Eigen::Index> known;
   const std::size_t states = rows.states();
+  if (states == 0) return scores;
   for (std::size_t k = 0; k * states < rows.mean.size(); ++k) {
     const auto mean = std::span(rows.mean).subspan(k * states, states);
     const Eigen::VectorXd error =

@@ -24,7 +24,9 @@ std::string words_of(Verdict verdict) {
 
 /// The stored scan at which the average is farthest from 1.
 std::size_t worst_row(const JointConsistency& joint) {
-  const auto distance = [](double average) { return std::abs(std::log(average)); };
+  const auto distance = [](double average) {
+    return std::isnan(average) ? -1.0 : std::abs(std::log(average));
+  };
   return static_cast<std::size_t>(std::ranges::max_element(joint.average, {}, distance) -
                                   joint.average.begin());
 }

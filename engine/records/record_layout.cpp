@@ -182,9 +182,10 @@ std::vector<Column> map_columns(const Cell& cell, const ColumnSelection& selecti
   return columns;
 }
 
-std::vector<Column> joint_columns(const Cell& cell, const ColumnSelection& selection) {
+std::vector<Column> joint_columns(const Cell& cell, const ColumnSelection& selection,
+                                  std::size_t scans) {
   using enum Axis;
-  if (!selection.joint || !cell.joint) return {};
+  if (!selection.joint || !cell.joint || scans == 0) return {};
   return {{"joint_mean",
            Element::f64,
            {joint, state},
@@ -210,7 +211,7 @@ RecordLayout::RecordLayout(const Cell& cell, const ColumnSelection& selection,
       landmarks_(cell.landmarks) {
   for (auto group :
        {report_columns(), association_columns(selection), particle_columns(cell, selection),
-        map_columns(cell, selection), joint_columns(cell, selection)})
+        map_columns(cell, selection), joint_columns(cell, selection, scans_)})
     columns_.insert(columns_.end(), group.begin(), group.end());
   if (selection.joint && cell.joint) joint_scans_ = joint_scans_of(scans_, selection.joint_scans);
   const Lengths lengths{scans_only_ ? scans_ : itinerary.steps(), scans_, joint_scans_.size()};

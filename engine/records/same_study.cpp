@@ -24,7 +24,7 @@ std::optional<std::string> difference(const ResultDescription& a, const ResultDe
            "): give the files of one study, made with the same --set";
   }
   if (std::ranges::equal(a.cells, b.cells, same_columns) && a.times == b.times &&
-      a.scan_steps == b.scan_steps)
+      a.scan_steps == b.scan_steps && a.joint_scans == b.joint_scans)
     return std::nullopt;
   return path.string() +
          ": is laid out differently (another version of montecarta, or of a world file, made it): "

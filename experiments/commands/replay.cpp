@@ -42,6 +42,7 @@ std::string all_columns(const Study& study) {
     if (setting.section == "record" && setting.key == "columns") columns = setting.choices;
   }
   if (identities_of(study) == 0) std::erase(columns, "association");
+  if (!objection_to_joint(study).empty()) std::erase(columns, "joint");
   return joined(columns, ", ");
 }
 

@@ -121,14 +121,6 @@ std::vector<std::pair<std::string, std::string>> scenario_facts(const Settings& 
   return facts;
 }
 
-/// Asking for what no cell can give is a mistake.
-void expect_joint_estimates(const StudyPlan& plan, const Settings& settings) {
-  if (!plan.columns.joint || std::ranges::any_of(plan.cells, &Cell::joint)) return;
-  throw StudyError(settings.place("record", "columns") +
-                   ": joint (none of the cells' filters has a joint covariance): take joint out, "
-                   "or add a cell of ekf_slam, riekf_slam or hrb");
-}
-
 /// A cell stops by what all of its first runs say.
 [[noreturn]] void refuse_part(const Study& study) {
   throw StudyError(study.settings.place("study", "until") + ": until = " + text_of(*study.until) +
@@ -138,6 +130,19 @@ void expect_joint_estimates(const StudyPlan& plan, const Settings& settings) {
 }
 
 }  // namespace
+
+std::string objection_to_joint(const Study& study) {
+  const auto has_joint = [](const CellSpec& cell) { return cell.filter->has_joint; };
+  if (std::ranges::none_of(study.cells, has_joint)) {
+    return "(none of the cells' filters has a joint covariance): take joint out, or add a cell of "
+           "ekf_slam, riekf_slam or hrb";
+  }
+  const Settings& settings = study.settings;
+  if (settings.text("association", "kind") == "known" && settings.scenario_kind() == "simulated")
+    return {};
+  return "(nobody knows which landmark of a map is which, and covariances of whole maps are "
+         "large): take joint out, or set association.kind = known in a simulation";
+}
 
 StudyPlan make_plan(const Study& study, std::optional<RunRange> range) {
   if (range && study.until) refuse_part(study);
@@ -151,8 +156,11 @@ StudyPlan make_plan(const Study& study, std::optional<RunRange> range) {
   plan.last_run = range ? range->last : plan.runs;
   for (const CellSpec& spec : study.cells) plan.cells.push_back(cell_of(spec, study));
   plan.columns = columns_of(settings);
-  expect_joint_estimates(plan, settings);
   plan.drives = drives_of(study, plan.seed);
+  if (const std::string objection = objection_to_joint(study);
+      plan.columns.joint && !objection.empty()) {
+    throw StudyError(settings.place("record", "columns") + ": joint " + objection);
+  }
   if (study.until) plan.is_enough = rule_of(*study.until);
   plan.own_landmarks = own_landmarks_of(study, plan.seed);
   plan.scenario = scenario_facts(settings);

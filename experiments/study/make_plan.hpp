@@ -6,8 +6,13 @@
 #include "experiments/study/study.hpp"
 
 #include <optional>
+#include <string>
 
 namespace montecarta {
+
+/// Why the study cannot store joint estimates, as the end of a StudyError: "(why): remedy"; empty
+/// where it can.
+std::string objection_to_joint(const Study& study);
 
 /// The study made ready to run: drives simulated, filters at hand. Without `range` all its runs.
 /// Throws StudyError where settings that are right alone do not fit together.

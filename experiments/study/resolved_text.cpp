@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/study/inline_world.hpp"
 #include "experiments/study/study.hpp"
+#include "experiments/text/words.hpp"
+
+#include <algorithm>
 
 namespace montecarta {
 namespace {
 
-/// The text of studies that make all runs is what it was before a study could do otherwise.
-bool is_said(const std::string& key, const std::string& value) {
+/// The text of studies that make all runs, or store no joint estimates, is what it was before a
+/// study could do otherwise.
+bool is_said(const Study& study, const std::string& key, const std::string& value) {
+  if (key == "joint_scans") {
+    const auto columns = split(study.settings.text("record", "columns"), ',');
+    return std::ranges::find(columns, "joint") != columns.end();
+  }
   return key != "until" || !value.empty();
 }
 
@@ -19,7 +27,7 @@ std::string resolved_text(const Study& study) {
     if (section == "world" && study.log != nullptr) continue;
     text += "[" + section + "]\n";
     for (const auto& [key, value] : study.settings.section(section)) {
-      if (is_said(key, value)) text += key + " = " + value + "\n";
+      if (is_said(study, key, value)) text += key + " = " + value + "\n";
     }
     if (section == "cells") {
       for (const CellSpec& cell : study.cells) text += "cell = " + cell_line(cell) + "\n";

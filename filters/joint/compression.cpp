@@ -54,7 +54,7 @@ void CompressedGaussian::write_near(MapMoments& map) const {
   }
 }
 
-/// W X of one near point. One vector at a time: of a whole matrix Eigen would start threads.
+/// W X of one near point.
 void CompressedGaussian::write_cross_with_far(Eigen::Index at, Columns2& column) const {
   const Eigen::MatrixXd& local = near_.map().covariance;
   const Eigen::Index k = basis_.size();

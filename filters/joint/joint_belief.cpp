@@ -88,8 +88,9 @@ std::optional<LandmarkEstimate> JointBelief::landmark(std::size_t k) const {
 }
 
 JointEstimate JointBelief::joint(std::size_t landmarks) const {
-  std::vector<Eigen::Index> rows = {0, 1, 2};
-  std::vector<Eigen::Index> places = rows;  ///< of these rows in the result
+  std::vector<Eigen::Index> rows{0, 1, 2}, places{0, 1, 2};  ///< and where they go in the result
+  rows.reserve(3 + 2 * landmarks);
+  places.reserve(3 + 2 * landmarks);
   for (std::size_t k = 0; k < landmarks; ++k) {
     const std::size_t slot = slot_of(k);
     if (slot >= gaussian_.landmarks()) continue;
@@ -103,8 +104,12 @@ JointEstimate JointBelief::joint(std::size_t landmarks) const {
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   JointEstimate joint{Eigen::VectorXd::Constant(size, unknown),
                       Eigen::MatrixXd::Constant(size, size, unknown)};
-  joint.mean(places) = by_birth.mean(rows);
-  joint.covariance(places, places) = by_birth.covariance(rows, rows);
+  for (std::size_t a = 0; a < rows.size(); ++a) {
+    joint.mean(places[a]) = by_birth.mean(rows[a]);
+    for (std::size_t b = 0; b < rows.size(); ++b) {
+      joint.covariance(places[a], places[b]) = by_birth.covariance(rows[a], rows[b]);
+    }
+  }
   return joint;
 }
 

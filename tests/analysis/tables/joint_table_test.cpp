@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace montecarta {
 namespace {
 
@@ -39,6 +41,12 @@ TEST(JointTable, HasARowForACellThatWasJudged) {
   ASSERT_EQ(table.rows.size(), 1u);
   EXPECT_THAT(table.rows[0], ElementsAre("ekf_slam", "9.50", "1.20", "[0.950, 1.05]",
                                          "0.500 at 5.00 s", "optimistic"));
+}
+
+TEST(JointTable, IsFarthestWhereThereIsANumber) {
+  StudyAnalysis study = study_of_two();
+  study.cells[0].joint.average[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(joint_table(study).rows[0][4], "1.20 at 10.0 s");
 }
 
 TEST(JointTable, SaysWhatWasLeftOut) {

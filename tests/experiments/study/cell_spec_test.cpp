@@ -19,8 +19,8 @@ std::vector<FilterKind> paper_filters() {
   const FilterOption threshold{"threshold", Kind::number, "0.5", 0, 1, {}, "when to resample"};
   const FilterOption weight{
       "weight", Kind::choice, "closed", 0, 0, {"closed", "ratio", "as_printed"}, "which form"};
-  return {{"bold", "Bold filter", "", true, false, {particles, threshold, weight}, {}},
-          {"plain", "Plain filter", "", false, false, {threshold}, {}}};
+  return {{"bold", "Bold filter", "", true, false, false, {particles, threshold, weight}, {}},
+          {"plain", "Plain filter", "", false, false, false, {threshold}, {}}};
 }
 
 std::vector<CellSpec> cells_of(const std::vector<FilterKind>& filters,

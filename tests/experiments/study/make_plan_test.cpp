@@ -12,6 +12,7 @@ namespace montecarta {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 std::string plan_complaint(const std::string& text) {
   try {
@@ -69,11 +70,18 @@ TEST(Plan, RefusesSettingsThatDoNotFitTogether) {
 
 TEST(Plan, RefusesJointEstimatesThatNoCellHas) {
   const std::string record = "[record]\ncolumns = pose, joint\n[cells]";
-  EXPECT_THAT(plan_complaint(with("[cells]", record)),
-              HasSubstr("trial.ini:7: columns: joint (none of the cells' filters"));
-  const StudyPlan plan = make_plan(parsed(with("[cells]", record) + "cell = hrb\n"));
-  EXPECT_TRUE(plan.cells.back().joint);
+  EXPECT_THAT(plan_complaint(with("[cells]\ncell = ekf_slam", record + "\ncell = fastslam2")),
+              HasSubstr("trial.ini:7: joint (none of the cells' filters"));
+  const StudyPlan plan = make_plan(parsed(with("[cells]", record) + "cell = fastslam2\n"));
+  EXPECT_TRUE(plan.cells[0].joint);
+  EXPECT_FALSE(plan.cells[1].joint);
   EXPECT_EQ(plan.columns.joint_scans, 16u);
+  EXPECT_THAT(plan.resolved_text, HasSubstr("joint_scans = 16"));
+  EXPECT_THAT(make_plan(parsed(kGoodStudy)).resolved_text, Not(HasSubstr("joint_scans")))
+      << "the text, and so the SHA-256, of a study that stores none is what it was";
+  EXPECT_THAT(
+      plan_complaint(with("[cells]", "[association]\nkind = nearest\n" + record) + "cell = hrb\n"),
+      HasSubstr("nobody knows which landmark of a map is which"));
 }
 
 TEST(Plan, RefusesSettingsOfAFilterThatDoNotGoTogether) {

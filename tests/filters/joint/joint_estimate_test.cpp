@@ -7,8 +7,11 @@
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace montecarta {
 namespace {

@@ -7,6 +7,9 @@
 
 #include <Eigen/Dense>
 
+#include <algorithm>
+#include <cmath>
+
 namespace montecarta::reference {
 
 /// EKF-SLAM, or its right-invariant form, in a square root: the covariance is F F' with as many
