@@ -14,21 +14,17 @@ std::unique_ptr<SlamFilter> make_fastslam1_anchored(const FilterSetup& setup) {
   return make_fast_slam<Real>(setup, fast_slam_settings(setup.options),
                               MotionSampling<Real, Anchored>(setup.belief));
 }
-template <class Real>
-std::unique_ptr<SlamFilter> make_fastslam2_anchored(const FilterSetup& setup) {
-  return make_refined<Real>(setup, Linearised(), Anchored());
-}
-/// Poses by sigma points: U-FastSLAM and SRCD-FastSLAM.
-template <class Real>
-std::unique_ptr<SlamFilter> make_sigma_anchored(const FilterSetup& setup,
-                                                const SigmaPoints& poses) {
+/// FastSLAM II and its sigma-point kin, which differ in what carries their poses.
+template <class Real, class PoseTransform>
+std::unique_ptr<SlamFilter> make_anchored(const FilterSetup& setup, const PoseTransform& poses) {
   return make_refined<Real>(setup, poses, Anchored());
 }
 
 // Each compiled apart.
 extern template std::unique_ptr<SlamFilter> make_fastslam1_anchored<Lanes>(const FilterSetup&);
-extern template std::unique_ptr<SlamFilter> make_fastslam2_anchored<Lanes>(const FilterSetup&);
-extern template std::unique_ptr<SlamFilter> make_sigma_anchored<Lanes>(const FilterSetup&,
-                                                                       const SigmaPoints&);
+extern template std::unique_ptr<SlamFilter> make_anchored<Lanes>(const FilterSetup&,
+                                                                 const Linearised&);
+extern template std::unique_ptr<SlamFilter> make_anchored<Lanes>(const FilterSetup&,
+                                                                 const SigmaPoints&);
 
 }  // namespace montecarta

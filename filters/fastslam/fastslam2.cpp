@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "filters/fastslam/anchored.hpp"
 #include "filters/fastslam/fast_slam_filters.hpp"
 #include "filters/fastslam/moved.hpp"
 
@@ -19,9 +18,7 @@ FilterKind fastslam2_kind() {
           .options = std::move(options),
           .make =
               [](const FilterSetup& setup) {
-                if (move_lag(setup.options) > 0) return make_moved<Lanes>(setup, Linearised());
-                return are_anchored(setup.options) ? make_fastslam2_anchored<Lanes>(setup)
-                                                   : make_fastslam2<Lanes>(setup);
+                return make_as_chosen(setup, Linearised(), make_fastslam2<Lanes>);
               },
           .check = check_move};
 }

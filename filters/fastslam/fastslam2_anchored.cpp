@@ -3,6 +3,6 @@
 
 namespace montecarta {
 
-template std::unique_ptr<SlamFilter> make_fastslam2_anchored<Lanes>(const FilterSetup&);
+template std::unique_ptr<SlamFilter> make_anchored<Lanes>(const FilterSetup&, const Linearised&);
 
 }  // namespace montecarta

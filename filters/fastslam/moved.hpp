@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "filters/fastslam/anchored.hpp"
 #include "filters/fastslam/fast_slam_filters.hpp"
 #include "filters/fastslam/moved_proposal.hpp"
 
@@ -32,5 +33,14 @@ extern template std::unique_ptr<SlamFilter> make_moved<Lanes>(const FilterSetup&
                                                               const Linearised&);
 extern template std::unique_ptr<SlamFilter> make_moved<Lanes>(const FilterSetup&,
                                                               const SigmaPoints&);
+
+/// What the options `move_lag` and `landmarks` make of a filter whose poses `poses` carries;
+/// `plain(setup)` where they ask for nothing.
+template <class PoseTransform, class Plain>
+std::unique_ptr<SlamFilter> make_as_chosen(const FilterSetup& setup, const PoseTransform& poses,
+                                           const Plain& plain) {
+  if (move_lag(setup.options) > 0) return make_moved<Lanes>(setup, poses);
+  return are_anchored(setup.options) ? make_anchored<Lanes>(setup, poses) : plain(setup);
+}
 
 }  // namespace montecarta

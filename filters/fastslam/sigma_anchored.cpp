@@ -3,7 +3,6 @@
 
 namespace montecarta {
 
-template std::unique_ptr<SlamFilter> make_sigma_anchored<Lanes>(const FilterSetup&,
-                                                                const SigmaPoints&);
+template std::unique_ptr<SlamFilter> make_anchored<Lanes>(const FilterSetup&, const SigmaPoints&);
 
 }  // namespace montecarta

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/srcd.hpp"
 
-#include "filters/fastslam/anchored.hpp"
 #include "filters/fastslam/moved.hpp"
 
 namespace montecarta {
@@ -19,12 +18,7 @@ FilterKind srcd_kind() {
           .options = std::move(options),
           .make =
               [](const FilterSetup& setup) {
-                if (move_lag(setup.options) > 0) {
-                  return make_moved<Lanes>(setup, srcd_points(setup));
-                }
-                return are_anchored(setup.options)
-                           ? make_sigma_anchored<Lanes>(setup, srcd_points(setup))
-                           : make_srcd<Lanes>(setup);
+                return make_as_chosen(setup, srcd_points(setup), make_srcd<Lanes>);
               },
           .check = check_move};
 }

@@ -14,7 +14,7 @@ FilterKind srcd_aided_kind() {
           .has_mixture = true,
           .options = std::move(options),
           .make = [](const FilterSetup& setup) {
-            return are_anchored(setup.options) ? make_fastslam2_anchored<Lanes>(setup)
+            return are_anchored(setup.options) ? make_anchored<Lanes>(setup, Linearised())
                                                : make_srcd_aided<Lanes>(setup);
           }};
 }

@@ -15,9 +15,8 @@ FilterKind srcd_pf_kind() {
           .has_mixture = true,
           .options = std::move(options),
           .make = [](const FilterSetup& setup) {
-            return are_anchored(setup.options)
-                       ? make_sigma_anchored<Lanes>(setup, srcd_points(setup))
-                       : make_srcd_pf<Lanes>(setup);
+            return are_anchored(setup.options) ? make_anchored<Lanes>(setup, srcd_points(setup))
+                                               : make_srcd_pf<Lanes>(setup);
           }};
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/ufastslam.hpp"
 
-#include "filters/fastslam/anchored.hpp"
 #include "filters/fastslam/moved.hpp"
 
 namespace montecarta {
@@ -40,12 +39,7 @@ FilterKind ufastslam_kind() {
           .options = std::move(options),
           .make =
               [](const FilterSetup& setup) {
-                if (move_lag(setup.options) > 0) {
-                  return make_moved<Lanes>(setup, unscented_points(setup));
-                }
-                return are_anchored(setup.options)
-                           ? make_sigma_anchored<Lanes>(setup, unscented_points(setup))
-                           : make_ufastslam<Lanes>(setup);
+                return make_as_chosen(setup, unscented_points(setup), make_ufastslam<Lanes>);
               },
           .check = check_move};
 }

@@ -45,9 +45,10 @@ void CompressedGaussian::become(const CompressedGaussian& other) {
   stand_ins_ = other.stand_ins_;
   basis_ = other.basis_;
   far_ = other.far_;
-  if (basis_.size() == 0) return;
-  whole_.make_room(basis_.vectors().rows());
-  whole_.take(other.whole_, basis_.vectors().rows());
+  if (std::ranges::find(point_of_, kFar) == point_of_.end()) return;
+  const Eigen::Index held = std::min(rows(), other.whole_.room());
+  whole_.make_room(held);
+  whole_.take(other.whole_, held);
 }
 
 Eigen::Vector2d CompressedGaussian::mean_of(std::size_t slot) const {

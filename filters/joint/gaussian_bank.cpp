@@ -3,7 +3,6 @@
 
 #include "engine/random/normal_quantile.hpp"
 #include "filters/association/association_counts.hpp"
-#include "filters/joint/joint_mixture.hpp"
 #include "filters/joint/mixture.hpp"
 #include "filters/moments/quadrature_motion.hpp"
 #include "filters/tell_particles.hpp"
@@ -208,6 +207,18 @@ void GaussianBank::particles(const ParticleColumns& columns) const {
       weights_.log_scalars(), ancestors_);
 }
 
+/// Visits every belief that some particle has, with the weight of all that have it.
+template <class Visit>
+void GaussianBank::for_beliefs(const Visit& visit) const {
+  for (const std::uint32_t slot : active_) {
+    double weight = 0.0;
+    for (std::size_t i = 0; i < slot_of_.size(); ++i) {
+      if (slot_of_[i] == slot) weight += weights_.linear()[i];
+    }
+    visit(weight, beliefs_[slot]);
+  }
+}
+
 void GaussianBank::map(std::span<std::optional<LandmarkEstimate>> landmarks) const {
   for (std::size_t k = 0; k < landmarks.size(); ++k) landmarks[k] = landmark(k);
 }
@@ -217,31 +228,20 @@ void GaussianBank::map(std::span<std::optional<LandmarkEstimate>> landmarks) con
 std::optional<LandmarkEstimate> GaussianBank::landmark(std::size_t k) const {
   const auto about = belief_of(weights_.heaviest()).landmark(k);
   if (!known_ || !about) return about;
-  Eigen::Vector2d shift = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-  const std::span<const double> weights = weights_.linear_scalars();
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    const LandmarkEstimate its = *belief_of(i).landmark(k);
-    const Eigen::Vector2d away = its.mean - about->mean;
-    shift += weights[i] * away;
-    covariance += weights[i] * (its.covariance - about->covariance + away * away.transpose());
-  }
-  return LandmarkEstimate{about->mean + shift,
-                          about->covariance + covariance - shift * shift.transpose()};
+  Mixture mixture(*about);
+  for_beliefs(
+      [&](double weight, const JointBelief& belief) { mixture.add(weight, *belief.landmark(k)); });
+  return mixture.result();
 }
 
 /// Likewise; headings that were drawn after the scan are in it as they were drawn.
 std::optional<JointEstimate> GaussianBank::joint(std::size_t landmarks) const {
   const JointBelief& heaviest = belief_of(weights_.heaviest());
   if (!known_ || active_.size() == 1) return heaviest.joint(landmarks);
-  JointMixture mixture(heaviest.joint(landmarks));
-  for (const std::uint32_t slot : active_) {
-    double weight = 0.0;
-    for (std::size_t i = 0; i < slot_of_.size(); ++i) {
-      if (slot_of_[i] == slot) weight += weights_.linear()[i];
-    }
-    mixture.add(weight, beliefs_[slot].joint(landmarks));
-  }
+  Mixture mixture(heaviest.joint(landmarks));
+  for_beliefs([&](double weight, const JointBelief& belief) {
+    mixture.add(weight, belief.joint(landmarks));
+  });
   return mixture.result();
 }
 

@@ -68,6 +68,8 @@ class GaussianBank final : public SlamFilter {
   void part_those_due();
   void note_active();
   void decide_on_resampling(const StepContext& context);
+  template <class Visit>
+  void for_beliefs(const Visit& visit) const;
   std::optional<LandmarkEstimate> landmark(std::size_t k) const;
 
   Belief belief_;

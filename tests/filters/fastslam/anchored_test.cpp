@@ -30,8 +30,8 @@ std::unique_ptr<SlamFilter> make_single(const Variant& v, const SmallWorldSettin
   if (v.filter == "fastslam1") return make_fastslam1_anchored<double>(setup);
   if (v.filter == "de_srcd") return make_de_srcd_anchored<double>(setup);
   if (v.filter == "fastslam2" || v.filter == "srcd_aided")
-    return make_fastslam2_anchored<double>(setup);
-  return make_sigma_anchored<double>(
+    return make_anchored<double>(setup, Linearised());
+  return make_anchored<double>(
       setup, v.filter == "ufastslam" ? unscented_points(setup) : srcd_points(setup));
 }
 

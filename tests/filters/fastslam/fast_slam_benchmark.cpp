@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <string>
 
@@ -128,14 +129,13 @@ void Delayed(benchmark::State& state, Make make, Part part) {
   measure(state, "delayed", make, part);
 }
 
-void sizes(benchmark::internal::Benchmark* benchmark) {
-  for (const std::int64_t particles : {30, 100, 1000}) benchmark->Arg(particles);
-  benchmark->UseManualTime();
+/// Only a part of the time is measured, a twentieth or less: the least time is of that part.
+void take(benchmark::internal::Benchmark* benchmark, std::initializer_list<std::int64_t> sizes) {
+  for (const std::int64_t particles : sizes) benchmark->Arg(particles);
+  benchmark->UseManualTime()->MinTime(0.05);
 }
-void few(benchmark::internal::Benchmark* benchmark) {
-  for (const std::int64_t particles : {3, 10, 100}) benchmark->Arg(particles);
-  benchmark->UseManualTime();
-}
+void sizes(benchmark::internal::Benchmark* benchmark) { take(benchmark, {30, 100, 1000}); }
+void few(benchmark::internal::Benchmark* benchmark) { take(benchmark, {3, 10, 100}); }
 
 BENCHMARK_CAPTURE(FastSlam2, observation, Make::lanes, Part::scan)->Apply(sizes);
 BENCHMARK_CAPTURE(FastSlam2, observation_eigen, Make::eigen, Part::scan)->Apply(sizes);

@@ -273,5 +273,24 @@ TEST(Basis, SpansItsColumnsAndTurnsWithThem) {
   }
 }
 
+/// Where the pose is certain, landmarks are not correlated, and no basis stands for the far ones.
+TEST(CompressedGaussian, CopiesFarLandmarksThatAreAlone) {
+  CompressedGaussian alone(Belief{}, Retraction::invariant, 10);
+  alone.start({});
+  for (std::size_t k = 0; k < kLandmarks; ++k) {
+    alone.append({5.0 + static_cast<double>(k), 0.01 * static_cast<double>(k)});
+  }
+  const std::vector<std::uint32_t> first{0};
+  alone.attend(first);
+  ASSERT_FALSE(alone.is_near(kLandmarks - 1));
+  CompressedGaussian copy(Belief{}, Retraction::invariant, 10);
+  copy.start({});
+  copy.become(alone);
+  for (std::size_t k = 0; k < kLandmarks; ++k) {
+    EXPECT_EQ(copy.landmark(k).mean, alone.landmark(k).mean) << "landmark " << k;
+    EXPECT_EQ(copy.landmark(k).covariance, alone.landmark(k).covariance) << "landmark " << k;
+  }
+}
+
 }  // namespace
 }  // namespace montecarta

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "filters/joint/joint_mixture.hpp"
+#include "filters/joint/mixture.hpp"
 
 #include "engine/numbers/angle.hpp"
 
@@ -18,8 +18,8 @@ JointEstimate gaussian(double x, double heading, double variance) {
   return joint;
 }
 
-TEST(JointMixture, HasTheMomentsOfItsComponents) {
-  JointMixture mixture(gaussian(1.0, 0.1, 0.5));
+TEST(MixtureOfJoints, HasTheMomentsOfItsComponents) {
+  Mixture mixture(gaussian(1.0, 0.1, 0.5));
   mixture.add(0.25, gaussian(1.0, 0.1, 0.5));
   mixture.add(0.75, gaussian(3.0, -0.1, 0.1));
   const JointEstimate whole = mixture.result();
@@ -33,8 +33,8 @@ TEST(JointMixture, HasTheMomentsOfItsComponents) {
   EXPECT_NEAR(whole.covariance(1, 1), own, 1e-12);
 }
 
-TEST(JointMixture, TurnsTheShorterWay) {
-  JointMixture mixture(gaussian(0.0, 3.1, 0.1));
+TEST(MixtureOfJoints, TurnsTheShorterWay) {
+  Mixture mixture(gaussian(0.0, 3.1, 0.1));
   mixture.add(0.25, gaussian(0.0, 3.1, 0.1));
   mixture.add(0.75, gaussian(0.0, -3.1, 0.1));
   const double between = 2.0 * (kPi - 3.1);
@@ -43,21 +43,33 @@ TEST(JointMixture, TurnsTheShorterWay) {
   EXPECT_NEAR(whole.covariance(2, 2), 0.1 + 0.25 * 0.75 * between * between, 1e-12);
 }
 
-TEST(JointMixture, OfEqualsIsOneOfThem) {
+TEST(MixtureOfJoints, OfEqualsIsOneOfThem) {
   const JointEstimate one = gaussian(1.0 / 3.0, 0.7, 0.1);
-  JointMixture mixture(one);
+  Mixture mixture(one);
   for (int i = 0; i < 3; ++i) mixture.add(1.0 / 3.0, one);
   EXPECT_EQ(mixture.result().mean, one.mean);
   EXPECT_EQ(mixture.result().covariance, one.covariance);
 }
 
-TEST(JointMixture, KnowsNothingOfWhatNoneHasSeen) {
+TEST(MixtureOfJoints, KnowsNothingOfWhatNoneHasSeen) {
   JointEstimate one = gaussian(1.0, 0.0, 0.1);
   one.mean.tail<2>().setConstant(std::numeric_limits<double>::quiet_NaN());
-  JointMixture mixture(one);
+  Mixture mixture(one);
   mixture.add(1.0, one);
   EXPECT_TRUE(std::isnan(mixture.result().mean(4)));
   EXPECT_EQ(mixture.result().mean(0), 1.0);
+}
+
+TEST(MixtureOfLandmarks, HasTheMomentsOfItsComponents) {
+  const LandmarkEstimate one{{1.0, 2.0}, 0.5 * Eigen::Matrix2d::Identity()};
+  const LandmarkEstimate other{{3.0, 2.0}, 0.1 * Eigen::Matrix2d::Identity()};
+  Mixture mixture(one);
+  mixture.add(0.25, one);
+  mixture.add(0.75, other);
+  const LandmarkEstimate whole = mixture.result();
+  EXPECT_NEAR(whole.mean.x(), 2.5, 1e-12);
+  EXPECT_NEAR(whole.covariance(0, 0), 0.25 * 0.5 + 0.75 * 0.1 + 0.25 * 0.75 * 4.0, 1e-12);
+  EXPECT_NEAR(whole.covariance(1, 1), 0.25 * 0.5 + 0.75 * 0.1, 1e-12);
 }
 
 }  // namespace
