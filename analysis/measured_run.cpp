@@ -57,7 +57,10 @@ void MeasuredRun::measure(const Yardsticks& sticks, std::size_t particles) {
   if (sticks.map.known && rows.final_map) {
     map = map_scores(*rows.final_map, sticks.map, rows.landmarks, rows.truth);
   }
-  joint = joint_scores(rows.joint, sticks.joint_scans, rows.truth, rows.landmarks);
+  joint.clear();
+  if (!rows.truth.empty()) {
+    joint = joint_scores(rows.joint, sticks.joint_scans, rows.truth, rows.landmarks);
+  }
   if (sticks.calibrates)
     pits = pits_of(rows, rows.run,
                    sticks.map.identities_known ? std::span<const Eigen::Vector2d>(rows.landmarks)
@@ -75,7 +78,6 @@ void CellSums::add(const MeasuredRun& run) {
   beacons_.push_back(run.beacons);
   map_.add(run.map);
   joint_.add(run.joint);
-  joint_nees_.push_back(nees_per_component(run.joint));
   if (calibrates_) calibration_.add(run.pits);
 }
 
@@ -83,9 +85,7 @@ std::vector<RunScores> CellSums::scores() const {
   std::vector<RunScores> scores = sums_.scores();
   if (!references_.empty()) put_leading_scores(references_.front().result(), scores);
   map_.put_scores(scores);
-  for (std::size_t i = 0; i < scores.size() && knows_identities_; ++i) {
-    scores[i].joint_nees = joint_nees_[i];
-  }
+  if (knows_identities_) joint_.put_scores(scores);
   for (std::size_t i = 0; i < beacons_.size(); ++i) {
     if (!beacons_[i]) continue;
     scores[i].beacons_found = beacons_[i]->found;

@@ -40,7 +40,7 @@ struct MeasuredRun {
   std::vector<ReferenceRun> references;
   std::optional<BeaconScores> beacons;  ///< where the final map is stored and beacons are known
   std::optional<MapScores> map;         ///< where it is stored and the world is known
-  std::vector<JointScore> joint;        ///< where joint estimates are stored and identities known
+  std::vector<JointScore> joint;        ///< where joint estimates are stored
   RunPits pits;                         ///< where calibration is judged
 
   /// Of `rows` of a complete run.
@@ -71,7 +71,6 @@ class CellSums {
   std::vector<std::optional<BeaconScores>> beacons_;  ///< {run}
   MapErrorSums map_;
   JointNeesSums joint_;
-  std::vector<double> joint_nees_;  ///< {run} per component
   double level_;
   bool knows_landmarks_;
   bool knows_identities_;

@@ -67,12 +67,9 @@ void RunReader::read_final_map(std::size_t i, RunRows& rows, Scratch& scratch) c
   if (!rows.map_size.empty() && rows.map_size.back() > static_cast<double>(landmarks) + kRounding)
     return;  // record.map_rows left part of it out
   const auto last = [&](const char* name, std::size_t width) {
-    const auto column = std::ranges::find(cell_->columns, prefix + name, &Column::name);
-    scratch.resize(column->elements());
-    file_->read(*cell_, column->name, i, std::span(scratch));
+    read_whole(prefix + name, i, scratch);
     return std::span<const double>(scratch).last(landmarks * width);
   };
-  const std::lock_guard lock(reading_);
   FinalMap& map = rows.final_map.emplace();
   for (const double one : last("seen", 1)) map.seen.push_back(one != 0.0 ? 1 : 0);
   const auto mean = last("mean", 2);
@@ -83,17 +80,13 @@ void RunReader::read_final_map(std::size_t i, RunRows& rows, Scratch& scratch) c
   }
 }
 
-void RunReader::read_joint(std::size_t i, JointRows& out) const {
-  const auto read_whole = [&](std::string_view name, std::vector<double>& values) {
-    values.clear();
-    const auto column = std::ranges::find(cell_->columns, name, &Column::name);
-    if (!file_->has_truth() || column == cell_->columns.end()) return;
-    values.resize(column->elements());
-    const std::lock_guard lock(reading_);
-    file_->read(*cell_, name, i, std::span(values));
-  };
-  read_whole("joint_mean", out.mean);
-  read_whole("joint_covariance", out.covariance);
+void RunReader::read_whole(std::string_view column, std::size_t i, std::vector<double>& out) const {
+  out.clear();
+  const auto found = std::ranges::find(cell_->columns, column, &Column::name);
+  if (found == cell_->columns.end()) return;
+  out.resize(found->elements());
+  const std::lock_guard lock(reading_);
+  file_->read(*cell_, column, i, std::span(out));
 }
 
 void RunReader::read_cloud(std::size_t i, CloudRows& out, Scratch& scratch) const {
@@ -144,7 +137,8 @@ void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
   read_scans("map_size", 1, i, rows.map_size);
   read_final_map(i, rows, scratch);
   read_cloud(i, rows.cloud, scratch);
-  read_joint(i, rows.joint);
+  read_whole("joint_mean", i, rows.joint.mean);
+  read_whole("joint_covariance", i, rows.joint.covariance);
   rows.run = file_->runs()[i];
   {
     const std::lock_guard lock(reading_);

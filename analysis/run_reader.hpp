@@ -32,7 +32,8 @@ class RunReader {
   /// A column over time, of which scans are kept; `width` numbers a row. Empty where not stored.
   void read_at_scans(std::string_view column, std::size_t width, std::size_t i,
                      std::vector<double>& out, Scratch& scratch) const;
-  void read_joint(std::size_t i, JointRows& out) const;
+  /// All of a column, as far as it is stored.
+  void read_whole(std::string_view column, std::size_t i, std::vector<double>& out) const;
   void read_cloud(std::size_t i, CloudRows& out, Scratch& scratch) const;
   template <class Number>
   void read_scans(std::string_view column, std::size_t width, std::size_t i,

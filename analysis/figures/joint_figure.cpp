@@ -5,6 +5,7 @@
 #include "analysis/tables/number_text.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <set>
 #include <utility>
 #include <vector>
@@ -13,7 +14,7 @@ namespace montecarta {
 namespace {
 
 /// The ends of the band, which is the narrower the larger the map is; one band for each number of
-/// complete runs.
+/// runs that it is for.
 void add_band(const CellAnalysis& cell, double level, bool is_first, Panel& panel) {
   std::vector<double> lower, upper;
   for (const Interval& bounds : cell.joint.bounds) {
@@ -36,12 +37,12 @@ Figure joint_figure(const StudyAnalysis& study) {
       "covariance, with all its correlations, fits its errors. It finds fault with a filter sooner "
       "than the pose alone, since every landmark is a witness.";
   Panel panel{"joint_nees", "joint NEES per component", {}, {}, Scale::automatic};
-  std::set<std::size_t> runs;
+  std::set<std::vector<std::uint32_t>> runs;
   for (std::size_t i = 0; i < study.cells.size(); ++i) {
     const CellAnalysis& cell = study.cells[i];
     if (cell.joint.verdict == Verdict::untested) continue;
     panel.curves.push_back({cell.label, i, cell.joint.average});
-    if (runs.insert(cell.complete).second) add_band(cell, study.level, runs.size() == 1, panel);
+    if (runs.insert(cell.joint.runs).second) add_band(cell, study.level, runs.size() == 1, panel);
   }
   add_panels({panel}, study.joint_times, figure);
   return figure;

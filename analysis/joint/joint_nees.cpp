@@ -71,6 +71,7 @@ double nees_per_component(std::span<const JointScore> scores) {
 }
 
 void JointNeesSums::add(std::span<const JointScore> run) {
+  runs_.push_back(nees_per_component(run));
   if (run.empty()) return;
   ++n_runs_;
   rows_.resize(run.size());
@@ -82,6 +83,10 @@ void JointNeesSums::add(std::span<const JointScore> run) {
     rows_[k].dimensions += dimension;
     ++rows_[k].runs;
   }
+}
+
+void JointNeesSums::put_scores(std::vector<RunScores>& scores) const {
+  for (std::size_t i = 0; i < runs_.size(); ++i) scores[i].joint_nees = runs_[i];
 }
 
 /// The sum over runs is chi-square with the sum of the dimensions; each of K rows is tested at

@@ -3,6 +3,7 @@
 
 #include "analysis/metrics/consistency.hpp"
 #include "analysis/metrics/run_rows.hpp"
+#include "analysis/metrics/run_scores.hpp"
 #include "analysis/nees_bounds.hpp"
 
 #include <cstddef>
@@ -49,14 +50,17 @@ class JointNeesSums {
   void add(std::span<const JointScore> run);
   /// `identities_known`: whether anybody knows which landmark is which.
   JointConsistency result(double level, bool identities_known) const;
+  /// Copies what is known of every run to its scores, which are in the order of the calls.
+  void put_scores(std::vector<RunScores>& scores) const;
 
  private:
   struct Sums {
     double nees = 0.0, dimensions = 0.0, all_dimensions = 0.0;
     std::uint32_t runs = 0;
   };
-  std::vector<Sums> rows_;  ///< {joint}
-  std::uint64_t n_runs_ = 0;
+  std::vector<Sums> rows_;    ///< {joint}
+  std::vector<double> runs_;  ///< {run} NEES per component; NaN where there is none
+  std::uint64_t n_runs_ = 0;  ///< of them: with joint estimates
 };
 
 }  // namespace montecarta

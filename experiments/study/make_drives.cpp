@@ -5,7 +5,6 @@
 #include "experiments/drives/simulated_drive.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
 #include "experiments/text/numbers.hpp"
-#include "experiments/text/words.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -54,11 +53,6 @@ Scenario scenario_of(const Settings& s) {
   return scenario;
 }
 
-bool wants_association(const Settings& s) {
-  const std::vector<std::string> columns = split(s.text("record", "columns"), ',');
-  return std::ranges::find(columns, "association") != columns.end();
-}
-
 /// A log whose detections nobody identified leaves that to the filters, and nothing to count.
 void refuse_use_of_identities(const Settings& s) {
   if (s.text("association", "kind") == "known") {
@@ -66,7 +60,7 @@ void refuse_use_of_identities(const Settings& s) {
                      ": association.kind = known (detections of this drive carry no identity): "
                      "set it to nearest");
   }
-  if (wants_association(s)) {
+  if (s.lists("record", "columns", "association")) {
     throw StudyError(s.place("record", "columns") +
                      ": association (detections of this drive carry no identity to count by): "
                      "leave it out");

@@ -4,7 +4,6 @@
 #include "engine/errors.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/text/numbers.hpp"
-#include "experiments/text/words.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -45,10 +44,7 @@ AssociationSettings association_of(const Settings& s) {
 }
 
 ColumnSelection columns_of(const Settings& s) {
-  const std::vector<std::string> chosen = split(s.text("record", "columns"), ',');
-  const auto has = [&](const char* name) {
-    return std::ranges::find(chosen, name) != chosen.end();
-  };
+  const auto has = [&](const char* name) { return s.lists("record", "columns", name); };
   return {.covariance = has("covariance"),
           .ancestry = has("ancestry"),
           .particles = has("particles"),
@@ -121,6 +117,13 @@ std::vector<std::pair<std::string, std::string>> scenario_facts(const Settings& 
   return facts;
 }
 
+/// Asking for what no cell can give, or nobody could judge, is a mistake.
+void expect_joint_estimates(const Study& study) {
+  const std::string objection = objection_to_joint(study);
+  if (objection.empty()) return;
+  throw StudyError(study.settings.place("record", "columns") + ": joint " + objection);
+}
+
 /// A cell stops by what all of its first runs say.
 [[noreturn]] void refuse_part(const Study& study) {
   throw StudyError(study.settings.place("study", "until") + ": until = " + text_of(*study.until) +
@@ -156,11 +159,8 @@ StudyPlan make_plan(const Study& study, std::optional<RunRange> range) {
   plan.last_run = range ? range->last : plan.runs;
   for (const CellSpec& spec : study.cells) plan.cells.push_back(cell_of(spec, study));
   plan.columns = columns_of(settings);
+  if (plan.columns.joint) expect_joint_estimates(study);
   plan.drives = drives_of(study, plan.seed);
-  if (const std::string objection = objection_to_joint(study);
-      plan.columns.joint && !objection.empty()) {
-    throw StudyError(settings.place("record", "columns") + ": joint " + objection);
-  }
   if (study.until) plan.is_enough = rule_of(*study.until);
   plan.own_landmarks = own_landmarks_of(study, plan.seed);
   plan.scenario = scenario_facts(settings);

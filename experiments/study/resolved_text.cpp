@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/study/inline_world.hpp"
 #include "experiments/study/study.hpp"
-#include "experiments/text/words.hpp"
-
-#include <algorithm>
 
 namespace montecarta {
 namespace {
@@ -11,10 +8,7 @@ namespace {
 /// The text of studies that make all runs, or store no joint estimates, is what it was before a
 /// study could do otherwise.
 bool is_said(const Study& study, const std::string& key, const std::string& value) {
-  if (key == "joint_scans") {
-    const auto columns = split(study.settings.text("record", "columns"), ',');
-    return std::ranges::find(columns, "joint") != columns.end();
-  }
+  if (key == "joint_scans") return study.settings.lists("record", "columns", "joint");
   return key != "until" || !value.empty();
 }
 

@@ -104,6 +104,11 @@ const std::string& Settings::text(std::string_view section, std::string_view key
   return at(section, key).text;
 }
 
+bool Settings::lists(std::string_view section, std::string_view key, std::string_view item) const {
+  const std::vector<std::string> items = split(text(section, key), ',');
+  return std::ranges::find(items, item) != items.end();
+}
+
 double Settings::number(std::string_view section, std::string_view key) const {
   return to_number(at(section, key).text).value();
 }

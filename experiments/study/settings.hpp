@@ -25,6 +25,8 @@ class Settings {
   Settings(std::span<const IniEntry> entries, const std::string& name);
 
   const std::string& text(std::string_view section, std::string_view key) const;
+  /// Whether a list holds `item`.
+  bool lists(std::string_view section, std::string_view key, std::string_view item) const;
   double number(std::string_view section, std::string_view key) const;
   std::uint64_t count(std::string_view section, std::string_view key) const;
   /// A setting in degrees, in radians.
