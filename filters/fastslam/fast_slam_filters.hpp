@@ -8,6 +8,7 @@
 #include "filters/fastslam/known_association.hpp"
 #include "filters/fastslam/motion_sampling.hpp"
 #include "filters/fastslam/nearest_association.hpp"
+#include "filters/moments/moment_transforms.hpp"
 
 #include <memory>
 #include <utility>
@@ -40,6 +41,11 @@ std::unique_ptr<SlamFilter> make_refined(const FilterSetup& setup,
                                   settings.particles, setup.belief, weight_form(setup.options),
                                   pose_transform, map_transform));
 }
+
+// Compiled apart: both SRCD-FastSLAM and U-FastSLAM are it.
+extern template std::unique_ptr<SlamFilter> make_refined<Lanes>(const FilterSetup&,
+                                                                const SigmaPoints&,
+                                                                const SigmaPoints&);
 
 /// `Real` = double is the same filter one particle at a time, for tests.
 template <class Real>
