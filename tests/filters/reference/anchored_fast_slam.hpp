@@ -26,7 +26,7 @@ class AnchoredMaps final : public Filter {
       const Eigen::Vector2d nu =
           to_vector(residual(sight_of(detection), at.sight)) + H * (q - landmark.sight);
       const Eigen::Matrix2d S = H * P * H.transpose() + this->R_;
-      K = S.llt().solve(H * P).transpose();
+      K = P * H.transpose() * S.inverse();
       q = landmark.sight + K * nu;
     }
     landmark.sight = q;

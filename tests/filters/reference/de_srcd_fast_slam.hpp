@@ -144,7 +144,7 @@ class DeSrcdFastSlam : public SrcdFastSlam {
       const Eigen::Vector2d& f = p.map[p.pairings[k].landmark]->mean;
       const Eigen::Vector2d nu = montecarta::to_vector(
           residual(sight_of(scan[k]), predicted_sight(as_pose(pose), Point{f(0), f(1)})));
-      sum -= 0.5 * nu.dot(R_.llt().solve(nu));
+      sum -= 0.5 * nu.dot(R_.inverse() * nu);
     }
     return sum;
   }

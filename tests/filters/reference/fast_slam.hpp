@@ -146,7 +146,7 @@ class FastSlam : public SlamFilter {
       const auto seen = seen_from(p.pose, *p.map[j], detection, R_);
       if (!seen) continue;
       const Eigen::Matrix2d S_z = seen->Hx * p.covariance * seen->Hx.transpose() + seen->S_f;
-      const double distance = seen->nu.dot(S_z.llt().solve(seen->nu));
+      const double distance = seen->nu.dot(S_z.inverse() * seen->nu);
       search.offer(j, distance, distance + std::log(S_z.determinant()), settings_.association.gate);
     }
     return judge(search, settings_.association);

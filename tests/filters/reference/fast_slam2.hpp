@@ -49,7 +49,7 @@ class FastSlam2 : public FastSlam {
     const auto seen = seen_from(p.pose, landmark, detection, R_);
     if (!seen) return std::nullopt;
     const Eigen::Matrix2d S_z = seen->Hx * p.covariance * seen->Hx.transpose() + seen->S_f;
-    const Matrix32 K = S_z.llt().solve(seen->Hx * p.covariance).transpose();
+    const Matrix32 K = p.covariance * seen->Hx.transpose() * S_z.inverse();
     p.pose += K * seen->nu;
     p.pose(2) = wrap(p.pose(2));
     p.covariance -= (K * S_z * K.transpose()).eval();

@@ -62,7 +62,7 @@ inline std::optional<Seen> seen_from(const Eigen::Vector3d& pose, const Landmark
 
 /// Feature EKF at an exactly known pose, Joseph form (SPEC 7.3).
 inline void update_landmark(Landmark& landmark, const Seen& seen, const Eigen::Matrix2d& R) {
-  const Eigen::Matrix2d K = seen.S_f.llt().solve(seen.Hf * landmark.covariance).transpose();
+  const Eigen::Matrix2d K = landmark.covariance * seen.Hf.transpose() * seen.S_f.inverse();
   const Eigen::Matrix2d I_KH = Eigen::Matrix2d::Identity() - K * seen.Hf;
   landmark.mean += K * seen.nu;
   landmark.covariance =

@@ -77,14 +77,13 @@ Differences<N, M> central_differences(const Vector<N>& x, const Eigen::Matrix<do
   return image;
 }
 
-/// K = P_xz (S_y S_y')^-1 by two triangular solves (SPEC 4).
+/// K = (P_xz / S_y') / S_y (SPEC 4).
 template <int N, int M>
 Eigen::Matrix<double, N, M> gain(const Eigen::Matrix<double, N, M>& P_xz,
                                  const Eigen::Matrix<double, M, M>& S_y) {
-  const auto L = S_y.template triangularView<Eigen::Lower>();
-  const Eigen::Matrix<double, M, N> half = L.solve(P_xz.transpose());
-  const Eigen::Matrix<double, M, N> K = L.transpose().solve(half);
-  return K.transpose();
+  const Eigen::Matrix<double, M, M> inverse = S_y.inverse();
+  const Eigen::Matrix<double, N, M> half = P_xz * inverse.transpose();
+  return half * inverse;
 }
 
 /// The square root of S S' that is lower triangular in the coordinates y = T x, T orthogonal.

@@ -39,7 +39,7 @@ class UFastSlam : public FastSlam2 {
     const Image<7, 2> image =
         map_uncertainty_ ? whole : sight(p, landmark, Eigen::Matrix2d::Zero());
     const Matrix32 C = image.cross.topRows<3>();
-    const Matrix32 K = image.covariance.llt().solve(C.transpose()).transpose();
+    const Matrix32 K = C * image.covariance.inverse();
     p.pose += K * innovation(detection, image.mean);
     p.pose(2) = wrap(p.pose(2));
     p.covariance -= (K * image.covariance * K.transpose()).eval();
@@ -57,7 +57,7 @@ class UFastSlam : public FastSlam2 {
                   const Detection& detection) const override {
     if (!is_far_enough(pose, landmark)) return;
     const Image<2, 2> image = sight_from(pose, landmark);
-    const Eigen::Matrix2d K = image.covariance.llt().solve(image.cross.transpose()).transpose();
+    const Eigen::Matrix2d K = image.cross * image.covariance.inverse();
     landmark.mean += K * innovation(detection, image.mean);
     landmark.covariance -= (K * image.covariance * K.transpose()).eval();
   }
