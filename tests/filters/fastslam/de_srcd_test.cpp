@@ -20,7 +20,7 @@ Variant de_srcd(const std::string& mode, std::size_t particles,
 std::unique_ptr<reference::DeSrcdFastSlam> make_reference(const Variant& v,
                                                           const SmallWorldSettings& world) {
   const EvolvedSettings told = evolved_settings(setup_of(v, world).options);
-  reference::Evolution evolution;
+  reference::Evolution<3> evolution;
   evolution.scale = told.evolution.scale;
   evolution.crossover = told.evolution.crossover;
   evolution.generations = told.evolution.generations;
@@ -59,7 +59,7 @@ TEST_P(DeSrcd, EqualsTheEigenReference) {
     expect_same_run(*single, *plain, world, 1e-9);
     // Evolution asks which of two places is fitter. Where rounding decides that, two makes part
     // for good; it does so in none of these runs.
-    const reference::Evolution& evolution = plain->evolution();
+    const reference::Evolution<3>& evolution = plain->evolution();
     if (HasFailure()) {
       FAIL() << "seed " << seed << ": the closest of " << evolution.decisions
              << " decisions was one of " << evolution.closest_call;

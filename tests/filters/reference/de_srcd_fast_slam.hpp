@@ -11,7 +11,7 @@ enum class DeMode { honest, as_printed, prior, shared };
 
 struct DeSettings {
   DeMode mode = DeMode::honest;
-  Evolution evolution = {};
+  Evolution<3> evolution = {};
   std::size_t population = 10;  ///< of each particle, mode honest
   double bounds = 3.0;          ///< standard deviations
   double inflation = 1.0;       ///< of the covariance that is drawn from and paid for
@@ -23,10 +23,10 @@ class DeSrcdFastSlam : public SrcdFastSlam {
   DeSrcdFastSlam(const FastSlamSettings& settings, const SrcdParts& parts, const DeSettings& de)
       : SrcdFastSlam(settings, Weight::closed, parts), de_(de) {}
 
-  const Evolution& evolution() const { return de_.evolution; }
+  const Evolution<3>& evolution() const { return de_.evolution; }
 
  private:
-  using Member = Evolution::Member;
+  using Member = Evolution<3>::Member;
 
   void weigh_and_draw(const StepContext& context, std::uint32_t i, Particle& p,
                       Scan scan) override {

@@ -9,23 +9,31 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <vector>
 
 namespace montecarta::reference {
 
-/// Differential evolution (SPEC 12), DE/best/1/bin, of vectors of three, literally. Generation g
-/// draws for member i three blocks of a stream: two numbers for who mates, three for who crosses.
+/// What a trial starts from (SPEC 12): DE/best/1, DE/rand/1, DE/current/1.
+enum class Base { best, random, target };
+
+/// Differential evolution (SPEC 12) with binomial crossover, of vectors of D numbers, literally.
+/// Generation g draws for member i some blocks of a stream, which are pairs: two numbers for who
+/// mates, D for who crosses.
+template <int D>
 class Evolution {
  public:
-  using Member = Vector<3>;
+  using Member = Vector<D>;
   using Fitness = std::function<double(std::size_t member, const Member& candidate)>;
 
-  double scale = 0.4;             ///< F
-  double crossover = 0.8;         ///< Cr
-  std::size_t generations = 10;   ///< at most
-  double tolerance = 1e-6;        ///< of fitness, at which all are equally good
-  Member half = Member::Zero();   ///< of the box about the origin
-  bool last_is_an_angle = false;  ///< the third component
+  Base base = Base::best;
+  double scale = 0.4;            ///< F
+  double crossover = 0.8;        ///< Cr
+  std::size_t generations = 10;  ///< at most
+  double tolerance = 1e-6;       ///< of fitness, at which all are equally good
+  double good_enough = std::numeric_limits<double>::infinity();  ///< fitness that ends the search
+  Member half = Member::Zero();                                  ///< of the box about the origin
+  bool last_is_an_angle = false;                                 ///< the last component
 
   std::size_t accepted = 0;   ///< trials that moved in
   std::size_t decisions = 0;  ///< whether one does
@@ -36,13 +44,14 @@ class Evolution {
                  std::uint32_t first_block, const Fitness& fitness) {
     std::vector<double> J;
     for (std::size_t i = 0; i < population.size(); ++i) J.push_back(fitness(i, population[i]));
-    for (std::size_t g = 0; g < generations && population.size() >= 3; ++g) {
+    const std::size_t fewest = base == Base::random ? 4 : 3;
+    for (std::size_t g = 0; g < generations && population.size() >= fewest; ++g) {
       const Member leader = population[leader_of(J)];
-      if (*std::max_element(J.begin(), J.end()) - *std::min_element(J.begin(), J.end()) < tolerance)
-        break;
+      const auto [worst, best] = std::minmax_element(J.begin(), J.end());
+      if (*best - *worst < tolerance || *best >= good_enough) break;
       std::vector<Member> trials;
       for (std::size_t i = 0; i < population.size(); ++i) {
-        const std::size_t block = first_block + 3 * (g * population.size() + i);
+        const std::size_t block = first_block + kBlocks * (g * population.size() + i);
         trials.push_back(
             trial(population, i, leader, RngStream(chance, static_cast<std::uint32_t>(block))));
       }
@@ -58,6 +67,8 @@ class Evolution {
   }
 
  private:
+  static constexpr std::size_t kBlocks = (2 + D + 1) / 2;  ///< of a stream, for one trial
+
   static std::size_t leader_of(const std::vector<double>& J) {
     return static_cast<std::size_t>(std::max_element(J.begin(), J.end()) - J.begin());
   }
@@ -71,16 +82,16 @@ class Evolution {
     }
     const Member plus = population[taken(others, first)];
     const Member minus = population[taken(others, first)];
-    if (!others.empty()) taken(others, second);  // r0 of DE/rand/1
-    const std::size_t crosses_anyway = digit(second, 3);
+    const Member other = others.empty() ? leader : population[taken(others, second)];
+    const Member from = base == Base::best ? leader : base == Base::random ? other : population[i];
+    const auto crosses_anyway = static_cast<Eigen::Index>(digit(second, D));
     Member offspring = population[i];
-    for (std::size_t j = 0; j < 3; ++j) {
+    for (Eigen::Index j = 0; j < D; ++j) {
       const bool crosses = draw.uniform() <= crossover || j == crosses_anyway;
       if (!crosses) continue;
-      const auto at = static_cast<Eigen::Index>(j);
-      const bool turns = last_is_an_angle && j == 2;
-      const double way = plus(at) - minus(at);
-      offspring(at) = repaired(at, leader(at) + scale * (turns ? wrap(way) : way), turns);
+      const bool turns = last_is_an_angle && j == D - 1;
+      const double way = plus(j) - minus(j);
+      offspring(j) = repaired(j, from(j) + scale * (turns ? wrap(way) : way), turns);
     }
     return offspring;
   }
