@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "tests/filters/reference/association.hpp"
 #include "tests/filters/reference/gaussian.hpp"
 #include "tests/filters/reference/particle_moments.hpp"
 #include "tests/filters/reference/resampling.hpp"
@@ -25,7 +26,7 @@ struct FastSlamSettings {
 class FastSlam : public SlamFilter {
  public:
   explicit FastSlam(const FastSlamSettings& settings)
-      : settings_(settings), log_p0_(log_new_density(settings.association, settings.belief)) {
+      : settings_(settings), log_p0_(log_unmatched(settings.association, settings.belief)) {
     const Belief& b = settings.belief;
     R_ = Eigen::Vector2d(b.sigma_range * b.sigma_range, b.sigma_bearing * b.sigma_bearing)
              .asDiagonal();
@@ -125,31 +126,8 @@ class FastSlam : public SlamFilter {
   std::vector<Particle> particles_;
 
   void associate(Particle& p, Scan scan) const {
-    p.pairings.assign(scan.size(), {});
-    for (std::size_t k = 0; k < scan.size(); ++k) {
-      p.pairings[k] = known() ? pair_by_identity(p, scan[k]) : pair_nearest(p, scan[k]);
-    }
-    if (!known()) exclude_rivals(p.pairings);
-  }
-
-  Pairing pair_by_identity(const Particle& p, const Detection& detection) const {
-    if (detection.identity == Detection::kClutter) return {};
-    const auto landmark = static_cast<std::uint32_t>(detection.identity);
-    if (!p.map[landmark]) return {Verdict::fresh, landmark, 0.0};
-    return {Verdict::matched, landmark, 0.0};
-  }
-
-  /// SPEC 17, with the covariance of the pose where it is not yet drawn.
-  Pairing pair_nearest(const Particle& p, const Detection& detection) const {
-    NearestSearch search;
-    for (std::uint32_t j = 0; j < p.map.size(); ++j) {
-      const auto seen = seen_from(p.pose, *p.map[j], detection, R_);
-      if (!seen) continue;
-      const Eigen::Matrix2d S_z = seen->Hx * p.covariance * seen->Hx.transpose() + seen->S_f;
-      const double distance = seen->nu.dot(S_z.inverse() * seen->nu);
-      search.offer(j, distance, distance + std::log(S_z.determinant()), settings_.association.gate);
-    }
-    return judge(search, settings_.association);
+    const NearestNeighbour nearest{settings_.association, R_, p.pose, p.covariance};
+    p.pairings = known() ? pair_by_identity(scan, p.map) : nearest.pair(scan, p.map);
   }
 
   bool nothing_to_use() const {
