@@ -1,139 +1,212 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/marginal/marginal_options.hpp"
+#include "tests/filters/reference/association.hpp"
 #include "tests/filters/reference/gaussian.hpp"
-#include "tests/filters/reference/particle.hpp"
+#include "tests/filters/reference/particle_moments.hpp"
 #include "tests/filters/reference/resampling.hpp"
+#include "tests/filters/reference/shared_map.hpp"
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 
 #include <cmath>
-#include <functional>
+#include <numeric>
 #include <optional>
 #include <vector>
 
 namespace montecarta::reference {
 
-/// Marginal and auxiliary marginal particle filter as SPEC 14 and 15 write them, in plain Eigen,
-/// known association, the map by Gauss-Newton with numerical care left out: what production is held
-/// to.
-class Marginal {
+/// Marginal and auxiliary marginal particle filter as SPEC 14 writes them, in plain Eigen: what
+/// production is held to.
+class Marginal : public SlamFilter {
  public:
-  Marginal(const MarginalSettings& settings, const Belief& belief, std::size_t landmarks)
-      : settings_(settings), belief_(belief), map_(landmarks) {
-    R_ = Eigen::Vector2d(std::pow(belief.sigma_range, 2), std::pow(belief.sigma_bearing, 2))
-             .asDiagonal();
-    Q_ = Eigen::Vector2d(std::pow(belief.sigma_speed, 2), std::pow(belief.sigma_steer, 2))
-             .asDiagonal();
+  Marginal(const MarginalSettings& settings, const FilterSetup& setup)
+      : settings_(settings), setup_(setup), learning_(settings.map, setup.belief) {
+    const Belief& b = setup.belief;
+    R_ = Eigen::Vector2d(std::pow(b.sigma_range, 2), std::pow(b.sigma_bearing, 2)).asDiagonal();
+    Q_ = Eigen::Vector2d(std::pow(b.sigma_speed, 2), std::pow(b.sigma_steer, 2)).asDiagonal();
     floor_ = Eigen::Vector3d(std::pow(settings.kernel_floor_xy, 2),
                              std::pow(settings.kernel_floor_xy, 2),
                              std::pow(settings.kernel_floor_heading, 2))
                  .asDiagonal();
   }
 
-  void start(const Pose& start) {
-    const Eigen::Vector3d at(start.x, start.y, start.heading);
-    pose.assign(settings_.particles, at);
-    mean_ = pose;
-    covariance_.assign(settings_.particles, Eigen::Matrix3d::Zero());
-    weight.assign(settings_.particles, 1.0 / static_cast<double>(settings_.particles));
-    std::fill(map_.begin(), map_.end(), std::nullopt);
+  void start(const Pose& start) override {
+    const double M = static_cast<double>(settings_.particles);
+    const Gaussian first{to_vector(start), Eigen::Matrix3d::Zero(), -std::log(M)};
+    kernels_.assign(settings_.particles, first);
+    map_.assign(known() ? setup_.landmarks : 0, std::nullopt);
+    births_.assign(map_.size(), 0);
+    born_ = 0;
+    report_ = {};
   }
 
-  void predict(const StepContext&, const Control& control, double duration) {
-    for (std::size_t j = 0; j < mean_.size(); ++j) {
-      const auto step = linearised_move(as_pose(mean_[j]), control, duration, belief_.vehicle);
+  void predict(const StepContext&, const Control& control, double duration) override {
+    for (Gaussian& kernel : kernels_) {
+      const auto step =
+          linearised_move(as_pose(kernel.mean), control, duration, setup_.belief.vehicle);
       const Eigen::Matrix3d F = pose_jacobian(step.jacobians);
       const Matrix32 G = control_jacobian(step.jacobians);
-      covariance_[j] = (F * covariance_[j] * F.transpose() + G * Q_ * G.transpose()).eval();
-      mean_[j] = Eigen::Vector3d(step.pose.x, step.pose.y, step.pose.heading);
+      kernel.covariance = (F * kernel.covariance * F.transpose() + G * Q_ * G.transpose()).eval();
+      kernel.mean = to_vector(step.pose);
     }
   }
 
-  void update(const StepContext& context, Scan scan) {
-    if (scan.empty()) return;
-    const std::size_t M = settings_.particles;
-    std::vector<Gaussian> prior(M), proposal(M);
-    std::vector<double> lambda(M);
-    for (std::size_t j = 0; j < M; ++j) {
-      prior[j] = proposal[j] = {mean_[j], covariance_[j] + floor_};
-      double log_explained = log_likelihood(mean_[j], scan);
-      if (settings_.kernel == Kernel::posterior) log_explained = refine(proposal[j], scan);
-      lambda[j] = weight[j];
-      if (settings_.choice == Choice::by_likelihood) lambda[j] *= std::exp(log_explained);
-    }
-    normalise(lambda);
-    ancestor = draw_parents(Scheme::stratified, lambda, context);
-    for (std::uint32_t i = 0; i < M; ++i) pose[i] = draw(context, i, proposal[ancestor[i]]);
-    std::vector<double> weighed(M);
-    for (std::size_t i = 0; i < M; ++i) {
-      double numerator = 0.0, denominator = 0.0;
-      for (std::size_t j = 0; j < M; ++j) {
-        numerator += weight[j] * density(prior[j], pose[i]);
-        denominator += lambda[j] * density(proposal[j], pose[i]);
+  void update(const StepContext& context, Scan scan) override {
+    ancestors_.resize(kernels_.size());
+    std::iota(ancestors_.begin(), ancestors_.end(), 0U);
+    report_ = {.ess = effective(weights())};
+    pair(scan);
+    if (count(Verdict::ignored) < scan.size()) {  // else the kernels go on growing
+      draw_and_weigh(context, scan);
+      if (!known()) {
+        const auto unmatched = static_cast<double>(scan.size() - count(Verdict::matched));
+        report_.log_likelihood += unmatched * log_unmatched(setup_.association, setup_.belief);
       }
-      weighed[i] = std::exp(log_likelihood(pose[i], scan)) * numerator / denominator;
+      learn(context, scan);
     }
-    weight = weighed;
-    log_evidence = std::log(normalise(weight) / static_cast<double>(M));
-    learn(scan);
-    mean_ = pose;
-    covariance_.assign(M, Eigen::Matrix3d::Zero());
+    report_.map_size = born_;
   }
 
-  std::vector<Eigen::Vector3d> pose;  ///< drawn
-  std::vector<double> weight;
-  std::vector<std::uint32_t> ancestor;
-  double log_evidence = 0.0;
-  const std::vector<std::optional<Landmark>>& map() const { return map_; }
+  PoseEstimate estimate() const override {
+    return {mixture(Eigen::Matrix3d::Zero()), std::nullopt};
+  }
+  const ScanReport& report() const override { return report_; }
+  void particles(const ParticleColumns& columns) const override {
+    for (std::size_t i = 0; i < kernels_.size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k)
+        columns.pose[3 * i + k] = kernels_[i].mean(static_cast<Eigen::Index>(k));
+      columns.log_weight[i] = kernels_[i].log_weight;
+      columns.ancestor[i] = ancestors_[i];
+    }
+  }
+  void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override {
+    for (std::size_t k = 0; k < landmarks.size(); ++k) {
+      landmarks[k].reset();
+      if (k < map_.size() && map_[k]) landmarks[k] = {map_[k]->mean, map_[k]->covariance};
+    }
+  }
+
+  const std::vector<Pairing>& pairings() const { return pairings_; }  ///< of the last scan
+  const SharedMapLearning& learning() const { return learning_; }
 
  private:
+  /// N(mean, covariance) and its weight; no covariance right after a draw.
   struct Gaussian {
     Eigen::Vector3d mean;
     Eigen::Matrix3d covariance;
+    double log_weight;
   };
 
-  /// R alone where the map is a parameter, Hf Lambda^-1 Hf' + R where it is recursive.
-  Landmark believed(std::int32_t identity) const {
-    Landmark landmark = *map_[static_cast<std::size_t>(identity)];
-    if (settings_.map.mode != MapMode::recursive) landmark.covariance.setZero();
-    return landmark;
+  bool known() const { return setup_.association.kind == Association::known; }
+  std::vector<double> weights() const {
+    std::vector<double> w;
+    for (const Gaussian& kernel : kernels_) w.push_back(std::exp(kernel.log_weight));
+    return w;
   }
-  bool is_known(const Detection& detection) const {
-    return map_[static_cast<std::size_t>(detection.identity)].has_value();
+  static double normalise(std::vector<double>& w) {
+    const double sum = std::accumulate(w.begin(), w.end(), 0.0);
+    for (double& x : w) x /= sum;
+    return sum;
+  }
+  static double effective(const std::vector<double>& w) {
+    return 1.0 / std::inner_product(w.begin(), w.end(), w.begin(), 0.0);
+  }
+  PoseMoments mixture(const Eigen::Matrix3d& floor) const {
+    return mixture_moments(
+        kernels_, [](const Gaussian& kernel) { return kernel.mean; },
+        [&](const Gaussian& kernel) -> Eigen::Matrix3d { return kernel.covariance + floor; });
+  }
+
+  /// SPEC 17: once for all, from the weighted mean pose. Landmarks of a one-step map are parameters
+  /// to the likelihood, without a covariance.
+  void pair(Scan scan) {
+    const auto [mean, P] = mixture(floor_);
+    const NearestNeighbour nearest{setup_.association, R_, to_vector(mean), P};
+    believed_ = map_;
+    for (auto& landmark : believed_) {
+      if (landmark && settings_.map.mode != MapMode::recursive) landmark->covariance.setZero();
+    }
+    pairings_ = known() ? pair_by_identity(scan, map_) : nearest.pair(scan, believed_);
+  }
+  std::size_t count(Verdict verdict) const {
+    std::size_t n = 0;
+    for (const Pairing& pairing : pairings_) n += pairing.verdict == verdict;
+    return n;
+  }
+
+  /// SPEC 14, steps 1 to 4.
+  void draw_and_weigh(const StepContext& context, Scan scan) {
+    const std::size_t M = kernels_.size();
+    const std::vector<double> w = weights();
+    std::vector<Gaussian> prior = kernels_;
+    for (Gaussian& kernel : prior) kernel.covariance += floor_;
+    std::vector<Gaussian> proposal = prior;
+    std::vector<double> lambda = w;
+    predicted_.assign(scan.size(), {});
+    for (std::size_t j = 0; j < M; ++j) {
+      const double log_explained = explain(proposal[j], scan, w[j]);
+      if (settings_.choice == Choice::by_likelihood) lambda[j] *= std::exp(log_explained);
+    }
+    normalise(lambda);
+    ancestors_ = draw_parents(Scheme::stratified, lambda, context);
+    std::vector<double> weighed;
+    for (std::uint32_t i = 0; i < M; ++i) {
+      const Eigen::Vector3d pose = draw(context, i, proposal[ancestors_[i]]);
+      double numerator = 0.0, denominator = 0.0;
+      for (std::size_t j = 0; j < M; ++j) {
+        numerator += w[j] * density(prior[j], pose);
+        denominator += lambda[j] * density(proposal[j], pose);
+      }
+      weighed.push_back(std::exp(log_likelihood(pose, scan)) * numerator / denominator);
+      kernels_[i] = {pose, Eigen::Matrix3d::Zero(), 0.0};
+    }
+    report_.log_likelihood = std::log(normalise(weighed) / static_cast<double>(M));
+    for (std::size_t i = 0; i < M; ++i) kernels_[i].log_weight = std::log(weighed[i]);
+    report_.ess = effective(weighed);
+    report_.resampled = true;
+    tell_innovations();
   }
 
   double log_likelihood(const Eigen::Vector3d& x, Scan scan) const {
     double sum = 0.0;
-    for (const Detection& detection : scan) {
-      if (!is_known(detection)) continue;
-      const auto seen = seen_from(x, believed(detection.identity), detection, R_);
+    for (std::size_t k = 0; k < scan.size(); ++k) {
+      if (pairings_[k].verdict != Verdict::matched) continue;
+      const auto seen = seen_from(x, *believed_[pairings_[k].landmark], scan[k], R_);
       sum += log_gaussian<2>(seen->nu, seen->S_f);
     }
     return sum;
   }
 
-  double refine(Gaussian& g, Scan scan) const {
+  /// log p(z | kernel), by its mean or, where poses are drawn from posteriors, as it becomes one.
+  double explain(Gaussian& g, Scan scan, double weight) {
     double sum = 0.0;
-    for (const Detection& detection : scan) {
-      if (!is_known(detection)) continue;
-      const auto seen = seen_from(g.mean, believed(detection.identity), detection, R_);
+    for (std::size_t k = 0; k < scan.size(); ++k) {
+      if (pairings_[k].verdict != Verdict::matched) continue;
+      const auto seen = seen_from(g.mean, *believed_[pairings_[k].landmark], scan[k], R_);
       const Eigen::Matrix2d S = seen->Hx * g.covariance * seen->Hx.transpose() + seen->S_f;
+      predicted_[k].mean += weight * seen->nu;
+      predicted_[k].square += weight * (S + seen->nu * seen->nu.transpose());
+      const bool becomes_posterior = settings_.kernel == Kernel::posterior;
+      sum += log_gaussian<2>(seen->nu, becomes_posterior ? S : seen->S_f);
+      if (!becomes_posterior) continue;
       const Matrix32 K = S.llt().solve(seen->Hx * g.covariance).transpose();
       g.mean += K * seen->nu;
       g.covariance -= (K * S * K.transpose()).eval();
-      sum += log_gaussian<2>(seen->nu, S);
     }
     return sum;
   }
 
-  static double normalise(std::vector<double>& w) {
-    double sum = 0.0;
-    for (const double x : w) sum += x;
-    for (double& x : w) x /= sum;
-    return sum;
+  /// nu' S^-1 nu of what all kernels together predicted.
+  void tell_innovations() {
+    for (std::size_t k = 0; k < pairings_.size(); ++k) {
+      if (pairings_[k].verdict != Verdict::matched) continue;
+      const auto& [mean, square] = predicted_[k];
+      const Eigen::Matrix2d S = square - mean * mean.transpose();
+      report_.nis += mean.dot(S.llt().solve(mean));
+      report_.nis_dof += 2;
+    }
   }
 
   static double density(const Gaussian& g, const Eigen::Vector3d& x) {
@@ -154,99 +227,45 @@ class Marginal {
     return x;
   }
 
-  Eigen::Vector3d mean_pose() const {
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < pose.size(); ++i) {
-      Eigen::Vector3d e = pose[i] - pose[0];
-      e(2) = wrap(e(2));
-      mean += weight[i] * e;
+  /// SPEC 15: landmarks seen again first.
+  void learn(const StepContext& context, Scan scan) {
+    WeighedPoses cloud{.pose = {}, .weight = weights()};
+    for (const Gaussian& kernel : kernels_) cloud.pose.push_back(kernel.mean);
+    const Pose mean = mixture(Eigen::Matrix3d::Zero()).mean;
+    for (std::size_t k = 0; k < scan.size(); ++k) {
+      if (pairings_[k].verdict != Verdict::matched) continue;
+      const std::uint32_t row = pairings_[k].landmark;
+      learning_.learn(context.identity(Draw::evolution, births_[row]), mean.heading, cloud, scan[k],
+                      *map_[row]);
     }
-    return pose[0] + mean;
-  }
-
-  void learn(Scan scan) {
-    std::vector<Detection> fresh;
-    for (const Detection& detection : scan) {
-      if (is_known(detection)) {
-        learn_place(*map_[static_cast<std::size_t>(detection.identity)], detection);
-      } else {
-        fresh.push_back(detection);
-      }
-    }
-    for (const Detection& detection : fresh) {
-      Landmark born = new_landmark(mean_pose(), detection, R_);
-      born.mean.setZero();
-      for (std::size_t i = 0; i < pose.size(); ++i)
-        born.mean += weight[i] * new_landmark(pose[i], detection, R_).mean;
-      map_[static_cast<std::size_t>(detection.identity)] = born;
+    for (std::size_t k = 0; k < scan.size(); ++k) {
+      if (pairings_[k].verdict != Verdict::fresh) continue;
+      const std::size_t row = known() ? pairings_[k].landmark : map_.size();
+      map_.resize(std::max(map_.size(), row + 1));
+      births_.resize(map_.size());
+      map_[row] = learning_.born(cloud, mean, scan[k]);
+      births_[row] = born_++;
     }
   }
 
-  /// -2 log Sum w exp(-nu' R^-1 nu / 2), or a mean of squares (SPEC 15.1).
-  double objective(const Landmark& at, const Detection& detection) const {
-    double likelihood = 0.0, squares = 0.0, printed = 0.0;
-    for (std::size_t i = 0; i < pose.size(); ++i) {
-      const auto seen = seen_from(pose[i], at, detection, R_);
-      const double squared = seen->nu.dot(R_.llt().solve(seen->nu));
-      likelihood += weight[i] * std::exp(-0.5 * squared);
-      squares += weight[i] * squared;
-      printed += squared / static_cast<double>(pose.size());
-    }
-    if (settings_.map.objective == MapObjective::squares) return squares;
-    if (settings_.map.objective == MapObjective::squares_as_printed) return printed;
-    return -2.0 * std::log(likelihood);
-  }
-
-  /// SPEC 15.3 by Newton's method with the Gauss-Newton matrix, until it rests.
-  void learn_place(Landmark& landmark, const Detection& detection) const {
-    const bool recursive = settings_.map.mode == MapMode::recursive;
-    if (settings_.map.mode == MapMode::onestep_threshold &&
-        objective(landmark, detection) <= settings_.map.threshold)
-      return;
-    const Eigen::Matrix2d prior =
-        recursive ? Eigen::Matrix2d(landmark.covariance.llt().solve(Eigen::Matrix2d::Identity()))
-                  : Eigen::Matrix2d(Eigen::Matrix2d::Zero());
-    const Eigen::Vector2d before = landmark.mean;
-    for (int k = 0; k < 30; ++k) {
-      Eigen::Matrix2d A = prior;
-      Eigen::Vector2d g = -prior * (landmark.mean - before);
-      for_each_share(landmark, detection, [&](double share, const Seen& seen) {
-        A += share * seen.Hf.transpose() * R_.llt().solve(seen.Hf);
-        g += share * seen.Hf.transpose() * R_.llt().solve(seen.nu);
-      });
-      landmark.mean += A.llt().solve(g);
-    }
-    Eigen::Matrix2d information = prior;
-    for (std::size_t i = 0; i < pose.size(); ++i) {
-      const auto seen = seen_from(pose[i], landmark, detection, R_);
-      information += weight[i] * seen->Hf.transpose() * R_.llt().solve(seen->Hf);
-    }
-    landmark.covariance = information.llt().solve(Eigen::Matrix2d::Identity());
-  }
-
-  void for_each_share(const Landmark& at, const Detection& detection,
-                      const std::function<void(double, const Seen&)>& visit) const {
-    const MapObjective objective = settings_.map.objective;
-    double total = 0.0;
-    std::vector<double> share(pose.size());
-    for (std::size_t i = 0; i < pose.size(); ++i) {
-      const auto seen = seen_from(pose[i], at, detection, R_);
-      share[i] = objective == MapObjective::squares_as_printed ? 1.0 : weight[i];
-      if (objective == MapObjective::likelihood)
-        share[i] *= std::exp(-0.5 * seen->nu.dot(R_.llt().solve(seen->nu)));
-      total += share[i];
-    }
-    for (std::size_t i = 0; i < pose.size(); ++i)
-      visit(share[i] / total, *seen_from(pose[i], at, detection, R_));
-  }
+  struct Moments {
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d square = Eigen::Matrix2d::Zero();
+  };
 
   MarginalSettings settings_;
-  Belief belief_;
+  FilterSetup setup_;
+  SharedMapLearning learning_;
   Eigen::Matrix2d R_, Q_;
   Eigen::Matrix3d floor_;
-  std::vector<Eigen::Vector3d> mean_;
-  std::vector<Eigen::Matrix3d> covariance_;
-  std::vector<std::optional<Landmark>> map_;
+  std::vector<Gaussian> kernels_;  ///< grown since the last draw
+  std::vector<std::uint32_t> ancestors_;
+  std::vector<Pairing> pairings_;
+  std::vector<Moments> predicted_;  ///< of each innovation
+  Landmarks map_, believed_;
+  std::vector<std::uint32_t> births_;  ///< {row} which birth it was
+  std::uint32_t born_ = 0;             ///< so far
+  ScanReport report_;
 };
 
 }  // namespace montecarta::reference

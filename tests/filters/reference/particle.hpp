@@ -41,6 +41,7 @@ struct Particle {
 };
 
 inline Pose as_pose(const Eigen::Vector3d& x) { return {x(0), x(1), x(2)}; }
+inline Eigen::Vector3d to_vector(const Pose& pose) { return {pose.x, pose.y, pose.heading}; }
 
 /// A landmark seen from a pose: everything SPEC 7 derives from h.
 struct Seen {

@@ -11,22 +11,22 @@
 namespace montecarta::reference {
 
 /// Moments of sum_i w_i N(mean(i), covariance(i)), headings as differences from the heaviest
-/// particle (SPEC 19).
-template <class Mean, class Covariance>
-PoseMoments mixture_moments(const std::vector<Particle>& particles, const Mean& mean,
+/// particle (SPEC 19). `Weighed`: whatever has a log_weight.
+template <class Weighed, class Mean, class Covariance>
+PoseMoments mixture_moments(const std::vector<Weighed>& particles, const Mean& mean,
                             const Covariance& covariance) {
   const auto heaviest = std::max_element(
       particles.begin(), particles.end(),
-      [](const Particle& a, const Particle& b) { return a.log_weight < b.log_weight; });
+      [](const Weighed& a, const Weighed& b) { return a.log_weight < b.log_weight; });
   const Pose reference = as_pose(mean(*heaviest));
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
-  for (const Particle& p : particles) {
+  for (const Weighed& p : particles) {
     shift += std::exp(p.log_weight) * boxminus(as_pose(mean(p)), reference);
   }
   PoseMoments moments;
   moments.mean = {reference.x + shift(0), reference.y + shift(1),
                   wrap(reference.heading + shift(2))};
-  for (const Particle& p : particles) {
+  for (const Weighed& p : particles) {
     const Eigen::Vector3d e = boxminus(as_pose(mean(p)), moments.mean);
     moments.covariance += std::exp(p.log_weight) * (covariance(p) + e * e.transpose());
   }

@@ -10,8 +10,6 @@
 /// roots are triangular.
 namespace montecarta::reference {
 
-inline Vector<3> to_vector(const Pose& pose) { return {pose.x, pose.y, pose.heading}; }
-
 /// f of (pose, control noise, sensor noise); the last has no effect.
 struct MotionModel {
   Control control;
