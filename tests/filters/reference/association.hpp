@@ -56,7 +56,7 @@ struct NearestNeighbour {
       const auto seen = seen_from(pose, *map[j], detection, R);
       if (!seen) continue;
       const Eigen::Matrix2d S_z = seen->Hx * P * seen->Hx.transpose() + seen->S_f;
-      const double D2 = seen->nu.dot(S_z.llt().solve(seen->nu));
+      const double D2 = seen->nu.dot(S_z.inverse() * seen->nu);
       const double ND = D2 + std::log(S_z.determinant());
       least_D2 = std::min(least_D2, D2);
       if (D2 < settings.gate && ND < best.cost) best = {Verdict::matched, j, ND};

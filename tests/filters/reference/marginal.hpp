@@ -191,7 +191,7 @@ class Marginal : public SlamFilter {
       const bool becomes_posterior = settings_.kernel == Kernel::posterior;
       sum += log_gaussian<2>(seen->nu, becomes_posterior ? S : seen->S_f);
       if (!becomes_posterior) continue;
-      const Matrix32 K = S.llt().solve(seen->Hx * g.covariance).transpose();
+      const Matrix32 K = g.covariance * seen->Hx.transpose() * S.inverse();
       g.mean += K * seen->nu;
       g.covariance -= (K * S * K.transpose()).eval();
     }
@@ -204,7 +204,7 @@ class Marginal : public SlamFilter {
       if (pairings_[k].verdict != Verdict::matched) continue;
       const auto& [mean, square] = predicted_[k];
       const Eigen::Matrix2d S = square - mean * mean.transpose();
-      report_.nis += mean.dot(S.llt().solve(mean));
+      report_.nis += mean.dot(S.inverse() * mean);
       report_.nis_dof += 2;
     }
   }

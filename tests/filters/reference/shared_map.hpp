@@ -49,8 +49,7 @@ class SharedMapLearning {
   void learn(const StreamIdentity& chance, double heading, const WeighedPoses& cloud,
              const Detection& detection, Landmark& landmark) {
     Known known{landmark.mean, Eigen::Matrix2d::Zero()};
-    if (settings_.mode == MapMode::recursive)
-      known.information = landmark.covariance.llt().solve(Eigen::Matrix2d::Identity());
+    if (settings_.mode == MapMode::recursive) known.information = landmark.covariance.inverse();
     if (settings_.mode == MapMode::onestep_threshold &&
         objective(landmark.mean, cloud, detection) <= settings_.threshold) {
       ++left_alone_;
@@ -62,9 +61,9 @@ class SharedMapLearning {
     Eigen::Matrix2d information = known.information;
     for (std::size_t i = 0; i < cloud.pose.size(); ++i) {
       const Eigen::Matrix2d Hf = seen_from(cloud.pose[i], landmark, detection, R_)->Hf;
-      information += cloud.weight[i] * Hf.transpose() * R_.llt().solve(Hf);
+      information += cloud.weight[i] * Hf.transpose() * R_.inverse() * Hf;
     }
-    landmark.covariance = information.llt().solve(Eigen::Matrix2d::Identity());
+    landmark.covariance = information.inverse();
   }
 
   const Evolution<2>& evolution() const { return evolution_; }
@@ -83,7 +82,7 @@ class SharedMapLearning {
                  const Detection& detection) const {
     const Eigen::Vector2d nu = to_vector(
         residual(sight_of(detection), predicted_sight(as_pose(pose), Point{place(0), place(1)})));
-    return nu.dot(R_.llt().solve(nu));
+    return nu.dot(R_.inverse() * nu);
   }
 
   /// -2 log Sum w exp(-nu' R^-1 nu / 2), or a mean of squares (SPEC 15.1).
@@ -137,10 +136,10 @@ class SharedMapLearning {
       Eigen::Matrix2d A = known.information;
       Eigen::Vector2d g = -known.information * (at.mean - known.mean);
       for_each_share(at, cloud, detection, [&](double share, const Seen& seen) {
-        A += share * seen.Hf.transpose() * R_.llt().solve(seen.Hf);
-        g += share * seen.Hf.transpose() * R_.llt().solve(seen.nu);
+        A += share * seen.Hf.transpose() * R_.inverse() * seen.Hf;
+        g += share * seen.Hf.transpose() * R_.inverse() * seen.nu;
       });
-      at.mean += A.llt().solve(g);
+      at.mean += A.inverse() * g;
     }
     return at.mean;
   }
