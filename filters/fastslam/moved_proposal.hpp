@@ -5,7 +5,7 @@
 #include "filters/fastslam/gaussian_proposal.hpp"
 #include "filters/fastslam/pose_window.hpp"
 
-#include <limits>
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -15,7 +15,7 @@ namespace montecarta {
 /// 2001): each proposes its poses of the last scans anew, from where it stood before them and with
 /// its map as it was then, and takes them with probability min(1, w'/w), w the product of the
 /// scans' weights. A Metropolis-Hastings step with independent proposals: what is distributed as
-/// the weights say stays so. Known association.
+/// the weights say stays so. Known association. Faults of a replay are counted with the next scan.
 template <class Real, class PoseTransform, class MapTransform>
 class MovedProposal : public GaussianProposal<Real, PoseTransform, MapTransform> {
  public:
@@ -28,11 +28,13 @@ class MovedProposal : public GaussianProposal<Real, PoseTransform, MapTransform>
       : Still(particles, belief, form, pose_transform, map_transform),
         window_(particles, lag),
         new_poses_(lag * blocks_for<Real>(particles)),
-        new_weights_(new_poses_.size()) {}
+        new_weights_(new_poses_.size()),
+        replay_faults_(blocks_for<Real>(particles)) {}
 
   void start(const std::vector<BasicPose<Real>>& poses) {
     Still::start(poses);
     window_.start(poses);
+    std::fill(replay_faults_.begin(), replay_faults_.end(), Real(0.0));
   }
 
   template <class Matches>
@@ -51,7 +53,8 @@ class MovedProposal : public GaussianProposal<Real, PoseTransform, MapTransform>
   template <class Matches, class Note>
   Weighing<Real> weigh_and_draw(const StepContext& context, const Matches& matches, std::size_t b,
                                 BasicPose<Real>& pose, const Note& note) {
-    const Weighing<Real> weighing = Still::weigh_and_draw(context, matches, b, pose, note);
+    Weighing<Real> weighing = Still::weigh_and_draw(context, matches, b, pose, note);
+    weighing.faults += std::exchange(replay_faults_[b], Real(0.0));
     window_.newest().poses[b] = pose;
     window_.newest().log_weights[b] = weighing.log_weight;
     return weighing;
@@ -149,6 +152,7 @@ class MovedProposal : public GaussianProposal<Real, PoseTransform, MapTransform>
           static_cast<std::uint32_t>(k), scan.motion.from(pose), Replay{scan, scratch_, blocks}, b,
           pose, [](auto&&...) {});
       log_ratio += weighing.log_weight - scan.log_weights[b];
+      replay_faults_[b] += weighing.faults;
       new_poses_[k * blocks + b] = pose;
       new_weights_[k * blocks + b] = weighing.log_weight;
       for (const RangeBearing<Real>& seen : scan.fresh) {
@@ -178,6 +182,7 @@ class MovedProposal : public GaussianProposal<Real, PoseTransform, MapTransform>
   std::vector<Landmark> scratch_;       ///< {row, block} maps of the replay
   std::vector<BasicPose<Real>> new_poses_;  ///< {scan, block}
   std::vector<Real> new_weights_;           ///< {scan, block}
+  std::vector<Real> replay_faults_;         ///< {block} since the last scan that was weighed
 };
 
 }  // namespace montecarta

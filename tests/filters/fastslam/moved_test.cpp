@@ -87,6 +87,38 @@ TEST(Moved, LeavesTheParticlesDistributedAsTheWeightsSay) {
   }
 }
 
+TEST(Moved, FaultsOfReplaysAreCountedWithTheNextScan) {
+  // All stand on landmark 1 when they see it again, so it is left out: then, and whenever the scan
+  // is lived through once more.
+  Variant variant = moved("1", "closed", 9);
+  variant.options["resample_below"] = "1";
+  const std::vector<Detection> there{{10.0, 0.3, 0}}, both{{10.0, 0.3, 0}, {1e-9, 0.0, 1}};
+  for (const char* filter : {"fastslam2", "ufastslam", "srcd"}) {
+    variant.filter = filter;
+    const auto f = make_production(variant, world());
+    std::uint32_t step = 0;
+    const auto context = [&] { return StepContext(1, 0, step++, Parallel::serial()); };
+    const auto faults_after = [&](double duration, const std::vector<Detection>& scan) {
+      const StepContext now = context();
+      f->predict(now, {3.0, 0.1}, duration);
+      f->update(now, scan);
+      return f->report().numerical_faults;
+    };
+    for (const bool is_cut_short : {true, false}) {
+      f->start(Pose());
+      EXPECT_EQ(faults_after(0.2, there), 0U) << filter;
+      EXPECT_EQ(faults_after(0.2, there), 0U) << filter;
+      EXPECT_EQ(faults_after(0.0, both), 0U) << filter;
+      EXPECT_EQ(faults_after(0.0, both), 9U) << filter;
+      ASSERT_TRUE(f->report().resampled) << filter;
+      if (is_cut_short) f->predict(context(), {3.0, 0.1}, 0.2);
+    }
+    EXPECT_EQ(faults_after(0.2, there), 9U) << filter << ": of the replay";
+    ASSERT_TRUE(f->report().resampled) << filter;
+    EXPECT_EQ(faults_after(0.2, there), 0U) << filter << ": that scan is out of the window";
+  }
+}
+
 TEST(Moved, SaysWhatItDoesNotGoTogetherWith) {
   Variant nearest = moved("3"), anchored = moved("3");
   nearest.association = Association::nearest;
