@@ -6,7 +6,7 @@
 /// The family with `landmarks = anchored` (SPEC 24, last lines): what a filter believes of a
 /// landmark is a Gaussian over range and bearing from the pose it was born at. Filters that differ
 /// in their landmarks alone are one filter then: srcd_aided is fastslam2, srcd_pf is srcd. Delayed
-/// filters do not offer it: their landmarks are born at poses that are not drawn.
+/// filters, where the pose at birth may not be drawn: delayed.hpp.
 namespace montecarta {
 
 template <class Real>

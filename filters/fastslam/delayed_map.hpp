@@ -14,13 +14,14 @@ namespace montecarta {
 /// The joint Gaussian of poses and those slots of the particles' maps that were seen since poses
 /// were drawn. What it believes of each landmark alone is written back to the maps at every scan,
 /// so that those are whole for whoever looks.
-template <class Real>
+template <class Real, class Landmark = LandmarkGaussian<Real>>
 class DelayedMap {
  public:
+  using Maps = ParticleMaps<Real, Landmark>;
   explicit DelayedMap(std::size_t blocks) : map_(blocks) {}
 
-  CorrelatedMap<Real>& map() { return map_; }
-  const CorrelatedMap<Real>& map() const { return map_; }
+  CorrelatedMap<Real, Landmark>& map() { return map_; }
+  const CorrelatedMap<Real, Landmark>& map() const { return map_; }
 
   void clear() {
     for (const std::uint32_t slot : slots_) index_of_[slot] = kOut;
@@ -35,7 +36,7 @@ class DelayedMap {
   /// Takes in the slots of all matches; every block of each must then be fill()ed and written
   /// back.
   template <class Matches>
-  void enter_matches(const Matches& matches, ParticleMaps<Real>& maps) {
+  void enter_matches(const Matches& matches, Maps& maps) {
     first_entered_ = slots_.size();
     matches.each_slot([&](std::uint32_t slot) {
       if (!holds(slot)) enter(slot);
@@ -59,10 +60,10 @@ class DelayedMap {
     }
   }
   /// The number of a slot that has just been added to, taken in where it is not yet.
-  std::size_t enter(std::uint32_t slot, ParticleMaps<Real>& maps) {
+  std::size_t enter(std::uint32_t slot, Maps& maps) {
     if (holds(slot)) return index_of_[slot];
     const std::size_t i = enter(slot);
-    const std::span<const LandmarkGaussian<Real>> blocks = maps.blocks_of(slot);
+    const std::span<const Landmark> blocks = maps.blocks_of(slot);
     for (std::size_t b = 0; b < blocks.size(); ++b) map_.landmark(i, b) = blocks[b];
     return i;
   }
@@ -74,7 +75,8 @@ class DelayedMap {
   }
   /// Pose and matched landmarks alone, detection by detection, into block b of `to`.
   template <class Matches>
-  void copy_matches(const Matches& matches, std::size_t b, CorrelatedMap<Real>& to) const {
+  void copy_matches(const Matches& matches, std::size_t b,
+                    CorrelatedMap<Real, Landmark>& to) const {
     to.pose(b) = map_.pose(b);
     for (std::size_t k = 0; map_.size() > 0 && k < to.size(); ++k) {
       const auto at = where(matches, b, k);
@@ -95,11 +97,11 @@ class DelayedMap {
     return index_of_[slot] = map_.add();
   }
 
-  CorrelatedMap<Real> map_;
-  std::vector<std::size_t> index_of_;                       ///< {slot} its landmark, or kOut
-  std::vector<std::uint32_t> slots_;                        ///< {landmark} its slot
-  std::size_t first_entered_ = 0;                           ///< of the scan's new landmarks
-  std::vector<std::span<LandmarkGaussian<Real>>> written_;  ///< {landmark} its slot's blocks
+  CorrelatedMap<Real, Landmark> map_;
+  std::vector<std::size_t> index_of_;         ///< {slot} its landmark, or kOut
+  std::vector<std::uint32_t> slots_;          ///< {landmark} its slot
+  std::size_t first_entered_ = 0;             ///< of the scan's new landmarks
+  std::vector<std::span<Landmark>> written_;  ///< {landmark} its slot's blocks
 };
 
 }  // namespace montecarta

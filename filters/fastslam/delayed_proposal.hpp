@@ -4,10 +4,12 @@
 #include "engine/particles/block_tasks.hpp"
 #include "filters/fastslam/delayed_map.hpp"
 #include "filters/fastslam/gaussian_proposal.hpp"
+#include "filters/moments/correlated_anchored.hpp"
 #include "filters/moments/correlated_draw.hpp"
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 namespace montecarta {
@@ -21,14 +23,16 @@ struct DrawTimes {
 /// FastSLAM II that draws the pose only now and then (SPEC 24, last lines). In between a particle
 /// is a joint Gaussian over its pose and the landmarks seen since the draw, updated as EKF-SLAM is;
 /// all others are independent of the pose, given where it was drawn. Where every scan draws, this
-/// is GaussianProposal; where none does, every particle is EKF-SLAM.
-template <class Real, class Transform>
-class DelayedProposal : public GaussianProposal<Real, Transform, Transform> {
+/// is GaussianProposal; where none does, every particle is EKF-SLAM. Landmarks are anchored where
+/// the mean pose stood when they were born.
+template <class Real, class PoseTransform, class MapTransform>
+class DelayedProposal : public GaussianProposal<Real, PoseTransform, MapTransform> {
  public:
-  using Immediate = GaussianProposal<Real, Transform, Transform>;
+  using Immediate = GaussianProposal<Real, PoseTransform, MapTransform>;
+  using Landmark = typename Immediate::Landmark;
   DelayedProposal(std::size_t particles, const Belief& belief, const DrawTimes& times,
-                  const Transform& transform)
-      : Immediate(particles, belief, WeightForm::closed, transform, transform),
+                  const PoseTransform& pose_transform, const MapTransform& map_transform)
+      : Immediate(particles, belief, WeightForm::closed, pose_transform, map_transform),
         times_(times),
         joint_(blocks_for<Real>(particles)),
         refined_(blocks_for<Real>(particles)),
@@ -55,15 +59,17 @@ class DelayedProposal : public GaussianProposal<Real, Transform, Transform> {
     }
     const StraightSight<Real> straight =
         Linearised().straight_sight(s, Symmetric2<Real>{}, s.predicted, this->noise());
-    return correlated_innovation(pose.covariance, landmark.covariance,
-                                 joint_.map().pose_cross(joint_.index_of(slot), b),
-                                 SightRows<Real>(s, straight), straight);
+    const std::size_t i = joint_.index_of(slot);
+    return correlated_innovation(
+        pose.covariance, landmark.covariance,
+        in_map(joint_.map().landmark(i, b)).rows(joint_.map().pose_cross(i, b)),
+        SightRows<Real>(s, straight), straight);
   }
 
   /// Decides whether this scan draws, and takes what it sees into the joint Gaussian.
   template <class Matches>
   void prepare(const StepContext& context, const Matches& matches, const Weights<Real>& weights,
-               const std::vector<BasicPose<Real>>& poses, ParticleMaps<Real>& maps) {
+               const std::vector<BasicPose<Real>>& poses, ParticleMaps<Real, Landmark>& maps) {
     ++scans_;
     draws_ = is_time(weights, poses);
     if (draws_ && !is_open_) return;
@@ -81,15 +87,20 @@ class DelayedProposal : public GaussianProposal<Real, Transform, Transform> {
     return draws_ ? draw(context, matches, b, pose, note) : absorb_scan(matches, b, pose, note);
   }
 
-  LandmarkGaussian<Real> birth(std::size_t b, const BasicPose<Real>& pose,
-                               const RangeBearing<Real>& seen) {
+  Landmark birth(std::size_t b, const BasicPose<Real>& pose, const RangeBearing<Real>& seen) {
     if (!is_open_) return Immediate::birth(b, pose, seen);
-    newborn_ =
-        new_correlated_landmark(joint_.map().pose(b), seen, this->noise(), this->pose_transform());
+    if constexpr (kAnchored) {
+      newborn_ = new_correlated_anchored_landmark(joint_.map().pose(b), seen, this->noise(),
+                                                  this->pose_transform());
+    } else {
+      newborn_ = new_correlated_landmark(joint_.map().pose(b), seen, this->noise(),
+                                         this->pose_transform());
+    }
     return newborn_.landmark;
   }
   template <class Put>
-  void settled(ParticleMaps<Real>& maps, std::size_t b, std::uint32_t slot, const Put& put) {
+  void settled(ParticleMaps<Real, Landmark>& maps, std::size_t b, std::uint32_t slot,
+               const Put& put) {
     if (is_open_) place(joint_.map(), b, joint_.enter(slot, maps), newborn_, put);
   }
   void resample(std::span<const std::uint32_t> parents) {
@@ -112,6 +123,8 @@ class DelayedProposal : public GaussianProposal<Real, Transform, Transform> {
   }
 
  private:
+  static constexpr bool kAnchored = std::is_same_v<MapTransform, Anchored>;
+
   bool is_time(const Weights<Real>& weights, const std::vector<BasicPose<Real>>& poses) const {
     if (times_.every > 0 && scans_ >= times_.every) return true;
     if (std::isinf(times_.beyond)) return false;
@@ -181,10 +194,11 @@ class DelayedProposal : public GaussianProposal<Real, Transform, Transform> {
   }
 
   DrawTimes times_;
-  DelayedMap<Real> joint_;       ///< pose and the landmarks seen since the draw
-  CorrelatedMap<Real> refined_;  ///< scratch: pose and the landmarks of one scan that draws
+  DelayedMap<Real, Landmark> joint_;  ///< pose and the landmarks seen since the draw
+  CorrelatedMap<Real, Landmark>
+      refined_;  ///< scratch: pose and the landmarks of one scan that draws
   mutable std::vector<PoseGaussian<Real>> predicted_;  ///< scratch of estimate()
-  NewLandmark<Real> newborn_;
+  std::conditional_t<kAnchored, NewAnchoredLandmark<Real>, NewLandmark<Real>> newborn_;
   std::size_t scans_ = 0;  ///< since the draw
   bool is_open_ = false;   ///< poses are uncertain within a particle, the joint Gaussian holds
   bool draws_ = false;     ///< this scan

@@ -12,7 +12,11 @@ FilterKind delayed_srcd_kind() {
           .has_particles = true,
           .has_mixture = true,
           .options = std::move(options),
-          .make = make_delayed_srcd<Lanes>};
+          .make = [](const FilterSetup& setup) {
+            return are_anchored(setup.options)
+                       ? make_delaying<Lanes>(setup, delayed_srcd_points(setup), Anchored())
+                       : make_delayed_srcd<Lanes>(setup);
+          }};
 }
 
 }  // namespace montecarta

@@ -10,15 +10,15 @@ namespace montecarta {
 /// banana.
 template <class Real>
 struct AnchoredLandmark {
-  BasicPose<Real> anchor{};   ///< exact, as the particle's pose was when it was drawn
+  BasicPose<Real> anchor{};   ///< exact: the particle's pose at birth, its mean where undrawn
   RangeBearing<Real> mean{};  ///< q = (range, bearing) seen from it; the bearing is not wrapped
   Real rr{}, rb{}, bb{};      ///< covariance of q
 };
 
-/// The Gaussian in the map that an anchored landmark is nearly: g(a, q), Gz P Gz'.
+/// The Gaussian in the map that an anchored landmark is nearly, linearised at q: g(a, q), Gz P Gz'.
 template <class Real>
-LandmarkGaussian<Real> as_gaussian(const AnchoredLandmark<Real>& landmark) {
-  const LinearisedPlace<Real> g = linearised_place(landmark.anchor, landmark.mean);
+LandmarkGaussian<Real> as_gaussian(const AnchoredLandmark<Real>& landmark,
+                                   const LinearisedPlace<Real>& g) {
   const Real x_r = g.x_range * landmark.rr + g.x_bearing * landmark.rb;
   const Real x_b = g.x_range * landmark.rb + g.x_bearing * landmark.bb;
   const Real y_r = g.y_range * landmark.rr + g.y_bearing * landmark.rb;
@@ -26,6 +26,10 @@ LandmarkGaussian<Real> as_gaussian(const AnchoredLandmark<Real>& landmark) {
   return {g.point,
           {x_r * g.x_range + x_b * g.x_bearing, x_r * g.y_range + x_b * g.y_bearing,
            y_r * g.y_range + y_b * g.y_bearing}};
+}
+template <class Real>
+LandmarkGaussian<Real> as_gaussian(const AnchoredLandmark<Real>& landmark) {
+  return as_gaussian(landmark, linearised_place(landmark.anchor, landmark.mean));
 }
 /// One that is a Gaussian in the map already.
 template <class Real>

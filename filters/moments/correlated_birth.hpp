@@ -50,8 +50,8 @@ NewLandmark<Real> new_correlated_landmark(const PoseGaussian<Real>& pose,
 }
 
 /// Makes landmark i of block b the new one; `put(from, to)` writes the lanes that are meant.
-template <class Real, class Put>
-void place(CorrelatedMap<Real>& maps, std::size_t b, std::size_t i, const NewLandmark<Real>& born,
+template <class Real, class Landmark, class Born, class Put>
+void place(CorrelatedMap<Real, Landmark>& maps, std::size_t b, std::size_t i, const Born& born,
            const Put& put) {
   for (std::size_t j = 0; j < maps.size(); ++j) {
     if (j == i) continue;

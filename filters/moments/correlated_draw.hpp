@@ -20,12 +20,11 @@ class KnownPose {
         value_(white({drawn.x - pose.mean.x, drawn.y - pose.mean.y,
                       shorter_way(Real(drawn.heading - pose.mean.heading))})) {}
 
-  LandmarkGaussian<Real> condition(const LandmarkGaussian<Real>& landmark,
-                                   const PoseCross<Real>& cross) const {
+  template <class Landmark>
+  Landmark condition(Landmark landmark, const PoseCross<Real>& cross) const {
     const Column3<Real> x = white(cross.x), y = white(cross.y);
-    const auto& [mean, P] = landmark;
-    return {{mean.x + dot(x, value_), mean.y + dot(y, value_)},
-            {P.xx - dot(x, x), P.xy - dot(x, y), P.yy - dot(y, y)}};
+    change(landmark, {dot(x, value_), dot(y, value_)}, {dot(x, x), dot(x, y), dot(y, y)});
+    return landmark;
   }
   const Real& faults() const { return factor_.L.faults; }
 

@@ -14,13 +14,14 @@
 
 namespace montecarta {
 
-/// Covariance of a landmark's x and y with the pose.
+/// Covariance of a landmark's two coordinates with the pose: x and y of the map, or, where it is
+/// anchored, range and bearing.
 template <class Real>
 struct PoseCross {
   Column3<Real> x, y;
 };
 
-/// Covariance of one landmark's x and y (rows) with another's (columns) [m^2].
+/// Covariance of one landmark's coordinates (rows) with another's (columns).
 template <class Real>
 struct MapCross {
   Real xx{}, xy{}, yx{}, yy{};
@@ -39,6 +40,35 @@ struct MapGain {
   WhiteGain<Real> x, y;
 };
 
+// What a correlated map asks of its landmarks, those that are Gaussians in the map:
+/// the covariance of its own coordinates, ...
+template <class Real>
+Symmetric2<Real> own_covariance(const LandmarkGaussian<Real>& landmark) {
+  return landmark.covariance;
+}
+/// ... to move its mean and to take from its covariance, ...
+template <class Real>
+void change(LandmarkGaussian<Real>& landmark, const BasicPoint<Real>& step,
+            const Symmetric2<Real>& less) {
+  landmark.mean.x += step.x;
+  landmark.mean.y += step.y;
+  auto& P = landmark.covariance;
+  P = {P.xx - less.xx, P.xy - less.xy, P.yy - less.yy};
+}
+/// ... and the Gaussian of the map that a sight is of, with how covariances with its own
+/// coordinates become covariances with that: here, as they are.
+template <class Real>
+struct InMap {
+  const LandmarkGaussian<Real>& gaussian;
+
+  const PoseCross<Real>& rows(const PoseCross<Real>& C) const { return C; }
+  const MapCross<Real>& columns(const MapCross<Real>& C) const { return C; }
+};
+template <class Real>
+InMap<Real> in_map(const LandmarkGaussian<Real>& landmark) {
+  return {landmark};
+}
+
 /// Which landmark of a correlated map is meant: the same for every particle of a block ...
 struct ForAll {
   std::size_t index;
@@ -52,9 +82,11 @@ struct ForEach {
 /// A joint Gaussian over pose and landmarks for every particle, block by block: what a particle
 /// keeps that did not draw its pose. Landmarks are numbered from 0 in the order in which they come;
 /// covariances of two are kept once, the later one's rows. Keeps its memory from run to run.
-template <class Real>
+/// `LandmarkBlock`: what is kept of one landmark by a block of particles.
+template <class Real, class LandmarkBlock = LandmarkGaussian<Real>>
 class CorrelatedMap {
  public:
+  using Landmark = LandmarkBlock;
   explicit CorrelatedMap(std::size_t blocks)
       : n_blocks_(blocks), poses_(blocks), spare_poses_(blocks) {}
 
@@ -65,10 +97,8 @@ class CorrelatedMap {
 
   PoseGaussian<Real>& pose(std::size_t b) { return poses_[b]; }
   const PoseGaussian<Real>& pose(std::size_t b) const { return poses_[b]; }
-  LandmarkGaussian<Real>& landmark(std::size_t i, std::size_t b) {
-    return landmarks_[i * n_blocks_ + b];
-  }
-  const LandmarkGaussian<Real>& landmark(std::size_t i, std::size_t b) const {
+  Landmark& landmark(std::size_t i, std::size_t b) { return landmarks_[i * n_blocks_ + b]; }
+  const Landmark& landmark(std::size_t i, std::size_t b) const {
     return landmarks_[i * n_blocks_ + b];
   }
   PoseCross<Real>& pose_cross(std::size_t i, std::size_t b) {
@@ -93,20 +123,18 @@ class CorrelatedMap {
       const MapCross<Real>& c = map_cross(j, i, b);
       return {c.xx, c.yx, c.xy, c.yy};
     }
-    const Symmetric2<Real>& P = landmark(i, b).covariance;
+    const Symmetric2<Real> P = own_covariance(landmark(i, b));
     return {P.xx, P.xy, P.xy, P.yy};
   }
 
-  const LandmarkGaussian<Real>& landmark(ForAll at, std::size_t b) const {
-    return landmark(at.index, b);
-  }
+  const Landmark& landmark(ForAll at, std::size_t b) const { return landmark(at.index, b); }
   const PoseCross<Real>& pose_cross(ForAll at, std::size_t b) const {
     return pose_cross(at.index, b);
   }
   MapCross<Real> covariance(std::size_t i, ForAll at, std::size_t b) const {
     return covariance(i, at.index, b);
   }
-  LandmarkGaussian<Real> landmark(const ForEach<Real>& at, std::size_t b) const {
+  Landmark landmark(const ForEach<Real>& at, std::size_t b) const {
     return by_lane(at, [&](std::size_t j) { return landmark(j, b); });
   }
   PoseCross<Real> pose_cross(const ForEach<Real>& at, std::size_t b) const {
@@ -178,10 +206,10 @@ class CorrelatedMap {
   std::size_t n_blocks_;
   std::size_t size_ = 0;
   std::vector<PoseGaussian<Real>> poses_, spare_poses_;
-  std::vector<LandmarkGaussian<Real>> landmarks_, spare_landmarks_;  ///< {landmark, block}
-  std::vector<PoseCross<Real>> pose_crosses_, spare_pose_crosses_;   ///< {landmark, block}
-  std::vector<MapCross<Real>> map_crosses_, spare_map_crosses_;      ///< {pair, block}
-  std::vector<MapGain<Real>> gains_;                                 ///< {landmark, block}
+  std::vector<Landmark> landmarks_, spare_landmarks_;               ///< {landmark, block}
+  std::vector<PoseCross<Real>> pose_crosses_, spare_pose_crosses_;  ///< {landmark, block}
+  std::vector<MapCross<Real>> map_crosses_, spare_map_crosses_;     ///< {pair, block}
+  std::vector<MapGain<Real>> gains_;                                ///< {landmark, block}
 };
 
 }  // namespace montecarta

@@ -45,8 +45,8 @@ DrivenPose<Real> driven(const PoseGaussian<Real>& before, const MotionIncrement&
 }
 
 /// Drives block b on, map included.
-template <class Real, class Transform>
-void drive(CorrelatedMap<Real>& maps, std::size_t b, const MotionIncrement& motion,
+template <class Real, class Landmark, class Transform>
+void drive(CorrelatedMap<Real, Landmark>& maps, std::size_t b, const MotionIncrement& motion,
            const Transform& transform) {
   const DrivenPose<Real> now = driven(maps.pose(b), motion, transform);
   maps.pose(b) = now.pose;

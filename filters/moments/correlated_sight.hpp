@@ -81,17 +81,17 @@ template <class Real>
   return a.first * b.first + a.second * b.second;
 }
 
-/// P <- P - W W' for what is not of the pose alone; the gains of landmarks are in `maps`.
-template <class Real>
-void subtract_gains(CorrelatedMap<Real>& maps, std::size_t b, const WhiteGain<Real>& x,
-                    const WhiteGain<Real>& y, const WhiteGain<Real>& h) {
+/// mean <- mean + W value, P <- P - W W' for what is not of the pose alone; the gains of landmarks
+/// are in `maps`.
+template <class Real, class Landmark>
+void apply_gains(CorrelatedMap<Real, Landmark>& maps, std::size_t b, const WhiteGain<Real>& value,
+                 const WhiteGain<Real>& x, const WhiteGain<Real>& y, const WhiteGain<Real>& h) {
   for (std::size_t i = 0; i < maps.size(); ++i) {
     const MapGain<Real> g = maps.gain(i, b);
     PoseCross<Real>& C = maps.pose_cross(i, b);
     C = {{C.x.x - g.x * x, C.x.y - g.x * y, C.x.h - g.x * h},
          {C.y.x - g.y * x, C.y.y - g.y * y, C.y.h - g.y * h}};
-    Symmetric2<Real>& P = maps.landmark(i, b).covariance;
-    P = {P.xx - g.x * g.x, P.xy - g.x * g.y, P.yy - g.y * g.y};
+    change(maps.landmark(i, b), {g.x * value, g.y * value}, {g.x * g.x, g.x * g.y, g.y * g.y});
     for (std::size_t j = 0; j < i; ++j) {
       const MapGain<Real>& w = maps.gain(j, b);
       MapCross<Real>& B = maps.map_cross(i, j, b);
@@ -102,13 +102,15 @@ void subtract_gains(CorrelatedMap<Real>& maps, std::size_t b, const WhiteGain<Re
 
 /// Absorbs a detection of landmark `at` into pose and map of block b: the update of EKF-SLAM
 /// (SPEC 24), with the model made straight by `transform`. `matched`: which lanes saw it.
-template <class Real, class Where, class Transform, class Mask>
-Innovation<Real> absorb(CorrelatedMap<Real>& maps, std::size_t b, const Where& at,
+template <class Real, class Landmark, class Where, class Transform, class Mask>
+Innovation<Real> absorb(CorrelatedMap<Real, Landmark>& maps, std::size_t b, const Where& at,
                         const Transform& transform, const RangeBearing<Real>& seen,
                         const SensorNoise& noise, const Mask& matched, Evidence<Real>& evidence) {
   PoseGaussian<Real>& pose = maps.pose(b);
-  const LandmarkGaussian<Real> f = maps.landmark(at, b);
-  const PoseCross<Real> C = maps.pose_cross(at, b);
+  const Landmark own = maps.landmark(at, b);
+  const auto placed = in_map(own);
+  const LandmarkGaussian<Real>& f = placed.gaussian;
+  const PoseCross<Real> C = placed.rows(maps.pose_cross(at, b));
   const Sightline<Real> s = sightline(pose.mean, f.mean);
   const auto use = matched && is_usable(s);
   const StraightSight<Real> straight = transform.straight_sight(
@@ -118,19 +120,16 @@ Innovation<Real> absorb(CorrelatedMap<Real>& maps, std::size_t b, const Where& a
       correlated_innovation(pose.covariance, f.covariance, C, rows, straight);
   const Decorrelated<Real> d(v, use);
   const Whitening<Real> white(d);
-  const WhiteGain<Real> value{d.first * white.first, d.second * white.second};
   for (std::size_t i = 0; i < maps.size(); ++i) {
-    const PoseCross<Real>& own = maps.pose_cross(i, b);
-    const MapCross<Real> V = maps.covariance(i, at, b);
-    const RangeBearing<Real> x = rows.of(V.xx - own.x.x, V.xy - own.x.y, own.x.h);
-    const RangeBearing<Real> y = rows.of(V.yx - own.y.x, V.yy - own.y.y, own.y.h);
+    const PoseCross<Real>& with_pose = maps.pose_cross(i, b);
+    const MapCross<Real> V = placed.columns(maps.covariance(i, at, b));
+    const RangeBearing<Real> x = rows.of(V.xx - with_pose.x.x, V.xy - with_pose.x.y, with_pose.x.h);
+    const RangeBearing<Real> y = rows.of(V.yx - with_pose.y.x, V.yy - with_pose.y.y, with_pose.y.h);
     maps.gain(i, b) = {white(x.range, x.bearing), white(y.range, y.bearing)};
-    BasicPoint<Real>& mean = maps.landmark(i, b).mean;
-    mean.x += maps.gain(i, b).x * value;
-    mean.y += maps.gain(i, b).y * value;
   }
-  subtract_gains(maps, b, white(v.range.x, v.bearing.x), white(v.range.y, v.bearing.y),
-                 white(v.range.h, v.bearing.h));
+  apply_gains(maps, b, {d.first * white.first, d.second * white.second},
+              white(v.range.x, v.bearing.x), white(v.range.y, v.bearing.y),
+              white(v.range.h, v.bearing.h));
   condition(pose, v, use);
   pose.mean.heading = wrap(pose.mean.heading);
   evidence.add(d.density.squared, d.density.determinant, as_number<Real>(use),

@@ -64,6 +64,14 @@ struct Linearised {
                                      const SensorNoise& noise) const {
     return {seen.range, seen.range, Real(noise.range)};
   }
+  template <class Real>
+  StraightBirth<Real> straight_birth(const Symmetric3<Real>& /*pose*/,
+                                     const RangeBearing<Real>& seen,
+                                     const SensorNoise& noise) const {
+    const Real per_range = 1.0 / max(seen.range, Real(kLeastDistance));
+    return {seen,     {Real(0.0), per_range}, {Real(0.0), Real(1.0)}, Real(noise.range), Real(0.0),
+            Real(0.0)};
+  }
 };
 
 /// Landmarks alone: range and bearing from where they were born (SPEC 24, last lines).
@@ -145,6 +153,11 @@ class SigmaPoints {
   StraightPlace<Real> straight_place(const Real& heading_variance, const RangeBearing<Real>& seen,
                                      const SensorNoise& noise) const {
     return place_by_sigma_points(heading_variance, seen, noise, rules_.landmark);
+  }
+  template <class Real>
+  StraightBirth<Real> straight_birth(const Symmetric3<Real>& pose, const RangeBearing<Real>& seen,
+                                     const SensorNoise& noise) const {
+    return birth_by_sigma_points(pose, seen, noise, rules_.landmark);
   }
 
  private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "filters/moments/correlated_anchored.hpp"
 #include "filters/moments/correlated_birth.hpp"
 #include "filters/moments/correlated_motion.hpp"
 #include "filters/moments/correlated_sight.hpp"
@@ -60,6 +61,42 @@ StraightPlace<Real> place_by_sigma_points(const Real& heading_variance,
   const Real even = seen.range * arc.even;
   return {seen.range + rule.mean_weight * even, seen.range * arc.slope,
           noise.range + bend_weight(rule) * even * even};
+}
+
+/// What an anchor sees bends in two columns: that of heading plus bearing, and of what is left the
+/// place across the ray. `P`: (along, across, heading) of the pose.
+template <class Real>
+StraightBirth<Real> birth_by_sigma_points(const Symmetric3<Real>& P, const RangeBearing<Real>& seen,
+                                          const SensorNoise& noise, const SigmaRule& rule) {
+  const Real per_turn = inverse_root(Real(P.hh + noise.bearing));
+  const Real along = P.xh * per_turn, across = P.yh * per_turn;
+  const Turned<Real> rest{P.xx - along * along, P.xy - along * across, P.yy - across * across};
+  const Real per_across = inverse_root(rest.across);
+  const AcrossColumn<Real> column = across_column(rest);
+  const SightPair<Real> shifted =
+      sight_pair(seen.range, rule.spread * column.along, rule.spread * column.across);
+  const Direction<Real> d = direction_of(Real(rule.spread * (P.hh + noise.bearing) * per_turn));
+  SightPair<Real> turned = sight_pair(Real(seen.range * d.cosine), rule.spread * along,
+                                      seen.range * d.sine + rule.spread * across);
+  turned.even.range += seen.range * (d.cosine - 1.0);
+
+  SightMoments<Real> bent{.rr = Real(noise.range), .rb = Real(0.0), .bb = Real(0.0)};
+  bent.add({{}, shifted.even}, rule);
+  bent.add({{}, turned.even}, rule);
+  const double per_spread = rule.antisymmetric * rule.spread;
+  const RangeBearing<Real> by_across{
+      (per_spread * shifted.odd.range - column.along) * per_across,
+      select(per_across > Real(0.0), per_spread * shifted.odd.bearing * per_across,
+             1.0 / max(seen.range, Real(kLeastDistance)))};
+  return {{seen.range + bent.shift.range, seen.bearing + bent.shift.bearing},
+          by_across,
+          {(per_spread * turned.odd.range - by_across.range * across - along) * per_turn,
+           select(per_turn > Real(0.0),
+                  (per_spread * turned.odd.bearing - by_across.bearing * across) * per_turn,
+                  Real(1.0))},
+          bent.rr + rule.shift * bent.shift.range * bent.shift.range,
+          bent.rb + rule.shift * bent.shift.range * bent.shift.bearing,
+          bent.bb + rule.shift * bent.shift.bearing * bent.shift.bearing};
 }
 
 }  // namespace montecarta

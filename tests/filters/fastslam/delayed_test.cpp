@@ -22,12 +22,16 @@ TEST(Delayed, DrawingAtEveryScanIsFastSlam2AndSrcdBitForBit) {
   for (const auto association : {Association::known, Association::nearest}) {
     for (const auto& [name, immediate] :
          {std::pair("delayed", "fastslam2"), std::pair("delayed_srcd", "srcd")}) {
-      const auto now = told({.filter = immediate, .association = association}, settings);
-      const auto then = told(
-          {.filter = name, .association = association, .options = {{"draw_every", "1"}}}, settings);
-      ASSERT_EQ(now.size(), then.size());
-      for (std::size_t scan = 0; scan < now.size(); ++scan) {
-        ASSERT_TRUE(now[scan] == then[scan]) << name << ", scan " << scan;
+      for (const char* landmarks : {"cartesian", "anchored"}) {
+        const Variant always{
+            .filter = immediate, .association = association, .options = {{"landmarks", landmarks}}};
+        Variant delaying = always;
+        delaying.filter = name, delaying.options["draw_every"] = "1";
+        const auto now = told(always, settings), then = told(delaying, settings);
+        ASSERT_EQ(now.size(), then.size());
+        for (std::size_t scan = 0; scan < now.size(); ++scan) {
+          ASSERT_TRUE(now[scan] == then[scan]) << delaying << ", scan " << scan;
+        }
       }
     }
   }

@@ -10,13 +10,20 @@
 
 namespace montecarta::reference {
 
+/// A B and A P A' of full matrices; every size alike, which spares the compiler most of its work.
+inline Eigen::MatrixXd product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) { return A * B; }
+inline Eigen::MatrixXd sandwich(const Eigen::MatrixXd& A, const Eigen::MatrixXd& P) {
+  return product(product(A, P), A.transpose());
+}
+
 /// EKF-SLAM with full matrices at every step, known association; as the textbook has it and as
-/// slow.
+/// slow. Filters that keep other coordinates of their landmarks differ in look() and born().
 class TextbookEkfSlam {
  public:
   explicit TextbookEkfSlam(const Belief& belief) : belief_(belief) {}
+  virtual ~TextbookEkfSlam() = default;
 
-  void start(const Pose& start) {
+  virtual void start(const Pose& start) {
     mean.resize(3);
     mean << start.x, start.y, start.heading;
     covariance = Eigen::MatrixXd::Zero(3, 3);
@@ -31,7 +38,7 @@ class TextbookEkfSlam {
     G.topRows<3>() = control_jacobian(step.jacobians);
     const Eigen::Vector2d Q(std::pow(belief_.sigma_speed, 2), std::pow(belief_.sigma_steer, 2));
     mean.head<3>() << step.pose.x, step.pose.y, step.pose.heading;
-    covariance = (F * covariance * F.transpose() + G * Q.asDiagonal() * G.transpose()).eval();
+    covariance = sandwich(F, covariance) + sandwich(G, Q.asDiagonal());
   }
 
   void update(Scan scan) {
@@ -47,6 +54,24 @@ class TextbookEkfSlam {
     for (const Detection& detection : fresh) append(detection);
   }
 
+  /// What a landmark should look like, and its derivative by pose and map.
+  struct Look {
+    RangeBearing<double> sight;
+    Eigen::MatrixXd H;
+  };
+  virtual Look look(Eigen::Index row) const {
+    const auto at = linearised_sight(pose(), Point{mean(row), mean(row + 1)});
+    return stacked(at, row, landmark_jacobian(at));
+  }
+  /// Takes in detections of known landmarks from a pose that is certain, and the landmarks
+  /// independent of each other.
+  virtual void update_map(Scan scan) { update(scan); }
+  /// A landmark in the map.
+  virtual Eigen::Vector2d place(Eigen::Index row) const { return mean.segment<2>(row); }
+  virtual Eigen::Matrix2d place_covariance(Eigen::Index row) const {
+    return covariance.block<2, 2>(row, row);
+  }
+
   Pose pose() const { return {mean(0), mean(1), mean(2)}; }
   /// First of the two rows of a landmark, -1 where it is not in the map.
   Eigen::Index row_of(std::int32_t identity) const {
@@ -60,37 +85,54 @@ class TextbookEkfSlam {
   Eigen::MatrixXd covariance;
   std::vector<std::int32_t> identities;
 
- private:
+ protected:
   Eigen::Matrix2d R() const {
     return Eigen::Vector2d(std::pow(belief_.sigma_range, 2), std::pow(belief_.sigma_bearing, 2))
         .asDiagonal();
   }
+  Look stacked(const LinearisedSight<double>& at, Eigen::Index row,
+               const Eigen::Matrix2d& by_landmark) const {
+    Look look{at.sight, Eigen::MatrixXd::Zero(2, mean.size())};
+    look.H.leftCols<3>() = pose_jacobian(at);
+    look.H.middleCols<2>(row) = by_landmark;
+    return look;
+  }
 
+  /// A landmark seen for the first time, with its derivatives by pose and detection.
+  struct Born {
+    Eigen::Vector2d mean;
+    Matrix23 by_pose;
+    Eigen::Matrix2d by_sight;
+  };
+  virtual Born born(const Detection& detection) {
+    const auto placed = linearised_place(pose(), sight_of(detection));
+    return {to_vector(placed.point), pose_jacobian(placed), sight_jacobian(placed)};
+  }
+
+ private:
   void absorb(const Detection& detection, Eigen::Index row) {
-    const auto at = linearised_sight(pose(), Point{mean(row), mean(row + 1)});
-    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(2, mean.size());
-    H.leftCols<3>() = pose_jacobian(at);
-    H.middleCols<2>(row) = landmark_jacobian(at);
-    const Eigen::Matrix2d S = H * covariance * H.transpose() + R();
-    const Eigen::MatrixXd K = S.ldlt().solve(H * covariance).transpose();
-    mean += K * to_vector(residual(sight_of(detection), at.sight));
+    const auto [sight, H] = look(row);
+    const Eigen::Matrix2d S = sandwich(H, covariance) + R();
+    const Eigen::Matrix2d per_S = S.ldlt().solve(Eigen::Matrix2d::Identity());
+    const Eigen::MatrixXd K = product(product(covariance, H.transpose()), per_S);
+    mean += product(K, to_vector(residual(sight_of(detection), sight)));
     mean(2) = wrap(mean(2));
-    const Eigen::MatrixXd I_KH = Eigen::MatrixXd::Identity(mean.size(), mean.size()) - K * H;
-    covariance = (I_KH * covariance * I_KH.transpose() + K * R() * K.transpose()).eval();
+    const Eigen::MatrixXd I_KH =
+        Eigen::MatrixXd::Identity(mean.size(), mean.size()) - product(K, H);
+    covariance = sandwich(I_KH, covariance) + sandwich(K, R());
   }
 
   void append(const Detection& detection) {
-    const auto placed = linearised_place(pose(), sight_of(detection));
+    const Born landmark = born(detection);
     const Eigen::Index n = mean.size();
     Eigen::MatrixXd G = Eigen::MatrixXd::Zero(n + 2, n);
     G.topRows(n).setIdentity();
-    G.bottomLeftCorner<2, 3>() = pose_jacobian(placed);
-    Eigen::MatrixXd grown = G * covariance * G.transpose();
-    const Eigen::Matrix2d Gz = sight_jacobian(placed);
-    grown.bottomRightCorner<2, 2>() += Gz * R() * Gz.transpose();
+    G.bottomLeftCorner<2, 3>() = landmark.by_pose;
+    Eigen::MatrixXd grown = sandwich(G, covariance);
+    grown.bottomRightCorner<2, 2>() += landmark.by_sight * R() * landmark.by_sight.transpose();
     covariance = grown;
     mean.conservativeResize(n + 2);
-    mean.tail<2>() = to_vector(placed.point);
+    mean.tail<2>() = landmark.mean;
     identities.push_back(detection.identity);
   }
 
