@@ -71,7 +71,7 @@ double nees_per_component(std::span<const JointScore> scores) {
 }
 
 void JointNeesSums::add(std::span<const JointScore> run) {
-  runs_.push_back(nees_per_component(run));
+  nees_of_run_.push_back(nees_per_component(run));
   if (run.empty()) return;
   ++n_runs_;
   rows_.resize(run.size());
@@ -86,7 +86,7 @@ void JointNeesSums::add(std::span<const JointScore> run) {
 }
 
 void JointNeesSums::put_scores(std::vector<RunScores>& scores) const {
-  for (std::size_t i = 0; i < runs_.size(); ++i) scores[i].joint_nees = runs_[i];
+  for (std::size_t i = 0; i < nees_of_run_.size(); ++i) scores[i].joint_nees = nees_of_run_[i];
 }
 
 /// The sum over runs is chi-square with the sum of the dimensions; each of K rows is tested at

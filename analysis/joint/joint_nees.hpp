@@ -58,9 +58,9 @@ class JointNeesSums {
     double nees = 0.0, dimensions = 0.0, all_dimensions = 0.0;
     std::uint32_t runs = 0;
   };
-  std::vector<Sums> rows_;    ///< {joint}
-  std::vector<double> runs_;  ///< {run} NEES per component; NaN where there is none
-  std::uint64_t n_runs_ = 0;  ///< of them: with joint estimates
+  std::vector<Sums> rows_;           ///< {joint}
+  std::vector<double> nees_of_run_;  ///< {run} NEES per component; NaN where there is none
+  std::uint64_t n_runs_ = 0;         ///< of them: with joint estimates
 };
 
 }  // namespace montecarta

@@ -23,8 +23,8 @@ struct DrawTimes {
 /// FastSLAM II that draws the pose only now and then (SPEC 24, last lines). In between a particle
 /// is a joint Gaussian over its pose and the landmarks seen since the draw, updated as EKF-SLAM is;
 /// all others are independent of the pose, given where it was drawn. Where every scan draws, this
-/// is GaussianProposal; where none does, every particle is EKF-SLAM. Landmarks are anchored where
-/// the mean pose stood when they were born.
+/// is GaussianProposal; where none does, every particle is EKF-SLAM. With
+/// `MapTransform` = Anchored, landmarks are anchored where the mean pose stood when they were born.
 template <class Real, class PoseTransform, class MapTransform>
 class DelayedProposal : public GaussianProposal<Real, PoseTransform, MapTransform> {
  public:

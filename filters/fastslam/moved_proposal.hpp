@@ -15,7 +15,8 @@ namespace montecarta {
 /// 2001): each proposes its poses of the last scans anew, from where it stood before them and with
 /// its map as it was then, and takes them with probability min(1, w'/w), w the product of the
 /// scans' weights. A Metropolis-Hastings step with independent proposals: what is distributed as
-/// the weights say stays so. Known association. Faults of a replay are counted with the next scan.
+/// the weights say stays so. Known association. Faults of a replay, taken or not,
+/// are counted with the next scan that is weighed; after the last there is none.
 template <class Real, class PoseTransform, class MapTransform>
 class MovedProposal : public GaussianProposal<Real, PoseTransform, MapTransform> {
  public:

@@ -207,19 +207,22 @@ void GaussianBank::particles(const ParticleColumns& columns) const {
       weights_.log_scalars(), ancestors_);
 }
 
-/// Visits every belief that some particle has, with the weight of all that have it.
-template <class Visit>
-void GaussianBank::for_beliefs(const Visit& visit) const {
-  for (const std::uint32_t slot : active_) {
-    double weight = 0.0;
-    for (std::size_t i = 0; i < slot_of_.size(); ++i) {
-      if (slot_of_[i] == slot) weight += weights_.linear()[i];
-    }
-    visit(weight, beliefs_[slot]);
+void GaussianBank::weigh_beliefs() const {
+  slot_weights_.assign(beliefs_.size(), 0.0);
+  for (std::size_t i = 0; i < slot_of_.size(); ++i) {
+    slot_weights_[slot_of_[i]] += weights_.linear()[i];
   }
 }
 
+/// Visits every belief that some particle has, with the weight of all that have it:
+/// weigh_beliefs() comes first.
+template <class Visit>
+void GaussianBank::for_beliefs(const Visit& visit) const {
+  for (const std::uint32_t slot : active_) visit(slot_weights_[slot], beliefs_[slot]);
+}
+
 void GaussianBank::map(std::span<std::optional<LandmarkEstimate>> landmarks) const {
+  weigh_beliefs();
   for (std::size_t k = 0; k < landmarks.size(); ++k) landmarks[k] = landmark(k);
 }
 
@@ -238,6 +241,7 @@ std::optional<LandmarkEstimate> GaussianBank::landmark(std::size_t k) const {
 std::optional<JointEstimate> GaussianBank::joint(std::size_t landmarks) const {
   const JointBelief& heaviest = belief_of(weights_.heaviest());
   if (!known_ || active_.size() == 1) return heaviest.joint(landmarks);
+  weigh_beliefs();
   Mixture mixture(heaviest.joint(landmarks));
   for_beliefs([&](double weight, const JointBelief& belief) {
     mixture.add(weight, belief.joint(landmarks));

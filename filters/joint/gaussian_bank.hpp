@@ -68,6 +68,7 @@ class GaussianBank final : public SlamFilter {
   void part_those_due();
   void note_active();
   void decide_on_resampling(const StepContext& context);
+  void weigh_beliefs() const;
   template <class Visit>
   void for_beliefs(const Visit& visit) const;
   std::optional<LandmarkEstimate> landmark(std::size_t k) const;
@@ -76,9 +77,10 @@ class GaussianBank final : public SlamFilter {
   BankSettings settings_;
   bool known_;
   Weights<double> weights_;
-  std::vector<JointBelief> beliefs_;    ///< those of no particle are idle
-  std::vector<std::uint32_t> slot_of_;  ///< {particle} its belief
-  std::vector<std::uint32_t> active_;   ///< the beliefs that some particle has, in order
+  std::vector<JointBelief> beliefs_;          ///< those of no particle are idle
+  std::vector<std::uint32_t> slot_of_;        ///< {particle} its belief
+  std::vector<std::uint32_t> active_;         ///< the beliefs that some particle has, in order
+  mutable std::vector<double> slot_weights_;  ///< scratch of map() and joint(): of each belief
   std::vector<std::uint32_t> parents_;  ///< of the resampling that is decided but not yet in effect
   std::vector<std::uint32_t> ancestors_;     ///< one scan ago
   std::vector<double> weights_before_scan_;  ///< {particle}

@@ -38,7 +38,7 @@ class LinearRun {
     const Eigen::Vector2d sensor(draw_.normal(), draw_.normal());
     const Eigen::Vector2d innovation = H_ * (truth_ - mean_) + sensor;
     const Eigen::Matrix2d S = H_ * P_ * H_.transpose() + Eigen::Matrix2d::Identity();
-    const Matrix32 K = P_ * H_.transpose() * S.inverse();
+    const Matrix32 K = S.llt().solve(H_ * P_).transpose();
     mean_ += K * innovation;
     P_ -= (K * S * K.transpose()).eval();
     return nees(truth_ - mean_, P_);
@@ -119,7 +119,7 @@ TEST(FastSlam2Weights, InALinearCaseTheRatioIsTheClosedFormWhateverWasDrawn) {
     const Matrix23 H = Matrix23::NullaryExpr([&](Eigen::Index) { return draw.normal(); });
     const Eigen::Vector2d nu(0.1 * draw.normal(), 0.1 * draw.normal());
     const Eigen::Matrix2d S_z = H * P * H.transpose() + S_f;
-    const Matrix32 K = P * H.transpose() * S_z.inverse();
+    const Matrix32 K = S_z.llt().solve(H * P).transpose();
     const Eigen::Vector3d shift = K * nu;
     const Eigen::Matrix3d P_after = P - K * S_z * K.transpose();
     const PoseGaussian<double> prior = gaussian_of({0.0, 0.0, 0.0}, P);

@@ -193,7 +193,8 @@ TEST_P(EveryFilter, GivesTheSameBitsOnAnyNumberOfThreads) {
   const std::size_t n = GetParam().has_particles ? particles : 0;
   const Parallel threads(Backend::tbb, 3);
   for (const auto association : {Association::known, Association::nearest}) {
-    const auto filter = make_default(GetParam(), particles, settings, association);
+    const auto filter =
+        make_default(GetParam(), particles, settings, association, {{"draw_every", "2"}});
     const auto alone = told(*filter, n, world, Parallel::serial());
     const auto together = told(*filter, n, world, threads);
     ASSERT_EQ(alone.size(), together.size());
@@ -208,13 +209,15 @@ TEST_P(EveryFilter, GivesTheSameBitsOnEveryThreadWhileOthersRun) {
   const SmallWorld world = small_world(settings);
   const std::size_t particles = 300;
   const std::size_t n = GetParam().has_particles ? particles : 0;
-  const auto alone =
-      told(*make_default(GetParam(), particles, settings), n, world, Parallel::serial());
+  const auto make = [&] {
+    return make_default(GetParam(), particles, settings, Association::known, {{"draw_every", "2"}});
+  };
+  const auto alone = told(*make(), n, world, Parallel::serial());
   const Parallel threads(Backend::tbb, 3);
   std::vector<std::vector<ToldBits>> at_once(3);
   std::barrier together(3);
   threads.for_each(3, [&](std::size_t thread) {
-    const auto filter = make_default(GetParam(), particles, settings);
+    const auto filter = make();
     together.arrive_and_wait();
     at_once[thread] = told(*filter, n, world, Parallel::serial());
   });

@@ -22,9 +22,6 @@ Variant evolved(const char* mode, std::size_t particles,
   return {"de_srcd", "closed", association, particles, {{"landmarks", "anchored"}, {"mode", mode}}};
 }
 
-/// A sensor rough enough that landmarks are bent.
-SmallWorldSettings rough_world() { return {.noise = {.sigma_range = 0.5, .sigma_bearing = 0.1}}; }
-
 std::unique_ptr<SlamFilter> make_single(const Variant& v, const SmallWorldSettings& world) {
   const FilterSetup setup = setup_of(v, world);
   if (v.filter == "fastslam1") return make_fastslam1_anchored<double>(setup);
@@ -57,14 +54,14 @@ class AnchoredSigmaFilters : public testing::TestWithParam<Variant> {};
 class AnchoredFilters : public testing::TestWithParam<Variant> {};
 
 void expect_lanes_equal_one_at_a_time(const Variant& v) {
-  const SmallWorldSettings settings = rough_world();
+  const SmallWorldSettings settings = rough_small_world();
   const auto lanes = make_production(v, settings);
   const auto single = make_single(v, settings);
   expect_same_run(*lanes, *single, small_world(settings), 1e-9);
 }
 
 void expect_not_the_filter_with_gaussians_in_the_map(const Variant& v) {
-  const SmallWorldSettings settings = rough_world();
+  const SmallWorldSettings settings = rough_small_world();
   Variant in_map = v;
   in_map.options.erase("landmarks");
   const auto one = make_production(v, settings), other = make_production(in_map, settings);
@@ -89,7 +86,7 @@ TEST_P(AnchoredSigmaFilters, AreNotTheFilterWithGaussiansInTheMap) {
 }
 
 TEST_P(AnchoredFilters, EqualsTheEigenReference) {
-  const SmallWorldSettings settings = rough_world();
+  const SmallWorldSettings settings = rough_small_world();
   const auto plain = make_reference(GetParam(), settings);
   const auto lanes = make_production(GetParam(), settings);
   expect_same_run(*lanes, *plain, small_world(settings), 1e-8);

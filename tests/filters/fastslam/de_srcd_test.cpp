@@ -235,7 +235,7 @@ TEST(PoseFitness, IsEquation32OrTheDensityOfThePose) {
                                {.mean = to_vector(landmark.mean),
                                 .covariance = Eigen::Matrix2d{{P.xx, P.xy}, {P.xy, P.yy}}},
                                {seen.range, seen.bearing, 0}, R);
-      printed += -0.5 * at->nu.dot(R.inverse() * at->nu);
+      printed += -0.5 * at->nu.dot(R.llt().solve(at->nu));
       density += reference::log_gaussian<2>(at->nu, at->S_f);
     }
     EXPECT_NEAR(fitness.likelihood(pose, scan), printed, 1e-9 * (1 + std::abs(printed)));

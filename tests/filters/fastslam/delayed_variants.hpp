@@ -14,15 +14,4 @@ inline Variant delayed(const char* every, std::size_t particles = 13,
           .options = {{"draw_every", every}}};
 }
 
-/// The same with anchored landmarks.
-inline Variant anchored(Variant variant) {
-  variant.options["landmarks"] = "anchored";
-  return variant;
-}
-
-/// A sensor rough enough that landmarks are bent.
-inline SmallWorldSettings rough_small_world(std::size_t scans = 40) {
-  return {.scans = scans, .noise = {.sigma_range = 0.5, .sigma_bearing = 0.1}};
-}
-
 }  // namespace montecarta

@@ -199,10 +199,13 @@ void expect_born_alike(const Transform& transform, double interval, double scale
     const auto& [r, b] = born.pose_cross;
     Eigen::Matrix<double, 3, 2> cross;
     cross << r.x, b.x, r.y, b.y, r.h, b.h;
-    const double squares = tolerance * scale * scale;
-    EXPECT_LT(apart.norm(), tolerance * scale) << "case " << n;
-    EXPECT_LT((symmetric(own_covariance(born.landmark)) - points.covariance).norm(), squares);
-    EXPECT_LT((cross - points.cross).norm(), squares) << "case " << n;
+    // In the units of a pose and a sensor that err by half a metre and three degrees, scaled.
+    const Eigen::DiagonalMatrix<double, 2> of_sight(2.0 / scale, 20.0 / scale);
+    const Eigen::DiagonalMatrix<double, 3> of_pose(2.0 / scale, 2.0 / scale, 20.0 / scale);
+    const Eigen::Matrix2d off = symmetric(own_covariance(born.landmark)) - points.covariance;
+    EXPECT_LT((of_sight * apart).norm(), tolerance) << "case " << n;
+    EXPECT_LT((of_sight * off * of_sight).norm(), tolerance) << "case " << n;
+    EXPECT_LT((of_pose * (cross - points.cross) * of_sight).norm(), tolerance) << "case " << n;
     EXPECT_EQ(born.landmark.anchor.x, c.pose.mean.x);
     EXPECT_EQ(born.landmark.anchor.y, c.pose.mean.y);
     EXPECT_EQ(born.landmark.anchor.heading, c.pose.mean.heading);

@@ -90,7 +90,7 @@ TEST(SigmaCorrelated, ASightUpdatesPoseAndLandmarkAsAllPointsDo) {
     S(5, 5) = std::sqrt(c.sight.noise.range), S(6, 6) = std::sqrt(c.sight.noise.bearing);
     const auto image = image_of<2, 1>(x, S, reference::SightModel{});
     const Eigen::Matrix<double, 5, 2> C = image.cross.topRows<5>();
-    const Eigen::Matrix<double, 5, 2> K = C * image.covariance.inverse();
+    const Eigen::Matrix<double, 5, 2> K = image.covariance.llt().solve(C.transpose()).transpose();
     const Vector<2> nu = reference::difference<1, 2>(to_vector(c.sight.seen), image.mean);
 
     Evidence<double> evidence;

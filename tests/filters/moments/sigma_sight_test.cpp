@@ -44,7 +44,7 @@ const auto kCentral = [](const auto& x, const auto& S, const auto& model) {
 
 void expect_refined_as(const RandomSight& c, const Image<7, 2>& image, const SigmaRule& rule) {
   const Eigen::Matrix<double, 3, 2> C = image.cross.topRows<3>();
-  const Eigen::Matrix<double, 3, 2> K = C * image.covariance.inverse();
+  const Eigen::Matrix<double, 3, 2> K = image.covariance.llt().solve(C.transpose()).transpose();
   const Vector<2> nu = reference::difference<1, 2>(to_vector(c.seen), image.mean);
   const Vector<3> mean = reference::to_vector(c.pose.mean) + K * nu;
   const Eigen::Matrix3d P = symmetric(c.pose.covariance) - K * image.covariance * K.transpose();

@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+/// What every reference is made of. References are to be read beside the papers, so they divide by
+/// two-by-two matrices as those write it, K = P H' S^-1; nowhere else does anything invert.
 namespace montecarta::reference {
 
 /// log N(v; S), the zero-mean density of SPEC 0, by the Cholesky factor of S, which takes its place
