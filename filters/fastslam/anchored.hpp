@@ -27,4 +27,12 @@ extern template std::unique_ptr<SlamFilter> make_anchored<Lanes>(const FilterSet
 extern template std::unique_ptr<SlamFilter> make_anchored<Lanes>(const FilterSetup&,
                                                                  const SigmaPoints&);
 
+/// What the option `landmarks` makes of a filter whose poses `poses` carries; `plain(setup)` where
+/// it asks for nothing.
+template <class PoseTransform, class Plain>
+std::unique_ptr<SlamFilter> make_anchored_or(const FilterSetup& setup, const PoseTransform& poses,
+                                             const Plain& plain) {
+  return are_anchored(setup.options) ? make_anchored<Lanes>(setup, poses) : plain(setup);
+}
+
 }  // namespace montecarta

@@ -34,13 +34,12 @@ extern template std::unique_ptr<SlamFilter> make_moved<Lanes>(const FilterSetup&
 extern template std::unique_ptr<SlamFilter> make_moved<Lanes>(const FilterSetup&,
                                                               const SigmaPoints&);
 
-/// What the options `move_lag` and `landmarks` make of a filter whose poses `poses` carries;
-/// `plain(setup)` where they ask for nothing.
+/// As make_anchored_or(), but poses are moved where the option `move_lag` asks for it.
 template <class PoseTransform, class Plain>
 std::unique_ptr<SlamFilter> make_as_chosen(const FilterSetup& setup, const PoseTransform& poses,
                                            const Plain& plain) {
   if (move_lag(setup.options) > 0) return make_moved<Lanes>(setup, poses);
-  return are_anchored(setup.options) ? make_anchored<Lanes>(setup, poses) : plain(setup);
+  return make_anchored_or(setup, poses, plain);
 }
 
 }  // namespace montecarta

@@ -14,8 +14,7 @@ FilterKind srcd_aided_kind() {
           .has_mixture = true,
           .options = std::move(options),
           .make = [](const FilterSetup& setup) {
-            return are_anchored(setup.options) ? make_anchored<Lanes>(setup, Linearised())
-                                               : make_srcd_aided<Lanes>(setup);
+            return make_anchored_or(setup, Linearised(), make_srcd_aided<Lanes>);
           }};
 }
 

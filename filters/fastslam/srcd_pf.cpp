@@ -15,8 +15,7 @@ FilterKind srcd_pf_kind() {
           .has_mixture = true,
           .options = std::move(options),
           .make = [](const FilterSetup& setup) {
-            return are_anchored(setup.options) ? make_anchored<Lanes>(setup, srcd_points(setup))
-                                               : make_srcd_pf<Lanes>(setup);
+            return make_anchored_or(setup, srcd_points(setup), make_srcd_pf<Lanes>);
           }};
 }
 
