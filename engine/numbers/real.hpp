@@ -22,6 +22,8 @@ inline constexpr std::size_t kLanesOf<Lanes> = Lanes::kSize;
 using std::atan2;
 using std::cos;
 using std::exp;
+using std::floor;
+using std::fma;
 using std::log;
 using std::sin;
 using std::sqrt;
@@ -76,10 +78,22 @@ inline Lanes sqrt(const Lanes& a) {
 inline Lanes exp(const Lanes& a) {
   return by_register([](const auto& x) { return xsimd::exp(x); }, a);
 }
+/// a b + c, rounded once.
+[[gnu::always_inline]] inline Lanes fma(const Lanes& a, const Lanes& b, const Lanes& c) {
+  return by_register(
+      [](const auto& x, const auto& y, const auto& z) { return xsimd::fma(x, y, z); }, a, b, c);
+}
 inline Lanes max(const Lanes& a, const Lanes& b) {
   return by_register([](const auto& x, const auto& y) { return xsimd::max(x, y); }, a, b);
 }
 inline double max(double a, double b) { return a < b ? b : a; }
+inline Lanes min(const Lanes& a, const Lanes& b) {
+  return by_register([](const auto& x, const auto& y) { return xsimd::min(x, y); }, a, b);
+}
+inline double min(double a, double b) { return b < a ? b : a; }
+inline Lanes floor(const Lanes& a) {
+  return by_register([](const auto& x) { return xsimd::floor(x); }, a);
+}
 
 /// The same turn by the shorter way: `angle` [rad] less the nearest whole number of turns, in [-pi,
 /// pi] to rounding. For differences that are used at once; what is kept is wrapped by wrap().

@@ -41,8 +41,7 @@ class Parallel {
   }
 
  private:
-  /// The one compiled copy of a body: two copies, inlined apart, might contract their arithmetic
-  /// differently and so not agree bit for bit.
+  /// The one compiled copy of a body: bodies are large, and two would cost the compiler twice.
   template <class Body>
   [[gnu::noinline, gnu::noclone]] static void call_body(const void* body, std::size_t i) {
     (*static_cast<const Body*>(body))(i);

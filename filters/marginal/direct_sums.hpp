@@ -22,9 +22,9 @@ template <Headings headings, class Real, std::size_t N>
   Real dh = target.heading - Real(kernel.heading);
   if constexpr (headings == Headings::anywhere) dh = wrap(dh);
   const Real a = Real(kernel.xx) * dx;
-  const Real b = Real(kernel.yx) * dx + Real(kernel.yy) * dy;
-  const Real c = Real(kernel.hx) * dx + Real(kernel.hy) * dy + Real(kernel.hh) * dh;
-  return a * a + b * b + c * c;
+  const Real b = fma(Real(kernel.yx), dx, Real(kernel.yy) * dy);
+  const Real c = fma(Real(kernel.hx), dx, fma(Real(kernel.hy), dy, Real(kernel.hh) * dh));
+  return fma(a, a, fma(b, b, c * c));
 }
 
 /// Adds to each sum what `kernels` contribute at the target, in units of the peak.
@@ -34,7 +34,7 @@ void add_kernels(const BasicPose<Real>& target, std::span<const PoseKernel<N>> k
   std::array<Real, N> total = sums;
   for (const PoseKernel<N>& kernel : kernels) {
     const Real density = falling_exponential(half_squared_distance<headings>(target, kernel));
-    for (std::size_t n = 0; n < N; ++n) total[n] += Real(kernel.height[n]) * density;
+    for (std::size_t n = 0; n < N; ++n) total[n] = fma(Real(kernel.height[n]), density, total[n]);
   }
   sums = total;
 }

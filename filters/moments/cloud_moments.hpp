@@ -51,13 +51,9 @@ Pose weighted_mean(const Weights<Real>& weights, const PoseOf& pose_of) {
   return {reference.x + sums[0], reference.y + sums[1], wrap(reference.heading + sums[2])};
 }
 
-// Out of line: what is compiled into its caller may round otherwise in another caller, and filters
-// that are the same in a limit are to say the same to the last bit.
-
 /// Mean and spread of the drawn poses.
 template <class Real>
-[[gnu::noinline]] PoseMoments spread_of(const Weights<Real>& weights,
-                                        const std::vector<BasicPose<Real>>& poses) {
+PoseMoments spread_of(const Weights<Real>& weights, const std::vector<BasicPose<Real>>& poses) {
   const Pose mean = weighted_mean<Real>(weights, [&](std::size_t b) { return poses[b]; });
   const auto C = weighted_sums<Real, 6>(weights, [&](std::size_t b) {
     const Real x = poses[b].x - mean.x, y = poses[b].y - mean.y;
@@ -69,8 +65,8 @@ template <class Real>
 
 /// Mean and covariance of a mixture of Gaussians (SPEC 19).
 template <class Real>
-[[gnu::noinline]] PoseMoments mixture_of(const Weights<Real>& weights,
-                                         const std::vector<PoseGaussian<Real>>& gaussians) {
+PoseMoments mixture_of(const Weights<Real>& weights,
+                       const std::vector<PoseGaussian<Real>>& gaussians) {
   const Pose mean = weighted_mean<Real>(weights, [&](std::size_t b) { return gaussians[b].mean; });
   const auto C = weighted_sums<Real, 6>(weights, [&](std::size_t b) {
     const auto& [m, P] = gaussians[b];
@@ -103,8 +99,7 @@ LandmarkEstimate mixture_of_landmarks(const Weights<Real>& weights,
 class CloudMoments {
  public:
   template <class Real>
-  [[gnu::noinline]] CloudMoments(const Weights<Real>& weights,
-                                 const std::vector<BasicPose<Real>>& poses)
+  CloudMoments(const Weights<Real>& weights, const std::vector<BasicPose<Real>>& poses)
       : mean_(weighted_mean<Real>(weights, [&](std::size_t b) { return poses[b]; })),
         ahead_(direction_of(mean_.heading)) {
     const auto terms = [&](std::size_t b) {

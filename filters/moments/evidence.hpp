@@ -31,18 +31,14 @@ class Evidence {
   /// Detections that matched a landmark too near to be used.
   const Real& left_out() const { return left_out_; }
   /// Log of the product.
-  Real log_density() const { return log_product(squared_, log_determinant_, determinant_, count_); }
+  Real log_density() const {
+    return -0.5 * (squared_ + log_determinant_ + log(determinant_)) - kLogTwoPi * count_;
+  }
 
  private:
   static constexpr int kBetweenLogarithms = 16;  // determinants down to 1e-19 stay in range
   static constexpr double kLogTwoPi = 1.8378770664093454836;
 
-  /// Out of line: compiled into its callers, a difference of products may round otherwise in each,
-  /// and filters that are the same in a limit are to say the same to the last bit.
-  [[gnu::noinline]] static Real log_product(Real squared, Real log_determinant, Real determinant,
-                                            Real count) {
-    return -0.5 * (squared + log_determinant + log(determinant)) - kLogTwoPi * count;
-  }
   void take_logarithm() {
     log_determinant_ += log(determinant_);
     determinant_ = Real(1.0);

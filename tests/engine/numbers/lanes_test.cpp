@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace montecarta {
@@ -21,6 +22,39 @@ void for_random_lanes(double scale, Check check) {
       set(lanes, i, scale * (2.0 * draw.uniform() - 1.0));
     check(lanes);
   }
+}
+
+[[gnu::noipa]] double difference_of_products(double a, double b, double c, double d) {
+  return a * b - c * d;
+}
+[[gnu::noipa]] Lanes difference_of_products(const Lanes& a, const Lanes& b, const Lanes& c,
+                                            const Lanes& d) {
+  return a * b - c * d;
+}
+
+// What is fused with what would depend on what is inlined where: one formula, two last bits.
+TEST(Arithmetic, RoundsEveryOperationByItself) {
+  const double a = 1.0 + 0x1p-30;
+  EXPECT_EQ(difference_of_products(a, a, a, a), 0.0);
+  EXPECT_EQ(difference_of_products(Lanes(a), Lanes(a), Lanes(a), Lanes(a)).get(0), 0.0);
+}
+
+TEST(Arithmetic, FusesWhereItIsToldTo) {
+  const double a = 1.0 + 0x1p-30, square = 1.0 + 0x1p-29;
+  EXPECT_EQ(fma(a, a, -square), 0x1p-60);
+  EXPECT_EQ(fma(Lanes(a), Lanes(a), Lanes(-square)).get(0), 0x1p-60);
+}
+
+TEST(Lanes, LeastGreatestAndFloorEqualScalars) {
+  for_random_lanes(20.0, [](const Lanes& a) {
+    const Lanes b(a.get(3));
+    const Lanes least = min(a, b), greatest = max(a, b), whole = floor(a);
+    for (std::size_t i = 0; i < Lanes::kSize; ++i) {
+      ASSERT_EQ(least.get(i), std::min(a.get(i), b.get(i)));
+      ASSERT_EQ(greatest.get(i), std::max(a.get(i), b.get(i)));
+      ASSERT_EQ(whole.get(i), std::floor(a.get(i)));
+    }
+  });
 }
 
 TEST(Lanes, SineAndCosineEqualTheLibrary) {
