@@ -118,14 +118,14 @@ template <class Real>
 
 /// P plus `weight` times column column'.
 [[gnu::always_inline]] inline void add_outer(Symmetric3<double>& P, double weight,
-                                             const Eigen::Vector3d& column) {
-  const double x = weight * column(0), y = weight * column(1);
-  P.xx += x * column(0);
-  P.xy += x * column(1);
-  P.yy += y * column(1);
-  P.xh += x * column(2);
-  P.yh += y * column(2);
-  P.hh += weight * column(2) * column(2);
+                                             const Column3<double>& column) {
+  const double x = weight * column.x, y = weight * column.y;
+  P.xx = fma(x, column.x, P.xx);
+  P.xy = fma(x, column.y, P.xy);
+  P.yy = fma(y, column.y, P.yy);
+  P.xh = fma(x, column.h, P.xh);
+  P.yh = fma(y, column.h, P.yh);
+  P.hh = fma(weight * column.h, column.h, P.hh);
 }
 
 /// Lower triangular factor; a pivot that is zero but for rounding gives a zero column (SPEC 4).

@@ -16,25 +16,26 @@ constexpr std::array<double, 3> kWeights{2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0};
 
 /// Displacement (forward, left, turn) in the frame of the vehicle before the step.
 struct BodyMoments {
-  Eigen::Vector3d mean;
+  Column3<double> mean;
   Symmetric3<double> covariance;
 };
 
 /// `wheels`: the directions of the nodes' steering angles.
 BodyMoments body_moments(std::span<const Direction<double>> wheels, double speed, double duration,
                          const Belief& belief) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();  // at 1 m/s
-  Symmetric3<double> second;                       // likewise, about the origin
+  Column3<double> mean{0.0, 0.0, 0.0};  // at 1 m/s
+  Symmetric3<double> second;            // likewise, about the origin
   for (std::size_t k = 0; k < kNodes.size(); ++k) {
     const auto step = body_step(belief.vehicle, 1.0, wheels[k], duration);
-    const Eigen::Vector3d way(step.forward, step.left, step.turn);
-    mean += kWeights[k] * way;
-    add_outer(second, kWeights[k], way);
+    mean.x += kWeights[k] * step.forward;
+    mean.y += kWeights[k] * step.left;
+    mean.h += kWeights[k] * step.turn;
+    add_outer(second, kWeights[k], {step.forward, step.left, step.turn});
   }
   const double square = speed * speed;
   Symmetric3<double> covariance = scaled(second, square + belief.sigma_speed * belief.sigma_speed);
   add_outer(covariance, -square, mean);
-  return {speed * mean, covariance};
+  return {{speed * mean.x, speed * mean.y, speed * mean.h}, covariance};
 }
 
 }  // namespace
@@ -47,8 +48,8 @@ MotionIncrement moved_by_quadrature(const MotionIncrement& before, const Control
   const Direction<double>& course = directions.back();
   const auto [way, noise] =
       body_moments(std::span(directions).first(3), control.speed, duration, belief);
-  const Point moved = in_world(course, way(0), way(1));
-  return {{from.x + moved.x, from.y + moved.y, wrap(from.heading + way(2))},
+  const Point moved = in_world(course, way.x, way.y);
+  return {{from.x + moved.x, from.y + moved.y, wrap(from.heading + way.h)},
           sheared(before.covariance(), -moved.y, moved.x) + turned(noise, course)};
 }
 

@@ -10,28 +10,46 @@ namespace {
 
 /// Half the difference of two points' images, and how far their middle lies from the centre's.
 struct Pair {
-  Eigen::Vector3d odd, even;
+  Column3<double> odd, even;
 };
 
 /// A step as the vehicle sees it, in the world: its displacement and its turn.
-Eigen::Vector3d turned(const BodyStep<double>& step, const Direction<double>& heading) {
-  const Point way = in_world(heading, step.forward, step.left);
+Column3<double> turned(const BodyStep<double>& step, const Direction<double>& course) {
+  const Point way = in_world(course, step.forward, step.left);
   return {way.x, way.y, step.turn};
 }
 
 /// Points that differ in heading, by `turn`, and in place: `column` is the spread column of the
 /// square root.
-Pair heading_pair(const Eigen::Vector3d& step, const Eigen::Vector3d& column,
+Pair heading_pair(const Column3<double>& step, const Column3<double>& column,
                   const Direction<double>& turn) {
-  return {column + turn.sine * Eigen::Vector3d(-step(1), step(0), 0.0),
-          (turn.cosine - 1.0) * Eigen::Vector3d(step(0), step(1), 0.0)};
+  const double bend = turn.cosine - 1.0;
+  return {{column.x - turn.sine * step.y, column.y + turn.sine * step.x, column.h},
+          {bend * step.x, bend * step.y, 0.0}};
+}
+
+/// Points that differ in steering angle; their images are combined before they are turned.
+Pair steer_pair(const BodyStep<double>& centre, const BodyStep<double>& leftward,
+                const BodyStep<double>& rightward, const Direction<double>& course) {
+  return {turned({0.5 * (leftward.forward - rightward.forward),
+                  0.5 * (leftward.left - rightward.left), 0.5 * (leftward.turn - rightward.turn)},
+                 course),
+          turned({0.5 * (leftward.forward + rightward.forward) - centre.forward,
+                  0.5 * (leftward.left + rightward.left) - centre.left,
+                  0.5 * (leftward.turn + rightward.turn) - centre.turn},
+                 course)};
 }
 
 /// The column of the square root that carries the heading; zero where the heading is certain.
-Eigen::Vector3d heading_column(const Symmetric3<double>& P) {
-  if (P.hh <= 1e-18) return Eigen::Vector3d::Zero();  // SPEC 4
+Column3<double> heading_column(const Symmetric3<double>& P) {
+  if (P.hh <= 1e-18) return {0.0, 0.0, 0.0};  // SPEC 4
   const double root = std::sqrt(P.hh), inverse = 1.0 / root;
   return {P.xh * inverse, P.yh * inverse, root};
+}
+
+/// The direction at the sum of two angles.
+Direction<double> at_sum(const Direction<double>& a, const Direction<double>& b) {
+  return {a.cosine * b.cosine - a.sine * b.sine, a.sine * b.cosine + a.cosine * b.sine};
 }
 
 }  // namespace
@@ -40,32 +58,31 @@ MotionIncrement moved_by_sigma_points(const MotionIncrement& before, const Contr
                                       double duration, const Belief& belief,
                                       const SigmaRule& rule) {
   const Pose& from = before.pose();
-  const Eigen::Vector3d column = heading_column(before.covariance());
-  const double angle = rule.spread * belief.sigma_steer;
-  const auto [course, turn, ahead, left, right] =
-      directions_of<5>({from.heading, rule.spread * column(2), control.steer, control.steer + angle,
-                        control.steer - angle});
+  const Column3<double> column = heading_column(before.covariance());
+  const auto [course, turn, ahead, aside] = directions_of<4>(
+      {from.heading, rule.spread * column.h, control.steer, rule.spread * belief.sigma_steer});
   const auto image = [&](double speed, const Direction<double>& wheel) {
-    return turned(body_step(belief.vehicle, speed, wheel, duration), course);
+    return body_step(belief.vehicle, speed, wheel, duration);
   };
-  const Eigen::Vector3d step = image(control.speed, ahead);
-  const Pair heading = heading_pair(step, rule.spread * column, turn);
-  const Eigen::Vector3d leftward = image(control.speed, left);
-  const Eigen::Vector3d rightward = image(control.speed, right);
-  const Pair steer{0.5 * (leftward - rightward), 0.5 * (leftward + rightward) - step};
-  const Eigen::Vector3d speed = image(belief.sigma_speed, ahead);  // linear: no points
-
-  const Eigen::Vector3d e = rule.mean_weight * (heading.even + steer.even);
+  const BodyStep<double> centre = image(control.speed, ahead);
+  const Column3<double> step = turned(centre, course);
   Symmetric3<double> P = before.covariance();
   add_outer(P, -1.0, column);
-  add_outer(P, 1.0, speed);
-  for (const Pair& pair : {heading, steer}) {
+  add_outer(P, 1.0, turned(image(belief.sigma_speed, ahead), course));  // linear: no points
+  const auto add = [&](const Pair& pair) {
     add_outer(P, rule.antisymmetric, pair.odd);
     add_outer(P, rule.symmetric, pair.even);
-  }
+    return pair.even;
+  };
+  const Column3<double> a = add(heading_pair(
+      step, {rule.spread * column.x, rule.spread * column.y, rule.spread * column.h}, turn));
+  const Column3<double> b =
+      add(steer_pair(centre, image(control.speed, at_sum(ahead, aside)),
+                     image(control.speed, at_sum(ahead, {aside.cosine, -aside.sine})), course));
+  const Column3<double> e{rule.mean_weight * (a.x + b.x), rule.mean_weight * (a.y + b.y),
+                          rule.mean_weight * (a.h + b.h)};
   add_outer(P, rule.shift, e);
-  return {{from.x + step(0) + e(0), from.y + step(1) + e(1), wrap(from.heading + step(2) + e(2))},
-          P};
+  return {{from.x + step.x + e.x, from.y + step.y + e.y, wrap(from.heading + step.h + e.h)}, P};
 }
 
 }  // namespace montecarta
