@@ -190,9 +190,10 @@ PoseEstimate GaussianBank::mixture() const {
   for (const std::uint32_t slot : active_) {
     poses_[slot] = beliefs_[slot].gaussian().pose_after(motion_);
   }
-  const PoseMoments whole =
-      mixture_of_moments(weights_.linear_scalars(), weights_.heaviest(),
-                         [&](std::size_t i) -> const PoseMoments& { return poses_[slot_of_[i]]; });
+  Mixture mixture(poses_[slot_of_[weights_.heaviest()]]);
+  for (std::size_t i = 0; i < slot_of_.size(); ++i)
+    mixture.add(weights_.linear()[i], poses_[slot_of_[i]]);
+  const PoseMoments whole = mixture.result();
   if (!settings_.tells_particles) return {whole, std::nullopt};
   return {whole, whole};
 }

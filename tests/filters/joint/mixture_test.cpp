@@ -60,6 +60,22 @@ TEST(MixtureOfJoints, KnowsNothingOfWhatNoneHasSeen) {
   EXPECT_EQ(mixture.result().mean(0), 1.0);
 }
 
+TEST(MixtureOfPoses, HasTheMomentsOfItsComponentsTheShorterWay) {
+  const PoseMoments one{{1.0, 2.0, 3.1}, 0.5 * Eigen::Matrix3d::Identity()};
+  const PoseMoments other{{3.0, 2.0, -3.1}, 0.1 * Eigen::Matrix3d::Identity()};
+  Mixture mixture(one);
+  mixture.add(0.25, one);
+  mixture.add(0.75, other);
+  const auto [mean, covariance] = mixture.result();
+  const double own = 0.25 * 0.5 + 0.75 * 0.1, between = 0.25 * 0.75, turn = 2.0 * (kPi - 3.1);
+  EXPECT_NEAR(mean.x, 2.5, 1e-12);
+  EXPECT_EQ(mean.y, 2.0);
+  EXPECT_NEAR(mean.heading, -3.1 - 0.25 * turn, 1e-12);
+  EXPECT_NEAR(covariance(0, 0), own + between * 4.0, 1e-12);
+  EXPECT_NEAR(covariance(0, 2), between * 2.0 * turn, 1e-12);
+  EXPECT_NEAR(covariance(2, 2), own + between * turn * turn, 1e-12);
+}
+
 TEST(MixtureOfLandmarks, HasTheMomentsOfItsComponents) {
   const LandmarkEstimate one{{1.0, 2.0}, 0.5 * Eigen::Matrix2d::Identity()};
   const LandmarkEstimate other{{3.0, 2.0}, 0.1 * Eigen::Matrix2d::Identity()};
