@@ -32,14 +32,15 @@ struct EvolutionScratch {
   std::vector<std::array<Real, D>> trials;
   std::vector<Real> fitness, trial_fitness;  ///< of every member
 
-  void resize(std::size_t size) {
+  /// All are equally fit until they are judged.
+  void start(std::size_t size) {
     trials.resize(size);
-    fitness.resize(size);
-    trial_fitness.resize(size);
+    fitness.assign(size, Real(0.0));
+    trial_fitness.assign(size, Real(0.0));
   }
 };
 
-/// The best member, of equals the first, and what the objective says of it.
+/// The best member, of equals the first, and how fit it is.
 template <class Real, std::size_t D>
 struct Evolved {
   std::array<Real, D> best;
@@ -79,27 +80,33 @@ struct Standing {
   }
 };
 
+// Inlined, for out of line their arrays of registers pass through memory.
+
 /// The k-th of every lane's random members.
 template <class Real, std::size_t D>
-std::array<Real, D> gather(Population<Real, D> population, const TrialDraws<Real, D>& draws,
-                           std::size_t k) {
+[[gnu::always_inline]] inline std::array<Real, D> gather(Population<Real, D> population,
+                                                         const TrialDraws<Real, D>& draws,
+                                                         std::size_t k) {
   constexpr std::size_t lanes = kLanesOf<Real>;
   const double* numbers = reinterpret_cast<const double*>(population.data());
-  std::array<Real, D> member;
-  for (std::size_t j = 0; j < D; ++j) {
-    alignas(64) std::array<double, lanes> values;
-    for (std::size_t lane = 0; lane < lanes; ++lane)
-      values[lane] = numbers[(draws.members[lane][k] * D + j) * lanes + lane];
-    member[j] = load_real<Real>(values.data());
+  alignas(64) std::array<std::array<double, lanes>, D> values;
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    const auto index = static_cast<std::size_t>(get(draws.members[k], lane));
+    for (std::size_t j = 0; j < D; ++j) values[j][lane] = numbers[(index * D + j) * lanes + lane];
   }
+  std::array<Real, D> member;
+  for (std::size_t j = 0; j < D; ++j) member[j] = load_real<Real>(values[j].data());
   return member;
 }
 
 /// Mutation, binomial crossover and repair of member i (SPEC 12).
 template <class Real, std::size_t D>
-std::array<Real, D> trial(Population<Real, D> population, std::size_t i,
-                          const std::array<Real, D>& leader, const SearchBox<Real, D>& box,
-                          const EvolutionSettings& settings, const TrialDraws<Real, D>& draws) {
+[[gnu::always_inline]] inline std::array<Real, D> trial(Population<Real, D> population,
+                                                        std::size_t i,
+                                                        const std::array<Real, D>& leader,
+                                                        const SearchBox<Real, D>& box,
+                                                        const EvolutionSettings& settings,
+                                                        const TrialDraws<Real, D>& draws) {
   const std::array<Real, D> plus = gather(population, draws, 0);
   const std::array<Real, D> minus = gather(population, draws, 1);
   std::array<Real, D> base = leader;
@@ -115,19 +122,19 @@ std::array<Real, D> trial(Population<Real, D> population, std::size_t i,
 }
 
 /// One synchronous generation: all trials are built from the old one, then the good ones move in.
-template <class Real, std::size_t D, class Objective>
+template <class Real, std::size_t D, class Judge>
 void live_on(Population<Real, D> population, std::size_t generation,
              const Standing<Real, D>& standing, const SearchBox<Real, D>& box,
              const EvolutionSettings& settings, const EvolutionDraws& draws,
-             EvolutionScratch<Real, D>& scratch, const Objective& objective) {
+             EvolutionScratch<Real, D>& scratch, const Judge& judge) {
   const std::size_t size = population.size();
   const auto goes_on = standing.goes_on(settings);
   for (std::size_t i = 0; i < size; ++i) {
     const std::size_t block = (generation * size + i) * TrialDraws<Real, D>::kBlocks;
     const TrialDraws<Real, D> chance(draws, static_cast<std::uint32_t>(block), size, i);
     scratch.trials[i] = trial(population, i, standing.leader.best, box, settings, chance);
-    scratch.trial_fitness[i] = objective(i, std::as_const(scratch.trials[i]));
   }
+  judge(std::span(std::as_const(scratch.trials)), std::span(scratch.trial_fitness));
   for (std::size_t i = 0; i < size; ++i) {
     const auto moves_in = goes_on && scratch.trial_fitness[i] >= scratch.fitness[i];
     for (std::size_t j = 0; j < D; ++j)
@@ -138,21 +145,36 @@ void live_on(Population<Real, D> population, std::size_t generation,
 
 }  // namespace evolution
 
-/// Differential evolution (SPEC 12): `population` moves towards where `objective(member,
-/// candidate)`, a number, is greatest, and the best is returned. `Real` = Lanes: every lane evolves
-/// a population of its own with random numbers of its own. Members must lie in `box`. Below
+/// Judges candidates one after the other: `objective(member, candidate)` is a number.
+template <class Objective>
+class OneByOne {
+ public:
+  explicit OneByOne(Objective objective) : objective_(std::move(objective)) {}
+
+  template <class Candidates, class Fitness>
+  void operator()(const Candidates& candidates, const Fitness& fitness) const {
+    for (std::size_t i = 0; i < candidates.size(); ++i) fitness[i] = objective_(i, candidates[i]);
+  }
+
+ private:
+  Objective objective_;
+};
+
+/// Differential evolution (SPEC 12): `population` moves towards where its members are fittest, and
+/// the best is returned. `judge(candidates, fitness)` says how fit a candidate in the place of each
+/// member is; lanes that it never writes to are over before they begin. `Real` = Lanes: every lane
+/// evolves a population of its own with random numbers of its own. Members must lie in `box`. Below
 /// least_population() nothing moves. Allocates only where `scratch` has to grow.
-template <class Real, std::size_t D, class Objective>
+template <class Real, std::size_t D, class Judge>
 Evolved<Real, D> evolve(std::span<std::array<Real, D>> population, const SearchBox<Real, D>& box,
                         const EvolutionSettings& settings, const EvolutionDraws& draws,
-                        EvolutionScratch<Real, D>& scratch, const Objective& objective) {
-  scratch.resize(population.size());
-  for (std::size_t i = 0; i < population.size(); ++i)
-    scratch.fitness[i] = objective(i, std::as_const(population[i]));
+                        EvolutionScratch<Real, D>& scratch, const Judge& judge) {
+  scratch.start(population.size());
+  judge(std::span<const std::array<Real, D>>(population), std::span(scratch.fitness));
   evolution::Standing<Real, D> standing(population, scratch.fitness);
   if (population.size() < least_population(settings.base)) return standing.leader;
   for (std::size_t g = 0; g < settings.generations && any(standing.goes_on(settings)); ++g) {
-    evolution::live_on(population, g, standing, box, settings, draws, scratch, objective);
+    evolution::live_on(population, g, standing, box, settings, draws, scratch, judge);
     standing = evolution::Standing<Real, D>(population, scratch.fitness);
   }
   return standing.leader;

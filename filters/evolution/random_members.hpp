@@ -3,7 +3,6 @@
 
 #include "engine/random/normals.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -19,41 +18,42 @@ struct EvolutionDraws {
 
 namespace evolution {
 
-/// Three members that differ from each other and from the target.
-using Members = std::array<std::uint32_t, 3>;
+/// Three members that differ from each other and from the target, as whole numbers, lane by lane.
+template <class Real>
+using Members = std::array<Real, 3>;
 
 /// Splits a uniform number in (0, 1): a digit in {0, ..., count - 1}, and another uniform number
 /// out of the bits it did not use.
-inline std::uint32_t take_digit(double& uniform, std::size_t count) {
-  uniform *= static_cast<double>(count);
-  const double digit = std::min(std::floor(uniform), static_cast<double>(count - 1));
-  uniform -= digit;
-  return static_cast<std::uint32_t>(digit);
+template <class Real>
+Real take_digit(Real& uniform, std::size_t count) {
+  const Real stretched = uniform * Real(static_cast<double>(count));
+  const Real digit = min(floor(stretched), Real(static_cast<double>(count - 1)));
+  uniform = stretched - digit;
+  return digit;
 }
 
 /// r1, r2 (from `first`) and r0 (from `second`): all different and none `target`; `size` >= 3. With
 /// three members there is no third one, and r0 is not to be used.
-inline Members draw_members(std::size_t size, std::uint32_t target, double& first, double& second) {
-  std::uint32_t r1 = take_digit(first, size - 1);
-  r1 += r1 >= target;
-  const std::uint32_t low = std::min(r1, target), high = std::max(r1, target);
-  std::uint32_t r2 = take_digit(first, size - 2);
-  r2 += r2 >= low;
-  r2 += r2 >= high;
-  if (size == 3) return {r1, r2, 0};
-  const std::uint32_t least = std::min(low, r2), most = std::max(high, r2);
-  std::uint32_t r0 = take_digit(second, size - 3);
-  r0 += r0 >= least;
-  r0 += r0 >= low + high + r2 - least - most;
-  r0 += r0 >= most;
-  return {r1, r2, r0};
+template <class Real>
+Members<Real> draw_members(std::size_t size, std::size_t target, Real& first, Real& second) {
+  const auto leave_out = [](const Real& member, const Real& taken) {  // in rising order
+    return select(member >= taken, Real(member + Real(1.0)), member);
+  };
+  const Real t(static_cast<double>(target));
+  const Real r1 = leave_out(take_digit(first, size - 1), t);
+  const Real low = min(r1, t), high = max(r1, t);
+  const Real r2 = leave_out(leave_out(take_digit(first, size - 2), low), high);
+  if (size == 3) return {r1, r2, Real(0.0)};
+  const Real least = min(low, r2), most = max(high, r2), middle = low + high + r2 - least - most;
+  const Real r0 = take_digit(second, size - 3);
+  return {r1, r2, leave_out(leave_out(leave_out(r0, least), middle), most)};
 }
 
 /// What one trial needs to know of chance.
 template <class Real, std::size_t D>
 struct TrialDraws {
   static constexpr std::uint32_t kBlocks = (2 + D + 1) / 2;  ///< of the stream
-  std::array<Members, kLanesOf<Real>> members;               ///< r1, r2, r0 of each lane
+  Members<Real> members;                                     ///< r1, r2, r0
   std::array<Real, D> crosses;  ///< in (0, 1); -1 for the component that crosses in any case
 
   TrialDraws(const EvolutionDraws& draws, std::uint32_t block, std::size_t size,
@@ -64,11 +64,10 @@ struct TrialDraws {
       uniform[2 * k] = pair.first;
       uniform[2 * k + 1] = pair.second;
     }
-    std::copy_n(uniform.begin() + 2, D, crosses.begin());
-    for (std::size_t lane = 0; lane < kLanesOf<Real>; ++lane) {
-      double first = get(uniform[0], lane), second = get(uniform[1], lane);
-      members[lane] = draw_members(size, static_cast<std::uint32_t>(target), first, second);
-      set(crosses[take_digit(second, D)], lane, -1.0);
+    members = draw_members(size, target, uniform[0], uniform[1]);
+    const Real crossing = take_digit(uniform[1], D);
+    for (std::size_t j = 0; j < D; ++j) {
+      crosses[j] = select(crossing == Real(static_cast<double>(j)), Real(-1.0), uniform[2 + j]);
     }
   }
 };

@@ -17,12 +17,12 @@ struct SearchBox {
   std::array<bool, D> is_angle{};
 
   /// a - b of component j, wrapped if it is an angle.
-  Real difference(std::size_t j, const Real& a, const Real& b) const {
+  [[gnu::always_inline]] Real difference(std::size_t j, const Real& a, const Real& b) const {
     return is_angle[j] ? wrap(Real(a - b)) : Real(a - b);
   }
   /// `value` where it lies inside; otherwise reflected once at the wall it crossed, then clamped
   /// [D].
-  Real repaired(std::size_t j, const Real& value) const {
+  [[gnu::always_inline]] Real repaired(std::size_t j, const Real& value) const {
     const Real out = difference(j, value, centre[j]);
     Real in = select(out > half[j], Real(half[j] + half[j] - out), out);
     in = select(out < -half[j], Real(-half[j] - half[j] - out), in);

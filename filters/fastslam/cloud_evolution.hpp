@@ -25,68 +25,63 @@ class CloudEvolution {
   template <class Matches>
   void gather(const Matches& matches, const Weights<Real>& weights,
               const std::vector<PoseGaussian<Real>>& predicted, const SensorNoise& noise) {
-    particles_ = weights.particles();
-    sightings_.assign(particles_ * matches.matches(), {});
-    scan_size_ = matches.matches();
-    fitness_.clear();
     moments_ = mixture_of(weights, predicted);
     frame_ = direction_of(moments_.mean.heading);
+    population_.resize(weights.particles());
+    fitness_.clear(), sightings_.clear(), ends_.clear();
     for (std::size_t b = 0; b < predicted.size(); ++b) {
-      matches.read(b, [&](std::size_t k, const auto& landmark, const auto& seen, const auto& mask) {
-        note(b, k, as_gaussian(landmark), seen, as_number<Real>(mask));
+      matches.read(b, [&](std::size_t, const auto& landmark, const auto& seen, const auto& mask) {
+        sightings_.push_back({as_gaussian(landmark), seen, as_number<Real>(mask)});
       });
-    }
-    population_.resize(particles_);
-    for (std::size_t i = 0; i < particles_; ++i) {
-      const PoseGaussian<double> own = of_lane(predicted[i / kLanes], i % kLanes);
-      fitness_.emplace_back(own, noise);
-      population_[i] = member(own.mean);
+      ends_.push_back(sightings_.size());
+      fitness_.emplace_back(predicted[b], noise);
+      const std::array<Real, 3> members = block_of_members(predicted[b].mean);
+      for (std::size_t i = b * kLanes; i < end_of(b); ++i)
+        for (std::size_t j = 0; j < 3; ++j) population_[i][j] = get(members[j], i % kLanes);
     }
   }
 
   /// Evolves within `bounds` standard deviations of the cloud; `poses` are where the particles end.
   void evolve(Aim aim, double bounds, const EvolutionSettings& settings,
               const StreamIdentity& identity, std::vector<BasicPose<Real>>& poses) {
-    const auto objective = [&](std::size_t i, const std::array<double, 3>& candidate) {
-      const std::span<const Sighting<double>> scan =
-          std::span(sightings_).subspan(i * scan_size_, scan_size_);
-      return aim == Aim::likelihood ? fitness_[i].likelihood(pose(candidate), scan)
-                                    : fitness_[i].posterior(pose(candidate), scan);
+    const auto judge = [&](Members members, std::span<double> fitness) {
+      for (std::size_t b = 0; b < fitness_.size(); ++b) {
+        const Real fit = fitness_of_block(aim, b, block_of_poses(members, b));
+        for (std::size_t i = b * kLanes; i < end_of(b); ++i) fitness[i] = get(fit, i % kLanes);
+      }
     };
     montecarta::evolve<double, 3>(population_, box(bounds), settings, EvolutionDraws{identity},
-                                  scratch_, objective);
-    for (std::size_t i = 0; i < particles_; ++i) {
-      const Pose moved = pose(population_[i]);
-      BasicPose<Real>& block = poses[i / kLanes];
-      set(block.x, i % kLanes, moved.x), set(block.y, i % kLanes, moved.y);
-      set(block.heading, i % kLanes, moved.heading);
-    }
+                                  scratch_, judge);
+    for (std::size_t b = 0; b < poses.size(); ++b) poses[b] = block_of_poses(population_, b);
   }
 
  private:
   static constexpr std::size_t kLanes = kLanesOf<Real>;
+  using Members = std::span<const std::array<double, 3>>;
 
-  void note(std::size_t b, std::size_t k, const LandmarkGaussian<Real>& landmark,
-            const RangeBearing<Real>& seen, const Real& matched) {
-    for (std::size_t lane = 0; lane < kLanes && b * kLanes + lane < particles_; ++lane) {
-      const Symmetric2<Real>& P = landmark.covariance;
-      sightings_[(b * kLanes + lane) * scan_size_ + k] = {
-          {{get(landmark.mean.x, lane), get(landmark.mean.y, lane)},
-           {get(P.xx, lane), get(P.xy, lane), get(P.yy, lane)}},
-          {get(seen.range, lane), get(seen.bearing, lane)},
-          get(matched, lane)};
-    }
+  /// Behind the last particle of block b.
+  std::size_t end_of(std::size_t b) const { return std::min((b + 1) * kLanes, population_.size()); }
+
+  Real fitness_of_block(Aim aim, std::size_t b, const BasicPose<Real>& pose) const {
+    const std::size_t begin = b == 0 ? 0 : ends_[b - 1];
+    const auto scan = std::span(sightings_).subspan(begin, ends_[b] - begin);
+    return aim == Aim::likelihood ? fitness_[b].likelihood(pose, scan)
+                                  : fitness_[b].posterior(pose, scan);
   }
 
-  std::array<double, 3> member(const Pose& pose) const {
-    const double x = pose.x - moments_.mean.x, y = pose.y - moments_.mean.y;
+  std::array<Real, 3> block_of_members(const BasicPose<Real>& pose) const {
+    const Real x = pose.x - moments_.mean.x, y = pose.y - moments_.mean.y;
     return {frame_.cosine * x + frame_.sine * y, frame_.cosine * y - frame_.sine * x,
-            wrap(pose.heading - moments_.mean.heading)};
+            wrap(Real(pose.heading - moments_.mean.heading))};
   }
-  Pose pose(const std::array<double, 3>& member) const {
-    return {moments_.mean.x + frame_.cosine * member[0] - frame_.sine * member[1],
-            moments_.mean.y + frame_.sine * member[0] + frame_.cosine * member[1],
-            wrap(moments_.mean.heading + member[2])};
+  /// Of the particles of block b; lanes without one stand on the mean.
+  BasicPose<Real> block_of_poses(Members members, std::size_t b) const {
+    std::array<Real, 3> m{Real(0.0), Real(0.0), Real(0.0)};
+    for (std::size_t i = b * kLanes; i < end_of(b); ++i)
+      for (std::size_t j = 0; j < 3; ++j) set(m[j], i % kLanes, members[i][j]);
+    return {moments_.mean.x + frame_.cosine * m[0] - frame_.sine * m[1],
+            moments_.mean.y + frame_.sine * m[0] + frame_.cosine * m[1],
+            wrap(Real(moments_.mean.heading + m[2]))};
   }
 
   /// mean +- bounds standard deviations, and no member outside.
@@ -105,11 +100,11 @@ class CloudEvolution {
     return box;
   }
 
-  std::size_t particles_ = 0, scan_size_ = 0;
   PoseMoments moments_;
   Direction<double> frame_{1.0, 0.0};
-  std::vector<Sighting<double>> sightings_;   ///< {particle, detection}
-  std::vector<PoseFitness<double>> fitness_;  ///< of each particle
+  std::vector<Sighting<Real>> sightings_;   ///< of block 0, of block 1, ...
+  std::vector<std::size_t> ends_;           ///< of each block's
+  std::vector<PoseFitness<Real>> fitness_;  ///< of each block's particles
   std::vector<std::array<double, 3>> population_;
   EvolutionScratch<double, 3> scratch_;
 };

@@ -5,6 +5,7 @@
 #include "filters/fastslam/own_evolution.hpp"
 #include "filters/fastslam/refined_cloud.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -38,9 +39,11 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, MapTransform> {
       : Cloud(particles, belief, poses, map),
         settings_(settings),
         predicted_(blocks_for<Real>(particles)),
-        centres_(predicted_.size()),
-        own_(settings.mode == EvolutionMode::honest ? predicted_.size() : 0,
-             OwnEvolution<Real>(settings.population)) {}
+        centres_(predicted_.size()) {
+    if (settings.mode != EvolutionMode::honest) return;
+    for (std::size_t i = 0; i < particles; i += kLanesOf<Real>)
+      own_.emplace_back(std::min(particles - i, kLanesOf<Real>), settings.population);
+  }
 
   /// Moves the cloud, in the modes in which it is one population.
   template <class Matches, class Maps>
@@ -74,10 +77,10 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, MapTransform> {
     PoseGaussian<Real> proposal = posterior;
     if (settings_.mode == EvolutionMode::shared) proposal.mean = centres_[b];
     if (settings_.mode == EvolutionMode::honest) {
-      own_[b].gather(matches, b);
-      proposal.mean =
-          own_[b].most_probable(PoseFitness<Real>(prior, this->noise()), factor, settings_.bounds,
+      const auto [e0, e1, e2] =
+          own_[b].most_probable(matches, b, prior, posterior, this->noise(), settings_.bounds,
                                 settings_.evolution, identity(context, Draw::evolution, b));
+      proposal.mean = factor.at(e0, e1, e2);
     }
 
     PoseFactor<Real> about = factor;

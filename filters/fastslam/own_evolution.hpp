@@ -2,12 +2,13 @@
 #pragma once
 
 #include "filters/evolution/differential_evolution.hpp"
+#include "filters/fastslam/packed_candidates.hpp"
 #include "filters/fastslam/pose_fitness.hpp"
 #include "filters/moments/anchored_landmark.hpp"
 
 #include <array>
 #include <cmath>
-#include <utility>
+#include <span>
 #include <vector>
 
 namespace montecarta {
@@ -17,35 +18,60 @@ namespace montecarta {
 template <class Real>
 class OwnEvolution {
  public:
-  /// `population` members for each particle, at least seven.
-  explicit OwnEvolution(std::size_t population) : population_(population) {}
+  /// `population` members, at least seven, for each of the block's `particles`.
+  OwnEvolution(std::size_t particles, std::size_t population)
+      : population_(population), packed_(particles, population) {}
 
-  /// Looks at what the particles of block b take the detections for.
+  /// The most probable pose that is found within `bounds` standard deviations, in standard
+  /// deviations of `refined`: where the particles of block b, who expected `predicted`, take the
+  /// detections for what `matches` says.
   template <class Matches>
-  void gather(const Matches& matches, std::size_t b) {
-    scan_.clear();
-    matches.read(b, [&](std::size_t, const auto& landmark, const auto& seen, const auto& mask) {
-      scan_.push_back({as_gaussian(landmark), seen, as_number<Real>(mask)});
-    });
-  }
-
-  /// The most probable pose that is found within `bounds` standard deviations.
-  BasicPose<Real> most_probable(const PoseFitness<Real>& fitness, const PoseFactor<Real>& factor,
-                                double bounds, const EvolutionSettings& settings,
-                                const StreamIdentity& chance) {
-    if (scan_.empty()) return factor.mean;
+  std::array<Real, 3> most_probable(const Matches& matches, std::size_t b,
+                                    const PoseGaussian<Real>& predicted,
+                                    const PoseGaussian<Real>& refined, const SensorNoise& noise,
+                                    double bounds, const EvolutionSettings& settings,
+                                    const StreamIdentity& chance) {
+    look(matches, b, predicted, refined, noise);
+    if (scan_.empty()) return {Real(0.0), Real(0.0), Real(0.0)};
     begin(bounds, chance);
     const Real bound(bounds);
     const SearchBox<Real, 3> box{{Real(0.0), Real(0.0), Real(0.0)}, {bound, bound, bound}, {}};
-    const auto objective = [&](std::size_t, const std::array<Real, 3>& c) {
-      return fitness.posterior(factor.at(c[0], c[1], c[2]), std::span(std::as_const(scan_)));
-    };
-    const auto found = evolve<Real, 3>(population_, box, settings,
-                                       EvolutionDraws{chance, first_block()}, scratch_, objective);
-    return factor.at(found.best[0], found.best[1], found.best[2]);
+    return evolve<Real, 3>(
+               population_, box, settings, EvolutionDraws{chance, first_block()}, scratch_,
+               [&](Candidates candidates, std::span<Real> fitness) { judge(candidates, fitness); })
+        .best;
   }
 
  private:
+  using Candidates = std::span<const std::array<Real, 3>>;
+
+  /// What the particles of block b believe, in the order of packed candidates.
+  template <class Matches>
+  void look(const Matches& matches, std::size_t b, const PoseGaussian<Real>& predicted,
+            const PoseGaussian<Real>& refined, const SensorNoise& noise) {
+    fitness_.clear(), factors_.clear(), scan_.clear(), packed_scan_.clear();
+    matches.read(b, [&](std::size_t, const auto& landmark, const auto& seen, const auto& mask) {
+      scan_.push_back({as_gaussian(landmark), seen, as_number<Real>(mask)});
+    });
+    for (std::size_t p = 0; p < packed_.patterns(); ++p) {
+      fitness_.emplace_back(packed_.said_of(predicted, p), noise);
+      factors_.emplace_back(packed_.said_of(refined, p));
+      for (const Sighting<Real>& one : scan_) packed_scan_.push_back(packed_.said_of(one, p));
+    }
+  }
+
+  void judge(Candidates candidates, std::span<Real> fitness) const {
+    const std::size_t patterns = packed_.patterns();
+    for (std::size_t q = 0; q < packed_.blocks(); ++q) {
+      const std::size_t p = q % patterns;
+      const std::array<Real, 3> c = packed_.pack(candidates, q);
+      const Real fit =
+          fitness_[p].posterior(factors_[p].at(c[0], c[1], c[2]),
+                                std::span(packed_scan_).subspan(p * scan_.size(), scan_.size()));
+      packed_.unpack(fit, q, fitness);
+    }
+  }
+
   /// Of the stream, behind those that the first generation is drawn from.
   std::uint32_t first_block() const { return 2 * static_cast<std::uint32_t>(population_.size()); }
 
@@ -68,7 +94,11 @@ class OwnEvolution {
   }
 
   std::vector<std::array<Real, 3>> population_;
-  std::vector<Sighting<Real>> scan_;
+  PackedCandidates<Real> packed_;
+  std::vector<PoseFitness<Real>> fitness_;   ///< of every pattern of packed lanes
+  std::vector<PoseFactor<Real>> factors_;    ///< the same
+  std::vector<Sighting<Real>> scan_;         ///< of every detection
+  std::vector<Sighting<Real>> packed_scan_;  ///< {pattern, detection}
   EvolutionScratch<Real, 3> scratch_;
 };
 

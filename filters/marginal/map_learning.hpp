@@ -111,7 +111,7 @@ class MapLearning {
     const EvolutionDraws draws{identity, static_cast<std::uint32_t>(population_.size())};
     const auto fittest =
         evolve<double, 2>(population_, box, evolution, draws, scratch_,
-                          [&](std::size_t, const Offset& o) { return -cost(place(o)); });
+                          OneByOne([&](std::size_t, const Offset& o) { return -cost(place(o)); }));
     return place(fittest.best);
   }
   void scatter(const StreamIdentity& identity, double half) {

@@ -60,14 +60,24 @@ TEST(Allocation, NoFilterAllocatesInASecondRun) {
   }
 }
 
-TEST(Allocation, ResampleMoveAllocatesNothingInASecondRun) {
+/// Of a filter of which not every way is the one that is usual.
+void expect_no_allocation(const char* name, const char* option, const char* value) {
   const SmallWorld world = small_world({.scans = 60});
-  const auto kind = std::ranges::find(filter_kinds(), "fastslam2", &FilterKind::name);
-  const auto filter = make(*kind, Association::known, "move_lag", "9");
+  const auto kind = std::ranges::find(filter_kinds(), name, &FilterKind::name);
+  const auto filter = make(*kind, Association::known, option, value);
   drive_through(*filter, world, Pose(), [](std::size_t) {});
   const std::size_t before = n_allocations;
   drive_through(*filter, world, Pose(), [](std::size_t) {});
-  EXPECT_EQ(n_allocations, before);
+  EXPECT_EQ(n_allocations, before) << value;
+}
+
+TEST(Allocation, ResampleMoveAllocatesNothingInASecondRun) {
+  expect_no_allocation("fastslam2", "move_lag", "9");
+}
+
+TEST(Allocation, EvolutionOfAPopulationOfParticlesAllocatesNothingInASecondRun) {
+  for (const char* mode : {"as_printed", "prior", "shared"})
+    expect_no_allocation("de_srcd", "mode", mode);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <set>
+#include <span>
 #include <vector>
 
 namespace montecarta {
@@ -56,7 +57,8 @@ template <class Real, class Objective>
 Evolved<Real, 3> evolved(Candidates<Real>& population, const EvolutionSettings& settings,
                          const Objective& objective, std::uint32_t first = 0) {
   EvolutionScratch<Real, 3> scratch;
-  return evolve<Real, 3>(population, box<Real>(), settings, draws(first), scratch, objective);
+  return evolve<Real, 3>(population, box<Real>(), settings, draws(first), scratch,
+                         OneByOne(objective));
 }
 
 TEST(DifferentialEvolution, FindsTheTopOfAQuadraticAcrossTheBackwardDirection) {
@@ -114,19 +116,37 @@ TEST(DifferentialEvolution, DifferencesOfAnglesAreWrapped) {
 
 TEST(DifferentialEvolution, MembersOfATrialDifferFromEachOtherAndTheTarget) {
   for (const std::size_t size : {3U, 4U, 7U}) {
-    std::set<evolution::Members> met;
+    std::set<evolution::Members<double>> met;
     for (std::uint32_t k = 0; k < 4000; ++k) {
       RngStream draw({1, 0, 0, k, Draw::test});
       double first = draw.uniform(), second = draw.uniform();
-      const auto target = static_cast<std::uint32_t>(k % size);
-      evolution::Members members = evolution::draw_members(size, target, first, second);
-      if (size == 3) members[2] = static_cast<std::uint32_t>(size);  // there is no third
-      EXPECT_EQ((std::set<std::uint32_t>{target, members[0], members[1], members[2]}).size(), 4U);
-      EXPECT_LT(std::max(members[0], members[1]), size);
+      const std::size_t target = k % size;
+      auto members = evolution::draw_members(size, target, first, second);
+      const auto n = static_cast<double>(size);
+      if (size == 3) members[2] = n;  // there is no third
+      EXPECT_EQ((std::set{static_cast<double>(target), members[0], members[1], members[2]}).size(),
+                4U);
+      EXPECT_LT(std::max(members[0], members[1]), n);
       met.insert(members);
     }
     const std::size_t n = size;
     EXPECT_EQ(met.size(), n == 3 ? 6 : n * (n - 1) * (n - 2)) << "some choices never come";
+  }
+}
+
+TEST(DifferentialEvolution, LanesDrawTheMembersThatScalarsDraw) {
+  for (const std::size_t size : {3U, 4U, 9U}) {
+    for (std::uint32_t block = 0; block < 100; ++block) {
+      const std::size_t target = block % size;
+      const evolution::TrialDraws<Lanes, 3> all(draws(40), block, size, target);
+      for (std::uint32_t lane = 0; lane < Lanes::kSize; ++lane) {
+        const evolution::TrialDraws<double, 3> one(draws(40 + lane), block, size, target);
+        for (std::size_t k = 0; k < 3; ++k) {
+          EXPECT_EQ(get(all.members[k], lane), one.members[k]) << size;
+          EXPECT_EQ(get(all.crosses[k], lane), one.crosses[k]) << size;
+        }
+      }
+    }
   }
 }
 
@@ -136,7 +156,8 @@ TEST(DifferentialEvolution, MembersAreDrawnEvenly) {
   for (std::uint32_t k = 0; k < n; ++k) {
     RngStream draw({1, 0, 0, k, Draw::test});
     double first = draw.uniform(), second = draw.uniform();
-    for (const auto m : evolution::draw_members(5, 2, first, second)) ++count[m];
+    for (const double m : evolution::draw_members(5, 2, first, second))
+      ++count[static_cast<std::size_t>(m)];
   }
   EXPECT_EQ(count[2], 0);
   const double expected = 3.0 * n / 4.0, sigma = std::sqrt(n * 0.75 * 0.25);
@@ -202,6 +223,21 @@ TEST(DifferentialEvolution, StopsWhereAllMembersAreEquallyGood) {
   EXPECT_EQ(evaluations({.generations = 20}), 10U * 21U);
   EXPECT_EQ(evaluations({.generations = 20, .tolerance = 1e9}), 10U);
   EXPECT_LT(evaluations({.generations = 400, .tolerance = 1e-4}), 10U * 100U);
+}
+
+TEST(DifferentialEvolution, LanesThatNobodyJudgesDoNotKeepTheOthersGoing) {
+  const EvolutionSettings settings{.generations = 400, .tolerance = 1e-4};
+  EvolutionScratch<Lanes, 3> scratch;
+  auto population = scattered<Lanes>(10, 0);
+  const auto top = hill<Lanes>(1.5, -1.7, -3.1);
+  std::size_t judged = 0;
+  evolve<Lanes, 3>(population, box<Lanes>(), settings, draws(0), scratch,
+                   [&](std::span<const Candidate<Lanes>> candidates, std::span<Lanes> fitness) {
+                     for (std::size_t i = 0; i < candidates.size(); ++i)
+                       set(fitness[i], 0, get(top(i, candidates[i]), 0));
+                     judged += candidates.size();
+                   });
+  EXPECT_EQ(judged, evaluations(settings));  // of one that is alone
 }
 
 TEST(DifferentialEvolution, StopsWhereTheBestIsGoodEnough) {

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/fastslam/own_evolution.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace montecarta {
+namespace {
+
+/// What the particles of one block take a scan for: a landmark and a detection of their own each,
+/// and the second landmark known to every other particle only.
+struct Matches {
+  template <class Visit>
+  void read(std::size_t /*b*/, const Visit& visit) const {
+    for (std::size_t k = 0; k < 2; ++k) {
+      LandmarkGaussian<Lanes> landmark{{Lanes(0.0), Lanes(0.0)},
+                                       {Lanes(0.2), Lanes(0.05), Lanes(0.1)}};
+      Lanes known(1.0);
+      for (std::size_t lane = 0; lane < Lanes::kSize; ++lane) {
+        set(landmark.mean.x, lane, 10.0 + 0.1 * static_cast<double>(lane + k));
+        set(landmark.mean.y, lane, 5.0 - 8.0 * static_cast<double>(k));
+        if (k == 1) set(known, lane, static_cast<double>(lane % 2));
+      }
+      visit(k, landmark, RangeBearing<Lanes>{Lanes(11.0), Lanes(0.4 - 0.7 * double(k))},
+            known > Lanes(0.5));
+    }
+  }
+};
+
+std::array<Lanes, 3> most_probable(std::size_t living) {
+  const Symmetric3<Lanes> P{Lanes(0.3), Lanes(0.0),  Lanes(0.2),
+                            Lanes(0.0), Lanes(0.01), Lanes(0.02)};
+  PoseGaussian<Lanes> predicted{{Lanes(0.0), Lanes(0.0), Lanes(0.1)}, P};
+  for (std::size_t lane = 0; lane < Lanes::kSize; ++lane)
+    set(predicted.mean.y, lane, 0.05 * static_cast<double>(lane));
+  OwnEvolution<Lanes> own(living, 10);
+  return own.most_probable(Matches(), 0, predicted, predicted, {.range = 0.01, .bearing = 0.001},
+                           3.0, EvolutionSettings(), {7, 0, 3, 0, Draw::evolution});
+}
+
+// Packed with few others or evolving with many: a particle finds the same, to the last bit.
+TEST(OwnEvolution, DoesNotDependOnHowManyParticlesShareABlock) {
+  const std::array<Lanes, 3> all = most_probable(Lanes::kSize);
+  EXPECT_NE(get(all[0], 0), get(all[0], 1));
+  for (std::size_t living = 1; living < Lanes::kSize; ++living) {
+    const std::array<Lanes, 3> few = most_probable(living);
+    for (std::size_t lane = 0; lane < living; ++lane)
+      for (std::size_t j = 0; j < 3; ++j)
+        EXPECT_EQ(get(few[j], lane), get(all[j], lane)) << living << ' ' << lane;
+  }
+}
+
+}  // namespace
+}  // namespace montecarta
