@@ -76,17 +76,18 @@ class LandmarkEvidence {
     Sight s;
     s.dx = Real(place.x) - ray.from.x;
     s.dy = Real(place.y) - ray.from.y;
-    s.squared_range = s.dx * s.dx + s.dy * s.dy;
+    s.squared_range = fma(s.dx, s.dx, s.dy * s.dy);
     s.range = sqrt(s.squared_range);
     s.range_error = Real(range_) - s.range;
     // in the detection's frame the predicted bearing is the innovation, and needs no wrapping
-    const Real along = s.dx * ray.along.cosine + s.dy * ray.along.sine;
-    s.bearing_error = atan2(Real(s.dx * ray.along.sine - s.dy * ray.along.cosine), along);
+    const Real along = fma(s.dx, ray.along.cosine, s.dy * ray.along.sine);
+    const Real across = fma(s.dx, ray.along.sine, -(s.dy * ray.along.cosine));
+    s.bearing_error = atan2(across, along);
     return s;
   }
   [[gnu::always_inline]] Real squared(const Sight& s) const {
-    return s.range_error * s.range_error * Real(per_range_noise_) +
-           s.bearing_error * s.bearing_error * Real(per_bearing_noise_);
+    return fma(s.range_error * s.range_error, Real(per_range_noise_),
+               s.bearing_error * s.bearing_error * Real(per_bearing_noise_));
   }
 
   /// What a block counts in a mean of squares; dead lanes count nothing.
@@ -106,7 +107,8 @@ class LandmarkEvidence {
 
   double mean_square(const Point& place) const {
     Real sum(0.0);
-    for (std::size_t b = 0; b < rays_.size(); ++b) sum += share(b) * squared(sight(b, place));
+    for (std::size_t b = 0; b < rays_.size(); ++b)
+      sum = fma(share(b), squared(sight(b, place)), sum);
     return over_lanes(sum);
   }
 
