@@ -3,7 +3,6 @@
 
 #include "filters/evolution/differential_evolution.hpp"
 #include "filters/fastslam/pose_fitness.hpp"
-#include "filters/moments/anchored_landmark.hpp"
 #include "filters/moments/cloud_moments.hpp"
 
 #include <algorithm>
@@ -28,12 +27,9 @@ class CloudEvolution {
     moments_ = mixture_of(weights, predicted);
     frame_ = direction_of(moments_.mean.heading);
     population_.resize(weights.particles());
-    fitness_.clear(), sightings_.clear(), ends_.clear();
+    fitness_.clear(), sightings_.clear();
     for (std::size_t b = 0; b < predicted.size(); ++b) {
-      matches.read(b, [&](std::size_t, const auto& landmark, const auto& seen, const auto& mask) {
-        sightings_.push_back({as_gaussian(landmark), seen, as_number<Real>(mask)});
-      });
-      ends_.push_back(sightings_.size());
+      append_sightings(matches, b, sightings_);
       fitness_.emplace_back(predicted[b], noise);
       const std::array<Real, 3> members = block_of_members(predicted[b].mean);
       for (std::size_t i = b * kLanes; i < end_of(b); ++i)
@@ -63,8 +59,8 @@ class CloudEvolution {
   std::size_t end_of(std::size_t b) const { return std::min((b + 1) * kLanes, population_.size()); }
 
   Real fitness_of_block(Aim aim, std::size_t b, const BasicPose<Real>& pose) const {
-    const std::size_t begin = b == 0 ? 0 : ends_[b - 1];
-    const auto scan = std::span(sightings_).subspan(begin, ends_[b] - begin);
+    const std::size_t scan_size = sightings_.size() / fitness_.size();
+    const auto scan = std::span(sightings_).subspan(b * scan_size, scan_size);
     return aim == Aim::likelihood ? fitness_[b].likelihood(pose, scan)
                                   : fitness_[b].posterior(pose, scan);
   }
@@ -102,8 +98,7 @@ class CloudEvolution {
 
   PoseMoments moments_;
   Direction<double> frame_{1.0, 0.0};
-  std::vector<Sighting<Real>> sightings_;   ///< of block 0, of block 1, ...
-  std::vector<std::size_t> ends_;           ///< of each block's
+  std::vector<Sighting<Real>> sightings_;   ///< {block, detection}
   std::vector<PoseFitness<Real>> fitness_;  ///< of each block's particles
   std::vector<std::array<double, 3>> population_;
   EvolutionScratch<double, 3> scratch_;

@@ -4,7 +4,6 @@
 #include "filters/evolution/differential_evolution.hpp"
 #include "filters/fastslam/packed_candidates.hpp"
 #include "filters/fastslam/pose_fitness.hpp"
-#include "filters/moments/anchored_landmark.hpp"
 
 #include <array>
 #include <cmath>
@@ -50,9 +49,7 @@ class OwnEvolution {
   void look(const Matches& matches, std::size_t b, const PoseGaussian<Real>& predicted,
             const PoseGaussian<Real>& refined, const SensorNoise& noise) {
     fitness_.clear(), factors_.clear(), scan_.clear(), packed_scan_.clear();
-    matches.read(b, [&](std::size_t, const auto& landmark, const auto& seen, const auto& mask) {
-      scan_.push_back({as_gaussian(landmark), seen, as_number<Real>(mask)});
-    });
+    append_sightings(matches, b, scan_);
     for (std::size_t p = 0; p < packed_.patterns(); ++p) {
       fitness_.emplace_back(packed_.said_of(predicted, p), noise);
       factors_.emplace_back(packed_.said_of(refined, p));

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "filters/moments/anchored_landmark.hpp"
 #include "filters/moments/gaussian_draw.hpp"
 #include "filters/moments/linearised.hpp"
 
 #include <span>
+#include <vector>
 
 namespace montecarta {
 
@@ -15,6 +17,14 @@ struct Sighting {
   RangeBearing<Real> seen;
   Real matched;  ///< 1, or 0 where the particle takes it for nothing it knows
 };
+
+/// Appends what the particles of block b take every match of a scan for.
+template <class Real, class Matches>
+void append_sightings(const Matches& matches, std::size_t b, std::vector<Sighting<Real>>& scan) {
+  matches.read(b, [&](std::size_t, const auto& landmark, const auto& seen, const auto& mask) {
+    scan.push_back({as_gaussian(landmark), seen, as_number<Real>(mask)});
+  });
+}
 
 /// How well a pose explains a scan.
 template <class Real>

@@ -186,13 +186,13 @@ void GaussianBank::settle() {
 }
 
 PoseEstimate GaussianBank::mixture() const {
+  weigh_beliefs();
   poses_.resize(beliefs_.size());
   for (const std::uint32_t slot : active_) {
     poses_[slot] = beliefs_[slot].gaussian().pose_after(motion_);
   }
   Mixture mixture(poses_[slot_of_[weights_.heaviest()]]);
-  for (std::size_t i = 0; i < slot_of_.size(); ++i)
-    mixture.add(weights_.linear()[i], poses_[slot_of_[i]]);
+  for (const std::uint32_t slot : active_) mixture.add(slot_weights_[slot], poses_[slot]);
   const PoseMoments whole = mixture.result();
   if (!settings_.tells_particles) return {whole, std::nullopt};
   return {whole, whole};

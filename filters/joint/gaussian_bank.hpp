@@ -80,7 +80,7 @@ class GaussianBank final : public SlamFilter {
   std::vector<JointBelief> beliefs_;          ///< those of no particle are idle
   std::vector<std::uint32_t> slot_of_;        ///< {particle} its belief
   std::vector<std::uint32_t> active_;         ///< the beliefs that some particle has, in order
-  mutable std::vector<double> slot_weights_;  ///< scratch of map() and joint(): of each belief
+  mutable std::vector<double> slot_weights_;  ///< scratch of mixture(), map() and joint()
   std::vector<std::uint32_t> parents_;  ///< of the resampling that is decided but not yet in effect
   std::vector<std::uint32_t> ancestors_;     ///< one scan ago
   std::vector<double> weights_before_scan_;  ///< {particle}
