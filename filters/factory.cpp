@@ -11,11 +11,10 @@ namespace montecarta {
 
 std::span<const FilterKind> filter_kinds() {
   static const std::vector<FilterKind> kinds{
-      ekf_slam_kind(),  riekf_slam_kind(), hrb_kind(),
-      fastslam1_kind(), fastslam2_kind(),  ufastslam_kind(),
-      srcd_kind(),      srcd_aided_kind(), srcd_pf_kind(),
-      de_srcd_kind(),   delayed_kind(),    delayed_srcd_kind(),
-      marginal_kind(),  ampf_de_kind(),    dead_reckoning_kind(),
+      ekf_slam_kind(),  riekf_slam_kind(),     hrb_kind(),     fastslam1_kind(),
+      fastslam2_kind(), ufastslam_kind(),      srcd_kind(),    srcd_aided_kind(),
+      srcd_pf_kind(),   de_srcd_kind(),        delayed_kind(), marginal_kind(),
+      ampf_de_kind(),   dead_reckoning_kind(),
   };
   return kinds;
 }

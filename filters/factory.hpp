@@ -78,9 +78,6 @@ struct FilterKind {
   bool has_joint = false;     ///< whether joint() gives anything
   std::vector<FilterOption> options;  ///< in the order in which they are documented
   std::function<std::unique_ptr<SlamFilter>(const FilterSetup&)> make;
-  /// Throws a StudyError, without a place, where settings that are right each by itself do not go
-  /// together; asked when a study is read. Empty: any do.
-  std::function<void(const FilterSetup&)> check = {};
 };
 
 /// All filters, in the order in which they are listed.

@@ -77,23 +77,12 @@ std::vector<std::pair<std::string, std::string>> settings_of(const CellSpec& spe
   return settings;
 }
 
-/// Asks the filter whether its settings go together.
-void check(const CellSpec& spec, const FilterSetup& setup) {
-  if (!spec.filter->check) return;
-  try {
-    spec.filter->check(setup);
-  } catch (const StudyError& error) {
-    throw StudyError(spec.place + ": " + error.what());
-  }
-}
-
 Cell cell_of(const CellSpec& spec, const Study& study) {
   std::map<std::string, std::string, std::less<>> values(spec.options.begin(), spec.options.end());
   const FilterSetup setup{.belief = belief_of(study.settings, spec),
                           .association = association_of(study.settings),
                           .options = FilterOptions(std::move(values)),
                           .landmarks = identities_of(study)};
-  check(spec, setup);
   const FilterKind& filter = *spec.filter;
   return {.label = spec.label,
           .filter = filter.name,

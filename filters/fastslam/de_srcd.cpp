@@ -54,17 +54,13 @@ FilterKind de_srcd_kind() {
   for (FilterOption& option : options_of_evolution()) options.push_back(std::move(option));
   for (FilterOption& option : central_difference_options()) options.push_back(std::move(option));
   options.push_back(map_uncertainty_option());
-  options.push_back(landmarks_option());
   return {.name = "de_srcd",
           .long_name = "DE-SRCD-FastSLAM",
           .source = "Ankishan et al. 2016; SPEC 13",
           .has_particles = true,
           .has_mixture = true,
           .options = std::move(options),
-          .make = [](const FilterSetup& setup) {
-            return are_anchored(setup.options) ? make_de_srcd_anchored<Lanes>(setup)
-                                               : make_de_srcd<Lanes>(setup);
-          }};
+          .make = make_de_srcd<Lanes>};
 }
 
 }  // namespace montecarta

@@ -21,7 +21,6 @@ std::vector<FilterOption> delayed_options() {
                      360,
                      {},
                      "also draw where headings are predicted worse than this [deg]; 0 = never"});
-  options.push_back(landmarks_option());
   return options;
 }
 
@@ -39,11 +38,7 @@ FilterKind delayed_kind() {
           .has_particles = true,
           .has_mixture = true,
           .options = delayed_options(),
-          .make = [](const FilterSetup& setup) {
-            return are_anchored(setup.options)
-                       ? make_delaying<Lanes>(setup, Linearised(), Anchored())
-                       : make_delayed<Lanes>(setup);
-          }};
+          .make = make_delayed<Lanes>};
 }
 
 }  // namespace montecarta

@@ -14,14 +14,15 @@ namespace montecarta {
 /// The joint Gaussian of poses and those slots of the particles' maps that were seen since poses
 /// were drawn. What it believes of each landmark alone is written back to the maps at every scan,
 /// so that those are whole for whoever looks.
-template <class Real, class Landmark = LandmarkGaussian<Real>>
+template <class Real>
 class DelayedMap {
  public:
-  using Maps = ParticleMaps<Real, Landmark>;
+  using Landmark = LandmarkGaussian<Real>;
+  using Maps = ParticleMaps<Real>;
   explicit DelayedMap(std::size_t blocks) : map_(blocks) {}
 
-  CorrelatedMap<Real, Landmark>& map() { return map_; }
-  const CorrelatedMap<Real, Landmark>& map() const { return map_; }
+  CorrelatedMap<Real>& map() { return map_; }
+  const CorrelatedMap<Real>& map() const { return map_; }
 
   void clear() {
     for (const std::uint32_t slot : slots_) index_of_[slot] = kOut;
@@ -75,8 +76,7 @@ class DelayedMap {
   }
   /// Pose and matched landmarks alone, detection by detection, into block b of `to`.
   template <class Matches>
-  void copy_matches(const Matches& matches, std::size_t b,
-                    CorrelatedMap<Real, Landmark>& to) const {
+  void copy_matches(const Matches& matches, std::size_t b, CorrelatedMap<Real>& to) const {
     to.pose(b) = map_.pose(b);
     for (std::size_t k = 0; map_.size() > 0 && k < to.size(); ++k) {
       const auto at = where(matches, b, k);
@@ -97,7 +97,7 @@ class DelayedMap {
     return index_of_[slot] = map_.add();
   }
 
-  CorrelatedMap<Real, Landmark> map_;
+  CorrelatedMap<Real> map_;
   std::vector<std::size_t> index_of_;         ///< {slot} its landmark, or kOut
   std::vector<std::uint32_t> slots_;          ///< {landmark} its slot
   std::size_t first_entered_ = 0;             ///< of the scan's new landmarks

@@ -4,12 +4,13 @@
 #include "engine/particles/block_tasks.hpp"
 #include "filters/fastslam/delayed_map.hpp"
 #include "filters/fastslam/gaussian_proposal.hpp"
-#include "filters/moments/correlated_anchored.hpp"
+#include "filters/moments/correlated_birth.hpp"
 #include "filters/moments/correlated_draw.hpp"
+#include "filters/moments/correlated_motion.hpp"
+#include "filters/moments/correlated_sight.hpp"
 
 #include <cmath>
 #include <limits>
-#include <type_traits>
 #include <vector>
 
 namespace montecarta {
@@ -23,16 +24,13 @@ struct DrawTimes {
 /// FastSLAM II that draws the pose only now and then (SPEC 24, last lines). In between a particle
 /// is a joint Gaussian over its pose and the landmarks seen since the draw, updated as EKF-SLAM is;
 /// all others are independent of the pose, given where it was drawn. Where every scan draws, this
-/// is GaussianProposal; where none does, every particle is EKF-SLAM. With
-/// `MapTransform` = Anchored, landmarks are anchored where the mean pose stood when they were born.
-template <class Real, class PoseTransform, class MapTransform>
-class DelayedProposal : public GaussianProposal<Real, PoseTransform, MapTransform> {
+/// is GaussianProposal; where none does, every particle is EKF-SLAM.
+template <class Real>
+class DelayedProposal : public GaussianProposal<Real, Linearised, Linearised> {
  public:
-  using Immediate = GaussianProposal<Real, PoseTransform, MapTransform>;
-  using Landmark = typename Immediate::Landmark;
-  DelayedProposal(std::size_t particles, const Belief& belief, const DrawTimes& times,
-                  const PoseTransform& pose_transform, const MapTransform& map_transform)
-      : Immediate(particles, belief, WeightForm::closed, pose_transform, map_transform),
+  using Immediate = GaussianProposal<Real, Linearised, Linearised>;
+  DelayedProposal(std::size_t particles, const Belief& belief, const DrawTimes& times)
+      : Immediate(particles, belief, WeightForm::closed, Linearised(), Linearised()),
         times_(times),
         joint_(blocks_for<Real>(particles)),
         refined_(blocks_for<Real>(particles)),
@@ -46,7 +44,7 @@ class DelayedProposal : public GaussianProposal<Real, PoseTransform, MapTransfor
   }
   PoseGaussian<Real> predicted(std::size_t b, const BasicPose<Real>& pose) const {
     if (!is_open_) return Immediate::predicted(b, pose);
-    return driven(joint_.map().pose(b), this->motion(), this->pose_transform()).pose;
+    return driven(joint_.map().pose(b), this->motion()).pose;
   }
   void begin_scan(const StepContext& context, std::vector<BasicPose<Real>>& poses) {
     if (is_open_) drive_on(context, poses);
@@ -57,19 +55,15 @@ class DelayedProposal : public GaussianProposal<Real, PoseTransform, MapTransfor
     if (!is_open_ || !joint_.holds(slot)) {
       return Immediate::expected(b, slot, pose, landmark, s);
     }
-    const StraightSight<Real> straight =
-        Linearised().straight_sight(s, Symmetric2<Real>{}, s.predicted, this->noise());
-    const std::size_t i = joint_.index_of(slot);
-    return correlated_innovation(
-        pose.covariance, landmark.covariance,
-        in_map(joint_.map().landmark(i, b)).rows(joint_.map().pose_cross(i, b)),
-        SightRows<Real>(s, straight), straight);
+    return correlated_innovation(pose.covariance, landmark.covariance,
+                                 joint_.map().pose_cross(joint_.index_of(slot), b),
+                                 SightRows<Real>(s), RangeBearing<Real>{}, this->noise());
   }
 
   /// Decides whether this scan draws, and takes what it sees into the joint Gaussian.
   template <class Matches>
   void prepare(const StepContext& context, const Matches& matches, const Weights<Real>& weights,
-               const std::vector<BasicPose<Real>>& poses, ParticleMaps<Real, Landmark>& maps) {
+               const std::vector<BasicPose<Real>>& poses, ParticleMaps<Real>& maps) {
     ++scans_;
     draws_ = is_time(weights, poses);
     if (draws_ && !is_open_) return;
@@ -87,20 +81,14 @@ class DelayedProposal : public GaussianProposal<Real, PoseTransform, MapTransfor
     return draws_ ? draw(context, matches, b, pose, note) : absorb_scan(matches, b, pose, note);
   }
 
-  Landmark birth(std::size_t b, const BasicPose<Real>& pose, const RangeBearing<Real>& seen) {
+  LandmarkGaussian<Real> birth(std::size_t b, const BasicPose<Real>& pose,
+                               const RangeBearing<Real>& seen) {
     if (!is_open_) return Immediate::birth(b, pose, seen);
-    if constexpr (kAnchored) {
-      newborn_ = new_correlated_anchored_landmark(joint_.map().pose(b), seen, this->noise(),
-                                                  this->pose_transform());
-    } else {
-      newborn_ = new_correlated_landmark(joint_.map().pose(b), seen, this->noise(),
-                                         this->pose_transform());
-    }
+    newborn_ = new_correlated_landmark(joint_.map().pose(b), seen, this->noise());
     return newborn_.landmark;
   }
   template <class Put>
-  void settled(ParticleMaps<Real, Landmark>& maps, std::size_t b, std::uint32_t slot,
-               const Put& put) {
+  void settled(ParticleMaps<Real>& maps, std::size_t b, std::uint32_t slot, const Put& put) {
     if (is_open_) place(joint_.map(), b, joint_.enter(slot, maps), newborn_, put);
   }
   void resample(std::span<const std::uint32_t> parents) {
@@ -123,8 +111,6 @@ class DelayedProposal : public GaussianProposal<Real, PoseTransform, MapTransfor
   }
 
  private:
-  static constexpr bool kAnchored = std::is_same_v<MapTransform, Anchored>;
-
   bool is_time(const Weights<Real>& weights, const std::vector<BasicPose<Real>>& poses) const {
     if (times_.every > 0 && scans_ >= times_.every) return true;
     if (std::isinf(times_.beyond)) return false;
@@ -138,13 +124,13 @@ class DelayedProposal : public GaussianProposal<Real, PoseTransform, MapTransfor
     is_open_ = true;
     BlockTasks<Real>(poses.size()).run(context, [&](std::size_t /*task*/, std::size_t b) {
       joint_.map().pose(b) = {poses[b], {}};
-      drive(joint_.map(), b, this->motion(), this->pose_transform());
+      drive(joint_.map(), b, this->motion());
     });
     this->motion().restart();
   }
   void drive_on(const StepContext& context, std::vector<BasicPose<Real>>& poses) {
     BlockTasks<Real>(poses.size()).run(context, [&](std::size_t /*task*/, std::size_t b) {
-      drive(joint_.map(), b, this->motion(), this->pose_transform());
+      drive(joint_.map(), b, this->motion());
       poses[b] = joint_.map().pose(b).mean;
     });
     this->motion().restart();
@@ -157,10 +143,10 @@ class DelayedProposal : public GaussianProposal<Real, PoseTransform, MapTransfor
     Evidence<Real> evidence;
     matches.read(b, [&](std::size_t k, const auto&, const auto& seen, const auto& mask) {
       if (joint_.map().size() == 0) return;
-      note(k,
-           absorb(joint_.map(), b, joint_.where(matches, b, k), this->pose_transform(), seen,
-                  this->noise(), mask, evidence),
-           mask);
+      note(
+          k,
+          absorb(joint_.map(), b, joint_.where(matches, b, k), seen, this->noise(), mask, evidence),
+          mask);
     });
     pose = joint_.map().pose(b).mean;
     joint_.write_back(b, [](const auto& landmark, const auto&) { return landmark; });
@@ -175,10 +161,7 @@ class DelayedProposal : public GaussianProposal<Real, PoseTransform, MapTransfor
     Evidence<Real> evidence;
     joint_.copy_matches(matches, b, refined_);
     matches.read(b, [&](std::size_t k, const auto&, const auto& seen, const auto& mask) {
-      note(k,
-           absorb(refined_, b, ForAll{k}, this->pose_transform(), seen, this->noise(), mask,
-                  evidence),
-           mask);
+      note(k, absorb(refined_, b, ForAll{k}, seen, this->noise(), mask, evidence), mask);
     });
     const PoseFactor<Real> factor(refined_.pose(b));
     pose = draw_from(factor, context.identity(Draw::pose_proposal,
@@ -194,11 +177,10 @@ class DelayedProposal : public GaussianProposal<Real, PoseTransform, MapTransfor
   }
 
   DrawTimes times_;
-  DelayedMap<Real, Landmark> joint_;  ///< pose and the landmarks seen since the draw
-  CorrelatedMap<Real, Landmark>
-      refined_;  ///< scratch: pose and the landmarks of one scan that draws
+  DelayedMap<Real> joint_;       ///< pose and the landmarks seen since the draw
+  CorrelatedMap<Real> refined_;  ///< scratch: pose and the landmarks of one scan that draws
   mutable std::vector<PoseGaussian<Real>> predicted_;  ///< scratch of estimate()
-  std::conditional_t<kAnchored, NewAnchoredLandmark<Real>, NewLandmark<Real>> newborn_;
+  NewLandmark<Real> newborn_;
   std::size_t scans_ = 0;  ///< since the draw
   bool is_open_ = false;   ///< poses are uncertain within a particle, the joint Gaussian holds
   bool draws_ = false;     ///< this scan

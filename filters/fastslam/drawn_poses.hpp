@@ -30,10 +30,6 @@ class DrawnPoses {
   void settled(Maps& /*maps*/, std::size_t /*b*/, std::uint32_t /*slot*/, const Put& /*put*/) {}
   /// Particle i becomes a copy of particle parents[i].
   void resample(std::span<const std::uint32_t> /*parents*/) {}
-  /// Particles that were copied may part again.
-  template <class Maps>
-  void part(const StepContext& /*context*/, Maps& /*maps*/,
-            std::vector<BasicPose<Real>>& /*poses*/) {}
 
  protected:
   const SensorNoise& noise() const { return noise_; }

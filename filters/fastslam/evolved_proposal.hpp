@@ -30,13 +30,13 @@ struct EvolvedSettings {
 /// The proposal of SRCD-FastSLAM moved by differential evolution. Where the draw is paid for by the
 /// ratio of SPEC 7.2 r, the weights are right whatever centre evolution found, since it knows
 /// nothing but the past and the scan.
-template <class Real, class MapTransform>
-class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, MapTransform> {
+template <class Real>
+class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
  public:
-  using Cloud = RefinedCloud<Real, SigmaPoints, MapTransform>;
+  using Cloud = RefinedCloud<Real, SigmaPoints, SigmaPoints>;
   EvolvedProposal(std::size_t particles, const Belief& belief, const EvolvedSettings& settings,
-                  const SigmaPoints& poses, const MapTransform& map)
-      : Cloud(particles, belief, poses, map),
+                  const SigmaPoints& points)
+      : Cloud(particles, belief, points, points),
         settings_(settings),
         predicted_(blocks_for<Real>(particles)),
         centres_(predicted_.size()) {

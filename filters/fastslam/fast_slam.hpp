@@ -49,12 +49,12 @@ class FastSlam final : public SlamFilter {
   }
 
   void predict(const StepContext& context, const Control& control, double duration) override {
-    settle(context);
+    settle();
     proposal_.predict(context, control, duration, weights_, poses_);
   }
 
   void update(const StepContext& context, Scan scan) override {
-    settle(context);
+    settle();
     after_update_ = true;
     proposal_.begin_scan(context, poses_);
     association_.associate(
@@ -131,7 +131,7 @@ class FastSlam final : public SlamFilter {
 
   /// Ends the time in which the particles of the last scan can be asked for: resampling takes
   /// effect.
-  void settle(const StepContext& context) {
+  void settle() {
     if (!std::exchange(after_update_, false)) return;
     if (report_.resampled) {
       gather<Real>(poses_, parents_, resampled_poses_);
@@ -139,7 +139,6 @@ class FastSlam final : public SlamFilter {
       maps_.resample(parents_);
       association_.resample(parents_);
       proposal_.resample(parents_);
-      proposal_.part(context, maps_, poses_);
       weights_.make_equal();
       ancestors_ = parents_;
     } else {
@@ -153,7 +152,7 @@ class FastSlam final : public SlamFilter {
   Associating association_;
   Weights<Real> weights_;
   std::vector<BasicPose<Real>> poses_, resampled_poses_;
-  ParticleMaps<Real, typename Proposal::Landmark> maps_;
+  ParticleMaps<Real> maps_;
   InnovationSums<Real> innovations_;
   std::vector<double> matched_weights_;  ///< of each detection, before the scan
   std::vector<std::uint32_t> parents_;  ///< of the resampling that is decided but not yet in effect

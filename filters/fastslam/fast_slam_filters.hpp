@@ -19,13 +19,12 @@ namespace montecarta {
 template <class Real, class Proposal>
 std::unique_ptr<SlamFilter> make_fast_slam(const FilterSetup& setup,
                                            const FastSlamSettings& settings, Proposal proposal) {
-  using Landmark = typename Proposal::Landmark;
   if (setup.association.kind == Association::known) {
-    using Known = KnownAssociation<Real, Landmark>;
+    using Known = KnownAssociation<Real>;
     return std::make_unique<FastSlam<Real, Proposal, Known>>(settings, std::move(proposal),
                                                              Known(setup.landmarks));
   }
-  using Nearest = NearestAssociation<Real, Landmark>;
+  using Nearest = NearestAssociation<Real>;
   return std::make_unique<FastSlam<Real, Proposal, Nearest>>(
       settings, std::move(proposal), Nearest(settings.particles, setup.association, setup.belief));
 }

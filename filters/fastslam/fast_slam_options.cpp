@@ -21,20 +21,6 @@ FastSlamSettings fast_slam_settings(const FilterOptions& options) {
           .resample_below = options.number("resample_below")};
 }
 
-FilterOption landmarks_option() {
-  return {"landmarks",
-          FilterOption::Kind::choice,
-          "cartesian",
-          0,
-          0,
-          {"cartesian", "anchored"},
-          "anchored: kept as range and bearing from the pose of birth (SPEC 24)"};
-}
-
-bool are_anchored(const FilterOptions& options) {
-  return options.choice("landmarks") == "anchored";
-}
-
 const std::vector<std::string>& weight_form_names() { return kWeightForms; }
 
 WeightForm weight_form(const FilterOptions& options) {

@@ -28,10 +28,6 @@ enum class WeightForm {
 std::vector<FilterOption> fast_slam_options();
 /// Reads them.
 FastSlamSettings fast_slam_settings(const FilterOptions& options);
-/// How a map keeps its landmarks, as an option of filters that offer it.
-FilterOption landmarks_option();
-/// Whether as range and bearing from where they were born (SPEC 24).
-bool are_anchored(const FilterOptions& options);
 /// Names of the weight forms, in the order of the enumerators.
 const std::vector<std::string>& weight_form_names();
 WeightForm weight_form(const FilterOptions& options);

@@ -29,23 +29,14 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
   template <class Matches, class Note>
   Weighing<Real> weigh_and_draw(const StepContext& context, const Matches& matches, std::size_t b,
                                 BasicPose<Real>& pose, const Note& note) {
-    return propose(
-        context.identity(Draw::pose_proposal, static_cast<std::uint32_t>(b * kLanesOf<Real>)), 0,
-        this->predicted(b, pose), matches, b, pose, note);
-  }
-
- protected:
-  /// The same from any prior, with the numbers of a stream's `turn`.
-  template <class Matches, class Note>
-  Weighing<Real> propose(const StreamIdentity& identity, std::uint32_t turn,
-                         const PoseGaussian<Real>& prior, const Matches& matches, std::size_t b,
-                         BasicPose<Real>& pose, const Note& note) {
+    const PoseGaussian<Real> prior = this->predicted(b, pose);
     PoseGaussian<Real> posterior = prior;
     Evidence<Real> closed, drawn;
     this->refine(matches, b, posterior, closed, note);
     const Real batch = form_ == WeightForm::batch ? batch_log_weight(matches, b, prior) : Real(0.0);
     const PoseFactor<Real> factor(posterior);
-    pose = draw_from(factor, identity, Real(1.0), turn);
+    pose = draw_from(factor, context.identity(Draw::pose_proposal,
+                                              static_cast<std::uint32_t>(b * kLanesOf<Real>)));
     Unweighed<Real> unweighed;
     form_ == WeightForm::ratio ? this->update_landmarks(matches, b, pose, drawn)
                                : this->update_landmarks(matches, b, pose, unweighed);
@@ -72,8 +63,7 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
     Evidence<Real> evidence;
     if constexpr (std::is_same_v<PoseTransform, Linearised>) {
       matches.read(b, [&](std::size_t, const auto& landmark, const auto& seen, const auto& mask) {
-        refine_pose_in_batch(refined, prior.mean, as_gaussian(landmark), seen, this->noise(), mask,
-                             evidence);
+        refine_pose_in_batch(refined, prior.mean, landmark, seen, this->noise(), mask, evidence);
       });
     }
     return evidence.log_density();

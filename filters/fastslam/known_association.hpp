@@ -16,7 +16,7 @@ namespace montecarta {
 
 /// Detections carry the identity of their landmark, the same for all particles (SPEC 17); clutter
 /// is known to be clutter. Slots are given out in the order in which landmarks are first seen.
-template <class Real, class Landmark = LandmarkGaussian<Real>>
+template <class Real>
 class KnownAssociation {
  public:
   explicit KnownAssociation(std::size_t landmarks) : slot_of_(landmarks, kUnseen) {}
@@ -25,7 +25,7 @@ class KnownAssociation {
 
   /// Sorts the scan into known and new landmarks.
   template <class Predicted, class Expected>
-  void associate(const StepContext& /*context*/, Scan scan, ParticleMaps<Real, Landmark>& maps,
+  void associate(const StepContext& /*context*/, Scan scan, ParticleMaps<Real>& maps,
                  const Predicted& /*predicted*/, const Expected& /*expected*/) {
     slots_.clear(), seen_.clear(), new_.clear();
     for (const Detection& detection : scan) {
@@ -58,15 +58,13 @@ class KnownAssociation {
     for (std::size_t k = 0; k < slots_.size(); ++k)
       visit(k, opened_[k].at(b), seen_[k], Everywhere());
   }
-  std::span<const std::uint32_t> slots() const { return slots_; }
-  std::span<const RangeBearing<Real>> seen() const { return seen_; }
   /// visit(slot) for the landmarks of all matches.
   template <class Visit>
   void each_slot(const Visit& visit) const {
     for (const std::uint32_t slot : slots_) visit(slot);
   }
   /// Block b of a slot of a match.
-  const Landmark& landmark_in(std::uint32_t slot, std::size_t b) const {
+  const LandmarkGaussian<Real>& landmark_in(std::uint32_t slot, std::size_t b) const {
     const auto found = std::find(slots_.begin(), slots_.end(), slot);
     return opened_[static_cast<std::size_t>(found - slots_.begin())].fetch(b);
   }
@@ -80,8 +78,7 @@ class KnownAssociation {
     return {.correct = static_cast<double>(slots_.size() + new_.size())};
   }
   /// Landmarks of a map; every particle has as many.
-  double map_size(const ParticleMaps<Real, Landmark>& maps,
-                  const Weights<Real>& /*weights*/) const {
+  double map_size(const ParticleMaps<Real>& maps, const Weights<Real>& /*weights*/) const {
     return static_cast<double>(maps.slots());
   }
   /// All particles explain the same detections, so there is nothing to make equal.
@@ -90,7 +87,7 @@ class KnownAssociation {
   /// Gives every new landmark a slot, filled by birth(block, seen); then settled(block, slot,
   /// put), where put(from, to) copies the lanes it is new for.
   template <class Birth, class Settled>
-  void add_new(ParticleMaps<Real, Landmark>& maps, const Birth& birth, const Settled& settled) {
+  void add_new(ParticleMaps<Real>& maps, const Birth& birth, const Settled& settled) {
     for (const Detection& detection : new_) {
       const std::uint32_t slot = maps.add();
       slot_of_[static_cast<std::size_t>(detection.identity)] = static_cast<std::int32_t>(slot);
@@ -116,7 +113,7 @@ class KnownAssociation {
   std::vector<std::uint32_t> slots_;
   std::vector<RangeBearing<Real>> seen_;
   std::vector<Detection> new_;
-  std::vector<typename ParticleMaps<Real, Landmark>::OpenSlot> opened_;
+  std::vector<typename ParticleMaps<Real>::OpenSlot> opened_;
 };
 
 }  // namespace montecarta

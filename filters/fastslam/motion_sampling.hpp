@@ -6,7 +6,7 @@
 #include "filters/fastslam/drawn_poses.hpp"
 #include "filters/models/ackermann.hpp"
 #include "filters/moments/cloud_moments.hpp"
-#include "filters/moments/moment_transforms.hpp"
+#include "filters/moments/linearised.hpp"
 
 #include <vector>
 
@@ -14,10 +14,9 @@ namespace montecarta {
 
 /// FastSLAM I (SPEC 6): every particle moves with control noise of its own at every step; the scan
 /// only weighs it.
-template <class Real, class MapTransform = Linearised>
+template <class Real>
 class MotionSampling : public DrawnPoses<Real> {
  public:
-  using Landmark = typename MapTransform::template Landmark<Real>;
   explicit MotionSampling(const Belief& belief)
       : DrawnPoses<Real>(SensorNoise::of(belief)), belief_(belief) {}
 
@@ -48,13 +47,13 @@ class MotionSampling : public DrawnPoses<Real> {
     Evidence<Real> likelihood;
     matches.read(b, [](auto&&...) {});
     matches.update(b, [&](std::size_t k, auto& landmark, const auto& seen, const auto& mask) {
-      note(k, MapTransform().update(landmark, pose, seen, this->noise(), mask, likelihood), mask);
+      note(k, update_landmark(landmark, pose, seen, this->noise(), mask, likelihood), mask);
     });
     return {likelihood.log_density(), likelihood.left_out()};
   }
-  Landmark birth(std::size_t /*b*/, const BasicPose<Real>& pose,
-                 const RangeBearing<Real>& seen) const {
-    return MapTransform().birth(pose, seen, this->noise());
+  LandmarkGaussian<Real> birth(std::size_t /*b*/, const BasicPose<Real>& pose,
+                               const RangeBearing<Real>& seen) const {
+    return new_landmark(pose, seen, this->noise());
   }
   void end_scan() {}
   void settle() {}

@@ -21,7 +21,7 @@ namespace montecarta {
 
 /// Every particle decides for itself which landmark of its own map a detection is (SPEC 17), with
 /// the covariance of its predicted pose in the innovation. Particle i owns slots 0 to count(i) - 1.
-template <class Real, class Landmark = LandmarkGaussian<Real>>
+template <class Real>
 class NearestAssociation {
  public:
   NearestAssociation(std::size_t particles, const AssociationSettings& settings,
@@ -41,7 +41,7 @@ class NearestAssociation {
   /// Judges every detection by every particle's map; predicted(b) is the pose Gaussian of block b,
   /// expected(b, slot, pose, landmark, sightline) the covariance of what should be seen.
   template <class Predicted, class Expected>
-  void associate(const StepContext& context, Scan scan, ParticleMaps<Real, Landmark>& maps,
+  void associate(const StepContext& context, Scan scan, ParticleMaps<Real>& maps,
                  const Predicted& predicted, const Expected& expected) {
     scan_ = scan;
     seen_.clear();
@@ -82,7 +82,7 @@ class NearestAssociation {
   template <class Visit>
   void update(std::size_t b, const Visit& visit) const {
     for (std::size_t k = 0; k < seen_.size(); ++k) {
-      Landmark landmark = collect(b, k);
+      LandmarkGaussian<Real> landmark = collect(b, k);
       visit(k, landmark, seen_[k], matched(b, k) > Real(0.5));
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         const Pairing& pairing = pairings_of(b * kLanes + lane)[k];
@@ -99,7 +99,7 @@ class NearestAssociation {
     }
   }
   /// Block b of any slot.
-  const Landmark& landmark_in(std::uint32_t slot, std::size_t b) const {
+  const LandmarkGaussian<Real>& landmark_in(std::uint32_t slot, std::size_t b) const {
     return opened_[slot].at(b);
   }
   /// Which landmark of a correlated map each lane takes detection k for; index_of(slot) says where
@@ -134,8 +134,7 @@ class NearestAssociation {
   }
 
   /// Landmarks of a map, mean over the weighted particles.
-  double map_size(const ParticleMaps<Real, Landmark>& /*maps*/,
-                  const Weights<Real>& weights) const {
+  double map_size(const ParticleMaps<Real>& /*maps*/, const Weights<Real>& weights) const {
     double mean = 0.0;
     for (std::size_t i = 0; i < particles_; ++i) {
       mean += weights.linear_scalars()[i] * static_cast<double>(count_of(i));
@@ -146,7 +145,7 @@ class NearestAssociation {
   /// Adds birth(block, seen) to the maps that have it new; then settled(block, slot, put), where
   /// put(from, to) copies the one lane that has that slot for it.
   template <class Birth, class Settled>
-  void add_new(ParticleMaps<Real, Landmark>& maps, const Birth& birth, const Settled& settled) {
+  void add_new(ParticleMaps<Real>& maps, const Birth& birth, const Settled& settled) {
     for (std::size_t k = 0; k < seen_.size(); ++k) {
       for (std::size_t b = 0; b < maps.blocks(); ++b) add_to_block(maps, b, k, birth, settled);
     }
@@ -179,7 +178,7 @@ class NearestAssociation {
         std::span(searches_).subspan(b * kLanes * seen_.size(), kLanes * seen_.size());
     std::ranges::fill(searches, NearestSearch{});
     for (std::size_t j = 0; j < opened_.size(); ++j)
-      offer(b, j, as_gaussian(opened_[j].fetch(b)), pose, expected, searches);
+      offer(b, j, opened_[j].fetch(b), pose, expected, searches);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::span<Pairing> pairings = pairings_of(b * kLanes + lane);
       for (std::size_t k = 0; k < seen_.size(); ++k) {
@@ -220,8 +219,8 @@ class NearestAssociation {
   }
 
   /// The landmark each lane matched with detection k; a lane without a match gets a harmless one.
-  Landmark collect(std::size_t b, std::size_t k) const {
-    Landmark landmark{};
+  LandmarkGaussian<Real> collect(std::size_t b, std::size_t k) const {
+    LandmarkGaussian<Real> landmark{};
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const Pairing& pairing = pairings_of(b * kLanes + lane)[k];
       if (pairing.verdict == Verdict::matched)
@@ -231,9 +230,9 @@ class NearestAssociation {
   }
 
   template <class Birth, class Settled>
-  void add_to_block(ParticleMaps<Real, Landmark>& maps, std::size_t b, std::size_t k,
-                    const Birth& birth, const Settled& settled) {
-    const Landmark born = birth(b, seen_[k]);
+  void add_to_block(ParticleMaps<Real>& maps, std::size_t b, std::size_t k, const Birth& birth,
+                    const Settled& settled) {
+    const LandmarkGaussian<Real> born = birth(b, seen_[k]);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::size_t particle = b * kLanes + lane;
       if (particle >= particles_ || pairings_of(particle)[k].verdict != Verdict::fresh) continue;
@@ -260,7 +259,7 @@ class NearestAssociation {
   std::vector<std::uint32_t> slots_;
   std::vector<Pairing> pairings_;        ///< {particle, detection}
   std::vector<NearestSearch> searches_;  ///< {block, detection, lane}
-  std::vector<typename ParticleMaps<Real, Landmark>::OpenSlot> opened_;
+  std::vector<typename ParticleMaps<Real>::OpenSlot> opened_;
 };
 
 }  // namespace montecarta

@@ -4,7 +4,6 @@
 #include "engine/particles/blocks.hpp"
 #include "engine/particles/genealogy.hpp"
 #include "engine/runs/slam_filter.hpp"
-#include "filters/moments/anchored_landmark.hpp"
 #include "filters/moments/gaussians.hpp"
 
 #include <algorithm>
@@ -18,11 +17,10 @@ namespace montecarta {
 
 /// Every particle's own map. Landmarks are kept in slots: slot j of all particles lies together, in
 /// blocks. After a resampling a slot is rearranged only when it is next opened.
-/// `LandmarkBlock`: what is kept of one landmark by a block of particles.
-template <class Real, class LandmarkBlock = LandmarkGaussian<Real>>
+template <class Real>
 class ParticleMaps {
  public:
-  using Landmark = LandmarkBlock;
+  using Landmark = LandmarkGaussian<Real>;
 
   explicit ParticleMaps(std::size_t particles)
       : blocks_(blocks_for<Real>(particles)), genealogy_(blocks_ * kLanesOf<Real>) {}
@@ -100,7 +98,7 @@ class ParticleMaps {
   /// What one particle believes about the landmark of slot j.
   LandmarkEstimate landmark_of(std::uint32_t j, std::uint32_t particle) const {
     const std::uint32_t then = genealogy_.trace(slots_[j].generation, particle);
-    const LandmarkGaussian<Real> block = as_gaussian(slots_[j].blocks[then / kLanesOf<Real>]);
+    const Landmark& block = slots_[j].blocks[then / kLanesOf<Real>];
     const std::size_t lane = then % kLanesOf<Real>;
     const Symmetric2<Real>& P = block.covariance;
     return {
@@ -108,15 +106,15 @@ class ParticleMaps {
         Eigen::Matrix2d{{get(P.xx, lane), get(P.xy, lane)}, {get(P.xy, lane), get(P.yy, lane)}}};
   }
 
-  /// Slot j with today's particles in order, as Gaussians, brought into `blocks` without a trace.
+  /// Slot j with today's particles in order, brought into `blocks` without a trace.
   void copy_slot(std::uint32_t j, std::vector<std::uint32_t>& source,
-                 std::vector<LandmarkGaussian<Real>>& blocks) const {
+                 std::vector<Landmark>& blocks) const {
     source.resize(blocks_ * kLanesOf<Real>);
     blocks.resize(blocks_);
     genealogy_.trace(slots_[j].generation, source);
     const std::span<const Landmark> from = slots_[j].blocks;
     for (std::size_t b = 0; b < blocks_; ++b) {
-      blocks[b] = as_gaussian(gather_block<Real, Landmark>(from, source, b));
+      blocks[b] = gather_block<Real, Landmark>(from, source, b);
     }
   }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/moments/anchored_landmark.hpp"
 #include "filters/moments/gaussian_draw.hpp"
 #include "filters/moments/linearised.hpp"
 
@@ -22,7 +21,7 @@ struct Sighting {
 template <class Real, class Matches>
 void append_sightings(const Matches& matches, std::size_t b, std::vector<Sighting<Real>>& scan) {
   matches.read(b, [&](std::size_t, const auto& landmark, const auto& seen, const auto& mask) {
-    scan.push_back({as_gaussian(landmark), seen, as_number<Real>(mask)});
+    scan.push_back({landmark, seen, as_number<Real>(mask)});
   });
 }
 

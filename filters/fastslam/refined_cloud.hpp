@@ -16,7 +16,6 @@ namespace montecarta {
 template <class Real, class PoseTransform, class MapTransform>
 class RefinedCloud : public DrawnPoses<Real> {
  public:
-  using Landmark = typename MapTransform::template Landmark<Real>;
   RefinedCloud(std::size_t particles, const Belief& belief, const PoseTransform& pose_transform,
                const MapTransform& map_transform)
       : DrawnPoses<Real>(SensorNoise::of(belief)),
@@ -36,8 +35,8 @@ class RefinedCloud : public DrawnPoses<Real> {
   PoseGaussian<Real> predicted(std::size_t /*b*/, const BasicPose<Real>& drawn) const {
     return motion_.from(drawn);
   }
-  Landmark birth(std::size_t /*b*/, const BasicPose<Real>& pose,
-                 const RangeBearing<Real>& seen) const {
+  LandmarkGaussian<Real> birth(std::size_t /*b*/, const BasicPose<Real>& pose,
+                               const RangeBearing<Real>& seen) const {
     return map_transform_.birth(pose, seen, this->noise());
   }
   /// All poses were drawn: nothing is uncertain within a particle.
@@ -62,9 +61,7 @@ class RefinedCloud : public DrawnPoses<Real> {
   void refine(const Matches& matches, std::size_t b, PoseGaussian<Real>& pose,
               Evidence<Real>& evidence, const Note& note) const {
     matches.read(b, [&](std::size_t k, const auto& landmark, const auto& seen, const auto& mask) {
-      note(k,
-           pose_transform_.refine(pose, as_gaussian(landmark), seen, this->noise(), mask, evidence),
-           mask);
+      note(k, pose_transform_.refine(pose, landmark, seen, this->noise(), mask, evidence), mask);
     });
   }
   /// Absorbs the scan into the landmarks of block b, seen from `pose`.
@@ -80,8 +77,6 @@ class RefinedCloud : public DrawnPoses<Real> {
 
   MotionIncrement& motion() { return motion_; }
   const MotionIncrement& motion() const { return motion_; }
-  const PoseTransform& pose_transform() const { return pose_transform_; }
-  const MapTransform& map_transform() const { return map_transform_; }
 
  private:
   Belief belief_;

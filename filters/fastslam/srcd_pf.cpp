@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "filters/fastslam/anchored.hpp"
 #include "filters/fastslam/srcd.hpp"
 
 namespace montecarta {
@@ -7,16 +6,13 @@ namespace montecarta {
 FilterKind srcd_pf_kind() {
   std::vector<FilterOption> options = srcd_options();
   options.push_back(map_uncertainty_option());
-  options.push_back(landmarks_option());
   return {.name = "srcd_pf",
           .long_name = "SRCD-PF FastSLAM",
           .source = "Ankishan et al. 2016, Table 1; SPEC 11",
           .has_particles = true,
           .has_mixture = true,
           .options = std::move(options),
-          .make = [](const FilterSetup& setup) {
-            return make_anchored_or(setup, srcd_points(setup), make_srcd_pf<Lanes>);
-          }};
+          .make = make_srcd_pf<Lanes>};
 }
 
 }  // namespace montecarta

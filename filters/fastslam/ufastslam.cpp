@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/ufastslam.hpp"
 
-#include "filters/fastslam/moved.hpp"
-
 namespace montecarta {
 
 FilterKind ufastslam_kind() {
@@ -29,19 +27,13 @@ FilterKind ufastslam_kind() {
                      {},
                      "second spread: alpha^2 (n + kappa) is the square of the points' distance"});
   options.push_back(map_uncertainty_option());
-  options.push_back(landmarks_option());
-  options.push_back(move_lag_option());
   return {.name = "ufastslam",
           .long_name = "U-FastSLAM",
           .source = "Kim et al. 2008; SPEC 8",
           .has_particles = true,
           .has_mixture = true,
           .options = std::move(options),
-          .make =
-              [](const FilterSetup& setup) {
-                return make_as_chosen(setup, unscented_points(setup), make_ufastslam<Lanes>);
-              },
-          .check = check_move};
+          .make = make_ufastslam<Lanes>};
 }
 
 }  // namespace montecarta

@@ -6,15 +6,6 @@
 
 namespace montecarta {
 
-/// A new landmark's place made straight: `way` along the ray, `across` by the sum of the errors of
-/// heading and bearing.
-template <class Real>
-struct StraightPlace {
-  Real way;     ///< from the pose [m]
-  Real across;  ///< [m/rad]
-  Real along;   ///< variance along the ray: of the range, and of what is not straight [m^2]
-};
-
 /// A landmark seen for the first time from an uncertain pose, with all it is correlated with:
 /// g(x, z), Gx P Gx' + Gz R Gz' and Gx P (SPEC 24).
 template <class Real>
@@ -30,18 +21,17 @@ struct NewLandmark {
   }
 };
 
-template <class Real, class Transform>
+template <class Real>
 NewLandmark<Real> new_correlated_landmark(const PoseGaussian<Real>& pose,
-                                          const RangeBearing<Real>& seen, const SensorNoise& noise,
-                                          const Transform& transform) {
+                                          const RangeBearing<Real>& seen,
+                                          const SensorNoise& noise) {
   const auto& [mean, P] = pose;
-  const StraightPlace<Real> place = transform.straight_place(P.hh, seen, noise);
   const Direction<Real> ray = direction_of(Real(mean.heading + seen.bearing));
-  const Real a = -(place.across * ray.sine), b = place.across * ray.cosine;
+  const Real a = -(seen.range * ray.sine), b = seen.range * ray.cosine;
   const PoseCross<Real> C{{P.xx + a * P.xh, P.xy + a * P.yh, P.xh + a * P.hh},
                           {P.xy + b * P.xh, P.yy + b * P.yh, P.yh + b * P.hh}};
-  const Real across = noise.bearing, along = place.along;
-  return {{{mean.x + place.way * ray.cosine, mean.y + place.way * ray.sine},
+  const Real across = noise.bearing, along = noise.range;
+  return {{{mean.x + seen.range * ray.cosine, mean.y + seen.range * ray.sine},
            {C.x.x + a * C.x.h + a * a * across + ray.cosine * ray.cosine * along,
             C.x.y + b * C.x.h + a * b * across + ray.cosine * ray.sine * along,
             C.y.y + b * C.y.h + b * b * across + ray.sine * ray.sine * along}},
@@ -50,8 +40,8 @@ NewLandmark<Real> new_correlated_landmark(const PoseGaussian<Real>& pose,
 }
 
 /// Makes landmark i of block b the new one; `put(from, to)` writes the lanes that are meant.
-template <class Real, class Landmark, class Born, class Put>
-void place(CorrelatedMap<Real, Landmark>& maps, std::size_t b, std::size_t i, const Born& born,
+template <class Real, class Put>
+void place(CorrelatedMap<Real>& maps, std::size_t b, std::size_t i, const NewLandmark<Real>& born,
            const Put& put) {
   for (std::size_t j = 0; j < maps.size(); ++j) {
     if (j == i) continue;

@@ -20,8 +20,8 @@ class KnownPose {
         value_(white({drawn.x - pose.mean.x, drawn.y - pose.mean.y,
                       shorter_way(Real(drawn.heading - pose.mean.heading))})) {}
 
-  template <class Landmark>
-  Landmark condition(Landmark landmark, const PoseCross<Real>& cross) const {
+  LandmarkGaussian<Real> condition(LandmarkGaussian<Real> landmark,
+                                   const PoseCross<Real>& cross) const {
     const Column3<Real> x = white(cross.x), y = white(cross.y);
     change(landmark, {dot(x, value_), dot(y, value_)}, {dot(x, x), dot(x, y), dot(y, y)});
     return landmark;

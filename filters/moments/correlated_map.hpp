@@ -14,8 +14,7 @@
 
 namespace montecarta {
 
-/// Covariance of a landmark's two coordinates with the pose: x and y of the map, or, where it is
-/// anchored, range and bearing.
+/// Covariance of a landmark's coordinates with the pose.
 template <class Real>
 struct PoseCross {
   Column3<Real> x, y;
@@ -40,13 +39,7 @@ struct MapGain {
   WhiteGain<Real> x, y;
 };
 
-// What a correlated map asks of its landmarks, those that are Gaussians in the map:
-/// the covariance of its own coordinates, ...
-template <class Real>
-Symmetric2<Real> own_covariance(const LandmarkGaussian<Real>& landmark) {
-  return landmark.covariance;
-}
-/// ... to move its mean and to take from its covariance, ...
+/// Moves a landmark's mean by `step` and takes `less` from its covariance.
 template <class Real>
 void change(LandmarkGaussian<Real>& landmark, const BasicPoint<Real>& step,
             const Symmetric2<Real>& less) {
@@ -54,19 +47,6 @@ void change(LandmarkGaussian<Real>& landmark, const BasicPoint<Real>& step,
   landmark.mean.y += step.y;
   auto& P = landmark.covariance;
   P = {P.xx - less.xx, P.xy - less.xy, P.yy - less.yy};
-}
-/// ... and the Gaussian of the map that a sight is of, with how covariances with its own
-/// coordinates become covariances with that: here, as they are.
-template <class Real>
-struct InMap {
-  const LandmarkGaussian<Real>& gaussian;
-
-  const PoseCross<Real>& rows(const PoseCross<Real>& C) const { return C; }
-  const MapCross<Real>& columns(const MapCross<Real>& C) const { return C; }
-};
-template <class Real>
-InMap<Real> in_map(const LandmarkGaussian<Real>& landmark) {
-  return {landmark};
 }
 
 /// Which landmark of a correlated map is meant: the same for every particle of a block ...
@@ -82,11 +62,10 @@ struct ForEach {
 /// A joint Gaussian over pose and landmarks for every particle, block by block: what a particle
 /// keeps that did not draw its pose. Landmarks are numbered from 0 in the order in which they come;
 /// covariances of two are kept once, the later one's rows. Keeps its memory from run to run.
-/// `LandmarkBlock`: what is kept of one landmark by a block of particles.
-template <class Real, class LandmarkBlock = LandmarkGaussian<Real>>
+template <class Real>
 class CorrelatedMap {
  public:
-  using Landmark = LandmarkBlock;
+  using Landmark = LandmarkGaussian<Real>;
   explicit CorrelatedMap(std::size_t blocks)
       : n_blocks_(blocks), poses_(blocks), spare_poses_(blocks) {}
 
@@ -123,7 +102,7 @@ class CorrelatedMap {
       const MapCross<Real>& c = map_cross(j, i, b);
       return {c.xx, c.yx, c.xy, c.yy};
     }
-    const Symmetric2<Real> P = own_covariance(landmark(i, b));
+    const Symmetric2<Real>& P = landmark(i, b).covariance;
     return {P.xx, P.xy, P.xy, P.yy};
   }
 

@@ -6,14 +6,6 @@
 
 namespace montecarta {
 
-/// How the place that a pose is driven to depends on the heading it began with, made straight.
-template <class Real>
-struct StraightTurn {
-  Real mean;    ///< factor of the way
-  Real across;  ///< way's turn by the heading, by its length [1/rad]
-  Real bend;    ///< variance along the way of what is not straight, by its length's square
-};
-
 /// A pose that is itself uncertain, driven on, and what its heading did to its place: x and y
 /// change by `lever` times an error of the heading.
 template <class Real>
@@ -24,31 +16,22 @@ struct DrivenPose {
 
 /// Fx P Fx' with the motion's own covariance turned into the map (SPEC 2.1). Of several steps Fx is
 /// again [1 0 a; 0 1 b; 0 0 1], so one increment stands for all since the last scan.
-template <class Real, class Transform>
-DrivenPose<Real> driven(const PoseGaussian<Real>& before, const MotionIncrement& motion,
-                        const Transform& transform) {
+template <class Real>
+DrivenPose<Real> driven(const PoseGaussian<Real>& before, const MotionIncrement& motion) {
   const auto& [mean, P] = before;
   const Direction<Real> d = direction_of(mean.heading);
   const Pose& step = motion.pose();
   const Real way_x = d.cosine * step.x - d.sine * step.y;
   const Real way_y = d.sine * step.x + d.cosine * step.y;
-  const StraightTurn<Real> turn = transform.straight_turn(P.hh);
-  const Real a = -(turn.across * way_y), b = turn.across * way_x;
-  Symmetric3<Real> moved = sheared(P, a, b) + turned(in_every_lane<Real>(motion.covariance()), d);
-  moved.xx += turn.bend * way_x * way_x;
-  moved.xy += turn.bend * way_x * way_y;
-  moved.yy += turn.bend * way_y * way_y;
-  return {{{mean.x + turn.mean * way_x, mean.y + turn.mean * way_y,
-            wrap(Real(mean.heading + step.heading))},
-           moved},
-          {a, b}};
+  return {{{mean.x + way_x, mean.y + way_y, wrap(Real(mean.heading + step.heading))},
+           sheared(P, Real(-way_y), way_x) + turned(in_every_lane<Real>(motion.covariance()), d)},
+          {-way_y, way_x}};
 }
 
 /// Drives block b on, map included.
-template <class Real, class Landmark, class Transform>
-void drive(CorrelatedMap<Real, Landmark>& maps, std::size_t b, const MotionIncrement& motion,
-           const Transform& transform) {
-  const DrivenPose<Real> now = driven(maps.pose(b), motion, transform);
+template <class Real>
+void drive(CorrelatedMap<Real>& maps, std::size_t b, const MotionIncrement& motion) {
+  const DrivenPose<Real> now = driven(maps.pose(b), motion);
   maps.pose(b) = now.pose;
   for (std::size_t i = 0; i < maps.size(); ++i) {
     auto& [x, y] = maps.pose_cross(i, b);

@@ -6,35 +6,17 @@
 
 namespace montecarta {
 
-/// A sight made straight by the landmark's place relative to the pose, in the frame of the line of
-/// sight: range = along + range_across across, bearing = bearing_across across - heading, with
-/// noise.
-template <class Real>
-struct StraightSight {
-  RangeBearing<Real> innovation;
-  Real range_across{}, bearing_across{};  ///< [1], [rad/m]
-  Real n_rr{}, n_rb{}, n_bb{};            ///< of the sensor, and of what is not straight
-};
-
-/// Covariance of the landmark's place relative to the pose [m^2].
-template <class Real>
-[[gnu::always_inline]] inline Symmetric2<Real> relative_covariance(const Symmetric3<Real>& P,
-                                                                   const Symmetric2<Real>& F,
-                                                                   const PoseCross<Real>& C) {
-  return {P.xx + F.xx - C.x.x - C.x.x, P.xy + F.xy - C.x.y - C.y.x, P.yy + F.yy - C.y.y - C.y.y};
-}
-
-/// Rows of a straight sight by the landmark's place; by the pose's place they are the negatives, by
-/// the heading 0 and -1.
+/// Rows of a sight's derivative by the landmark's place; by the pose's place they are the
+/// negatives, by the heading 0 and -1.
 template <class Real>
 struct SightRows {
   Real range_x, range_y, bearing_x, bearing_y;
 
-  [[gnu::always_inline]] SightRows(const Sightline<Real>& s, const StraightSight<Real>& straight)
-      : range_x(s.ux - straight.range_across * s.uy),
-        range_y(s.uy + straight.range_across * s.ux),
-        bearing_x(-(straight.bearing_across * s.uy)),
-        bearing_y(straight.bearing_across * s.ux) {}
+  [[gnu::always_inline]] explicit SightRows(const Sightline<Real>& s)
+      : range_x(s.ux),
+        range_y(s.uy),
+        bearing_x(-(s.per_range * s.uy)),
+        bearing_y(s.per_range * s.ux) {}
 
   /// Covariance with (range, bearing) of a number whose covariance with the relative place and with
   /// the heading is given.
@@ -48,7 +30,7 @@ struct SightRows {
 template <class Real>
 [[gnu::always_inline]] inline Innovation<Real> correlated_innovation(
     const Symmetric3<Real>& P, const Symmetric2<Real>& F, const PoseCross<Real>& C,
-    const SightRows<Real>& rows, const StraightSight<Real>& straight) {
+    const SightRows<Real>& rows, const RangeBearing<Real>& value, const SensorNoise& noise) {
   const RangeBearing<Real> x = rows.of(C.x.x - P.xx, C.y.x - P.xy, P.xh);
   const RangeBearing<Real> y = rows.of(C.x.y - P.xy, C.y.y - P.yy, P.yh);
   const RangeBearing<Real> h = rows.of(C.x.h - P.xh, C.y.h - P.yh, P.hh);
@@ -56,10 +38,10 @@ template <class Real>
   const RangeBearing<Real> fy = rows.of(F.xy - C.y.x, F.yy - C.y.y, C.y.h);
   const Real dx_r = fx.range - x.range, dy_r = fy.range - y.range;
   const Real dx_b = fx.bearing - x.bearing, dy_b = fy.bearing - y.bearing;
-  return {straight.innovation,
-          straight.n_rr + rows.range_x * dx_r + rows.range_y * dy_r,
-          straight.n_rb + rows.range_x * dx_b + rows.range_y * dy_b,
-          straight.n_bb + rows.bearing_x * dx_b + rows.bearing_y * dy_b - h.bearing,
+  return {value,
+          noise.range + rows.range_x * dx_r + rows.range_y * dy_r,
+          rows.range_x * dx_b + rows.range_y * dy_b,
+          noise.bearing + rows.bearing_x * dx_b + rows.bearing_y * dy_b - h.bearing,
           {x.range, y.range, h.range},
           {x.bearing, y.bearing, h.bearing}};
 }
@@ -83,8 +65,8 @@ template <class Real>
 
 /// mean <- mean + W value, P <- P - W W' for what is not of the pose alone; the gains of landmarks
 /// are in `maps`.
-template <class Real, class Landmark>
-void apply_gains(CorrelatedMap<Real, Landmark>& maps, std::size_t b, const WhiteGain<Real>& value,
+template <class Real>
+void apply_gains(CorrelatedMap<Real>& maps, std::size_t b, const WhiteGain<Real>& value,
                  const WhiteGain<Real>& x, const WhiteGain<Real>& y, const WhiteGain<Real>& h) {
   for (std::size_t i = 0; i < maps.size(); ++i) {
     const MapGain<Real> g = maps.gain(i, b);
@@ -101,28 +83,24 @@ void apply_gains(CorrelatedMap<Real, Landmark>& maps, std::size_t b, const White
 }
 
 /// Absorbs a detection of landmark `at` into pose and map of block b: the update of EKF-SLAM
-/// (SPEC 24), with the model made straight by `transform`. `matched`: which lanes saw it.
-template <class Real, class Landmark, class Where, class Transform, class Mask>
-Innovation<Real> absorb(CorrelatedMap<Real, Landmark>& maps, std::size_t b, const Where& at,
-                        const Transform& transform, const RangeBearing<Real>& seen,
-                        const SensorNoise& noise, const Mask& matched, Evidence<Real>& evidence) {
+/// (SPEC 24). `matched`: which lanes saw it.
+template <class Real, class Where, class Mask>
+Innovation<Real> absorb(CorrelatedMap<Real>& maps, std::size_t b, const Where& at,
+                        const RangeBearing<Real>& seen, const SensorNoise& noise,
+                        const Mask& matched, Evidence<Real>& evidence) {
   PoseGaussian<Real>& pose = maps.pose(b);
-  const Landmark own = maps.landmark(at, b);
-  const auto placed = in_map(own);
-  const LandmarkGaussian<Real>& f = placed.gaussian;
-  const PoseCross<Real> C = placed.rows(maps.pose_cross(at, b));
+  const LandmarkGaussian<Real> f = maps.landmark(at, b);
   const Sightline<Real> s = sightline(pose.mean, f.mean);
   const auto use = matched && is_usable(s);
-  const StraightSight<Real> straight = transform.straight_sight(
-      s, relative_covariance(pose.covariance, f.covariance, C), seen, noise);
-  const SightRows<Real> rows(s, straight);
+  const SightRows<Real> rows(s);
   const Innovation<Real> v =
-      correlated_innovation(pose.covariance, f.covariance, C, rows, straight);
+      correlated_innovation(pose.covariance, f.covariance, PoseCross<Real>(maps.pose_cross(at, b)),
+                            rows, residual(seen, s), noise);
   const Decorrelated<Real> d(v, use);
   const Whitening<Real> white(d);
   for (std::size_t i = 0; i < maps.size(); ++i) {
     const PoseCross<Real>& with_pose = maps.pose_cross(i, b);
-    const MapCross<Real> V = placed.columns(maps.covariance(i, at, b));
+    const MapCross<Real> V = maps.covariance(i, at, b);
     const RangeBearing<Real> x = rows.of(V.xx - with_pose.x.x, V.xy - with_pose.x.y, with_pose.x.h);
     const RangeBearing<Real> y = rows.of(V.yx - with_pose.y.x, V.yy - with_pose.y.y, with_pose.y.h);
     maps.gain(i, b) = {white(x.range, x.bearing), white(y.range, y.bearing)};

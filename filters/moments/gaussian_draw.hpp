@@ -27,13 +27,12 @@ struct PoseFactor {
   }
 };
 
-/// `scale` times the standard normals 0, 1, 2 of a stream, or those four `turn`s on, through the
-/// factor.
+/// `scale` times the standard normals 0, 1, 2 of a stream, through the factor.
 template <class Real>
 BasicPose<Real> draw_from(const PoseFactor<Real>& factor, const StreamIdentity& identity,
-                          const Real& scale = Real(1.0), std::uint32_t turn = 0) {
-  const auto [e0, e1] = normal_pairs<Real>(identity, 2 * turn);
-  const Real e2 = normal_pairs<Real>(identity, 2 * turn + 1).first;
+                          const Real& scale = Real(1.0)) {
+  const auto [e0, e1] = normal_pairs<Real>(identity, 0);
+  const Real e2 = normal_pairs<Real>(identity, 1).first;
   return factor.at(scale * e0, scale * e1, scale * e2);
 }
 

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/moments/anchored_landmark.hpp"
 #include "filters/moments/linearised.hpp"
 #include "filters/moments/motion_increment.hpp"
-#include "filters/moments/sigma_correlated.hpp"
 #include "filters/moments/sigma_landmark.hpp"
 #include "filters/moments/sigma_motion.hpp"
 #include "filters/moments/sigma_pose.hpp"
@@ -15,10 +13,6 @@ namespace montecarta {
 
 /// The extended Kalman filter (SPEC 7).
 struct Linearised {
-  /// What a landmark is kept as.
-  template <class Real>
-  using Landmark = LandmarkGaussian<Real>;
-
   void advance(MotionIncrement& motion, const Control& control, double duration,
                const Belief& belief) const {
     motion.advance(control, duration, belief);
@@ -44,61 +38,11 @@ struct Linearised {
                                const SensorNoise& noise) const {
     return new_landmark(pose, seen, noise);
   }
-
-  // Where pose and map are correlated.
-  template <class Real>
-  [[gnu::always_inline]] StraightSight<Real> straight_sight(const Sightline<Real>& s,
-                                                            const Symmetric2<Real>& /*relative*/,
-                                                            const RangeBearing<Real>& seen,
-                                                            const SensorNoise& noise) const {
-    return {residual(seen, s), Real(0.0), s.per_range,
-            Real(noise.range), Real(0.0), Real(noise.bearing)};
-  }
-  template <class Real>
-  StraightTurn<Real> straight_turn(const Real& /*heading_variance*/) const {
-    return {Real(1.0), Real(1.0), Real(0.0)};
-  }
-  template <class Real>
-  StraightPlace<Real> straight_place(const Real& /*heading_variance*/,
-                                     const RangeBearing<Real>& seen,
-                                     const SensorNoise& noise) const {
-    return {seen.range, seen.range, Real(noise.range)};
-  }
-  template <class Real>
-  StraightBirth<Real> straight_birth(const Symmetric3<Real>& /*pose*/,
-                                     const RangeBearing<Real>& seen,
-                                     const SensorNoise& noise) const {
-    const Real per_range = 1.0 / max(seen.range, Real(kLeastDistance));
-    return {seen,     {Real(0.0), per_range}, {Real(0.0), Real(1.0)}, Real(noise.range), Real(0.0),
-            Real(0.0)};
-  }
-};
-
-/// Landmarks alone: range and bearing from where they were born (SPEC 24, last lines).
-struct Anchored {
-  template <class Real>
-  using Landmark = AnchoredLandmark<Real>;
-
-  template <class Real, class Mask, class Weighed>
-  [[gnu::always_inline]] Innovation<Real> update(AnchoredLandmark<Real>& landmark,
-                                                 const BasicPose<Real>& pose,
-                                                 const RangeBearing<Real>& seen,
-                                                 const SensorNoise& noise, const Mask& matched,
-                                                 Weighed& evidence) const {
-    return update_anchored(landmark, pose, seen, noise, matched, evidence);
-  }
-  template <class Real>
-  AnchoredLandmark<Real> birth(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
-                               const SensorNoise& noise) const {
-    return new_anchored_landmark(pose, seen, noise);
-  }
 };
 
 /// Sigma points: unscented (SPEC 8) or central differences (SPEC 9, 10), by their rules.
 class SigmaPoints {
  public:
-  template <class Real>
-  using Landmark = LandmarkGaussian<Real>;
   struct Rules {
     SigmaRule motion;    ///< of (pose, control noise): 5 dimensions
     SigmaRule pose;      ///< of (pose, landmark): 5
@@ -135,29 +79,6 @@ class SigmaPoints {
   LandmarkGaussian<Real> birth(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
                                const SensorNoise& noise) const {
     return new_landmark_by_sigma_points(pose, seen, noise, rules_.landmark, ray_);
-  }
-
-  // Where pose and map are correlated.
-  template <class Real>
-  [[gnu::always_inline]] StraightSight<Real> straight_sight(const Sightline<Real>& s,
-                                                            const Symmetric2<Real>& relative,
-                                                            const RangeBearing<Real>& seen,
-                                                            const SensorNoise& noise) const {
-    return sight_by_sigma_points(s, relative, seen, noise, rules_.pose);
-  }
-  template <class Real>
-  StraightTurn<Real> straight_turn(const Real& heading_variance) const {
-    return turn_by_sigma_points(heading_variance, rules_.motion);
-  }
-  template <class Real>
-  StraightPlace<Real> straight_place(const Real& heading_variance, const RangeBearing<Real>& seen,
-                                     const SensorNoise& noise) const {
-    return place_by_sigma_points(heading_variance, seen, noise, rules_.landmark);
-  }
-  template <class Real>
-  StraightBirth<Real> straight_birth(const Symmetric3<Real>& pose, const RangeBearing<Real>& seen,
-                                     const SensorNoise& noise) const {
-    return birth_by_sigma_points(pose, seen, noise, rules_.landmark);
   }
 
  private:

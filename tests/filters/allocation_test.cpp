@@ -71,10 +71,6 @@ void expect_no_allocation(const char* name, const char* option, const char* valu
   EXPECT_EQ(n_allocations, before) << value;
 }
 
-TEST(Allocation, ResampleMoveAllocatesNothingInASecondRun) {
-  expect_no_allocation("fastslam2", "move_lag", "9");
-}
-
 TEST(Allocation, EvolutionOfAPopulationOfParticlesAllocatesNothingInASecondRun) {
   for (const char* mode : {"as_printed", "prior", "shared"})
     expect_no_allocation("de_srcd", "mode", mode);

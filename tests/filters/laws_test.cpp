@@ -253,22 +253,6 @@ INSTANTIATE_TEST_SUITE_P(All, EveryFilter,
                          testing::ValuesIn(filter_kinds().begin(), filter_kinds().end()),
                          [](const auto& instance) { return instance.param.name; });
 
-/// Those that offer it, with anchored landmarks.
-std::vector<FilterKind> anchored_kinds() {
-  std::vector<FilterKind> kinds;
-  for (FilterKind kind : filter_kinds()) {
-    for (FilterOption& option : kind.options) {
-      if (option.name != "landmarks") continue;
-      option.fallback = "anchored";
-      kind.name += "_anchored";
-      kinds.push_back(kind);
-    }
-  }
-  return kinds;
-}
-INSTANTIATE_TEST_SUITE_P(Anchored, EveryFilter, testing::ValuesIn(anchored_kinds()),
-                         [](const auto& instance) { return instance.param.name; });
-
 std::string text_of(const std::string& path) {
   std::ifstream file(std::string(MONTECARTA_SOURCE_DIR) + "/" + path);
   return {std::istreambuf_iterator<char>(file), {}};

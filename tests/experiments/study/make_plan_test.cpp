@@ -84,17 +84,6 @@ TEST(Plan, RefusesJointEstimatesThatNoCellHas) {
       HasSubstr("nobody knows which landmark of a map is which"));
 }
 
-TEST(Plan, RefusesSettingsOfAFilterThatDoNotGoTogether) {
-  const char* cell = "[cells]\ncell = ekf_slam";
-  EXPECT_EQ(plan_complaint(with(cell, "[cells]\ncell = fastslam2 move_lag=0,5 landmarks=anchored")),
-            "trial.ini:7: move_lag = 5 and landmarks = anchored (the two are not made to go "
-            "together): give landmarks = cartesian or move_lag = 0");
-  EXPECT_THAT(
-      plan_complaint(with(cell, "[association]\nkind = nearest\n[cells]\ncell = srcd move_lag=3")),
-      HasSubstr("trial.ini:9: move_lag = 3 and association.kind = nearest"));
-  EXPECT_EQ(plan_complaint(with(cell, "[cells]\ncell = fastslam2 landmarks=anchored")), "nothing");
-}
-
 TEST(Plan, CanScanAsThePublicSimulatorDoes) {
   const StudyPlan plan =
       make_plan(parsed(with("[cells]", "scan_rate = 4.444444444444445\n[cells]")));

@@ -10,24 +10,19 @@ class DelayedFilters : public testing::TestWithParam<Variant> {};
 TEST_P(DelayedFilters, LanesEqualOneParticleAtATime) {
   const SmallWorldSettings settings{.scans = 60};
   const auto lanes = make_production(GetParam(), settings);
-  const FilterSetup setup = setup_of(GetParam(), settings);
-  const auto single = GetParam().filter == "delayed" ? make_delayed<double>(setup)
-                                                     : make_delayed_srcd<double>(setup);
+  const auto single = make_delayed<double>(setup_of(GetParam(), settings));
   expect_same_run(*lanes, *single, small_world(settings), 1e-9);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     All, DelayedFilters,
-    testing::Values(
-        delayed("4"), delayed("0", 9), delayed("5", 13, Association::nearest),
-        delayed("0", 8, Association::nearest),
-        Variant{"delayed_srcd", "closed", Association::known, 13, {{"draw_every", "6"}}},
-        Variant{"delayed_srcd", "closed", Association::nearest, 5, {{"draw_every", "6"}}},
-        Variant{"delayed",
-                "closed",
-                Association::known,
-                13,
-                {{"draw_every", "0"}, {"draw_beyond_deg", "0.5"}}}),
+    testing::Values(delayed("4"), delayed("0", 9), delayed("5", 13, Association::nearest),
+                    delayed("0", 8, Association::nearest),
+                    Variant{"delayed",
+                            "closed",
+                            Association::known,
+                            13,
+                            {{"draw_every", "0"}, {"draw_beyond_deg", "0.5"}}}),
     testing::PrintToStringParamName());
 
 }  // namespace

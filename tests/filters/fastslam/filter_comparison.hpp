@@ -35,17 +35,6 @@ struct Variant {
   }
 };
 
-/// The same with anchored landmarks.
-inline Variant anchored(Variant variant) {
-  variant.options["landmarks"] = "anchored";
-  return variant;
-}
-
-/// A sensor rough enough that landmarks are bent.
-inline SmallWorldSettings rough_small_world(std::size_t scans = 40) {
-  return {.scans = scans, .noise = {.sigma_range = 0.5, .sigma_bearing = 0.1}};
-}
-
 inline const FilterKind& kind_of(const Variant& v) {
   const auto kinds = filter_kinds();
   return *std::find_if(kinds.begin(), kinds.end(),

@@ -47,7 +47,7 @@ class DeSrcdFastSlam : public SrcdFastSlam {
       centre = most_probable(context.identity(Draw::evolution, i), p, root, predicted, P_predicted,
                              scan);
     }
-    RngStream draw = pose_numbers(context, i);
+    RngStream draw = context.stream(Draw::pose_proposal, i);
     Eigen::Vector3d eps;
     for (int k = 0; k < 3; ++k) eps(k) = draw.normal();
     const double inflation = pays() ? de_.inflation : 1.0;

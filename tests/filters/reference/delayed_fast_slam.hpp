@@ -9,8 +9,7 @@
 namespace montecarta::reference {
 
 /// FastSLAM II that draws poses at every `every`-th scan (SPEC 24, last lines), each particle a
-/// full EKF-SLAM in between, `Joint`; known association, no clutter.
-template <class Joint = TextbookEkfSlam>
+/// full EKF-SLAM in between; known association, no clutter.
 class DelayedFastSlam final : public SlamFilter {
  public:
   DelayedFastSlam(const FastSlamSettings& settings, std::size_t every)
@@ -58,7 +57,7 @@ class DelayedFastSlam final : public SlamFilter {
  private:
   struct Particle {
     explicit Particle(const Belief& belief) : joint(belief) {}
-    Joint joint;
+    TextbookEkfSlam joint;
     Eigen::Vector3d refined_mean = Eigen::Vector3d::Zero();
     Eigen::Matrix3d refined_covariance = Eigen::Matrix3d::Zero();
     double log_weight = 0.0;
@@ -70,8 +69,8 @@ class DelayedFastSlam final : public SlamFilter {
     for (std::size_t i = 0; i < gaussians.size(); ++i) {
       const Particle& p = particles_[i];
       gaussians[i].log_weight = p.log_weight;
-      gaussians[i].pose = now ? Eigen::Vector3d(p.joint.mean.template head<3>()) : p.refined_mean;
-      const Eigen::Matrix3d P = p.joint.covariance.template topLeftCorner<3, 3>();
+      gaussians[i].pose = now ? Eigen::Vector3d(p.joint.mean.head<3>()) : p.refined_mean;
+      const Eigen::Matrix3d P = p.joint.covariance.topLeftCorner<3, 3>();
       gaussians[i].covariance = own * (now ? P : p.refined_covariance);
     }
     return mixture_moments(
@@ -83,14 +82,14 @@ class DelayedFastSlam final : public SlamFilter {
     const Belief& b = settings_.belief;
     return Eigen::Vector2d(std::pow(b.sigma_range, 2), std::pow(b.sigma_bearing, 2)).asDiagonal();
   }
-  double log_density(const Joint& joint, const Detection& detection) const {
+  double log_density(const TextbookEkfSlam& joint, const Detection& detection) const {
     const auto [sight, H] = joint.look(joint.row_of(detection.identity));
     const Eigen::Matrix2d S = sandwich(H, joint.covariance) + R();
     return log_gaussian<2>(to_vector(residual(sight_of(detection), sight)), S);
   }
 
   void weigh(const StepContext& context, std::uint32_t i, Particle& p, Scan scan) const {
-    const Joint prior = p.joint;
+    const TextbookEkfSlam prior = p.joint;
     std::vector<Detection> again, fresh;
     for (const Detection& detection : scan) {
       (prior.row_of(detection.identity) < 0 ? fresh : again).push_back(detection);
@@ -100,12 +99,12 @@ class DelayedFastSlam final : public SlamFilter {
       p.joint.update({&detection, 1});
     }
     if (draws_) {
-      p.refined_mean = p.joint.mean.template head<3>();
-      p.refined_covariance = p.joint.covariance.template topLeftCorner<3, 3>();
+      p.refined_mean = p.joint.mean.head<3>();
+      p.refined_covariance = p.joint.covariance.topLeftCorner<3, 3>();
       const Eigen::Vector3d drawn = draw_pose(context.stream(Draw::pose_proposal, i), p);
       p.joint = prior;
       condition(p.joint, drawn);
-      p.joint.update_map(again);
+      p.joint.update(again);
     }
     p.joint.update(fresh);
   }
@@ -120,19 +119,19 @@ class DelayedFastSlam final : public SlamFilter {
   }
 
   /// The landmarks given that the pose is `drawn`; then their correlations are forgotten.
-  static void condition(Joint& joint, const Eigen::Vector3d& drawn) {
+  static void condition(TextbookEkfSlam& joint, const Eigen::Vector3d& drawn) {
     const Eigen::Index n = joint.mean.size() - 3;
-    const Eigen::Matrix3d P = joint.covariance.template topLeftCorner<3, 3>();
+    const Eigen::Matrix3d P = joint.covariance.topLeftCorner<3, 3>();
     const Eigen::MatrixXd P_fx = joint.covariance.bottomLeftCorner(n, 3);
     const Eigen::Matrix3d per_P = P.completeOrthogonalDecomposition().pseudoInverse();
     const Eigen::MatrixXd gain = product(P_fx, per_P);
     joint.mean.tail(n) += product(gain, boxminus(as_pose(drawn), joint.pose()));
     const Eigen::MatrixXd given =
         joint.covariance.bottomRightCorner(n, n) - product(gain, P_fx.transpose());
-    joint.mean.template head<3>() << drawn.head<2>(), wrap(drawn(2));
+    joint.mean.head<3>() << drawn.head<2>(), wrap(drawn(2));
     joint.covariance.setZero();
     for (Eigen::Index k = 3; k < n + 3; k += 2) {
-      joint.covariance.template block<2, 2>(k, k) = given.template block<2, 2>(k - 3, k - 3);
+      joint.covariance.block<2, 2>(k, k) = given.block<2, 2>(k - 3, k - 3);
     }
   }
 

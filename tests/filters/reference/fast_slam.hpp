@@ -45,20 +45,18 @@ class FastSlam : public SlamFilter {
   }
 
   void predict(const StepContext& context, const Control& control, double duration) final {
-    resample(context);
-    note_control(control, duration);
+    resample();
     for (std::uint32_t i = 0; i < particles_.size(); ++i) {
       predict_particle(context, i, particles_[i], control, duration);
     }
   }
 
   void update(const StepContext& context, Scan scan) final {
-    resample(context);
+    resample();
     after_update_ = true;
     for (Particle& p : particles_) associate(p, scan);  // step 1
     report_ = {.ess = effective()};
     if (nothing_to_use()) return;  // step 2
-    note_scan(scan);
     for (std::uint32_t i = 0; i < particles_.size(); ++i) {
       weigh_and_draw(context, i, particles_[i], scan);  // step 3
       if (!known()) particles_[i].log_weight += log_p0_ * unmatched(particles_[i]);
@@ -71,7 +69,6 @@ class FastSlam : public SlamFilter {
       parents_ = draw_parents(settings_.scheme, weights(), context);
     }
     for (Particle& p : particles_) add_new_landmarks(p, scan);  // step 7
-    end_scan();
   }
 
   const ScanReport& report() const final { return report_; }
@@ -106,12 +103,6 @@ class FastSlam : public SlamFilter {
     return new_landmark(pose, detection, R_);
   }
 
-  // For filters that draw past scans anew.
-  virtual void note_control(const Control& /*control*/, double /*duration*/) {}
-  virtual void note_scan(Scan /*scan*/) {}
-  virtual void end_scan() {}
-  virtual void part(const StepContext& /*context*/) {}
-
   bool known() const { return settings_.association.kind == Association::known; }
   PoseMoments drawn() const {
     return mixture_moments(
@@ -125,6 +116,7 @@ class FastSlam : public SlamFilter {
   Eigen::Matrix2d Q_;
   std::vector<Particle> particles_;
 
+ private:
   void associate(Particle& p, Scan scan) const {
     const NearestNeighbour nearest{settings_.association, R_, p.pose, p.covariance};
     p.pairings = known() ? pair_by_identity(scan, p.map) : nearest.pair(scan, p.map);
@@ -187,7 +179,7 @@ class FastSlam : public SlamFilter {
   }
 
   /// Once between two scans: what the last one decided takes effect.
-  void resample(const StepContext& context) {
+  void resample() {
     if (!std::exchange(after_update_, false)) return;
     for (std::uint32_t i = 0; i < particles_.size(); ++i) particles_[i].ancestor = i;
     if (!report_.resampled) return;
@@ -199,7 +191,6 @@ class FastSlam : public SlamFilter {
       next.back().log_weight = -std::log(static_cast<double>(particles_.size()));
     }
     particles_ = std::move(next);
-    part(context);
   }
 
   ScanReport report_;

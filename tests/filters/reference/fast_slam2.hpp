@@ -28,11 +28,6 @@ class FastSlam2 : public FastSlam {
   }
 
  protected:
-  /// What the pose of particle i is drawn with.
-  virtual RngStream pose_numbers(const StepContext& context, std::uint32_t i) const {
-    return context.stream(Draw::pose_proposal, i);
-  }
-
   /// Carries (p.pose, p.covariance) through one step.
   virtual void move_gaussian(Particle& p, const Control& control, double duration) const {
     const auto step = linearised_move(as_pose(p.pose), control, duration, settings_.belief.vehicle);
@@ -90,7 +85,7 @@ class FastSlam2 : public FastSlam {
     const double log_closed = refine(p, scan);
     p.refined_pose = p.pose;
     p.refined_covariance = p.covariance;
-    draw_pose(pose_numbers(context, i), p);
+    draw_pose(context.stream(Draw::pose_proposal, i), p);
     switch (weight_) {
       case Weight::closed:
         p.log_weight += log_closed;

@@ -16,10 +16,6 @@ struct Landmark {
   Eigen::Vector2d mean;
   Eigen::Matrix2d covariance;
   Eigen::Matrix2d factor = Eigen::Matrix2d::Zero();  ///< where the filter keeps square roots
-  /// Where the filter anchors landmarks: the pose of birth, and (range, bearing) from it.
-  Eigen::Vector3d anchor = Eigen::Vector3d::Zero();
-  Eigen::Vector2d sight = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d sight_covariance = Eigen::Matrix2d::Zero();
 };
 
 /// One particle of the FastSLAM family (SPEC 5), with its own map and its own opinion on the scan.
@@ -34,10 +30,6 @@ struct Particle {
   std::uint32_t ancestor = 0;                ///< index one scan ago
   std::vector<std::optional<Landmark>> map;  ///< by identity where known, else by birth
   std::vector<Pairing> pairings;             ///< one per detection
-
-  /// Where past scans are drawn anew: what it was before each of them, and what each weighed.
-  std::vector<Particle> past = {};
-  std::vector<double> past_log_weights = {};
 };
 
 inline Pose as_pose(const Eigen::Vector3d& x) { return {x(0), x(1), x(2)}; }

@@ -17,13 +17,12 @@ inline Eigen::MatrixXd sandwich(const Eigen::MatrixXd& A, const Eigen::MatrixXd&
 }
 
 /// EKF-SLAM with full matrices at every step, known association; as the textbook has it and as
-/// slow. Filters that keep other coordinates of their landmarks differ in look() and born().
+/// slow.
 class TextbookEkfSlam {
  public:
   explicit TextbookEkfSlam(const Belief& belief) : belief_(belief) {}
-  virtual ~TextbookEkfSlam() = default;
 
-  virtual void start(const Pose& start) {
+  void start(const Pose& start) {
     mean.resize(3);
     mean << start.x, start.y, start.heading;
     covariance = Eigen::MatrixXd::Zero(3, 3);
@@ -59,17 +58,12 @@ class TextbookEkfSlam {
     RangeBearing<double> sight;
     Eigen::MatrixXd H;
   };
-  virtual Look look(Eigen::Index row) const {
+  Look look(Eigen::Index row) const {
     const auto at = linearised_sight(pose(), Point{mean(row), mean(row + 1)});
-    return stacked(at, row, landmark_jacobian(at));
-  }
-  /// Takes in detections of known landmarks from a pose that is certain, and the landmarks
-  /// independent of each other.
-  virtual void update_map(Scan scan) { update(scan); }
-  /// A landmark in the map.
-  virtual Eigen::Vector2d place(Eigen::Index row) const { return mean.segment<2>(row); }
-  virtual Eigen::Matrix2d place_covariance(Eigen::Index row) const {
-    return covariance.block<2, 2>(row, row);
+    Look look{at.sight, Eigen::MatrixXd::Zero(2, mean.size())};
+    look.H.leftCols<3>() = pose_jacobian(at);
+    look.H.middleCols<2>(row) = landmark_jacobian(at);
+    return look;
   }
 
   Pose pose() const { return {mean(0), mean(1), mean(2)}; }
@@ -85,31 +79,11 @@ class TextbookEkfSlam {
   Eigen::MatrixXd covariance;
   std::vector<std::int32_t> identities;
 
- protected:
+ private:
   Eigen::Matrix2d R() const {
     return Eigen::Vector2d(std::pow(belief_.sigma_range, 2), std::pow(belief_.sigma_bearing, 2))
         .asDiagonal();
   }
-  Look stacked(const LinearisedSight<double>& at, Eigen::Index row,
-               const Eigen::Matrix2d& by_landmark) const {
-    Look look{at.sight, Eigen::MatrixXd::Zero(2, mean.size())};
-    look.H.leftCols<3>() = pose_jacobian(at);
-    look.H.middleCols<2>(row) = by_landmark;
-    return look;
-  }
-
-  /// A landmark seen for the first time, with its derivatives by pose and detection.
-  struct Born {
-    Eigen::Vector2d mean;
-    Matrix23 by_pose;
-    Eigen::Matrix2d by_sight;
-  };
-  virtual Born born(const Detection& detection) {
-    const auto placed = linearised_place(pose(), sight_of(detection));
-    return {to_vector(placed.point), pose_jacobian(placed), sight_jacobian(placed)};
-  }
-
- private:
   void absorb(const Detection& detection, Eigen::Index row) {
     const auto [sight, H] = look(row);
     const Eigen::Matrix2d S = sandwich(H, covariance) + R();
@@ -123,16 +97,17 @@ class TextbookEkfSlam {
   }
 
   void append(const Detection& detection) {
-    const Born landmark = born(detection);
+    const auto placed = linearised_place(pose(), sight_of(detection));
+    const Eigen::Matrix2d Gz = sight_jacobian(placed);
     const Eigen::Index n = mean.size();
     Eigen::MatrixXd G = Eigen::MatrixXd::Zero(n + 2, n);
     G.topRows(n).setIdentity();
-    G.bottomLeftCorner<2, 3>() = landmark.by_pose;
+    G.bottomLeftCorner<2, 3>() = pose_jacobian(placed);
     Eigen::MatrixXd grown = sandwich(G, covariance);
-    grown.bottomRightCorner<2, 2>() += landmark.by_sight * R() * landmark.by_sight.transpose();
+    grown.bottomRightCorner<2, 2>() += Gz * R() * Gz.transpose();
     covariance = grown;
     mean.conservativeResize(n + 2);
-    mean.tail<2>() = landmark.mean;
+    mean.tail<2>() = to_vector(placed.point);
     identities.push_back(detection.identity);
   }
 

@@ -1,9 +1,0 @@
-// SPDX-License-Identifier: BSD-3-Clause
-#include "filters/fastslam/delayed.hpp"
-
-namespace montecarta {
-
-template std::unique_ptr<SlamFilter> make_delaying<Lanes>(const FilterSetup&, const Linearised&,
-                                                          const Anchored&);
-
-}  // namespace montecarta

@@ -1,8 +1,0 @@
-// SPDX-License-Identifier: BSD-3-Clause
-#include "filters/fastslam/anchored.hpp"
-
-namespace montecarta {
-
-template std::unique_ptr<SlamFilter> make_fastslam1_anchored<Lanes>(const FilterSetup&);
-
-}  // namespace montecarta

@@ -1,8 +1,0 @@
-// SPDX-License-Identifier: BSD-3-Clause
-#include "filters/fastslam/moved.hpp"
-
-namespace montecarta {
-
-template std::unique_ptr<SlamFilter> make_moved<Lanes>(const FilterSetup&, const SigmaPoints&);
-
-}  // namespace montecarta
