@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <xsimd/xsimd.hpp>
+#include "engine/numbers/registers.hpp"
 
 #include <array>
 #include <cstddef>
@@ -15,7 +15,7 @@ struct LaneMask;
 /// production. A value type with the arithmetic of double; comparisons give a LaneMask and branches
 /// become select().
 struct alignas(64) Lanes {
-  using Register = xsimd::batch<double>;
+  using Register = register_math::Register;
   static constexpr std::size_t kSize = 8;
   static constexpr std::size_t kRegisters = kSize / Register::size;
   static_assert(kRegisters * Register::size == kSize);
@@ -41,8 +41,20 @@ struct alignas(64) Lanes {
     }
     return lanes;
   }
+  /// Eight doubles from anywhere.
+  [[gnu::always_inline]] static Lanes load_unaligned(const double* memory) {
+    Lanes lanes;
+    for (std::size_t k = 0; k < kRegisters; ++k) {
+      lanes.part[k] = Register::load_unaligned(memory + k * Register::size);
+    }
+    return lanes;
+  }
   void store(double* memory) const {
     for (std::size_t k = 0; k < kRegisters; ++k) part[k].store_aligned(memory + k * Register::size);
+  }
+  [[gnu::always_inline]] void store_unaligned(double* memory) const {
+    for (std::size_t k = 0; k < kRegisters; ++k)
+      part[k].store_unaligned(memory + k * Register::size);
   }
   double get(std::size_t lane) const {
     return part[lane / Register::size].get(lane % Register::size);
@@ -50,7 +62,7 @@ struct alignas(64) Lanes {
 };
 
 struct LaneMask {
-  using Register = xsimd::batch_bool<double>;
+  using Register = Lanes::Register::batch_bool_type;
   std::array<Register, Lanes::kRegisters> part;
 };
 

@@ -3,7 +3,8 @@
 
 #include "engine/numbers/angle.hpp"
 #include "engine/numbers/lanes.hpp"
-#include "engine/numbers/lanes_trigonometry.hpp"
+#include "engine/numbers/register_exponential.hpp"
+#include "engine/numbers/register_trigonometry.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -48,6 +49,14 @@ inline void set(Lanes& value, std::size_t lane, double number) {
   reinterpret_cast<double*>(value.part.data())[lane] = number;
 }
 
+/// The sum over all lanes, in their order.
+template <class Real>
+double sum_of_lanes(const Real& a) {
+  double sum = get(a, 0);
+  for (std::size_t lane = 1; lane < kLanesOf<Real>; ++lane) sum += get(a, lane);
+  return sum;
+}
+
 /// The unit vector at an angle.
 template <class Real>
 struct Direction {
@@ -69,19 +78,20 @@ inline Direction<double> direction_of(double angle) { return {std::cos(angle), s
 inline Lanes sin(const Lanes& angle) { return direction_of(angle).sine; }
 inline Lanes cos(const Lanes& angle) { return direction_of(angle).cosine; }
 inline Lanes log(const Lanes& a) {
-  return by_register([](const auto& x) { return xsimd::log(x); }, a);
+  return by_register([](const auto& x) { return register_math::log(x); }, a);
 }
 
 inline Lanes sqrt(const Lanes& a) {
   return by_register([](const auto& x) { return xsimd::sqrt(x); }, a);
 }
 inline Lanes exp(const Lanes& a) {
-  return by_register([](const auto& x) { return xsimd::exp(x); }, a);
+  return by_register([](const auto& x) { return register_math::exp(x); }, a);
 }
 /// a b + c, rounded once.
 [[gnu::always_inline]] inline Lanes fma(const Lanes& a, const Lanes& b, const Lanes& c) {
-  return by_register(
-      [](const auto& x, const auto& y, const auto& z) { return xsimd::fma(x, y, z); }, a, b, c);
+  return by_register([](const auto& x, const auto& y,
+                        const auto& z) { return register_math::multiply_add(x, y, z); },
+                     a, b, c);
 }
 inline Lanes max(const Lanes& a, const Lanes& b) {
   return by_register([](const auto& x, const auto& y) { return xsimd::max(x, y); }, a, b);
@@ -104,7 +114,8 @@ inline double shorter_way(double angle) {
   return by_register(
       [](const auto& x) {
         using Register = Lanes::Register;
-        return xsimd::fnma(xsimd::nearbyint(x * Register(1.0 / kTwoPi)), Register(kTwoPi), x);
+        return register_math::negative_multiply_add(xsimd::nearbyint(x * Register(1.0 / kTwoPi)),
+                                                    Register(kTwoPi), x);
       },
       angle);
 }
@@ -115,7 +126,8 @@ inline Lanes wrap(const Lanes& angle) {
       [](const auto& x) {
         using Register = Lanes::Register;
         const Register turns = xsimd::nearbyint(x * Register(1.0 / kTwoPi));
-        const Register wrapped = xsimd::min(xsimd::fnma(turns, Register(kTwoPi), x), Register(kPi));
+        const Register wrapped = xsimd::min(
+            register_math::negative_multiply_add(turns, Register(kTwoPi), x), Register(kPi));
         return xsimd::select(wrapped > Register(-kPi), wrapped, Register(kPi));
       },
       angle);

@@ -6,30 +6,21 @@
 #include "engine/random/stream.hpp"
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <immintrin.h>
 
 namespace montecarta {
 
 /// One 32-bit word in each 64-bit lane of a register.
 struct WordRegister {
-  using Batch = xsimd::batch<std::uint64_t>;
+  using Batch = register_math::BitsOf<register_math::Register>;
   Batch lanes;
 };
 
-/// The exact product lane by lane; the library multiplies 64-bit lanes in full, at three times the
-/// price.
+/// The exact product lane by lane.
 inline Halves<WordRegister> multiply_words(const WordRegister& a, std::uint32_t b) {
   using Batch = WordRegister::Batch;
-#if defined(__AVX512F__)
-  const Batch product(_mm512_mul_epu32(a.lanes.data, _mm512_set1_epi64(b)));
-#elif defined(__AVX2__)
-  const Batch product(_mm256_mul_epu32(a.lanes.data, _mm256_set1_epi64x(b)));
-#else
-  const Batch product = a.lanes * Batch(std::uint64_t{b});
-#endif
+  const Batch product = register_math::multiply_low_halves(a.lanes, b);
   return {{product >> 32}, {product & Batch(std::uint64_t{0xffffffffU})}};
 }
 inline WordRegister operator^(const WordRegister& a, const WordRegister& b) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/joint/compressed_gaussian.hpp"
 
+#include "filters/joint/products.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -118,7 +120,8 @@ double CompressedGaussian::extent() const {
 }
 
 CompressedGaussian::Drift CompressedGaussian::drift() const {
-  return {coefficients_of_mean().norm(), coefficients_of_covariance().toDenseMatrix().norm()};
+  const Eigen::MatrixXd Y = coefficients_of_covariance();
+  return {coefficients_of_mean().norm(), std::sqrt(dot(Y.reshaped(), Y.reshaped()))};
 }
 
 /// The range alone decides: v^2 / S of it is no more than D^2, and the standard deviation of a

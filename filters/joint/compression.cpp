@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/joint/compressed_gaussian.hpp"
+#include "filters/joint/products.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,11 +28,16 @@ void CompressedGaussian::expand_into(MapMoments& map) const {
 
 void CompressedGaussian::write_far(MapMoments& map) const {
   const auto W = basis_.vectors();
-  const Eigen::MatrixXd WY = W * coefficients_of_covariance();
-  map.mean.head(W.rows()) += W * coefficients_of_mean();
-  map.cross.topRows(W.rows()) = W * coefficients_of_cross();
-  map.covariance.topLeftCorner(W.rows(), W.rows()).triangularView<Eigen::Lower>() +=
-      WY * W.transpose();
+  const Eigen::MatrixXd Y = coefficients_of_covariance();
+  Eigen::MatrixXd WY = Eigen::MatrixXd::Zero(W.rows(), W.cols());
+  add_product(W, Y, Part::whole, WY);
+  add_product(WY, W, Part::lower, map.covariance.topLeftCorner(W.rows(), W.rows()));
+  add_combination(W, coefficients_of_mean(), map.mean.head(W.rows()));
+  auto cross = map.cross.topRows(W.rows());
+  cross.setZero();
+  for (Eigen::Index j = 0; j < 3; ++j) {
+    add_combination(W, coefficients_of_cross().col(j), cross.col(j));
+  }
 }
 
 /// The near landmarks' rows and columns.
@@ -65,7 +71,7 @@ void CompressedGaussian::write_cross_with_far(Eigen::Index at, Columns2& column)
     X = local.block(at, stand_ins_, 2, k).transpose();
   }
   for (Eigen::Index j = 0; j < 2; ++j) {
-    column.col(j).head(basis_.vectors().rows()).noalias() = basis_.vectors() * X.col(j);
+    add_combination(basis_.vectors(), X.col(j), column.col(j).head(basis_.vectors().rows()));
   }
 }
 

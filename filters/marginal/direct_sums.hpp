@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/marginal/falling_exponential.hpp"
 #include "filters/marginal/pose_kernels.hpp"
 
 #include <array>
@@ -33,7 +32,7 @@ void add_kernels(const BasicPose<Real>& target, std::span<const PoseKernel<N>> k
                  std::array<Real, N>& sums) {
   std::array<Real, N> total = sums;
   for (const PoseKernel<N>& kernel : kernels) {
-    const Real density = falling_exponential(half_squared_distance<headings>(target, kernel));
+    const Real density = exp(-half_squared_distance<headings>(target, kernel));
     for (std::size_t n = 0; n < N; ++n) total[n] = fma(Real(kernel.height[n]), density, total[n]);
   }
   sums = total;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "engine/particles/weights.hpp"
-#include "filters/marginal/falling_exponential.hpp"
 #include "filters/marginal/marginal_options.hpp"
 #include "filters/marginal/shared_map.hpp"
 #include "filters/moments/sensor_noise.hpp"
@@ -50,9 +49,7 @@ class LandmarkEvidence {
   /// At `place`, after its cost(): every particle counts as much as it explains.
   NormalEquations normal_equations(const Point& place) const {
     return sums(place, [&](std::size_t b) {
-      return objective_ == MapObjective::likelihood
-                 ? falling_exponential(Real(log_sum_) - terms_[b])
-                 : share(b);
+      return objective_ == MapObjective::likelihood ? exp(terms_[b] - Real(log_sum_)) : share(b);
     });
   }
   /// Sum of w H' R^-1 H at `place` (SPEC 15.3).
@@ -99,17 +96,11 @@ class LandmarkEvidence {
                   Real(0.0));
   }
 
-  static double over_lanes(const Real& sum) {
-    double total = 0.0;
-    for (std::size_t lane = 0; lane < kLanesOf<Real>; ++lane) total += get(sum, lane);
-    return total;
-  }
-
   double mean_square(const Point& place) const {
     Real sum(0.0);
     for (std::size_t b = 0; b < rays_.size(); ++b)
       sum = fma(share(b), squared(sight(b, place)), sum);
-    return over_lanes(sum);
+    return sum_of_lanes(sum);
   }
 
   /// -2 log Sum w exp(-squared / 2), with the greatest term taken out first.
@@ -123,8 +114,8 @@ class LandmarkEvidence {
     for (std::size_t lane = 1; lane < kLanesOf<Real>; ++lane)
       peak = std::max(peak, get(peaks, lane));
     Real sum(0.0);
-    for (const Real& term : terms_) sum += falling_exponential(Real(peak) - term);
-    log_sum_ = peak + std::log(over_lanes(sum));
+    for (const Real& term : terms_) sum += exp(term - Real(peak));
+    log_sum_ = peak + std::log(sum_of_lanes(sum));
     return -2.0 * log_sum_;
   }
 
@@ -147,8 +138,8 @@ class LandmarkEvidence {
       S[3] += re * ux + ae * vx;
       S[4] += re * uy + ae * vy;
     }
-    return {{over_lanes(S[0]), over_lanes(S[1]), over_lanes(S[2])},
-            {over_lanes(S[3]), over_lanes(S[4])}};
+    return {{sum_of_lanes(S[0]), sum_of_lanes(S[1]), sum_of_lanes(S[2])},
+            {sum_of_lanes(S[3]), sum_of_lanes(S[4])}};
   }
 
   const Weights<Real>* weights_ = nullptr;

@@ -102,7 +102,7 @@ class KernelTree {
     /// Whether it may contribute more than `share` of a sum.
     template <class Real>
     bool matters(const Real& distance, const std::array<Real, N>& sums, double share) const {
-      const Real density = falling_exponential(distance);
+      const Real density = exp(-distance);
       bool found = false;
       for (std::size_t n = 0; n < N; ++n)
         found = found || any(Real(height[n]) * density > Real(share) * sums[n]);
