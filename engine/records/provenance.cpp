@@ -7,13 +7,15 @@
 #include <chrono>
 #include <ctime>
 #include <fstream>
+#if defined(__GLIBC__)
+#include <gnu/libc-version.h>
+#endif
 #include <sys/utsname.h>
 
 namespace montecarta {
 namespace {
 
-/// The widest vectors the program was compiled for: two builds that differ here may round
-/// differently.
+/// The widest registers the program was compiled for; no result depends on it.
 std::string instruction_set() {
 #if defined(__AVX512F__)
   return "AVX-512";
@@ -26,6 +28,20 @@ std::string instruction_set() {
 #else
   return "none";
 #endif
+}
+
+/// Whose exp(), sin() and so on the program calls.
+std::string libm() {
+#if defined(__GLIBC__)
+  return std::string("glibc ") + gnu_get_libc_version();
+#else
+  return "unknown";
+#endif
+}
+
+std::string machine() {
+  utsname system{};
+  return ::uname(&system) == 0 ? system.machine : "unknown";
 }
 
 std::string date() {
@@ -50,6 +66,8 @@ std::string cpu() {
 
 std::string program_version() { return MONTECARTA_VERSION; }
 
+std::string toolchain() { return MONTECARTA_COMPILER ", " + libm() + ", " + machine(); }
+
 TextPairs collect_provenance() {
   utsname system{};
   const bool known = ::uname(&system) == 0;
@@ -58,6 +76,7 @@ TextPairs collect_provenance() {
       {"git", MONTECARTA_GIT_HASH},
       {"compiler", MONTECARTA_COMPILER},
       {"flags", MONTECARTA_FLAGS},
+      {"libm", libm()},
       {"instruction_set", instruction_set()},
       {"hdf5", h5::library_version()},
       {"date", date()},

@@ -2,6 +2,7 @@
 #include "engine/records/open_result.hpp"
 
 #include <algorithm>
+#include <sstream>
 
 namespace montecarta {
 namespace {
@@ -11,6 +12,19 @@ bool same_columns(const StoredCell& a, const StoredCell& b) {
          std::ranges::equal(a.columns, b.columns, [](const Column& x, const Column& y) {
            return x.name == y.name && x.element == y.element && x.shape == y.shape;
          });
+}
+
+/// Of a build; flags without the instruction set, on which no bit depends.
+std::optional<std::string> fact(const TextPairs& build, const std::string& name) {
+  const auto found = std::ranges::find(build, name, [](const auto& pair) { return pair.first; });
+  if (found == build.end()) return std::nullopt;
+  if (name != "flags") return found->second;
+  std::istringstream words(found->second);
+  std::string rest;
+  for (std::string word; words >> word;) {
+    if (!word.starts_with("-march=")) rest += (rest.empty() ? "" : " ") + word;
+  }
+  return rest;
 }
 
 }  // namespace
@@ -33,13 +47,11 @@ std::optional<std::string> difference(const ResultDescription& a, const ResultDe
 
 std::vector<std::string> build_differences(const TextPairs& a, const TextPairs& b) {
   std::vector<std::string> found;
-  for (const char* name : {"git", "compiler", "flags", "instruction_set"}) {
-    const auto named = [&](const auto& pair) { return pair.first == name; };
-    const auto in_a = std::ranges::find_if(a, named);
-    const auto in_b = std::ranges::find_if(b, named);
-    if (in_a == a.end() || in_b == b.end() || in_a->second == in_b->second) continue;
-    found.push_back("two builds worked on this study (" + std::string(name) + ": " + in_a->second +
-                    " and " + in_b->second + "): the last digits of their runs may differ");
+  for (const char* name : {"version", "git", "compiler", "flags", "libm"}) {
+    const std::optional<std::string> in_a = fact(a, name), in_b = fact(b, name);
+    if (!in_a || !in_b || *in_a == *in_b) continue;
+    found.push_back("two builds worked on this study (" + std::string(name) + ": " + *in_a +
+                    " and " + *in_b + "): the last digits of their runs may differ");
   }
   return found;
 }

@@ -88,8 +88,10 @@ Command verify_command() {
                    data_option(),
                    {"threads", "", {"N"}, "default: what this process may use"},
                    {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},
-       .details = "The study is taken from the file. The same bytes are promised to one build on "
-                  "one instruction set:\nthe file names its own (montecarta info FILE.h5).\n"},
+       .details = "The study is taken from the file. The same bytes are promised to the same "
+                  "version, compiler\n"
+                  "and C library on any x86-64-v3 processor or newer; where they differ from the\n"
+                  "file's own (montecarta info FILE.h5), that is said first.\n"},
       verify};
 }
 

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -24,6 +25,12 @@ struct Called {
   std::string err;  ///< standard error
 };
 
+/// The program under test: that of this build, or the one that MONTECARTA_PROGRAM names.
+inline std::string program_under_test() {
+  const char* other = std::getenv("MONTECARTA_PROGRAM");
+  return other == nullptr ? MONTECARTA_EXECUTABLE : other;
+}
+
 /// A folder of its own for each test, in which the program is called.
 class Program : public testing::Test {
  protected:
@@ -39,7 +46,7 @@ class Program : public testing::Test {
   Called call(const std::vector<std::string>& words, const std::string& before = "") const {
     std::string line = "cd ";  // append() throughout: g++ 12 sees an overrun in " " + std::string
     line.append(shell_quoted(folder_.string())).append(" && ").append(before);
-    line.append(MONTECARTA_EXECUTABLE);
+    line.append(shell_quoted(program_under_test()));
     for (const std::string& word : words) line.append(" ").append(shell_quoted(word));
     line.append(" 2>").append(shell_quoted((folder_ / "stderr").string()));
     Called called;

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Same study, same bits: what every filter computes, on every processor, as stored with the
+// sources.
+#include "engine/records/h5.hpp"
+#include "engine/records/provenance.hpp"
+#include "engine/records/result_file.hpp"
+#include "tests/experiments/commands/program.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cstdint>
+#include <fstream>
+#include <map>
+#include <span>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace montecarta {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kFolder = fs::path(MONTECARTA_SOURCE_DIR) / "tests/experiments/fingerprints";
+
+/// One setting in which all cells of every_filter.ini run.
+struct Setting {
+  std::string name;
+  std::vector<std::string> overrides;
+};
+
+const std::vector<Setting> kSettings = {
+    {"known", {}},
+    {"nearest", {"association.kind=nearest"}},
+    {"large_map", {"association.kind=nearest", "scenario.world=dense_loop"}},
+    {"measured_control", {"scenario.noise=measured-control", "scenario.vehicle=rear_wheel"}}};
+
+using Fingerprints = std::map<std::string, std::string>;  ///< {setting/cell} hexadecimal
+
+std::string hexadecimal(std::uint64_t value) {
+  std::ostringstream text;
+  text << std::hex << value;
+  return text.str();
+}
+
+std::uint64_t fingerprint_in(const h5::Handle& group) {
+  std::uint64_t value = 0;
+  h5::read(h5::open_dataset(group, "fingerprint"), Element::u64,
+           std::as_writable_bytes(std::span(&value, 1)));
+  return value;
+}
+
+void collect(const fs::path& result, const std::string& setting, Fingerprints& found) {
+  const h5::Handle file = h5::open_file(result), cells = h5::open_group(file, "cells");
+  found[setting + "/truth"] = hexadecimal(fingerprint_in(h5::open_group(file, "truth")));
+  for (const std::string& cell : h5::members(cells)) {
+    found[setting + "/" + cell] = hexadecimal(fingerprint_in(h5::open_group(cells, cell)));
+  }
+}
+
+/// The first line names the toolchain.
+struct Stored {
+  std::string toolchain;
+  Fingerprints fingerprints;
+};
+
+Stored read_stored(const fs::path& path) {
+  std::ifstream file(path);
+  Stored stored;
+  std::getline(file, stored.toolchain);
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t comma = line.find(',');
+    stored.fingerprints[line.substr(0, comma)] = line.substr(comma + 1);
+  }
+  return stored;
+}
+
+/// Which cells are in one only, or have other bits.
+std::vector<std::string> differing(const Fingerprints& a, const Fingerprints& b) {
+  Fingerprints all = a;
+  all.insert(b.begin(), b.end());
+  std::vector<std::string> found;
+  for (const auto& [cell, any] : all) {
+    const auto in_a = a.find(cell), in_b = b.find(cell);
+    if (in_a == a.end() || in_b == b.end() || in_a->second != in_b->second) found.push_back(cell);
+  }
+  return found;
+}
+
+void write_stored(const fs::path& path, const std::string& toolchain,
+                  const Fingerprints& fingerprints) {
+  std::ofstream file(path);
+  file << toolchain << "\n";
+  for (const auto& [cell, fingerprint] : fingerprints) file << cell << "," << fingerprint << "\n";
+}
+
+using SameBits = Program;
+
+TEST_F(SameBits, OfEveryFilterOnEveryProcessor) {
+  const std::string here = toolchain();
+  Fingerprints computed;
+  for (const auto& [name, overrides] : kSettings) {
+    std::vector<std::string> words{"run", (kFolder / "every_filter.ini").string(), "-o",
+                                   name + ".h5", "--quiet"};
+    for (const std::string& text : overrides) words.insert(words.end(), {"--set", text});
+    const Called called = call(words);
+    ASSERT_EQ(called.code, 0) << name << ": " << called.err;
+    collect(folder_ / (name + ".h5"), name, computed);
+  }
+  const Stored stored = read_stored(kFolder / "fingerprints.csv");
+  const fs::path actual = fs::path(MONTECARTA_EXECUTABLE).parent_path() / "fingerprints.csv";
+  write_stored(actual, here, computed);
+  if (stored.toolchain != here) {
+    GTEST_SKIP() << "the stored bits are those of " << stored.toolchain << ", this build is of "
+                 << here;
+  }
+  EXPECT_THAT(differing(computed, stored.fingerprints), testing::IsEmpty())
+      << "if the arithmetic was meant to change, copy " << actual << " to " << kFolder;
+}
+
+}  // namespace
+}  // namespace montecarta
