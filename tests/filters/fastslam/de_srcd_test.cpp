@@ -4,7 +4,8 @@
 #include "filters/joint/joint_filters.hpp"
 #include "tests/filters/default_options.hpp"
 #include "tests/filters/fastslam/filter_comparison.hpp"
-#include "tests/filters/reference/de_srcd_fast_slam.hpp"
+#include "tests/filters/reference/gaussian.hpp"
+#include "tests/filters/reference/particle.hpp"
 #include "tests/filters/two_scans.hpp"
 
 #include <gtest/gtest.h>
@@ -17,17 +18,14 @@ Variant de_srcd(const std::string& mode, std::size_t particles,
   return {"de_srcd", "closed", association, particles, {{"mode", mode}}};
 }
 
-std::unique_ptr<reference::DeSrcdFastSlam> make_reference(const Variant& v,
-                                                          const SmallWorldSettings& world) {
+reference::EvolvedFilter make_reference(const Variant& v, const SmallWorldSettings& world) {
   const EvolvedSettings told = evolved_settings(setup_of(v, world).options);
-  reference::Evolution<3> evolution;
-  evolution.scale = told.evolution.scale;
-  evolution.crossover = told.evolution.crossover;
-  evolution.generations = told.evolution.generations;
-  return std::make_unique<reference::DeSrcdFastSlam>(
-      reference_settings(v, world), reference::SrcdParts{},
+  return reference::make_de_srcd_fast_slam(
+      reference_settings(v, world),
       reference::DeSettings{.mode = static_cast<reference::DeMode>(told.mode),
-                            .evolution = evolution,
+                            .scale = told.evolution.scale,
+                            .crossover = told.evolution.crossover,
+                            .generations = told.evolution.generations,
                             .population = told.population,
                             .bounds = told.bounds,
                             .inflation = told.inflation});
@@ -54,17 +52,16 @@ TEST_P(DeSrcd, EqualsTheEigenReference) {
     const SmallWorld world = small_world(settings);
     const auto lanes = make_production(GetParam(), settings);
     const auto single = make_de_srcd<double>(setup_of(GetParam(), settings));
-    const auto plain = make_reference(GetParam(), settings);
+    const auto [plain, evolution] = make_reference(GetParam(), settings);
     expect_same_run(*lanes, *plain, world, 1e-9);
     expect_same_run(*single, *plain, world, 1e-9);
     // Evolution asks which of two places is fitter. Where rounding decides that, two makes part
     // for good; it does so in none of these runs.
-    const reference::Evolution<3>& evolution = plain->evolution();
     if (HasFailure()) {
-      FAIL() << "seed " << seed << ": the closest of " << evolution.decisions
-             << " decisions was one of " << evolution.closest_call;
+      FAIL() << "seed " << seed << ": the closest of " << evolution->decisions
+             << " decisions was one of " << evolution->closest_call;
     }
-    accepted += evolution.accepted;
+    accepted += evolution->accepted;
   }
   EXPECT_GT(accepted, 40U) << "nothing was put to the test";
 }
@@ -72,7 +69,7 @@ TEST_P(DeSrcd, EqualsTheEigenReference) {
 TEST_P(DeSrcd, EstimatesBetweenScansAsTheReferenceDoes) {
   const SmallWorldSettings settings{.scans = 12};
   const auto lanes = make_production(GetParam(), settings);
-  const auto plain = make_reference(GetParam(), settings);
+  const auto plain = make_reference(GetParam(), settings).filter;
   expect_same_steps(*lanes, *plain, small_world(settings), 1e-9);
 }
 

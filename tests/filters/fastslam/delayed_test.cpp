@@ -2,7 +2,6 @@
 #include "filters/joint/joint_filters.hpp"
 #include "tests/filters/default_options.hpp"
 #include "tests/filters/fastslam/delayed_variants.hpp"
-#include "tests/filters/reference/delayed_fast_slam.hpp"
 #include "tests/filters/told_bits.hpp"
 
 namespace montecarta {
@@ -70,8 +69,9 @@ TEST(Delayed, EqualsTheEigenReference) {
     for (const std::size_t particles : {1, 13}) {
       const Variant variant = delayed(every, particles);
       const auto lanes = make_production(variant, settings);
-      reference::DelayedFastSlam plain(reference_settings(variant, settings), std::stoul(every));
-      expect_same_run(*lanes, plain, small_world(settings), 1e-8);
+      const auto plain = reference::make_delayed_fast_slam(reference_settings(variant, settings),
+                                                           std::stoul(every));
+      expect_same_run(*lanes, *plain, small_world(settings), 1e-8);
     }
   }
 }
@@ -80,8 +80,8 @@ TEST(Delayed, EstimatesBetweenScansAsTheReferenceDoes) {
   const SmallWorldSettings settings{.scans = 20};
   const Variant variant = delayed("3");
   const auto lanes = make_production(variant, settings);
-  reference::DelayedFastSlam plain(reference_settings(variant, settings), 3);
-  expect_same_steps(*lanes, plain, small_world(settings), 1e-9);
+  const auto plain = reference::make_delayed_fast_slam(reference_settings(variant, settings), 3);
+  expect_same_steps(*lanes, *plain, small_world(settings), 1e-9);
 }
 
 TEST(Delayed, WalkingBackThroughAncestorsNeverJumpsFartherThanThreeScansOfNoise) {

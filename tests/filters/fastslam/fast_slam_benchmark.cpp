@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/runs/cpu_clock.hpp"
 #include "filters/factory.hpp"
-#include "tests/filters/reference/srcd_fast_slam.hpp"
-#include "tests/filters/reference/ufast_slam.hpp"
+#include "tests/filters/reference/fast_slams.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -59,10 +58,10 @@ std::unique_ptr<SlamFilter> plain(const std::string& name, std::size_t particles
       .particles = particles, .belief = belief(), .landmarks = kSeen};
   constexpr auto kWeight = reference::Weight::closed;
   if (name == "ufastslam")
-    return std::make_unique<reference::UFastSlam>(settings, kWeight, reference::Unscented{}, true);
+    return reference::make_ufast_slam(settings, kWeight, reference::Unscented{}, true);
   if (name == "srcd")
-    return std::make_unique<reference::SrcdFastSlam>(settings, kWeight, reference::SrcdParts{});
-  return std::make_unique<reference::FastSlam2>(settings, kWeight);
+    return reference::make_srcd_fast_slam(settings, kWeight, reference::SrcdParts{});
+  return reference::make_fast_slam2(settings, kWeight);
 }
 
 /// What timing nothing takes [s]: reading the clock is a system call.

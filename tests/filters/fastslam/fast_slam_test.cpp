@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/fast_slam_filters.hpp"
 #include "tests/filters/fastslam/filter_comparison.hpp"
-#include "tests/filters/reference/fast_slam1.hpp"
 
 namespace montecarta {
 namespace {
@@ -12,8 +11,8 @@ std::unique_ptr<SlamFilter> make_single(const Variant& v, const SmallWorldSettin
 }
 std::unique_ptr<SlamFilter> make_reference(const Variant& v, const SmallWorldSettings& world) {
   const reference::FastSlamSettings settings = reference_settings(v, world);
-  if (v.filter == "fastslam1") return std::make_unique<reference::FastSlam1>(settings);
-  return std::make_unique<reference::FastSlam2>(settings, reference_weight(v));
+  if (v.filter == "fastslam1") return reference::make_fast_slam1(settings);
+  return reference::make_fast_slam2(settings, reference_weight(v));
 }
 
 class FastSlams : public testing::TestWithParam<Variant> {};

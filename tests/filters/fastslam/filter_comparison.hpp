@@ -2,12 +2,13 @@
 #pragma once
 
 #include "filters/factory.hpp"
-#include "tests/filters/reference/fast_slam2.hpp"
+#include "tests/filters/reference/fast_slams.hpp"
 #include "tests/filters/same_runs.hpp"
 #include "tests/filters/small_world.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <ostream>

@@ -2,7 +2,6 @@
 #include "filters/fastslam/srcd.hpp"
 
 #include "tests/filters/fastslam/filter_comparison.hpp"
-#include "tests/filters/reference/srcd_fast_slam.hpp"
 
 namespace montecarta {
 namespace {
@@ -13,7 +12,7 @@ std::unique_ptr<SlamFilter> make_single(const Variant& v, const SmallWorldSettin
   return v.filter == "srcd" ? make_srcd<double>(setup) : make_srcd_pf<double>(setup);
 }
 std::unique_ptr<SlamFilter> make_reference(const Variant& v, const SmallWorldSettings& world) {
-  return std::make_unique<reference::SrcdFastSlam>(
+  return reference::make_srcd_fast_slam(
       reference_settings(v, world), reference_weight(v),
       reference::SrcdParts{.pose = v.filter != "srcd_aided",
                            .map = v.filter != "srcd_pf",

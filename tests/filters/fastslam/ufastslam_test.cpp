@@ -2,7 +2,6 @@
 #include "filters/fastslam/ufastslam.hpp"
 
 #include "tests/filters/fastslam/filter_comparison.hpp"
-#include "tests/filters/reference/ufast_slam.hpp"
 
 namespace montecarta {
 namespace {
@@ -14,9 +13,8 @@ std::unique_ptr<SlamFilter> make_reference(const Variant& v, const SmallWorldSet
   const FilterOptions options = setup_of(v, world).options;
   const reference::Unscented unscented{options.number("alpha"), options.number("beta"),
                                        options.number("kappa")};
-  return std::make_unique<reference::UFastSlam>(reference_settings(v, world), reference_weight(v),
-                                                unscented,
-                                                options.choice("map_uncertainty") == "on");
+  return reference::make_ufast_slam(reference_settings(v, world), reference_weight(v), unscented,
+                                    options.choice("map_uncertainty") == "on");
 }
 
 class UFastSlams : public testing::TestWithParam<Variant> {};

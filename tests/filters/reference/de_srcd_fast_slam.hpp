@@ -6,24 +6,17 @@
 
 namespace montecarta::reference {
 
-/// What evolution moves in DE-SRCD-FastSLAM (SPEC 13): DE-H, DE-P, DE-Q, DE-S.
-enum class DeMode { honest, as_printed, prior, shared };
-
-struct DeSettings {
-  DeMode mode = DeMode::honest;
-  Evolution<3> evolution = {};
-  std::size_t population = 10;  ///< of each particle, mode honest
-  double bounds = 3.0;          ///< standard deviations
-  double inflation = 1.0;       ///< of the covariance that is drawn from and paid for
-};
-
 /// DE-SRCD-FastSLAM (SPEC 13): SrcdFastSlam between its own evolution and its own weights.
 class DeSrcdFastSlam : public SrcdFastSlam {
  public:
   DeSrcdFastSlam(const FastSlamSettings& settings, const SrcdParts& parts, const DeSettings& de)
-      : SrcdFastSlam(settings, Weight::closed, parts), de_(de) {}
+      : SrcdFastSlam(settings, Weight::closed, parts), de_(de) {
+    evolution_.scale = de.scale;
+    evolution_.crossover = de.crossover;
+    evolution_.generations = de.generations;
+  }
 
-  const Evolution<3>& evolution() const { return de_.evolution; }
+  const EvolutionRecord& evolution() const { return evolution_; }
 
  private:
   using Member = Evolution<3>::Member;
@@ -86,11 +79,11 @@ class DeSrcdFastSlam : public SrcdFastSlam {
     }
     for (Member& one : population) one = one.cwiseMax(-de_.bounds).cwiseMin(de_.bounds);
     const auto at = [&](const Member& e) { return wrapped(p.pose + root * e); };
-    de_.evolution.half.setConstant(de_.bounds);
-    de_.evolution.last_is_an_angle = false;
+    evolution_.half.setConstant(de_.bounds);
+    evolution_.last_is_an_angle = false;
     const auto first_block = static_cast<std::uint32_t>(2 * de_.population);
     return at(
-        de_.evolution.best_of(population, chance, first_block, [&](std::size_t, const Member& e) {
+        evolution_.best_of(population, chance, first_block, [&](std::size_t, const Member& e) {
           return log_posterior(at(e), p, predicted, P_predicted, scan);
         }));
   }
@@ -109,21 +102,21 @@ class DeSrcdFastSlam : public SrcdFastSlam {
     for (const auto& pose : centres_) {
       population.emplace_back(T * boxminus(as_pose(pose), cloud.mean));
     }
-    Eigen::Vector3d& half = de_.evolution.half;
+    Eigen::Vector3d& half = evolution_.half;
     half = de_.bounds * (T * cloud.covariance * T.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
     for (const Member& one : population) half = half.cwiseMax(one.cwiseAbs());
     half(2) = std::min(half(2), kPi);
-    de_.evolution.last_is_an_angle = true;
+    evolution_.last_is_an_angle = true;
     const auto at = [&](const Member& e) {
       return wrapped(to_vector(cloud.mean) + T.transpose() * e);
     };
-    de_.evolution.best_of(population, context.identity(Draw::evolution, 0), 0,
-                          [&](std::size_t i, const Member& e) {
-                            const Particle& p = particles_[i];
-                            return de_.mode == DeMode::as_printed
-                                       ? log_printed(at(e), p, scan)
-                                       : log_posterior(at(e), p, p.pose, p.covariance, scan);
-                          });
+    evolution_.best_of(population, context.identity(Draw::evolution, 0), 0,
+                       [&](std::size_t i, const Member& e) {
+                         const Particle& p = particles_[i];
+                         return de_.mode == DeMode::as_printed
+                                    ? log_printed(at(e), p, scan)
+                                    : log_posterior(at(e), p, p.pose, p.covariance, scan);
+                       });
     for (std::size_t i = 0; i < centres_.size(); ++i) centres_[i] = at(population[i]);
   }
 
@@ -174,6 +167,7 @@ class DeSrcdFastSlam : public SrcdFastSlam {
   }
 
   DeSettings de_;
+  Evolution<3> evolution_;
   std::vector<Eigen::Vector3d> centres_;  ///< where the cloud moved to
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/random/stream.hpp"
+#include "tests/filters/reference/fast_slams.hpp"
 #include "tests/filters/reference/unscented.hpp"
 
 #include <Eigen/Dense>
@@ -21,7 +22,7 @@ enum class Base { best, random, target };
 /// Generation g draws for member i some blocks of a stream, which are pairs: two numbers for who
 /// mates, D for who crosses.
 template <int D>
-class Evolution {
+class Evolution : public EvolutionRecord {
  public:
   using Member = Vector<D>;
   using Fitness = std::function<double(std::size_t member, const Member& candidate)>;
@@ -34,10 +35,6 @@ class Evolution {
   double good_enough = std::numeric_limits<double>::infinity();  ///< fitness that ends the search
   Member half = Member::Zero();                                  ///< of the box about the origin
   bool last_is_an_angle = false;                                 ///< the last component
-
-  std::size_t accepted = 0;   ///< trials that moved in
-  std::size_t decisions = 0;  ///< whether one does
-  double closest_call = 1.0;  ///< least difference of fitness, but for none, of two places
 
   /// Evolves `population` and returns its best, of equals the first.
   Member best_of(std::vector<Member>& population, const StreamIdentity& chance,

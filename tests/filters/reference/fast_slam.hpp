@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tests/filters/reference/association.hpp"
+#include "tests/filters/reference/fast_slams.hpp"
 #include "tests/filters/reference/gaussian.hpp"
 #include "tests/filters/reference/particle_moments.hpp"
 #include "tests/filters/reference/resampling.hpp"
@@ -11,15 +12,6 @@
 #include <vector>
 
 namespace montecarta::reference {
-
-struct FastSlamSettings {
-  std::size_t particles = 30;
-  Scheme scheme = Scheme::systematic;
-  double threshold = 0.5;  ///< resample where ESS < threshold times particles
-  Belief belief = {};
-  AssociationSettings association = {};
-  std::size_t landmarks = 0;  ///< of the world, with known association
-};
 
 /// The skeleton of SPEC 5, particle by particle and step by step: what production is held to and
 /// compared with in speed. Filters differ in predict() and in how they refine(), weigh and draw.

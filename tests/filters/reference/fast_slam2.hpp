@@ -9,9 +9,6 @@
 
 namespace montecarta::reference {
 
-/// The three forms of SPEC 7.2.
-enum class Weight { closed, ratio, batch };
-
 /// FastSLAM II (SPEC 7): the pose Gaussian is refined by the scan, weighed, and a pose drawn from
 /// it. Filters with other Gaussians differ in move_gaussian(), absorb() and log_likelihood().
 class FastSlam2 : public FastSlam {

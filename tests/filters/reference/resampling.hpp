@@ -2,13 +2,12 @@
 #pragma once
 
 #include "engine/runs/step_context.hpp"
+#include "tests/filters/reference/fast_slams.hpp"
 
 #include <cstdint>
 #include <vector>
 
 namespace montecarta::reference {
-
-enum class Scheme { systematic, stratified };
 
 /// Parents of the next generation: particle m descends from the first whose cumulated weight
 /// exceeds u_m = (m + U) / M, one U for all (systematic) or one each (stratified) (SPEC 18).

@@ -7,15 +7,6 @@
 
 namespace montecarta::reference {
 
-/// Where SRCD-FastSLAM and its variants (SPEC 10, 11) use central differences; elsewhere they are
-/// FastSLAM II.
-struct SrcdParts {
-  bool pose = true;
-  bool map = true;
-  bool map_uncertainty = true;
-  double h = 1.7320508075688772;
-};
-
 /// SRCD-FastSLAM (SPEC 9, 10) as printed and corrected: seven dimensions, fifteen points, and
 /// square roots alone from scan to scan. Covariances are formed for those who only look.
 class SrcdFastSlam : public FastSlam2 {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/numbers/angle.hpp"
+#include "tests/filters/reference/fast_slams.hpp"
 
 #include <Eigen/Core>
 
@@ -11,13 +12,6 @@ namespace montecarta::reference {
 
 template <int N>
 using Vector = Eigen::Matrix<double, N, 1>;
-
-/// Parameters of the scaled unscented transform (SPEC 8).
-struct Unscented {
-  double alpha = 0.9;
-  double beta = 2.0;
-  double kappa = 0.0;
-};
 
 /// a - b, with component `Angle` (if any) wrapped.
 template <int Angle, int M>
