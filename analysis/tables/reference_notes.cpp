@@ -72,7 +72,7 @@ std::vector<std::string> reference_notes(const StudyAnalysis& study) {
         readable(kFoundWithin, 1) +
         " m of it; its error is the RMS over the beacons found, as the map stands and aligned.");
   }
-  notes.push_back(
+  notes.emplace_back(
       "Landmarks are those in the map after the last scan; ESS is the effective number of "
       "particles, roots how many of the first particles still have descendants at the end, CPU the "
       "filter's own time in a run; all of complete runs only.");
