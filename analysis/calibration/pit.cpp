@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/calibration/pit.hpp"
 
+#include "analysis/metrics/finite_mean.hpp"
 #include "engine/numbers/angle.hpp"
 
 #include <cmath>
-#include <limits>
 
 namespace montecarta {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double wrapped(std::size_t component, double difference) {
   return component == 2 ? wrap(difference) : difference;

@@ -9,11 +9,6 @@
 namespace montecarta {
 namespace {
 
-std::string interval_text(const Interval& interval) {
-  if (std::isnan(interval.lower)) return "-";
-  return "[" + readable(interval.lower) + ", " + readable(interval.upper) + "]";
-}
-
 /// How many runs the difference is of, and what became of the others.
 std::string pairs_text(const CellComparison& row) {
   std::string text = std::to_string(row.pairs);

@@ -15,21 +15,21 @@
 namespace montecarta {
 namespace {
 
-constexpr std::size_t kMostRows = 8, kMostLeaves = 100;
+constexpr std::size_t kMostTrees = 8, kMostLeaves = 100;
 constexpr std::size_t kThinFrom = 50;  // so many leaves need thinner lines
 constexpr std::size_t kTreePixels = 150, kGapPixels = 64, kTopPixels = 34, kBottomPixels = 48;
 
 /// A cell that is drawn.
-struct Drawn {
+struct DrawnTree {
   std::string label;
   std::size_t style = 0;
   AncestryTree tree;
   double end = 0.0;  ///< [s] of the run
 };
 
-std::vector<Drawn> drawn_cells(const ResultFile& file, std::size_t run) {
-  std::vector<Drawn> drawn;
-  for (std::size_t c = 0; c < file.cells().size() && drawn.size() < kMostRows; ++c) {
+std::vector<DrawnTree> drawn_trees(const ResultFile& file, std::size_t run) {
+  std::vector<DrawnTree> drawn;
+  for (std::size_t c = 0; c < file.cells().size() && drawn.size() < kMostTrees; ++c) {
     const StoredCell& cell = file.cells()[c];
     if (cell.particles < 2 || !cell.has("ancestor")) continue;
     if (file.status(cell)[run] != RunStatus::complete) continue;
@@ -42,7 +42,7 @@ std::vector<Drawn> drawn_cells(const ResultFile& file, std::size_t run) {
 }
 
 /// A row for every branch. A line that comes from the start has no height there but its own.
-FigureData data_of(const Drawn& cell) {
+FigureData data_of(const DrawnTree& cell) {
   FigureData data{"ancestry_" + cell.label + ".csv",
                   {"from [s]", "to [s]", "height", "height of its parent", "leaves"},
                   {}};
@@ -55,7 +55,7 @@ FigureData data_of(const Drawn& cell) {
   return data;
 }
 
-std::string title_of(const Drawn& cell) {
+std::string title_of(const DrawnTree& cell) {
   const AncestryTree& tree = cell.tree;
   return cell.label + ": " +
          (tree.leaves < tree.particles ? std::to_string(tree.leaves) + " of " : "") +
@@ -63,13 +63,13 @@ std::string title_of(const Drawn& cell) {
 }
 
 /// What the youngest common ancestor says of the run.
-std::string title_of_end(const Drawn& cell) {
+std::string title_of_end(const DrawnTree& cell) {
   const double since = cell.tree.common_ancestor();
   if (since == 0.0) return "no common ancestor since the start";
   return "common ancestor " + readable(cell.end - since, 3) + " s before the end";
 }
 
-std::string panel_of(const Drawn& cell, const std::string& title, double from) {
+std::string panel_of(const DrawnTree& cell, const std::string& title, double from) {
   const std::string file = gnuplot_quoted("../data/ancestry_" + cell.label + ".csv");
   const std::string style = " with vectors nohead linewidth " +
                             std::string(cell.tree.leaves < kThinFrom ? "1.4" : "0.6") +
@@ -82,7 +82,7 @@ std::string panel_of(const Drawn& cell, const std::string& title, double from) {
 }
 
 /// The tree as one line with gaps: from its parent's height to its own, and on to its end.
-ChartMarks lines_of(const Drawn& cell, const FigureData& data) {
+ChartMarks lines_of(const DrawnTree& cell, const FigureData& data) {
   constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
   ChartMarks lines;
   lines.cell = cell.label;
@@ -102,7 +102,7 @@ ChartMarks lines_of(const Drawn& cell, const FigureData& data) {
   return lines;
 }
 
-ChartPanel chart_panel(const Drawn& cell, const FigureData& data) {
+ChartPanel chart_panel(const DrawnTree& cell, const FigureData& data) {
   const bool some = cell.tree.leaves < cell.tree.particles;
   ChartPanel panel{(some ? title_of(cell) : cell.label) + ", " + title_of_end(cell),
                    {false, 0.0, static_cast<double>(cell.tree.leaves + 1)},
@@ -115,13 +115,13 @@ ChartPanel chart_panel(const Drawn& cell, const FigureData& data) {
 }
 
 /// Where the second panel of a row begins: shortly before the youngest common ancestor.
-double beginning_of_end(const Drawn& cell) {
+double beginning_of_end(const DrawnTree& cell) {
   const double since = cell.tree.common_ancestor();
   return std::max(0.0, since - 0.08 * (cell.end - since));
 }
 
 /// Two columns; sets the figure's height.
-std::string layout_of(std::size_t rows, Figure& figure) {
+std::string tree_layout(std::size_t rows, Figure& figure) {
   figure.height = kTopPixels + rows * kTreePixels + (rows - 1) * kGapPixels + kBottomPixels;
   const auto share = [&](std::size_t pixels) {
     return readable(static_cast<double>(pixels) / static_cast<double>(figure.height), 5);
@@ -136,7 +136,7 @@ std::string layout_of(std::size_t rows, Figure& figure) {
 Figure ancestry_figure(const ResultFile& file, std::optional<std::uint64_t> run) {
   Figure figure{"ancestry", "Whose story do the particles tell?", "", 900, 0, "", {}};
   const auto run_index = chosen_run(file, run);
-  const auto cells = run_index ? drawn_cells(file, *run_index) : std::vector<Drawn>{};
+  const auto cells = run_index ? drawn_trees(file, *run_index) : std::vector<DrawnTree>{};
   if (cells.empty()) return figure;
   figure.sentence =
       "Run " + std::to_string(file.runs()[*run_index]) +
@@ -145,7 +145,7 @@ Figure ancestry_figure(const ResultFile& file, std::optional<std::uint64_t> run)
       "the filter got wrong there it cannot doubt any more. The end of the run, since then, is "
       "enlarged.";
   figure.chart.x_to = figure.chart.x_first = cells.front().end;
-  figure.script = layout_of(cells.size(), figure);
+  figure.script = tree_layout(cells.size(), figure);
   for (std::size_t c = 0; c < cells.size(); ++c) {
     if (c + 1 == cells.size()) figure.script += "set xlabel 'time [s]' offset 0,0.4\n";
     figure.data.push_back(data_of(cells[c]));

@@ -9,18 +9,19 @@
 namespace montecarta {
 namespace {
 
-constexpr std::size_t kMostRows = 8, kRowPixels = 150, kFramePixels = 60;
+constexpr std::size_t kMostRows = 8, kHistogramPixels = 150, kFramePixels = 60;
 
 /// A histogram that is drawn.
-struct Drawn {
+struct DrawnHistogram {
   std::size_t cell = 0;
   std::string label;
   const PitHistogram* histogram = nullptr;
 };
 
 /// Those of one cell at the end of the run.
-std::vector<Drawn> last_of(const StudyAnalysis& study, std::size_t c, const std::string& by) {
-  std::vector<Drawn> drawn;
+std::vector<DrawnHistogram> last_of(const StudyAnalysis& study, std::size_t c,
+                                    const std::string& by) {
+  std::vector<DrawnHistogram> drawn;
   const CellAnalysis& cell = study.cells[c];
   for (const PitHistogram& one : cell.calibration) {
     if (one.by == by && one.time == study.times.back()) drawn.push_back({c, cell.label, &one});
@@ -29,7 +30,7 @@ std::vector<Drawn> last_of(const StudyAnalysis& study, std::size_t c, const std:
 }
 
 /// Share of runs in every bin, as a multiple of what is expected.
-FigureData data_of(const std::string& name, const Drawn& drawn) {
+FigureData data_of(const std::string& name, const DrawnHistogram& drawn) {
   FigureData data{name, {"from", "to", "count / expected", "lower", "upper"}, {}};
   const Uniformity& test = drawn.histogram->test;
   double all = 0.0;
@@ -45,7 +46,8 @@ FigureData data_of(const std::string& name, const Drawn& drawn) {
   return data;
 }
 
-std::string panel_of(const std::string& data_name, const Drawn& drawn, bool first, bool lowest) {
+std::string panel_of(const std::string& data_name, const DrawnHistogram& drawn, bool first,
+                     bool lowest) {
   const std::string file = gnuplot_quoted("../data/" + data_name);
   return "set title " +
          gnuplot_quoted(drawn.histogram->quantity + ": " +
@@ -59,7 +61,7 @@ std::string panel_of(const std::string& data_name, const Drawn& drawn, bool firs
 }
 
 /// The same as numbers, from the rows of data_of(). The band is that of all bins.
-ChartPanel chart_panel(const Drawn& drawn, const FigureData& data) {
+ChartPanel chart_panel(const DrawnHistogram& drawn, const FigureData& data) {
   ChartPanel panel{drawn.histogram->quantity + ": " + in_words(drawn.histogram->test.verdict),
                    {false, 0.0, 0.0},
                    {},
@@ -94,14 +96,14 @@ Chart empty_chart(std::size_t columns) {
 }
 
 Figure figure_of(const StudyAnalysis& study, const std::string& by, Figure figure) {
-  std::vector<std::vector<Drawn>> rows;
+  std::vector<std::vector<DrawnHistogram>> rows;
   for (std::size_t c = 0; c < study.cells.size() && rows.size() < kMostRows; ++c) {
     if (auto row = last_of(study, c, by); !row.empty()) rows.push_back(std::move(row));
   }
   if (rows.empty()) return figure;
   std::size_t columns = 0;
   for (const auto& row : rows) columns = std::max(columns, row.size());
-  figure.height = rows.size() * kRowPixels + kFramePixels;
+  figure.height = rows.size() * kHistogramPixels + kFramePixels;
   figure.chart = empty_chart(columns);
   figure.script =
       "set xrange [0:1]\nset yrange [0:*]\nset xtics 0.5\nset ytics 1\n"

@@ -11,13 +11,13 @@ namespace {
 constexpr std::size_t kMostCurves = 8;
 
 /// A cell that is drawn.
-struct Drawn {
+struct DrawnCurve {
   const CellAnalysis* cell;
   Curve curve;
 };
 
-std::vector<Drawn> drawn_cells(const StudyAnalysis& study, const CellValues& values_of) {
-  std::vector<Drawn> drawn;
+std::vector<DrawnCurve> drawn_cells(const StudyAnalysis& study, const CellValues& values_of) {
+  std::vector<DrawnCurve> drawn;
   for (std::size_t i = 0; i < study.cells.size(); ++i) {
     std::vector<double> values = values_of(study.cells[i]);
     if (values.empty()) continue;
@@ -28,7 +28,7 @@ std::vector<Drawn> drawn_cells(const StudyAnalysis& study, const CellValues& val
 
 /// A curve for every filter, so that one legend serves all panels; without values where a filter
 /// has no cell of so many particles.
-Panel panel_of(std::size_t particles, const std::vector<Drawn>& drawn,
+Panel panel_of(std::size_t particles, const std::vector<DrawnCurve>& drawn,
                const std::vector<std::string>& filters, const Panel& blank) {
   Panel panel = blank;
   panel.name += "_m" + std::to_string(particles);
@@ -36,7 +36,7 @@ Panel panel_of(std::size_t particles, const std::vector<Drawn>& drawn,
   const std::vector<double> nothing(drawn.front().curve.values.size(),
                                     std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i < filters.size(); ++i) {
-    const auto found = std::ranges::find_if(drawn, [&](const Drawn& one) {
+    const auto found = std::ranges::find_if(drawn, [&](const DrawnCurve& one) {
       const bool here = one.cell->particles == 0 || one.cell->particles == particles;
       return here && label_without_particles(*one.cell) == filters[i];
     });
@@ -69,10 +69,10 @@ std::vector<std::string> filter_labels(const StudyAnalysis& study) {
 
 std::vector<Panel> cell_panels(const StudyAnalysis& study, const Panel& blank,
                                const CellValues& values_of) {
-  const std::vector<Drawn> drawn = drawn_cells(study, values_of);
+  const std::vector<DrawnCurve> drawn = drawn_cells(study, values_of);
   if (drawn.empty()) return {};
   std::set<std::size_t> numbers;
-  for (const Drawn& one : drawn) {
+  for (const DrawnCurve& one : drawn) {
     if (one.cell->particles > 0) numbers.insert(one.cell->particles);
   }
   std::vector<Panel> panels;
@@ -82,7 +82,7 @@ std::vector<Panel> cell_panels(const StudyAnalysis& study, const Panel& blank,
     return panels;
   }
   panels.push_back(blank);
-  for (const Drawn& one : drawn) panels.front().curves.push_back(one.curve);
+  for (const DrawnCurve& one : drawn) panels.front().curves.push_back(one.curve);
   return panels;
 }
 

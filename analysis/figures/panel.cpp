@@ -16,7 +16,7 @@ constexpr double kBelowBand = 0.3, kAboveBand = 1000.0;  // where the axis ends 
 constexpr double kLogarithmicFrom = 30.0, kDecade = 10.0, kRoom = 1.05;
 constexpr double kBeyondAnyAxis = 1e100;        // gnuplot knows no infinity
 constexpr std::size_t kAxisPixels = 66;         // below the lowest panel: ticks and label
-constexpr std::size_t kLegendPixels = 22;       // of a row
+constexpr std::size_t kLegendRowPixels = 22;    // of a row
 constexpr std::size_t kLeastPanelPixels = 170;  // room for the label of its axis
 
 struct Range {
@@ -172,7 +172,7 @@ void add_panels(const std::vector<Panel>& panels, const std::vector<double>& pla
   if (panels.empty() || panels.front().curves.empty()) return;
   const double last = places.back();
   const std::size_t rows = add_legend(panels.front(), figure);
-  const std::size_t top = rows * kLegendPixels + 24;
+  const std::size_t top = rows * kLegendRowPixels + 24;
   figure.height = std::max(figure.height, kAxisPixels + panels.size() * kLeastPanelPixels) + top;
   const auto share = [&](std::size_t pixels) {
     return exact_text(static_cast<double>(pixels) / static_cast<double>(figure.height));

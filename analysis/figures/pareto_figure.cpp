@@ -38,7 +38,7 @@ FigureData data_of(std::span<const CellValue> values, const Merit& merit) {
 }
 
 /// Ends of an axis.
-struct Range {
+struct CostRange {
   double least = std::numeric_limits<double>::infinity();
   double greatest = 0.0;
 
@@ -50,21 +50,21 @@ struct Range {
 };
 
 /// Of the costs, with room for points.
-Range cost_range(std::span<const CellValue> values) {
-  Range range;
+CostRange cost_range(std::span<const CellValue> values) {
+  CostRange range;
   for (const CellValue& value : values) range.include(cost_of(value));
   return {range.least / 1.5, 1.5 * range.greatest};
 }
 
 /// From zero, with room for labels.
 double top_of(std::span<const CellValue> values, const Merit& merit) {
-  Range range;
+  CostRange range;
   for (const CellValue& value : values) range.include(merit.loss(value));
   return range.greatest > 0.0 ? 1.15 * range.greatest : 1.0;
 }
 
 /// Logarithmic, with a number at 1, 2 and 5 of each decade.
-std::string cost_axis(const Range& range) {
+std::string cost_axis(const CostRange& range) {
   std::string tics;
   for (double decade = std::pow(10.0, std::floor(std::log10(range.least)));
        decade <= range.greatest; decade *= 10.0) {
@@ -80,7 +80,7 @@ std::string cost_axis(const Range& range) {
 using Corners = std::vector<std::pair<double, double>>;  ///< (cost, loss)
 
 /// The front from edge to edge: what lies above and to the right of it is beaten.
-Corners corners_of(std::span<const CellValue> values, const Merit& merit, const Range& costs) {
+Corners corners_of(std::span<const CellValue> values, const Merit& merit, const CostRange& costs) {
   Corners corners;
   for (const CellValue& value : values) {
     if (value.*merit.on_front) corners.emplace_back(cost_of(value), merit.loss(value));
@@ -94,7 +94,8 @@ Corners corners_of(std::span<const CellValue> values, const Merit& merit, const 
 }
 
 /// As steps.
-std::string front_of(std::span<const CellValue> values, const Merit& merit, const Range& costs) {
+std::string front_of(std::span<const CellValue> values, const Merit& merit,
+                     const CostRange& costs) {
   std::string script = "$" + merit.name + "_front << EOD\ncost,loss\n";
   for (const auto& [cost, loss] : corners_of(values, merit, costs)) {
     script += exact_text(cost) + "," + exact_text(loss) + "\n";
@@ -104,7 +105,8 @@ std::string front_of(std::span<const CellValue> values, const Merit& merit, cons
 
 /// On the side where there is room; above and below by turns from the lowest point up, so that
 /// neighbours keep apart.
-std::string labels_of(std::span<const CellValue> values, const Merit& merit, const Range& costs) {
+std::string labels_of(std::span<const CellValue> values, const Merit& merit,
+                      const CostRange& costs) {
   std::vector<CellValue> sorted(values.begin(), values.end());
   std::erase_if(sorted, [&](const CellValue& value) { return !std::isfinite(merit.loss(value)); });
   std::ranges::stable_sort(sorted, {}, merit.loss);
@@ -120,7 +122,8 @@ std::string labels_of(std::span<const CellValue> values, const Merit& merit, con
   return script;
 }
 
-std::string panel_of(std::span<const CellValue> values, const Merit& merit, const Range& costs) {
+std::string panel_of(std::span<const CellValue> values, const Merit& merit,
+                     const CostRange& costs) {
   std::string script = "set ylabel " + gnuplot_quoted(merit.label) +
                        " offset 1.5,0\nset yrange [0:" + exact_text(top_of(values, merit)) + "]\n" +
                        labels_of(values, merit, costs) + "plot $" + merit.name +
@@ -133,7 +136,8 @@ std::string panel_of(std::span<const CellValue> values, const Merit& merit, cons
   return script + "\n";
 }
 
-ChartMarks front_marks(std::span<const CellValue> values, const Merit& merit, const Range& costs) {
+ChartMarks front_marks(std::span<const CellValue> values, const Merit& merit,
+                       const CostRange& costs) {
   ChartMarks front;
   front.style = kYardstickStyle;
   double above = 0.0;
@@ -149,7 +153,8 @@ ChartMarks front_marks(std::span<const CellValue> values, const Merit& merit, co
 }
 
 /// The same as numbers.
-ChartPanel chart_panel(std::span<const CellValue> values, const Merit& merit, const Range& costs) {
+ChartPanel chart_panel(std::span<const CellValue> values, const Merit& merit,
+                       const CostRange& costs) {
   ChartPanel panel{merit.label, {false, 0.0, top_of(values, merit)}, {}, {}, {}};
   panel.marks.push_back(front_marks(values, merit, costs));
   for (const CellValue& value : values) {
@@ -165,7 +170,7 @@ ChartPanel chart_panel(std::span<const CellValue> values, const Merit& merit, co
   return panel;
 }
 
-Chart chart_of(std::span<const CellValue> values, const Range& costs) {
+Chart chart_of(std::span<const CellValue> values, const CostRange& costs) {
   Chart chart{"CPU time of a run [s]", costs.least, costs.greatest, {}, true};
   chart.columns = std::size(kMerits);
   chart.least = 300;
@@ -186,7 +191,7 @@ Figure pareto_figure(std::span<const CellValue> values) {
   std::vector<CellValue> priced(values.begin(), values.end());
   std::erase_if(priced, [](const CellValue& value) { return !(cost_of(value) > 0.0); });
   if (priced.size() < 2) return figure;
-  const Range costs = cost_range(priced);
+  const CostRange costs = cost_range(priced);
   figure.script = "set key off\n";
   for (const Merit& merit : kMerits) {
     figure.data.push_back(data_of(priced, merit));

@@ -150,7 +150,7 @@ std::string panel_of(const std::vector<ParticleCurve>& curves, std::size_t mean_
 /// Two panels below a legend of two columns, for which the figure grows: gnuplot gives a legend the
 /// width of its own panel.
 std::string layout_of(std::size_t entries, Figure& figure) {
-  constexpr std::size_t kLegendPixels = 22, kTitlePixels = 40, kAxisPixels = 66;
+  constexpr std::size_t kLegendPixels = 22, kTitlePixels = 40, kTicksPixels = 66;
   const std::size_t top = (entries + 1) / 2 * kLegendPixels + kTitlePixels;
   figure.height += top;
   const auto share = [&](std::size_t pixels) {
@@ -158,7 +158,7 @@ std::string layout_of(std::size_t entries, Figure& figure) {
   };
   return "set key at screen 0.085,0.985 left top horizontal Left reverse maxcols 2\n"
          "set multiplot layout 1,2 margins 0.085,0.985," +
-         share(kAxisPixels) + "," + share(figure.height - top) + " spacing 0.04\n";
+         share(kTicksPixels) + "," + share(figure.height - top) + " spacing 0.04\n";
 }
 
 }  // namespace

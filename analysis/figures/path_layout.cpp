@@ -9,7 +9,7 @@
 namespace montecarta {
 namespace {
 
-constexpr std::size_t kLegendPixels = 32;
+constexpr std::size_t kPathLegendPixels = 32;
 constexpr std::size_t kRowGapPixels = 44;  // below a row: ticks and label of a short last row
 
 /// Where panels lie across the figure, in shares of its width.
@@ -56,14 +56,14 @@ std::string layout_of(std::size_t panels, const Bounds& bounds, Figure& figure) 
   const std::size_t title = 24, axis = 66;
   const auto panel =
       static_cast<std::size_t>(static_cast<double>(figure.width) * columns.panel() * aspect);
-  figure.height = kLegendPixels + axis + rows * (panel + title) + (rows - 1) * kRowGapPixels;
+  figure.height = kPathLegendPixels + axis + rows * (panel + title) + (rows - 1) * kRowGapPixels;
   const auto share = [&](std::size_t pixels) {
     return readable(static_cast<double>(pixels) / static_cast<double>(figure.height), 5);
   };
   return axes_of(bounds) + "set multiplot layout " + std::to_string(rows) + "," +
          std::to_string(columns.count) + " margins " + readable(columns.left, 5) + "," +
          readable(columns.right, 5) + "," + share(axis) + "," +
-         share(figure.height - kLegendPixels - title) + " spacing " + readable(columns.gap, 5) +
+         share(figure.height - kPathLegendPixels - title) + " spacing " + readable(columns.gap, 5) +
          "," + share(title + kRowGapPixels) + "\n";
 }
 
@@ -71,7 +71,7 @@ std::string layout_of(std::size_t panels, const Bounds& bounds, Figure& figure) 
 /// panel.
 std::string legend_plot(const std::vector<LegendEntry>& legend, const Figure& figure) {
   const double bottom =
-      1.0 - static_cast<double>(kLegendPixels) / static_cast<double>(figure.height);
+      1.0 - static_cast<double>(kPathLegendPixels) / static_cast<double>(figure.height);
   std::string script =
       "set size noratio\nset lmargin at screen 0\nset rmargin at screen 1\n"
       "set tmargin at screen 1\nset bmargin at screen " +

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/joint/joint_nees.hpp"
 
+#include "analysis/metrics/finite_mean.hpp"
 #include "engine/numbers/angle.hpp"
 
 #include <Eigen/Cholesky>
 
 #include <cmath>
-#include <limits>
 
 namespace montecarta {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 

@@ -8,7 +8,7 @@
 namespace montecarta {
 namespace {
 
-constexpr Eigen::Index kNone = -1;
+constexpr Eigen::Index kNobody = -1;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Prices of rows and columns, none above what a pair costs and equal to it for every pair that is
@@ -18,8 +18,8 @@ struct Market {
       : cost(&costs),
         row_price(costs.rowwise().minCoeff()),
         column_price(Eigen::VectorXd::Zero(costs.cols())),
-        column_of(static_cast<std::size_t>(costs.rows()), kNone),
-        row_of(static_cast<std::size_t>(costs.cols()), kNone) {}
+        column_of(static_cast<std::size_t>(costs.rows()), kNobody),
+        row_of(static_cast<std::size_t>(costs.cols()), kNobody) {}
 
   double excess(Eigen::Index row, Eigen::Index column) const {
     return (*cost)(row, column) - row_price(row) - column_price(column);
@@ -40,7 +40,7 @@ void take_what_is_free(Market& market) {
   for (Eigen::Index row = 0; row < market.cost->rows(); ++row) {
     Eigen::Index column = 0;
     market.cost->row(row).minCoeff(&column);
-    if (market.owner(column) == kNone) market.assign(row, column);
+    if (market.owner(column) == kNobody) market.assign(row, column);
   }
 }
 
@@ -48,11 +48,11 @@ void take_what_is_free(Market& market) {
 struct Search {
   Search(const Market& market, Eigen::Index start)
       : distance(market.cost->cols(), kInfinity),
-        previous(market.cost->cols(), kNone),
+        previous(market.cost->cols(), kNobody),
         done(market.cost->cols(), false) {
-    Eigen::Index row = start, last = kNone;
+    Eigen::Index row = start, last = kNobody;
     double so_far = 0.0;
-    while (row != kNone) {
+    while (row != kNobody) {
       relax(market, row, last, so_far);
       last = nearest();
       so_far = distance[static_cast<std::size_t>(last)];
@@ -81,9 +81,9 @@ struct Search {
   }
 
   std::vector<double> distance;
-  std::vector<Eigen::Index> previous;  ///< column before on the way; kNone: the start
+  std::vector<Eigen::Index> previous;  ///< column before on the way; kNobody: the start
   std::vector<bool> done;
-  Eigen::Index end = kNone;
+  Eigen::Index end = kNobody;
   double length = 0.0;
 };
 
@@ -99,9 +99,9 @@ void augment(Market& market, Eigen::Index start) {
     market.row_price(market.owner(column)) += shorter;
   }
   Eigen::Index column = search.end;
-  for (Eigen::Index before; column != kNone; column = before) {
+  for (Eigen::Index before; column != kNobody; column = before) {
     before = search.previous[static_cast<std::size_t>(column)];
-    market.assign(before == kNone ? start : market.owner(before), column);
+    market.assign(before == kNobody ? start : market.owner(before), column);
   }
 }
 
@@ -113,7 +113,7 @@ std::vector<std::size_t> cheapest_assignment(const Eigen::MatrixXd& cost) {
   Market market(cost);
   take_what_is_free(market);
   for (Eigen::Index row = 0; row < cost.rows(); ++row) {
-    if (market.column_of[static_cast<std::size_t>(row)] == kNone) augment(market, row);
+    if (market.column_of[static_cast<std::size_t>(row)] == kNobody) augment(market, row);
   }
   return {market.column_of.begin(), market.column_of.end()};
 }

@@ -9,10 +9,10 @@
 namespace montecarta {
 namespace {
 
-using Points = std::span<const Eigen::Vector2d>;
+using PointSpan = std::span<const Eigen::Vector2d>;
 
 /// Squared distances, at most the cutoff's: no worse than to leave both alone.
-Eigen::MatrixXd costs(Points few, Points many, double cutoff) {
+Eigen::MatrixXd costs(PointSpan few, PointSpan many, double cutoff) {
   Eigen::MatrixXd cost(few.size(), many.size());
   for (Eigen::Index i = 0; i < cost.rows(); ++i) {
     for (Eigen::Index j = 0; j < cost.cols(); ++j) {
@@ -26,7 +26,7 @@ Eigen::MatrixXd costs(Points few, Points many, double cutoff) {
 
 }  // namespace
 
-Gospa gospa(Points map, Points truth, double cutoff) {
+Gospa gospa(PointSpan map, PointSpan truth, double cutoff) {
   const bool smaller = map.size() <= truth.size();
   const Eigen::MatrixXd cost = smaller ? costs(map, truth, cutoff) : costs(truth, map, cutoff);
   const std::vector<std::size_t> partner = cheapest_assignment(cost);

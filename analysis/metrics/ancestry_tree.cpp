@@ -11,17 +11,17 @@ namespace montecarta {
 namespace {
 
 using Branch = AncestryTree::Branch;
-constexpr std::size_t kNone = AncestryTree::kNone;
+constexpr std::size_t kNoBranch = AncestryTree::kNone;
 
 /// Walks from the last scan to the first; `alive` are the branches that are being followed.
 class Walk {
  public:
   Walk(AncestryTree& tree, std::size_t particles, std::size_t most, double end)
-      : tree_(tree), child_count_(particles), open_(particles, kNone) {
+      : tree_(tree), child_count_(particles), open_(particles, kNoBranch) {
     tree_.particles = particles;
     tree_.leaves = std::min(particles, most);
     for (std::size_t k = 0; k < tree_.leaves; ++k) {
-      tree_.branches.push_back({kNone, 0.0, end, 1, 0.0});
+      tree_.branches.push_back({kNoBranch, 0.0, end, 1, 0.0});
       alive_.emplace_back(static_cast<std::uint32_t>(k * particles / tree_.leaves), k);
     }
   }
@@ -52,9 +52,9 @@ class Walk {
   }
 
   void join(std::uint32_t particle, std::size_t branch, double time) {
-    if (open_[particle] == kNone) {
+    if (open_[particle] == kNoBranch) {
       open_[particle] = tree_.branches.size();
-      tree_.branches.push_back({kNone, 0.0, time, 0, 0.0});
+      tree_.branches.push_back({kNoBranch, 0.0, time, 0, 0.0});
     }
     tree_.branches[branch].parent = open_[particle];
     tree_.branches[branch].from = time;
@@ -68,7 +68,7 @@ class Walk {
       const auto [particle, branch] = alive_[i];
       if (child_count_[particle] == 0) continue;
       child_count_[particle] = 0;
-      alive_[kept++] = {particle, std::exchange(open_[particle], kNone) == kNone
+      alive_[kept++] = {particle, std::exchange(open_[particle], kNoBranch) == kNoBranch
                                       ? branch
                                       : tree_.branches[branch].parent};
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/bootstrap.hpp"
 
+#include "analysis/metrics/finite_mean.hpp"
 #include "analysis/metrics/t_quantile.hpp"
 #include "engine/errors.hpp"
 #include "engine/random/normal_quantile.hpp"
@@ -10,26 +11,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace montecarta {
 namespace {
 
 constexpr std::size_t kMostReplicates = 2000, kFewestReplicates = 400;
 constexpr std::size_t kMostDraws = 20'000'000;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double normal_share(double z) { return boost::math::cdf(boost::math::normal(), z); }
 
 /// Mean, and skewness divided by 6 sqrt(n): how fast the spread of a mean changes with the mean.
-struct Shape {
+struct SampleShape {
   double mean = 0.0;
   double acceleration = 0.0;
 };
 
-Shape shape_of(std::span<const double> values) {
+SampleShape shape_of(std::span<const double> values) {
   const auto n = static_cast<double>(values.size());
-  Shape shape;
+  SampleShape shape;
   for (const double value : values) shape.mean += value / n;
   double squares = 0.0, cubes = 0.0;
   for (const double value : values) {
@@ -65,7 +64,7 @@ double quantile_of(const std::vector<double>& sorted, double p) {
   return std::lerp(sorted[low], sorted[high], place - std::floor(place));
 }
 
-Interval accelerated_interval(std::vector<double>& means, const Shape& shape, double deviate) {
+Interval accelerated_interval(std::vector<double>& means, const SampleShape& shape, double deviate) {
   std::ranges::sort(means);
   const double bias = bias_deviate(means, shape.mean);
   const auto end = [&](double z) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/consistency.hpp"
 
+#include "analysis/metrics/finite_mean.hpp"
 #include "analysis/metrics/t_quantile.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>
@@ -17,7 +18,6 @@ namespace montecarta {
 namespace {
 
 constexpr double kLeastVariance = 1e-9;  // of run averages that are equal: times the dimension
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Mean of the values that are numbers, in index order; NaN where there is none.
 double mean_of_numbers(const std::vector<double>& values) {

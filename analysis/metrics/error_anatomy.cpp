@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/error_anatomy.hpp"
 
+#include "analysis/metrics/finite_mean.hpp"
 #include "engine/random/stream.hpp"
 
 #include <Eigen/Cholesky>
@@ -14,8 +15,7 @@
 namespace montecarta {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kFewestRuns = 4.0;
+constexpr double kFewestRunsOfMoments = 4.0;
 constexpr std::size_t kDraws = 2000;
 
 /// One scan's moments over runs.
@@ -114,8 +114,8 @@ ErrorAnatomy ErrorMoments::result() const {
       anatomy.believed[component].push_back(std::sqrt(m.covariance(c, c)));
       anatomy.bias[component].push_back(m.bias(c));
     }
-    const bool known =
-        m.n >= kFewestRuns && Eigen::LLT<Eigen::Matrix3d>(m.covariance).info() == Eigen::Success;
+    const bool known = m.n >= kFewestRunsOfMoments &&
+                       Eigen::LLT<Eigen::Matrix3d>(m.covariance).info() == Eigen::Success;
     const Worst worst = known ? worst_of(m) : Worst{kNaN, {}};
     anatomy.bias_share.push_back(known ? bias_share(m) : kNaN);
     anatomy.worst_ratio.push_back(worst.ratio);

@@ -2,9 +2,13 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <span>
 
 namespace montecarta {
+
+/// Where there is no number.
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Mean of the finite values, in index order; NaN where there is none.
 inline double mean_of_finite(std::span<const double> values) {

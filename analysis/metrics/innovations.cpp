@@ -8,12 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace montecarta {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Sums over pairs of scans `lag` apart that both have innovations.
 struct Products {

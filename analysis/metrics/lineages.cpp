@@ -10,7 +10,7 @@
 namespace montecarta {
 namespace {
 
-constexpr std::size_t kMostScans = 32;
+constexpr std::size_t kMostScansOfLineages = 32;
 constexpr double kSameTime = 1e-9;
 
 }  // namespace
@@ -73,7 +73,7 @@ Lineages LineageWalker::walk(const RunRows& rows, std::size_t particles,
                              std::span<const double> squared_position) {
   ancestor_.resize(particles);
   Sums sums;
-  const std::size_t every = (times.size() + kMostScans - 1) / kMostScans;
+  const std::size_t every = (times.size() + kMostScansOfLineages - 1) / kMostScansOfLineages;
   for (std::size_t s = every - 1; s < times.size(); s += every) {
     walk_from(s, rows, times, sums);
     if (!squared_position.empty()) sums.squared_error.add(squared_position[s]);

@@ -10,8 +10,6 @@
 namespace montecarta {
 namespace {
 
-using Numbers = std::vector<double>;
-
 /// Nothing is written of what is empty: a page has many panels.
 template <class Values>
 void write_if_any(const char* name, const Values& values, JsonWriter& json) {
@@ -79,7 +77,7 @@ void write_marks(const std::vector<ChartMarks>& all, JsonWriter& json) {
   json.end_array();
 }
 
-void write_panel(const ChartPanel& panel, const Numbers* x_above, JsonWriter& json) {
+void write_panel(const ChartPanel& panel, const std::vector<double>* x_above, JsonWriter& json) {
   json.begin_object().member("label", panel.label);
   write_if_any("cell", panel.cell, json);
   write_axis(panel.axis, json);
@@ -105,7 +103,7 @@ std::string chart_json(const Chart& chart) {
   if (chart.aspect > 0.0) json.member("aspect", chart.aspect);
   if (chart.is_map) json.member("is_map", true);
   json.key("panels").begin_array();
-  const Numbers* last = nullptr;
+  const std::vector<double>* last = nullptr;
   for (const ChartPanel& panel : chart.panels) {
     write_panel(panel, last, json);
     last = &panel.x;

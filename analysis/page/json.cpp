@@ -9,7 +9,7 @@ namespace montecarta {
 namespace {
 
 /// A character within quotes. "<" may not stand in a script: it could end it.
-std::string escaped(char c) {
+std::string json_escaped(char c) {
   constexpr std::string_view kHex = "0123456789abcdef";
   if (c == '"' || c == '\\') return {'\\', c};
   const auto code = static_cast<unsigned char>(c);
@@ -53,7 +53,7 @@ JsonWriter& JsonWriter::key(std::string_view name) {
 JsonWriter& JsonWriter::value(std::string_view text) {
   separate();
   text_ += '"';
-  for (const char c : text) text_ += escaped(c);
+  for (const char c : text) text_ += json_escaped(c);
   text_ += '"';
   return *this;
 }

@@ -65,11 +65,6 @@ std::string verdict_on(char relation, const Interval& difference, double scale) 
   return below == (relation == '<') ? "holds" : "contradicted";
 }
 
-std::string interval_text(const Interval& interval) {
-  if (std::isnan(interval.lower)) return "-";
-  return "[" + readable(interval.lower) + ", " + readable(interval.upper) + "]";
-}
-
 std::string measured_text(double value) { return std::isinf(value) ? "never" : readable(value, 4); }
 
 const CellAnalysis* cell_named(const StudyAnalysis& study, const std::string& label) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/finite_mean.hpp"
 #include "analysis/tables/cell_series.hpp"
 #include "analysis/tables/number_text.hpp"
 
@@ -7,7 +8,6 @@
 namespace montecarta {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 using Numbers = std::vector<NamedNumber>;

@@ -12,10 +12,6 @@ namespace {
 
 bool is_judged(const CellAnalysis& cell) { return cell.joint.verdict != Verdict::untested; }
 
-std::string interval_text(const Interval& interval) {
-  return "[" + readable(interval.lower) + ", " + readable(interval.upper) + "]";
-}
-
 std::string words_of(Verdict verdict) {
   Consistency found;
   found.verdict = verdict;

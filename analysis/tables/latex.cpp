@@ -8,7 +8,7 @@
 namespace montecarta {
 namespace {
 
-std::string escaped(char c) {
+std::string latex_escaped(char c) {
   switch (c) {
     case '\\':
       return "\\textbackslash{}";
@@ -47,7 +47,7 @@ std::string latex_escape(const std::string& text) {
       latex += "$\\pm$";
       ++i;
     } else {
-      latex += escaped(text[i]);
+      latex += latex_escaped(text[i]);
     }
   }
   return latex;

@@ -52,6 +52,11 @@ std::string with_error_to(int decimals, double mean, double standard_error) {
   return text + " +- " + printed("%.*f", decimals, standard_error);
 }
 
+std::string interval_text(const Interval& interval) {
+  if (std::isnan(interval.lower)) return "-";
+  return "[" + readable(interval.lower) + ", " + readable(interval.upper) + "]";
+}
+
 std::string with_interval(double mean, const Interval& interval) {
   const double half = 0.5 * (interval.upper - interval.lower);
   if (std::isnan(mean) || !std::isfinite(half) || half <= 0.0) return compact(mean);

@@ -21,6 +21,9 @@ std::string with_error(double mean, double standard_error);
 /// As with_error() with a fixed number of decimals, for numbers that are not known any better.
 std::string with_error_to(int decimals, double mean, double standard_error);
 
+/// "[3.38, 3.79]"; "-" where there is no interval.
+std::string interval_text(const Interval& interval);
+
 /// A mean with the interval that holds it, "3.58 [3.38, 3.79]": all to the second significant digit
 /// of the interval's half width. The mean alone where there is no interval.
 std::string with_interval(double mean, const Interval& interval);

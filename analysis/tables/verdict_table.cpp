@@ -12,12 +12,6 @@ namespace montecarta {
 namespace {
 
 constexpr double kDegrees = 180.0 / kPi;
-constexpr double kNever = std::numeric_limits<double>::infinity();
-
-std::string interval_text(const Interval& interval) {
-  std::string text(1, '[');
-  return text.append(readable(interval.lower) + ", " + readable(interval.upper) + "]");
-}
 
 /// The band of all complete runs: single scans may have fewer valid ones.
 std::string band_text(const CellAnalysis& cell, std::size_t dimension, double level) {
@@ -27,7 +21,9 @@ std::string band_text(const CellAnalysis& cell, std::size_t dimension, double le
 
 std::string exit_text(const Consistency& consistency) {
   if (!consistency.exit_interval) return "-";
-  return time_with_interval(consistency.lasting_exit.value_or(kNever), *consistency.exit_interval);
+  return time_with_interval(
+      consistency.lasting_exit.value_or(std::numeric_limits<double>::infinity()),
+      *consistency.exit_interval);
 }
 
 std::string median_exit_text(const CellAnalysis& cell) {

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kStartHeading = -125.5 * std::numbers::pi / 180.0;
+constexpr double kCarParkHeading = -125.5 * std::numbers::pi / 180.0;
 
 std::vector<LoggedScan> scans_in(const MatFile& file, const std::vector<double>& times) {
   const SweepMatrix ranges(file, "Laser");
@@ -60,7 +60,7 @@ DriveLog read_car_park(const fs::path& folder) {
   if (fs::exists(poles)) log.landmarks = poles_in(poles);
   const Eigen::Vector2d& first = log.references.front().position.front();
   log.start_time = log.references.front().time.front();
-  log.start = {.x = first.x(), .y = first.y(), .heading = kStartHeading};
+  log.start = {.x = first.x(), .y = first.y(), .heading = kCarParkHeading};
   check_events({file.series("Time"), file.series("Sensor"), file.series("Index")},
                {log.references.front().time, wheel_times, laser_times}, file.place());
   check_log(log, folder.string());

@@ -10,7 +10,7 @@ namespace {
 
 // [reflectors]
 constexpr double kAngleGap = 3.5 * kPi / 360;  ///< [rad] between echoes of one pole: 3 beams
-constexpr double kRangeStep = 1.0;             ///< [m] likewise
+constexpr double kReflectorRangeStep = 1.0;    ///< [m] likewise
 constexpr double kPoleRadius = 0.03;           ///< [m] from its surface to its centre
 
 /// What only a reflector sends back.
@@ -24,7 +24,7 @@ std::vector<Echo> bright_echoes(LaserSweep ranges, LaserSweep intensities) {
 }
 
 bool are_one_pole(const Echo& a, const Echo& b) {
-  return b.angle - a.angle < kAngleGap && std::abs(b.range - a.range) <= kRangeStep;
+  return b.angle - a.angle < kAngleGap && std::abs(b.range - a.range) <= kReflectorRangeStep;
 }
 
 /// Mean range and mean angle of one pole's echoes.

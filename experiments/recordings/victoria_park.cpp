@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kStartHeading = 35.5 * std::numbers::pi / 180.0;
+constexpr double kVictoriaParkHeading = 35.5 * std::numbers::pi / 180.0;
 constexpr double kMatClockAhead = 20967.0;  ///< [ms] of the .mat release's clock on the text's
 constexpr unsigned kRangeBits = 0x1fff;     ///< of a stored echo: centimetres; above: intensity
 
@@ -150,7 +150,7 @@ DriveLog read_victoria_park(const fs::path& folder, Steering steering) {
   log.references = references_in(folder);
   const Eigen::Vector2d& first = log.references.front().position.front();
   log.start_time = log.references.front().time.front();
-  log.start = {.x = first.x(), .y = first.y(), .heading = kStartHeading};
+  log.start = {.x = first.x(), .y = first.y(), .heading = kVictoriaParkHeading};
   const fs::path manager = folder / "Sensors_manager.txt";
   if (fs::exists(manager)) check_manager(manager, log, steering);
   check_log(log, folder.string());

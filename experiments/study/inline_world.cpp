@@ -11,7 +11,7 @@
 namespace montecarta {
 namespace {
 
-const std::array<std::string, 2> kKinds = {"waypoint", "landmark"};
+const std::array<std::string, 2> kPointKeys = {"waypoint", "landmark"};
 
 Eigen::Vector2d read_point(const IniEntry& entry) {
   const std::vector<std::string> parts = split(entry.value, ',');
@@ -42,19 +42,19 @@ World read_inline_world(const IniText& ini, const std::string& name, const std::
   World world{.name = name, .waypoints = {}, .landmarks = {}};
   for (const IniEntry& entry : ini.entries) {
     if (entry.section != "world") continue;
-    if (entry.key != kKinds[0] && entry.key != kKinds[1]) {
+    if (entry.key != kPointKeys[0] && entry.key != kPointKeys[1]) {
       throw StudyError(
           entry.place + ": unknown key world." + entry.key +
-          " (a world has waypoint and landmark): " + nearest_spelling(entry.key, kKinds));
+          " (a world has waypoint and landmark): " + nearest_spelling(entry.key, kPointKeys));
     }
-    (entry.key == kKinds[0] ? world.waypoints : world.landmarks).push_back(read_point(entry));
+    (entry.key == kPointKeys[0] ? world.waypoints : world.landmarks).push_back(read_point(entry));
   }
   check_world(world, place);
   return world;
 }
 
 std::string inline_world_text(const World& world) {
-  return lines_of(kKinds[0], world.waypoints) + lines_of(kKinds[1], world.landmarks);
+  return lines_of(kPointKeys[0], world.waypoints) + lines_of(kPointKeys[1], world.landmarks);
 }
 
 }  // namespace montecarta

@@ -11,7 +11,6 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <sstream>
 
 namespace montecarta {
 namespace {
@@ -19,18 +18,11 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-std::string read(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
 TEST(Report, HoldsEverySectionAndNeedsNothingElse) {
   const ScratchFolder folder;
   write_synthetic_result(folder / "out.h5", 6, 120);
   write_report(ResultFile(folder / "out.h5"), folder / "report");
-  const std::string page = read(folder / "report/index.html");
+  const std::string page = text_in(folder / "report/index.html");
   for (const char* heading :
        {"Failed runs", "Verdict", "What happened in one run?", "Where did the filter think it was?",
         "Is the filter right about its own errors?", "Position or heading: which one goes wrong?",
@@ -48,11 +40,12 @@ TEST(Report, HoldsEverySectionAndNeedsNothingElse) {
   for (const char* name :
        {"paths", "anees", "anees_parts", "rmse", "diversity", "ess", "ancestry", "whiteness"}) {
     const auto figures = folder.path() / "report/figures";
-    EXPECT_THAT(read(figures / (std::string(name) + ".svg")), HasSubstr("</svg>")) << name;
-    EXPECT_THAT(read(figures / (std::string(name) + ".pdf")), testing::StartsWith("%PDF")) << name;
+    EXPECT_THAT(text_in(figures / (std::string(name) + ".svg")), HasSubstr("</svg>")) << name;
+    EXPECT_THAT(text_in(figures / (std::string(name) + ".pdf")), testing::StartsWith("%PDF"))
+        << name;
     EXPECT_THAT(page, HasSubstr(std::string("figures/") + name + ".pdf"));
   }
-  EXPECT_THAT(read(folder / "report/tables/verdict.tex"), HasSubstr("\\bottomrule"));
+  EXPECT_THAT(text_in(folder / "report/tables/verdict.tex"), HasSubstr("\\bottomrule"));
   EXPECT_TRUE(std::filesystem::exists(folder / "report/data/anees_pose.csv"));
 }
 
@@ -60,7 +53,7 @@ TEST(Report, JudgesARecordedDriveByItsReferences) {
   const ScratchFolder folder;
   write_recorded_result(folder / "out.h5", 4, 400);
   write_report(ResultFile(folder / "out.h5"), folder / "report");
-  const std::string page = read(folder / "report/index.html");
+  const std::string page = text_in(folder / "report/index.html");
   for (const char* heading :
        {"Failed runs", "Judged by references", "Where did the filter think it was?",
         "How far from the reference over time?", "Do more particles help?",
@@ -76,7 +69,7 @@ TEST(Report, JudgesARecordedDriveByItsReferences) {
   EXPECT_THAT(page, HasSubstr("' to record.columns of the study"));
   EXPECT_THAT(page, HasSubstr("nobody knows its true path"));
   for (const char* name : {"paths", "reference_error", "reference_particles", "map_size"}) {
-    EXPECT_THAT(read(folder / (std::string("report/figures/") + name + ".svg")),
+    EXPECT_THAT(text_in(folder / (std::string("report/figures/") + name + ".svg")),
                 HasSubstr("</svg>"))
         << name;
   }
@@ -84,11 +77,11 @@ TEST(Report, JudgesARecordedDriveByItsReferences) {
     EXPECT_TRUE(std::filesystem::exists(folder / (std::string("report/tables/") + name))) << name;
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "report/tables/verdict.tex"));
-  const std::string paths = read(folder / "report/figures/paths.gp");
+  const std::string paths = text_in(folder / "report/figures/paths.gp");
   EXPECT_THAT(paths, HasSubstr("'../data/fixes_gps.csv' using 2:3"));
   EXPECT_THAT(paths, HasSubstr("'surveyed landmark'"));
   EXPECT_THAT(paths, Not(HasSubstr("true path")));
-  EXPECT_THAT(read(folder / "report/data/map_ekf_slam.csv"), HasSubstr("\n20.3,5,"));
+  EXPECT_THAT(text_in(folder / "report/data/map_ekf_slam.csv"), HasSubstr("\n20.3,5,"));
 }
 
 /// A bank of Gaussians, which has a mixture and no particles, and a filter of a few weighted
@@ -110,7 +103,7 @@ TEST(Report, KnowsMixturesWithoutParticlesAndWithFew) {
   EXPECT_FALSE(study.cells[1].diversity.has_value());
   EXPECT_TRUE(study.cells[1].weights.has_value());
   write_report(file, folder / "report");
-  const std::string page = read(folder / "report/index.html");
+  const std::string page = text_in(folder / "report/index.html");
   EXPECT_THAT(page, HasSubstr("<h2>How many particles still count?"));
   EXPECT_THAT(page, Not(HasSubstr("<h2>Whose story do the particles tell?")));
   EXPECT_THAT(page, Not(HasSubstr("<h2>How many different histories survive?")));
@@ -123,7 +116,7 @@ TEST(Report, IsNotOverwrittenUnasked) {
   std::filesystem::create_directories(folder / "report");
   std::ofstream(folder / "report/index.html") << "mine";
   EXPECT_THROW(write_report(file, folder / "report"), StudyError);
-  EXPECT_EQ(read(folder / "report/index.html"), "mine");
+  EXPECT_EQ(text_in(folder / "report/index.html"), "mine");
 }
 
 TEST(Report, RefusesARunThatIsNotThere) {

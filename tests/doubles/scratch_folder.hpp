@@ -3,6 +3,8 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <unistd.h>
@@ -31,5 +33,12 @@ class ScratchFolder {
  private:
   std::filesystem::path path_;
 };
+
+/// What a file holds; nothing where it cannot be read.
+inline std::string text_in(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
 
 }  // namespace montecarta

@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/figures/thinning.hpp"
 
+#include "analysis/metrics/finite_mean.hpp"
 #include "engine/random/stream.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 namespace montecarta {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> counting(std::size_t n) {
   std::vector<double> times(n);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/joint/joint_nees.hpp"
 
+#include "analysis/metrics/finite_mean.hpp"
 #include "engine/numbers/angle.hpp"
 #include "engine/random/stream.hpp"
 
@@ -19,12 +20,11 @@ namespace {
 using testing::Each;
 using testing::HasSubstr;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr Eigen::Index kStates = 7;  // two landmarks
-const std::vector<Eigen::Vector2d> kWorld = {{5, 1}, {2, -3}};
+const std::vector<Eigen::Vector2d> kJointWorld = {{5, 1}, {2, -3}};
 const std::vector<double> kTruth = {9, 9, 9,
                                     1, 2, 3.1};  // of two scans, of which the second counts
-const std::vector<std::uint32_t> kScans = {1};
+const std::vector<std::uint32_t> kJointScans = {1};
 
 Eigen::VectorXd state() {
   Eigen::VectorXd state(kStates);
@@ -44,7 +44,7 @@ JointRows rows_of(const Eigen::VectorXd& mean, const Eigen::MatrixXd& P) {
 }
 
 JointScore score_of(const Eigen::VectorXd& mean, const Eigen::MatrixXd& P) {
-  return joint_scores(rows_of(mean, P), kScans, kTruth, kWorld).at(0);
+  return joint_scores(rows_of(mean, P), kJointScans, kTruth, kJointWorld).at(0);
 }
 
 TEST(JointScores, AreTheSquaredErrorByTheWholeCovariance) {

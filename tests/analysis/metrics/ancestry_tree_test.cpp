@@ -17,7 +17,7 @@ namespace {
 
 using Branch = AncestryTree::Branch;
 
-std::vector<double> seconds(std::size_t scans) {
+std::vector<double> seconds_of_scans(std::size_t scans) {
   std::vector<double> times;
   for (std::size_t s = 0; s < scans; ++s) times.push_back(static_cast<double>(s + 1));
   return times;
@@ -42,7 +42,7 @@ std::vector<std::uint32_t> random_ancestry(std::uint64_t run, std::size_t scans,
 // is 2 of scan 1.
 TEST(AncestryTree, OfThreeParticlesByHand) {
   const std::vector<std::uint32_t> ancestor = {0, 1, 2, 2, 2, 0, 0, 1, 1};
-  const AncestryTree tree = ancestry_tree(ancestor, 3, seconds(3), 10);
+  const AncestryTree tree = ancestry_tree(ancestor, 3, seconds_of_scans(3), 10);
   ASSERT_EQ(tree.branches.size(), 5u);
   const auto expect_branch = [&](std::size_t b, std::size_t parent, double from, double to,
                                  std::size_t leaves, double height) {
@@ -65,11 +65,12 @@ TEST(AncestryTree, HasAsManyLinesAtAnyTimeAsThereAreAncestors) {
   for (std::uint64_t run = 0; run < 40; ++run) {
     constexpr std::size_t kScans = 60, kParticles = 12;
     const auto ancestor = random_ancestry(run, kScans, kParticles);
-    const AncestryTree tree = ancestry_tree(ancestor, kParticles, seconds(kScans), kParticles);
+    const AncestryTree tree =
+        ancestry_tree(ancestor, kParticles, seconds_of_scans(kScans), kParticles);
     AncestorSet alive;
     alive.start(kParticles);
     for (std::size_t s = kScans; s-- > 0;) {
-      const double between = static_cast<double>(s) + 0.5;  // scan s is at s + 1 seconds
+      const double between = static_cast<double>(s) + 0.5;  // scan s is at s + 1 seconds_of_scans
       const auto lines = std::ranges::count_if(tree.branches, [&](const Branch& branch) {
         return branch.from < between && between < branch.to;
       });
@@ -94,7 +95,7 @@ std::set<double> leaves_of(const AncestryTree& tree, std::size_t b) {
 TEST(AncestryTree, CrossesNoLines) {
   for (std::uint64_t run = 0; run < 20; ++run) {
     const auto ancestor = random_ancestry(run, 60, 12);
-    const AncestryTree tree = ancestry_tree(ancestor, 12, seconds(60), 12);
+    const AncestryTree tree = ancestry_tree(ancestor, 12, seconds_of_scans(60), 12);
     for (std::size_t b = 0; b < tree.branches.size(); ++b) {
       const std::set<double> family = leaves_of(tree, b);
       // A family has its stretch of heights to itself, and its line begins within.
@@ -110,7 +111,7 @@ TEST(AncestryTree, FollowsSomeOfTooManyParticlesEvenly) {
   // Particles 0 to 4 are one family, 5 to 9 another: three of ten see both.
   const std::vector<std::uint32_t> ancestor = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9,   // of 1 s
                                                0, 0, 0, 0, 0, 5, 5, 5, 5, 5};  // of 2 s
-  const AncestryTree tree = ancestry_tree(ancestor, 10, seconds(2), 3);
+  const AncestryTree tree = ancestry_tree(ancestor, 10, seconds_of_scans(2), 3);
   EXPECT_EQ(tree.leaves, 3u);
   EXPECT_EQ(tree.particles, 10u);
   ASSERT_EQ(tree.branches.size(), 4u);  // 0 and 3 meet; 6 stays alone
@@ -120,7 +121,8 @@ TEST(AncestryTree, FollowsSomeOfTooManyParticlesEvenly) {
 }
 
 TEST(AncestryTree, RefusesParentsThatAreNot) {
-  EXPECT_THROW(ancestry_tree(std::vector<std::uint32_t>{0, 2}, 2, seconds(1), 2), RunError);
+  EXPECT_THROW(ancestry_tree(std::vector<std::uint32_t>{0, 2}, 2, seconds_of_scans(1), 2),
+               RunError);
 }
 
 }  // namespace

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/consistency.hpp"
 
+#include "analysis/metrics/finite_mean.hpp"
 #include "engine/random/stream.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace montecarta {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> every_fifth_of_a_second(std::size_t scans) {
   std::vector<double> times;

@@ -15,7 +15,7 @@ namespace {
 
 using testing::ElementsAre;
 
-std::vector<double> seconds(std::size_t scans) {
+std::vector<double> scan_times(std::size_t scans) {
   std::vector<double> times(scans);
   std::iota(times.begin(), times.end(), 1.0);
   return times;
@@ -29,7 +29,7 @@ TEST(Diversity, CountsAHandMadeGenealogy) {
                                                0, 1, 2, 3,   //
                                                1, 1, 2, 2};  // 0 and 3 died
   DiversityCounter counter;
-  const Diversity& found = counter.count(ancestor, 4, seconds(5));
+  const Diversity& found = counter.count(ancestor, 4, scan_times(5));
   EXPECT_THAT(found.last_resampling, ElementsAre(4, 4, 3, 3, 2));
   EXPECT_THAT(found.root, ElementsAre(4, 4, 3, 3, 2));
   EXPECT_THAT(found.lag, ElementsAre(4, 4, 3, 3, 2));
@@ -42,7 +42,7 @@ TEST(Diversity, ForgetsResamplingsOlderThanTheLag) {
     ancestor.insert(ancestor.end(), {first, 1});
   }
   DiversityCounter counter;
-  const Diversity& found = counter.count(ancestor, 2, seconds(30));
+  const Diversity& found = counter.count(ancestor, 2, scan_times(30));
   EXPECT_EQ(found.lag[2], 2u);
   EXPECT_EQ(found.lag[3], 1u);
   EXPECT_EQ(found.lag[12], 1u);  // 13 s: looks back to 3 s, before the resampling at 4 s
@@ -83,7 +83,7 @@ TEST(Diversity, EqualsWalkingBackEveryParticle) {
     RngStream draw({3, run, 0, 0, Draw::test});
     const std::size_t particles = 5 + 3 * run, scans = 40;
     const auto ancestor = random_genealogy(particles, scans, draw);
-    const Diversity& found = counter.count(ancestor, particles, seconds(scans));
+    const Diversity& found = counter.count(ancestor, particles, scan_times(scans));
     for (std::size_t s = 0; s < scans; ++s) {
       EXPECT_EQ(found.root[s], walk_back(ancestor, particles, 0, s)) << run << " " << s;
       const std::size_t first = s < 10 ? 0 : s - 9;
@@ -95,7 +95,7 @@ TEST(Diversity, EqualsWalkingBackEveryParticle) {
 TEST(Diversity, NeverGrowsAtTheRoot) {
   DiversityCounter counter;
   RngStream draw({4, 0, 0, 0, Draw::test});
-  const auto& root = counter.count(random_genealogy(100, 200, draw), 100, seconds(200)).root;
+  const auto& root = counter.count(random_genealogy(100, 200, draw), 100, scan_times(200)).root;
   for (std::size_t s = 1; s < root.size(); ++s) EXPECT_LE(root[s], root[s - 1]);
   EXPECT_LT(root.back(), 10u);
 }
@@ -103,7 +103,7 @@ TEST(Diversity, NeverGrowsAtTheRoot) {
 TEST(Diversity, RefusesAParentThatDoesNotExist) {
   DiversityCounter counter;
   const std::vector<std::uint32_t> ancestor = {0, 1, 2, 3};
-  EXPECT_THROW(counter.count(ancestor, 2, seconds(2)), RunError);
+  EXPECT_THROW(counter.count(ancestor, 2, scan_times(2)), RunError);
 }
 
 }  // namespace

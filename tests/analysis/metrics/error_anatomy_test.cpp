@@ -11,16 +11,16 @@
 namespace montecarta {
 namespace {
 
-constexpr std::size_t kScans = 50;
+constexpr std::size_t kAnatomyScans = 50;
 
 /// Errors with these deviations and bias of a filter that believes deviations of 1.
 ErrorAnatomy anatomy_of(const Eigen::Vector3d& deviations, const Eigen::Vector3d& bias,
                         std::size_t runs = 200) {
-  ErrorMoments moments(kScans);
-  const std::vector<Eigen::Matrix3d> covariances(kScans, Eigen::Matrix3d::Identity());
+  ErrorMoments moments(kAnatomyScans);
+  const std::vector<Eigen::Matrix3d> covariances(kAnatomyScans, Eigen::Matrix3d::Identity());
   for (std::size_t run = 0; run < runs; ++run) {
     RngStream draw({19, run, 0, 0, Draw::test});
-    std::vector<Eigen::Vector3d> errors(kScans);
+    std::vector<Eigen::Vector3d> errors(kAnatomyScans);
     for (Eigen::Vector3d& error : errors) {
       const Eigen::Vector3d noise(draw.normal(), draw.normal(), draw.normal());
       error = bias + deviations.cwiseProduct(noise);

@@ -12,34 +12,34 @@
 namespace montecarta {
 namespace {
 
-constexpr std::size_t kScans = 300;
+constexpr std::size_t kInnovationScans = 300;
 
 /// NIS of four degrees of freedom, `scale` times what they should be; each innovation is `memory`
 /// times the one before, plus news.
 Innovations innovations_of(double scale, double memory, std::uint64_t seed = 23) {
-  InnovationSums sums(kScans);
+  InnovationSums sums(kInnovationScans);
   for (std::uint64_t run = 0; run < 40; ++run) {
     RngStream draw({seed, run, 0, 0, Draw::test});
     std::vector<double> nis, state(4);
     for (double& one : state) one = draw.normal();
-    for (std::size_t s = 0; s < kScans; ++s) {
+    for (std::size_t s = 0; s < kInnovationScans; ++s) {
       nis.push_back(0.0);
       for (double& one : state) {
         one = memory * one + std::sqrt(1.0 - memory * memory) * draw.normal();
         nis.back() += scale * one * one;
       }
     }
-    sums.add(nis, std::vector<std::uint32_t>(kScans, 4));
+    sums.add(nis, std::vector<std::uint32_t>(kInnovationScans, 4));
   }
   return sums.result(0.95);
 }
 
 TEST(Innovations, OfARightFilterAreWhiteAndOfTheRightSize) {
   const Innovations found = innovations_of(1.0, 0.0);
-  EXPECT_NEAR(found.mean, 1.0, 5.0 * std::sqrt(2.0 / (4.0 * 40.0 * kScans)));
+  EXPECT_NEAR(found.mean, 1.0, 5.0 * std::sqrt(2.0 / (4.0 * 40.0 * kInnovationScans)));
   EXPECT_LT(found.interval.lower, 1.0);
   EXPECT_GT(found.interval.upper, 1.0);
-  EXPECT_NEAR(found.share_inside, 0.95, 5.0 * std::sqrt(0.95 * 0.05 / kScans));
+  EXPECT_NEAR(found.share_inside, 0.95, 5.0 * std::sqrt(0.95 * 0.05 / kInnovationScans));
   EXPECT_TRUE(found.white);
   EXPECT_LT(found.bound, 0.04);
 }
@@ -106,17 +106,17 @@ TEST(Innovations, AreBoundByTheFewestPairs) {
 // Each step back undoes half of the last one: nothing goes together but neighbours, and those the
 // other way round.
 TEST(Innovations, ThatAlternateAreNotWhite) {
-  InnovationSums sums(kScans);
+  InnovationSums sums(kInnovationScans);
   RngStream draw({29, 0, 0, 0, Draw::test});
   for (int run = 0; run < 40; ++run) {
     std::vector<double> nis;
     double before = draw.normal();
-    for (std::size_t s = 0; s < kScans; ++s) {
+    for (std::size_t s = 0; s < kInnovationScans; ++s) {
       const double now = draw.normal();
       nis.push_back(4.0 + now - before);
       before = now;
     }
-    sums.add(nis, std::vector<std::uint32_t>(kScans, 4));
+    sums.add(nis, std::vector<std::uint32_t>(kInnovationScans, 4));
   }
   const Innovations found = sums.result(0.95);
   EXPECT_NEAR(found.autocorrelation[0], -0.5, 0.05);

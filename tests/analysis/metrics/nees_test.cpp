@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/nees.hpp"
 
+#include "analysis/metrics/finite_mean.hpp"
 #include "analysis/metrics/summary.hpp"
 #include "engine/random/stream.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
@@ -14,8 +15,6 @@
 
 namespace montecarta {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST(Nees, EqualsTheQuadraticFormOfEachBlock) {
   RngStream draw({5, 0, 0, 0, Draw::test});

@@ -12,7 +12,7 @@
 namespace montecarta {
 namespace {
 
-constexpr std::size_t kScans = 400;
+constexpr std::size_t kCorrelatedScans = 400;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// A run whose scans go together as `correlation` says, of mean 0 and variance 1.
@@ -20,7 +20,7 @@ std::vector<double> autoregression(std::uint64_t run, double correlation) {
   RngStream draw({11, run, 0, 0, Draw::test});
   std::vector<double> values = {draw.normal()};
   const double rest = std::sqrt(1.0 - correlation * correlation);
-  while (values.size() < kScans)
+  while (values.size() < kCorrelatedScans)
     values.push_back(correlation * values.back() + rest * draw.normal());
   return values;
 }
@@ -28,16 +28,16 @@ std::vector<double> autoregression(std::uint64_t run, double correlation) {
 // Pooled over 100 scans of 30 runs: one standard error is sqrt((1 - r^2) / 3000).
 TEST(NeighbourCorrelation, FindsThatOfAnAutoregression) {
   for (const double r : {0.0, 0.6, 0.95}) {
-    NeighbourCorrelation sums(kScans);
+    NeighbourCorrelation sums(kCorrelatedScans);
     for (std::uint64_t run = 0; run < 30; ++run) sums.add(autoregression(run, r), kNone);
     const std::vector<double> found = sums.result();
-    ASSERT_EQ(found.size(), kScans - 1);
+    ASSERT_EQ(found.size(), kCorrelatedScans - 1);
     for (const double one : found) EXPECT_NEAR(one, r, 5.0 * std::sqrt((1.0 - r * r) / 1500.0));
   }
 }
 
 TEST(NeighbourCorrelation, TellsHalvesOfARunApart) {
-  NeighbourCorrelation sums(kScans);
+  NeighbourCorrelation sums(kCorrelatedScans);
   for (std::uint64_t run = 0; run < 50; ++run) {
     std::vector<double> values = autoregression(run, 0.95);
     const std::vector<double> white = autoregression(run + 50, 0.0);
@@ -49,7 +49,7 @@ TEST(NeighbourCorrelation, TellsHalvesOfARunApart) {
 }
 
 TEST(NeighbourCorrelation, IsNotMovedByARunThatWentAstray) {
-  NeighbourCorrelation sums(kScans);
+  NeighbourCorrelation sums(kCorrelatedScans);
   for (std::uint64_t run = 0; run < 30; ++run) {
     std::vector<double> values = autoregression(run, 0.0);
     if (run == 7) values[100] = values[101] = 1e20;

@@ -18,23 +18,23 @@ ReferencePath reference_at(const std::vector<double>& times) {
   return path;
 }
 
-const std::vector<double> kTimes = {1.0, 2.0, 4.0};
+const std::vector<double> kFixTimes = {1.0, 2.0, 4.0};
 constexpr Pose kStart{-10.0, 0.0, 0.0};
-const std::vector<double> kPath = {0.0, 10.0, 0.5,  // row by row
-                                   2.0, 10.0, 1.0,  //
-                                   6.0, 30.0, 2.0};
+const std::vector<double> kPathRows = {0.0, 10.0, 0.5,  // row by row
+                                       2.0, 10.0, 1.0,  //
+                                       6.0, 30.0, 2.0};
 
 TEST(PathAtFixes, UsesOnlyFixesWithinTheDrive) {
-  const PathAtFixes fixes(reference_at({-0.1, 0.0, 3.0, 4.0, 4.1}), kTimes, kStart);
+  const PathAtFixes fixes(reference_at({-0.1, 0.0, 3.0, 4.0, 4.1}), kFixTimes, kStart);
   EXPECT_THAT(fixes.times(), ElementsAre(0.0, 3.0, 4.0));
   EXPECT_EQ(fixes.positions()[1], Eigen::Vector2d(3.0, 0.0));
   EXPECT_EQ(fixes.headings().size(), 3u);
-  EXPECT_EQ(fixes.interpolate(kPath).size(), 3u);
+  EXPECT_EQ(fixes.interpolate(kPathRows).size(), 3u);
 }
 
 TEST(PathAtFixes, GoesLinearlyInTimeBetweenRowsAndFromTheStart) {
-  const PathAtFixes fixes(reference_at({0.0, 0.25, 1.0, 1.5, 3.0, 4.0}), kTimes, kStart);
-  const std::vector<Pose> poses = fixes.interpolate(kPath);
+  const PathAtFixes fixes(reference_at({0.0, 0.25, 1.0, 1.5, 3.0, 4.0}), kFixTimes, kStart);
+  const std::vector<Pose> poses = fixes.interpolate(kPathRows);
   const double x[] = {-10.0, -7.5, 0.0, 1.0, 4.0, 6.0};
   const double y[] = {0.0, 2.5, 10.0, 10.0, 20.0, 30.0};
   const double heading[] = {0.0, 0.125, 0.5, 0.75, 1.5, 2.0};

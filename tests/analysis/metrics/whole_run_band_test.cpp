@@ -9,10 +9,10 @@
 namespace montecarta {
 namespace {
 
-constexpr std::size_t kScans = 200;
+constexpr std::size_t kBandScans = 200;
 
 WholeRunTest test_of(double correlation) {
-  return BandWalks(kScans).test(std::vector<double>(kScans - 1, correlation), 0.95);
+  return BandWalks(kBandScans).test(std::vector<double>(kBandScans - 1, correlation), 0.95);
 }
 
 double deviate_of(double correlation) { return test_of(correlation).deviate; }
@@ -42,12 +42,12 @@ TEST(WholeRunTest, NarrowsAsScansGoTogether) {
 }
 
 TEST(WholeRunTest, WidensWithTheLevelAndTheRun) {
-  const BandWalks walks(kScans);
-  const std::vector<double> correlation(kScans - 1, 0.5);
+  const BandWalks walks(kBandScans);
+  const std::vector<double> correlation(kBandScans - 1, 0.5);
   const double deviate = walks.test(correlation, 0.95).deviate;
   EXPECT_GT(walks.test(correlation, 0.99).deviate, deviate);
-  const std::vector<double> longer(2 * kScans - 1, 0.5);
-  EXPECT_GT(BandWalks(2 * kScans).test(longer, 0.95).deviate, deviate);
+  const std::vector<double> longer(2 * kBandScans - 1, 0.5);
+  EXPECT_GT(BandWalks(2 * kBandScans).test(longer, 0.95).deviate, deviate);
 }
 
 TEST(WholeRunTest, OfARunOfOneScanIsPointwise) {

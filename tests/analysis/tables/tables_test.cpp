@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/tables.hpp"
 
+#include "analysis/metrics/finite_mean.hpp"
 #include "analysis/tables/csv_file.hpp"
 #include "analysis/tables/latex.hpp"
 #include "analysis/tables/number_text.hpp"
@@ -21,8 +22,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 CellAnalysis consistent_cell() {
   CellAnalysis cell;
@@ -62,13 +61,6 @@ StudyAnalysis small_study() {
   broken.failures = {{7, 120, "weights, all of them, are zero"}};
   study.cells = {consistent_cell(), broken};
   return study;
-}
-
-std::string read(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
 }
 
 TEST(NumberText, IsShortAndHonest) {
@@ -115,11 +107,13 @@ TEST(PrintTables, PutFailedRunsFirstAndTheVerdictInWords) {
 TEST(WriteCsv, WritesOneRowACellAndOneRowAScan) {
   const ScratchFolder folder;
   write_csv(small_study(), folder / "csv");
-  EXPECT_THAT(read(folder / "csv/cells.csv"), HasSubstr("\nekf_slam,ekf_slam,consistent,0,30,0"));
-  EXPECT_THAT(read(folder / "csv/consistency.csv"), HasSubstr("ekf_slam,pose,spread,consistent"));
-  EXPECT_THAT(read(folder / "csv/failures.csv"),
+  EXPECT_THAT(text_in(folder / "csv/cells.csv"),
+              HasSubstr("\nekf_slam,ekf_slam,consistent,0,30,0"));
+  EXPECT_THAT(text_in(folder / "csv/consistency.csv"),
+              HasSubstr("ekf_slam,pose,spread,consistent"));
+  EXPECT_THAT(text_in(folder / "csv/failures.csv"),
               HasSubstr("fastslam2_m30,7,120,\"weights, all of them, are zero\""));
-  const std::string series = read(folder / "csv/series_ekf_slam.csv");
+  const std::string series = text_in(folder / "csv/series_ekf_slam.csv");
   EXPECT_THAT(series, testing::StartsWith("time [s],position_rmse [m],heading_rmse [rad],anees"));
   EXPECT_THAT(series, HasSubstr("\n0.4,0.2,0.02,3.5,2.5,"));
 }

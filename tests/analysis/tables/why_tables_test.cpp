@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/tables/why_tables.hpp"
 
+#include "analysis/metrics/finite_mean.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <limits>
 
 namespace montecarta {
 namespace {
 
 using testing::ElementsAre;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 StudyAnalysis study_of(CellAnalysis cell) {
   StudyAnalysis study;

@@ -22,7 +22,7 @@ namespace {
 using testing::Each;
 using testing::ElementsAre;
 
-constexpr std::uint64_t kRuns = 150;
+constexpr std::uint64_t kRunsOfRounds = 150;
 
 /// The small cell has enough at 64, the large one never.
 bool small_at_64(const std::filesystem::path& unfinished, std::size_t cell, std::uint64_t runs,
@@ -36,7 +36,7 @@ bool small_at_64(const std::filesystem::path& unfinished, std::size_t cell, std:
 }
 
 StudyPlan stopping_plan() {
-  StudyPlan plan = scripted_cells(kRuns);
+  StudyPlan plan = scripted_cells(kRunsOfRounds);
   plan.is_enough = small_at_64;
   return plan;
 }
@@ -57,10 +57,10 @@ class Rounds : public testing::Test {
 };
 
 TEST_F(Rounds, DoubleUntilAllRunsAreMade) {
-  StudyPlan plan = scripted_cells(kRuns);
-  EXPECT_THAT(rounds_of(plan), ElementsAre(kRuns));
+  StudyPlan plan = scripted_cells(kRunsOfRounds);
+  EXPECT_THAT(rounds_of(plan), ElementsAre(kRunsOfRounds));
   plan.is_enough = small_at_64;
-  EXPECT_THAT(rounds_of(plan), ElementsAre(32, 64, 128, kRuns));
+  EXPECT_THAT(rounds_of(plan), ElementsAre(32, 64, 128, kRunsOfRounds));
   plan.last_run = 32;
   EXPECT_THAT(rounds_of(plan), ElementsAre(32));
 }
@@ -71,9 +71,9 @@ TEST_F(Rounds, SpareWhatIsEnough) {
   EXPECT_EQ(outcome.stopped, StopReason::complete);
   EXPECT_EQ(outcome.cells[0].complete, 63U);
   EXPECT_EQ(outcome.cells[0].failed, 1U);
-  EXPECT_EQ(outcome.cells[0].spared, kRuns - 64);
-  EXPECT_EQ(outcome.cells[1].complete, kRuns);
-  EXPECT_EQ(outcome.runs_here, 64 + kRuns);
+  EXPECT_EQ(outcome.cells[0].spared, kRunsOfRounds - 64);
+  EXPECT_EQ(outcome.cells[1].complete, kRunsOfRounds);
+  EXPECT_EQ(outcome.runs_here, 64 + kRunsOfRounds);
   const ResultFile file(folder / "study.h5");
   const std::vector<RunStatus> status = file.status(file.cells()[0]);
   EXPECT_THAT(std::vector(status.begin() + 64, status.end()), Each(RunStatus::spared));
@@ -81,7 +81,7 @@ TEST_F(Rounds, SpareWhatIsEnough) {
 
 // A cell that stops has the first runs of one that does not.
 TEST_F(Rounds, ChangeNoRunThatIsMade) {
-  const ResultFile all = results_of(scripted_cells(kRuns), options("all.h5"));
+  const ResultFile all = results_of(scripted_cells(kRunsOfRounds), options("all.h5"));
   const ResultFile some = results_of(stopping_plan(), options("some.h5"));
   for (std::size_t run = 0; run < 64; ++run) EXPECT_EQ(difference_of_run(all, run, some, run), "");
 }
@@ -133,7 +133,7 @@ TEST_F(Rounds, GiveTheSameBitsAfterAnError) {
 TEST_F(Rounds, AreMergedLikeAnyOther) {
   const ResultFile whole = results_of(stopping_plan(), options("whole.h5"));
   const std::filesystem::path part = folder / "whole.h5", merged = folder / "merged.h5";
-  EXPECT_EQ(merge_results(merged, {part, part}, Existing::refuse).runs, kRuns);
+  EXPECT_EQ(merge_results(merged, {part, part}, Existing::refuse).runs, kRunsOfRounds);
   EXPECT_EQ(difference(whole, ResultFile(merged)), "");
 }
 

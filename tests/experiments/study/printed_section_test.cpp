@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string complaint_about(const std::string& line) {
+std::string complaint_about_printed(const std::string& line) {
   return complaint(kGoodStudy + "[printed]\n" + line + "\n");
 }
 
@@ -32,18 +32,18 @@ TEST(PrintedSection, IsAbsentWhereNothingIsRepeated) {
 }
 
 TEST(PrintedSection, ErrorsNameLineReasonAndRemedy) {
-  EXPECT_THAT(complaint_about("value = cell=ekf_slma metric=ess printed=1"),
+  EXPECT_THAT(complaint_about_printed("value = cell=ekf_slma metric=ess printed=1"),
               HasSubstr("trial.ini:9: value: there is no cell 'ekf_slma': did you mean ekf_slam?"));
-  EXPECT_THAT(complaint_about("value = cell=ekf_slam metric=positon_rmse printed=1"),
+  EXPECT_THAT(complaint_about_printed("value = cell=ekf_slam metric=positon_rmse printed=1"),
               HasSubstr("there is no metric 'positon_rmse': did you mean position_rmse?"));
-  EXPECT_THAT(complaint_about("claim = ess ekf_slam < fastslam2"),
+  EXPECT_THAT(complaint_about_printed("claim = ess ekf_slam < fastslam2"),
               HasSubstr("trial.ini:9: claim: there is no cell 'fastslam2'"));
-  EXPECT_THAT(complaint_about("value = cell=ekf_slam metric=ess"),
+  EXPECT_THAT(complaint_about_printed("value = cell=ekf_slam metric=ess"),
               HasSubstr("trial.ini:9: value: printed= is missing: write value = "));
-  EXPECT_THAT(complaint_about("value = cell=ekf_slam metric=lasting_exit_pose printed=1 "
-                              "relative_to=ekf_slam"),
+  EXPECT_THAT(complaint_about_printed("value = cell=ekf_slam metric=lasting_exit_pose printed=1 "
+                                      "relative_to=ekf_slam"),
               HasSubstr("remove it"));
-  EXPECT_THAT(complaint_about("quote = 3"), HasSubstr("unknown key printed.quote"));
+  EXPECT_THAT(complaint_about_printed("quote = 3"), HasSubstr("unknown key printed.quote"));
 }
 
 }  // namespace
