@@ -3,10 +3,10 @@
 // starts the task elsewhere, and on network file systems no lock keeps them apart. So nobody ever
 // writes a file that another process may be writing, and every byte taken over is checked.
 #include "engine/errors.hpp"
-#include "engine/records/h5.hpp"
 #include "engine/records/open_result.hpp"
 #include "engine/records/output_path.hpp"
 #include "engine/records/read_description.hpp"
+#include "engine/records/seal.hpp"
 #include "engine/records/shard.hpp"
 
 #include <array>
@@ -47,7 +47,7 @@ std::optional<ResultDescription> description_of(const fs::path& work,
                                                 const ResultDescription& planned) {
   std::optional<ResultDescription> stored;
   try {
-    stored = read_description(h5::open_file(work), work);
+    stored = read_description(open_checked(work), work);
   } catch (const std::runtime_error&) {
     return std::nullopt;
   }

@@ -3,6 +3,7 @@
 #include "engine/records/open_result.hpp"
 #include "engine/records/output_path.hpp"
 #include "engine/records/result_layout.hpp"
+#include "engine/records/seal.hpp"
 
 #include <optional>
 #include <sstream>
@@ -54,6 +55,7 @@ PosixFile lay_out_new(const fs::path& path, const ResultDescription& description
   try {
     expect_room(path, description.bytes_per_run() * static_cast<double>(description.runs.size()));
     lay_out(path, description);
+    put_seal(file, written_later(find_slabs(path, description), description.runs.size()));
     file.reserve();
     file.sync();
   } catch (...) {

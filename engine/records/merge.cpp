@@ -149,9 +149,10 @@ MergeSummary merge_results(const fs::path& out, const std::vector<fs::path>& pat
   note_builds(shards, summary);
   fs::path temporary = out;
   temporary += ".merging";
-  PosixFile file = lay_out_new(temporary, whole_study(description, shards.size()));
+  const ResultDescription whole = whole_study(description, shards.size());
+  PosixFile file = lay_out_new(temporary, whole);
   try {
-    copy_runs(shards, source, file, find_slabs(temporary, description), summary);
+    copy_runs(shards, source, file, find_slabs(temporary, whole), summary);
     file.sync();
     summary.bytes = file.size();
     file.rename(

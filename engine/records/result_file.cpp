@@ -6,6 +6,7 @@
 #include "engine/records/output_path.hpp"
 #include "engine/records/read_description.hpp"
 #include "engine/records/run_record.hpp"
+#include "engine/records/seal.hpp"
 
 #include <algorithm>
 #include <map>
@@ -21,7 +22,7 @@ struct ResultFile::Contents {
   std::map<std::string, std::map<std::string, h5::Handle, std::less<>>, std::less<>> columns;
 
   explicit Contents(const std::filesystem::path& given)
-      : path(given), file(h5::open_file(path)), description(read_description(file, path)) {
+      : path(given), file(open_checked(path)), description(read_description(file, path)) {
     if (description.has_truth) truth = h5::open_dataset(file, "truth/pose");
     if (description.own_landmarks) own_landmarks = h5::open_dataset(file, "truth/landmarks");
     for (const StoredCell& cell : description.cells) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/errors.hpp"
-#include "engine/records/h5.hpp"
 #include "engine/records/open_result.hpp"
 #include "engine/records/output_path.hpp"
 #include "engine/records/read_description.hpp"
 #include "engine/records/result_layout.hpp"
+#include "engine/records/seal.hpp"
 
 #include <algorithm>
 
@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 ResultDescription read_description_of(const fs::path& path) {
   try {
-    return read_description(h5::open_file(path), path);
+    return read_description(open_checked(path), path);
   } catch (const std::runtime_error& error) {
     throw StudyError(path.string() + ": cannot be resumed (" + error.what() +
                      "): start afresh with --force");
@@ -41,7 +41,7 @@ bool begun_with_force(const ResultDescription& stored) {
 
 bool holds_the_same(const fs::path& path, const ResultDescription& planned) {
   try {
-    const ResultDescription stored = read_description(h5::open_file(path), path);
+    const ResultDescription stored = read_description(open_checked(path), path);
     return stored.runs == planned.runs && !difference(planned, stored, path);
   } catch (const std::runtime_error&) {
     return false;  // no result at all: the user's own file, which is not ours to replace either

@@ -2,8 +2,8 @@
 #include "engine/records/shard.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/records/h5.hpp"
 #include "engine/records/read_description.hpp"
+#include "engine/records/seal.hpp"
 
 #include <algorithm>
 #include <span>
@@ -78,10 +78,15 @@ bool is_spared(const PosixFile& file, const CellSlabs& cell, std::size_t run_ind
 ResultDescription describe_shard(const std::filesystem::path& path) {
   const PosixFile readable(path,
                            PosixFile::Mode::read);  // says better than HDF5 why it cannot be opened
-  return read_description(h5::open_file(path), path);
+  return read_description(open_checked(path), path);
 }
 
 Shard make_shard(const std::filesystem::path& path, const ResultDescription& description) {
+  const std::vector<std::uint64_t>& runs = description.runs;
+  if (runs.back() - runs.front() != runs.size() - 1) {
+    throw StudyError(path.string() +
+                     ": its run numbers have gaps (another program wrote it): make it anew");
+  }
   Shard shard{
       path, find_slabs(path, description), description.runs.front(), {}, description.provenance};
   const PosixFile file(path, PosixFile::Mode::read);

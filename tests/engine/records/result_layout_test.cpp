@@ -48,7 +48,7 @@ void list(const h5::Handle& group, const std::string& path, std::ostream& out) {
 /// Renewed on purpose only: MONTECARTA_UPDATE_GOLDEN=1 rewrites and fails.
 TEST(ResultLayout, IsThatOfTheGoldenFile) {
   const std::filesystem::path golden =
-      std::filesystem::path(MONTECARTA_SOURCE_DIR) / "tests/engine/records/golden/result_1_4.txt";
+      std::filesystem::path(MONTECARTA_SOURCE_DIR) / "tests/engine/records/golden/result_1_5.txt";
   const ScratchFolder folder;
   StudyPlan plan = small_result_plan();
   plan.cells[1].particles = 0;  // a Kalman filter

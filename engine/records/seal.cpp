@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/records/seal.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/records/fingerprint.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+namespace montecarta {
+namespace {
+
+using Words = std::vector<std::uint64_t>;
+
+static_assert(std::endian::native == std::endian::little, "files are little-endian");
+
+constexpr std::string_view kHdf5 = "\x89HDF\r\n\x1a\n";
+constexpr std::string_view kMagic = "\x89MCSEAL\n";
+constexpr std::uint64_t kVersion = 1;
+constexpr std::size_t kHeadWords = 4;  // magic, version, size of the file, number of ranges
+constexpr std::size_t kTailWords = 2;  // fingerprint of the file, fingerprint of the seal
+constexpr std::size_t kSuperblockBytes = 52;  // more than any version needs up to its end address
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
+  throw StudyError(path.string() + ": damaged (" + why +
+                   "): take a copy that is whole, or run the study again");
+}
+
+[[noreturn]] void refuse_other(const std::filesystem::path& path) {
+  throw StudyError(path.string() +
+                   ": not a readable HDF5 file (another kind, cut short, or damaged): "
+                   "give a file that 'montecarta run' wrote");
+}
+
+template <class T>
+T value_at(std::span<const std::byte> bytes, std::size_t offset) {
+  T value{};
+  std::memcpy(&value, bytes.data() + offset, sizeof(T));
+  return value;
+}
+
+/// Where the HDF5 library takes the file to end, as its superblock says. Throws StudyError where
+/// the file does not begin as HDF5 does.
+std::uint64_t end_of_hdf5(const PosixFile& file) {
+  std::array<std::byte, kSuperblockBytes> head{};
+  if (file.size() >= head.size()) file.read_at(0, head);
+  if (std::memcmp(head.data(), kHdf5.data(), kHdf5.size()) != 0) {
+    refuse_other(file.path());
+  }
+  const auto version = value_at<std::uint8_t>(head, 8);
+  const std::size_t widths = version < 2 ? 13 : 9;  // of addresses and lengths
+  if (version > 3 || value_at<std::uint8_t>(head, widths) != 8) {
+    refuse(file.path(), "its superblock is of an unknown kind");
+  }
+  constexpr std::array<std::size_t, 4> end_address = {40, 44, 28, 28};
+  return value_at<std::uint64_t>(head, end_address[version]);
+}
+
+void add_bytes(const PosixFile& file, std::uint64_t from, std::uint64_t to,
+               std::vector<std::byte>& buffer, Fingerprint& fingerprint) {
+  for (; from < to; from += buffer.size()) {
+    buffer.resize(std::min<std::uint64_t>(to - from, 1U << 16U));
+    file.read_at(from, buffer);
+    fingerprint.add(buffer);
+  }
+}
+
+/// Of every byte before `end` that lies in no range.
+std::uint64_t fingerprint_outside(const PosixFile& file, std::span<const ByteRange> ranges,
+                                  std::uint64_t end) {
+  Fingerprint fingerprint;
+  std::vector<std::byte> buffer;
+  std::uint64_t from = 0;
+  for (const ByteRange& range : ranges) {
+    add_bytes(file, from, range.offset, buffer, fingerprint);
+    from = range.offset + range.length;
+  }
+  add_bytes(file, from, end, buffer, fingerprint);
+  return fingerprint.value();
+}
+
+std::uint64_t fingerprint_of(std::span<const std::uint64_t> words) {
+  Fingerprint fingerprint;
+  fingerprint.add(std::as_bytes(words));
+  return fingerprint.value();
+}
+
+/// The ranges of a seal that is whole; they must lie one behind the other and before `end`.
+std::vector<ByteRange> ranges_of(const Words& seal, std::uint64_t end,
+                                 const std::filesystem::path& path) {
+  std::vector<ByteRange> ranges;
+  std::uint64_t from = 0;
+  for (std::size_t i = kHeadWords; i + kTailWords < seal.size(); i += 2) {
+    const ByteRange range{seal[i], seal[i + 1]};
+    if (range.offset < from || range.offset > end || range.length > end - range.offset) {
+      refuse(path, "the seal at its end contradicts itself");
+    }
+    from = range.offset + range.length;
+    ranges.push_back(range);
+  }
+  return ranges;
+}
+
+Words read_seal(const PosixFile& file, std::uint64_t begin, std::uint64_t end) {
+  const std::string missing = "the seal at its end is not whole";
+  if (end - begin < (kHeadWords + kTailWords) * sizeof(std::uint64_t)) {
+    refuse(file.path(), missing);
+  }
+  Words head(kHeadWords);
+  file.read_at(begin, std::as_writable_bytes(std::span(head)));
+  const std::uint64_t ranges = head[3];
+  if (std::memcmp(head.data(), kMagic.data(), kMagic.size()) != 0 || head[2] != end ||
+      ranges > (end - begin) / (2 * sizeof(std::uint64_t)) ||
+      (kHeadWords + 2 * ranges + kTailWords) * sizeof(std::uint64_t) != end - begin) {
+    refuse(file.path(), missing);
+  }
+  Words seal(kHeadWords + 2 * ranges + kTailWords);
+  file.read_at(begin, std::as_writable_bytes(std::span(seal)));
+  if (fingerprint_of(std::span(seal).first(seal.size() - 1)) != seal.back()) {
+    refuse(file.path(), missing);
+  }
+  return seal;
+}
+
+void add_range(const Slab& slab, std::size_t runs, std::vector<ByteRange>& ranges) {
+  if (slab.run_bytes > 0 && runs > 0) ranges.push_back({slab.offset, runs * slab.run_bytes});
+}
+
+}  // namespace
+
+std::vector<ByteRange> written_later(const ResultSlabs& slabs, std::size_t runs) {
+  std::vector<ByteRange> all;
+  for (const Slab& slab : {slabs.wall_seconds, slabs.sittings}) add_range(slab, 1, all);
+  if (slabs.truth) {
+    add_range(slabs.truth->pose, runs, all);
+    add_range(slabs.truth->fingerprint, runs, all);
+    if (slabs.truth->landmarks) add_range(*slabs.truth->landmarks, runs, all);
+  }
+  for (const CellSlabs& cell : slabs.cells) {
+    for (const Slab& slab : cell.columns) add_range(slab, runs, all);
+    for (const Slab& slab : {cell.failure_reason, cell.failure_step, cell.fingerprint,
+                             cell.cpu_seconds, cell.status}) {
+      add_range(slab, runs, all);
+    }
+  }
+  std::ranges::sort(all, {}, &ByteRange::offset);
+  std::vector<ByteRange> merged;
+  for (const ByteRange& range : all) {
+    if (!merged.empty() && merged.back().offset + merged.back().length == range.offset) {
+      merged.back().length += range.length;
+    } else {
+      merged.push_back(range);
+    }
+  }
+  return merged;
+}
+
+void put_seal(const PosixFile& file, const std::vector<ByteRange>& open) {
+  const std::uint64_t begin = file.size();
+  Words seal(kHeadWords);
+  std::memcpy(seal.data(), kMagic.data(), kMagic.size());
+  seal[1] = kVersion;
+  seal[2] = begin + (kHeadWords + 2 * open.size() + kTailWords) * sizeof(std::uint64_t);
+  seal[3] = open.size();
+  for (const ByteRange& range : open) seal.insert(seal.end(), {range.offset, range.length});
+  seal.push_back(fingerprint_outside(file, open, begin));
+  seal.push_back(fingerprint_of(seal));
+  file.write_at(begin, std::as_bytes(std::span(seal)));
+}
+
+Seal check_seal(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored)) {
+    refuse_other(path);
+  }
+  const PosixFile file(path, PosixFile::Mode::read);
+  const std::uint64_t size = file.size();
+  const std::uint64_t end = end_of_hdf5(file);
+  if (end == size) return Seal::absent;
+  if (end > size) refuse(path, "it was cut short, or its superblock has changed");
+  const Words seal = read_seal(file, end, size);
+  if (seal[1] != kVersion) {
+    throw StudyError(path.string() + ": has a seal of version " + std::to_string(seal[1]) +
+                     " (this program knows version " + std::to_string(kVersion) +
+                     "): use the montecarta that wrote it");
+  }
+  const std::uint64_t stored = seal[seal.size() - kTailWords];
+  if (fingerprint_outside(file, ranges_of(seal, end, path), end) != stored) {
+    refuse(path, "bytes that never change once it is laid out do not fit their fingerprint");
+  }
+  return Seal::holds;
+}
+
+h5::Handle open_checked(const std::filesystem::path& path) {
+  check_seal(path);
+  return h5::open_file(path);
+}
+
+}  // namespace montecarta
