@@ -71,6 +71,18 @@ std::int64_t check(std::int64_t status, const char* what, const Handle& object,
       "' (the file is damaged, not of montecarta, or the disk failed): check it with 'h5ls -r'");
 }
 
+void expect_in_file(std::span<const unsigned long long> elements, std::size_t width,
+                    const Handle& object, const std::string& name) {
+  constexpr unsigned long long kMostCompression = 1032;  // of deflate
+  hsize_t most = 0;
+  const Handle file(check(H5Iget_file_id(object.id()), "find the file of", object, name));
+  check(H5Fget_filesize(file.id(), &most), "measure the file of", object, name);
+  bool fits = !__builtin_mul_overflow(most, kMostCompression, &most);
+  unsigned long long bytes = width;
+  for (const auto length : elements) fits = fits && !__builtin_mul_overflow(bytes, length, &bytes);
+  check(fits && bytes <= most ? 0 : -1, "believe the size of", object, name);
+}
+
 std::int64_t native_type(Element element) {
   switch (element) {
     case Element::f64:

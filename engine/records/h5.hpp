@@ -67,6 +67,8 @@ std::string text(const Handle& object, const std::string& name);
 /// All text attributes in the order they were made.
 std::vector<Text> texts(const Handle& object);
 std::vector<std::uint64_t> numbers(const Handle& object, const std::string& name);
+/// The first of them.
+std::uint64_t number(const Handle& object, const std::string& name);
 
 using Shape = std::vector<unsigned long long>;  ///< HDF5's hsize_t
 
@@ -80,12 +82,15 @@ void write(const Handle& dataset, Element element, const void* values);
 void write_text(const Handle& dataset, const std::string& text);
 /// Where the elements begin in the file [byte]; nullopt where they do not lie in one piece.
 std::optional<std::uint64_t> place(const Handle& dataset);
+/// What the elements take in the file [byte].
+std::uint64_t stored_bytes(const Handle& dataset);
+/// Throws RunError also where so many elements cannot be in the file: memory may be taken by it.
 Shape shape(const Handle& dataset);
 /// Type of the elements as stored; nullopt where it is none of ours.
 std::optional<Element> element(const Handle& dataset);
-/// Reads everything, converted to `element`; `bytes` must fit exactly.
+/// Reads everything, converted to `element`; throws RunError unless `bytes` fit exactly.
 void read(const Handle& dataset, Element element, std::span<std::byte> bytes);
-/// Reads index `i` of the first axis, converted to `element`; `bytes` must fit exactly.
+/// Reads index `i` of the first axis, converted to `element`; throws RunError as read() does.
 void read_row(const Handle& dataset, std::uint64_t i, Element element, std::span<std::byte> bytes);
 std::string read_text(const Handle& dataset);
 
@@ -98,6 +103,10 @@ namespace detail {
 /// Throws RunError "file: cannot <what> '/object/name'" where `status` < 0; returns it otherwise.
 std::int64_t check(std::int64_t status, const char* what, const Handle& object,
                    const std::string& name);
+/// Throws RunError where `elements` of `width` bytes are more than the file of `object` can hold,
+/// even if another program compressed it.
+void expect_in_file(std::span<const unsigned long long> elements, std::size_t width,
+                    const Handle& object, const std::string& name);
 /// HDF5's type of an element, in this machine's byte order; not to be closed.
 std::int64_t native_type(Element element);
 }  // namespace detail

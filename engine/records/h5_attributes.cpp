@@ -3,6 +3,8 @@
 
 #include <hdf5.h>
 
+#include <array>
+
 namespace montecarta::h5 {
 namespace {
 
@@ -41,7 +43,9 @@ std::optional<std::string> value_of(const Handle& attribute) {
     H5free_memory(value);
     return copy;
   }
-  std::string value(H5Tget_size(type.id()), '\0');
+  const std::size_t width = H5Tget_size(type.id());
+  detail::expect_in_file({}, width, attribute, "");
+  std::string value(width, '\0');
   if (H5Aread(attribute.id(), type.id(), value.data()) < 0) return std::nullopt;
   return value.substr(0, value.find('\0'));
 }
@@ -107,9 +111,17 @@ std::vector<std::uint64_t> numbers(const Handle& object, const std::string& name
   const Handle space(H5Aget_space(attribute.id()));
   const auto count =
       check(H5Sget_simple_extent_npoints(space.id()), "read attribute", object, name);
+  detail::expect_in_file(std::array{static_cast<hsize_t>(count)}, sizeof(std::uint64_t), object,
+                         name);
   std::vector<std::uint64_t> values(static_cast<std::size_t>(count));
   check(H5Aread(attribute.id(), H5T_NATIVE_UINT64, values.data()), "read attribute", object, name);
   return values;
+}
+
+std::uint64_t number(const Handle& object, const std::string& name) {
+  const std::vector<std::uint64_t> values = numbers(object, name);
+  check(values.empty() ? -1 : 0, "read attribute", object, name);
+  return values.front();
 }
 
 }  // namespace montecarta::h5

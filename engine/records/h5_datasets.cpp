@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/errors.hpp"
 #include "engine/records/h5.hpp"
 
 #include <hdf5.h>
@@ -43,8 +42,14 @@ std::uint64_t count(const Shape& shape) {
   return std::accumulate(shape.begin(), shape.end(), std::uint64_t{1}, std::multiplies<>());
 }
 
-void expect_fit(std::uint64_t elements, Element element, std::span<std::byte> bytes) {
-  expect(elements * size_of(element) == bytes.size(), "a buffer does not fit its dataset");
+void expect_fit(std::uint64_t elements, Element element, std::span<std::byte> bytes,
+                const Handle& dataset) {
+  check(elements * size_of(element) == bytes.size() ? 0 : -1, "fit to its axes", dataset, "");
+}
+
+/// Of a dataset that may be anything.
+std::size_t width_of(const Handle& dataset) {
+  return H5Tget_size(Handle(H5Dget_type(dataset.id())).id());
 }
 
 }  // namespace
@@ -84,11 +89,14 @@ std::optional<std::uint64_t> place(const Handle& dataset) {
   return count(shape(dataset)) == 0 ? std::optional<std::uint64_t>(0) : std::nullopt;
 }
 
+std::uint64_t stored_bytes(const Handle& dataset) { return H5Dget_storage_size(dataset.id()); }
+
 Shape shape(const Handle& dataset) {
   const Handle space(H5Dget_space(dataset.id()));
   const auto rank = check(H5Sget_simple_extent_ndims(space.id()), "read the shape of", dataset, "");
   std::vector<hsize_t> dimensions(static_cast<std::size_t>(rank));
   H5Sget_simple_extent_dims(space.id(), dimensions.data(), nullptr);
+  detail::expect_in_file(dimensions, width_of(dataset), dataset, "");
   return {dimensions.begin(), dimensions.end()};
 }
 
@@ -101,7 +109,7 @@ std::optional<Element> element(const Handle& dataset) {
 }
 
 void read(const Handle& dataset, Element element, std::span<std::byte> bytes) {
-  expect_fit(count(shape(dataset)), element, bytes);
+  expect_fit(count(shape(dataset)), element, bytes, dataset);
   const auto status =
       H5Dread(dataset.id(), native_type(element), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data());
   check(status, "read", dataset, "");
@@ -109,11 +117,11 @@ void read(const Handle& dataset, Element element, std::span<std::byte> bytes) {
 
 void read_row(const Handle& dataset, std::uint64_t i, Element element, std::span<std::byte> bytes) {
   Shape extent = shape(dataset);
-  expect(!extent.empty() && i < extent[0], "a row beyond the end of a dataset was asked for");
+  check(!extent.empty() && i < extent[0] ? 0 : -1, "find a row of", dataset, "");
   Shape start(extent.size(), 0);
   start[0] = i;
   extent[0] = 1;
-  expect_fit(count(extent), element, bytes);
+  expect_fit(count(extent), element, bytes, dataset);
   const Handle file_space(H5Dget_space(dataset.id()));
   H5Sselect_hyperslab(file_space.id(), H5S_SELECT_SET, start.data(), nullptr, extent.data(),
                       nullptr);
@@ -125,6 +133,8 @@ void read_row(const Handle& dataset, std::uint64_t i, Element element, std::span
 
 std::string read_text(const Handle& dataset) {
   const Handle type(H5Dget_type(dataset.id()));
+  const bool fixed = H5Tget_class(type.id()) == H5T_STRING && H5Tis_variable_str(type.id()) == 0;
+  check(fixed && shape(dataset).empty() ? 0 : -1, "read as text", dataset, "");
   std::string text(H5Tget_size(type.id()), '\0');
   check(H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()), "read",
         dataset, "");

@@ -2,6 +2,7 @@
 #include "engine/records/read_description.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/records/check_description.hpp"
 #include "engine/records/result_layout.hpp"
 
 #include <algorithm>
@@ -66,13 +67,15 @@ std::optional<std::vector<Axis>> axes_of(const std::string& dimension_order) {
 
 /// A dataset as a column; nullopt where it is not one (a later version may have added other
 /// things).
-std::optional<Column> column_of(const h5::Handle& group, const std::string& name) {
+std::optional<Column> column_of(const h5::Handle& group, const std::string& name,
+                                std::size_t runs) {
   if (std::ranges::find(kBookkeeping, name) != kBookkeeping.end()) return std::nullopt;
   const h5::Handle dataset = h5::open_dataset(group, name);
   const auto axes = axes_of(h5::find_text(dataset, "dimension_order").value_or(""));
   const auto element = h5::element(dataset);
   const h5::Shape shape = h5::shape(dataset);
-  if (!axes || !element || shape.size() != axes->size() + 1) return std::nullopt;
+  if (!axes || !element || shape.size() != axes->size() + 1 || shape[0] != runs)
+    return std::nullopt;
   return Column{name,
                 *element,
                 *axes,
@@ -81,17 +84,17 @@ std::optional<Column> column_of(const h5::Handle& group, const std::string& name
                 h5::find_text(dataset, "long_name").value_or(name)};
 }
 
-StoredCell read_cell(const h5::Handle& cells, const std::string& label) {
+StoredCell read_cell(const h5::Handle& cells, const std::string& label, std::size_t runs) {
   const h5::Handle group = h5::open_group(cells, label);
   StoredCell cell;
   cell.label = label;
   cell.filter = h5::text(group, "filter");
   cell.long_name = h5::text(group, "long_name");
-  cell.particles = h5::numbers(group, "particles").at(0);
+  cell.particles = h5::number(group, "particles");
   cell.settings = h5::texts(h5::open_group(group, "settings"));
   for (const std::string& name : h5::members(group)) {
     if (h5::is_group(group, name)) continue;
-    if (auto column = column_of(group, name)) cell.columns.push_back(*std::move(column));
+    if (auto column = column_of(group, name, runs)) cell.columns.push_back(*std::move(column));
   }
   return cell;
 }
@@ -122,8 +125,8 @@ void read_references(const h5::Handle& scenario, ResultDescription& result) {
 void read_scenario(const h5::Handle& file, ResultDescription& result) {
   const h5::Handle group = h5::open_group(file, "scenario");
   result.scenario = h5::texts(group);
-  const auto start = read_all<double>(group, "start", Element::f64);
-  result.start = {start.at(0), start.at(1), start.at(2)};
+  h5::read(h5::open_dataset(group, "start"), Element::f64,
+           std::as_writable_bytes(std::span(&result.start, 1)));
   result.landmarks = read_points(group, "landmarks");
   result.waypoints = read_points(group, "waypoints");
   read_references(group, result);
@@ -144,8 +147,8 @@ ResultDescription read_description(const h5::Handle& file, const std::filesystem
   ResultDescription result;
   result.study_name = h5::text(file, "study");
   result.title = h5::text(file, "title");
-  result.seed = h5::numbers(file, "seed").at(0);
-  result.study_runs = h5::numbers(file, "runs").at(0);
+  result.seed = h5::number(file, "seed");
+  result.study_runs = h5::number(file, "runs");
   read_axes(file, result);
   read_scenario(file, result);
   result.has_truth = h5::has(file, "truth");
@@ -153,7 +156,8 @@ ResultDescription read_description(const h5::Handle& file, const std::filesystem
   read_provenance(file, result);
   const h5::Handle cells = h5::open_group(file, "cells");
   for (const std::string& label : h5::members(cells))
-    result.cells.push_back(read_cell(cells, label));
+    result.cells.push_back(read_cell(cells, label, result.runs.size()));
+  check_description(result, path);
   return result;
 }
 

@@ -14,11 +14,20 @@ namespace {
 
 class SlabFinder {
  public:
-  explicit SlabFinder(const std::filesystem::path& path)
-      : path_(path), file_(h5::open_file(path)) {}
+  SlabFinder(const std::filesystem::path& path, std::size_t runs)
+      : path_(path), file_(h5::open_file(path)), runs_(runs) {}
 
+  /// A dataset of `run_bytes` for each run.
   Slab find(const std::string& name, std::uint64_t run_bytes) const {
-    const auto place = h5::place(h5::open_dataset(file_, name));
+    return find(name, run_bytes, runs_);
+  }
+  Slab find(const std::string& name, std::uint64_t run_bytes, std::size_t runs) const {
+    const h5::Handle dataset = h5::open_dataset(file_, name);
+    const auto place = h5::place(dataset);
+    if (place && h5::stored_bytes(dataset) != runs * run_bytes) {
+      throw RunError(path_.string() + ": damaged ('" + name +
+                     "' is not as long as its axes): run the study again");
+    }
     if (!place) {
       throw StudyError(path_.string() + ": '" + name +
                        "' is not in one piece (another program rewrote the file): "
@@ -43,6 +52,7 @@ class SlabFinder {
  private:
   const std::filesystem::path& path_;
   h5::Handle file_;
+  std::size_t runs_;
 };
 
 void add_run(const PosixFile& file, const Slab& slab, std::size_t run_index,
@@ -61,7 +71,7 @@ std::uint64_t stored_fingerprint(const PosixFile& file, const Slab& slab, std::s
 }  // namespace
 
 ResultSlabs find_slabs(const std::filesystem::path& path, const ResultDescription& description) {
-  const SlabFinder finder(path);
+  const SlabFinder finder(path, description.runs.size());
   ResultSlabs slabs;
   if (description.has_truth) {
     slabs.truth = {finder.find("truth/pose", description.times.size() * sizeof(Pose)),
@@ -71,8 +81,8 @@ ResultSlabs find_slabs(const std::filesystem::path& path, const ResultDescriptio
           finder.find("truth/landmarks", description.landmarks.size() * sizeof(Eigen::Vector2d));
     }
   }
-  slabs.wall_seconds = finder.find("timing/wall_seconds", sizeof(double));
-  slabs.sittings = finder.find("provenance/sittings", format::kSittingsBytes);
+  slabs.wall_seconds = finder.find("timing/wall_seconds", sizeof(double), 1);
+  slabs.sittings = finder.find("provenance/sittings", format::kSittingsBytes, 1);
   for (const StoredCell& cell : description.cells) slabs.cells.push_back(finder.find(cell));
   return slabs;
 }

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/records/check_description.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/records/record_layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace montecarta {
+namespace {
+
+constexpr std::size_t kLongestLabel = 1000;
+constexpr std::uint32_t kMostSteps = 1U << 27U;  // of a run; more would take days to go through
+
+bool are_finite(const std::vector<double>& values) {
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
+bool is_place(const Eigen::Vector2d& point) { return point.allFinite(); }
+
+bool are_finite(const std::vector<std::pair<double, double>>& points) {
+  return std::ranges::all_of(
+      points, [](const auto& p) { return std::isfinite(p.first) && std::isfinite(p.second); });
+}
+
+template <class T>
+bool increases(const std::vector<T>& values) {
+  return std::ranges::adjacent_find(values, std::ranges::greater_equal()) == values.end();
+}
+
+class Check {
+ public:
+  explicit Check(const std::filesystem::path& path) : path_(path) {}
+
+  void expect(bool condition, const std::string& what) const {
+    if (condition) return;
+    throw RunError(path_.string() + ": damaged (" + what +
+                   "): take a copy that is whole, or run the study again");
+  }
+
+ private:
+  const std::filesystem::path& path_;
+};
+
+void check_runs(const ResultDescription& d, const Check& check) {
+  check.expect(!d.runs.empty() && increases(d.runs), "its run numbers do not increase");
+  check.expect(d.runs.back() < d.study_runs, "a run number is beyond the study's runs");
+}
+
+void check_times(const ResultDescription& d, const Check& check) {
+  check.expect(are_finite(d.times) && std::ranges::is_sorted(d.times),
+               "its times do not increase, or are no numbers");
+  const std::size_t scans = d.scan_times.size();
+  check.expect(d.scan_rows.size() == scans && d.scan_steps.size() == scans,
+               "scan, scan_step and scan_row are not equally long");
+  check.expect(increases(d.scan_steps) && increases(d.scan_rows),
+               "scan_step or scan_row do not increase");
+  if (scans == 0) return;
+  check.expect(d.scan_rows.back() < d.times.size(), "scan_row is beyond the rows of time");
+  check.expect(d.scan_steps.back() < kMostSteps, "scan_step is beyond any drive");
+  for (std::size_t s = 0; s < scans; ++s) {
+    check.expect(d.scan_times[s] == d.times[d.scan_rows[s]], "scan is not time at scan_row");
+  }
+  check.expect(d.scan_rows == d.scan_steps || d.times.size() == scans,
+               "scan_row is neither scan_step nor one row after the other");
+  check.expect(increases(d.joint_scans) &&
+                   (d.joint_scans.empty() || d.joint_scans.back() < scans),
+               "joint_scan does not increase, or is beyond the scans");
+}
+
+void check_scenario(const ResultDescription& d, const Check& check) {
+  check.expect(are_finite({d.start.x, d.start.y, d.start.heading}) && are_finite(d.landmarks) &&
+                   are_finite(d.waypoints),
+               "start, landmarks or waypoints are no places");
+  for (const ReferencePath& path : d.references) {
+    check.expect(path.position.size() == path.time.size() &&
+                     (path.heading.empty() || path.heading.size() == path.time.size()),
+                 "reference " + path.name + " has other fixes than times");
+    check.expect(are_finite(path.time) && std::ranges::all_of(path.position, is_place),
+                 "a fix of reference " + path.name + " is no place");
+  }
+}
+
+/// The length that an axis must have; nullopt where each cell has its own.
+std::optional<std::size_t> length_of(Axis axis, const ResultDescription& d,
+                                     const StoredCell& cell) {
+  switch (axis) {
+    case Axis::time:
+      return d.times.size();
+    case Axis::scan:
+      return d.scan_times.size();
+    case Axis::joint:
+      return d.joint_scans.size();
+    case Axis::particle:
+      return cell.particles;
+    case Axis::component:
+    case Axis::component_column:
+      return 3;
+    case Axis::coordinate:
+    case Axis::coordinate_column:
+      return 2;
+    case Axis::landmark:
+    case Axis::state:
+    case Axis::state_column:
+      break;
+  }
+  return std::nullopt;
+}
+
+/// The axes of every column that there can be.
+std::map<std::string, std::vector<Axis>> known_axes() {
+  Cell cell;
+  cell.particles = cell.landmarks = 1;
+  cell.mixture = cell.joint = true;
+  const ColumnSelection all{.covariance = true,
+                            .ancestry = true,
+                            .particles = true,
+                            .association = true,
+                            .map = true,
+                            .final_map = true,
+                            .joint = true};
+  Itinerary one_scan;
+  one_scan.step_time = {1.0};
+  one_scan.scan_step = {0};
+  std::map<std::string, std::vector<Axis>> axes;
+  const RecordLayout layout(cell, all, one_scan);
+  for (const Column& column : layout.columns()) {
+    axes.emplace(column.name, column.axes);
+  }
+  return axes;
+}
+
+/// Columns that are read together.
+const std::vector<std::vector<std::string_view>> kTogether = {
+    {"pose_mean_mixture", "pose_covariance_mixture"},
+    {"nis", "nis_dof"},
+    {"particle_pose", "log_weight"},
+    {"map_mean", "map_covariance", "map_seen"},
+    {"final_map_mean", "final_map_covariance", "final_map_seen"},
+    {"joint_mean", "joint_covariance"}};
+
+void check_columns(const StoredCell& cell, const Check& check) {
+  static const auto axes = known_axes();
+  for (const Column& column : cell.columns) {
+    const auto known = axes.find(column.name);
+    check.expect(known == axes.end() || known->second == column.axes,
+                 "cells/" + cell.label + "/" + column.name + " has other axes than it should");
+  }
+  for (const auto& together : kTogether) {
+    const auto there =
+        std::ranges::count_if(together, [&](std::string_view name) { return cell.has(name); });
+    check.expect(there == 0 || there == std::ssize(together),
+                 "cells/" + cell.label + " has only a part of " + std::string(together.front()) +
+                     " and what belongs to it");
+  }
+  check.expect(cell.has("pose_mean"), "cells/" + cell.label + " has no pose_mean");
+  check.expect(cell.label.size() <= kLongestLabel, "the label of a cell is too long");
+}
+
+void check_lengths(const ResultDescription& d, const StoredCell& cell, const Check& check) {
+  std::map<Axis, std::size_t> own;
+  for (const Column& column : cell.columns) {
+    for (std::size_t a = 0; a < column.axes.size(); ++a) {
+      const Axis axis = column.axes[a] == Axis::state_column ? Axis::state : column.axes[a];
+      const auto known = length_of(axis, d, cell).value_or(
+          own.try_emplace(axis, column.shape[a]).first->second);
+      check.expect(column.shape[a] == known,
+                   "cells/" + cell.label + "/" + column.name + " is not as long as its axis " +
+                       std::string(name_of(axis)));
+    }
+  }
+}
+
+}  // namespace
+
+void check_description(const ResultDescription& description, const std::filesystem::path& path) {
+  const Check check(path);
+  check_runs(description, check);
+  check_times(description, check);
+  check_scenario(description, check);
+  for (const StoredCell& cell : description.cells) {
+    check_columns(cell, check);
+    check_lengths(description, cell, check);
+  }
+}
+
+}  // namespace montecarta
