@@ -2,6 +2,7 @@
 #include "analysis/run_reader.hpp"
 
 #include "analysis/calibration/pit.hpp"
+#include "engine/errors.hpp"
 
 #include <algorithm>
 
@@ -119,6 +120,15 @@ void RunReader::read_scans(std::string_view column, std::size_t width, std::size
   file_->read(*cell_, column, i, std::span(out));
 }
 
+void RunReader::expect_particles(const RunRows& rows) const {
+  const auto is_none = [&](std::uint32_t parent) { return parent >= cell_->particles; };
+  if (std::ranges::none_of(rows.ancestor, is_none)) return;
+  throw RunError(file_->path().string() + ": cell '" + cell_->label + "', run " +
+                 std::to_string(rows.run) +
+                 ": an ancestor is none of the particles (the file is damaged): run the study "
+                 "again");
+}
+
 void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
   read_truth(i, rows.truth, scratch);
   read_at_scans("pose_mean", 3, i, rows.spread.mean, scratch);
@@ -154,6 +164,7 @@ void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
   read_scans("ess", 1, i, rows.ess);
   read_scans("resampled", 1, i, rows.resampled);
   read_scans("ancestor", cell_->particles, i, rows.ancestor);
+  expect_particles(rows);
   read_scans("particle_pose", 3 * cell_->particles, i, rows.particle_pose);
   read_scans("log_weight", cell_->particles, i, rows.log_weight);
 }

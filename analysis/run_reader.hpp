@@ -35,6 +35,8 @@ class RunReader {
   /// All of a column, as far as it is stored.
   void read_whole(std::string_view column, std::size_t i, std::vector<double>& out) const;
   void read_cloud(std::size_t i, CloudRows& out, Scratch& scratch) const;
+  /// Throws RunError where a parent does not exist.
+  void expect_particles(const RunRows& rows) const;
   template <class Number>
   void read_scans(std::string_view column, std::size_t width, std::size_t i,
                   std::vector<Number>& out) const;

@@ -63,6 +63,15 @@ CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& stored,
   return cell;
 }
 
+/// What the study in the file repeats.
+Printed printed_of(const ResultFile& file) {
+  try {
+    return printed_in(file.study_text());
+  } catch (const StudyError& error) {
+    throw StudyError(file.path().string() + " (the study in it): " + error.what());
+  }
+}
+
 /// All that the file says of itself.
 StudyAnalysis begin(const ResultFile& file, double level) {
   StudyAnalysis study;
@@ -74,7 +83,7 @@ StudyAnalysis begin(const ResultFile& file, double level) {
   study.study_runs = file.study_runs();
   study.runs_here = file.runs().size();
   study.level = level;
-  study.printed = printed_in(file.study_text());
+  study.printed = printed_of(file);
   study.times = file.scan_times();
   for (const std::uint32_t scan : file.description().joint_scans) {
     study.joint_times.push_back(study.times[scan]);

@@ -37,13 +37,15 @@ FigureData data_of(std::span<const CellValue> values, const Merit& merit) {
   return data;
 }
 
+constexpr double kLeastShown = 1e-100, kMostShown = 1e100;  // what else there is, is damage
+
 /// Ends of an axis.
 struct CostRange {
   double least = std::numeric_limits<double>::infinity();
   double greatest = 0.0;
 
   void include(double value) {
-    if (!std::isfinite(value)) return;
+    if (!(value >= kLeastShown && value <= kMostShown)) return;
     least = std::min(least, value);
     greatest = std::max(greatest, value);
   }
@@ -53,6 +55,7 @@ struct CostRange {
 CostRange cost_range(std::span<const CellValue> values) {
   CostRange range;
   for (const CellValue& value : values) range.include(cost_of(value));
+  if (range.greatest == 0.0) return {0.1, 10.0};
   return {range.least / 1.5, 1.5 * range.greatest};
 }
 

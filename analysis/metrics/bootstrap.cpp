@@ -65,6 +65,7 @@ double quantile_of(const std::vector<double>& sorted, double p) {
 }
 
 Interval accelerated_interval(std::vector<double>& means, const SampleShape& shape, double deviate) {
+  if (!std::isfinite(shape.mean) || !std::isfinite(shape.acceleration)) return {kNaN, kNaN};
   std::ranges::sort(means);
   const double bias = bias_deviate(means, shape.mean);
   const auto end = [&](double z) {

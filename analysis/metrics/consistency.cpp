@@ -91,7 +91,9 @@ Interval run_average_bounds(std::span<const double> run_averages, std::size_t di
   if (n < 3.0) return {0.0, std::numeric_limits<double>::infinity()};
   const auto d = static_cast<double>(dimension);
   // Of a right filter the average varies no more than a single scan does; runs that went astray do.
-  const double variance = std::clamp(squares / (n - 1.0), kLeastVariance * d, 2.0 * d) / n;
+  const double most = 2.0 * d;  // also where they went too far for numbers
+  const double variance =
+      (squares <= most * n ? std::clamp(squares / (n - 1.0), kLeastVariance * d, most) : most) / n;
   // The variance is an estimate, which Student's t answers.
   const double deviate = t_quantile(run_averages.size(), level);
   const double tail = boost::math::cdf(boost::math::normal(), -deviate);

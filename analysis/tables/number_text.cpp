@@ -37,7 +37,7 @@ std::string compact(double value) {
 }
 
 std::string with_error(double mean, double standard_error) {
-  if (std::isnan(mean) || std::isnan(standard_error) || standard_error == 0.0) {
+  if (std::isnan(mean) || !std::isfinite(standard_error) || standard_error == 0.0) {
     return readable(mean);
   }
   if (std::abs(mean) >= 1e6) return readable(mean) + " +- " + readable(standard_error, 2);

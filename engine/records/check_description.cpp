@@ -69,8 +69,7 @@ void check_times(const ResultDescription& d, const Check& check) {
   }
   check.expect(d.scan_rows == d.scan_steps || d.times.size() == scans,
                "scan_row is neither scan_step nor one row after the other");
-  check.expect(increases(d.joint_scans) &&
-                   (d.joint_scans.empty() || d.joint_scans.back() < scans),
+  check.expect(increases(d.joint_scans) && (d.joint_scans.empty() || d.joint_scans.back() < scans),
                "joint_scan does not increase, or is beyond the scans");
 }
 
@@ -168,11 +167,11 @@ void check_lengths(const ResultDescription& d, const StoredCell& cell, const Che
   for (const Column& column : cell.columns) {
     for (std::size_t a = 0; a < column.axes.size(); ++a) {
       const Axis axis = column.axes[a] == Axis::state_column ? Axis::state : column.axes[a];
-      const auto known = length_of(axis, d, cell).value_or(
-          own.try_emplace(axis, column.shape[a]).first->second);
-      check.expect(column.shape[a] == known,
-                   "cells/" + cell.label + "/" + column.name + " is not as long as its axis " +
-                       std::string(name_of(axis)));
+      const auto known =
+          length_of(axis, d, cell).value_or(own.try_emplace(axis, column.shape[a]).first->second);
+      check.expect(column.shape[a] == known, "cells/" + cell.label + "/" + column.name +
+                                                 " is not as long as its axis " +
+                                                 std::string(name_of(axis)));
     }
   }
 }

@@ -23,8 +23,8 @@ static_assert(std::endian::native == std::endian::little, "files are little-endi
 constexpr std::string_view kHdf5 = "\x89HDF\r\n\x1a\n";
 constexpr std::string_view kMagic = "\x89MCSEAL\n";
 constexpr std::uint64_t kVersion = 1;
-constexpr std::size_t kHeadWords = 4;  // magic, version, size of the file, number of ranges
-constexpr std::size_t kTailWords = 2;  // fingerprint of the file, fingerprint of the seal
+constexpr std::size_t kHeadWords = 4;         // magic, version, size of the file, number of ranges
+constexpr std::size_t kTailWords = 2;         // fingerprint of the file, fingerprint of the seal
 constexpr std::size_t kSuperblockBytes = 52;  // more than any version needs up to its end address
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {

@@ -35,6 +35,22 @@ TEST_F(StudyAnalysisOfAFile, JudgesEveryCellAndNamesFailedRuns) {
               0.5);
 }
 
+/// An index that is none: the message names file, cell and run.
+TEST_F(StudyAnalysisOfAFile, RefusesAncestorsThatAreNoParticles) {
+  const auto spoil = [](std::size_t cell, std::uint64_t run, RunRecord& record) {
+    if (cell != 1 || run != 7) return;
+    record.column<std::uint16_t>(*record.layout().find("ancestor")).back() = 3;  // of 0, 1 and 2
+  };
+  write_synthetic_result(path_, 12, 40, spoil);
+  try {
+    analyze(ResultFile(path_));
+    FAIL() << "an ancestor that is no particle was taken";
+  } catch (const RunError& error) {
+    EXPECT_EQ(std::string(error.what()).find(path_.string() + ": cell 'scripted_m3', run 7: "), 0U)
+        << error.what();
+  }
+}
+
 TEST_F(StudyAnalysisOfAFile, GivesTheSameBitsForAnyNumberOfThreads) {
   const ResultFile file(path_);
   const StudyAnalysis one = analyze(file);

@@ -101,9 +101,18 @@ inline void damage(std::string& bytes, Dice& dice) {
 /// Puts another word of the text, or an extreme number, where a word stands.
 inline void swap_words(std::string& text, Dice& dice) {
   constexpr std::string_view kBetween = " ,=\n\t;";
-  constexpr std::array<std::string_view, 12> kExtremes = {
-      "0", "-1", "1e308", "-1e308", "1e-320", "nan", "inf", "18446744073709551615",
-      "99999999999999999999", "", "[", "0x1"};
+  constexpr std::array<std::string_view, 12> kExtremes = {"0",
+                                                          "-1",
+                                                          "1e308",
+                                                          "-1e308",
+                                                          "1e-320",
+                                                          "nan",
+                                                          "inf",
+                                                          "18446744073709551615",
+                                                          "99999999999999999999",
+                                                          "",
+                                                          "[",
+                                                          "0x1"};
   const auto word_near = [&](std::size_t at) {
     const std::size_t before = text.find_last_of(kBetween, at);
     const std::size_t begin = before == std::string::npos ? 0 : before + 1;
@@ -114,9 +123,9 @@ inline void swap_words(std::string& text, Dice& dice) {
   const auto [begin, length] = word_near(dice.below(text.size()));
   const auto [other, other_length] = word_near(dice.below(text.size()));
   const std::size_t which = dice.below(2 * kExtremes.size());
-  text.replace(begin, length,
-               which < kExtremes.size() ? std::string(kExtremes[which])
-                                        : text.substr(other, other_length));
+  text.replace(
+      begin, length,
+      which < kExtremes.size() ? std::string(kExtremes[which]) : text.substr(other, other_length));
 }
 
 /// A file of bytes, damaged in one to three places.

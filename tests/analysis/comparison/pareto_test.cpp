@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <vector>
 
 namespace montecarta {
 namespace {
@@ -54,6 +56,18 @@ TEST(ParetoFigure, NamesEveryPoint) {
   EXPECT_EQ(figure.data[0].rows.size(), 3u);
   EXPECT_THAT(figure.script, testing::HasSubstr("set label 'beaten'"));
   EXPECT_TRUE(pareto_figure({}).data.empty());
+}
+
+TEST(ParetoFigure, HasAnAxisWhateverRunsCost) {
+  for (const double cost : {5e-324, 1.7e308, std::numeric_limits<double>::infinity()}) {
+    CellValue value;
+    value.cell = "odd";
+    value.cpu_seconds.mean = cost;
+    value.position_rmse.mean = 1.0;
+    const Figure figure = pareto_figure(std::vector{value, value});
+    EXPECT_GT(figure.chart.x_to, figure.chart.x_from) << cost;
+    EXPECT_TRUE(std::isfinite(figure.chart.x_to)) << cost;
+  }
 }
 
 }  // namespace

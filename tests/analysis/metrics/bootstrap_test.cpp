@@ -138,6 +138,8 @@ TEST(Bootstrap, SaysNothingOfTooLittle) {
   EXPECT_TRUE(std::isnan(bootstrap_mean(std::vector<double>{1.0, nan, 2.0}, 0.95).upper));
   const double infinite = std::numeric_limits<double>::infinity();
   EXPECT_TRUE(std::isnan(bootstrap_mean(std::vector<double>{1.0, infinite, 2.0}, 0.95).lower));
+  const double most = std::numeric_limits<double>::max();
+  EXPECT_TRUE(std::isnan(bootstrap_mean(std::vector<double>{most, 1.0, most}, 0.95).lower));
 }
 
 TEST(Bootstrap, OfEqualValuesIsThatValue) {

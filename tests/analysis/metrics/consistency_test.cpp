@@ -114,6 +114,8 @@ TEST(RunAverageBounds, AreThoseOfTheChiSquareWhereRunsAreOneScanLong) {
 TEST(RunAverageBounds, AreNeverWiderThanThoseOfOneScan) {
   const std::vector<double> astray = {1.0, 2.0, 1e20, 3.0, 4.0};
   EXPECT_LT(run_average_bounds(astray, 3, 0.95).upper, 10.0);
+  const std::vector<double> beyond = {1.0, 2.0, std::numeric_limits<double>::infinity(), 3.0, 4.0};
+  EXPECT_EQ(run_average_bounds(beyond, 3, 0.95).upper, run_average_bounds(astray, 3, 0.95).upper);
   EXPECT_TRUE(std::isinf(run_average_bounds(std::vector<double>{3.0, 3.0}, 3, 0.95).upper));
 }
 

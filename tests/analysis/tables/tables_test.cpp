@@ -76,6 +76,7 @@ TEST(NumberText, IsShortAndHonest) {
   EXPECT_EQ(compact(kNaN), "-");
   EXPECT_EQ(with_error(3.5812, 0.1049), "3.58 +- 0.10");
   EXPECT_EQ(with_error(3.5812, kNaN), "3.58");
+  EXPECT_EQ(with_error(3.5812, std::numeric_limits<double>::infinity()), "3.58");
   EXPECT_EQ(with_error(1234.5, 56.7), "1234 +- 57");
   EXPECT_EQ(with_error_to(2, 3.5812, 0.0001), "3.58 +- 0.00");
   EXPECT_EQ(with_error_to(1, 242.31, kNaN), "242.3");

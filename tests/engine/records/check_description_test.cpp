@@ -6,12 +6,14 @@
 #include "engine/records/result_file.hpp"
 #include "engine/records/result_layout.hpp"
 #include "tests/doubles/damage.hpp"
+#include "tests/doubles/recorded_drives.hpp"
 #include "tests/doubles/result_writing.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -46,14 +48,14 @@ TEST_F(CheckDescription, RefusesRunsAndTimesThatAreNone) {
   EXPECT_THAT(refusal([](auto& d) { d.runs = {0, 2, 1}; }), HasSubstr("run numbers"));
   EXPECT_THAT(refusal([](auto& d) { d.study_runs = 2; }), HasSubstr("beyond the study's runs"));
   EXPECT_THAT(refusal([](auto& d) { d.times[3] = -1.0; }), HasSubstr("times do not increase"));
-  EXPECT_THAT(
-      refusal([](auto& d) { d.times[3] = std::numeric_limits<double>::quiet_NaN(); }),
-      HasSubstr("times do not increase"));
+  EXPECT_THAT(refusal([](auto& d) { d.times[3] = std::numeric_limits<double>::quiet_NaN(); }),
+              HasSubstr("times do not increase"));
   EXPECT_THAT(refusal([](auto& d) { d.times.back() = std::numeric_limits<double>::infinity(); }),
               HasSubstr("times do not increase"));
 }
 
 TEST_F(CheckDescription, RefusesScansThatAreNone) {
+  EXPECT_THAT(refusal([](auto& d) { d.scan_rows.pop_back(); }), HasSubstr("not equally long"));
   EXPECT_THAT(refusal([](auto& d) { d.scan_rows.back() = 4'000'000'000U; }),
               HasSubstr("scan_row is beyond"));
   EXPECT_THAT(refusal([](auto& d) { d.scan_rows[0] = d.scan_rows[1]; }), HasSubstr("increase"));
@@ -83,14 +85,29 @@ TEST_F(CheckDescription, RefusesColumnsThatDoNotFitTheirAxes) {
               }),
               HasSubstr("nis has other axes"));
   EXPECT_THAT(refusal([](auto& d) {
-                std::erase_if(d.cells[0].columns, [](const auto& c) { return c.name == "nis_dof"; });
+                std::erase_if(d.cells[0].columns,
+                              [](const auto& c) { return c.name == "nis_dof"; });
               }),
               HasSubstr("only a part of nis"));
+  EXPECT_THAT(refusal([](auto& d) {
+                std::erase_if(d.cells[0].columns,
+                              [](const auto& c) { return c.name == "pose_mean"; });
+              }),
+              HasSubstr("has no pose_mean"));
+  EXPECT_THAT(refusal([](auto& d) { d.cells[0].label = std::string(1001, 'x'); }),
+              HasSubstr("too long"));
 }
 
 TEST_F(CheckDescription, RefusesPlacesThatAreNone) {
   EXPECT_THAT(refusal([](auto& d) { d.start.x = std::numeric_limits<double>::infinity(); }),
               HasSubstr("no places"));
+  plan_.drives = std::make_shared<RecordedDrives>(24);
+  EXPECT_THAT(refusal([](auto& d) { d.references[0].heading.pop_back(); }),
+              HasSubstr("other fixes than times"));
+  EXPECT_THAT(refusal([](auto& d) { d.references[0].position.pop_back(); }),
+              HasSubstr("other fixes than times"));
+  EXPECT_THAT(refusal([](auto& d) { d.references[1].position[2].y() = std::nan(""); }),
+              HasSubstr("a fix of reference coarse is no place"));
 }
 
 /// Whatever one number is: the file is refused, or can be read.
