@@ -36,7 +36,7 @@ FigureData data_of(const std::string& name, const DrawnHistogram& drawn) {
   double all = 0.0;
   for (const std::size_t n : test.counts) all += static_cast<double>(n);
   const auto bins = static_cast<double>(test.counts.size());
-  const double expected = all / bins;
+  const double expected = std::max(all, 1.0) / bins;  // without values all bins are empty
   for (std::size_t b = 0; b < test.counts.size(); ++b) {
     data.rows.push_back({static_cast<double>(b) / bins, static_cast<double>(b + 1) / bins,
                          static_cast<double>(test.counts[b]) / expected,
@@ -74,7 +74,7 @@ ChartPanel chart_panel(const DrawnHistogram& drawn, const FigureData& data) {
   bars.style = drawn.cell;
   bars.shape = ChartMarks::Shape::boxes;
   bars.facts = {{"from", {}}, {"to", {}}, {"count / expected", {}}};
-  double highest = panel.bands.front().upper;
+  double highest = std::max(1.0, panel.bands.front().upper);
   for (const auto& row : data.rows) {
     bars.x.push_back(0.5 * (row[0] + row[1]));
     bars.y.push_back(0.5 * row[2]);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/calibration/cell_calibration.hpp"
 
+#include "analysis/figures/calibration_figure.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
 
 #include <gmock/gmock.h>
@@ -130,6 +131,19 @@ TEST(CellCalibration, CountsWhatHasNoValue) {
 TEST(CellCalibration, IsTestedAtTheEndOfEachQuarter) {
   EXPECT_THAT(calibration_scans(100), ElementsAre(24, 49, 74, 99));
   EXPECT_THAT(calibration_scans(1), ElementsAre(0, 0, 0, 0));
+}
+
+/// No run has a value: no landmark was ever seen, or no covariance is one.
+TEST(CalibrationFigures, DrawEmptyBinsWhereThereIsNoValue) {
+  StudyAnalysis study;
+  study.times = {1.0};
+  study.cells.resize(1);
+  study.cells[0].calibration.push_back(
+      {"landmark x", "Gaussian", 1.0, 3, judge_uniformity({}, band_for(0, 0.95))});
+  const Figure figure = calibration_figures(study).front();
+  ASSERT_EQ(figure.data.size(), 1u);
+  for (const auto& row : figure.data[0].rows) EXPECT_EQ(row[2], 0.0);
+  EXPECT_GT(figure.chart.panels[0].axis.high, 0.0);
 }
 
 }  // namespace
