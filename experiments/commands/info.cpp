@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/records/seal.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"
 #include "experiments/text/table.hpp"
@@ -30,7 +31,11 @@ void print_study(const ResultFile& file) {
                    ", of which " + std::to_string(runs_done(file)) + " are done in every cell"},
       {"a run", std::to_string(file.times().size()) + " rows of time, " +
                     std::to_string(file.scan_times().size()) + " scans"},
-      {"size", bytes_text(static_cast<double>(std::filesystem::file_size(file.path())))}};
+      {"size", bytes_text(static_cast<double>(std::filesystem::file_size(file.path())))},
+      {"seal",
+       check_seal(file.path()) == Seal::holds
+           ? "holds"
+           : "none (an older montecarta or another program wrote it: damage may go unseen)"}};
   std::cout << file.title() << "\n" << aligned(rows);
 }
 

@@ -125,6 +125,7 @@ TEST_F(Commands, InfoAndStatusReadWhatRunWrote) {
   EXPECT_EQ(info.code, 0) << info.err;
   EXPECT_THAT(info.out, HasSubstr("2 of 3"));
   EXPECT_THAT(info.out, HasSubstr("2 are done in every cell"));
+  EXPECT_THAT(info.out, testing::ContainsRegex("seal +holds"));
   for (const char* dataset : {"/cells/fastslam2_m10/pose_mean", "/truth", "/scenario", "/timing"})
     EXPECT_THAT(info.out, HasSubstr(dataset));
   const Called status = call({"status", "out.h5"});

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Damaged studies and worlds: read, or refused with the name of the file. (Damaged recorded drives:
+// recordings/readers_fuzz_test.cpp.)
+#include "experiments/study/study.hpp"
+#include "experiments/worlds/world_file.hpp"
+#include "tests/doubles/complaint.hpp"
+#include "tests/doubles/damage.hpp"
+#include "tests/doubles/scratch_folder.hpp"
+#include "tests/doubles/small_drives.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <iterator>
+
+namespace montecarta {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kWorld =
+    "# a yard\nkind,x,y\nwaypoint,10,0\nwaypoint,20,1\nlandmark,15,5\nlandmark,25,-4.5\n";
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Damages a file `cases` times; returns how often it was refused.
+std::size_t refused(const fs::path& path, bool is_text, std::uint64_t cases,
+                    const std::function<void()>& read) {
+  const std::string good = text_of(path);
+  std::size_t count = 0;
+  for (std::uint64_t seed = 0; seed < damaged_files(cases); ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    write_text(path, is_text ? damaged_text(good, seed) : damaged(good, seed));
+    const std::string said = complaint_of(read);
+    EXPECT_TRUE(said == "nothing" || said.find(path.filename()) != said.npos) << said;
+    count += said != "nothing" ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(InputsFuzz, WorldCsv) {
+  const ScratchFolder folder;
+  const fs::path path = folder / "yard.csv";
+  write_text(path, kWorld);
+  EXPECT_GT(refused(path, true, 2000, [&] { read_world_file(path); }), 500U);
+}
+
+TEST(InputsFuzz, WorldMat) {
+  const ScratchFolder folder;
+  const fs::path path = folder / "yard.mat";
+  add_doubles(path, "wp", {10, 0, 20, 1, 30, 2}, 2);
+  add_matrix(path, "lm", std::vector<double>{15, 5, 25, -4}, 2, MAT_C_DOUBLE, MAT_T_DOUBLE,
+             MAT_COMPRESSION_ZLIB);
+  EXPECT_GT(refused(path, false, 2000, [&] { read_world_file(path); }), 500U);
+}
+
+TEST(InputsFuzz, Study) {
+  const ScratchFolder folder;
+  const fs::path path = folder / "blink.ini";
+  write_text(folder / "yard.csv", kWorld);
+  write_text(
+      path,
+      "[study]\nname = blink\ntitle = A blink\nruns = 3\nuntil = position_rmse < 0.02\n"
+      "[scenario]\nworld = yard.csv\nnoise = matched\nscan_rate = 5 # Hz\n"
+      "[association]\nkind = nearest\n[record]\ncolumns = pose, covariance\n"
+      "[cells]\ncell = ekf_slam\ncell = fastslam2 particles=3,10 motion_noise=1,2\n"
+      "[printed]\nsource = A paper\nvalue = cell=ekf_slam metric=position_rmse printed=2.5\n");
+  EXPECT_GT(refused(path, true, 2000, [&] { resolved_text(read_study(path)); }), 500U);
+}
+
+}  // namespace
+}  // namespace montecarta
