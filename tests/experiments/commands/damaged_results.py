@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Damaged result files through the real program: it says what is wrong, and soon.
 
-usage: damaged_results.py MONTECARTA [COUNT]      (default: 200 damaged files)
+usage: damaged_results.py MONTECARTA [COUNT [FIRST]]      (default: 200 damaged files, from seed 0)
 
 Each file is a small result with bytes changed, eight bytes set to an extreme number, or its end cut
 off: a third of them where HDF5 keeps its structures, a third anywhere, a third in what is stored of
@@ -189,11 +189,12 @@ def try_one(ground, seed):
 def main():
     program = str(Path(sys.argv[1]).resolve())
     count = int(sys.argv[2]) if len(sys.argv) > 2 else 200
+    first = int(sys.argv[3]) if len(sys.argv) > 3 else 0
     counts, slowest, faults = collections.Counter(), collections.Counter(), []
     with tempfile.TemporaryDirectory(prefix="montecarta-damaged-") as folder:
         ground = Ground(folder, program)
         with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
-            outcomes = pool.map(try_one, itertools.repeat(ground), range(count))
+            outcomes = pool.map(try_one, itertools.repeat(ground), range(first, first + count))
             for name, code, seconds, fault in outcomes:
                 counts[name, code] += 1
                 slowest[name] = max(slowest[name], seconds)
