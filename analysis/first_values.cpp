@@ -2,8 +2,8 @@
 #include "analysis/first_values.hpp"
 
 #include "analysis/measured_run.hpp"
-#include "analysis/metrics/summary.hpp"
-#include "analysis/metrics/t_quantile.hpp"
+#include "analysis/statistics/summary.hpp"
+#include "analysis/statistics/t_quantile.hpp"
 
 #include <limits>
 

@@ -165,6 +165,19 @@ TEST(House, ARoomIncludesOnlyWhatStandsBelowIt) {
   EXPECT_THAT(forbidden_includes(house()), IsEmpty());
 }
 
+TEST(House, StatisticsKnowNumbersOnly) {
+  std::vector<std::string> found;
+  for (const auto& [path, lines] : house()) {
+    if (!path.starts_with("analysis/statistics/")) continue;
+    for (const std::string& name : includes_of(lines)) {
+      if (name.starts_with("analysis/") && !name.starts_with("analysis/statistics/")) {
+        found.push_back(path + " includes " + name);
+      }
+    }
+  }
+  EXPECT_THAT(found, IsEmpty());
+}
+
 TEST(House, LibrariesAreMetInOneOrTwoFiles) {
   for (const char* header : {"tbb/", "oneapi/", "omp.h", "boost/program_options", "matio"}) {
     const auto users = users_of(house(), header);

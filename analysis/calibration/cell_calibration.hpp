@@ -2,7 +2,7 @@
 #pragma once
 
 #include "analysis/calibration/pit.hpp"
-#include "analysis/calibration/uniformity.hpp"
+#include "analysis/statistics/uniformity.hpp"
 
 #include <cstddef>
 #include <span>

@@ -2,8 +2,8 @@
 #include "analysis/comparison/cell_comparison.hpp"
 
 #include "analysis/comparison/paired_runs.hpp"
-#include "analysis/metrics/bootstrap.hpp"
-#include "analysis/metrics/spread.hpp"
+#include "analysis/statistics/bootstrap.hpp"
+#include "analysis/statistics/spread.hpp"
 #include "engine/errors.hpp"
 
 #include <algorithm>

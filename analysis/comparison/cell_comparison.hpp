@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/comparison/paired_tests.hpp"
-#include "analysis/nees_bounds.hpp"
+#include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/statistics/paired_tests.hpp"
 #include "analysis/study_analysis.hpp"
 
 #include <cstddef>

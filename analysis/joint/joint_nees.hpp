@@ -4,7 +4,7 @@
 #include "analysis/metrics/consistency.hpp"
 #include "analysis/metrics/run_rows.hpp"
 #include "analysis/metrics/run_scores.hpp"
-#include "analysis/nees_bounds.hpp"
+#include "analysis/statistics/nees_bounds.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -3,8 +3,8 @@
 
 #include "analysis/map/map_scores.hpp"
 #include "analysis/metrics/run_scores.hpp"
-#include "analysis/metrics/summary.hpp"
-#include "analysis/nees_bounds.hpp"
+#include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/statistics/summary.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -7,7 +7,7 @@
 #include "analysis/metrics/nees_accumulator.hpp"
 #include "analysis/metrics/run_metrics.hpp"
 #include "analysis/metrics/run_rows.hpp"
-#include "analysis/metrics/whole_run_band.hpp"
+#include "analysis/statistics/whole_run_band.hpp"
 
 #include <cstdint>
 #include <optional>

@@ -12,9 +12,9 @@
 #include "analysis/metrics/lineages.hpp"
 #include "analysis/metrics/reference_analysis.hpp"
 #include "analysis/metrics/run_scores.hpp"
-#include "analysis/metrics/summary.hpp"
-#include "analysis/metrics/survival.hpp"
 #include "analysis/mismatch/mismatch.hpp"
+#include "analysis/statistics/summary.hpp"
+#include "analysis/statistics/survival.hpp"
 
 #include <array>
 #include <cstddef>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/consistency.hpp"
 
-#include "analysis/metrics/finite_mean.hpp"
-#include "analysis/metrics/t_quantile.hpp"
+#include "analysis/statistics/finite_mean.hpp"
+#include "analysis/statistics/t_quantile.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/gamma.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/innovations.hpp"
 
-#include "analysis/metrics/bootstrap.hpp"
-#include "analysis/metrics/finite_mean.hpp"
+#include "analysis/statistics/bootstrap.hpp"
+#include "analysis/statistics/finite_mean.hpp"
 
 #include <boost/math/distributions/normal.hpp>
 

@@ -2,7 +2,7 @@
 #include "analysis/metrics/lineages.hpp"
 
 #include "analysis/metrics/diversity.hpp"
-#include "analysis/metrics/summary.hpp"
+#include "analysis/statistics/summary.hpp"
 
 #include <cmath>
 #include <numeric>

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "analysis/metrics/cell_analysis.hpp"
-#include "analysis/metrics/neighbour_correlation.hpp"
-#include "analysis/metrics/quantile_table.hpp"
 #include "analysis/metrics/run_metrics.hpp"
-#include "analysis/metrics/whole_run_band.hpp"
+#include "analysis/statistics/neighbour_correlation.hpp"
+#include "analysis/statistics/quantile_table.hpp"
+#include "analysis/statistics/whole_run_band.hpp"
 
 #include <cstdint>
 #include <span>

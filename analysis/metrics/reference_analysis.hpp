@@ -3,7 +3,7 @@
 
 #include "analysis/metrics/reference_scores.hpp"
 #include "analysis/metrics/run_scores.hpp"
-#include "analysis/metrics/spread.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <cstddef>
 #include <span>

@@ -2,7 +2,7 @@
 #include "analysis/metrics/reference_scores.hpp"
 
 #include "analysis/metrics/rigid_alignment.hpp"
-#include "analysis/metrics/spread.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 #include "analysis/metrics/diversity.hpp"
 #include "analysis/metrics/lineages.hpp"
 #include "analysis/metrics/run_rows.hpp"
-#include "analysis/metrics/sampler_scale.hpp"
+#include "analysis/statistics/sampler_scale.hpp"
 
 #include <Eigen/Core>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/score_intervals.hpp"
 
-#include "analysis/metrics/bootstrap.hpp"
+#include "analysis/statistics/bootstrap.hpp"
 
 namespace montecarta {
 

@@ -2,7 +2,7 @@
 #include "analysis/printed/run_samples.hpp"
 
 #include "analysis/comparison/paired_runs.hpp"
-#include "analysis/metrics/t_quantile.hpp"
+#include "analysis/statistics/t_quantile.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "analysis/metrics/cell_analysis.hpp"
-#include "analysis/nees_bounds.hpp"
+#include "analysis/statistics/nees_bounds.hpp"
 
 #include <cstddef>
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/finite_mean.hpp"
+#include "analysis/statistics/finite_mean.hpp"
 #include "analysis/tables/cell_series.hpp"
 #include "analysis/tables/number_text.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/nees_bounds.hpp"
-#include "analysis/nees_power.hpp"
+#include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/statistics/nees_power.hpp"
 #include "analysis/tables/number_text.hpp"
 #include "engine/errors.hpp"
 #include "experiments/commands/commands.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/nees_bounds.hpp"
+#include "analysis/statistics/nees_bounds.hpp"
 #include "filters/joint/joint_filters.hpp"
 #include "filters/models/eigen_jacobians.hpp"
 #include "filters/moments/gaussian_draw.hpp"

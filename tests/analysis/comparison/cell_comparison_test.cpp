@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/cell_comparison.hpp"
 
-#include "analysis/metrics/bootstrap.hpp"
+#include "analysis/statistics/bootstrap.hpp"
 #include "engine/errors.hpp"
 #include "engine/random/stream.hpp"
 #include "tests/analysis/comparison/compared_cells.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/joint/joint_nees.hpp"
 
-#include "analysis/metrics/finite_mean.hpp"
+#include "analysis/statistics/finite_mean.hpp"
 #include "engine/numbers/angle.hpp"
 #include "engine/random/stream.hpp"
 

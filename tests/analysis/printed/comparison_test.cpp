@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/printed/comparison.hpp"
 
-#include "analysis/metrics/t_quantile.hpp"
 #include "analysis/printed/run_samples.hpp"
+#include "analysis/statistics/t_quantile.hpp"
 #include "analysis/tables.hpp"
 #include "engine/random/stream.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/tables.hpp"
 
-#include "analysis/metrics/finite_mean.hpp"
+#include "analysis/statistics/finite_mean.hpp"
 #include "analysis/tables/csv_file.hpp"
 #include "analysis/tables/latex.hpp"
 #include "analysis/tables/number_text.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/tables/why_tables.hpp"
 
-#include "analysis/metrics/finite_mean.hpp"
+#include "analysis/statistics/finite_mean.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

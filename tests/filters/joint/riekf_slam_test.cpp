@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/nees_bounds.hpp"
+#include "analysis/statistics/nees_bounds.hpp"
 #include "filters/joint/joint_filters.hpp"
 #include "filters/joint/retraction.hpp"
 #include "tests/filters/default_options.hpp"

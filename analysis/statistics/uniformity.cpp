@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/calibration/uniformity.hpp"
+#include "analysis/statistics/uniformity.hpp"
 
 #include <boost/math/distributions/binomial.hpp>
 

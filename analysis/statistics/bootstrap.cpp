@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/bootstrap.hpp"
+#include "analysis/statistics/bootstrap.hpp"
 
-#include "analysis/metrics/finite_mean.hpp"
-#include "analysis/metrics/t_quantile.hpp"
+#include "analysis/statistics/finite_mean.hpp"
+#include "analysis/statistics/t_quantile.hpp"
 #include "engine/errors.hpp"
 #include "engine/random/normal_quantile.hpp"
 #include "engine/random/stream.hpp"
@@ -64,7 +64,8 @@ double quantile_of(const std::vector<double>& sorted, double p) {
   return std::lerp(sorted[low], sorted[high], place - std::floor(place));
 }
 
-Interval accelerated_interval(std::vector<double>& means, const SampleShape& shape, double deviate) {
+Interval accelerated_interval(std::vector<double>& means, const SampleShape& shape,
+                              double deviate) {
   if (!std::isfinite(shape.mean) || !std::isfinite(shape.acceleration)) return {kNaN, kNaN};
   std::ranges::sort(means);
   const double bias = bias_deviate(means, shape.mean);

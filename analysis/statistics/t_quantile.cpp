@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/t_quantile.hpp"
+#include "analysis/statistics/t_quantile.hpp"
 
 #include <boost/math/distributions/students_t.hpp>
 

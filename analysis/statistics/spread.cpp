@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/spread.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <algorithm>
 

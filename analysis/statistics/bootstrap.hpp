@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/nees_bounds.hpp"
+#include "analysis/statistics/nees_bounds.hpp"
 
 #include <cstddef>
 #include <cstdint>

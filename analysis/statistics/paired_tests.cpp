@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/comparison/paired_tests.hpp"
+#include "analysis/statistics/paired_tests.hpp"
 
 #include <boost/math/distributions/binomial.hpp>
 

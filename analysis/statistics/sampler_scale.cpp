@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/sampler_scale.hpp"
+#include "analysis/statistics/sampler_scale.hpp"
 
 #include "engine/errors.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/whole_run_band.hpp"
+#include "analysis/statistics/whole_run_band.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/neighbour_correlation.hpp"
+#include "analysis/statistics/neighbour_correlation.hpp"
 
 #include <algorithm>
 #include <cmath>

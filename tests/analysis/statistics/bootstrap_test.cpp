@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/bootstrap.hpp"
+#include "analysis/statistics/bootstrap.hpp"
 
 #include "engine/random/stream.hpp"
 

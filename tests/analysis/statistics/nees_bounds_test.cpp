@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/nees_bounds.hpp"
+#include "analysis/statistics/nees_bounds.hpp"
 
 #include "engine/errors.hpp"
-#include "tests/analysis/nees_bounds_golden.hpp"
+#include "tests/analysis/statistics/nees_bounds_golden.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/nees_power.hpp"
+#include "analysis/statistics/nees_power.hpp"
 
-#include "analysis/nees_bounds.hpp"
+#include "analysis/statistics/nees_bounds.hpp"
 #include "engine/errors.hpp"
 #include "engine/random/stream.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/quantile_table.hpp"
+#include "analysis/statistics/quantile_table.hpp"
 
 #include "engine/random/stream.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/metrics/summary.hpp"
+#include "analysis/statistics/summary.hpp"
 
 #include <limits>
 #include <span>
