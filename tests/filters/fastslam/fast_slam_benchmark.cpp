@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/runs/cpu_clock.hpp"
 #include "filters/factory.hpp"
+#include "filters/models/ackermann.hpp"
+#include "filters/models/point.hpp"
+#include "filters/models/range_bearing.hpp"
 #include "tests/filters/reference/fast_slams.hpp"
 
 #include <benchmark/benchmark.h>
