@@ -66,10 +66,10 @@ TEST_F(ReferenceFiles, AreGroupsOfTheAnalysisFile) {
   const std::string group = "cells/fastslam2_m20/references/";
   std::vector<double> errors(100), mean(1);
   h5::read(h5::open_dataset(file, group + "gps/error_over_time"), Element::f64,
-              std::as_writable_bytes(std::span(errors)));
+           std::as_writable_bytes(std::span(errors)));
   EXPECT_EQ(errors, study_.cells[2].references[0].error_over_time);
   h5::read(h5::open_dataset(file, group + "gps/aligned_rms_mean"), Element::f64,
-              std::as_writable_bytes(std::span(mean)));
+           std::as_writable_bytes(std::span(mean)));
   EXPECT_EQ(mean[0],
             study_.cells[2].references[0].over_runs(&ReferenceScores::aligned_rms).summary.mean);
   EXPECT_FALSE(h5::has(h5::open_group(file, group + "coarse"), "error_over_time"));
