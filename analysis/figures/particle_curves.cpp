@@ -44,8 +44,7 @@ std::vector<std::size_t> particle_numbers(const std::vector<ParticleCurve>& curv
     for (const auto& point : curve.points) numbers.push_back(point.particles);
   }
   std::ranges::sort(numbers);
-  const auto repeated = std::ranges::unique(numbers);
-  numbers.erase(repeated.begin(), repeated.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
   return numbers;
 }
 

@@ -32,8 +32,8 @@ RigidMotion rigid_alignment(std::span<const Eigen::Vector2d> from,
   double along = 0.0, across = 0.0;  // sums of |a||b| cos and |a||b| sin of the angle from a to b
   for (std::size_t i = 0; i < from.size(); ++i) {
     const Eigen::Vector2d a = from[i] - centre, b = onto[i] - target;
-    along += a.dot(b);
-    across += a.x() * b.y() - a.y() * b.x();
+    along = std::fma(a.x(), b.x(), std::fma(a.y(), b.y(), along));
+    across = std::fma(a.x(), b.y(), std::fma(-a.y(), b.x(), across));
   }
   motion.angle = std::atan2(across, along);
   motion.shift = target - Eigen::Rotation2Dd(motion.angle) * centre;

@@ -65,7 +65,7 @@ void RunMetrics::turn_into_vehicle(const RunRows& rows) {
     errors_[s] = vehicle_from_map * errors_[s];
     if (covariance.empty()) continue;
     const Eigen::Matrix3d P = Eigen::Map<const RowMajor3>(covariance.data() + 9 * s);
-    covariances_.push_back(vehicle_from_map * P * vehicle_from_map.transpose());
+    covariances_.emplace_back(vehicle_from_map * P * vehicle_from_map.transpose());
   }
 }
 

@@ -25,8 +25,7 @@ std::vector<double> factors_of(const std::vector<const CellAnalysis*>& cells,
   std::vector<double> factors;
   for (const CellAnalysis* cell : cells) factors.push_back(cell->mismatch.*kind);
   std::ranges::sort(factors);
-  const auto repeated = std::ranges::unique(factors);
-  factors.erase(repeated.begin(), repeated.end());
+  factors.erase(std::unique(factors.begin(), factors.end()), factors.end());
   return factors;
 }
 

@@ -48,7 +48,7 @@ double widened_deviate(std::size_t runs, double level) {
 
 /// Share of the replicates below the mean, in normal deviates; ties count half.
 double bias_deviate(const std::vector<double>& sorted, double mean) {
-  const auto [first, last] = std::ranges::equal_range(sorted, mean);
+  const auto [first, last] = std::equal_range(sorted.begin(), sorted.end(), mean);
   const auto below = static_cast<double>(first - sorted.begin());
   const auto equal = static_cast<double>(last - first);
   const auto n = static_cast<double>(sorted.size());

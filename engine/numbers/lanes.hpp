@@ -5,6 +5,9 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
+#include <type_traits>
+#include <utility>
 
 namespace montecarta {
 
@@ -49,6 +52,19 @@ struct alignas(64) Lanes {
     }
     return lanes;
   }
+  /// {number(0), ..., number(7)}, composed in registers: numbers that are stored one by one cannot
+  /// be loaded together before they have reached the cache.
+  template <class Function>
+  [[gnu::always_inline]] static Lanes composed(const Function& number) {
+    const auto compose = [&]<std::size_t... l>(std::size_t first, std::index_sequence<l...>) {
+      return Register{number(first + l)...};
+    };
+    Lanes lanes;
+    for (std::size_t k = 0; k < kRegisters; ++k) {
+      lanes.part[k] = compose(k * Register::size, std::make_index_sequence<Register::size>());
+    }
+    return lanes;
+  }
   void store(double* memory) const {
     for (std::size_t k = 0; k < kRegisters; ++k) part[k].store_aligned(memory + k * Register::size);
   }
@@ -78,23 +94,36 @@ template <class Function, class... Arguments>
   return result;
 }
 
-#define MONTECARTA_LANE_OPERATOR(op, Result)                                         \
-  [[gnu::always_inline]] inline Result operator op(const Lanes& a, const Lanes& b) { \
-    return by_register([](const auto& x, const auto& y) { return x op y; }, a, b);   \
-  }
-MONTECARTA_LANE_OPERATOR(+, Lanes)
-MONTECARTA_LANE_OPERATOR(-, Lanes)
-MONTECARTA_LANE_OPERATOR(*, Lanes)
-MONTECARTA_LANE_OPERATOR(/, Lanes)
-MONTECARTA_LANE_OPERATOR(<, LaneMask)
-MONTECARTA_LANE_OPERATOR(<=, LaneMask)
-MONTECARTA_LANE_OPERATOR(>, LaneMask)
-MONTECARTA_LANE_OPERATOR(>=, LaneMask)
-MONTECARTA_LANE_OPERATOR(==, LaneMask)
-#undef MONTECARTA_LANE_OPERATOR
+[[gnu::always_inline]] inline Lanes operator+(const Lanes& a, const Lanes& b) {
+  return by_register(std::plus<>(), a, b);
+}
+[[gnu::always_inline]] inline Lanes operator-(const Lanes& a, const Lanes& b) {
+  return by_register(std::minus<>(), a, b);
+}
+[[gnu::always_inline]] inline Lanes operator*(const Lanes& a, const Lanes& b) {
+  return by_register(std::multiplies<>(), a, b);
+}
+[[gnu::always_inline]] inline Lanes operator/(const Lanes& a, const Lanes& b) {
+  return by_register(std::divides<>(), a, b);
+}
+[[gnu::always_inline]] inline LaneMask operator<(const Lanes& a, const Lanes& b) {
+  return by_register(std::less<>(), a, b);
+}
+[[gnu::always_inline]] inline LaneMask operator<=(const Lanes& a, const Lanes& b) {
+  return by_register(std::less_equal<>(), a, b);
+}
+[[gnu::always_inline]] inline LaneMask operator>(const Lanes& a, const Lanes& b) {
+  return by_register(std::greater<>(), a, b);
+}
+[[gnu::always_inline]] inline LaneMask operator>=(const Lanes& a, const Lanes& b) {
+  return by_register(std::greater_equal<>(), a, b);
+}
+[[gnu::always_inline]] inline LaneMask operator==(const Lanes& a, const Lanes& b) {
+  return by_register(std::equal_to<>(), a, b);
+}
 
 inline Lanes operator-(const Lanes& a) {
-  return by_register([](const auto& x) { return -x; }, a);
+  return by_register([](const auto& x) { return register_math::negative(x); }, a);
 }
 inline Lanes& operator+=(Lanes& a, const Lanes& b) { return a = a + b; }
 inline Lanes& operator-=(Lanes& a, const Lanes& b) { return a = a - b; }

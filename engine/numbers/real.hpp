@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 #include <utility>
 
 /// The functions that per-particle arithmetic is written in, for `Real` = double and `Real` = Lanes
@@ -38,6 +39,15 @@ inline Lanes load(const double* memory, const Lanes& /*like*/) { return Lanes::l
 template <class Real>
 Real load_real(const double* memory) {
   return load(memory, Real());
+}
+/// number(lane) in every lane.
+template <class Real, class Function>
+[[gnu::always_inline]] inline Real composed(const Function& number) {
+  if constexpr (std::is_same_v<Real, Lanes>) {
+    return Lanes::composed(number);
+  } else {
+    return number(0);
+  }
 }
 inline void store(double* memory, double value) { *memory = value; }
 inline void store(double* memory, const Lanes& value) { value.store(memory); }
@@ -84,6 +94,7 @@ inline Lanes log(const Lanes& a) {
 inline Lanes sqrt(const Lanes& a) {
   return by_register([](const auto& x) { return xsimd::sqrt(x); }, a);
 }
+/// For a <= 709.
 inline Lanes exp(const Lanes& a) {
   return by_register([](const auto& x) { return register_math::exp(x); }, a);
 }

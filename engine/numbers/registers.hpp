@@ -49,6 +49,12 @@ template <class R>
   return xsimd::fnma(a, b, c);
 }
 
+/// -x, of zeros too: that of xsimd 8 is 0 - x on AVX-512.
+template <class R>
+[[gnu::always_inline]] inline R negative(const R& x) {
+  return x ^ R(-0.0);
+}
+
 /// The product of the low halves of all lanes with `b`, exactly. xsimd multiplies 64-bit lanes in
 /// full, which takes three times as long.
 template <class B>

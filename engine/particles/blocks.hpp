@@ -31,6 +31,7 @@ std::span<const double> scalars(const std::vector<Real>& column) {
 template <class Real, class Block>
 struct BlockLayout {
   static_assert(sizeof(Block) % sizeof(Real) == 0);
+  // NOLINTNEXTLINE(bugprone-sizeof-expression): a block may be a single number
   static constexpr std::size_t kFields = sizeof(Block) / sizeof(Real);
   static constexpr std::size_t offset(std::size_t particle) {
     constexpr std::size_t lanes = kLanesOf<Real>;

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 namespace montecarta {
 
@@ -55,12 +56,15 @@ inline Pair<Lanes> uniform_pairs(const StreamIdentity& identity, std::uint32_t b
     return xsimd::bitwise_cast<Lanes::Register>(bits | Batch(std::uint64_t{0x3ff0000000000000U})) -
            Lanes::Register(1.0 - 0x1p-53);
   };
+  const auto counted = []<std::uint64_t... l>(std::integer_sequence<std::uint64_t, l...>) {
+    return Batch{l...};
+  }
+  (std::make_integer_sequence<std::uint64_t, Batch::size>());
   Pair<Lanes> pair{};
   for (std::size_t k = 0; k < Lanes::kRegisters; ++k) {
-    alignas(64) std::array<std::uint64_t, Batch::size> index{};
-    for (std::size_t i = 0; i < index.size(); ++i) index[i] = identity.index + k * Batch::size + i;
+    const Batch index = Batch(std::uint64_t{identity.index} + k * Batch::size) + counted;
     const auto words = philox<WordRegister>(
-        {WordRegister{Batch::load_aligned(index.data())}, same(identity.step), same(identity.run),
+        {WordRegister{index}, same(identity.step), same(identity.run),
          same(static_cast<std::uint32_t>(identity.purpose) << kPurposeShift | block)},
         {static_cast<std::uint32_t>(identity.seed),
          static_cast<std::uint32_t>(identity.seed >> 32)});

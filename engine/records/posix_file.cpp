@@ -44,16 +44,23 @@ std::string remedy(int error) {
 
 off_t signed_offset(std::uint64_t offset) { return static_cast<off_t>(offset); }
 
+/// A pipe is opened without waiting for its other end.
 int flags_of(PosixFile::Mode mode) {
+  constexpr int always = O_CLOEXEC | O_NONBLOCK;
   switch (mode) {
     case PosixFile::Mode::read:
-      return O_RDONLY | O_CLOEXEC;
+      return O_RDONLY | always;
     case PosixFile::Mode::write:
-      return O_RDWR | O_CLOEXEC;
+      return O_RDWR | always;
     case PosixFile::Mode::create:
-      return O_RDWR | O_CREAT | O_CLOEXEC;
+      return O_RDWR | O_CREAT | always;
   }
-  return 0;
+  return always;
+}
+
+bool is_regular(int descriptor) {
+  struct stat status {};
+  return ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
 }
 
 /// A new name lasts only when its folder is on the disk.
@@ -72,6 +79,9 @@ PosixFile::PosixFile(std::filesystem::path path, Mode mode) : path_(std::move(pa
     descriptor_ = ::open(path_.c_str(), flags_of(mode), 0666);
   } while (descriptor_ < 0 && errno == EINTR);
   if (descriptor_ < 0) fail_to_open(path_, errno);
+  if (is_regular(descriptor_)) return;
+  ::close(descriptor_);
+  throw StudyError(path_.string() + ": is no regular file (a folder, a pipe or a device): name one");
 }
 
 PosixFile::~PosixFile() {

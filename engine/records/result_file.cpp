@@ -99,8 +99,7 @@ const std::vector<StoredCell>& ResultFile::cells() const { return description().
 std::uint64_t ResultFile::bytes() const { return std::filesystem::file_size(path()); }
 
 std::vector<RunStatus> ResultFile::status(const StoredCell& cell) const {
-  const auto statuses =
-      contents_->per_run<RunStatus>("cells/" + cell.label + "/status", Element::u8);
+  auto statuses = contents_->per_run<RunStatus>("cells/" + cell.label + "/status", Element::u8);
   expect_known(statuses, path().string() + ": cell '" + cell.label + "'");
   return statuses;
 }

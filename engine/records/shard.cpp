@@ -114,8 +114,8 @@ void expect_equal(const Shard& a, const Shard& b, std::uint64_t run) {
       continue;
     throw StudyError(b.path.string() + ": run " + std::to_string(run) + " differs from that in " +
                      a.path.string() +
-                     " (another build or instruction set made it, see 'montecarta info'): leave "
-                     "one of them out");
+                     " (made from other sources, by another compiler or C library, or damaged; "
+                     "'montecarta info' tells): leave one of them out");
   }
 }
 

@@ -89,13 +89,14 @@ template <class Real, std::size_t D>
                                                          std::size_t k) {
   constexpr std::size_t lanes = kLanesOf<Real>;
   const double* numbers = reinterpret_cast<const double*>(population.data());
-  alignas(64) std::array<std::array<double, lanes>, D> values;
+  std::array<std::size_t, lanes> first;
   for (std::size_t lane = 0; lane < lanes; ++lane) {
-    const auto index = static_cast<std::size_t>(get(draws.members[k], lane));
-    for (std::size_t j = 0; j < D; ++j) values[j][lane] = numbers[(index * D + j) * lanes + lane];
+    first[lane] = static_cast<std::size_t>(get(draws.members[k], lane)) * D * lanes + lane;
   }
   std::array<Real, D> member;
-  for (std::size_t j = 0; j < D; ++j) member[j] = load_real<Real>(values[j].data());
+  for (std::size_t j = 0; j < D; ++j) {
+    member[j] = composed<Real>([&](std::size_t lane) { return numbers[first[lane] + j * lanes]; });
+  }
   return member;
 }
 

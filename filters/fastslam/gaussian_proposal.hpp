@@ -59,9 +59,9 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
   template <class Matches>
   Real batch_log_weight(const Matches& matches, std::size_t b,
                         const PoseGaussian<Real>& prior) const {
-    PoseGaussian<Real> refined = prior;
     Evidence<Real> evidence;
     if constexpr (std::is_same_v<PoseTransform, Linearised>) {
+      PoseGaussian<Real> refined = prior;
       matches.read(b, [&](std::size_t, const auto& landmark, const auto& seen, const auto& mask) {
         refine_pose_in_batch(refined, prior.mean, landmark, seen, this->noise(), mask, evidence);
       });

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/errors.hpp"
 #include "engine/numbers/real.hpp"
 
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <cstddef>
 
@@ -88,7 +88,7 @@ template <std::size_t N>
 inline void add_product(const ConstMatrix& A, const ConstMatrix& B, Part part,
                         Eigen::Ref<Eigen::MatrixXd> C) {
   constexpr Eigen::Index size = Lanes::kSize, blocks_together = 8;
-  assert(C.rows() % size == 0 && C.cols() % 2 == 0);
+  expect(C.rows() % size == 0 && C.cols() % 2 == 0, "rows are multiples of 8, columns of 2");
   const Eigen::MatrixXd factors = B.transpose();
   Eigen::MatrixXd panel(size, blocks_together * A.cols());  // rows of A, eight by eight
   for (Eigen::Index first = 0; first < C.rows(); first += blocks_together * size) {

@@ -112,7 +112,7 @@ class KernelRatios {
 
   /// With prior kernels the sums share everything but the weights; if those are equal, too, the
   /// ratio is one wherever the targets are, and nothing is summed.
-  KernelRatios(const MarginalSettings& settings)
+  explicit KernelRatios(const MarginalSettings& settings)
       : is_shared_(settings.kernel == Kernel::prior),
         is_one_(is_shared_ && settings.choice == Choice::by_weight),
         shared_(settings.kernel_sums, settings.kernel_tolerance),

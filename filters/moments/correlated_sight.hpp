@@ -93,7 +93,7 @@ Innovation<Real> absorb(CorrelatedMap<Real>& maps, std::size_t b, const Where& a
   const Sightline<Real> s = sightline(pose.mean, f.mean);
   const auto use = matched && is_usable(s);
   const SightRows<Real> rows(s);
-  const Innovation<Real> v =
+  Innovation<Real> v =
       correlated_innovation(pose.covariance, f.covariance, PoseCross<Real>(maps.pose_cross(at, b)),
                             rows, residual(seen, s), noise);
   const Decorrelated<Real> d(v, use);

@@ -169,7 +169,7 @@ template <class Real, class Mask>
                                                       const SensorNoise& noise, const Mask& matched,
                                                       Evidence<Real>& evidence) {
   const auto use = matched && is_usable(s);
-  const Innovation<Real> v = innovation_of(pose.covariance, s, value, map_covariance, noise);
+  Innovation<Real> v = innovation_of(pose.covariance, s, value, map_covariance, noise);
   const Density<Real> density = condition(pose, v, use);
   evidence.add(density.squared, density.determinant, as_number<Real>(use),
                as_number<Real>(matched));
@@ -233,9 +233,9 @@ template <class Real, class Mask, class Weighed>
   const Real determinant = S.along * S.across - S.cross * S.cross;
   const Real inverse = select(use, 1.0 / determinant, Real(0.0));
 
-  const Real det_P = P.along * P.across - P.cross * P.cross;
-  const Turned<Real> g{(det_P + P.along * R.across) * inverse, P.cross * inverse,
-                       (det_P + P.across * R.along) * inverse};
+  const Real determinant_of_map = P.along * P.across - P.cross * P.cross;
+  const Turned<Real> g{(determinant_of_map + P.along * R.across) * inverse, P.cross * inverse,
+                       (determinant_of_map + P.across * R.along) * inverse};
   const Real move_along = g.along * along + g.cross * R.along * across;
   const Real move_across = g.cross * R.across * along + g.across * across;
   landmark.mean.x += s.ux * move_along - s.uy * move_across;

@@ -23,8 +23,7 @@ std::uint32_t ancestor_at(const StoredParticles& stored, std::size_t scan, std::
 /// Adds particles, evenly over the indices, until there are `most`; sorted.
 void fill_up(Indices& shown, std::size_t count, std::size_t most) {
   std::ranges::sort(shown);
-  const auto repeated = std::ranges::unique(shown);
-  shown.erase(repeated.begin(), repeated.end());
+  shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
   const Indices parents = shown;
   for (std::size_t k = 0; k < most && shown.size() < std::min(most, count); ++k) {
     const auto i = static_cast<std::uint32_t>(count <= most ? k : k * count / most);

@@ -6,7 +6,11 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
 
 namespace montecarta {
 namespace {
@@ -43,6 +47,68 @@ TYPED_TEST(Registers, HaveTheSameBitsAtEveryWidth) {
               bits(std::fma(x, y, z)));
     ASSERT_EQ(bits(register_math::negative_multiply_add(wide, other, third).get(0)),
               bits(std::fma(-x, y, z)));
+  }
+}
+
+/// Numbers at which instruction sets may differ: zeros, what does not count, what hardly counts,
+/// halves between whole numbers.
+std::vector<double> corners() {
+  using Limits = std::numeric_limits<double>;
+  std::vector<double> all = {
+      0.0,    Limits::denorm_min(), 0.75 * Limits::min(), Limits::min(), 0.5, 1.0, 1.5, 2.5, 3e15,
+      0x1p52, Limits::max(),        Limits::infinity()};
+  for (std::size_t n = 0, count = all.size(); n < count; ++n) all.push_back(-all[n]);
+  all.push_back(Limits::quiet_NaN());
+  return all;
+}
+
+/// min and max as the instructions have them: the second where neither is less.
+double lesser(double a, double b) { return a < b ? a : b; }
+double greater(double a, double b) { return a > b ? a : b; }
+
+TYPED_TEST(Registers, TakeTheSignAndTheWholePartOfAnyNumber) {
+  for (const double a : corners()) {
+    const TypeParam x(a);
+    EXPECT_EQ(bits(register_math::negative(x).get(0)), bits(-a)) << a;
+    EXPECT_EQ(bits(xsimd::abs(x).get(0)), bits(std::fabs(a))) << a;
+    EXPECT_EQ(bits(xsimd::floor(x).get(0)), bits(std::floor(a))) << a;
+    EXPECT_EQ(bits(xsimd::nearbyint(x).get(0)), bits(std::nearbyint(a))) << a;
+    if (a >= 0.0) {
+      EXPECT_EQ(bits(xsimd::sqrt(x).get(0)), bits(std::sqrt(a))) << a;
+    }
+  }
+}
+
+TYPED_TEST(Registers, CompareAndSelectAnyNumbers) {
+  for (const double a : corners()) {
+    for (const double b : corners()) {
+      const std::string both = std::to_string(a) + " and " + std::to_string(b);
+      const TypeParam x(a), y(b);
+      EXPECT_EQ(bits(xsimd::min(x, y).get(0)), bits(lesser(a, b))) << both;
+      EXPECT_EQ(bits(xsimd::max(x, y).get(0)), bits(greater(a, b))) << both;
+      EXPECT_EQ(bits(xsimd::select(x < y, x, y).get(0)), bits(a < b ? a : b)) << both;
+      EXPECT_EQ(bits(xsimd::select(x <= y, x, y).get(0)), bits(a <= b ? a : b)) << both;
+      EXPECT_EQ(bits(xsimd::select(x == y, x, y).get(0)), bits(a == b ? a : b)) << both;
+    }
+  }
+}
+
+TEST(Lanes, HaveTheSignThatDoubleHas) {
+  for (const double a : corners()) EXPECT_EQ(bits((-Lanes(a)).get(0)), bits(-a)) << a;
+}
+
+TYPED_TEST(Registers, HaveTheSameBitsAtCorners) {
+  for (const double a : corners()) {
+    const TypeParam x(a);
+    EXPECT_EQ(bits(register_math::log(x).get(0)), bits(log(Lanes(a)).get(0))) << a;
+    if (std::fabs(a) <= 709.0 || a < 0.0) {
+      EXPECT_EQ(bits(register_math::exp(x).get(0)), bits(exp(Lanes(a)).get(0))) << a;
+    }
+    for (const double b : corners()) {
+      EXPECT_EQ(bits(register_math::atan2(x, TypeParam(b)).get(0)),
+                bits(atan2(Lanes(a), Lanes(b)).get(0)))
+          << a << " and " << b;
+    }
   }
 }
 

@@ -23,6 +23,9 @@ namespace fs = std::filesystem;
 
 const fs::path kFolder = fs::path(MONTECARTA_SOURCE_DIR) / "tests/experiments/fingerprints";
 
+const std::string kAllColumns =
+    "pose, covariance, ancestry, particles, association, map, final_map, joint";
+
 /// One setting in which all cells of every_filter.ini run.
 struct Setting {
   std::string name;
@@ -33,7 +36,9 @@ const std::vector<Setting> kSettings = {
     {"known", {}},
     {"nearest", {"association.kind=nearest"}},
     {"large_map", {"association.kind=nearest", "scenario.world=dense_loop"}},
-    {"measured_control", {"scenario.noise=measured-control", "scenario.vehicle=rear_wheel"}}};
+    {"measured_control",
+     {"scenario.noise=measured-control", "scenario.vehicle=rear_wheel",
+      "record.columns=" + kAllColumns}}};
 
 using Fingerprints = std::map<std::string, std::string>;  ///< {setting/cell} hexadecimal
 
@@ -108,7 +113,7 @@ TEST_F(SameBits, OfEveryFilterOnEveryProcessor) {
     collect(folder_ / (name + ".h5"), name, computed);
   }
   const Stored stored = read_stored(kFolder / "fingerprints.csv");
-  const fs::path actual = fs::path(MONTECARTA_EXECUTABLE).parent_path() / "fingerprints.csv";
+  const fs::path actual = fs::path(program_under_test()).parent_path() / "fingerprints.csv";
   write_stored(actual, here, computed);
   if (stored.toolchain != here) {
     GTEST_SKIP() << "the stored bits are those of " << stored.toolchain << ", this build is of "
