@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/first_values.hpp"
 
-#include "analysis/measured_run.hpp"
+#include "analysis/metrics/cell_sums.hpp"
 #include "analysis/statistics/summary.hpp"
 #include "analysis/statistics/t_quantile.hpp"
 
@@ -9,9 +9,8 @@
 
 namespace montecarta {
 
-std::vector<double> first_values(const ResultFile& file, const StoredCell& cell,
-                                 const ScoreName& score, std::size_t runs,
-                                 const Parallel& parallel) {
+std::vector<double> first_values(const ResultFile& file, const StoredCell& cell, const Score& score,
+                                 std::size_t runs, const Parallel& parallel) {
   const std::vector<RunStatus> status = file.status(cell);
   std::vector<std::size_t> complete;
   for (std::size_t i = 0; i < runs; ++i) {
@@ -21,9 +20,7 @@ std::vector<double> first_values(const ResultFile& file, const StoredCell& cell,
   std::vector<MeasuredRun> slots = slots_for(parallel);
   CellSums sums(sticks);
   add_runs(RunReader(file, cell), complete, cell.particles, sticks, parallel, slots, sums);
-  std::vector<double> values;
-  for (const RunScores& run : sums.scores()) values.push_back(run.*score.value);
-  return values;
+  return sums.scores().column(score);
 }
 
 double half_width(const std::vector<double>& values, double level) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/metrics/run_scores.hpp"
+#include "analysis/metrics/score.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/runs/parallel.hpp"
 
@@ -12,9 +12,8 @@ namespace montecarta {
 
 /// A score of each complete run among the first `runs` that a file holds of a cell, in their order;
 /// the file may be unfinished. The same for any number of threads.
-std::vector<double> first_values(const ResultFile& file, const StoredCell& cell,
-                                 const ScoreName& score, std::size_t runs,
-                                 const Parallel& parallel);
+std::vector<double> first_values(const ResultFile& file, const StoredCell& cell, const Score& score,
+                                 std::size_t runs, const Parallel& parallel);
 
 /// Half the width of the interval in which the mean over infinitely many runs lies with probability
 /// `level`, by Student's t; infinite of fewer than two values, NaN where one is.

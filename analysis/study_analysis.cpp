@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/study_analysis.hpp"
 
-#include "analysis/measured_run.hpp"
-#include "analysis/run_reader.hpp"
+#include "analysis/data/run_reader.hpp"
+#include "analysis/metrics/cell_sums.hpp"
 #include "engine/errors.hpp"
 
 #include <algorithm>

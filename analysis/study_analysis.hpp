@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/bound/cramer_rao.hpp"
 #include "analysis/metrics/cell_analysis.hpp"
+#include "analysis/metrics/cramer_rao.hpp"
 #include "analysis/printed/printed.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/runs/parallel.hpp"

@@ -11,7 +11,7 @@
 namespace montecarta {
 namespace {
 
-Wins wins_of(const PairedRuns& pairs, const ScoreName& score) {
+Wins wins_of(const PairedRuns& pairs, const Score& score) {
   Wins wins{pairs.left_alone, pairs.right_alone, pairs.neither};
   for (std::size_t i = 0; i < pairs.left.size(); ++i) {
     const double behind = disadvantage(score, pairs.left[i], pairs.right[i]);
@@ -22,7 +22,7 @@ Wins wins_of(const PairedRuns& pairs, const ScoreName& score) {
 }
 
 CellComparison compare_pair(const CellAnalysis& cell, const CellAnalysis& baseline,
-                            const ScoreName& score, double level) {
+                            const Score& score, double level) {
   const PairedRuns pairs = paired_runs(cell, baseline, score);
   const std::vector<double> differences = pairs.differences();
   CellComparison row{.cell = cell.label, .score = &score};
@@ -79,19 +79,19 @@ std::string CellComparison::verdict(double level) const {
   return ahead > 0 ? "better" : "worse";
 }
 
-double disadvantage(const ScoreName& score, double left, double right) {
+double disadvantage(const Score& score, double left, double right) {
   return score.better == Better::higher ? right - left : left - right;
 }
 
-Wins wins_of(const CellAnalysis& left, const CellAnalysis& right, const ScoreName& score) {
+Wins wins_of(const CellAnalysis& left, const CellAnalysis& right, const Score& score) {
   return wins_of(paired_runs(left, right, score), score);
 }
 
 Comparisons compare_cells(const StudyAnalysis& study, const std::string& baseline,
-                          std::span<const ScoreName* const> scores) {
+                          std::span<const Score* const> scores) {
   const CellAnalysis& base = cell_called(study, baseline);
   Comparisons comparisons{baseline, study.level, {}};
-  for (const ScoreName* score : scores) {
+  for (const Score* score : scores) {
     for (const CellAnalysis& cell : study.cells) {
       if (&cell == &base || !is_judged_by(cell, *score) || !is_judged_by(base, *score)) continue;
       CellComparison row = compare_pair(cell, base, *score, study.level);
@@ -103,21 +103,14 @@ Comparisons compare_cells(const StudyAnalysis& study, const std::string& baselin
   return comparisons;
 }
 
-std::vector<const ScoreName*> usual_scores(bool has_truth) {
+std::vector<const Score*> usual_scores(bool has_truth) {
   const std::vector<std::string> names =
       has_truth ? std::vector<std::string>{"position_rmse", "heading_rmse", "nees_distance",
                                            "cpu_seconds"}
                 : std::vector<std::string>{"reference_rms", "reference_aligned_rms", "cpu_seconds"};
-  std::vector<const ScoreName*> scores;
+  std::vector<const Score*> scores;
   for (const std::string& name : names) scores.push_back(find_score(name));
   return scores;
-}
-
-const ScoreName* find_score(const std::string& name) {
-  const auto names = score_names();
-  const auto found =
-      std::ranges::find_if(names, [&](const ScoreName& score) { return score.name == name; });
-  return found == names.end() ? nullptr : &*found;
 }
 
 }  // namespace montecarta

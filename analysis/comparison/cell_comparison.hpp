@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/statistics/means.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 #include "analysis/statistics/paired_tests.hpp"
 #include "analysis/study_analysis.hpp"
@@ -26,16 +27,16 @@ struct Wins {
 /// One cell against the baseline by one score.
 struct CellComparison {
   std::string cell;
-  const ScoreName* score = nullptr;
+  const Score* score = nullptr;
   std::size_t pairs = 0;    ///< runs in which both have a value: the difference is of them
   std::size_t without = 0;  ///< runs in which only the baseline has one: failed, counted lost
-  std::size_t baseline_without = 0;  ///< runs in which only the cell has one: counted won
-  std::size_t neither = 0;           ///< runs that failed in both
-  std::size_t unpaired = 0;          ///< runs that ended in one of the two cells only
-  double mean = RunScores::kNone, baseline_mean = RunScores::kNone;  ///< over the pairs
-  double difference = RunScores::kNone;                              ///< mean - baseline_mean
-  Interval interval{};                                               ///< of the difference
-  double ratio = RunScores::kNone;                                   ///< mean / baseline_mean
+  std::size_t baseline_without = 0;          ///< runs in which only the cell has one: counted won
+  std::size_t neither = 0;                   ///< runs that failed in both
+  std::size_t unpaired = 0;                  ///< runs that ended in one of the two cells only
+  double mean = kNaN, baseline_mean = kNaN;  ///< over the pairs
+  double difference = kNaN;                  ///< mean - baseline_mean
+  Interval interval{};                       ///< of the difference
+  double ratio = kNaN;                       ///< mean / baseline_mean
   Wins wins{};
   SignedRank rank{};         ///< of the differences
   double rank_p_holm = 1.0;  ///< adjusted for all tests of the table
@@ -52,19 +53,16 @@ struct Comparisons {
 };
 
 /// Which of two values of a score is better: below zero where `left` is.
-double disadvantage(const ScoreName& score, double left, double right);
+double disadvantage(const Score& score, double left, double right);
 
-Wins wins_of(const CellAnalysis& left, const CellAnalysis& right, const ScoreName& score);
+Wins wins_of(const CellAnalysis& left, const CellAnalysis& right, const Score& score);
 
 /// Cells that have no value of a score, or share no run with the baseline, have no row. The level
 /// is the study's. Throws StudyError where there is no cell `baseline`.
 Comparisons compare_cells(const StudyAnalysis& study, const std::string& baseline,
-                          std::span<const ScoreName* const> scores);
+                          std::span<const Score* const> scores);
 
 /// Accuracy, honesty and cost; without a true path the distance to the leading reference.
-std::vector<const ScoreName*> usual_scores(bool has_truth);
-
-/// nullptr where there is none of that name.
-const ScoreName* find_score(const std::string& name);
+std::vector<const Score*> usual_scores(bool has_truth);
 
 }  // namespace montecarta

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/paired_runs.hpp"
 
+#include "analysis/statistics/means.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -14,12 +16,12 @@ struct EndedRuns {
   std::vector<double> values;
 };
 
-EndedRuns ended_runs(const CellAnalysis& cell, const ScoreName& score) {
+EndedRuns ended_runs(const CellAnalysis& cell, const Score& score) {
   std::vector<std::pair<std::uint64_t, double>> ended;
   for (std::size_t i = 0; i < cell.runs.size(); ++i) {
-    ended.emplace_back(cell.runs[i], cell.scores[i].*score.value);
+    ended.emplace_back(cell.runs[i], cell.scores.column(score)[i]);
   }
-  for (const FailedRun& failure : cell.failures) ended.emplace_back(failure.run, RunScores::kNone);
+  for (const FailedRun& failure : cell.failures) ended.emplace_back(failure.run, kNaN);
   std::ranges::sort(ended, {}, &std::pair<std::uint64_t, double>::first);
   EndedRuns lists;
   for (const auto& [run, value] : ended) {
@@ -47,8 +49,7 @@ std::vector<double> PairedRuns::differences() const {
   return differences;
 }
 
-PairedRuns paired_runs(const CellAnalysis& left, const CellAnalysis& right,
-                       const ScoreName& score) {
+PairedRuns paired_runs(const CellAnalysis& left, const CellAnalysis& right, const Score& score) {
   const EndedRuns l = ended_runs(left, score), r = ended_runs(right, score);
   const auto places = common_places(l.runs, r.runs);
   PairedRuns pairs;
@@ -65,12 +66,12 @@ PairedRuns paired_runs(const CellAnalysis& left, const CellAnalysis& right,
   return pairs;
 }
 
-bool has_score(const CellAnalysis& cell, const ScoreName& score) {
-  return std::ranges::any_of(cell.scores,
-                             [&](const RunScores& run) { return std::isfinite(run.*score.value); });
+bool has_score(const CellAnalysis& cell, const Score& score) {
+  return std::ranges::any_of(cell.scores.column(score),
+                             [](double value) { return std::isfinite(value); });
 }
 
-bool is_judged_by(const CellAnalysis& cell, const ScoreName& score) {
+bool is_judged_by(const CellAnalysis& cell, const Score& score) {
   return has_score(cell, score) || (cell.complete == 0 && !cell.failures.empty());
 }
 

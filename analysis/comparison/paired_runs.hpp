@@ -29,13 +29,13 @@ struct PairedRuns {
   std::vector<double> differences() const;
 };
 
-PairedRuns paired_runs(const CellAnalysis& left, const CellAnalysis& right, const ScoreName& score);
+PairedRuns paired_runs(const CellAnalysis& left, const CellAnalysis& right, const Score& score);
 
 /// Whether any run of the cell has a finite value.
-bool has_score(const CellAnalysis& cell, const ScoreName& score);
+bool has_score(const CellAnalysis& cell, const Score& score);
 
 /// Whether the cell can be judged by the score: not EKF-SLAM by its effective particles, but a cell
 /// whose every run failed by anything.
-bool is_judged_by(const CellAnalysis& cell, const ScoreName& score);
+bool is_judged_by(const CellAnalysis& cell, const Score& score);
 
 }  // namespace montecarta

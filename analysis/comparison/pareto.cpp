@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/pareto.hpp"
 
+#include "analysis/metrics/nees_accumulator.hpp"
+#include "analysis/statistics/means.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,10 +21,10 @@ CellValue value_of(const CellAnalysis& cell, std::size_t place) {
   return {.cell = cell.label,
           .place = place,
           .failed = cell.failures.size(),
-          .cpu_seconds = cell.cpu_seconds,
-          .position_rmse = cell.error.position_rmse,
+          .cpu_seconds = cell.over_runs("cpu_seconds"),
+          .position_rmse = cell.over_runs("position_rmse"),
           .nees_distance = cell.consistency().verdict == Verdict::untested
-                               ? RunScores::kNone
+                               ? kNaN
                                : nees_distance(cell.consistency().mean, 3)};
 }
 

@@ -6,9 +6,9 @@
 namespace montecarta {
 
 StudyComparison compare_study(const StudyAnalysis& study, const std::string& baseline,
-                              std::span<const ScoreName* const> scores) {
+                              std::span<const Score* const> scores) {
   StudyComparison comparison{compare_cells(study, baseline, scores), {}, cell_values(study)};
-  for (const ScoreName* score : scores) {
+  for (const Score* score : scores) {
     WinMatrix matrix = win_matrix(study, *score);
     if (matrix.cells.size() > 1) comparison.matrices.push_back(std::move(matrix));
   }

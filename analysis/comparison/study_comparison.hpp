@@ -19,6 +19,6 @@ struct StudyComparison {
 };
 
 StudyComparison compare_study(const StudyAnalysis& study, const std::string& baseline,
-                              std::span<const ScoreName* const> scores);
+                              std::span<const Score* const> scores);
 
 }  // namespace montecarta

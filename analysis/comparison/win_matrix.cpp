@@ -31,7 +31,7 @@ void adjust(WinMatrix& matrix) {
 
 }  // namespace
 
-WinMatrix win_matrix(const StudyAnalysis& study, const ScoreName& score) {
+WinMatrix win_matrix(const StudyAnalysis& study, const Score& score) {
   WinMatrix matrix{&score, {}, {}};
   std::vector<const CellAnalysis*> cells;
   for (const CellAnalysis& cell : study.cells) {

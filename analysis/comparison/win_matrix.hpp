@@ -10,12 +10,12 @@ namespace montecarta {
 
 /// Every cell against every other by one score.
 struct WinMatrix {
-  const ScoreName* score = nullptr;
+  const Score* score = nullptr;
   std::vector<std::string> cells;       ///< that can be judged by the score
   std::vector<std::vector<Wins>> wins;  ///< {row, column}: of the row; empty on the diagonal
 };
 
 /// Tests are adjusted for all pairs of the matrix.
-WinMatrix win_matrix(const StudyAnalysis& study, const ScoreName& score);
+WinMatrix win_matrix(const StudyAnalysis& study, const Score& score);
 
 }  // namespace montecarta

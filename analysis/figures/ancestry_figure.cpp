@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/figures/ancestry_figure.hpp"
 
+#include "analysis/data/run_reader.hpp"
 #include "analysis/figures/chosen_run.hpp"
 #include "analysis/figures/gnuplot.hpp"
 #include "analysis/metrics/ancestry_tree.hpp"
-#include "analysis/run_reader.hpp"
 #include "analysis/tables/number_text.hpp"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #include "analysis/figures/mismatch_figure.hpp"
 
 #include "analysis/figures/gnuplot.hpp"
-#include "analysis/mismatch/mismatch.hpp"
+#include "analysis/metrics/mismatch.hpp"
 #include "analysis/tables/number_text.hpp"
 
 #include <algorithm>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/figures/path_figure.hpp"
 
+#include "analysis/data/run_reader.hpp"
 #include "analysis/figures/chosen_run.hpp"
 #include "analysis/figures/gnuplot.hpp"
 #include "analysis/figures/path_chart.hpp"
 #include "analysis/figures/path_data.hpp"
 #include "analysis/figures/path_layout.hpp"
-#include "analysis/run_reader.hpp"
 
 #include <algorithm>
 #include <string>

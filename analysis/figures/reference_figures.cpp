@@ -69,7 +69,7 @@ Figure map_size_figure(const StudyAnalysis& study) {
       "takes known landmarks for new ones.";
   const std::vector<Panel> panels =
       cell_panels(study, {"map_size", "landmarks", {}, {}, Scale::from_zero},
-                  [](const CellAnalysis& cell) { return cell.map_size_over_time; });
+                  [](const CellAnalysis& cell) { return cell.over_time("map_landmarks"); });
   if (!panels.empty()) add(panels, study.times, figure);
   return figure;
 }

@@ -60,12 +60,10 @@ Panel anees_panel(const StudyAnalysis& study, ErrorBlock block, const std::strin
 }
 
 /// A panel of distinct ancestors.
-Panel ancestor_panel(const StudyAnalysis& study, const std::string& name, const std::string& label,
-                     std::vector<double> DiversitySummary::*values) {
-  const ValuesOf values_of = [&](const CellAnalysis& cell) {
-    return cell.diversity ? (*cell.diversity).*values : std::vector<double>{};
-  };
-  return {name, label, curves(study, values_of), {}, Scale::logarithmic};
+Panel ancestor_panel(const StudyAnalysis& study, const std::string& series,
+                     const std::string& label) {
+  const ValuesOf values = [&](const CellAnalysis& cell) { return cell.over_time(series); };
+  return {series, label, curves(study, values), {}, Scale::logarithmic};
 }
 
 /// The cells' curves and, as the floor below them, the Cramer-Rao bound.
@@ -109,14 +107,11 @@ Figure rmse_figure(const StudyAnalysis& study) {
   figure.sentence =
       "Root mean square error over runs at each scan: lower is better. It grows while the vehicle "
       "explores and falls where it meets landmarks it knows.";
-  const auto complete = [](const CellAnalysis& cell, const std::vector<double>& values) {
-    return cell.complete == 0 ? std::vector<double>{} : values;
+  const ValuesOf position = [](const CellAnalysis& cell) {
+    return cell.over_time("position_rmse");
   };
-  const ValuesOf position = [&](const CellAnalysis& cell) {
-    return complete(cell, cell.error.position_over_time);
-  };
-  const ValuesOf heading = [&](const CellAnalysis& cell) {
-    return scaled(complete(cell, cell.error.heading_over_time), 180.0 / kPi);
+  const ValuesOf heading = [](const CellAnalysis& cell) {
+    return scaled(cell.over_time("heading_rmse"), 180.0 / kPi);
   };
   if (!study.bound.empty()) {
     figure.sentence +=
@@ -137,12 +132,9 @@ Figure diversity_figure(const StudyAnalysis& study) {
       "Distinct ancestors of the particles, mean over runs: parents in the last resampling, "
       "ancestors 10 s ago, and ancestors at the start. When few are left, the particles tell one "
       "story in many copies, and the filter cannot know how wrong that story is.";
-  add_panels({ancestor_panel(study, "ancestors_last_resampling", "parents, last resampling",
-                             &DiversitySummary::last_resampling_over_time),
-              ancestor_panel(study, "ancestors_10_s_ago", "ancestors, 10 s ago",
-                             &DiversitySummary::lag_over_time),
-              ancestor_panel(study, "ancestors_at_start", "ancestors at the start",
-                             &DiversitySummary::root_over_time)},
+  add_panels({ancestor_panel(study, "ancestors_last_resampling", "parents, last resampling"),
+              ancestor_panel(study, "ancestors_10_s_ago", "ancestors, 10 s ago"),
+              ancestor_panel(study, "ancestors_at_start", "ancestors at the start")},
              study.times, figure);
   return figure;
 }
@@ -153,8 +145,7 @@ Figure ess_figure(const StudyAnalysis& study) {
       "Effective sample size as a share of all particles, mean over runs: near 100 % all particles "
       "explain the measurements about equally well; a low share means that few carry all weight.";
   const ValuesOf share = [](const CellAnalysis& cell) {
-    if (!cell.weights) return std::vector<double>{};
-    return scaled(cell.weights->ess_over_time, 100.0 / static_cast<double>(cell.particles));
+    return scaled(cell.over_time("ess"), 100.0 / static_cast<double>(cell.particles));
   };
   add_panels({{"ess_share", "effective particles [%]", curves(study, share), {}, Scale::percent}},
              study.times, figure);

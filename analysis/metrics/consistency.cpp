@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/consistency.hpp"
 
-#include "analysis/statistics/finite_mean.hpp"
+#include "analysis/statistics/means.hpp"
 #include "analysis/statistics/t_quantile.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>

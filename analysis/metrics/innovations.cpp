@@ -2,7 +2,7 @@
 #include "analysis/metrics/innovations.hpp"
 
 #include "analysis/statistics/bootstrap.hpp"
-#include "analysis/statistics/finite_mean.hpp"
+#include "analysis/statistics/means.hpp"
 
 #include <boost/math/distributions/normal.hpp>
 

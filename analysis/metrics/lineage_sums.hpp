@@ -1,9 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/metrics/cell_analysis.hpp"
+#include "analysis/metrics/lineages.hpp"
+
+#include <array>
+#include <cstddef>
 
 namespace montecarta {
+
+/// Ancestries over runs (Lineages).
+struct LineageSummary {
+  std::array<double, kLineageLags.size()> ancestors{};  ///< {lag} mean over runs; NaN: too short
+  double coalescence = 0.0;        ///< [s] mean over the runs that have a common ancestor
+  double coalesced_share = 0.0;    ///< of the scans looked at
+  double monte_carlo_share = 0.0;  ///< of the mean squared position error that is due to few
+                                   ///< particles; NaN where particles are not stored
+};
 
 /// Adds up Lineages over runs; what a run does not have is not averaged.
 class LineageSums {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/data/run_rows.hpp"
 #include "analysis/metrics/ancestor_set.hpp"
-#include "analysis/metrics/run_rows.hpp"
 
 #include <array>
 #include <cstddef>

@@ -1,12 +1,43 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/reference_analysis.hpp"
 
-#include "engine/errors.hpp"
+#include "analysis/metrics/measured_run.hpp"
+#include "analysis/metrics/score.hpp"
+#include "analysis/statistics/means.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace montecarta {
+namespace {
+
+/// By the leading reference.
+template <double ReferenceScores::*kValue>
+double of_reference(const MeasuredRun& run) {
+  return run.references.empty() ? kNaN : run.references.front().scores.*kValue;
+}
+
+}  // namespace
+
+std::span<const Score> scores_of_references() {
+  static constexpr Score kAll[] = {
+      {"reference_rms", "m", "RMS distance to the reference", of_reference<&ReferenceScores::rms>},
+      {"reference_median", "m", "median distance to the reference",
+       of_reference<&ReferenceScores::median>},
+      {"reference_gated_rms", "m", "RMS distance to the reference without outliers",
+       of_reference<&ReferenceScores::gated_rms>},
+      {"reference_aligned_rms", "m", "RMS distance to the reference, aligned",
+       of_reference<&ReferenceScores::aligned_rms>},
+      {"reference_aligned_median", "m", "median distance to the reference, aligned",
+       of_reference<&ReferenceScores::aligned_median>},
+      {"reference_aligned_gated_rms", "m",
+       "RMS distance to the reference without outliers, aligned",
+       of_reference<&ReferenceScores::aligned_gated_rms>},
+      {"reference_heading_rmse", "rad", "heading RMSE to the reference",
+       of_reference<&ReferenceScores::heading_rmse>},
+  };
+  return kAll;
+}
 
 Spread ReferenceAnalysis::over_runs(double ReferenceScores::*score) const {
   std::vector<double> values;
@@ -35,20 +66,6 @@ ReferenceAnalysis ReferenceAccumulator::result() const {
     error = std::sqrt(error / static_cast<double>(runs_.size()));
   }
   return analysis;
-}
-
-void put_leading_scores(const ReferenceAnalysis& leading, std::span<RunScores> scores) {
-  expect(leading.runs.size() == scores.size(), "every complete run has its reference scores");
-  for (std::size_t i = 0; i < scores.size(); ++i) {
-    const ReferenceScores& run = leading.runs[i];
-    scores[i].reference_rms = run.rms;
-    scores[i].reference_median = run.median;
-    scores[i].reference_gated_rms = run.gated_rms;
-    scores[i].reference_aligned_rms = run.aligned_rms;
-    scores[i].reference_aligned_median = run.aligned_median;
-    scores[i].reference_aligned_gated_rms = run.aligned_gated_rms;
-    scores[i].reference_heading_rmse = run.heading_rmse;
-  }
 }
 
 }  // namespace montecarta

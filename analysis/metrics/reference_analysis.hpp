@@ -2,11 +2,9 @@
 #pragma once
 
 #include "analysis/metrics/reference_scores.hpp"
-#include "analysis/metrics/run_scores.hpp"
 #include "analysis/statistics/spread.hpp"
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
 namespace montecarta {
@@ -34,8 +32,5 @@ class ReferenceAccumulator {
   std::vector<ReferenceScores> runs_;
   std::vector<double> squared_;  ///< [m^2] {fix} sum over runs
 };
-
-/// Gives every run, among its other scores, those of the leading reference.
-void put_leading_scores(const ReferenceAnalysis& leading, std::span<RunScores> scores);
 
 }  // namespace montecarta

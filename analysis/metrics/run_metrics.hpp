@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/data/run_rows.hpp"
 #include "analysis/metrics/diversity.hpp"
 #include "analysis/metrics/lineages.hpp"
-#include "analysis/metrics/run_rows.hpp"
+#include "analysis/metrics/moments.hpp"
 #include "analysis/statistics/sampler_scale.hpp"
 
 #include <Eigen/Core>
@@ -15,31 +16,6 @@
 #include <vector>
 
 namespace montecarta {
-
-/// Which mean and covariance of a filter are judged (SPEC 19).
-enum class Moments {
-  mixture,    ///< spread of the particles plus each particle's own covariance, before sampling
-  corrected,  ///< spread of the particles, its NEES put on the chi-square's scale (SamplerScale)
-  spread      ///< of the weighted drawn particles; of the Gaussian for a Kalman filter
-};
-
-/// In the order in which they lead the verdict, where they are there.
-inline constexpr std::array kMoments = {Moments::mixture, Moments::corrected, Moments::spread};
-
-/// Which components of the pose error are judged.
-enum class ErrorBlock {
-  pose,      ///< x, y, heading
-  position,  ///< x, y, with the position block of the covariance
-  heading
-};
-
-inline constexpr std::array kErrorBlocks = {ErrorBlock::pose, ErrorBlock::position,
-                                            ErrorBlock::heading};
-
-/// Components of a block.
-constexpr std::size_t dimension_of(ErrorBlock block) {
-  return block == ErrorBlock::pose ? 3 : block == ErrorBlock::position ? 2 : 1;
-}
 
 /// NEES of one run by one definition of the moments; empty where no covariance is stored.
 struct NeesRows {

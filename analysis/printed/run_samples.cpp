@@ -2,6 +2,7 @@
 #include "analysis/printed/run_samples.hpp"
 
 #include "analysis/comparison/paired_runs.hpp"
+#include "analysis/statistics/means.hpp"
 #include "analysis/statistics/t_quantile.hpp"
 
 #include <algorithm>
@@ -48,7 +49,7 @@ auto find_name(const Names& names, const std::string& name) {
 Sample joint_sample(const CellAnalysis& cell, const JointName& joint) {
   const NeesResult* nees = cell.find_nees(joint.block, cell.leading);
   if (nees == nullptr || nees->consistency.verdict == Verdict::untested) return {};
-  return {joint.value(nees->consistency), RunScores::kNone, 1, {}};
+  return {joint.value(nees->consistency), kNaN, 1, {}};
 }
 
 Sample sample_over(std::span<const double> values) {
@@ -60,10 +61,12 @@ Sample sample_over(std::span<const double> values) {
 
 /// (left, right) of every run that both cells completed.
 std::vector<std::pair<double, double>> pairs_of(const CellAnalysis& left, const CellAnalysis& right,
-                                                double RunScores::*score) {
+                                                const Score& score) {
+  const std::vector<double>&of_left = left.scores.column(score),
+        &of_right = right.scores.column(score);
   std::vector<std::pair<double, double>> pairs;
   for (const auto& [l, r] : common_places(left.runs, right.runs)) {
-    pairs.emplace_back(left.scores[l].*score, right.scores[r].*score);
+    pairs.emplace_back(of_left[l], of_right[r]);
   }
   return pairs;
 }
@@ -75,22 +78,20 @@ Sample sample_of(const CellAnalysis* cell, const std::string& metric) {
   if (const auto joint = find_name(kJoint, metric); joint != std::end(kJoint)) {
     return joint_sample(*cell, *joint);
   }
-  const auto score = find_name(score_names(), metric);
-  if (score == score_names().end()) return {};
-  std::vector<double> values;
-  for (const RunScores& run : cell->scores) values.push_back(run.*(score->value));
-  Sample sample = sample_over(values);
-  sample.values = std::move(values);
+  const Score* score = find_score(metric);
+  if (score == nullptr) return {};
+  Sample sample = sample_over(cell->scores.column(*score));
+  sample.values = cell->scores.column(*score);
   return sample;
 }
 
 Sample ratio_of(const CellAnalysis* cell, const CellAnalysis* unit, const std::string& metric) {
-  const auto score = find_name(score_names(), metric);
-  if (cell == nullptr || unit == nullptr || score == score_names().end()) return {};
+  const Score* score = find_score(metric);
+  if (cell == nullptr || unit == nullptr || score == nullptr) return {};
   const double base = sample_of(unit, metric).mean;
   const double ratio = sample_of(cell, metric).mean / base;
   std::vector<double> deviations;  // of a linearised ratio
-  for (const auto& [value, reference] : pairs_of(*cell, *unit, score->value)) {
+  for (const auto& [value, reference] : pairs_of(*cell, *unit, *score)) {
     deviations.push_back((value - ratio * reference) / base);
   }
   const Sample scatter = sample_over(deviations);
@@ -100,18 +101,18 @@ Sample ratio_of(const CellAnalysis* cell, const CellAnalysis* unit, const std::s
 Sample difference_of(const CellAnalysis* left, const CellAnalysis* right,
                      const std::string& metric) {
   if (left == nullptr || right == nullptr) return {};
-  const auto score = find_name(score_names(), metric);
-  if (score == score_names().end()) {
+  const Score* score = find_score(metric);
+  if (score == nullptr) {
     const double l = sample_of(left, metric).mean, r = sample_of(right, metric).mean;
-    return {l == r ? 0.0 : l - r, RunScores::kNone, 1, {}};  // both may be infinite: never
+    return {l == r ? 0.0 : l - r, kNaN, 1, {}};  // both may be infinite: never
   }
   std::vector<double> differences;
-  for (const auto& [l, r] : pairs_of(*left, *right, score->value)) differences.push_back(l - r);
+  for (const auto& [l, r] : pairs_of(*left, *right, *score)) differences.push_back(l - r);
   return sample_over(differences);
 }
 
 Interval interval_of(const Sample& sample, double level) {
-  if (sample.n < 2) return {RunScores::kNone, RunScores::kNone};
+  if (sample.n < 2) return {kNaN, kNaN};
   const double half =
       t_quantile(sample.n, level) * sample.sd / std::sqrt(static_cast<double>(sample.n));
   return {sample.mean - half, sample.mean + half};
@@ -119,19 +120,17 @@ Interval interval_of(const Sample& sample, double level) {
 
 std::string metric_in_words(const std::string& metric) {
   if (const auto joint = find_name(kJoint, metric); joint != std::end(kJoint)) return joint->words;
-  const auto score = find_name(score_names(), metric);
-  if (score == score_names().end()) return metric;
+  const Score* score = find_score(metric);
+  if (score == nullptr) return metric;
   const std::string units = score->units;
   return score->words + (units == "1" ? "" : " [" + units + "]");
 }
 
-bool is_run_metric(const std::string& metric) {
-  return find_name(score_names(), metric) != score_names().end();
-}
+bool is_run_metric(const std::string& metric) { return find_score(metric) != nullptr; }
 
 std::vector<std::string> printed_metrics() {
   std::vector<std::string> names;
-  for (const ScoreName& score : score_names()) names.emplace_back(score.name);
+  for (const Score& score : all_scores()) names.emplace_back(score.name);
   for (const JointName& joint : kJoint) names.emplace_back(joint.name);
   return names;
 }

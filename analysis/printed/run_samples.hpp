@@ -12,10 +12,10 @@ namespace montecarta {
 
 /// What is measured of a metric: over runs, or one number of all runs together (n = 1, no spread).
 struct Sample {
-  double mean = RunScores::kNone;  ///< NaN: not measured; infinite: never
-  double sd = RunScores::kNone;    ///< of one run
-  std::size_t n = 0;               ///< runs
-  std::vector<double> values{};    ///< of each run, where runs have one
+  double mean = std::numeric_limits<double>::quiet_NaN();  ///< NaN: not measured; infinite: never
+  double sd = std::numeric_limits<double>::quiet_NaN();    ///< of one run
+  std::size_t n = 0;                                       ///< runs
+  std::vector<double> values{};                            ///< of each run, where runs have one
 };
 
 /// A metric of a cell; nothing where `cell` is nullptr.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/bootstrap.hpp"
 
-#include "analysis/statistics/finite_mean.hpp"
+#include "analysis/statistics/means.hpp"
 #include "analysis/statistics/t_quantile.hpp"
 #include "engine/errors.hpp"
 #include "engine/random/normal_quantile.hpp"

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/statistics/finite_mean.hpp"
+#include "analysis/statistics/means.hpp"
 #include "analysis/tables/cell_series.hpp"
 #include "analysis/tables/number_text.hpp"
 
+#include <initializer_list>
 #include <limits>
+#include <string_view>
 
 namespace montecarta {
 namespace {
@@ -12,39 +14,20 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 
 using Numbers = std::vector<NamedNumber>;
 
-/// Mean, spread, standard error and interval of a score.
-void add(const std::string& name, const std::string& units, const Summary& summary,
-         const CellAnalysis& cell, double RunScores::*score, Numbers& all) {
-  all.push_back({name + "_mean", units, summary.mean});
-  all.push_back({name + "_sd", units, summary.sd});
-  all.push_back({name + "_standard_error", units, summary.standard_error()});
-  all.push_back({name + "_lower", units, cell.lower.*score});
-  all.push_back({name + "_upper", units, cell.upper.*score});
-}
-
-void add_errors(const CellAnalysis& cell, Numbers& all) {
-  const ErrorSummary& error = cell.error;
-  add("position_rmse", "m", error.position_rmse, cell, &RunScores::position_rmse, all);
-  add("position_mse", "m2", error.position_mse, cell, &RunScores::position_mse, all);
-  add("position_error", "m", error.position_mean, cell, &RunScores::position_mean, all);
-  add("position_error_variance_over_time", "m2", error.position_variance, cell,
-      &RunScores::position_variance, all);
-  add("heading_rmse", "rad", error.heading_rmse, cell, &RunScores::heading_rmse, all);
-  add("heading_mse", "rad2", error.heading_mse, cell, &RunScores::heading_mse, all);
-  add("heading_error", "rad", error.heading_mean, cell, &RunScores::heading_mean, all);
-}
-
-void add_particles(const CellAnalysis& cell, Numbers& all) {
-  const WeightSummary weights = cell.weights.value_or(WeightSummary{});
-  const DiversitySummary diversity = cell.diversity.value_or(DiversitySummary{});
-  add("ess", "1", weights.ess, cell, &RunScores::ess, all);
-  add("resampling_rate", "1", weights.resampling_rate, cell, &RunScores::resampling_rate, all);
-  add("ancestors_last_resampling", "1", diversity.last_resampling, cell,
-      &RunScores::last_resampling, all);
-  add("ancestors_10_s_ago", "1", diversity.lag, cell, &RunScores::lag, all);
-  add("ancestors_at_start", "1", diversity.root, cell, &RunScores::root, all);
-  add("ancestors_at_start_at_the_end", "1", diversity.final_root, cell, &RunScores::final_root,
-      all);
+/// Mean, spread, standard error and interval of scores.
+void add_scores(const CellAnalysis& cell, std::initializer_list<std::string_view> names,
+                Numbers& all) {
+  for (const std::string_view name : names) {
+    const Score& score = *find_score(name);
+    const Summary summary = cell.over_runs(name);
+    const Interval interval = cell.interval_of(name);
+    const std::string prefix = std::string(name) + "_";
+    all.push_back({prefix + "mean", score.units, summary.mean});
+    all.push_back({prefix + "sd", score.units, summary.sd});
+    all.push_back({prefix + "standard_error", score.units, summary.standard_error()});
+    all.push_back({prefix + "lower", score.units, interval.lower});
+    all.push_back({prefix + "upper", score.units, interval.upper});
+  }
 }
 
 void add_lineages(const CellAnalysis& cell, Numbers& all) {
@@ -59,27 +42,10 @@ void add_lineages(const CellAnalysis& cell, Numbers& all) {
   all.push_back({"monte_carlo_share", "1", known ? lineages.monte_carlo_share : kNaN});
 }
 
-void add_association(const CellAnalysis& cell, Numbers& all) {
-  const AssociationSummary sums = cell.association.value_or(AssociationSummary{});
-  add("association_correct", "1", sums.correct, cell, &RunScores::correct, all);
-  add("association_wrong", "1", sums.wrong, cell, &RunScores::wrong, all);
-  add("association_new_again", "1", sums.new_again, cell, &RunScores::new_again, all);
-  add("association_missed", "1", sums.missed, cell, &RunScores::missed, all);
-  add("association_clutter", "1", sums.clutter, cell, &RunScores::clutter, all);
-}
-
-void add_maps(const CellAnalysis& cell, Numbers& all) {
-  const MapErrors& map = cell.map;
+void add_efficiency(const CellAnalysis& cell, Numbers& all) {
   all.push_back({"position_efficiency", "1", cell.efficiency.position});
   all.push_back({"heading_efficiency", "1", cell.efficiency.heading});
   all.push_back({"map_efficiency", "1", cell.efficiency.map});
-  add("landmark_rms", "m", map.rms, cell, &RunScores::landmark_rms, all);
-  add("landmark_nees", "1", map.nees, cell, &RunScores::landmark_nees, all);
-  add("gospa", "m", map.gospa, cell, &RunScores::gospa, all);
-  add("gospa_localisation", "m", map.localisation, cell, &RunScores::gospa_localisation, all);
-  add("landmarks_missed", "1", map.missed, cell, &RunScores::landmarks_missed, all);
-  add("landmarks_invented", "1", map.invented, cell, &RunScores::landmarks_invented, all);
-  all.push_back({"landmarks_undefined", "1", static_cast<double>(map.undefined)});
 }
 
 /// At the last stored scan.
@@ -140,17 +106,28 @@ std::vector<NamedNumber> numbers_of(const CellAnalysis& cell) {
                  {"runs_missing", "1", count(cell.missing)},
                  {"runs_spared", "1", count(cell.spared)},
                  {"particles", "1", count(cell.particles)}};
-  add_errors(cell, all);
-  add_particles(cell, all);
+  add_scores(cell,
+             {"position_rmse", "position_mse", "position_error",
+              "position_error_variance_over_time", "heading_rmse", "heading_mse", "heading_error",
+              "ess", "resampling_rate", "ancestors_last_resampling", "ancestors_10_s_ago",
+              "ancestors_at_start", "ancestors_at_start_at_the_end"},
+             all);
   add_lineages(cell, all);
-  add_association(cell, all);
-  add_maps(cell, all);
+  add_scores(cell,
+             {"association_correct", "association_wrong", "association_new_again",
+              "association_missed", "association_clutter"},
+             all);
+  add_efficiency(cell, all);
+  add_scores(cell,
+             {"landmark_rms", "landmark_nees", "gospa", "gospa_localisation", "landmarks_missed",
+              "landmarks_invented"},
+             all);
+  all.push_back({"landmarks_undefined", "1", count(cell.map.undefined)});
   add_joint(cell, all);
   add_anatomy(cell, all);
   add_survival(cell, all);
   add_innovations(cell, all);
-  add("numerical_faults", "1", cell.numerical_faults, cell, &RunScores::numerical_faults, all);
-  add("cpu_seconds", "s", cell.cpu_seconds, cell, &RunScores::cpu_seconds, all);
+  add_scores(cell, {"numerical_faults", "cpu_seconds"}, all);
   return all;
 }
 

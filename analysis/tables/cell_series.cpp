@@ -3,6 +3,10 @@
 
 #include "analysis/tables/verdict_table.hpp"
 
+#include <algorithm>
+#include <initializer_list>
+#include <string_view>
+
 namespace montecarta {
 namespace {
 
@@ -55,24 +59,20 @@ void add_innovations(const Innovations& innovations, std::vector<NamedSeries>& a
 
 std::vector<NamedSeries> series_of(const CellAnalysis& cell) {
   std::vector<NamedSeries> all;
+  const auto add_scan_series = [&](std::initializer_list<std::string_view> names) {
+    for (const std::string_view name : names) {
+      const auto found = std::ranges::find(cell.scan_series, name, &NamedSeries::name);
+      if (found != cell.scan_series.end()) all.push_back(*found);
+    }
+  };
   if (cell.complete == 0) return all;
-  if (!cell.error.position_over_time.empty()) {
-    all.push_back({"position_rmse", "m", cell.error.position_over_time});
-    all.push_back({"heading_rmse", "rad", cell.error.heading_over_time});
-  }
+  add_scan_series({"position_rmse", "heading_rmse"});
   for (const NeesResult& nees : cell.nees) add_nees(nees, all);
-  if (!cell.map_size_over_time.empty()) {
-    all.push_back({"map_landmarks", "1", cell.map_size_over_time});
-  }
+  add_scan_series({"map_landmarks"});
   if (cell.anatomy) add_anatomy(*cell.anatomy, all);
   if (cell.survival && !cell.survival->share.empty()) add_survival(*cell.survival, all);
   if (cell.innovations) add_innovations(*cell.innovations, all);
-  if (cell.weights) all.push_back({"ess", "1", cell.weights->ess_over_time});
-  if (cell.diversity) {
-    all.push_back({"ancestors_last_resampling", "1", cell.diversity->last_resampling_over_time});
-    all.push_back({"ancestors_10_s_ago", "1", cell.diversity->lag_over_time});
-    all.push_back({"ancestors_at_start", "1", cell.diversity->root_over_time});
-  }
+  add_scan_series({"ess", "ancestors_last_resampling", "ancestors_10_s_ago", "ancestors_at_start"});
   return all;
 }
 

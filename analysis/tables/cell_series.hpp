@@ -8,13 +8,6 @@
 
 namespace montecarta {
 
-/// A number of every scan, under the name it has in files.
-struct NamedSeries {
-  std::string name;   ///< e.g. "anees_pose_mixture"
-  std::string units;  ///< UDUNITS style, "1" where there is none
-  std::vector<double> values;
-};
-
 /// One number of a cell, under the name it has in files.
 struct NamedNumber {
   std::string name;

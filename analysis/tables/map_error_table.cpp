@@ -5,25 +5,26 @@
 
 #include <algorithm>
 #include <map>
+#include <string_view>
 
 namespace montecarta {
 namespace {
 
-std::string text_of(const Summary& summary) {
-  return summary.n == 0 ? "-" : with_error(summary.mean, summary.standard_error());
+std::string text_of(const CellAnalysis& cell, std::string_view score) {
+  const Summary summary = cell.over_runs(score);
+  return with_error(summary.mean, summary.standard_error());
 }
 
 std::vector<std::string> row_of(const CellAnalysis& cell) {
-  const MapErrors& map = cell.map;
   return {cell.label,
-          text_of(map.rms),
+          text_of(cell, "landmark_rms"),
           percent(cell.efficiency.map),
-          text_of(map.nees),
-          percent(map.share_inside()),
-          text_of(map.gospa),
-          text_of(map.localisation),
-          text_of(map.missed),
-          text_of(map.invented)};
+          text_of(cell, "landmark_nees"),
+          percent(cell.map.share_inside()),
+          text_of(cell, "gospa"),
+          text_of(cell, "gospa_localisation"),
+          text_of(cell, "landmarks_missed"),
+          text_of(cell, "landmarks_invented")};
 }
 
 std::string paths_of(const CramerRaoBound& bound) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/tables/reference_files.hpp"
 
+#include "analysis/statistics/means.hpp"
 #include "analysis/tables/csv_file.hpp"
 #include "analysis/tables/named_rows.hpp"
 
@@ -32,7 +33,7 @@ std::vector<NamedNumber> reference_numbers(const CellAnalysis& cell, std::size_t
   const std::size_t lost = against.lost() + cell.failures.size();
   std::vector<NamedNumber> all = {{"runs_failed", "1", count(cell.failures.size())},
                                   {"runs_complete", "1", count(cell.complete)},
-                                  {"runs_lost", "1", judged ? count(lost) : RunScores::kNone}};
+                                  {"runs_lost", "1", judged ? count(lost) : kNaN}};
   const auto one = [&](const char* name, const char* units, double ReferenceScores::*score) {
     add(name, units, against.over_runs(score), all);
   };
@@ -45,11 +46,11 @@ std::vector<NamedNumber> reference_numbers(const CellAnalysis& cell, std::size_t
   one("aligned_gated_rms", "m", &ReferenceScores::aligned_gated_rms);
   one("aligned_gated_share", "1", &ReferenceScores::aligned_gated_share);
   one("heading_rmse", "rad", &ReferenceScores::heading_rmse);
-  for (const ScoreName& score : score_names()) {
+  for (const Score& score : all_scores()) {
     if (!is_of_the_map(score.name)) continue;
-    add(score.name, score.units, cell.known_over_runs(score.value), all);
+    add(score.name, score.units, cell.known_over_runs(score), all);
   }
-  all.push_back({"cpu_seconds_mean", "s", cell.cpu_seconds.mean});
+  all.push_back({"cpu_seconds_mean", "s", cell.over_runs("cpu_seconds").mean});
   return all;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/tables/reference_table.hpp"
 
+#include "analysis/statistics/means.hpp"
 #include "analysis/tables/number_text.hpp"
 #include "engine/numbers/angle.hpp"
 
@@ -22,7 +23,7 @@ std::string count_text(const Spread& spread) {
 /// The middle run and the two ends: "1.55 [1.41, 2.20]".
 std::string runs_text(const Spread& spread) {
   if (std::isnan(spread.median)) return "-";
-  const auto text = [](double value) { return with_error_to(2, value, RunScores::kNone); };
+  const auto text = [](double value) { return with_error_to(2, value, kNaN); };
   return text(spread.median) + " [" + text(spread.least) + ", " + text(spread.greatest) + "]";
 }
 
@@ -66,21 +67,18 @@ std::vector<std::string> reference_row(const StudyAnalysis& study, const CellAna
 }
 
 std::vector<std::string> map_row(const StudyAnalysis& study, const CellAnalysis& cell) {
-  const auto text = [&](double RunScores::*score) {
-    return mean_text(cell.known_over_runs(score));
-  };
-  const Spread found = cell.known_over_runs(&RunScores::beacons_found);
-  std::vector<std::string> row = {cell.label,
-                                  count_text(cell.known_over_runs(&RunScores::map_landmarks))};
+  const auto text = [&](std::string_view score) { return mean_text(cell.known_over_runs(score)); };
+  const Spread found = cell.known_over_runs("beacons_found");
+  std::vector<std::string> row = {cell.label, count_text(cell.known_over_runs("map_landmarks"))};
   if (study.beacons > 0) {
     row.push_back(
         found.summary.n == 0 ? "-" : count_text(found) + " of " + std::to_string(study.beacons));
-    row.push_back(text(&RunScores::beacon_rms));
-    row.push_back(text(&RunScores::beacon_aligned_rms));
+    row.push_back(text("beacon_rms"));
+    row.push_back(text("beacon_aligned_rms"));
   }
-  row.push_back(cell.weights ? readable(cell.weights->ess.mean) : "-");
-  row.push_back(cell.diversity ? readable(cell.diversity->final_root.mean) : "-");
-  row.push_back(readable(cell.cpu_seconds.mean));
+  row.push_back(readable(cell.over_runs("ess").mean));
+  row.push_back(readable(cell.over_runs("ancestors_at_start_at_the_end").mean));
+  row.push_back(readable(cell.over_runs("cpu_seconds").mean));
   return row;
 }
 

@@ -31,9 +31,10 @@ std::string median_exit_text(const CellAnalysis& cell) {
   return time_with_interval(cell.survival->median, cell.survival->median_interval);
 }
 
-std::string score_text(const CellAnalysis& cell, double RunScores::*score, double mean,
-                       double factor = 1.0) {
-  return with_interval(factor * mean, {factor * cell.lower.*score, factor * cell.upper.*score});
+std::string score_text(const CellAnalysis& cell, std::string_view score, double factor = 1.0) {
+  const Interval interval = cell.interval_of(score);
+  return with_interval(factor * cell.over_runs(score).mean,
+                       {factor * interval.lower, factor * interval.upper});
 }
 
 std::vector<std::string> verdict_row(const CellAnalysis& cell) {
@@ -52,24 +53,26 @@ std::vector<std::string> verdict_row(const CellAnalysis& cell) {
 
 std::vector<std::string> accuracy_row(const CellAnalysis& cell) {
   return {cell.label,
-          score_text(cell, &RunScores::position_rmse, cell.error.position_rmse.mean),
-          score_text(cell, &RunScores::heading_rmse, cell.error.heading_rmse.mean, kDegrees),
+          score_text(cell, "position_rmse"),
+          score_text(cell, "heading_rmse", kDegrees),
           percent(cell.efficiency.position),
-          cell.weights ? readable(cell.weights->ess.mean) : "-",
-          cell.diversity ? readable(cell.diversity->final_root.mean) : "-",
-          readable(cell.cpu_seconds.mean)};
+          readable(cell.over_runs("ess").mean),
+          readable(cell.over_runs("ancestors_at_start_at_the_end").mean),
+          readable(cell.over_runs("cpu_seconds").mean)};
 }
 
 std::vector<std::string> association_row(const CellAnalysis& cell) {
-  const AssociationSummary& a = *cell.association;
-  const double all = a.correct.mean + a.wrong.mean + a.new_again.mean + a.missed.mean;
+  const auto mean = [&](std::string_view score) { return cell.over_runs(score).mean; };
+  const double correct = mean("association_correct"), wrong = mean("association_wrong"),
+               new_again = mean("association_new_again"), missed = mean("association_missed"),
+               all = correct + wrong + new_again + missed;
   return {cell.label,
           readable(all, 4),
-          percent(a.correct.mean / all),
-          percent(a.wrong.mean / all),
-          percent(a.new_again.mean / all),
-          percent(a.missed.mean / all),
-          readable(a.clutter.mean)};
+          percent(correct / all),
+          percent(wrong / all),
+          percent(new_again / all),
+          percent(missed / all),
+          readable(mean("association_clutter"))};
 }
 
 /// The average of an ideal filter with these moments.
@@ -151,7 +154,8 @@ TextTable association_table(const StudyAnalysis& study) {
   table.headings = {{"cell", Align::left}, {"detections"}, {"correct"},       {"wrong"},
                     {"new again"},         {"left out"},   {"false accepted"}};
   for (const CellAnalysis& cell : study.cells) {
-    if (cell.association) table.rows.push_back(association_row(cell));
+    if (!std::isnan(cell.over_runs("association_correct").mean))
+      table.rows.push_back(association_row(cell));
   }
   return table;
 }

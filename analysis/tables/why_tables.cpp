@@ -48,8 +48,8 @@ std::vector<std::string> innovation_row(const CellAnalysis& cell) {
 }
 
 std::vector<std::string> diversity_row(const CellAnalysis& cell) {
-  std::vector<std::string> row = {cell.label, readable(cell.weights->ess.mean),
-                                  percent(cell.weights->resampling_rate.mean)};
+  std::vector<std::string> row = {cell.label, readable(cell.over_runs("ess").mean),
+                                  percent(cell.over_runs("resampling_rate").mean)};
   if (!cell.lineages) {
     row.resize(8, "-");
     return row;
@@ -129,7 +129,7 @@ TextTable diversity_table(const StudyAnalysis& study) {
                     {"ancestors, 1 s ago"}, {"10 s ago"}, {"100 s ago"},
                     {"common ancestor"},    {"in scans"}};
   for (const CellAnalysis& cell : study.cells) {
-    if (cell.weights) table.rows.push_back(diversity_row(cell));
+    if (!cell.over_time("ess").empty()) table.rows.push_back(diversity_row(cell));
   }
   return table;
 }

@@ -15,18 +15,18 @@
 namespace montecarta {
 namespace {
 
-const ScoreName* score_called(const std::string& name) {
-  if (const ScoreName* score = find_score(name)) return score;
+const Score* score_called(const std::string& name) {
+  if (const Score* score = find_score(name)) return score;
   std::vector<std::string> known;
-  for (const ScoreName& score : score_names()) known.emplace_back(score.name);
+  for (const Score& score : all_scores()) known.emplace_back(score.name);
   throw StudyError("--metric " + name + ": no metric (runs have no number of that name): " +
                    nearest_spelling(name, known));
 }
 
-std::vector<const ScoreName*> scores_of(const Arguments& arguments, const ResultFile& file) {
+std::vector<const Score*> scores_of(const Arguments& arguments, const ResultFile& file) {
   const auto names = arguments.text("metric");
   if (!names) return usual_scores(file.has_truth());
-  std::vector<const ScoreName*> scores;
+  std::vector<const Score*> scores;
   for (const std::string& name : split(*names, ',')) scores.push_back(score_called(name));
   return scores;
 }
@@ -71,7 +71,7 @@ int compare(const Arguments& arguments) {
   const double level = arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(0.95);
   const ResultFile file = open_stored(arguments.operands().front());
   const std::string baseline = baseline_of(arguments, file);
-  const std::vector<const ScoreName*> scores = scores_of(arguments, file);
+  const std::vector<const Score*> scores = scores_of(arguments, file);
   const auto directory = arguments.text("csv");
   if (directory && !arguments.has("force")) refuse_existing(*directory, comparison_csv_names());
   const StudyAnalysis study = analyze(file, level, parallel_of(arguments));

@@ -16,19 +16,19 @@ constexpr const char* kProcessorTime = "cpu_seconds";
 
 std::vector<std::string> usable_scores() {
   std::vector<std::string> names;
-  for (const ScoreName& score : score_names()) {
+  for (const Score& score : all_scores()) {
     if (score.name != std::string(kProcessorTime)) names.emplace_back(score.name);
   }
   return names;
 }
 
-const ScoreName* score_called(const std::string& name, const std::string& place) {
+const Score* score_called(const std::string& name, const std::string& place) {
   if (name == kProcessorTime) {
     throw StudyError(place + ": until = " + name +
                      " < ... (processor time differs from run to run, and results must not depend "
                      "on it): choose another metric");
   }
-  if (const ScoreName* score = find_score(name)) return score;
+  if (const Score* score = find_score(name)) return score;
   throw StudyError(place + ": until = " + name + " < ... (runs have no number of that name): " +
                    nearest_spelling(name, usable_scores()));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/metrics/run_scores.hpp"
+#include "analysis/metrics/score.hpp"
 #include "engine/runs/plan.hpp"
 
 #include <optional>
@@ -13,7 +13,7 @@ namespace montecarta {
 struct Until {
   static constexpr double kLevel = 0.95;
 
-  const ScoreName* score = nullptr;
+  const Score* score = nullptr;
   double half_width = 0.0;  ///< of the kLevel interval of the mean over runs, in the score's unit
 };
 

@@ -19,12 +19,12 @@ TEST(FirstValues, AreThoseOfTheAnalysis) {
   const ResultFile file(folder / "out.h5");
   const StudyAnalysis study = analyze(file);
   for (const std::string name : {"position_rmse", "nees_distance"}) {
-    const ScoreName& score = *find_score(name);
+    const Score& score = *find_score(name);
     for (std::size_t c = 0; c < 2; ++c) {
       const auto values = first_values(file, file.cells()[c], score, 7, Parallel(Backend::tbb, 2));
       ASSERT_EQ(values.size(), 7u);
       for (std::size_t i = 0; i < 7; ++i)
-        EXPECT_EQ(values[i], study.cells[c].scores[i].*score.value);
+        EXPECT_EQ(values[i], study.cells[c].scores.column(score)[i]);
     }
   }
   const auto all =

@@ -99,9 +99,9 @@ TEST(Report, KnowsMixturesWithoutParticlesAndWithFew) {
   EXPECT_EQ(study.cells[0].leading, Moments::mixture);
   EXPECT_EQ(study.cells[0].consistency().verdict, Verdict::consistent);
   EXPECT_EQ(study.cells[0].find_nees(ErrorBlock::pose, Moments::corrected), nullptr);
-  EXPECT_FALSE(study.cells[0].weights.has_value());
-  EXPECT_FALSE(study.cells[1].diversity.has_value());
-  EXPECT_TRUE(study.cells[1].weights.has_value());
+  EXPECT_TRUE(study.cells[0].over_time("ess").empty());
+  EXPECT_TRUE(study.cells[1].over_time("ancestors_at_start").empty());
+  EXPECT_FALSE(study.cells[1].over_time("ess").empty());
   write_report(file, folder / "report");
   const std::string page = text_in(folder / "report/index.html");
   EXPECT_THAT(page, HasSubstr("<h2>How many particles still count?"));

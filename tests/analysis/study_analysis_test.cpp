@@ -31,8 +31,8 @@ TEST_F(StudyAnalysisOfAFile, JudgesEveryCellAndNamesFailedRuns) {
   EXPECT_EQ(study.cells[1].failures[0].step, 5u);
   EXPECT_EQ(study.cells[1].failures[0].reason, "gain is <not> a number & worse");
   EXPECT_TRUE(study.has_failures());
-  EXPECT_NEAR(study.cells[1].error.position_mse.mean, 9.0 * study.cells[0].error.position_mse.mean,
-              0.5);
+  EXPECT_NEAR(study.cells[1].over_runs("position_mse").mean,
+              9.0 * study.cells[0].over_runs("position_mse").mean, 0.5);
 }
 
 /// An index that is none: the message names file, cell and run.
@@ -59,8 +59,10 @@ TEST_F(StudyAnalysisOfAFile, GivesTheSameBitsForAnyNumberOfThreads) {
     for (std::size_t i = 0; i < one.cells[c].nees.size(); ++i) {
       EXPECT_EQ(one.cells[c].nees[i].series.average, many.cells[c].nees[i].series.average);
     }
-    EXPECT_EQ(one.cells[c].error.position_rmse.mean, many.cells[c].error.position_rmse.mean);
-    EXPECT_EQ(one.cells[c].error.position_rmse.sd, many.cells[c].error.position_rmse.sd);
+    EXPECT_EQ(one.cells[c].over_runs("position_rmse").mean,
+              many.cells[c].over_runs("position_rmse").mean);
+    EXPECT_EQ(one.cells[c].over_runs("position_rmse").sd,
+              many.cells[c].over_runs("position_rmse").sd);
   }
 }
 

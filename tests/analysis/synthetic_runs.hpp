@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/metrics/run_rows.hpp"
+#include "analysis/data/run_rows.hpp"
 #include "engine/numbers/angle.hpp"
 #include "engine/random/stream.hpp"
 

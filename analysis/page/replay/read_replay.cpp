@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/page/replay/read_replay.hpp"
 
+#include "analysis/data/run_reader.hpp"
 #include "analysis/figures/path_data.hpp"
 #include "analysis/page/replay/read_map.hpp"
 #include "analysis/page/replay/thin_particles.hpp"
-#include "analysis/run_reader.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/cell_comparison.hpp"
 
+#include "analysis/metrics/nees_accumulator.hpp"
 #include "analysis/statistics/bootstrap.hpp"
 #include "engine/errors.hpp"
 #include "engine/random/stream.hpp"
@@ -13,8 +14,8 @@
 namespace montecarta {
 namespace {
 
-std::vector<const ScoreName*> scores(const std::vector<std::string>& names) {
-  std::vector<const ScoreName*> found;
+std::vector<const Score*> scores(const std::vector<std::string>& names) {
+  std::vector<const Score*> found;
   for (const std::string& name : names) found.push_back(find_score(name));
   return found;
 }
@@ -66,11 +67,13 @@ TEST(CompareCells, CountsFailuresAsLostAndLeavesThemOutOfDifferences) {
 
 TEST(CompareCells, KnowsWhichSideIsBetter) {
   CellAnalysis few = compared_cell("few", std::vector<double>(20, 1.0));
+  few.scores = {};
   CellAnalysis many = few;
   many.label = "many";
   for (std::size_t i = 0; i < 20; ++i) {
-    few.scores[i].ess = few.scores[i].nees = 5.0 + 0.01 * static_cast<double>(i);
-    many.scores[i].ess = many.scores[i].nees = 50.0;
+    const double value = 5.0 + 0.01 * static_cast<double>(i);
+    few.scores.add(std::vector<ScoreTable::Value>{{"ess", value}, {"nees", value}});
+    many.scores.add(std::vector<ScoreTable::Value>{{"ess", 50.0}, {"nees", 50.0}});
   }
   const Comparisons found =
       compare_cells(compared_study({few, many}), "few", scores({"ess", "nees"}));
@@ -84,14 +87,17 @@ TEST(CompareCells, KnowsWhichSideIsBetter) {
 TEST(CompareCells, LeaveOutWhatDoesNotApply) {
   const CellAnalysis ekf = compared_cell("ekf", {1.0, 2.0});
   CellAnalysis particles = compared_cell("particles", {1.0, 2.0});
-  for (RunScores& run : particles.scores) run.ess = 10.0;
+  particles.scores = {};
+  for (const double rmse : {1.0, 2.0}) {
+    particles.scores.add(std::vector<ScoreTable::Value>{{"position_rmse", rmse}, {"ess", 10.0}});
+  }
   EXPECT_TRUE(compare_cells(compared_study({ekf, particles}), "ekf", scores({"ess"})).rows.empty());
   EXPECT_THROW(compare_cells(compared_study({ekf}), "efk", scores({"ess"})), StudyError);
 }
 
 // Two cells without difference, in nine of ten studies at least no false word at 10 %.
 TEST(CompareCells, SaysNothingFalseMoreOftenThanItsLevel) {
-  const std::vector<const ScoreName*> chosen = scores({"position_rmse"});
+  const std::vector<const Score*> chosen = scores({"position_rmse"});
   std::size_t false_words = 0;
   constexpr std::size_t kStudies = 400;
   for (std::uint64_t s = 0; s < kStudies; ++s) {
@@ -114,7 +120,7 @@ TEST(NeesDistance, CountsDoublings) {
   EXPECT_DOUBLE_EQ(nees_distance(3.0, 3), 0.0);
   EXPECT_DOUBLE_EQ(nees_distance(6.0, 3), 1.0);
   EXPECT_DOUBLE_EQ(nees_distance(1.5, 3), 1.0);
-  EXPECT_TRUE(std::isnan(nees_distance(RunScores::kNone, 3)));
+  EXPECT_TRUE(std::isnan(nees_distance(NAN, 3)));
 }
 
 }  // namespace

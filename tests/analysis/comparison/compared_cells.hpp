@@ -16,23 +16,16 @@ inline CellAnalysis compared_cell(const std::string& label, const std::vector<do
                                   double cpu_seconds = 1.0) {
   CellAnalysis cell;
   cell.label = label;
-  SummaryOf errors, seconds;
   for (std::size_t i = 0; i < rmse.size(); ++i) {
     if (rmse[i] < 0.0) {
       cell.failures.push_back({i, 0, "lost"});
       continue;
     }
-    RunScores scores;
-    scores.position_rmse = rmse[i];
-    scores.cpu_seconds = cpu_seconds;
+    const ScoreTable::Value scores[] = {{"position_rmse", rmse[i]}, {"cpu_seconds", cpu_seconds}};
     cell.runs.push_back(i);
-    cell.scores.push_back(scores);
-    errors.add(rmse[i]);
-    seconds.add(cpu_seconds);
+    cell.scores.add(scores);
   }
   cell.complete = cell.runs.size();
-  cell.error.position_rmse = errors.result();
-  cell.cpu_seconds = seconds.result();
   return cell;
 }
 

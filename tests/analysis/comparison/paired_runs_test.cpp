@@ -16,7 +16,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Pair;
 
-const ScoreName& rmse() { return *find_score("position_rmse"); }
+const Score& rmse() { return *find_score("position_rmse"); }
 
 TEST(CommonPlaces, AreThoseOfSharedNumbers) {
   const std::vector<std::uint64_t> left = {1, 3, 4, 9}, right = {0, 3, 9, 10};

@@ -30,7 +30,7 @@ CellAnalysis cell_of(const std::string& label, const std::string& filter, std::s
   }
   gps.error_over_time = {rms, 2.0 * rms, rms};
   cell.references = {gps};
-  cell.map_size_over_time = {3.0, 4.0};
+  cell.scan_series = {{"map_landmarks", "1", {3.0, 4.0}}};
   return cell;
 }
 
@@ -112,7 +112,7 @@ TEST(ReferenceFigures, AreNotDrawnWithoutReferences) {
   StudyAnalysis study = study_of({cell_of("a", "a", 0, 1.0)});
   study.references.clear();
   study.cells[0].references.clear();
-  study.cells[0].map_size_over_time.clear();
+  study.cells[0].scan_series.clear();
   EXPECT_THAT(reference_figures(study), IsEmpty());
 }
 

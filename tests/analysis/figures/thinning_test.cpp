@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/figures/thinning.hpp"
 
-#include "analysis/statistics/finite_mean.hpp"
+#include "analysis/statistics/means.hpp"
 #include "engine/random/stream.hpp"
 
 #include <gmock/gmock.h>

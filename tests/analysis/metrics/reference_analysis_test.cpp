@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/reference_analysis.hpp"
 
+#include "analysis/metrics/measured_run.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -51,28 +53,20 @@ TEST(ReferenceAnalysis, TakesTheRootOfTheMeanSquareAtEveryFix) {
 }
 
 TEST(ReferenceAnalysis, GivesRunsTheScoresThatStudiesName) {
-  std::vector<RunScores> scores(4);
-  put_leading_scores(four_runs(), scores);
-  EXPECT_EQ(scores[1].reference_rms, 7.0);
-  EXPECT_EQ(scores[1].reference_aligned_rms, 2.0);
-  EXPECT_EQ(scores[3].reference_aligned_median, 11.0);
-  const auto named = [](const std::string& name) {
-    for (const ScoreName& score : score_names()) {
-      if (score.name == name) return score.value;
-    }
-    return &RunScores::cpu_seconds;
-  };
-  EXPECT_EQ(named("reference_rms"), &RunScores::reference_rms);
-  EXPECT_EQ(named("reference_aligned_rms"), &RunScores::reference_aligned_rms);
-  EXPECT_EQ(named("reference_median"), &RunScores::reference_median);
-  EXPECT_EQ(named("reference_aligned_median"), &RunScores::reference_aligned_median);
-  EXPECT_EQ(named("map_landmarks"), &RunScores::map_landmarks);
-  EXPECT_EQ(named("beacons_found"), &RunScores::beacons_found);
+  ScoreTable scores;
+  for (const ReferenceScores& each : four_runs().runs) {
+    MeasuredRun run;
+    run.references = {{each, {}, {}}, {{}, {}, {}}};
+    scores.add(run);
+  }
+  EXPECT_EQ(scores.column("reference_rms")[1], 7.0);
+  EXPECT_EQ(scores.column("reference_aligned_rms")[1], 2.0);
+  EXPECT_EQ(scores.column("reference_aligned_median")[3], 11.0);
 }
 
 TEST(Spread, IsUnknownOfNoneAndOfNaN) {
   EXPECT_TRUE(std::isnan(spread_of({}).median));
-  const Spread spread = spread_of(std::vector{1.0, RunScores::kNone, 2.0});
+  const Spread spread = spread_of(std::vector{1.0, std::nan(""), 2.0});
   EXPECT_EQ(spread.summary.n, 3u);
   EXPECT_TRUE(std::isnan(spread.summary.mean));
   EXPECT_TRUE(std::isnan(spread.least));

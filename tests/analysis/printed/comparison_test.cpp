@@ -29,11 +29,10 @@ StudyAnalysis paired_study(std::size_t runs) {
     const double common = draw.normal(), own = 0.1 * draw.normal(), other = draw.normal();
     const double rmse[] = {4.0 + common, 5.0 + common + own, 5.0 + other};
     for (std::size_t c = 0; c < 3; ++c) {
-      RunScores scores;
-      scores.position_rmse = rmse[c];
-      scores.cpu_seconds = c == 0 ? 0.2 : 0.5;
+      const ScoreTable::Value scores[] = {{"position_rmse", rmse[c]},
+                                          {"cpu_seconds", c == 0 ? 0.2 : 0.5}};
       study.cells[c].runs.push_back(run);
-      study.cells[c].scores.push_back(scores);
+      study.cells[c].scores.add(scores);
     }
   }
   return study;
@@ -104,8 +103,12 @@ TEST(Comparison, ClaimsAreJudgedByPairedDifferences) {
 TEST(Comparison, OnlyRunsThatBothCompletedArePaired) {
   StudyAnalysis study = paired_study(12);
   auto& a = study.cells[0];
+  const std::vector<double> rmse = a.scores.column("position_rmse");
   a.runs.erase(a.runs.begin() + 2, a.runs.begin() + 6);
-  a.scores.erase(a.scores.begin() + 2, a.scores.begin() + 6);
+  a.scores = {};
+  for (const std::uint64_t run : a.runs) {
+    a.scores.add(std::vector<ScoreTable::Value>{{"position_rmse", rmse[run]}});
+  }
   const ComparedClaim claim = compare(study, claim_of("position_rmse", "a", '<', "b"));
   EXPECT_EQ(claim.runs, 8u);
   EXPECT_NEAR(claim.difference, -1.0, 0.2);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/tables.hpp"
 
-#include "analysis/statistics/finite_mean.hpp"
+#include "analysis/statistics/means.hpp"
 #include "analysis/tables/csv_file.hpp"
 #include "analysis/tables/latex.hpp"
 #include "analysis/tables/number_text.hpp"
@@ -28,9 +28,11 @@ CellAnalysis consistent_cell() {
   cell.label = "ekf_slam";
   cell.filter = "ekf_slam";
   cell.complete = 30;
-  cell.error.position_rmse = {30, 1.93, 0.06 * std::sqrt(30.0)};
-  cell.lower.position_rmse = 1.81;
-  cell.upper.position_rmse = 2.05;
+  for (const double rmse : {1.87, 1.99}) {
+    cell.scores.add(std::vector<ScoreTable::Value>{{"position_rmse", rmse}});
+  }
+  cell.score_intervals.resize(all_scores().size());
+  cell.score_intervals[index_of("position_rmse")] = {1.81, 2.05};
   NeesResult pose;
   pose.series.dimension = 3;
   pose.series.average = {3.0, 3.5};
@@ -44,8 +46,7 @@ CellAnalysis consistent_cell() {
   pose.consistency = judge(pose.series, std::vector<double>{0.2, 0.4});
   pose.consistency.exit_interval = Interval{4.2, std::numeric_limits<double>::infinity()};
   cell.nees = {pose};
-  cell.error.position_over_time = {0.1, 0.2};
-  cell.error.heading_over_time = {0.01, 0.02};
+  cell.scan_series = {{"position_rmse", "m", {0.1, 0.2}}, {"heading_rmse", "rad", {0.01, 0.02}}};
   return cell;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/tables/why_tables.hpp"
 
-#include "analysis/statistics/finite_mean.hpp"
+#include "analysis/statistics/means.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -66,7 +66,8 @@ TEST(InnovationTable, ShowsTheLagThatIsWorst) {
 TEST(DiversityTable, LeavesOpenWhatIsNotStored) {
   const auto kept = std::make_unique<CellAnalysis>();  // on the stack g++ 12 takes it for unset
   CellAnalysis& cell = *kept;
-  cell.weights = WeightSummary{{30, 5.0, 1.0}, {30, 0.5, 0.1}, {}};
+  cell.scores.add(std::vector<ScoreTable::Value>{{"ess", 5.0}, {"resampling_rate", 0.5}});
+  cell.scan_series = {{"ess", "1", {5.0}}};
   const TextTable without = diversity_table(study_of(cell));
   EXPECT_THAT(without.rows[0], ElementsAre("srcd_m10", "5.00", "50.0 %", "-", "-", "-", "-", "-"));
   cell.lineages = LineageSummary{};

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/data/run_reader.hpp"
+
+#include "engine/errors.hpp"
+
+#include <algorithm>
+
+namespace montecarta {
+namespace {
+
+constexpr std::string_view kFinalMapSeen = "final_map_seen";
+constexpr double kRounding = 1e-6;  // [landmarks]
+
+}  // namespace
+
+RunReader::RunReader(const ResultFile& file, const StoredCell& cell)
+    : file_(&file), cell_(&cell), cpu_seconds_(file.cpu_seconds(cell)) {}
+
+void RunReader::keep_scans(std::span<const double> all, std::size_t width,
+                           std::vector<double>& out) const {
+  out.clear();
+  for (const std::size_t row : file_->scan_rows()) {
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(row * width);
+    out.insert(out.end(), begin, begin + static_cast<std::ptrdiff_t>(width));
+  }
+}
+
+void RunReader::read_truth(std::size_t i, std::vector<double>& out, Scratch& scratch) const {
+  out.clear();
+  if (!file_->has_truth()) return;
+  scratch.resize(file_->times().size() * 3);
+  {
+    const std::lock_guard lock(reading_);
+    file_->read_truth(i, scratch);
+  }
+  keep_scans(scratch, 3, out);
+}
+
+void RunReader::read_at_scans(std::string_view column, std::size_t width, std::size_t i,
+                              std::vector<double>& out, Scratch& scratch) const {
+  out.clear();
+  if (!cell_->has(column)) return;
+  scratch.resize(file_->times().size() * width);
+  {
+    const std::lock_guard lock(reading_);
+    file_->read(*cell_, column, i, std::span(scratch));
+  }
+  keep_scans(scratch, width, out);
+}
+
+void RunReader::read_path(std::size_t i, std::vector<double>& out) const {
+  out.clear();
+  if (file_->references().empty()) return;
+  out.resize(file_->times().size() * 3);
+  const bool mixture = cell_->has("pose_mean_mixture");
+  const std::lock_guard lock(reading_);
+  file_->read(*cell_, mixture ? "pose_mean_mixture" : "pose_mean", i, std::span(out));
+}
+
+void RunReader::read_final_map(std::size_t i, RunRows& rows, Scratch& scratch) const {
+  rows.final_map.reset();
+  const std::string prefix = cell_->has(kFinalMapSeen) ? "final_map_" : "map_";
+  const auto seen_column = std::ranges::find(cell_->columns, prefix + "seen", &Column::name);
+  if (seen_column == cell_->columns.end()) return;
+  const std::size_t landmarks = seen_column->shape.back();
+  // A mean over weights that add up to one but for rounding.
+  if (!rows.map_size.empty() && rows.map_size.back() > static_cast<double>(landmarks) + kRounding)
+    return;  // record.map_rows left part of it out
+  const auto last = [&](const char* name, std::size_t width) {
+    read_whole(prefix + name, i, scratch);
+    return std::span<const double>(scratch).last(landmarks * width);
+  };
+  FinalMap& map = rows.final_map.emplace();
+  for (const double one : last("seen", 1)) map.seen.push_back(one != 0.0 ? 1 : 0);
+  const auto mean = last("mean", 2);
+  for (std::size_t l = 0; l < landmarks; ++l) map.mean.emplace_back(mean[2 * l], mean[2 * l + 1]);
+  const auto covariance = last("covariance", 4);
+  for (std::size_t l = 0; l < landmarks; ++l) {
+    map.covariance.emplace_back(Eigen::Map<const Eigen::Matrix2d>(covariance.data() + 4 * l));
+  }
+}
+
+void RunReader::read_whole(std::string_view column, std::size_t i, std::vector<double>& out) const {
+  out.clear();
+  const auto found = std::ranges::find(cell_->columns, column, &Column::name);
+  if (found == cell_->columns.end()) return;
+  out.resize(found->elements());
+  const std::lock_guard lock(reading_);
+  file_->read(*cell_, column, i, std::span(out));
+}
+
+void RunReader::read_cloud(std::size_t i, CloudRows& out, Scratch& scratch) const {
+  out.pose.clear();
+  out.log_weight.clear();
+  if (!file_->has_truth() || !cell_->has("log_weight")) return;
+  const std::size_t scans = file_->scan_times().size();
+  const auto keep = [&](const char* column, std::size_t width, std::vector<double>& kept) {
+    scratch.resize(scans * width);
+    {
+      const std::lock_guard lock(reading_);
+      file_->read(*cell_, column, i, std::span(scratch));
+    }
+    for (const std::size_t scan : calibration_scans(scans)) {
+      const auto row = std::span<const double>(scratch).subspan(scan * width, width);
+      kept.insert(kept.end(), row.begin(), row.end());
+    }
+  };
+  keep("particle_pose", 3 * cell_->particles, out.pose);
+  keep("log_weight", cell_->particles, out.log_weight);
+}
+
+template <class Number>
+void RunReader::read_scans(std::string_view column, std::size_t width, std::size_t i,
+                           std::vector<Number>& out) const {
+  out.clear();
+  if (!cell_->has(column)) return;
+  out.resize(file_->scan_times().size() * width);
+  const std::lock_guard lock(reading_);
+  file_->read(*cell_, column, i, std::span(out));
+}
+
+void RunReader::expect_particles(const RunRows& rows) const {
+  const auto is_none = [&](std::uint32_t parent) { return parent >= cell_->particles; };
+  if (std::ranges::none_of(rows.ancestor, is_none)) return;
+  throw RunError(file_->path().string() + ": cell '" + cell_->label + "', run " +
+                 std::to_string(rows.run) +
+                 ": an ancestor is none of the particles (the file is damaged): run the study "
+                 "again");
+}
+
+void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
+  read_truth(i, rows.truth, scratch);
+  read_at_scans("pose_mean", 3, i, rows.spread.mean, scratch);
+  read_at_scans("pose_covariance", 9, i, rows.spread.covariance, scratch);
+  read_at_scans("pose_mean_mixture", 3, i, rows.mixture.mean, scratch);
+  read_at_scans("pose_covariance_mixture", 9, i, rows.mixture.covariance, scratch);
+  read_scans("numerical_faults", 1, i, rows.numerical_faults);
+  read_scans("association_correct", 1, i, rows.association.correct);
+  read_scans("association_wrong", 1, i, rows.association.wrong);
+  read_scans("association_new_again", 1, i, rows.association.new_again);
+  read_scans("association_missed", 1, i, rows.association.missed);
+  read_scans("association_clutter", 1, i, rows.association.clutter);
+  read_scans("nis", 1, i, rows.nis);
+  read_scans("nis_dof", 1, i, rows.nis_dof);
+  read_path(i, rows.path);
+  read_scans("map_size", 1, i, rows.map_size);
+  read_final_map(i, rows, scratch);
+  read_cloud(i, rows.cloud, scratch);
+  read_whole("joint_mean", i, rows.joint.mean);
+  read_whole("joint_covariance", i, rows.joint.covariance);
+  rows.run = file_->runs()[i];
+  {
+    const std::lock_guard lock(reading_);
+    rows.landmarks = file_->landmarks_of(i);
+  }
+  rows.cpu_seconds = cpu_seconds_[i];
+  rows.ess.clear();
+  rows.resampled.clear();
+  rows.ancestor.clear();
+  rows.particle_pose.clear();
+  rows.log_weight.clear();
+  if (cell_->particles == 0) return;
+  read_scans("ess", 1, i, rows.ess);
+  read_scans("resampled", 1, i, rows.resampled);
+  read_scans("ancestor", cell_->particles, i, rows.ancestor);
+  expect_particles(rows);
+  read_scans("particle_pose", 3 * cell_->particles, i, rows.particle_pose);
+  read_scans("log_weight", cell_->particles, i, rows.log_weight);
+}
+
+RunRows read_run(const ResultFile& file, const StoredCell& cell, std::size_t i) {
+  RunRows rows;
+  RunReader::Scratch scratch;
+  RunReader(file, cell).read(i, rows, scratch);
+  return rows;
+}
+
+}  // namespace montecarta

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/data/run_rows.hpp"
+#include "engine/records/result_file.hpp"
+
+#include <cstddef>
+#include <mutex>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace montecarta {
+
+/// Reads the runs of one cell at its scans. Any number of threads may call read(), each with its
+/// own rows and scratch. The file and the cell must outlive it.
+class RunReader {
+ public:
+  RunReader(const ResultFile& file, const StoredCell& cell);
+
+  /// Memory for the rows between scans.
+  using Scratch = std::vector<double>;
+
+  /// Fills `rows` with run index `i` (0-based in the file), which is complete.
+  void read(std::size_t i, RunRows& rows, Scratch& scratch) const;
+
+ private:
+  void read_truth(std::size_t i, std::vector<double>& out, Scratch& scratch) const;
+  void read_path(std::size_t i, std::vector<double>& out) const;
+  /// The map after the last scan, also of columns that hold every one.
+  void read_final_map(std::size_t i, RunRows& rows, Scratch& scratch) const;
+  /// A column over time, of which scans are kept; `width` numbers a row. Empty where not stored.
+  void read_at_scans(std::string_view column, std::size_t width, std::size_t i,
+                     std::vector<double>& out, Scratch& scratch) const;
+  /// All of a column, as far as it is stored.
+  void read_whole(std::string_view column, std::size_t i, std::vector<double>& out) const;
+  void read_cloud(std::size_t i, CloudRows& out, Scratch& scratch) const;
+  /// Throws RunError where a parent does not exist.
+  void expect_particles(const RunRows& rows) const;
+  template <class Number>
+  void read_scans(std::string_view column, std::size_t width, std::size_t i,
+                  std::vector<Number>& out) const;
+  void keep_scans(std::span<const double> all, std::size_t width, std::vector<double>& out) const;
+
+  const ResultFile* file_;
+  const StoredCell* cell_;
+  std::vector<double> cpu_seconds_;
+  mutable std::mutex reading_;  ///< an HDF5 library may be built for one thread
+};
+
+/// One run alone, index `i`.
+RunRows read_run(const ResultFile& file, const StoredCell& cell, std::size_t i);
+
+}  // namespace montecarta

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/data/final_map.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace montecarta {
+
+/// Mean and covariance of the pose at every scan of one run, row by row; empty where not stored.
+struct MomentRows {
+  std::vector<double> mean;        ///< {scan, 3} [m, m, rad]
+  std::vector<double> covariance;  ///< {scan, 3, 3}
+};
+
+/// What became of the detections of every scan (AssociationCounts); empty where not stored.
+struct AssociationRows {
+  std::vector<double> correct, wrong, new_again, missed, clutter;  ///< {scan}
+};
+
+/// At the end of how many parts of a run calibration is tested.
+inline constexpr std::size_t kQuarters = 4;
+
+/// The scan that ends each quarter of a run of `scans` >= 1.
+inline std::array<std::size_t, kQuarters> calibration_scans(std::size_t scans) {
+  std::array<std::size_t, kQuarters> chosen{};
+  for (std::size_t m = 0; m < kQuarters; ++m) {
+    const std::size_t until = (m + 1) * scans / kQuarters;
+    chosen[m] = until == 0 ? 0 : until - 1;
+  }
+  return chosen;
+}
+
+/// Weighted particles at the scans of calibration_scans(); empty where not stored.
+struct CloudRows {
+  std::vector<double> pose;        ///< {moment, particle, 3} [m, m, rad]
+  std::vector<double> log_weight;  ///< {moment, particle}
+};
+
+/// Pose and map together at the scans of ResultDescription::joint_scans; empty where not stored.
+struct JointRows {
+  std::vector<double> mean;        ///< {joint, state}; NaN of landmarks never seen
+  std::vector<double> covariance;  ///< {joint, state, state}
+
+  std::size_t states() const { return mean.empty() ? 0 : covariance.size() / mean.size(); }
+};
+
+/// What analysis needs of one run, as plain arrays: where they come from does not matter. Columns
+/// that are not stored are empty.
+struct RunRows {
+  std::vector<double> truth;  ///< {scan, 3} [m, m, rad]; empty where nobody knows it
+  MomentRows spread;          ///< its mean is always there
+  MomentRows mixture;
+  std::vector<double> ess;                      ///< {scan}
+  std::vector<std::uint32_t> resampled;         ///< {scan} 0 or 1
+  std::vector<std::uint32_t> numerical_faults;  ///< {scan}
+  std::vector<std::uint32_t> ancestor;          ///< {scan, particle}
+  std::vector<double> particle_pose;            ///< {scan, particle, 3} [m, m, rad]
+  std::vector<double> log_weight;               ///< {scan, particle} normalised
+  std::vector<double> nis;                      ///< {scan}
+  std::vector<std::uint32_t> nis_dof;           ///< {scan}
+  AssociationRows association;
+  std::vector<double> path;      ///< {row, 3} [m, m, rad] leading mean, also between scans; only
+                                 ///< where the drive has references
+  std::vector<double> map_size;  ///< {scan} landmarks in the map
+  std::optional<FinalMap> final_map;  ///< at the last scan, if stored and whole
+  CloudRows cloud;
+  JointRows joint;
+  std::uint64_t run = 0;                   ///< its number in the study
+  std::vector<Eigen::Vector2d> landmarks;  ///< [m] true positions in this run, by identity; empty
+                                           ///< where unknown
+  double cpu_seconds = 0.0;
+};
+
+}  // namespace montecarta

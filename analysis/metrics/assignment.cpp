@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/assignment.hpp"
+
+#include "engine/errors.hpp"
+
+#include <limits>
+
+namespace montecarta {
+namespace {
+
+constexpr Eigen::Index kNobody = -1;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Prices of rows and columns, none above what a pair costs and equal to it for every pair that is
+/// assigned: as long as that holds, what is assigned is assigned as cheaply as can be.
+struct Market {
+  explicit Market(const Eigen::MatrixXd& costs)
+      : cost(&costs),
+        row_price(costs.rowwise().minCoeff()),
+        column_price(Eigen::VectorXd::Zero(costs.cols())),
+        column_of(static_cast<std::size_t>(costs.rows()), kNobody),
+        row_of(static_cast<std::size_t>(costs.cols()), kNobody) {}
+
+  double excess(Eigen::Index row, Eigen::Index column) const {
+    return (*cost)(row, column) - row_price(row) - column_price(column);
+  }
+  void assign(Eigen::Index row, Eigen::Index column) {
+    column_of[static_cast<std::size_t>(row)] = column;
+    row_of[static_cast<std::size_t>(column)] = row;
+  }
+  Eigen::Index owner(Eigen::Index column) const { return row_of[static_cast<std::size_t>(column)]; }
+
+  const Eigen::MatrixXd* cost;
+  Eigen::VectorXd row_price, column_price;
+  std::vector<Eigen::Index> column_of, row_of;
+};
+
+/// Every row takes its cheapest column where nobody has it.
+void take_what_is_free(Market& market) {
+  for (Eigen::Index row = 0; row < market.cost->rows(); ++row) {
+    Eigen::Index column = 0;
+    market.cost->row(row).minCoeff(&column);
+    if (market.owner(column) == kNobody) market.assign(row, column);
+  }
+}
+
+/// The cheapest ways from one row to all columns (Dijkstra), until one ends at a free column.
+struct Search {
+  Search(const Market& market, Eigen::Index start)
+      : distance(market.cost->cols(), kInfinity),
+        previous(market.cost->cols(), kNobody),
+        done(market.cost->cols(), false) {
+    Eigen::Index row = start, last = kNobody;
+    double so_far = 0.0;
+    while (row != kNobody) {
+      relax(market, row, last, so_far);
+      last = nearest();
+      so_far = distance[static_cast<std::size_t>(last)];
+      done[static_cast<std::size_t>(last)] = true;
+      row = market.owner(last);
+    }
+    end = last;
+    length = so_far;
+  }
+
+  void relax(const Market& market, Eigen::Index row, Eigen::Index from, double so_far) {
+    for (std::size_t c = 0; c < distance.size(); ++c) {
+      if (done[c]) continue;
+      const double way = so_far + market.excess(row, static_cast<Eigen::Index>(c));
+      if (way >= distance[c]) continue;
+      distance[c] = way;
+      previous[c] = from;
+    }
+  }
+  Eigen::Index nearest() const {
+    std::size_t best = distance.size();
+    for (std::size_t c = 0; c < distance.size(); ++c) {
+      if (!done[c] && (best == distance.size() || distance[c] < distance[best])) best = c;
+    }
+    return static_cast<Eigen::Index>(best);
+  }
+
+  std::vector<double> distance;
+  std::vector<Eigen::Index> previous;  ///< column before on the way; kNobody: the start
+  std::vector<bool> done;
+  Eigen::Index end = kNobody;
+  double length = 0.0;
+};
+
+/// Gives `start` a column by moving the rows on the cheapest way along it.
+void augment(Market& market, Eigen::Index start) {
+  const Search search(market, start);
+  market.row_price(start) += search.length;
+  for (std::size_t c = 0; c < search.done.size(); ++c) {
+    const auto column = static_cast<Eigen::Index>(c);
+    if (!search.done[c] || column == search.end) continue;
+    const double shorter = search.length - search.distance[c];
+    market.column_price(column) -= shorter;
+    market.row_price(market.owner(column)) += shorter;
+  }
+  Eigen::Index column = search.end;
+  for (Eigen::Index before; column != kNobody; column = before) {
+    before = search.previous[static_cast<std::size_t>(column)];
+    market.assign(before == kNobody ? start : market.owner(before), column);
+  }
+}
+
+}  // namespace
+
+std::vector<std::size_t> cheapest_assignment(const Eigen::MatrixXd& cost) {
+  expect(cost.rows() <= cost.cols() && cost.allFinite(), "costs are finite, wide as high");
+  if (cost.rows() == 0) return {};
+  Market market(cost);
+  take_what_is_free(market);
+  for (Eigen::Index row = 0; row < cost.rows(); ++row) {
+    if (market.column_of[static_cast<std::size_t>(row)] == kNobody) augment(market, row);
+  }
+  return {market.column_of.begin(), market.column_of.end()};
+}
+
+}  // namespace montecarta

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/cell_analysis.hpp"
+
+#include "analysis/statistics/means.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace montecarta {
+
+const NeesResult* CellAnalysis::find_nees(ErrorBlock block, Moments moments) const {
+  const auto found = std::ranges::find_if(nees, [&](const NeesResult& candidate) {
+    return candidate.block == block && candidate.moments == moments;
+  });
+  return found == nees.end() ? nullptr : &*found;
+}
+
+Summary CellAnalysis::over_runs(std::string_view score) const {
+  SummaryOf sums;
+  for (const double value : scores.column(score)) sums.add(value);
+  return sums.result();
+}
+
+Spread CellAnalysis::known_over_runs(const Score& score) const {
+  std::vector<double> values;
+  for (const double value : scores.column(score)) {
+    if (!std::isnan(value)) values.push_back(value);
+  }
+  return spread_of(values);
+}
+
+Spread CellAnalysis::known_over_runs(std::string_view score) const {
+  return known_over_runs(all_scores()[index_of(score)]);
+}
+
+Interval CellAnalysis::interval_of(std::string_view score) const {
+  return score_intervals.empty() ? Interval{kNaN, kNaN} : score_intervals[index_of(score)];
+}
+
+const std::vector<double>& CellAnalysis::over_time(std::string_view series) const {
+  static const std::vector<double> none;
+  const auto found = std::ranges::find(scan_series, series, &NamedSeries::name);
+  return found == scan_series.end() ? none : found->values;
+}
+
+Consistency CellAnalysis::consistency() const {
+  const NeesResult* pose = find_nees(ErrorBlock::pose, leading);
+  return pose == nullptr ? Consistency{} : pose->consistency;
+}
+
+}  // namespace montecarta

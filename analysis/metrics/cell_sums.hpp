@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/data/run_reader.hpp"
+#include "analysis/metrics/cell_analysis.hpp"
+#include "analysis/metrics/exit_bootstrap.hpp"
+#include "analysis/metrics/measured_run.hpp"
+#include "analysis/metrics/nees_accumulator.hpp"
+#include "engine/runs/parallel.hpp"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// Adds up a number of every scan over runs.
+class MeanOverTime {
+ public:
+  void add(const std::vector<double>& values);
+  bool empty() const { return sum_.empty(); }
+  std::vector<double> mean() const;
+
+ private:
+  std::vector<double> sum_;
+  std::size_t runs_ = 0;
+};
+
+/// Adds up complete runs of one cell in the order of the calls. Memory depends on scans, and grows
+/// by a few numbers with every run.
+class CellSums {
+ public:
+  /// `sticks` must outlive it.
+  explicit CellSums(const Yardsticks& sticks);
+
+  void add(const MeasuredRun& run);
+  /// Of the runs so far.
+  const ScoreTable& scores() const { return scores_; }
+  /// Fills all that complete runs say; label, failures and missing runs are the caller's.
+  CellAnalysis result();
+
+ private:
+  void add_nees(const RunMetrics& metrics);
+  void add_leading(const RunMetrics& metrics);
+  void put_leading(CellAnalysis& cell);
+  void put_series(CellAnalysis& cell) const;
+
+  const Yardsticks* sticks_;
+  double run_bound_;  ///< upper end of the band of a single run's NEES
+  ScoreTable scores_;
+  std::vector<MeanOverTime> over_time_;  ///< of all_scan_series()
+  std::vector<NeesAccumulator> nees_;    ///< leading first
+  Moments leading_ = Moments::spread;
+  std::vector<double> run_exits_;  ///< [s] {run}
+  ExitBootstrap exits_;
+  CredibilitySamples credibility_;
+  ErrorMoments moments_;
+  InnovationSums innovations_;
+  LineageSums lineages_;
+  std::vector<ReferenceAccumulator> references_;
+  MapErrorSums map_;
+  JointNeesSums joint_;
+  CalibrationSums calibration_;
+};
+
+/// As many as are worth measuring at once.
+std::vector<MeasuredRun> slots_for(const Parallel& parallel);
+
+/// Measures runs at once, a slot each, and adds them up in order, whoever was first.
+void add_runs(const RunReader& reader, std::span<const std::size_t> runs, std::size_t particles,
+              const Yardsticks& sticks, const Parallel& parallel, std::vector<MeasuredRun>& slots,
+              CellSums& sums);
+
+}  // namespace montecarta

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a run cost, and how often its arithmetic needed a fallback.
+#include "analysis/metrics/measured_run.hpp"
+#include "analysis/metrics/score.hpp"
+#include "analysis/statistics/means.hpp"
+
+namespace montecarta {
+namespace {}  // namespace
+
+std::span<const Score> scores_of_cost() {
+  static constexpr Score kAll[] = {
+      {"numerical_faults", "1", "factorisations answered by a fallback",
+       [](const MeasuredRun& run) { return sum_of(run.rows.numerical_faults); }},
+      {"cpu_seconds", "s", "processor time of a run",
+       [](const MeasuredRun& run) { return run.rows.cpu_seconds; }},
+  };
+  return kAll;
+}
+
+}  // namespace montecarta

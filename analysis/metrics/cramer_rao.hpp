@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/metrics/simulated_world.hpp"
+#include "engine/records/result_file.hpp"
+#include "engine/runs/parallel.hpp"
+
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// Runs that the bound is averaged over where every run has a path of its own.
+inline constexpr std::size_t kBoundRuns = 16;
+
+/// The least root mean square error that is possible, just after each scan, of an estimator without
+/// bias that knows which landmark is which. Empty where there is no bound.
+struct CramerRaoBound {
+  std::vector<double> position;  ///< [m] {scan}
+  std::vector<double> heading;   ///< [rad] {scan}
+  double map =
+      std::numeric_limits<double>::quiet_NaN();  ///< [m] at the end, RMS over the landmarks
+                                                 ///< that came into view; NaN: none did
+  std::size_t runs = 0;  ///< whose paths it is the average of; 1 where all runs share one path
+  std::string missing;   ///< why there is none
+
+  bool empty() const { return position.empty(); }
+  bool operator==(const CramerRaoBound&) const = default;
+};
+
+/// The bound of a result file. Where noise is on the controls that filters are given, the path is
+/// the same in all runs, and so is the bound. Where noise moves the vehicle, it is the average over
+/// the first kBoundRuns runs with a complete cell, each bound given its path.
+CramerRaoBound cramer_rao_bound(const ResultFile& file,
+                                const Parallel& parallel = Parallel::serial());
+
+/// A path as rows of poses, and what of them are scans.
+struct TruePath {
+  Pose start;
+  std::vector<Pose> rows;
+  std::vector<std::size_t> steps;          ///< control steps from the row before, >= 1
+  std::vector<double> durations;           ///< [s] of one of those steps
+  std::vector<Eigen::Vector2d> landmarks;  ///< [m] by identity
+  std::vector<std::uint32_t> scan_rows;    ///< row of each scan
+};
+
+/// Squares of the bound along one path [m^2], [rad^2], [m^2]. Between rows that are several steps
+/// apart all steps turn and advance alike. `missing` where it cannot be computed.
+CramerRaoBound squared_bound(const SimulatedWorld& world, const TruePath& path);
+
+}  // namespace montecarta

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/efficiency.hpp"
+
+#include "analysis/metrics/cell_analysis.hpp"
+
+#include <cmath>
+
+namespace montecarta {
+namespace {
+
+double mean_square(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return sum / static_cast<double>(values.size());
+}
+
+}  // namespace
+
+Efficiency efficiency_of(const CellAnalysis& cell, const CramerRaoBound& bound) {
+  if (bound.empty() || cell.complete == 0) return {};
+  return {.position = std::sqrt(mean_square(bound.position) / cell.over_runs("position_mse").mean),
+          .heading = std::sqrt(mean_square(bound.heading) / cell.over_runs("heading_mse").mean),
+          .map = bound.map / std::sqrt(mean_square(cell.scores.column("landmark_rms")))};
+}
+
+}  // namespace montecarta

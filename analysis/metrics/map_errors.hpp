@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/metrics/map_scores.hpp"
+#include "analysis/statistics/nees_bounds.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// One landmark over the runs that have it in their map.
+struct LandmarkErrors {
+  std::uint32_t runs = 0;                                   ///< with it in the map
+  std::uint32_t valid = 0;                                  ///< of them: with a finite NEES
+  double rms = std::numeric_limits<double>::quiet_NaN();    ///< [m]
+  double anees = std::numeric_limits<double>::quiet_NaN();  ///< [1] of two components
+  Interval bounds{std::numeric_limits<double>::quiet_NaN(),
+                  std::numeric_limits<double>::quiet_NaN()};  ///< of anees, by `valid`
+};
+
+/// Final maps over the complete runs of a cell.
+struct MapErrors {
+  std::size_t undefined = 0;              ///< landmarks of runs whose NEES is not a number
+  std::vector<LandmarkErrors> landmarks;  ///< {landmark}; empty where association is unknown
+  std::string missing = {};               ///< why there are no numbers; empty where there are
+
+  /// Of landmarks with a NEES, the share inside their bounds; NaN where there is none.
+  double share_inside() const;
+};
+
+/// Adds up complete runs in the order of the calls.
+class MapErrorSums {
+ public:
+  /// nullopt: the run's map is not stored, or not all of it.
+  void add(const std::optional<MapScores>& run);
+  /// `known`: whether anybody knows where the landmarks are.
+  MapErrors result(double level, bool known) const;
+
+ private:
+  struct Sums {
+    double squares = 0.0, nees = 0.0;
+    std::uint32_t runs = 0, valid = 0;
+  };
+  std::string reason(bool known) const;
+
+  std::vector<Sums> landmarks_;  ///< {landmark}
+  std::size_t n_runs_ = 0, n_maps_ = 0, undefined_ = 0;
+};
+
+}  // namespace montecarta

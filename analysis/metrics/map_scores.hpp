@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/data/final_map.hpp"
+#include "analysis/metrics/gospa.hpp"
+#include "filters/models/field_of_view.hpp"
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// What the final maps of a study are judged by.
+struct MapYardstick {
+  bool known = false;               ///< whether anybody knows where the landmarks really are
+  std::optional<FieldOfView> view;  ///< of the sensor; without it all count as seen
+  bool identities_known = false;    ///< rows of a map are identities of the world
+};
+
+/// One landmark of one run; NaN where it is not in the map.
+struct LandmarkScore {
+  double squared_error = std::numeric_limits<double>::quiet_NaN();  ///< [m^2]
+  double nees = std::numeric_limits<double>::quiet_NaN();           ///< [1] of two components
+  bool in_map = false;
+};
+
+/// The final map of a run against the true landmarks that came into view in it.
+struct MapScores {
+  Gospa gospa;
+  double rms = std::numeric_limits<double>::quiet_NaN();   ///< [m] over the landmarks in the map;
+                                                           ///< by identity: NaN where unknown
+  double nees = std::numeric_limits<double>::quiet_NaN();  ///< [1] mean over those with a NEES
+  std::size_t undefined = 0;             ///< landmarks in the map whose NEES is not a number
+  std::vector<LandmarkScore> landmarks;  ///< {landmark}; empty where identities are unknown
+};
+
+/// `landmarks`: [m] where they really are. `path`: true poses at scans {scan, 3} [m, m, rad].
+MapScores map_scores(const FinalMap& map, const MapYardstick& sticks,
+                     std::span<const Eigen::Vector2d> landmarks, std::span<const double> path);
+
+}  // namespace montecarta

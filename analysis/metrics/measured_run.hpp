@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/data/run_reader.hpp"
+#include "analysis/metrics/beacon_scores.hpp"
+#include "analysis/metrics/joint_nees.hpp"
+#include "analysis/metrics/map_scores.hpp"
+#include "analysis/metrics/path_at_fixes.hpp"
+#include "analysis/metrics/pit.hpp"
+#include "analysis/metrics/reference_scores.hpp"
+#include "analysis/metrics/run_metrics.hpp"
+#include "analysis/statistics/whole_run_band.hpp"
+#include "engine/records/result_file.hpp"
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// What runs are measured by, common to all cells of a file, which must outlive it.
+struct Yardsticks {
+  std::span<const double> times;  ///< [s] of the scans
+  double level = 0.95;            ///< of NEES bounds
+  std::vector<PathAtFixes> references;
+  std::vector<Eigen::Vector2d> beacons;        ///< [m]
+  MapYardstick map;                            ///< of a simulation
+  std::span<const std::uint32_t> joint_scans;  ///< of joint estimates
+  BandWalks walks;                             ///< of as many scans where there is a truth
+  bool calibrates = false;  ///< whether calibration is judged: where noise is matched
+};
+
+Yardsticks yardsticks_of(const ResultFile& file, double level);
+
+/// One run being read and measured while others are. Keeps its memory from run to run.
+struct MeasuredRun {
+  RunRows rows;
+  RunReader::Scratch scratch;
+  RunMetrics metrics;
+  std::vector<ReferenceRun> references;
+  std::optional<BeaconScores> beacons;  ///< where the final map is stored and beacons are known
+  std::optional<MapScores> map;         ///< where it is stored and the world is known
+  std::vector<JointScore> joint;        ///< where joint estimates are stored
+  bool has_identities = false;          ///< whether anybody knows which landmark is which
+  RunPits pits;                         ///< where calibration is judged
+
+  /// Of `rows` of a complete run.
+  void measure(const Yardsticks& sticks, std::size_t particles);
+};
+
+}  // namespace montecarta

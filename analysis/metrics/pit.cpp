@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/pit.hpp"
+
+#include "analysis/statistics/means.hpp"
+#include "engine/numbers/angle.hpp"
+
+#include <cmath>
+
+namespace montecarta {
+namespace {
+
+double wrapped(std::size_t component, double difference) {
+  return component == 2 ? wrap(difference) : difference;
+}
+
+/// Gaussian probability of less than `error` = truth - mean; NaN where the variance is none.
+double gaussian_share(double error, double variance) {
+  if (!(variance > 0.0) || !std::isfinite(variance) || !std::isfinite(error)) return kNaN;
+  return 0.5 * std::erfc(-error / std::sqrt(2.0 * variance));
+}
+
+RunPits::Components gaussian_pits(const std::vector<double>& truth, const MomentRows& moments,
+                                  std::size_t scan) {
+  RunPits::Components pits;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double error = wrapped(c, truth[3 * scan + c] - moments.mean[3 * scan + c]);
+    pits[c] = gaussian_share(error, moments.covariance[9 * scan + 4 * c]);
+  }
+  return pits;
+}
+
+/// Rank of the truth among M particles, smoothed: of M + 1 gaps each is as probable, and where in
+/// its gap the truth lies is spread evenly over runs by `within`.
+RunPits::Components rank_pits(const std::vector<double>& truth, const CloudRows& cloud,
+                              std::size_t scan, std::size_t moment, double within) {
+  const std::size_t M = cloud.log_weight.size() / kQuarters;
+  RunPits::Components pits;
+  for (std::size_t c = 0; c < 3; ++c) {
+    double below = 0.0, all = 0.0;
+    for (std::size_t i = moment * M; i < (moment + 1) * M; ++i) {
+      const double weight = std::exp(cloud.log_weight[i]);
+      all += weight;
+      if (wrapped(c, cloud.pose[3 * i + c] - truth[3 * scan + c]) < 0.0) below += weight;
+    }
+    const auto n = static_cast<double>(M);
+    pits[c] = (below / all * n + within) / (n + 1.0);
+  }
+  return pits;
+}
+
+/// One landmark of the map, another one from run to run.
+std::array<double, 2> landmark_pits(const FinalMap& map, std::uint64_t run,
+                                    std::span<const Eigen::Vector2d> landmarks) {
+  std::vector<std::size_t> seen;
+  for (std::size_t l = 0; l < std::min(map.seen.size(), landmarks.size()); ++l) {
+    if (map.seen[l] != 0) seen.push_back(l);
+  }
+  if (seen.empty()) return {kNaN, kNaN};
+  const std::size_t l = seen[run % seen.size()];
+  const Eigen::Vector2d error = landmarks[l] - map.mean[l];
+  return {gaussian_share(error.x(), map.covariance[l](0, 0)),
+          gaussian_share(error.y(), map.covariance[l](1, 1))};
+}
+
+/// In (0, 1), evenly spread over any stretch of runs: multiples of the golden ratio.
+double evenly(std::uint64_t run) {
+  const double golden = 0.6180339887498949 * (static_cast<double>(run) + 0.5);
+  return golden - std::floor(golden);
+}
+
+}  // namespace
+
+RunPits pits_of(const RunRows& rows, std::uint64_t run,
+                std::span<const Eigen::Vector2d> landmarks) {
+  RunPits pits;
+  if (rows.truth.empty()) return pits;
+  const MomentRows& leading = rows.mixture.mean.empty() ? rows.spread : rows.mixture;
+  const auto scans = calibration_scans(rows.truth.size() / 3);
+  pits.has_pose = !leading.covariance.empty();
+  pits.has_rank = !rows.cloud.log_weight.empty();
+  pits.has_landmark = rows.final_map && !landmarks.empty();
+  for (std::size_t m = 0; m < kQuarters; ++m) {
+    if (pits.has_pose) pits.pose[m] = gaussian_pits(rows.truth, leading, scans[m]);
+    if (pits.has_rank) pits.rank[m] = rank_pits(rows.truth, rows.cloud, scans[m], m, evenly(run));
+  }
+  if (pits.has_landmark) pits.landmark = landmark_pits(*rows.final_map, run, landmarks);
+  return pits;
+}
+
+}  // namespace montecarta

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/data/run_rows.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// Probability integral transforms of one run: which share of what a filter holds for possible lies
+/// below the truth. Uniform over runs if the filter is calibrated. NaN where not defined.
+struct RunPits {
+  using Components = std::array<double, 3>;  ///< x, y, heading in the map frame
+  std::array<Components, kQuarters> pose{};  ///< by the Gaussian of the leading moments
+  std::array<Components, kQuarters> rank{};  ///< by the weighted particles
+  std::array<double, 2> landmark{};          ///< x, y of one landmark of the final map
+  bool has_pose = false, has_rank = false, has_landmark = false;  ///< what is stored
+};
+
+/// Of run number `run`. `landmarks` [m]: where they really are, by identity; empty where unknown.
+/// Every run gives one landmark alone, another one from run to run: those of one map go together.
+RunPits pits_of(const RunRows& rows, std::uint64_t run, std::span<const Eigen::Vector2d> landmarks);
+
+}  // namespace montecarta

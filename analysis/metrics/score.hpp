@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace montecarta {
+
+struct MeasuredRun;
+
+/// Which of two values of a score is the better one; neither: the lower one is counted, no more.
+enum class Better : std::uint8_t { lower, higher, neither };
+
+/// A number that a run has one of: what is averaged over runs, and compared run by run.
+struct Score {
+  const char* name;                  ///< as files and studies call it, e.g. "position_rmse"
+  const char* units;                 ///< UDUNITS style, "1" where there is none
+  const char* words;                 ///< for tables
+  double (*of)(const MeasuredRun&);  ///< NaN where it does not apply
+  Better better = Better::lower;
+};
+
+/// A number that every scan of a run has one of; averaged over runs.
+struct ScanSeries {
+  const char* name;
+  const char* units;
+  /// {scan} nothing where it does not apply.
+  std::vector<double> (*of)(const MeasuredRun&);
+  bool is_square = false;  ///< the root of its mean is what is shown
+};
+
+// All of them, in the order of tables. Each metric declares its own; scores.cpp lists the metrics.
+std::span<const Score> all_scores();
+std::span<const ScanSeries> all_scan_series();
+
+/// nullptr where no score has this name.
+const Score* find_score(std::string_view name);
+
+/// The scores of runs in the order of add().
+class ScoreTable {
+ public:
+  ScoreTable();
+  void add(const MeasuredRun& run);
+  std::size_t runs() const { return runs_; }
+  /// {run}; `score` is one of all_scores().
+  const std::vector<double>& column(const Score& score) const;
+  /// The same by name, which must be that of a score.
+  const std::vector<double>& column(std::string_view name) const;
+
+  /// A row that has these scores only.
+  struct Value {
+    std::string_view name;
+    double value;
+  };
+  void add(std::span<const Value> values);
+
+ private:
+  std::vector<std::vector<double>> columns_;  ///< {score}{run}
+  std::size_t runs_ = 0;
+};
+
+/// Place of a score among all_scores().
+std::size_t index_of(const Score& score);
+std::size_t index_of(std::string_view name);
+
+}  // namespace montecarta

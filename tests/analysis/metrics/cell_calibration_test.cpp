@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/cell_calibration.hpp"
+
+#include "analysis/figures/calibration_figure.hpp"
+#include "tests/analysis/synthetic_runs.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace montecarta {
+namespace {
+
+using testing::ElementsAre;
+
+std::vector<PitHistogram> judged(const SyntheticStudy& study, std::size_t runs,
+                                 const std::vector<RunRows>& extra = {}) {
+  CalibrationSums sums;
+  for (std::size_t run = 0; run < runs; ++run) {
+    RunRows rows = study.run(run);
+    if (run < extra.size()) {
+      rows.cloud = extra[run].cloud;
+      rows.final_map = extra[run].final_map;
+    }
+    sums.add(pits_of(rows, run, {}));
+  }
+  return sums.result(study.times(), 0.95);
+}
+
+bool all_are(const std::vector<PitHistogram>& found, Calibration verdict, std::string quantity) {
+  return std::ranges::all_of(found, [&](const PitHistogram& one) {
+    return one.quantity != quantity || one.test.verdict == verdict;
+  });
+}
+
+TEST(CellCalibration, NamesWhatIsWrongWithAFilter) {
+  const auto sure = judged({.scans = 40, .inflation = 1.8}, 300);
+  ASSERT_EQ(sure.size(), 12u) << "x, y, heading at four moments";
+  for (const char* quantity : {"x", "y", "heading"}) {
+    EXPECT_TRUE(all_are(sure, Calibration::too_narrow, quantity)) << quantity;
+    EXPECT_TRUE(
+        all_are(judged({.scans = 40, .inflation = 0.5}, 300), Calibration::too_wide, quantity));
+  }
+  const auto biased = judged({.scans = 40, .bias = {0.2, 0.0, 0.0}}, 300);
+  EXPECT_TRUE(all_are(biased, Calibration::shifted, "x"));
+}
+
+// 12 tests at 5 % at most in each of 40 studies: 0.05 +- 5 standard errors.
+TEST(CellCalibration, FindsAPerfectFilterCalibrated) {
+  double alarms = 0.0, tests = 0.0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    for (const PitHistogram& one : judged({.scans = 8, .seed = 100 + seed}, 100)) {
+      tests += 1.0;
+      alarms += one.test.verdict == Calibration::calibrated ? 0.0 : 1.0;
+    }
+  }
+  EXPECT_LT(alarms / tests, 0.05 + 5.0 * std::sqrt(0.05 * 0.95 / tests));
+  EXPECT_GT(alarms, 0.0) << "a test that never fails is none";
+}
+
+/// A cloud of M particles around the truth of each moment, the truth one more draw of the same law.
+CloudRows cloud_about(const RunRows& rows, std::size_t M, double spread, RngStream& draw) {
+  CloudRows cloud;
+  for (const std::size_t scan : calibration_scans(rows.truth.size() / 3)) {
+    const double centre = draw.normal();
+    for (std::size_t i = 0; i < M; ++i) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        cloud.pose.push_back(rows.truth[3 * scan + c] + 0.1 * (spread * draw.normal() - centre));
+      }
+      cloud.log_weight.push_back(-std::log(static_cast<double>(M)));
+    }
+  }
+  return cloud;
+}
+
+TEST(CellCalibration, RanksTheTruthAmongTheParticles) {
+  const SyntheticStudy study{.scans = 8};
+  RngStream draw({.seed = 4});
+  for (const double spread : {1.0, 0.3}) {
+    CalibrationSums sums;
+    for (std::uint64_t run = 0; run < 300; ++run) {
+      RunRows rows = study.run(run);
+      rows.cloud = cloud_about(rows, 20, spread, draw);
+      sums.add(pits_of(rows, run, {}));
+    }
+    const auto found = sums.result(study.times(), 0.999);
+    ASSERT_EQ(found.size(), 24u);
+    for (std::size_t i = 12; i < 24; ++i) {
+      EXPECT_EQ(found[i].by, "particles");
+      EXPECT_EQ(found[i].test.verdict,
+                spread == 1.0 ? Calibration::calibrated : Calibration::too_narrow);
+    }
+  }
+}
+
+TEST(CellCalibration, TakesOneLandmarkOfEveryRun) {
+  const std::vector<Eigen::Vector2d> world = {{0, 0}, {9, 9}, {5, 5}};
+  const SyntheticStudy study{.scans = 8};
+  RngStream draw({.seed = 6});
+  CalibrationSums sums;
+  for (std::uint64_t run = 0; run < 200; ++run) {
+    RunRows rows = study.run(run);
+    FinalMap map{{1, 0, 1}, world, std::vector<Eigen::Matrix2d>(3, Eigen::Matrix2d::Identity())};
+    for (auto& mean : map.mean) mean += Eigen::Vector2d(draw.normal(), 3.0 * draw.normal());
+    rows.final_map = map;
+    sums.add(pits_of(rows, run, world));
+  }
+  const auto found = sums.result(study.times(), 0.95);
+  ASSERT_EQ(found.size(), 14u);
+  EXPECT_EQ(found[12].quantity, "landmark x");
+  EXPECT_EQ(found[12].test.verdict, Calibration::calibrated);
+  EXPECT_EQ(found[13].test.verdict, Calibration::too_narrow);
+}
+
+TEST(CellCalibration, CountsWhatHasNoValue) {
+  const SyntheticStudy study{.scans = 8};
+  CalibrationSums sums;
+  for (std::uint64_t run = 0; run < 50; ++run) {
+    RunRows rows = study.run(run);
+    if (run < 3) rows.spread.covariance.assign(rows.spread.covariance.size(), 0.0);
+    sums.add(pits_of(rows, run, {}));
+  }
+  const auto found = sums.result(study.times(), 0.95);
+  EXPECT_EQ(found[0].undefined, 3u);
+  EXPECT_TRUE(CalibrationSums().result(study.times(), 0.95).empty());
+}
+
+TEST(CellCalibration, IsTestedAtTheEndOfEachQuarter) {
+  EXPECT_THAT(calibration_scans(100), ElementsAre(24, 49, 74, 99));
+  EXPECT_THAT(calibration_scans(1), ElementsAre(0, 0, 0, 0));
+}
+
+/// No run has a value: no landmark was ever seen, or no covariance is one.
+TEST(CalibrationFigures, DrawEmptyBinsWhereThereIsNoValue) {
+  StudyAnalysis study;
+  study.times = {1.0};
+  study.cells.resize(1);
+  study.cells[0].calibration.push_back(
+      {"landmark x", "Gaussian", 1.0, 3, judge_uniformity({}, band_for(0, 0.95))});
+  const Figure figure = calibration_figures(study).front();
+  ASSERT_EQ(figure.data.size(), 1u);
+  for (const auto& row : figure.data[0].rows) EXPECT_EQ(row[2], 0.0);
+  EXPECT_GT(figure.chart.panels[0].axis.high, 0.0);
+}
+
+}  // namespace
+}  // namespace montecarta

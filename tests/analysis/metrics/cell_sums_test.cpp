@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/cell_sums.hpp"
+
+#include "tests/analysis/synthetic_runs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace montecarta {
+namespace {
+
+/// Adds up runs that are given as plain rows.
+class Sums {
+ public:
+  explicit Sums(std::vector<double> times) : times_(std::move(times)) {}
+
+  void add(const RunRows& rows, std::size_t particles = 0) {
+    run_.rows = rows;
+    run_.measure(sticks_, particles);
+    sums_.add(run_);
+  }
+  CellAnalysis result() { return sums_.result(); }
+
+ private:
+  std::vector<double> times_;
+  Yardsticks sticks_{.times = times_,
+                     .level = 0.95,
+                     .references = {},
+                     .beacons = {},
+                     .map = {},
+                     .joint_scans = {},
+                     .walks = BandWalks(times_.size())};
+  CellSums sums_{sticks_};
+  MeasuredRun run_;
+};
+
+CellAnalysis analyze_runs(const SyntheticStudy& study, std::uint64_t runs) {
+  Sums sums(study.times());
+  for (std::uint64_t run = 0; run < runs; ++run) sums.add(study.run(run));
+  return sums.result();
+}
+
+const NeesResult& nees_of(const CellAnalysis& cell, ErrorBlock block,
+                          Moments moments = Moments::spread) {
+  const NeesResult* found = cell.find_nees(block, moments);
+  EXPECT_NE(found, nullptr);
+  return *found;
+}
+
+TEST(CellSums, FindsAPerfectFilterInsideItsBandAsOftenAsPromised) {
+  SyntheticStudy study;
+  study.scans = 2000;
+  const CellAnalysis cell = analyze_runs(study, 30);
+  for (const ErrorBlock block : kErrorBlocks) {
+    const NeesResult& nees = nees_of(cell, block);
+    const double d = static_cast<double>(nees.series.dimension);
+    const double share_error = std::sqrt(0.95 * 0.05 / 2000.0);
+    EXPECT_NEAR(nees.consistency.share_inside, 0.95, 5.0 * share_error) << d;
+    EXPECT_NEAR(nees.consistency.mean, d, 5.0 * std::sqrt(2.0 * d / (30.0 * 2000.0))) << d;
+    EXPECT_EQ(nees.consistency.verdict, Verdict::consistent);
+    EXPECT_NEAR(nees.series.bounds[7].upper, nees_bounds(30, nees.series.dimension, 0.95).upper,
+                1e-12);
+  }
+}
+
+TEST(CellSums, FindsInflatedErrorsAboveTheBand) {
+  SyntheticStudy study;
+  study.inflation = 1.5;
+  const CellAnalysis cell = analyze_runs(study, 30);
+  const Consistency pose = cell.consistency();
+  EXPECT_NEAR(pose.mean, 3.0 * 2.25, 5.0 * std::sqrt(6.0 / (30.0 * 400.0)) * 2.25);
+  EXPECT_EQ(pose.verdict, Verdict::inconsistent);
+  EXPECT_DOUBLE_EQ(*pose.lasting_exit, 0.2);
+}
+
+TEST(CellSums, FindsTooLargeACovarianceBelowTheBand) {
+  SyntheticStudy study;
+  study.inflation = 0.6;
+  EXPECT_EQ(analyze_runs(study, 30).consistency().verdict, Verdict::conservative);
+}
+
+TEST(CellSums, FindsABiasAndItsRmse) {
+  SyntheticStudy study;
+  study.bias = {0.5, 0.0, 0.0};
+  const CellAnalysis cell = analyze_runs(study, 40);
+  const double mse = 0.25 + 0.04 + 0.09;  // bias squared and both variances
+  EXPECT_NEAR(cell.over_runs("position_mse").mean, mse,
+              5.0 * cell.over_runs("position_mse").standard_error());
+  EXPECT_NEAR(cell.over_runs("heading_mse").mean, 0.0025,
+              5.0 * cell.over_runs("heading_mse").standard_error());
+  EXPECT_GT(cell.over_runs("position_mse").standard_error(), 0.0);
+  EXPECT_EQ(cell.consistency().verdict, Verdict::inconsistent);
+  EXPECT_NEAR(nees_of(cell, ErrorBlock::heading).consistency.mean, 1.0, 0.1);
+}
+
+TEST(CellSums, SaysHowSureItIs) {
+  SyntheticStudy study;
+  study.inflation = 1.5;
+  const CellAnalysis cell = analyze_runs(study, 30);
+  const Consistency pose = cell.consistency();
+  EXPECT_LT(pose.average_bounds.upper, 3.2);
+  EXPECT_LT(pose.average_interval.lower, 6.75);
+  EXPECT_GT(pose.average_interval.upper, 6.75);
+  ASSERT_TRUE(pose.exit_interval);
+  EXPECT_DOUBLE_EQ(pose.exit_interval->lower, 0.2);
+  EXPECT_LT(cell.interval_of("position_rmse").lower, cell.over_runs("position_rmse").mean);
+  EXPECT_GT(cell.interval_of("position_rmse").upper, cell.over_runs("position_rmse").mean);
+  EXPECT_TRUE(std::isnan(cell.interval_of("ess").lower));
+  ASSERT_TRUE(cell.credibility && cell.anatomy);
+  EXPECT_NEAR(cell.credibility->inclination, 20.0 * std::log10(1.5), 0.3);
+  EXPECT_NEAR(cell.anatomy->happened[2].back() / cell.anatomy->believed[2].back(), 1.5, 0.5);
+  EXPECT_EQ(cell.run_exits.size(), 30u);
+}
+
+TEST(CellSums, WrapsTheHeading) {
+  SyntheticStudy study;  // its heading turns through pi again and again
+  const CellAnalysis cell = analyze_runs(study, 10);
+  EXPECT_LT(cell.over_runs("heading_rmse").mean, 0.06);
+}
+
+TEST(CellSums, KnowsAPairOfRunsByHand) {
+  Sums sums({0.2, 0.4});
+  for (const double error : {1.0, 3.0}) {
+    RunRows rows;
+    rows.truth = {error, 0.0, 0.0, 0.0, error, 0.1};
+    rows.spread.mean.assign(6, 0.0);
+    rows.cpu_seconds = error;
+    sums.add(rows);
+  }
+  const CellAnalysis cell = sums.result();
+  EXPECT_EQ(cell.complete, 2u);
+  EXPECT_TRUE(cell.nees.empty());
+  EXPECT_EQ(cell.consistency().verdict, Verdict::untested);
+  EXPECT_DOUBLE_EQ(cell.over_runs("position_rmse").mean, 2.0);
+  EXPECT_DOUBLE_EQ(cell.over_runs("position_rmse").sd, std::sqrt(2.0));
+  EXPECT_DOUBLE_EQ(cell.over_runs("position_rmse").standard_error(), 1.0);
+  EXPECT_DOUBLE_EQ(cell.over_runs("position_mse").mean, 5.0);
+  EXPECT_DOUBLE_EQ(cell.over_runs("position_error_variance_over_time").mean, 0.0);
+  EXPECT_DOUBLE_EQ(cell.over_runs("heading_error").mean, 0.05);
+  EXPECT_DOUBLE_EQ(cell.over_time("position_rmse")[1], std::sqrt(5.0));
+  EXPECT_DOUBLE_EQ(cell.over_runs("cpu_seconds").mean, 2.0);
+}
+
+TEST(CellSums, LetsTheMixtureLeadAndKeepsTheSpread) {
+  const SyntheticStudy study;
+  Sums sums(study.times());
+  for (std::uint64_t run = 0; run < 30; ++run) {
+    RunRows rows = study.run(run);
+    rows.mixture = rows.spread;
+    for (double& element : rows.spread.covariance) element *= 0.25;
+    sums.add(rows);
+  }
+  const CellAnalysis cell = sums.result();
+  EXPECT_EQ(cell.leading, Moments::mixture);
+  EXPECT_EQ(cell.consistency().verdict, Verdict::consistent);
+  EXPECT_EQ(nees_of(cell, ErrorBlock::pose).consistency.verdict, Verdict::inconsistent);
+  EXPECT_NEAR(nees_of(cell, ErrorBlock::pose).consistency.mean, 4.0 * cell.consistency().mean,
+              1e-9);
+}
+
+TEST(CellSums, CountsWhatIsSingularOrUndefined) {
+  SyntheticStudy study;
+  study.scans = 3;
+  Sums sums(study.times());
+  for (std::uint64_t run = 0; run < 4; ++run) {
+    RunRows rows = study.run(run);
+    if (run == 1) std::fill_n(rows.spread.covariance.begin(), 9, 0.0);
+    if (run == 2) rows.spread.covariance[9] = std::numeric_limits<double>::quiet_NaN();
+    sums.add(rows);
+  }
+  const CellAnalysis cell = sums.result();
+  const NeesSeries& series = nees_of(cell, ErrorBlock::pose).series;
+  EXPECT_EQ(series.samples, 12u);
+  EXPECT_EQ(series.floored, 1u);
+  EXPECT_EQ(series.undefined, 1u);
+  EXPECT_EQ(series.runs, (std::vector<std::uint32_t>{4, 3, 4}));
+  EXPECT_DOUBLE_EQ(series.bounds[1].upper, nees_bounds(3, 3, 0.95).upper);
+  EXPECT_TRUE(std::isfinite(series.average[1]));
+}
+
+TEST(CellSums, SummarisesParticles) {
+  Sums sums({0.2, 0.4});
+  RunRows rows;
+  rows.truth.assign(6, 0.0);
+  rows.spread.mean.assign(6, 0.0);
+  rows.ess = {4.0, 2.0};
+  rows.resampled = {1, 0};
+  rows.ancestor = {0, 1, 2, 3, 0, 0, 0, 1};
+  sums.add(rows, 4);
+  const CellAnalysis cell = sums.result();
+  EXPECT_DOUBLE_EQ(cell.over_runs("ess").mean, 3.0);
+  EXPECT_DOUBLE_EQ(cell.over_runs("resampling_rate").mean, 0.5);
+  EXPECT_DOUBLE_EQ(cell.over_runs("ancestors_at_start").mean, 3.0);
+  EXPECT_DOUBLE_EQ(cell.over_runs("ancestors_at_start_at_the_end").mean, 2.0);
+}
+
+TEST(CellSums, SumsAssociationsOverARunAndAveragesOverRuns) {
+  Sums sums({0.2, 0.4});
+  RunRows rows;
+  rows.truth.assign(6, 0.0);
+  rows.spread.mean.assign(6, 0.0);
+  sums.add(rows);
+  EXPECT_TRUE(std::isnan(sums.result().over_runs("association_correct").mean));
+  Sums counted({0.2, 0.4});
+  for (const double wrong : {1.0, 4.0}) {
+    rows.association = {{3.0, 2.5}, {wrong, 0.5}, {0.0, 0.0}, {1.0, 0.0}, {0.0, 2.0}};
+    counted.add(rows);
+  }
+  const CellAnalysis cell = counted.result();
+  EXPECT_DOUBLE_EQ(cell.over_runs("association_correct").mean, 5.5);
+  EXPECT_DOUBLE_EQ(cell.over_runs("association_wrong").mean, 3.0);
+  EXPECT_DOUBLE_EQ(cell.over_runs("association_missed").mean, 1.0);
+  EXPECT_DOUBLE_EQ(cell.over_runs("association_clutter").mean, 2.0);
+  EXPECT_DOUBLE_EQ(cell.scores.column("association_wrong")[1], 4.5);
+}
+
+}  // namespace
+}  // namespace montecarta

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/cramer_rao.hpp"
+
+#include "filters/models/ackermann.hpp"
+#include "filters/models/range_bearing.hpp"
+
+#include <Eigen/Cholesky>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace montecarta {
+namespace {
+
+constexpr double kStep = 0.1;  // [s]
+
+using Landmarks = std::vector<Eigen::Vector2d>;
+
+SimulatedWorld open_world() {
+  return {.vehicle = {.wheelbase = 2.0},
+          .sigma_control = {0.3, 0.05},
+          .sigma_sight = {0.1, 0.02},
+          .detected = 1.0,
+          .view = FieldOfView(50.0, kPi),
+          .same_path = true};
+}
+
+/// A path under these controls, with a scan after every `every`-th step.
+TruePath path_of(const std::vector<Control>& controls, std::size_t every, Landmarks landmarks) {
+  const Vehicle vehicle = open_world().vehicle;
+  TruePath path;
+  path.landmarks = std::move(landmarks);
+  Pose pose = path.start;
+  for (std::size_t k = 0; k < controls.size(); ++k) {
+    pose = move(pose, controls[k], kStep, vehicle);
+    path.rows.push_back(pose);
+    path.steps.push_back(1);
+    path.durations.push_back(kStep);
+    if ((k + 1) % every == 0) path.scan_rows.push_back(static_cast<std::uint32_t>(k));
+  }
+  return path;
+}
+
+std::vector<Control> bends(std::size_t n, double phase = 0.4) {
+  std::vector<Control> controls;
+  for (std::size_t k = 0; k < n; ++k) {
+    controls.push_back({3.0, 0.2 * std::sin(phase * static_cast<double>(k))});
+  }
+  return controls;
+}
+
+/// All that a run says, as a function of all that is unknown: the errors of the controls, the
+/// sights of each scan, and the pose at the end, for controls and landmarks moved by `unknown`.
+struct Trajectory {
+  const SimulatedWorld* world;
+  const Landmarks* landmarks;
+  const std::vector<Control>* controls;
+  std::size_t every;
+  Pose end(const Eigen::VectorXd& unknown, std::vector<double>* sights) const {
+    Pose pose;
+    const auto n = static_cast<Eigen::Index>(controls->size());
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const Control& control = (*controls)[static_cast<std::size_t>(k)];
+      pose = move(pose, {control.speed + unknown(2 * k), control.steer + unknown(2 * k + 1)}, kStep,
+                  world->vehicle);
+      if (static_cast<std::size_t>(k + 1) % every != 0 || sights == nullptr) continue;
+      for (Eigen::Index l = 0; l < static_cast<Eigen::Index>(landmarks->size()); ++l) {
+        const Eigen::Vector2d at =
+            (*landmarks)[static_cast<std::size_t>(l)] + unknown.segment<2>(2 * (n + l));
+        const auto sight = predicted_sight(pose, Point{at.x(), at.y()});
+        sights->push_back(sight.range / world->sigma_sight(0));
+        sights->push_back(sight.bearing / world->sigma_sight(1));
+      }
+    }
+    return pose;
+  }
+};
+
+/// The bound by the joint information matrix of the whole trajectory, derivatives by differences.
+Eigen::Matrix3d reference(const SimulatedWorld& world, const Landmarks& landmarks,
+                          const std::vector<Control>& controls, std::size_t every) {
+  const Trajectory trajectory{&world, &landmarks, &controls, every};
+  const auto n = static_cast<Eigen::Index>(2 * (controls.size() + landmarks.size()));
+  std::vector<double> once;
+  trajectory.end(Eigen::VectorXd::Zero(n), &once);
+  Eigen::MatrixXd H(once.size(), n);
+  Eigen::Matrix3Xd G(3, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double h = 1e-5;
+    std::vector<double> more, less;
+    const Pose ahead = trajectory.end(h * Eigen::VectorXd::Unit(n, i), &more);
+    const Pose behind = trajectory.end(-h * Eigen::VectorXd::Unit(n, i), &less);
+    G.col(i) = boxminus(ahead, behind) / (2.0 * h);
+    for (std::size_t s = 0; s < more.size(); ++s) {
+      H(static_cast<Eigen::Index>(s), i) = (more[s] - less[s]) / (2.0 * h);
+    }
+  }
+  Eigen::MatrixXd information = H.transpose() * H;
+  for (std::size_t k = 0; k < controls.size(); ++k) {
+    for (Eigen::Index c = 0; c < 2; ++c) {
+      const auto i = 2 * static_cast<Eigen::Index>(k) + c;
+      information(i, i) += 1.0 / (world.sigma_control(c) * world.sigma_control(c));
+    }
+  }
+  return G * information.ldlt().solve(G.transpose());
+}
+
+const Landmarks kAhead = {{30, 3}, {31, -6}, {40, 12}};  // always in view
+
+TEST(CramerRaoBound, IsThatOfTheJointInformationOfTheWholeTrajectory) {
+  const SimulatedWorld world = open_world();
+  const std::vector<Control> controls = bends(24);
+  const CramerRaoBound bound = squared_bound(world, path_of(controls, 4, kAhead));
+  ASSERT_EQ(bound.position.size(), 6u);
+  for (std::size_t s = 0; s < 6; ++s) {
+    const std::vector<Control> until(controls.begin(),
+                                     controls.begin() + static_cast<std::ptrdiff_t>(4 * (s + 1)));
+    const Eigen::Matrix3d P = reference(world, kAhead, until, 4);
+    EXPECT_NEAR(bound.position[s] / (P(0, 0) + P(1, 1)), 1.0, 1e-5) << "scan " << s;
+    EXPECT_NEAR(bound.heading[s] / P(2, 2), 1.0, 1e-5) << "scan " << s;
+  }
+}
+
+// On a straight line towards its only landmark, with an error of the speed alone, the problem is
+// linear: a Kalman filter of two numbers, by hand.
+TEST(CramerRaoBound, IsTheKalmanFiltersCovarianceWhereTheProblemIsLinear) {
+  SimulatedWorld world = open_world();
+  world.view = FieldOfView(200.0, kPi);
+  world.sigma_control = {0.3, 0.0};
+  const std::vector<Control> controls(20, Control{3.0, 0.0});
+  const CramerRaoBound bound = squared_bound(world, path_of(controls, 2, {{100.0, 0.0}}));
+  const double q = 2.0 * 0.3 * 0.3 * kStep * kStep, r = 0.1 * 0.1;
+  double x = q, xl = q, l = q + r;  // covariance after the first scan, where the landmark is born
+  for (std::size_t s = 0; s < bound.position.size(); ++s) {
+    if (s > 0) {
+      x += q;
+      const double S = x - 2.0 * xl + l + r, gain_x = (xl - x) / S, gain_l = (l - xl) / S;
+      const double old_x = x, old_l = l, old_xl = xl;
+      x = old_x - gain_x * gain_x * S;
+      l = old_l - gain_l * gain_l * S;
+      xl = old_xl - gain_x * gain_l * S;
+    }
+    EXPECT_NEAR(bound.position[s], x, 1e-12);
+    EXPECT_NEAR(bound.heading[s], 0.0, 1e-12);
+  }
+}
+
+TEST(CramerRaoBound, NeedsTheScansAloneOnASmoothPath) {
+  const SimulatedWorld world = open_world();
+  const std::vector<Control> controls = bends(40, 0.1);
+  const TruePath every = path_of(controls, 4, kAhead);
+  TruePath scans{every.start, {}, {}, {}, kAhead, {}};
+  for (std::size_t s = 0; s < every.scan_rows.size(); ++s) {
+    scans.rows.push_back(every.rows[every.scan_rows[s]]);
+    scans.steps.push_back(4);
+    scans.durations.push_back(kStep);
+    scans.scan_rows.push_back(static_cast<std::uint32_t>(s));
+  }
+  const CramerRaoBound all = squared_bound(world, every), few = squared_bound(world, scans);
+  for (std::size_t s = 0; s < all.position.size(); ++s) {
+    EXPECT_NEAR(few.position[s] / all.position[s], 1.0, 0.01);
+    EXPECT_NEAR(few.heading[s] / all.heading[s], 1.0, 0.01);
+  }
+}
+
+// Half of the information, on the average, is that of twice the variance.
+TEST(CramerRaoBound, LosesTheInformationOfWhatIsMissed) {
+  SimulatedWorld half = open_world(), worse = half, none = half;
+  half.detected = 0.5;
+  worse.sigma_sight *= std::sqrt(2.0);
+  none.detected = 0.0;
+  const TruePath path = path_of(bends(24), 4, kAhead);
+  const CramerRaoBound full = squared_bound(open_world(), path);
+  EXPECT_NEAR(squared_bound(half, path).map, squared_bound(worse, path).map, 1e-12);
+  EXPECT_GT(squared_bound(half, path).position.back(), full.position.back());
+  EXPECT_GT(squared_bound(none, path).position.back(), squared_bound(half, path).position.back());
+  EXPECT_TRUE(std::isnan(squared_bound(none, path).map));
+}
+
+TEST(CramerRaoBound, KnowsNothingOfWhatIsNotInView) {
+  const auto bound_with = [](const Landmarks& landmarks) {
+    return squared_bound(open_world(), path_of(bends(24), 4, landmarks)).position;
+  };
+  EXPECT_EQ(bound_with({{-5.0, 0.0}, {500.0, 0.0}}), bound_with({}));
+}
+
+TEST(CramerRaoBound, OfTheMapIsThatOfTheLandmarksSeen) {
+  const auto map_with = [](const Landmarks& landmarks) {
+    return squared_bound(open_world(), path_of(bends(24), 4, landmarks)).map;
+  };
+  EXPECT_EQ(map_with({{8.0, 3.0}, {500.0, 0.0}}), map_with({{8.0, 3.0}}));
+}
+
+}  // namespace
+}  // namespace montecarta

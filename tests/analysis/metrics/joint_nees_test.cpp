@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/joint_nees.hpp"
+
+#include "analysis/statistics/means.hpp"
+#include "engine/numbers/angle.hpp"
+#include "engine/random/stream.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace montecarta {
+namespace {
+
+using testing::Each;
+using testing::HasSubstr;
+
+constexpr Eigen::Index kStates = 7;  // two landmarks
+const std::vector<Eigen::Vector2d> kJointWorld = {{5, 1}, {2, -3}};
+const std::vector<double> kTruth = {9, 9, 9,
+                                    1, 2, 3.1};  // of two scans, of which the second counts
+const std::vector<std::uint32_t> kJointScans = {1};
+
+Eigen::VectorXd state() {
+  Eigen::VectorXd state(kStates);
+  state << 1, 2, 3.1, 5, 1, 2, -3;
+  return state;
+}
+
+/// Pose and landmarks that go together closely.
+Eigen::MatrixXd covariance() {
+  Eigen::MatrixXd P = Eigen::MatrixXd::Constant(kStates, kStates, 0.09);
+  P.diagonal().array() += 0.01;
+  return P;
+}
+
+JointRows rows_of(const Eigen::VectorXd& mean, const Eigen::MatrixXd& P) {
+  return {{mean.data(), mean.data() + mean.size()}, {P.data(), P.data() + P.size()}};
+}
+
+JointScore score_of(const Eigen::VectorXd& mean, const Eigen::MatrixXd& P) {
+  return joint_scores(rows_of(mean, P), kJointScans, kTruth, kJointWorld).at(0);
+}
+
+TEST(JointScores, AreTheSquaredErrorByTheWholeCovariance) {
+  Eigen::VectorXd error(kStates);
+  error << 0.3, -0.1, 0.2, 0.4, 0.1, -0.2, 0.05;
+  const JointScore score = score_of(state() + error, covariance());
+  EXPECT_EQ(score.dimension, 7u);
+  EXPECT_NEAR(score.nees, error.dot(covariance().inverse() * error), 1e-9);
+}
+
+TEST(JointScores, TakeHeadingsByTheShorterWay) {
+  Eigen::VectorXd mean = state();
+  mean(2) = -3.1;
+  const double turn = 2.0 * kPi - 6.2;
+  EXPECT_NEAR(score_of(mean, Eigen::MatrixXd::Identity(kStates, kStates)).nees, turn * turn, 1e-12);
+}
+
+TEST(JointScores, LeaveOutLandmarksNeverSeen) {
+  Eigen::VectorXd mean = state();
+  Eigen::MatrixXd P = covariance();
+  mean.segment<2>(3).setConstant(kNaN);
+  P.middleRows<2>(3).setConstant(kNaN);
+  P.middleCols<2>(3).setConstant(kNaN);
+  mean(5) += 0.1;
+  const JointScore score = score_of(mean, P);
+  EXPECT_EQ(score.dimension, 5u);
+  Eigen::MatrixXd rest = Eigen::MatrixXd::Constant(5, 5, 0.09);
+  rest.diagonal().array() += 0.01;
+  EXPECT_NEAR(score.nees, 0.01 * rest.inverse()(3, 3), 1e-9);
+}
+
+TEST(JointScores, AreNoNumberWhereThereIsNone) {
+  Eigen::MatrixXd P = covariance();
+  P(6, 6) = -0.1;
+  EXPECT_TRUE(std::isnan(score_of(state(), P).nees));
+  P = covariance();
+  P(0, 1) = P(1, 0) = 1.0;  // not positive definite
+  EXPECT_TRUE(std::isnan(score_of(state(), P).nees));
+  P(0, 1) = kNaN;
+  EXPECT_TRUE(std::isnan(score_of(state(), P).nees));
+  Eigen::VectorXd mean = state();
+  mean(0) = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(std::isnan(score_of(mean, covariance()).nees));
+}
+
+/// A study of `runs` runs and four rows, errors drawn from `drawn`, judged by `told`.
+JointConsistency study_of(std::size_t runs, const Eigen::MatrixXd& drawn,
+                          const Eigen::MatrixXd& told, std::uint64_t seed) {
+  const Eigen::MatrixXd L = drawn.llt().matrixL();
+  JointNeesSums sums;
+  for (std::uint64_t run = 0; run < runs; ++run) {
+    RngStream draw({.seed = seed, .run = run, .purpose = Draw::test});
+    std::vector<JointScore> scores;
+    for (int row = 0; row < 4; ++row) {
+      Eigen::VectorXd noise(kStates);
+      for (double& value : noise) value = draw.normal();
+      scores.push_back(score_of(state() + L * noise, told));
+    }
+    sums.add(scores);
+  }
+  return sums.result(0.95, true);
+}
+
+TEST(JointConsistency, AccusesARightFilterSeldom) {
+  int accused = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    accused +=
+        study_of(20, covariance(), covariance(), seed).verdict != Verdict::consistent ? 1 : 0;
+  }
+  // 5 % or a little less, and 5 standard errors of 400 studies
+  EXPECT_LE(accused, 400 * 0.05 + 5.0 * std::sqrt(400 * 0.05 * 0.95));
+  EXPECT_GE(accused, 2);
+}
+
+TEST(JointConsistency, FindsTheScaleOfACovariance) {
+  EXPECT_EQ(study_of(60, 1.3 * covariance(), covariance(), 1).verdict, Verdict::optimistic);
+  const JointConsistency cautious = study_of(60, 0.7 * covariance(), covariance(), 1);
+  EXPECT_EQ(cautious.verdict, Verdict::conservative);
+  EXPECT_NEAR(cautious.average.back(), 0.7, 0.1);
+  EXPECT_THAT(cautious.runs, Each(60u));
+  EXPECT_THAT(cautious.dimension, Each(7.0));
+}
+
+TEST(JointConsistency, FindsCorrelationsForgotten) {
+  const Eigen::MatrixXd alone = covariance().diagonal().asDiagonal();
+  EXPECT_EQ(study_of(60, alone, covariance(), 1).verdict, Verdict::optimistic)
+      << "every part by itself is right";
+}
+
+TEST(JointConsistency, HasTheBoundsOfTheSum) {
+  const JointConsistency found = study_of(60, covariance(), covariance(), 1);
+  const Interval one = nees_bounds(60, 7, 1.0 - 0.05 / 4.0);
+  EXPECT_NEAR(found.bounds[2].lower, one.lower / 7.0, 1e-12);
+  EXPECT_NEAR(found.bounds[2].upper, one.upper / 7.0, 1e-12);
+}
+
+TEST(JointConsistency, CountsWhatIsNoNumber) {
+  JointNeesSums sums;
+  const std::vector<JointScore> whole = {{7.0, 7}, {5.0, 5}}, part = {{kNaN, 7}, {6.0, 5}};
+  sums.add(whole);
+  sums.add(part);
+  sums.add({});
+  const JointConsistency found = sums.result(0.95, true);
+  EXPECT_EQ(found.samples, 4u);
+  EXPECT_EQ(found.undefined, 1u);
+  EXPECT_EQ(found.runs[0], 1u);
+  EXPECT_EQ(found.average[0], 1.0);
+  EXPECT_EQ(found.average[1], 1.1);
+  EXPECT_EQ(nees_per_component(part), 6.0 / 5.0);
+  EXPECT_TRUE(std::isnan(nees_per_component({})));
+}
+
+TEST(JointConsistency, SaysWhyItIsNotTested) {
+  JointNeesSums sums;
+  EXPECT_FALSE(sums.result(0.95, true).stored);
+  sums.add(std::vector<JointScore>{{7.0, 7}});
+  const JointConsistency found = sums.result(0.95, false);
+  EXPECT_EQ(found.verdict, Verdict::untested);
+  EXPECT_THAT(found.missing, HasSubstr("which landmark is which"));
+}
+
+}  // namespace
+}  // namespace montecarta
