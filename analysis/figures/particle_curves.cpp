@@ -102,7 +102,8 @@ ChartPanel chart_panel(const std::vector<ParticleCurve>& curves,
   panel.x.assign(numbers.begin(), numbers.end());
   for (const ParticleCurve& curve : curves) {
     const std::vector<double> nothing(numbers.size(), kNone);
-    auto& drawn = panel.curves.emplace_back(curve.legend, curve.style, nothing, nothing, nothing);
+    auto& drawn = panel.curves.emplace_back();
+    drawn = {curve.legend, curve.style, nothing, nothing, nothing};
     for (const ParticleCurve::Point& point : curve.points) {
       const auto at = static_cast<std::size_t>(std::ranges::lower_bound(numbers, point.particles) -
                                                numbers.begin());

@@ -47,9 +47,9 @@ void take_what_is_free(Market& market) {
 /// The cheapest ways from one row to all columns (Dijkstra), until one ends at a free column.
 struct Search {
   Search(const Market& market, Eigen::Index start)
-      : distance(market.cost->cols(), kInfinity),
-        previous(market.cost->cols(), kNobody),
-        done(market.cost->cols(), false) {
+      : distance(static_cast<std::size_t>(market.cost->cols()), kInfinity),
+        previous(distance.size(), kNobody),
+        done(distance.size(), false) {
     Eigen::Index row = start, last = kNobody;
     double so_far = 0.0;
     while (row != kNobody) {

@@ -16,7 +16,7 @@ namespace {
 using Bytes = std::span<const std::byte>;
 
 template <class T>
-T value_at(Bytes bytes, std::size_t i) {
+T element_at(Bytes bytes, std::size_t i) {
   T value{};
   std::memcpy(&value, bytes.data() + i * sizeof(T), sizeof(T));
   return value;
@@ -25,18 +25,18 @@ T value_at(Bytes bytes, std::size_t i) {
 std::string text_of(Bytes bytes, Element element, std::size_t i) {
   switch (element) {
     case Element::u8:
-      return std::to_string(value_at<std::uint8_t>(bytes, i));
+      return std::to_string(element_at<std::uint8_t>(bytes, i));
     case Element::u16:
-      return std::to_string(value_at<std::uint16_t>(bytes, i));
+      return std::to_string(element_at<std::uint16_t>(bytes, i));
     case Element::u32:
-      return std::to_string(value_at<std::uint32_t>(bytes, i));
+      return std::to_string(element_at<std::uint32_t>(bytes, i));
     case Element::u64:
-      return std::to_string(value_at<std::uint64_t>(bytes, i));
+      return std::to_string(element_at<std::uint64_t>(bytes, i));
     case Element::f64:
       break;
   }
   char digits[32];
-  const auto end = std::to_chars(digits, digits + sizeof digits, value_at<double>(bytes, i)).ptr;
+  const auto end = std::to_chars(digits, digits + sizeof digits, element_at<double>(bytes, i)).ptr;
   return {digits, end};
 }
 

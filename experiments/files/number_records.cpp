@@ -29,19 +29,14 @@ std::string_view take_word(std::string_view& text) {
 
 }  // namespace
 
-NumberRecords::NumberRecords(const std::filesystem::path& path, std::size_t width,
-                             RecordLayout layout)
-    : path_(path.string()),
-      text_(whole_file(path)),
-      rest_(text_),
-      record_(width),
-      layout_(layout) {}
+NumberRecords::NumberRecords(const std::filesystem::path& path, std::size_t width, RecordEnd end)
+    : path_(path.string()), text_(whole_file(path)), rest_(text_), record_(width), end_(end) {}
 
 std::optional<std::span<const double>> NumberRecords::next() {
   skip_white(rest_);
   if (rest_.empty()) return std::nullopt;
   ++read_;
-  if (layout_ == RecordLayout::lines) {
+  if (end_ == RecordEnd::lines) {
     fill_from_line();
   } else {
     fill_from_stream();

@@ -12,7 +12,7 @@
 namespace montecarta {
 
 /// Where a record of numbers ends.
-enum class RecordLayout {
+enum class RecordEnd {
   lines,  ///< with its line; empty lines do not count
   stream  ///< after its last number, wherever lines end
 };
@@ -22,7 +22,7 @@ enum class RecordLayout {
 /// record that is cut short are errors (StudyError) that name file and record.
 class NumberRecords {
  public:
-  NumberRecords(const std::filesystem::path& path, std::size_t width, RecordLayout layout);
+  NumberRecords(const std::filesystem::path& path, std::size_t width, RecordEnd end);
   NumberRecords(const NumberRecords&) = delete;
   NumberRecords& operator=(const NumberRecords&) = delete;
 
@@ -41,7 +41,7 @@ class NumberRecords {
   std::string text_;
   std::string_view rest_;
   std::vector<double> record_;
-  RecordLayout layout_;
+  RecordEnd end_;
   std::size_t read_ = 0;
 };
 

@@ -163,7 +163,9 @@ void check_scans(std::span<const LoggedScan> scans, const std::string& place) {
 }
 
 void check_reference(const ReferencePath& reference, const std::string& place) {
-  const auto& [name, time, position, heading] = reference;
+  const std::string& name = reference.name;
+  const std::vector<double>&time = reference.time, &heading = reference.heading;
+  const std::vector<Eigen::Vector2d>& position = reference.position;
   if (!is_name(name)) {
     throw StudyError(place + ": '" + excerpt(name) +
                      "' is no name of a reference (letters, digits, _ and -): rename it");

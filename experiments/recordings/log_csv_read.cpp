@@ -123,7 +123,7 @@ std::vector<Eigen::Vector2d> read_landmarks(const fs::path& path) {
 /// The name of the reference in a file; empty where it holds none. A file that looks misspelt is
 /// refused, for nobody would miss what it holds.
 std::string reference_in(const fs::path& file) {
-  const std::string stem = file.stem().string();
+  std::string stem = file.stem().string();
   if (file.extension() != ".csv" || stem == "landmarks") return {};
   if (stem == log_csv::kLeading) return stem;
   const std::string prefix = log_csv::kLeading + "_";

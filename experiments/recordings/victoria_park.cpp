@@ -31,7 +31,7 @@ std::vector<double> text_times(std::vector<double> milliseconds) {
 }
 
 std::vector<Odometry> calibrated_odometry(const fs::path& path) {
-  NumberRecords records(path, 3, RecordLayout::lines);
+  NumberRecords records(path, 3, RecordEnd::lines);
   std::vector<Odometry> odometry;
   while (const auto record = records.next()) {
     odometry.push_back({(*record)[0], {.speed = (*record)[1], .steer = (*record)[2]}});
@@ -46,7 +46,7 @@ std::vector<Odometry> raw_odometry(const fs::path& path) {
 }
 
 std::vector<LoggedScan> text_scans(const fs::path& path) {
-  NumberRecords records(path, 1 + kLaserBeams, RecordLayout::stream);
+  NumberRecords records(path, 1 + kLaserBeams, RecordEnd::stream);
   std::vector<LoggedScan> scans;
   while (const auto record = records.next()) {
     const LaserSweep ranges = record->subspan<1, kLaserBeams>();
@@ -83,7 +83,7 @@ std::vector<LoggedScan> scans_in(const fs::path& folder) {
 }
 
 ReferencePath text_gps(const fs::path& path) {
-  NumberRecords records(path, 3, RecordLayout::lines);
+  NumberRecords records(path, 3, RecordEnd::lines);
   ReferencePath gps{.name = "gps", .time = {}, .position = {}, .heading = {}};
   while (const auto record = records.next()) {  // time, North, East
     gps.time.push_back((*record)[0]);
@@ -119,7 +119,7 @@ std::vector<double> times_of(const auto& records) {
 }
 
 SensorEvents events_in(const fs::path& path) {
-  NumberRecords records(path, 3, RecordLayout::lines);
+  NumberRecords records(path, 3, RecordEnd::lines);
   SensorEvents events;
   while (const auto record = records.next()) {
     events.time.push_back((*record)[0]);

@@ -120,7 +120,7 @@ std::size_t identities_of(const Study& study) {
   for (const LoggedScan& scan : study.log->scans) {
     for (const Detection& detection : scan.detections) last = std::max(last, detection.identity);
   }
-  return static_cast<std::size_t>(last + 1);
+  return last < 0 ? 0 : static_cast<std::size_t>(last) + 1;
 }
 
 std::function<std::vector<Eigen::Vector2d>(std::uint64_t run)> own_landmarks_of(

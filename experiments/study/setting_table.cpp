@@ -69,16 +69,15 @@ std::span<const Setting> study_settings() {
 }
 
 Setting setting_of(const FilterOption& option) {
-  using Kind = Setting::Kind;
   Setting setting{.key = option.name,
-                  .kind = Kind::choice,
+                  .kind = Setting::Kind::choice,
                   .fallback = option.fallback,
                   .least = option.least,
                   .most = option.most,
                   .choices = option.choices,
                   .meaning = option.meaning};
-  if (option.kind == FilterOption::Kind::number) setting.kind = Kind::number;
-  if (option.kind == FilterOption::Kind::integer) setting.kind = Kind::count;
+  if (option.kind == FilterOption::Kind::number) setting.kind = Setting::Kind::number;
+  if (option.kind == FilterOption::Kind::integer) setting.kind = Setting::Kind::count;
   return setting;
 }
 
