@@ -47,7 +47,7 @@ std::string with_error(double mean, double standard_error) {
 
 std::string with_error_to(int decimals, double mean, double standard_error) {
   if (std::isnan(mean)) return "-";
-  const std::string text = printed("%.*f", decimals, mean);
+  std::string text = printed("%.*f", decimals, mean);
   if (std::isnan(standard_error)) return text;
   return text + " +- " + printed("%.*f", decimals, standard_error);
 }

@@ -221,8 +221,7 @@ std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
           "small.",
       "'inconsistent from t' is optimistic for good: " + std::to_string(kLastingScans) +
           " scans in a row above the pointwise band, the first at t. The brackets behind 'leaves "
-          "for "
-          "good' hold that time for " +
+          "for good' hold that time for " +
           level + " of repeated studies; 'never' means not within the " +
           readable(study.duration, 4) +
           " s of this study. A single run is lost when its own NEES does so, or when it fails.",

@@ -81,7 +81,8 @@ PosixFile::PosixFile(std::filesystem::path path, Mode mode) : path_(std::move(pa
   if (descriptor_ < 0) fail_to_open(path_, errno);
   if (is_regular(descriptor_)) return;
   ::close(descriptor_);
-  throw StudyError(path_.string() + ": is no regular file (a folder, a pipe or a device): name one");
+  throw StudyError(path_.string() +
+                   ": is no regular file (a folder, a pipe or a device): name one");
 }
 
 PosixFile::~PosixFile() {

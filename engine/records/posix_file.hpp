@@ -14,7 +14,8 @@ class PosixFile {
  public:
   enum class Mode { read, write, create };
 
-  /// Throws StudyError where the path cannot be opened so or is no regular file. `create` keeps what is there.
+  /// Throws StudyError where the path cannot be opened so or is no regular file. `create` keeps
+  /// what is there.
   PosixFile(std::filesystem::path path, Mode mode);
   ~PosixFile();
   PosixFile(PosixFile&& other) noexcept;

@@ -18,7 +18,7 @@ Study study_in(const ResultFile& file, const Arguments& arguments) {
   if (const auto folder = arguments.text("data"))
     overrides.push_back("scenario.path=" + std::filesystem::absolute(*folder).string());
   const std::string name = file.path().string() + " (the study in it)";
-  const Study study = parse_study(file.study_text(), name, file.path().parent_path(), overrides);
+  Study study = parse_study(file.study_text(), name, file.path().parent_path(), overrides);
   if (sha256(resolved_text(study)) != file.study_sha256())
     std::cerr << "montecarta: another version of montecarta made " << file.path().string()
               << "; settings that it did not know have their defaults\n";

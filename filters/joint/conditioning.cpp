@@ -98,9 +98,9 @@ void JointGaussian::draw_heading(double keep, double normal) {
 
 /// W = P H' L^-T.
 void JointGaussian::whiten_gain(std::size_t slot, const ExpectedSight& expected) {
-  const Eigen::Matrix2d inverse_Lt = inverse_transposed(expected.factor);
-  const Matrix32 pose_white = expected.pose_jacobian.transpose() * inverse_Lt;
-  const Eigen::Matrix2d landmark_white = expected.landmark_jacobian.transpose() * inverse_Lt;
+  const Eigen::Matrix2d inverse = inverse_transposed(expected.factor);
+  const Matrix32 pose_white = expected.pose_jacobian.transpose() * inverse;
+  const Eigen::Matrix2d landmark_white = expected.landmark_jacobian.transpose() * inverse;
   const Eigen::Index row = row_of(slot);
   copy_columns(map_.covariance, row, rows(), seen_);
   gain_pose_ =

@@ -230,7 +230,7 @@ void GaussianBank::map(std::span<std::optional<LandmarkEstimate>> landmarks) con
 /// Known association: the mixture of all beliefs, by identity. Otherwise the heaviest particle's
 /// map in the order in which it met its landmarks.
 std::optional<LandmarkEstimate> GaussianBank::landmark(std::size_t k) const {
-  const auto about = belief_of(weights_.heaviest()).landmark(k);
+  auto about = belief_of(weights_.heaviest()).landmark(k);
   if (!known_ || !about) return about;
   Mixture mixture(*about);
   for_beliefs(
