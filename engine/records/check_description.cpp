@@ -2,7 +2,7 @@
 #include "engine/records/check_description.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/records/record_layout.hpp"
+#include "engine/records/column_table.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -86,55 +86,6 @@ void check_scenario(const ResultDescription& d, const Check& check) {
   }
 }
 
-/// The length that an axis must have; nullopt where each cell has its own.
-std::optional<std::size_t> length_of(Axis axis, const ResultDescription& d,
-                                     const StoredCell& cell) {
-  switch (axis) {
-    case Axis::time:
-      return d.times.size();
-    case Axis::scan:
-      return d.scan_times.size();
-    case Axis::joint:
-      return d.joint_scans.size();
-    case Axis::particle:
-      return cell.particles;
-    case Axis::component:
-    case Axis::component_column:
-      return 3;
-    case Axis::coordinate:
-    case Axis::coordinate_column:
-      return 2;
-    case Axis::landmark:
-    case Axis::state:
-    case Axis::state_column:
-      break;
-  }
-  return std::nullopt;
-}
-
-/// The axes of every column that there can be.
-std::map<std::string, std::vector<Axis>> known_axes() {
-  Cell cell;
-  cell.particles = cell.landmarks = 1;
-  cell.mixture = cell.joint = true;
-  const ColumnSelection all{.covariance = true,
-                            .ancestry = true,
-                            .particles = true,
-                            .association = true,
-                            .map = true,
-                            .final_map = true,
-                            .joint = true};
-  Itinerary one_scan;
-  one_scan.step_time = {1.0};
-  one_scan.scan_step = {0};
-  std::map<std::string, std::vector<Axis>> axes;
-  const RecordLayout layout(cell, all, one_scan);
-  for (const Column& column : layout.columns()) {
-    axes.emplace(column.name, column.axes);
-  }
-  return axes;
-}
-
 /// Columns that are read together.
 const std::vector<std::vector<std::string_view>> kTogether = {
     {"pose_mean_mixture", "pose_covariance_mixture"},
@@ -145,10 +96,9 @@ const std::vector<std::vector<std::string_view>> kTogether = {
     {"joint_mean", "joint_covariance"}};
 
 void check_columns(const StoredCell& cell, const Check& check) {
-  static const auto axes = known_axes();
   for (const Column& column : cell.columns) {
-    const auto known = axes.find(column.name);
-    check.expect(known == axes.end() || known->second == column.axes,
+    const auto known = std::ranges::find(column_table(), column.name, &ColumnKind::name);
+    check.expect(known == column_table().end() || known->axes == column.axes,
                  "cells/" + cell.label + "/" + column.name + " has other axes than it should");
   }
   for (const auto& together : kTogether) {
@@ -163,12 +113,17 @@ void check_columns(const StoredCell& cell, const Check& check) {
 }
 
 void check_lengths(const ResultDescription& d, const StoredCell& cell, const Check& check) {
+  const AxisLengths lengths{.time = d.times.size(),
+                            .scan = d.scan_times.size(),
+                            .joint = d.joint_scans.size(),
+                            .particle = cell.particles,
+                            .landmark = std::nullopt};
   std::map<Axis, std::size_t> own;
   for (const Column& column : cell.columns) {
     for (std::size_t a = 0; a < column.axes.size(); ++a) {
       const Axis axis = column.axes[a] == Axis::state_column ? Axis::state : column.axes[a];
       const auto known =
-          length_of(axis, d, cell).value_or(own.try_emplace(axis, column.shape[a]).first->second);
+          length_of(axis, lengths).value_or(own.try_emplace(axis, column.shape[a]).first->second);
       check.expect(column.shape[a] == known, "cells/" + cell.label + "/" + column.name +
                                                  " is not as long as its axis " +
                                                  std::string(name_of(axis)));

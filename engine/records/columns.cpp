@@ -4,10 +4,23 @@
 #include "engine/errors.hpp"
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <numeric>
 
 namespace montecarta {
+namespace {
+
+/// In the order of Axis.
+constexpr std::array<std::string_view, 11> kAxisNames = {"time",        "scan",
+                                                         "particle",    "landmark",
+                                                         "component",   "component_column",
+                                                         "coordinate",  "coordinate_column",
+                                                         "joint",       "state",
+                                                         "state_column"};
+static_assert(kAxisNames.size() == static_cast<std::size_t>(Axis::state_column) + 1);
+
+}  // namespace
 
 std::size_t size_of(Element element) {
   switch (element) {
@@ -34,42 +47,12 @@ std::vector<std::uint32_t> joint_scans_of(std::size_t all, std::size_t wanted) {
   return scans;
 }
 
-std::string_view name_of(Axis axis) {
-  switch (axis) {
-    case Axis::time:
-      return "time";
-    case Axis::scan:
-      return "scan";
-    case Axis::particle:
-      return "particle";
-    case Axis::landmark:
-      return "landmark";
-    case Axis::component:
-      return "component";
-    case Axis::component_column:
-      return "component_column";
-    case Axis::coordinate:
-      return "coordinate";
-    case Axis::coordinate_column:
-      return "coordinate_column";
-    case Axis::joint:
-      return "joint";
-    case Axis::state:
-      return "state";
-    case Axis::state_column:
-      return "state_column";
-  }
-  expect(false, "an axis without a name");
-  return {};
-}
+std::string_view name_of(Axis axis) { return kAxisNames[static_cast<std::size_t>(axis)]; }
 
 std::optional<Axis> axis_named(std::string_view name) {
-  using enum Axis;
-  for (Axis axis : {time, scan, particle, landmark, component, component_column, coordinate,
-                    coordinate_column, joint, state, state_column}) {
-    if (name_of(axis) == name) return axis;
-  }
-  return std::nullopt;
+  const auto found = std::ranges::find(kAxisNames, name);
+  if (found == kAxisNames.end()) return std::nullopt;
+  return static_cast<Axis>(found - kAxisNames.begin());
 }
 
 std::size_t Column::elements() const {

@@ -2,6 +2,7 @@
 #include "engine/records/recorder.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/records/column_table.hpp"
 
 #include <algorithm>
 
@@ -40,20 +41,8 @@ Recorder::Recorder(RunRecord& record) : layout_(&record.layout()) {
   columns_.pose_covariance = column<double>(record, "pose_covariance");
   columns_.pose_mean_mixture = column<double>(record, "pose_mean_mixture");
   columns_.pose_covariance_mixture = column<double>(record, "pose_covariance_mixture");
-  columns_.ess = column<double>(record, "ess");
-  columns_.resampled = column<std::uint8_t>(record, "resampled");
-  columns_.log_likelihood = column<double>(record, "log_likelihood");
-  columns_.nis = column<double>(record, "nis");
-  columns_.nis_dof = column<std::uint32_t>(record, "nis_dof");
-  columns_.numerical_faults = column<std::uint32_t>(record, "numerical_faults");
-  columns_.correct = column<double>(record, "association_correct");
-  columns_.wrong = column<double>(record, "association_wrong");
-  columns_.new_again = column<double>(record, "association_new_again");
-  columns_.missed = column<double>(record, "association_missed");
-  columns_.clutter = column<double>(record, "association_clutter");
   columns_.particle_pose = column<double>(record, "particle_pose");
   columns_.log_weight = column<double>(record, "log_weight");
-  columns_.map_size = column<double>(record, "map_size");
   columns_.map = {column<double>(record, "map_mean"), column<double>(record, "map_covariance"),
                   column<std::uint8_t>(record, "map_seen")};
   columns_.final_map = {column<double>(record, "final_map_mean"),
@@ -63,7 +52,29 @@ Recorder::Recorder(RunRecord& record) : layout_(&record.layout()) {
   columns_.joint_covariance = column<double>(record, "joint_covariance");
   const bool any = !columns_.map.mean.empty() || !columns_.final_map.mean.empty();
   landmarks_.resize(any ? layout_->landmarks() : 0);
+  find_reported(record);
   choose_ancestor(record);
+}
+
+void Recorder::find_reported(RunRecord& record) {
+  for (const ColumnKind& kind : column_table()) {
+    const auto c = layout_->find(kind.name);
+    if (kind.of_report == nullptr || !c) continue;
+    switch (layout_->columns()[*c].element) {
+      case Element::f64:
+        reported_.push_back({kind.of_report, record.column<double>(*c)});
+        break;
+      case Element::u8:
+        reported_.push_back({kind.of_report, record.column<std::uint8_t>(*c)});
+        break;
+      case Element::u32:
+        reported_.push_back({kind.of_report, record.column<std::uint32_t>(*c)});
+        break;
+      case Element::u16:
+      case Element::u64:
+        expect(false, "a number of a scan is f64, u8 or u32");
+    }
+  }
 }
 
 void Recorder::choose_ancestor(RunRecord& record) {
@@ -84,7 +95,6 @@ const PoseEstimate* Recorder::after_step(const SlamFilter& filter, std::size_t s
 const PoseEstimate* Recorder::after_scan(const SlamFilter& filter, std::size_t scan) {
   const PoseEstimate* recorded = layout_->scans_only() ? record_pose(filter, scan) : nullptr;
   record_report(filter.report(), scan);
-  record_association(filter.report().association, scan);
   record_particles(filter, scan);
   record_map(filter, scan);
   record_joint(filter, scan);
@@ -102,22 +112,13 @@ const PoseEstimate* Recorder::record_pose(const SlamFilter& filter, std::size_t 
 }
 
 void Recorder::record_report(const ScanReport& report, std::size_t scan) {
-  columns_.ess[scan] = report.ess;
-  columns_.resampled[scan] = report.resampled ? 1 : 0;
-  columns_.log_likelihood[scan] = report.log_likelihood;
-  columns_.nis[scan] = report.nis;
-  columns_.nis_dof[scan] = report.nis_dof;
-  columns_.numerical_faults[scan] = report.numerical_faults;
-  columns_.map_size[scan] = report.map_size;
-}
-
-void Recorder::record_association(const AssociationCounts& counts, std::size_t scan) {
-  if (columns_.correct.empty()) return;
-  columns_.correct[scan] = counts.correct;
-  columns_.wrong[scan] = counts.wrong;
-  columns_.new_again[scan] = counts.new_again;
-  columns_.missed[scan] = counts.missed;
-  columns_.clutter[scan] = counts.clutter;
+  for (const Reported& reported : reported_) {
+    const auto put = [&](auto column) {
+      using Number = typename decltype(column)::value_type;
+      column[scan] = static_cast<Number>(reported.value(report));
+    };
+    std::visit(put, reported.column);
+  }
 }
 
 void Recorder::record_particles(const SlamFilter& filter, std::size_t scan) {

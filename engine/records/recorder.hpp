@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <variant>
 #include <vector>
 
 namespace montecarta {
@@ -36,19 +37,23 @@ class Recorder {
   };
   struct Columns {
     std::span<double> pose_mean, pose_covariance, pose_mean_mixture, pose_covariance_mixture;
-    std::span<double> correct, wrong, new_again, missed, clutter;
-    std::span<double> ess, log_likelihood, nis, map_size, particle_pose, log_weight;
-    std::span<std::uint8_t> resampled;
-    std::span<std::uint32_t> nis_dof, numerical_faults, ancestor_wide;
+    std::span<double> particle_pose, log_weight;
+    std::span<std::uint32_t> ancestor_wide;
     std::span<std::uint16_t> ancestor_narrow;
     MapColumns map, final_map;
     std::span<double> joint_mean, joint_covariance;
   };
 
+  /// A number of every scan that the filter reports.
+  struct Reported {
+    double (*value)(const ScanReport&);
+    std::variant<std::span<double>, std::span<std::uint8_t>, std::span<std::uint32_t>> column;
+  };
+
+  void find_reported(RunRecord& record);
   void choose_ancestor(RunRecord& record);
   const PoseEstimate* record_pose(const SlamFilter& filter, std::size_t row);
   void record_report(const ScanReport& report, std::size_t scan);
-  void record_association(const AssociationCounts& counts, std::size_t scan);
   void record_particles(const SlamFilter& filter, std::size_t scan);
   void record_map(const SlamFilter& filter, std::size_t scan);
   void record_joint(const SlamFilter& filter, std::size_t scan);
@@ -56,6 +61,7 @@ class Recorder {
 
   const RecordLayout* layout_;
   Columns columns_;
+  std::vector<Reported> reported_;
   PoseEstimate estimate_;                 ///< the last one recorded
   std::vector<std::uint32_t> ancestors_;  ///< of one scan, before narrowing to 16 bits
   std::vector<std::optional<LandmarkEstimate>> landmarks_;  ///< of one scan

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/errors.hpp"
+#include "engine/records/column_table.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/shipped_files.hpp"
 #include "experiments/study/cell_spec.hpp"
@@ -90,23 +91,29 @@ void list_studies() {
   std::cout << aligned(rows, 0);
 }
 
+/// "{run, scan, particle}"
+std::string axes_of(const ColumnKind& kind) {
+  std::string axes = "{run";
+  for (const Axis axis : kind.axes) axes.append(", ").append(name_of(axis));
+  return axes + "}";
+}
+
+std::string unit_of(const ColumnKind& kind) {
+  const std::string units = kind.units;
+  return units == "1" ? "" : " [" + units + "]";
+}
+
 void list_columns() {
-  std::cout << aligned(
-      {{"pose", "pose_mean, ess, resampled, log_likelihood, nis, nis_dof, map_size: always stored"},
-       {"covariance",
-        "pose_covariance; pose_mean_mixture and pose_covariance_mixture where a filter has them "
-        "(SPEC 19)"},
-       {"ancestry", "ancestor: parent of each particle one scan ago (SPEC 18)"},
-       {"particles", "particle_pose, log_weight at every scan"},
-       {"association",
-        "association_correct, _wrong, _new_again, _missed, _clutter: what became of detections, "
-        "by the identities that come with them"},
-       {"map", "map_mean, map_covariance, map_seen at every scan"},
-       {"final_map", "final_map_mean, final_map_covariance, final_map_seen at the last scan"},
-       {"joint",
-        "joint_mean, joint_covariance of pose and map together at record.joint_scans scans, of "
-        "filters that have it (ekf_slam, riekf_slam, hrb)"}},
-      0);
+  std::vector<TableRow> rows;
+  for (const ColumnGroup& group : column_groups()) {
+    for (const ColumnKind& kind : column_table()) {
+      if (std::string_view(kind.group) != group.name) continue;
+      rows.push_back({group.name, kind.name, axes_of(kind), kind.long_name + unit_of(kind)});
+    }
+  }
+  std::cout << "record.columns, the columns that each name stores, and what they hold (pose is "
+               "always stored):\n"
+            << aligned(rows, 0);
 }
 
 int list(const Arguments& arguments) {

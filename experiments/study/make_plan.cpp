@@ -2,6 +2,7 @@
 #include "experiments/study/make_plan.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/records/column_table.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/text/numbers.hpp"
 
@@ -44,16 +45,13 @@ AssociationSettings association_of(const Settings& s) {
 }
 
 ColumnSelection columns_of(const Settings& s) {
-  const auto has = [&](const char* name) { return s.lists("record", "columns", name); };
-  return {.covariance = has("covariance"),
-          .ancestry = has("ancestry"),
-          .particles = has("particles"),
-          .association = has("association"),
-          .map = has("map"),
-          .final_map = has("final_map"),
-          .joint = has("joint"),
-          .joint_scans = s.count("record", "joint_scans"),
-          .scans_only = s.text("record", "rate") == "scan"};
+  ColumnSelection columns{.joint_scans = s.count("record", "joint_scans"),
+                          .scans_only = s.text("record", "rate") == "scan"};
+  for (const ColumnGroup& group : column_groups()) {
+    if (group.is_chosen != nullptr)
+      columns.*(group.is_chosen) = s.lists("record", "columns", group.name);
+  }
+  return columns;
 }
 
 /// Rows of the map columns: with unknown association landmarks are numbered by birth, and there may

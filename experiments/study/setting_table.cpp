@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "engine/records/column_table.hpp"
 #include "experiments/study/setting_builders.hpp"
 
 namespace montecarta {
@@ -34,10 +35,9 @@ void add_association(std::vector<Setting>& table) {
 
 void add_record(std::vector<Setting>& table) {
   const char* s = "record";
-  Setting columns = choice(
-      s, "columns",
-      {"pose", "covariance", "ancestry", "particles", "association", "map", "final_map", "joint"},
-      "what is stored");
+  std::vector<std::string> groups;
+  for (const ColumnGroup& group : column_groups()) groups.emplace_back(group.name);
+  Setting columns = choice(s, "columns", groups, "what is stored");
   columns.kind = Setting::Kind::choices;
   columns.fallback = "pose, covariance, ancestry";
   table.push_back(for_recorded(columns, "pose, covariance, ancestry, final_map"));
