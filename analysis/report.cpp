@@ -9,10 +9,10 @@
 #include "analysis/figures/reference_figures.hpp"
 #include "analysis/figures/time_figures.hpp"
 #include "analysis/figures/why_figures.hpp"
+#include "analysis/metrics/study_analysis.hpp"
 #include "analysis/page/page.hpp"
 #include "analysis/page/sections.hpp"
-#include "analysis/study_analysis.hpp"
-#include "analysis/tables.hpp"
+#include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
 
 namespace montecarta {

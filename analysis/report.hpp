@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/records/result_file.hpp"
-#include "engine/runs/parallel.hpp"
+#include "engine/threads/parallel.hpp"
 
 #include <cstddef>
 #include <filesystem>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/factory.hpp"
 #include "filters/moments/motion_increment.hpp"
+#include "filters/setup/filter_setup.hpp"
 
 namespace montecarta {
 

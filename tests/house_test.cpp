@@ -117,6 +117,23 @@ std::vector<std::string> forbidden_includes(const Tree& tree) {
   return found;
 }
 
+std::string folder_of(const std::string& path) { return fs::path(path).parent_path().string(); }
+
+/// Pairs of folders outside tests that include each other.
+std::set<std::string> circles(const Tree& tree) {
+  std::set<std::pair<std::string, std::string>> uses;
+  for (const auto& [path, lines] : tree) {
+    if (!is_cpp(path) || room_of(path) == "tests") continue;
+    for (const std::string& name : includes_of(lines))
+      uses.emplace(folder_of(path), folder_of(name));
+  }
+  std::set<std::string> found;
+  for (const auto& [user, used] : uses) {
+    if (user < used && uses.contains({used, user})) found.insert(user + " and " + used);
+  }
+  return found;
+}
+
 /// Files outside tests that include a header of which `prefix` is the beginning.
 std::vector<std::string> users_of(const Tree& tree, const std::string& prefix) {
   std::vector<std::string> users;
@@ -164,6 +181,8 @@ std::vector<std::string> strays(const std::vector<std::string>& names) {
 TEST(House, ARoomIncludesOnlyWhatStandsBelowIt) {
   EXPECT_THAT(forbidden_includes(house()), IsEmpty());
 }
+
+TEST(House, NoTwoFoldersIncludeEachOther) { EXPECT_THAT(circles(house()), IsEmpty()); }
 
 TEST(House, StatisticsKnowNumbersOnly) {
   std::vector<std::string> found;
@@ -230,6 +249,13 @@ TEST(House, TheTreeThatIsReadIsWhole) {
   EXPECT_TRUE(house().contains("filters/CMakeLists.txt"));
   EXPECT_TRUE(house().contains("analysis/page/page.css"));
   EXPECT_TRUE(house().contains("analysis/page/script/player.js"));
+}
+
+TEST(House, CirclesAreSeen) {
+  const Tree tree = {{"engine/a/one.cpp", {"#include \"engine/b/two.hpp\""}},
+                     {"engine/b/three.hpp", {"#include \"engine/a/four.hpp\""}},
+                     {"engine/b/two.hpp", {"#include \"engine/c/five.hpp\""}}};
+  EXPECT_THAT(circles(tree), ElementsAre("engine/a and engine/b"));
 }
 
 // The laws above can fail: a house where each is broken once.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/metrics/study_analysis.hpp"
 #include "analysis/statistics/means.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 #include "analysis/statistics/paired_tests.hpp"
-#include "analysis/study_analysis.hpp"
 
 #include <cstddef>
 #include <span>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/comparison_csv.hpp"
 
-#include "analysis/tables/csv_file.hpp"
-#include "analysis/tables/named_rows.hpp"
+#include "analysis/output/csv_file.hpp"
+#include "analysis/output/named_rows.hpp"
 
 namespace montecarta {
 namespace {

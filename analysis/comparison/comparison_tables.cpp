@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/comparison_tables.hpp"
 
-#include "analysis/tables/named_rows.hpp"
-#include "analysis/tables/number_text.hpp"
+#include "analysis/output/named_rows.hpp"
+#include "analysis/output/number_text.hpp"
 
 #include <cmath>
 

@@ -5,7 +5,7 @@
 #include "analysis/figures/chosen_run.hpp"
 #include "analysis/figures/gnuplot.hpp"
 #include "analysis/metrics/ancestry_tree.hpp"
-#include "analysis/tables/number_text.hpp"
+#include "analysis/output/number_text.hpp"
 
 #include <algorithm>
 #include <limits>

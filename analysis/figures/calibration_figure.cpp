@@ -2,7 +2,7 @@
 #include "analysis/figures/calibration_figure.hpp"
 
 #include "analysis/figures/gnuplot.hpp"
-#include "analysis/tables/number_text.hpp"
+#include "analysis/output/number_text.hpp"
 
 #include <algorithm>
 

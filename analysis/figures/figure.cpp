@@ -2,8 +2,8 @@
 #include "analysis/figures/figure.hpp"
 
 #include "analysis/figures/gnuplot.hpp"
-#include "analysis/tables/csv_file.hpp"
-#include "analysis/tables/number_text.hpp"
+#include "analysis/output/csv_file.hpp"
+#include "analysis/output/number_text.hpp"
 
 #include <array>
 

@@ -2,7 +2,7 @@
 #include "analysis/figures/joint_figure.hpp"
 
 #include "analysis/figures/panel.hpp"
-#include "analysis/tables/number_text.hpp"
+#include "analysis/output/number_text.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -3,7 +3,7 @@
 
 #include "analysis/figures/gnuplot.hpp"
 #include "analysis/metrics/mismatch.hpp"
-#include "analysis/tables/number_text.hpp"
+#include "analysis/output/number_text.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "analysis/figures/figure.hpp"
-#include "analysis/study_analysis.hpp"
+#include "analysis/metrics/study_analysis.hpp"
 
 namespace montecarta {
 

@@ -3,7 +3,7 @@
 
 #include "analysis/figures/cell_panels.hpp"
 #include "analysis/figures/gnuplot.hpp"
-#include "analysis/tables/number_text.hpp"
+#include "analysis/output/number_text.hpp"
 #include "analysis/tables/reference_table.hpp"
 
 #include <algorithm>

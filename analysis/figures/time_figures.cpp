@@ -2,7 +2,7 @@
 #include "analysis/figures/time_figures.hpp"
 
 #include "analysis/figures/panel.hpp"
-#include "analysis/tables/number_text.hpp"
+#include "analysis/output/number_text.hpp"
 #include "engine/numbers/angle.hpp"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #include "analysis/figures/why_figures.hpp"
 
 #include "analysis/figures/cell_panels.hpp"
-#include "analysis/tables/number_text.hpp"
+#include "analysis/output/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include "analysis/metrics/exit_bootstrap.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/nees_accumulator.hpp"
-#include "engine/runs/parallel.hpp"
+#include "engine/threads/parallel.hpp"
 
 #include <cstddef>
 #include <span>

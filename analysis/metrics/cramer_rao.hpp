@@ -3,7 +3,7 @@
 
 #include "analysis/metrics/simulated_world.hpp"
 #include "engine/records/result_file.hpp"
-#include "engine/runs/parallel.hpp"
+#include "engine/threads/parallel.hpp"
 
 #include <cstddef>
 #include <limits>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/runs/drive.hpp"
-#include "engine/runs/pose.hpp"
+#include "engine/core/drive.hpp"
+#include "engine/core/pose.hpp"
 #include "filters/models/point.hpp"
 #include "filters/models/vehicle.hpp"
 

@@ -2,8 +2,8 @@
 #include "analysis/metrics/run_metrics.hpp"
 
 #include "analysis/metrics/nees.hpp"
+#include "engine/core/pose.hpp"
 #include "engine/errors.hpp"
-#include "engine/runs/pose.hpp"
 
 #include <Eigen/Geometry>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/page/page.hpp"
 
+#include "analysis/output/csv_file.hpp"
 #include "analysis/page/chart_json.hpp"
 #include "analysis/page/html.hpp"
-#include "analysis/tables/csv_file.hpp"
 #include "analysis/tables/latex.hpp"
 #include "engine/errors.hpp"
 

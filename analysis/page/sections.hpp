@@ -2,8 +2,8 @@
 #pragma once
 
 #include "analysis/comparison/study_comparison.hpp"
+#include "analysis/metrics/study_analysis.hpp"
 #include "analysis/page/section.hpp"
-#include "analysis/study_analysis.hpp"
 #include "engine/records/result_file.hpp"
 
 #include <cstdint>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/printed/comparison.hpp"
 
+#include "analysis/output/number_text.hpp"
 #include "analysis/printed/run_samples.hpp"
 #include "analysis/statistics/t_quantile.hpp"
-#include "analysis/tables/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/study_analysis.hpp"
-#include "analysis/tables/verdict_table.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/output/text_table.hpp"
 
 #include <string>
 #include <vector>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/tables.hpp"
+#include "analysis/output/csv_file.hpp"
 #include "analysis/tables/cell_series.hpp"
-#include "analysis/tables/csv_file.hpp"
 #include "analysis/tables/reference_files.hpp"
+#include "analysis/tables/tables.hpp"
 #include "analysis/tables/verdict_table.hpp"
 #include "engine/records/h5.hpp"
 

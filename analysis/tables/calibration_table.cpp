@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/tables/calibration_table.hpp"
 
-#include "analysis/tables/csv_file.hpp"
-#include "analysis/tables/number_text.hpp"
+#include "analysis/output/csv_file.hpp"
+#include "analysis/output/number_text.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/output/number_text.hpp"
 #include "analysis/statistics/means.hpp"
 #include "analysis/tables/cell_series.hpp"
-#include "analysis/tables/number_text.hpp"
 
 #include <initializer_list>
 #include <limits>

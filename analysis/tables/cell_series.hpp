@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/study_analysis.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/output/named_rows.hpp"
 
 #include <string>
 #include <vector>
 
 namespace montecarta {
-
-/// One number of a cell, under the name it has in files.
-struct NamedNumber {
-  std::string name;
-  std::string units;
-  double value = 0.0;
-};
 
 /// Everything a cell has over scans; what is not stored is absent.
 std::vector<NamedSeries> series_of(const CellAnalysis& cell);

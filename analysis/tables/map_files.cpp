@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/tables/map_files.hpp"
 
-#include "analysis/tables/csv_file.hpp"
-#include "analysis/tables/named_rows.hpp"
+#include "analysis/output/csv_file.hpp"
+#include "analysis/output/named_rows.hpp"
 
 #include <string>
 

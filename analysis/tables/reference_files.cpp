@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/tables/reference_files.hpp"
 
+#include "analysis/output/csv_file.hpp"
+#include "analysis/output/named_rows.hpp"
 #include "analysis/statistics/means.hpp"
-#include "analysis/tables/csv_file.hpp"
-#include "analysis/tables/named_rows.hpp"
 
 #include <string>
 

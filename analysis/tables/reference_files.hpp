@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/study_analysis.hpp"
+#include "analysis/metrics/study_analysis.hpp"
 #include "analysis/tables/cell_series.hpp"
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/beacon_scores.hpp"
-#include "analysis/tables/number_text.hpp"
+#include "analysis/output/number_text.hpp"
 #include "analysis/tables/reference_table.hpp"
 
 namespace montecarta {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/tables/reference_table.hpp"
 
+#include "analysis/output/number_text.hpp"
 #include "analysis/statistics/means.hpp"
-#include "analysis/tables/number_text.hpp"
 #include "engine/numbers/angle.hpp"
 
 #include <algorithm>

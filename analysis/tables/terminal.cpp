@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/output/print_table.hpp"
 #include "analysis/printed/comparison.hpp"
-#include "analysis/tables.hpp"
 #include "analysis/tables/joint_table.hpp"
 #include "analysis/tables/map_error_table.hpp"
-#include "analysis/tables/print_table.hpp"
 #include "analysis/tables/reference_table.hpp"
+#include "analysis/tables/tables.hpp"
 #include "analysis/tables/verdict_table.hpp"
 #include "analysis/tables/why_tables.hpp"
 

@@ -2,7 +2,7 @@
 #include "analysis/tables/verdict_table.hpp"
 
 #include "analysis/metrics/nees.hpp"
-#include "analysis/tables/number_text.hpp"
+#include "analysis/output/number_text.hpp"
 #include "engine/numbers/angle.hpp"
 
 #include <algorithm>

@@ -1,24 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/study_analysis.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/output/text_table.hpp"
 
 #include <string>
 #include <vector>
 
 namespace montecarta {
-
-enum class Align { left, right };
-
-/// A table in words, whatever it is set in.
-struct TextTable {
-  struct Heading {
-    std::string text;
-    Align align = Align::right;
-  };
-  std::vector<Heading> headings;
-  std::vector<std::vector<std::string>> rows;
-};
 
 /// One row a cell: what became of its runs, the verdict, and the numbers behind it.
 TextTable verdict_table(const StudyAnalysis& study);

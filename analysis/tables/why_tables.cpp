@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/tables/why_tables.hpp"
 
-#include "analysis/tables/number_text.hpp"
+#include "analysis/output/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>

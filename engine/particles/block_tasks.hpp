@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/step_context.hpp"
 #include "engine/numbers/real.hpp"
-#include "engine/runs/step_context.hpp"
 
 #include <algorithm>
 #include <cstddef>

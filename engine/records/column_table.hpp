@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/plan.hpp"
+#include "engine/core/slam_filter.hpp"
 #include "engine/records/columns.hpp"
-#include "engine/runs/plan.hpp"
-#include "engine/runs/slam_filter.hpp"
 
 #include <optional>
 #include <span>

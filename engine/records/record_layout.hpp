@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/drive.hpp"
+#include "engine/core/plan.hpp"
 #include "engine/records/columns.hpp"
-#include "engine/runs/drive.hpp"
-#include "engine/runs/plan.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/slam_filter.hpp"
 #include "engine/records/run_record.hpp"
-#include "engine/runs/slam_filter.hpp"
 
 #include <cstddef>
 #include <cstdint>

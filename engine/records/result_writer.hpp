@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/drive.hpp"
+#include "engine/core/plan.hpp"
 #include "engine/records/result_description.hpp"
 #include "engine/records/run_record.hpp"
-#include "engine/runs/drive.hpp"
-#include "engine/runs/plan.hpp"
 
 #include <cstddef>
 #include <filesystem>

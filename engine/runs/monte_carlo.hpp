@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/plan.hpp"
 #include "engine/records/result_writer.hpp"
-#include "engine/runs/parallel.hpp"
-#include "engine/runs/plan.hpp"
 #include "engine/runs/progress.hpp"
 #include "engine/runs/run_outcome.hpp"
+#include "engine/threads/parallel.hpp"
 
 #include <filesystem>
 #include <optional>

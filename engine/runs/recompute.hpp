@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/plan.hpp"
 #include "engine/records/record_layout.hpp"
 #include "engine/records/result_description.hpp"
 #include "engine/records/result_slabs.hpp"
 #include "engine/records/run_record.hpp"
-#include "engine/runs/plan.hpp"
 
 #include <cstddef>
 #include <filesystem>

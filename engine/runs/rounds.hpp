@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/plan.hpp"
 #include "engine/records/result_writer.hpp"
-#include "engine/runs/parallel.hpp"
-#include "engine/runs/plan.hpp"
+#include "engine/threads/parallel.hpp"
 
 #include <cstdint>
 #include <vector>

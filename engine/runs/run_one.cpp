@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/runs/run_one.hpp"
 
-#include "engine/runs/cpu_clock.hpp"
+#include "engine/threads/cpu_clock.hpp"
 
 #include <cmath>
 #include <exception>

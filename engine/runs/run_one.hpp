@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/drive.hpp"
+#include "engine/core/slam_filter.hpp"
 #include "engine/records/recorder.hpp"
 #include "engine/records/run_record.hpp"
-#include "engine/runs/drive.hpp"
-#include "engine/runs/slam_filter.hpp"
-#include "engine/runs/spare_threads.hpp"
 #include "engine/runs/stop_request.hpp"
+#include "engine/threads/spare_threads.hpp"
 
 #include <cstdint>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/plan.hpp"
 #include "engine/records/result_writer.hpp"
-#include "engine/runs/plan.hpp"
 
 #include <atomic>
 #include <cstddef>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/plan.hpp"
 #include "engine/records/recorder.hpp"
 #include "engine/records/result_writer.hpp"
-#include "engine/runs/plan.hpp"
 #include "engine/runs/progress.hpp"
 #include "engine/runs/run_one.hpp"
 #include "engine/runs/task_list.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/study_analysis.hpp"
-#include "analysis/tables.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_guard.hpp"

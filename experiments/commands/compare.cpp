@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/comparison_csv.hpp"
 #include "analysis/comparison/comparison_tables.hpp"
-#include "analysis/tables/print_table.hpp"
+#include "analysis/output/print_table.hpp"
 #include "engine/errors.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_guard.hpp"

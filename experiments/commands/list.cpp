@@ -2,7 +2,7 @@
 #include "engine/errors.hpp"
 #include "engine/records/column_table.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/shipped_files.hpp"
+#include "experiments/files/shipped_files.hpp"
 #include "experiments/study/cell_spec.hpp"
 #include "experiments/study/ini_text.hpp"
 #include "experiments/study/setting.hpp"

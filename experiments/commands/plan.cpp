@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/output/number_text.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 #include "analysis/statistics/nees_power.hpp"
-#include "analysis/tables/number_text.hpp"
 #include "engine/errors.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/text/table.hpp"

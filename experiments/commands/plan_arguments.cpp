@@ -3,7 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/provenance.hpp"
-#include "engine/runs/thread_budget.hpp"
+#include "engine/threads/thread_budget.hpp"
 #include "experiments/study/make_plan.hpp"
 
 namespace montecarta {

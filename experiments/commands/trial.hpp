@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/runs/plan.hpp"
+#include "engine/core/plan.hpp"
 
 namespace montecarta {
 

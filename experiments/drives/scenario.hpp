@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/pose.hpp"
 #include "engine/numbers/angle.hpp"
-#include "engine/runs/pose.hpp"
 #include "filters/models/vehicle.hpp"
 
 #include <cstdint>

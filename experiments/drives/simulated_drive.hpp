@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/runs/drive.hpp"
+#include "engine/core/drive.hpp"
 #include "experiments/drives/random_map.hpp"
 #include "experiments/drives/scenario.hpp"
 #include "experiments/drives/sensor.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/runs/pose.hpp"
+#include "engine/core/pose.hpp"
 #include "experiments/drives/scenario.hpp"
 
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/tables/csv_file.hpp"
+#include "analysis/output/csv_file.hpp"
 #include "engine/errors.hpp"
 #include "experiments/recordings/check_log.hpp"
 #include "experiments/recordings/log_csv.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/runs/drive.hpp"
+#include "engine/core/drive.hpp"
 #include "experiments/recordings/laser.hpp"
 
 #include <vector>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/printed/printed.hpp"
+#include "analysis/data/printed.hpp"
 #include "experiments/study/cell_spec.hpp"
 #include "experiments/study/ini_text.hpp"
 

@@ -2,7 +2,7 @@
 #include "experiments/study/until.hpp"
 
 #include "analysis/comparison/cell_comparison.hpp"
-#include "analysis/first_values.hpp"
+#include "analysis/metrics/first_values.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/runs/rounds.hpp"

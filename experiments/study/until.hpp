@@ -2,7 +2,7 @@
 #pragma once
 
 #include "analysis/metrics/score.hpp"
-#include "engine/runs/plan.hpp"
+#include "engine/core/plan.hpp"
 
 #include <optional>
 #include <string>

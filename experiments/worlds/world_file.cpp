@@ -2,7 +2,7 @@
 #include "experiments/worlds/world_file.hpp"
 
 #include "engine/errors.hpp"
-#include "experiments/shipped_files.hpp"
+#include "experiments/files/shipped_files.hpp"
 #include "experiments/text/words.hpp"
 
 namespace montecarta {

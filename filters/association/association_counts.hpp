@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/runs/drive.hpp"
-#include "engine/runs/slam_filter.hpp"
+#include "engine/core/drive.hpp"
+#include "engine/core/slam_filter.hpp"
 #include "filters/association/nearest.hpp"
 
 #include <cstdint>

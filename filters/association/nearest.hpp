@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/factory.hpp"
+#include "filters/setup/filter_setup.hpp"
 
 #include <cstdint>
 #include <limits>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/slam_filter.hpp"
 #include "engine/particles/block_tasks.hpp"
 #include "engine/particles/resampling.hpp"
 #include "engine/particles/weights.hpp"
-#include "engine/runs/slam_filter.hpp"
 #include "filters/fastslam/fast_slam_options.hpp"
 #include "filters/fastslam/particle_maps.hpp"
 #include "filters/moments/cloud_moments.hpp"

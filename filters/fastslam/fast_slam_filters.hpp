@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/factory.hpp"
 #include "filters/fastslam/fast_slam.hpp"
 #include "filters/fastslam/fast_slam_options.hpp"
 #include "filters/fastslam/gaussian_proposal.hpp"
@@ -9,6 +8,7 @@
 #include "filters/fastslam/motion_sampling.hpp"
 #include "filters/fastslam/nearest_association.hpp"
 #include "filters/moments/moment_transforms.hpp"
+#include "filters/setup/filter_setup.hpp"
 
 #include <memory>
 #include <utility>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/fast_slam_options.hpp"
 
-#include "filters/option_choice.hpp"
-#include "filters/resampling_options.hpp"
+#include "filters/setup/filter_options.hpp"
+#include "filters/setup/resampling_options.hpp"
 
 #include <string>
 

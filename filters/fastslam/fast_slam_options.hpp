@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/particles/resampling.hpp"
-#include "filters/factory.hpp"
+#include "filters/setup/filter_setup.hpp"
 
 #include <cstddef>
 #include <string>

@@ -3,8 +3,8 @@
 
 // What a FastSlam tells of itself; included by fast_slam.hpp.
 
+#include "engine/particles/tell_particles.hpp"
 #include "filters/fastslam/fast_slam.hpp"
-#include "filters/tell_particles.hpp"
 
 namespace montecarta {
 

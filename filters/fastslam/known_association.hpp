@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/drive.hpp"
+#include "engine/core/slam_filter.hpp"
 #include "engine/particles/weights.hpp"
-#include "engine/runs/drive.hpp"
-#include "engine/runs/slam_filter.hpp"
 #include "filters/fastslam/particle_maps.hpp"
 #include "filters/moments/correlated_map.hpp"
 #include "filters/moments/linearised.hpp"

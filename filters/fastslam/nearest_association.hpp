@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/drive.hpp"
+#include "engine/core/step_context.hpp"
 #include "engine/errors.hpp"
 #include "engine/particles/weights.hpp"
-#include "engine/runs/drive.hpp"
-#include "engine/runs/step_context.hpp"
 #include "filters/association/association_counts.hpp"
 #include "filters/association/birth_identities.hpp"
 #include "filters/association/nearest.hpp"

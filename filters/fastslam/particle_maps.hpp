@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/slam_filter.hpp"
 #include "engine/particles/blocks.hpp"
 #include "engine/particles/genealogy.hpp"
-#include "engine/runs/slam_filter.hpp"
 #include "filters/moments/gaussians.hpp"
 
 #include <algorithm>

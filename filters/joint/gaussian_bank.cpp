@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/joint/gaussian_bank.hpp"
 
+#include "engine/particles/tell_particles.hpp"
 #include "engine/random/normal_quantile.hpp"
 #include "filters/association/association_counts.hpp"
 #include "filters/joint/mixture.hpp"
 #include "filters/moments/quadrature_motion.hpp"
-#include "filters/tell_particles.hpp"
 
 #include <algorithm>
 #include <cmath>

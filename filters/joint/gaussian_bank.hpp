@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/slam_filter.hpp"
 #include "engine/particles/resampling.hpp"
 #include "engine/particles/weights.hpp"
-#include "engine/runs/slam_filter.hpp"
 #include "filters/joint/joint_belief.hpp"
 #include "filters/moments/innovation_sums.hpp"
 

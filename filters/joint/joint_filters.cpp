@@ -2,8 +2,8 @@
 #include "filters/joint/joint_filters.hpp"
 
 #include "filters/joint/gaussian_bank.hpp"
-#include "filters/option_choice.hpp"
-#include "filters/resampling_options.hpp"
+#include "filters/setup/filter_options.hpp"
+#include "filters/setup/resampling_options.hpp"
 
 namespace montecarta {
 namespace {

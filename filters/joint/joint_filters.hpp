@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/runs/slam_filter.hpp"
-#include "filters/factory.hpp"
+#include "engine/core/slam_filter.hpp"
+#include "filters/setup/filter_setup.hpp"
 
 #include <memory>
 

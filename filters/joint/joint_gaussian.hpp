@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/runs/slam_filter.hpp"
-#include "filters/factory.hpp"
+#include "engine/core/slam_filter.hpp"
 #include "filters/joint/innovation.hpp"
 #include "filters/joint/map_moments.hpp"
 #include "filters/joint/retraction.hpp"
 #include "filters/models/eigen_jacobians.hpp"
 #include "filters/moments/motion_increment.hpp"
+#include "filters/setup/filter_setup.hpp"
 
 #include <Eigen/Core>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/step_context.hpp"
 #include "engine/particles/block_tasks.hpp"
 #include "engine/particles/weights.hpp"
-#include "engine/runs/step_context.hpp"
 #include "filters/marginal/direct_sums.hpp"
 #include "filters/marginal/ifgt_sums.hpp"
 #include "filters/marginal/marginal_options.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/runs/step_context.hpp"
+#include "engine/core/step_context.hpp"
 #include "filters/evolution/differential_evolution.hpp"
 #include "filters/marginal/landmark_evidence.hpp"
 #include "filters/moments/cloud_moments.hpp"

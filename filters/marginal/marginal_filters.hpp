@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/factory.hpp"
 #include "filters/marginal/marginal_filter.hpp"
 #include "filters/marginal/marginal_options.hpp"
+#include "filters/setup/filter_setup.hpp"
 
 #include <memory>
 

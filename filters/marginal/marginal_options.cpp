@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/marginal/marginal_options.hpp"
 
-#include "filters/option_choice.hpp"
+#include "filters/setup/filter_options.hpp"
 
 #include <string>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "filters/evolution/differential_evolution.hpp"
-#include "filters/factory.hpp"
+#include "filters/setup/filter_setup.hpp"
 
 #include <cstddef>
 #include <vector>

@@ -3,8 +3,8 @@
 
 // What a MarginalFilter tells of itself; included by marginal_filter.hpp.
 
+#include "engine/particles/tell_particles.hpp"
 #include "filters/marginal/marginal_filter.hpp"
-#include "filters/tell_particles.hpp"
 
 namespace montecarta {
 

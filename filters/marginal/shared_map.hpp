@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/runs/slam_filter.hpp"
+#include "engine/core/slam_filter.hpp"
 #include "filters/moments/gaussians.hpp"
 
 #include <cstddef>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/drive.hpp"
+#include "engine/core/pose.hpp"
 #include "engine/numbers/real.hpp"
-#include "engine/runs/drive.hpp"
-#include "engine/runs/pose.hpp"
 #include "filters/models/point.hpp"
 #include "filters/models/vehicle.hpp"
 

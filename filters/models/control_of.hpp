@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/runs/drive.hpp"
+#include "engine/core/drive.hpp"
 #include "filters/models/vehicle.hpp"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/slam_filter.hpp"
 #include "engine/particles/weights.hpp"
-#include "engine/runs/slam_filter.hpp"
 #include "filters/moments/gaussians.hpp"
 #include "filters/moments/motion_increment.hpp"
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "engine/numbers/directions.hpp"
-#include "filters/factory.hpp"
 #include "filters/models/ackermann.hpp"
 #include "filters/moments/gaussians.hpp"
+#include "filters/setup/filter_setup.hpp"
 
 namespace montecarta {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Law: independent software (SciPy, and the formulas of FilterPy and navlie) finds the same numbers
 // in the same file.
+#include "analysis/output/csv_file.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
-#include "analysis/tables/csv_file.hpp"
 #include "tests/analysis/synthetic_result.hpp"
 #include "tests/doubles/reader_program.hpp"
 #include "tests/doubles/scratch_folder.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/report.hpp"
 
-#include "analysis/study_analysis.hpp"
+#include "analysis/metrics/study_analysis.hpp"
 #include "engine/errors.hpp"
 #include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/synthetic_result.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/drive.hpp"
 #include "engine/random/stream.hpp"
-#include "engine/runs/drive.hpp"
 
 #include <cmath>
 #include <cstdint>

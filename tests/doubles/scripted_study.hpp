@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/runs/plan.hpp"
-#include "engine/runs/spare_threads.hpp"
+#include "engine/core/plan.hpp"
+#include "engine/threads/spare_threads.hpp"
 #include "tests/doubles/scripted_drives.hpp"
 #include "tests/doubles/scripted_filter.hpp"
 

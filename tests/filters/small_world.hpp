@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/drive.hpp"
+#include "engine/core/slam_filter.hpp"
 #include "engine/random/stream.hpp"
-#include "engine/runs/drive.hpp"
-#include "engine/runs/parallel.hpp"
-#include "engine/runs/slam_filter.hpp"
+#include "engine/threads/parallel.hpp"
 #include "filters/factory.hpp"
 #include "filters/models/ackermann.hpp"
 #include "filters/models/range_bearing.hpp"

@@ -3,7 +3,7 @@
 
 #include "analysis/figures/ellipse.hpp"
 #include "analysis/figures/gnuplot.hpp"
-#include "analysis/tables/csv_file.hpp"
+#include "analysis/output/csv_file.hpp"
 #include "engine/errors.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 

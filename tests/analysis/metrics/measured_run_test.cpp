@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/measured_run.hpp"
 
-#include "analysis/study_analysis.hpp"
+#include "analysis/metrics/study_analysis.hpp"
 #include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/synthetic_result.hpp"
 #include "tests/doubles/scratch_folder.hpp"

@@ -2,7 +2,7 @@
 #include "analysis/metrics/mismatch.hpp"
 
 #include "analysis/figures/mismatch_figure.hpp"
-#include "analysis/study_analysis.hpp"
+#include "analysis/metrics/study_analysis.hpp"
 #include "tests/analysis/studied_result.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 

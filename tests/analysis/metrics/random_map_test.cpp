@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/study_analysis.hpp"
+#include "analysis/metrics/study_analysis.hpp"
 #include "engine/records/merge.hpp"
 #include "tests/analysis/studied_result.hpp"
 #include "tests/doubles/scratch_folder.hpp"

@@ -3,7 +3,7 @@
 
 #include "analysis/printed/run_samples.hpp"
 #include "analysis/statistics/t_quantile.hpp"
-#include "analysis/tables.hpp"
+#include "analysis/tables/tables.hpp"
 #include "engine/random/stream.hpp"
 
 #include <gmock/gmock.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/tables/reference_files.hpp"
 
-#include "analysis/tables.hpp"
+#include "analysis/tables/tables.hpp"
 #include "engine/records/h5.hpp"
 #include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/synthetic_result.hpp"

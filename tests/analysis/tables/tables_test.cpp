@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/tables.hpp"
+#include "analysis/tables/tables.hpp"
 
+#include "analysis/output/csv_file.hpp"
+#include "analysis/output/number_text.hpp"
 #include "analysis/statistics/means.hpp"
-#include "analysis/tables/csv_file.hpp"
 #include "analysis/tables/latex.hpp"
-#include "analysis/tables/number_text.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/h5.hpp"
 #include "tests/doubles/scratch_folder.hpp"

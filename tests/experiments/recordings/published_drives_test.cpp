@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/beacon_scores.hpp"
 #include "analysis/metrics/reference_scores.hpp"
-#include "engine/runs/step_context.hpp"
+#include "engine/core/step_context.hpp"
 #include "experiments/study/make_plan.hpp"
 #include "experiments/study/study.hpp"
 #include "tests/doubles/published_data.hpp"

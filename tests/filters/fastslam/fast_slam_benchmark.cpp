@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/runs/cpu_clock.hpp"
+#include "engine/threads/cpu_clock.hpp"
 #include "filters/factory.hpp"
 #include "filters/models/ackermann.hpp"
 #include "filters/models/point.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/runs/pose.hpp"
+#include "engine/core/pose.hpp"
 #include "filters/association/nearest.hpp"
 #include "filters/models/eigen_jacobians.hpp"
 

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/first_values.hpp"
+
+#include "analysis/metrics/cell_sums.hpp"
+#include "analysis/statistics/summary.hpp"
+#include "analysis/statistics/t_quantile.hpp"
+
+#include <limits>
+
+namespace montecarta {
+
+std::vector<double> first_values(const ResultFile& file, const StoredCell& cell, const Score& score,
+                                 std::size_t runs, const Parallel& parallel) {
+  const std::vector<RunStatus> status = file.status(cell);
+  std::vector<std::size_t> complete;
+  for (std::size_t i = 0; i < runs; ++i) {
+    if (status[i] == RunStatus::complete) complete.push_back(i);
+  }
+  const Yardsticks sticks = yardsticks_of(file, 0.95);
+  std::vector<MeasuredRun> slots = slots_for(parallel);
+  CellSums sums(sticks);
+  add_runs(RunReader(file, cell), complete, cell.particles, sticks, parallel, slots, sums);
+  return sums.scores().column(score);
+}
+
+double half_width(const std::vector<double>& values, double level) {
+  if (values.size() < 2) return std::numeric_limits<double>::infinity();
+  SummaryOf sums;
+  for (const double value : values) sums.add(value);
+  return t_quantile(values.size(), level) * sums.result().standard_error();
+}
+
+}  // namespace montecarta

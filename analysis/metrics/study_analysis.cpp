@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/study_analysis.hpp"
+
+#include "analysis/data/run_reader.hpp"
+#include "analysis/metrics/cell_sums.hpp"
+#include "engine/errors.hpp"
+
+#include <algorithm>
+#include <span>
+
+namespace montecarta {
+namespace {
+
+/// Run indices in the file of the complete runs; counts and names the others in `cell`.
+std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell& stored,
+                                       CellAnalysis& cell) {
+  const auto status = file.status(stored);
+  const auto reasons = file.failure_reasons(stored);
+  const auto steps = file.failure_steps(stored);
+  std::vector<std::size_t> complete;
+  for (std::size_t i = 0; i < status.size(); ++i) {
+    if (status[i] == RunStatus::complete) complete.push_back(i);
+    if (status[i] == RunStatus::missing) ++cell.missing;
+    if (status[i] == RunStatus::spared) ++cell.spared;
+    if (status[i] == RunStatus::failed) {
+      cell.failures.push_back({file.runs()[i], steps[i], reasons[i]});
+    }
+  }
+  return complete;
+}
+
+/// A failed run is right until the scan at which it failed, at most.
+double failure_time(const ResultFile& file, std::uint32_t step) {
+  const auto& steps = file.description().scan_steps;
+  const auto scan = std::ranges::lower_bound(steps, step) - steps.begin();
+  return file.scan_times()[std::min(static_cast<std::size_t>(scan), steps.size() - 1)];
+}
+
+Survival survival(const CellAnalysis& cell, const ResultFile& file, const Yardsticks& sticks) {
+  std::vector<double> ends = cell.run_exits;
+  for (const FailedRun& failure : cell.failures) ends.push_back(failure_time(file, failure.step));
+  return survival_of(ends, sticks.times, sticks.level);
+}
+
+CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& stored,
+                          const Yardsticks& sticks, const Parallel& parallel,
+                          std::vector<MeasuredRun>& slots) {
+  CellAnalysis outcome;
+  const auto complete = complete_runs(file, stored, outcome);
+  CellSums sums(sticks);
+  add_runs(RunReader(file, stored), complete, stored.particles, sticks, parallel, slots, sums);
+  CellAnalysis cell = sums.result();
+  for (const std::size_t i : complete) cell.runs.push_back(file.runs()[i]);
+  cell.label = stored.label;
+  cell.filter = stored.filter;
+  cell.long_name = stored.long_name;
+  cell.particles = stored.particles;
+  cell.mismatch = mismatch_of(stored);
+  cell.missing = outcome.missing;
+  cell.spared = outcome.spared;
+  cell.failures = std::move(outcome.failures);
+  if (!cell.run_exits.empty()) cell.survival = survival(cell, file, sticks);
+  return cell;
+}
+
+/// What the study in the file repeats.
+Printed printed_of(const ResultFile& file) {
+  try {
+    return printed_in(file.study_text());
+  } catch (const StudyError& error) {
+    throw StudyError(file.path().string() + " (the study in it): " + error.what());
+  }
+}
+
+/// All that the file says of itself.
+StudyAnalysis begin(const ResultFile& file, double level) {
+  StudyAnalysis study;
+  study.file = file.path().filename().string();
+  study.study_name = file.study_name();
+  study.title = file.title();
+  study.study_sha256 = file.study_sha256();
+  study.seed = file.seed();
+  study.study_runs = file.study_runs();
+  study.runs_here = file.runs().size();
+  study.level = level;
+  study.printed = printed_of(file);
+  study.times = file.scan_times();
+  for (const std::uint32_t scan : file.description().joint_scans) {
+    study.joint_times.push_back(study.times[scan]);
+  }
+  study.duration = study.times.empty() ? 0.0 : study.times.back();
+  study.has_truth = file.has_truth();
+  study.beacons = file.landmarks().size();
+  return study;
+}
+
+}  // namespace
+
+bool StudyAnalysis::has_failures() const {
+  return std::ranges::any_of(cells, [](const CellAnalysis& c) { return !c.failures.empty(); });
+}
+
+StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& parallel) {
+  nees_bounds(1, 1, level);  // refuses a wrong level before the work
+  StudyAnalysis study = begin(file, level);
+  if (study.times.empty()) {
+    throw StudyError(file.path().string() +
+                     ": no scans (metrics are taken at scans): choose "
+                     "another file");
+  }
+  const Yardsticks sticks = yardsticks_of(file, level);
+  for (const PathAtFixes& fixes : sticks.references) {
+    study.references.push_back({fixes.name(), fixes.times(), !fixes.headings().empty()});
+  }
+  std::vector<MeasuredRun> slots = slots_for(parallel);
+  for (const StoredCell& cell : file.cells()) {
+    study.cells.push_back(analyze_cell(file, cell, sticks, parallel, slots));
+  }
+  study.bound = cramer_rao_bound(file, parallel);
+  for (CellAnalysis& cell : study.cells) cell.efficiency = efficiency_of(cell, study.bound);
+  return study;
+}
+
+}  // namespace montecarta

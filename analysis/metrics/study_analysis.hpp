@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/data/printed.hpp"
+#include "analysis/metrics/cell_analysis.hpp"
+#include "analysis/metrics/cramer_rao.hpp"
+#include "engine/records/result_file.hpp"
+#include "engine/threads/parallel.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// An independent measurement of the path, as far as estimates are judged by it.
+struct JudgedReference {
+  std::string name;
+  std::vector<double> times;  ///< [s] of the fixes within the drive
+  bool has_heading = false;
+};
+
+/// Metrics of every cell of a result file, evaluated at its scans, just after each update.
+struct StudyAnalysis {
+  std::string file;  ///< name of the result file, without folders
+  std::string study_name;
+  std::string title;
+  std::string study_sha256;
+  std::uint64_t seed = 0;
+  std::uint64_t study_runs = 0;     ///< of the whole study
+  std::uint64_t runs_here = 0;      ///< held by the file
+  double level = 0.95;              ///< of all NEES bounds
+  double duration = 0.0;            ///< [s] time of the last scan
+  std::vector<double> times;        ///< [s] of the scans
+  std::vector<double> joint_times;  ///< [s] of the scans at which joint estimates are stored
+  bool has_truth = true;  ///< whether the true path is known: without it no errors, no NEES
+  std::vector<JudgedReference> references;  ///< of a recorded drive; the first one leads
+  std::size_t beacons = 0;                  ///< landmarks whose true positions are known
+  CramerRaoBound bound;                     ///< below which no error can be
+  std::vector<CellAnalysis> cells;
+  Printed printed;  ///< what the study repeats; empty where it repeats nothing
+
+  bool has_failures() const;
+};
+
+/// Analyses a result file run by run: memory does not grow with the number of runs. The same
+/// numbers come out for any number of threads. Throws StudyError where level is not inside (0, 1).
+StudyAnalysis analyze(const ResultFile& file, double level = 0.95,
+                      const Parallel& parallel = Parallel::serial());
+
+}  // namespace montecarta

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/output/csv_file.hpp"
+
+#include "analysis/output/number_text.hpp"
+#include "engine/errors.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <unistd.h>
+
+namespace montecarta {
+namespace {
+
+std::string quoted(const std::string& field) {
+  if (field.find_first_of(",\"\n\r") == std::string::npos) return field;
+  std::string text = "\"";
+  for (const char c : field) text += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return text + "\"";
+}
+
+[[noreturn]] void cannot_write(const std::filesystem::path& path) {
+  throw RunError(path.string() + ": cannot be written (" + std::strerror(errno) +
+                 "): make room, or choose another place");
+}
+
+void write_in_place(const std::filesystem::path& path, const std::string& text) {
+  errno = 0;
+  std::ofstream out(path, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) cannot_write(path);
+}
+
+}  // namespace
+
+CsvFile::CsvFile(const std::filesystem::path& path) : path_(path), out_(path) { check(); }
+
+void CsvFile::check() {
+  if (!out_) cannot_write(path_);
+}
+
+void CsvFile::row(const std::vector<std::string>& fields) {
+  for (std::size_t i = 0; i < fields.size(); ++i) out_ << (i == 0 ? "" : ",") << quoted(fields[i]);
+  out_ << '\n';
+  check();
+}
+
+void CsvFile::row(const std::vector<double>& numbers) {
+  std::vector<std::string> fields;
+  for (const double number : numbers) fields.push_back(exact_text(number));
+  row(fields);
+}
+
+void CsvFile::close() {
+  out_.close();
+  check();
+}
+
+void make_directory(const std::filesystem::path& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error || !std::filesystem::is_directory(directory)) {
+    throw RunError(directory.string() + ": cannot be made (" +
+                   (error ? error.message() : "something else has that name") +
+                   "): choose another place");
+  }
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+  const std::filesystem::path target = std::filesystem::weakly_canonical(path);
+  const bool is_special =
+      std::filesystem::exists(target) && !std::filesystem::is_regular_file(target);
+  if (is_special) return write_in_place(target, text);
+  std::filesystem::path draft = target;
+  draft += "." + std::to_string(::getpid()) + ".new";
+  try {
+    write_in_place(draft, text);
+    std::filesystem::rename(draft, target);
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(draft, ignored);
+    throw;
+  }
+}
+
+}  // namespace montecarta

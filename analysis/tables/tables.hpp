@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/metrics/study_analysis.hpp"
+
+#include <filesystem>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// The table of a terminal: failed runs first, then one row a cell with its verdict; of a recorded
+/// drive, one row a cell and reference instead.
+void print_tables(std::ostream& out, const StudyAnalysis& study);
+
+/// Writes failures.csv, cells.csv (one row a cell), consistency.csv (one row a cell and definition
+/// of error and covariance), printed.csv and claims.csv (what a paper says and what was measured;
+/// headings alone where the study repeats none), where there is a
+/// Cramer-Rao bound bound.csv (one row a scan), where maps are stored landmarks.csv (one row a cell
+/// and landmark), where the drive has references references.csv (one
+/// row a cell and reference) and reference_errors.csv (one row a fix of the leading one), and, for
+/// each cell, series_<label>.csv (one row a scan) into `directory`, which is made where it is
+/// missing. Throws RunError naming the file that cannot be written.
+void write_csv(const StudyAnalysis& study, const std::filesystem::path& directory);
+
+/// Names of the files that write_csv() makes of cells with these labels.
+std::vector<std::string> csv_names(const std::vector<std::string>& labels);
+
+/// The verdict table for \input in a LaTeX document with the package booktabs.
+std::string latex_table(const StudyAnalysis& study);
+
+/// Writes everything as HDF5: one group a cell below /cells, series over the scale `time`. Replaces
+/// `path` when all is written. Throws RunError where it cannot, and leaves what was there.
+void write_analysis_file(const StudyAnalysis& study, const std::filesystem::path& path);
+
+}  // namespace montecarta

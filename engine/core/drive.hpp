@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/core/pose.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// What the filter is told about the motion of one step.
+struct Control {
+  double speed = 0.0;  ///< [m/s]
+  double steer = 0.0;  ///< [rad]
+
+  /// A vehicle that stands does not move, whatever noise its motion has (SPEC 20): no prediction.
+  bool stands() const { return speed == 0.0; }
+};
+
+/// One range-bearing measurement of a landmark.
+struct Detection {
+  static constexpr std::int32_t kClutter = -1;       ///< identity of a false alarm
+  static constexpr std::int32_t kUnidentified = -2;  ///< identity that nobody knows
+  double range = 0.0;                                ///< [m]
+  double bearing = 0.0;                              ///< [rad], relative to the heading
+  std::int32_t identity =
+      kClutter;  ///< landmark of the world; a filter may estimate by it only with known association
+};
+
+/// All detections of one instant, no identity twice but clutter and the unidentified; may be empty.
+using Scan = std::span<const Detection>;
+
+/// An independent measurement of the vehicle's path, by which a recorded drive is judged.
+struct ReferencePath {
+  std::string name;                       ///< e.g. "gps"
+  std::vector<double> time;               ///< [s] of each fix, increasing
+  std::vector<Eigen::Vector2d> position;  ///< [m] of each fix
+  std::vector<double> heading;            ///< [rad] of each fix; empty where it is not measured
+};
+
+/// What all runs of a study share: when steps and scans happen and what there is to map.
+struct Itinerary {
+  std::vector<double> step_time;  ///< [s] at the end of each control step, one per step
+  std::vector<std::uint32_t>
+      scan_step;  ///< for each scan the index of the step after which it is taken
+  std::vector<Eigen::Vector2d> landmarks;  ///< [m] true positions, by identity; empty where unknown
+  std::vector<Eigen::Vector2d> waypoints;  ///< [m] for figures only; may be empty
+  Pose start;  ///< pose before the first step, known to the filter exactly
+  std::vector<ReferencePath> references;  ///< of a recorded drive
+  bool has_truth = true;  ///< whether drives carry the true poses; a recorded one does not
+
+  std::size_t steps() const { return step_time.size(); }
+  std::size_t scans() const { return scan_step.size(); }
+  /// Length of step k [s].
+  double duration(std::size_t k) const {
+    return k == 0 ? step_time[0] : step_time[k] - step_time[k - 1];
+  }
+};
+
+/// One run's input and the truth it is judged by. Buffers keep their memory from run to run.
+struct Drive {
+  std::vector<Control> controls;          ///< one per step, as given to the filter
+  std::vector<Pose> truth;                ///< one per step, after the step; empty where unknown
+  std::vector<Detection> detections;      ///< of all scans, one after the other
+  std::vector<std::uint32_t> scan_begin;  ///< scans() + 1 offsets into `detections`
+
+  Scan scan(std::size_t s) const {
+    return Scan(detections).subspan(scan_begin[s], scan_begin[s + 1] - scan_begin[s]);
+  }
+};
+
+/// Supplies drives: simulated or recorded. Implemented in experiments; called from many threads.
+class DriveSource {
+ public:
+  virtual ~DriveSource() = default;
+  /// Common to all runs.
+  virtual const Itinerary& itinerary() const = 0;
+  /// Fills `drive` for one run: a pure function of (study, run), whatever `drive` held before.
+  virtual void generate(std::uint64_t run, Drive& drive) const = 0;
+};
+
+}  // namespace montecarta

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/setup/filter_options.hpp"
+
+#include "engine/errors.hpp"
+
+#include <string>
+
+namespace montecarta {
+
+const std::string& FilterOptions::choice(std::string_view name) const {
+  const auto found = values_.find(name);
+  expect(found != values_.end(), "a filter asks for an option that it does not declare");
+  return found->second;
+}
+
+double FilterOptions::number(std::string_view name) const { return std::stod(choice(name)); }
+
+std::size_t FilterOptions::integer(std::string_view name) const {
+  return static_cast<std::size_t>(std::stoull(choice(name)));
+}
+
+}  // namespace montecarta

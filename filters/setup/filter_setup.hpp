@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/core/slam_filter.hpp"
+#include "filters/models/vehicle.hpp"
+#include "filters/setup/filter_options.hpp"
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// What the filter believes about vehicle and sensor (study file: [belief], default [scenario]).
+struct Belief {
+  Vehicle vehicle = {};
+  double sigma_speed = 0.3;     ///< [m/s]
+  double sigma_steer = 0.05;    ///< [rad]
+  double sigma_range = 0.1;     ///< [m]
+  double sigma_bearing = 0.02;  ///< [rad]
+};
+
+enum class Association { known, nearest };
+
+/// Who decides which landmark a detection belongs to (study file: [association]; SPEC 17).
+struct AssociationSettings {
+  Association kind = Association::known;
+  double gate = 5.991464547107979;  ///< chi-square, 2 dof: a detection nearer than this may match
+  double new_gate = 25.0;           ///< farther than this from every landmark: a new one
+  double log_new_density_offset = 0.0;  ///< added to log p0 of SPEC 17 [D]
+  std::size_t most_landmarks = 1000;  ///< a map that grows beyond this has run away: the run fails
+};
+
+/// Everything a filter is made of.
+struct FilterSetup {
+  Belief belief;
+  AssociationSettings association;
+  FilterOptions options;
+  std::size_t landmarks = 0;  ///< of the world; an upper bound of identities with known association
+};
+
+/// A filter by name: one line in the table of factory.cpp.
+struct FilterKind {
+  std::string name;           ///< as users type it
+  std::string long_name;      ///< for legends
+  std::string source;         ///< paper and equation
+  bool has_particles = true;  ///< whether it takes the option `particles` (always listed first)
+  bool has_mixture = false;   ///< whether estimate() carries a mixture
+  bool has_joint = false;     ///< whether joint() gives anything
+  std::vector<FilterOption> options;  ///< in the order in which they are documented
+  std::function<std::unique_ptr<SlamFilter>(const FilterSetup&)> make;
+};
+
+}  // namespace montecarta
