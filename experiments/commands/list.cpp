@@ -20,11 +20,10 @@
 namespace montecarta {
 namespace {
 
-void list_options(std::span<const FilterOption> options) {
+void list_options(std::span<const Option> options) {
   std::vector<TableRow> rows;
-  for (const FilterOption& option : options) {
-    rows.push_back(
-        {option.name + "=" + option.fallback, option.meaning, demand_of(setting_of(option))});
+  for (const Option& option : options) {
+    rows.push_back({option.key + "=" + *option.fallback, option.meaning, demand_of(option)});
   }
   std::cout << aligned(rows, 4);
 }

@@ -26,16 +26,16 @@ const FilterKind& known_filter(const std::string& name, const std::string& place
                    "' (see montecarta list filters): " + nearest_spelling(name, known));
 }
 
-const FilterOption& known_option(const FilterKind& filter, const std::string& key,
-                                 const std::string& place) {
+const Option& known_option(const FilterKind& filter, const std::string& key,
+                           const std::string& place) {
   std::vector<std::string> known{"label"};
-  for (const FilterOption& option : filter.options) {
-    if (option.name == key) return option;
-    known.push_back(option.name);
+  for (const Option& option : filter.options) {
+    if (option.key == key) return option;
+    known.push_back(option.key);
   }
-  for (const FilterOption& option : mismatch_options()) {
-    if (option.name == key) return option;
-    known.push_back(option.name);
+  for (const Option& option : mismatch_options()) {
+    if (option.key == key) return option;
+    known.push_back(option.key);
   }
   throw StudyError(place + ": " + filter.name + " has no option '" + key +
                    "' (nothing would come of it): " + nearest_spelling(key, known));
@@ -66,20 +66,19 @@ void take_word(const std::string& word, const FilterKind& filter, CellSpec& cell
     cell.label = checked_label(word.substr(equals + 1), cell.place);
     return;
   }
-  const Setting setting = setting_of(known_option(filter, key, cell.place));
+  const Option& option = known_option(filter, key, cell.place);
   for (const std::string& value : split(word.substr(equals + 1), ',')) {
-    lists[key].push_back(checked_value(setting, value, cell.place));
+    lists[key].push_back(checked_value(option, value, cell.place));
   }
 }
 
 /// Every cell once for each value that the line lists for an option, or with its default.
 template <class Take>
-void multiply(const FilterOption& option, const Lists& lists, const Take& take,
+void multiply(const Option& option, const Lists& lists, const Take& take,
               std::vector<CellSpec>& cells) {
-  const auto given = lists.find(option.name);
-  const Setting setting = setting_of(option);
+  const auto given = lists.find(option.key);
   const std::vector<std::string> fallback{
-      checked_value(setting, option.fallback, cells.front().place)};
+      checked_value(option, *option.fallback, cells.front().place)};
   std::vector<CellSpec> longer;
   for (const CellSpec& cell : cells) {
     for (const std::string& value : given == lists.end() ? fallback : given->second) {
@@ -93,15 +92,15 @@ void multiply(const FilterOption& option, const Lists& lists, const Take& take,
 /// All combinations, the last option varying fastest.
 std::vector<CellSpec> combinations(const CellSpec& line, const Lists& lists) {
   std::vector<CellSpec> cells{line};
-  for (const FilterOption& option : line.filter->options) {
+  for (const Option& option : line.filter->options) {
     const auto take = [&](CellSpec& cell, const std::string& value) {
-      cell.options.emplace_back(option.name, value);
+      cell.options.emplace_back(option.key, value);
     };
     multiply(option, lists, take, cells);
   }
-  for (const FilterOption& option : mismatch_options()) {
+  for (const Option& option : mismatch_options()) {
     const auto take = [&](CellSpec& cell, const std::string& value) {
-      if (value != option.fallback) cell.mismatch.emplace_back(option.name, value);
+      if (value != *option.fallback) cell.mismatch.emplace_back(option.key, value);
     };
     multiply(option, lists, take, cells);
   }

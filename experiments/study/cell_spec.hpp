@@ -27,7 +27,7 @@ struct CellSpec {
 
 /// What every filter takes besides its own options: factors on the standard deviations that it
 /// believes, so that a study can ask what becomes of a filter that is told wrong noise.
-std::span<const FilterOption> mismatch_options();
+std::span<const Option> mismatch_options();
 /// The factor of that name; 1 where it is not in the list.
 double mismatch_of(const CellSpec& cell, std::string_view name);
 

@@ -6,23 +6,12 @@
 
 namespace montecarta {
 
-std::span<const FilterOption> mismatch_options() {
-  using Kind = FilterOption::Kind;
-  static const std::vector<FilterOption> options = {
-      {"motion_noise",
-       Kind::number,
-       "1",
-       1e-3,
-       1e3,
-       {},
-       "factor on the believed sigma_speed and sigma_steer"},
-      {"sensor_noise",
-       Kind::number,
-       "1",
-       1e-3,
-       1e3,
-       {},
-       "factor on the believed sigma_range and sigma_bearing"}};
+std::span<const Option> mismatch_options() {
+  static const std::vector<Option> options = {
+      number_option("motion_noise", "1", 1e-3, 1e3,
+                    "factor on the believed sigma_speed and sigma_steer"),
+      number_option("sensor_noise", "1", 1e-3, 1e3,
+                    "factor on the believed sigma_range and sigma_bearing")};
   return options;
 }
 

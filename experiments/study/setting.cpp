@@ -12,58 +12,55 @@
 namespace montecarta {
 namespace {
 
-using Kind = Setting::Kind;
+using Kind = Option::Kind;
 
-std::string remedy_of(const Setting& setting) {
-  const std::string value = setting.fallback.value_or(setting.example);
-  return value.empty() ? "correct it" : "give e.g. " + setting.key + " = " + value;
+std::string remedy_of(const Option& option) {
+  const std::string value = option.fallback.value_or(option.example);
+  return value.empty() ? "correct it" : "give e.g. " + option.key + " = " + value;
 }
 
-[[noreturn]] void throw_bad_value(const Setting& setting, std::string_view text,
+[[noreturn]] void throw_bad_value(const Option& option, std::string_view text,
                                   const std::string& place) {
-  throw StudyError(place + ": " + setting.key + " = " + std::string(text) + " (" +
-                   demand_of(setting) + " is needed): " + remedy_of(setting));
+  throw StudyError(place + ": " + option.key + " = " + std::string(text) + " (" +
+                   demand_of(option) + " is needed): " + remedy_of(option));
 }
 
-std::string checked_number(const Setting& setting, std::string_view text,
-                           const std::string& place) {
+std::string checked_number(const Option& option, std::string_view text, const std::string& place) {
   const std::optional<double> value = to_number(text);
-  if (!value || *value < setting.least || *value > setting.most)
-    throw_bad_value(setting, text, place);
+  if (!value || *value < option.least || *value > option.most) throw_bad_value(option, text, place);
   return to_text(*value + 0.0);  // no negative zero
 }
 
-std::string checked_count(const Setting& setting, std::string_view text, const std::string& place) {
+std::string checked_count(const Option& option, std::string_view text, const std::string& place) {
   const std::optional<std::uint64_t> value = to_count(text);
-  const bool fits = value && static_cast<double>(*value) >= setting.least &&
-                    static_cast<double>(*value) <= setting.most;
-  if (!fits) throw_bad_value(setting, text, place);
+  const bool fits = value && static_cast<double>(*value) >= option.least &&
+                    static_cast<double>(*value) <= option.most;
+  if (!fits) throw_bad_value(option, text, place);
   return std::to_string(*value);
 }
 
-void check_choice(const Setting& setting, const std::string& word, const std::string& place) {
-  if (std::ranges::find(setting.choices, word) != setting.choices.end()) return;
-  throw StudyError(place + ": " + setting.key + " = " + word + " (" + demand_of(setting) +
-                   " is needed): " + nearest_spelling(word, setting.choices));
+void check_choice(const Option& option, const std::string& word, const std::string& place) {
+  if (std::ranges::find(option.choices, word) != option.choices.end()) return;
+  throw StudyError(place + ": " + option.key + " = " + word + " (" + demand_of(option) +
+                   " is needed): " + nearest_spelling(word, option.choices));
 }
 
 /// In the order of the table, without repetition.
-std::string checked_choices(const Setting& setting, std::string_view text,
-                            const std::string& place) {
+std::string checked_choices(const Option& option, std::string_view text, const std::string& place) {
   const std::vector<std::string> given = split(text, ',');
-  for (const std::string& word : given) check_choice(setting, word, place);
+  for (const std::string& word : given) check_choice(option, word, place);
   std::vector<std::string> ordered;
-  for (const std::string& choice : setting.choices) {
+  for (const std::string& choice : option.choices) {
     if (std::ranges::find(given, choice) != given.end()) ordered.push_back(choice);
   }
   return joined(ordered);
 }
 
 /// A double cannot hold the largest of 64 bits, of which the reader takes every one.
-std::string most_of(const Setting& setting) {
+std::string most_of(const Option& option) {
   constexpr std::uint64_t kLargest = std::numeric_limits<std::uint64_t>::max();
-  const bool is_all = setting.kind == Kind::count && setting.most >= static_cast<double>(kLargest);
-  return is_all ? std::to_string(kLargest) : to_text(setting.most);
+  const bool is_all = option.kind == Kind::count && option.most >= static_cast<double>(kLargest);
+  return is_all ? std::to_string(kLargest) : to_text(option.most);
 }
 
 }  // namespace
@@ -85,10 +82,10 @@ const std::vector<std::string>& recorded_kinds() {
   return kinds;
 }
 
-std::string demand_of(const Setting& setting) {
-  const std::string unit = setting.unit.empty() || setting.unit == "1" ? "" : " " + setting.unit;
-  const std::string range = " from " + to_text(setting.least) + " to " + most_of(setting) + unit;
-  switch (setting.kind) {
+std::string demand_of(const Option& option) {
+  const std::string unit = option.unit.empty() || option.unit == "1" ? "" : " " + option.unit;
+  const std::string range = " from " + to_text(option.least) + " to " + most_of(option) + unit;
+  switch (option.kind) {
     case Kind::text:
       return "a text";
     case Kind::number:
@@ -96,27 +93,27 @@ std::string demand_of(const Setting& setting) {
     case Kind::count:
       return "a whole number" + range;
     case Kind::choice:
-      return "one of " + joined(setting.choices);
+      return "one of " + joined(option.choices);
     case Kind::choices:
-      return "a list of " + joined(setting.choices);
+      return "a list of " + joined(option.choices);
   }
   return {};
 }
 
-std::string checked_value(const Setting& setting, std::string_view text, const std::string& place) {
-  switch (setting.kind) {
+std::string checked_value(const Option& option, std::string_view text, const std::string& place) {
+  switch (option.kind) {
     case Kind::text:
-      if (text.empty() && !setting.fallback) throw_bad_value(setting, text, place);
+      if (text.empty() && !option.fallback) throw_bad_value(option, text, place);
       return std::string(text);
     case Kind::number:
-      return checked_number(setting, text, place);
+      return checked_number(option, text, place);
     case Kind::count:
-      return checked_count(setting, text, place);
+      return checked_count(option, text, place);
     case Kind::choice:
-      check_choice(setting, std::string(text), place);
+      check_choice(option, std::string(text), place);
       return std::string(text);
     case Kind::choices:
-      return checked_choices(setting, text, place);
+      return checked_choices(option, text, place);
   }
   return {};
 }

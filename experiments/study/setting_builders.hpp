@@ -14,42 +14,26 @@ inline constexpr double kTiny = 1e-6;  // least of what must be positive
 inline constexpr double kMostSeed = 18446744073709551615.0;
 
 inline Setting text(const char* section, const char* key, const char* meaning) {
-  return {.section = section, .key = key, .fallback = "", .meaning = meaning};
+  return {{.key = key, .fallback = "", .meaning = meaning}, section};
 }
 
 inline Setting number(const char* section, const char* key, const char* unit, const char* fallback,
                       double least, double most, const char* meaning) {
-  return {.section = section,
-          .key = key,
-          .kind = Setting::Kind::number,
-          .unit = unit,
-          .fallback = fallback,
-          .least = least,
-          .most = most,
-          .meaning = meaning};
+  Setting setting{number_option(key, fallback, least, most, meaning), section};
+  setting.unit = unit;
+  return setting;
 }
 
 inline Setting count(const char* section, const char* key, const char* fallback, double least,
                      double most, const char* meaning) {
-  return {.section = section,
-          .key = key,
-          .kind = Setting::Kind::count,
-          .fallback = fallback,
-          .least = least,
-          .most = most,
-          .meaning = meaning};
+  return {count_option(key, fallback, least, most, meaning), section};
 }
 
 /// The first choice is the default.
 inline Setting choice(const char* section, const char* key, std::vector<std::string> choices,
                       const char* meaning) {
   const std::string first = choices.front();
-  return {.section = section,
-          .key = key,
-          .kind = Setting::Kind::choice,
-          .fallback = first,
-          .choices = std::move(choices),
-          .meaning = meaning};
+  return {choice_option(key, first, std::move(choices), meaning), section};
 }
 
 /// Without a default; `example` is offered as remedy.

@@ -68,17 +68,4 @@ std::span<const Setting> study_settings() {
   return table;
 }
 
-Setting setting_of(const FilterOption& option) {
-  Setting setting{.key = option.name,
-                  .kind = Setting::Kind::choice,
-                  .fallback = option.fallback,
-                  .least = option.least,
-                  .most = option.most,
-                  .choices = option.choices,
-                  .meaning = option.meaning};
-  if (option.kind == FilterOption::Kind::number) setting.kind = Setting::Kind::number;
-  if (option.kind == FilterOption::Kind::integer) setting.kind = Setting::Kind::count;
-  return setting;
-}
-
 }  // namespace montecarta

@@ -12,28 +12,18 @@ namespace {
 /// In the order of the enumerators.
 const std::vector<std::string> kEvolutionModes{"honest", "as_printed", "prior", "shared"};
 
-std::vector<FilterOption> options_of_evolution() {
-  using Kind = FilterOption::Kind;
-  return {{"mode", Kind::choice, "honest", 0, 0, kEvolutionModes,
-           "what is evolved, and whether the draw is paid for (SPEC 13)"},
-          {"scale", Kind::number, "0.4", 0, 2, {}, "F, of the difference vectors (SPEC 12)"},
-          {"crossover", Kind::number, "0.8", 0, 1, {}, "Cr, share of components that cross"},
-          {"generations", Kind::integer, "10", 0, 1000, {}, "at most; the paper does not say"},
-          {"population",
-           Kind::integer,
-           "10",
-           7,
-           1000,
-           {},
-           "of each particle's own evolution (mode honest); the particles themselves otherwise"},
-          {"bounds", Kind::number, "3", 0, 100, {}, "of the search, in standard deviations"},
-          {"inflation",
-           Kind::number,
-           "1",
-           1,
-           10,
-           {},
-           "of the covariance that is drawn from (modes honest and shared)"}};
+std::vector<Option> options_of_evolution() {
+  return {choice_option("mode", "honest", kEvolutionModes,
+                        "what is evolved, and whether the draw is paid for (SPEC 13)"),
+          number_option("scale", "0.4", 0, 2, "F, of the difference vectors (SPEC 12)"),
+          number_option("crossover", "0.8", 0, 1, "Cr, share of components that cross"),
+          count_option("generations", "10", 0, 1000, "at most; the paper does not say"),
+          count_option(
+              "population", "10", 7, 1000,
+              "of each particle's own evolution (mode honest); the particles themselves otherwise"),
+          number_option("bounds", "3", 0, 100, "of the search, in standard deviations"),
+          number_option("inflation", "1", 1, 10,
+                        "of the covariance that is drawn from (modes honest and shared)")};
 }
 
 }  // namespace
@@ -50,9 +40,9 @@ EvolvedSettings evolved_settings(const FilterOptions& options) {
 }
 
 FilterKind de_srcd_kind() {
-  std::vector<FilterOption> options = fast_slam_options();
-  for (FilterOption& option : options_of_evolution()) options.push_back(std::move(option));
-  for (FilterOption& option : central_difference_options()) options.push_back(std::move(option));
+  std::vector<Option> options = fast_slam_options();
+  for (Option& option : options_of_evolution()) options.push_back(std::move(option));
+  for (Option& option : central_difference_options()) options.push_back(std::move(option));
   options.push_back(map_uncertainty_option());
   return {.name = "de_srcd",
           .long_name = "DE-SRCD-FastSLAM",

@@ -5,22 +5,14 @@
 
 namespace montecarta {
 
-std::vector<FilterOption> delayed_options() {
-  std::vector<FilterOption> options = fast_slam_options();
-  options.push_back({"draw_every",
-                     FilterOption::Kind::integer,
-                     "10",
-                     0,
-                     1e9,
-                     {},
-                     "scans from one draw of the poses to the next; 1 = FastSLAM II, 0 = never"});
-  options.push_back({"draw_beyond_deg",
-                     FilterOption::Kind::number,
-                     "0",
-                     0,
-                     360,
-                     {},
-                     "also draw where headings are predicted worse than this [deg]; 0 = never"});
+std::vector<Option> delayed_options() {
+  std::vector<Option> options = fast_slam_options();
+  options.push_back(
+      count_option("draw_every", "10", 0, 1e9,
+                   "scans from one draw of the poses to the next; 1 = FastSLAM II, 0 = never"));
+  options.push_back(
+      number_option("draw_beyond_deg", "0", 0, 360,
+                    "also draw where headings are predicted worse than this [deg]; 0 = never"));
   return options;
 }
 

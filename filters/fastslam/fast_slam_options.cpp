@@ -13,7 +13,7 @@ const std::vector<std::string> kWeightForms{"closed", "ratio", "batch"};
 
 }  // namespace
 
-std::vector<FilterOption> fast_slam_options() { return resampling_options("100"); }
+std::vector<Option> fast_slam_options() { return resampling_options("100"); }
 
 FastSlamSettings fast_slam_settings(const FilterOptions& options) {
   return {.particles = options.integer("particles"),

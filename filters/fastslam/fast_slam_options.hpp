@@ -25,7 +25,7 @@ enum class WeightForm {
 };
 
 /// The options that the whole family shares, in the order in which they are documented.
-std::vector<FilterOption> fast_slam_options();
+std::vector<Option> fast_slam_options();
 /// Reads them.
 FastSlamSettings fast_slam_settings(const FilterOptions& options);
 /// Names of the weight forms, in the order of the enumerators.

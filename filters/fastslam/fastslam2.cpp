@@ -4,9 +4,9 @@
 namespace montecarta {
 
 FilterKind fastslam2_kind() {
-  std::vector<FilterOption> options = fast_slam_options();
-  options.push_back({"weights", FilterOption::Kind::choice, "closed", 0, 0, weight_form_names(),
-                     "form of the importance weight (SPEC 7.2 c, r, b)"});
+  std::vector<Option> options = fast_slam_options();
+  options.push_back(choice_option("weights", "closed", weight_form_names(),
+                                  "form of the importance weight (SPEC 7.2 c, r, b)"));
   return {.name = "fastslam2",
           .long_name = "FastSLAM II",
           .source = "Montemerlo et al. 2003; SPEC 7",

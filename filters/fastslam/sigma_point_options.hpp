@@ -10,14 +10,14 @@ namespace montecarta {
 
 /// What every filter of the family with sigma points can be told: the family's options and the form
 /// of the weight, closed or ratio.
-std::vector<FilterOption> sigma_point_options();
+std::vector<Option> sigma_point_options();
 
 /// Whether the landmark's covariance is part of the pose's innovation (SPEC 8.1).
-FilterOption map_uncertainty_option();
+Option map_uncertainty_option();
 MapUncertainty map_uncertainty(const FilterOptions& options);
 
 /// Interval and weights of central differences (SPEC 9).
-std::vector<FilterOption> central_difference_options();
+std::vector<Option> central_difference_options();
 /// Central differences for every stage; `map_uncertainty` matters to the pose alone.
 SigmaPoints central_difference_points(const FilterSetup& setup, MapUncertainty map_uncertainty);
 

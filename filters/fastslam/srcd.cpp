@@ -4,7 +4,7 @@
 namespace montecarta {
 
 FilterKind srcd_kind() {
-  std::vector<FilterOption> options = srcd_options();
+  std::vector<Option> options = srcd_options();
   options.push_back(map_uncertainty_option());
   return {.name = "srcd",
           .long_name = "SRCD-FastSLAM",

@@ -34,9 +34,9 @@ std::unique_ptr<SlamFilter> make_srcd_pf(const FilterSetup& setup) {
 }
 
 /// Options of a filter that uses central differences, in the order in which they are documented.
-inline std::vector<FilterOption> srcd_options() {
-  std::vector<FilterOption> options = sigma_point_options();
-  for (FilterOption& option : central_difference_options()) options.push_back(std::move(option));
+inline std::vector<Option> srcd_options() {
+  std::vector<Option> options = sigma_point_options();
+  for (Option& option : central_difference_options()) options.push_back(std::move(option));
   return options;
 }
 

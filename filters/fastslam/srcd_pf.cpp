@@ -4,7 +4,7 @@
 namespace montecarta {
 
 FilterKind srcd_pf_kind() {
-  std::vector<FilterOption> options = srcd_options();
+  std::vector<Option> options = srcd_options();
   options.push_back(map_uncertainty_option());
   return {.name = "srcd_pf",
           .long_name = "SRCD-PF FastSLAM",

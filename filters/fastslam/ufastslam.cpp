@@ -4,28 +4,15 @@
 namespace montecarta {
 
 FilterKind ufastslam_kind() {
-  std::vector<FilterOption> options = sigma_point_options();
-  options.push_back({"alpha",
-                     FilterOption::Kind::number,
-                     "0.9",
-                     1e-3,
-                     1,
-                     {},
-                     "spread of the sigma points; Kim's paper has 0.002, Kim's code 0.9 (SPEC 8)"});
-  options.push_back({"beta",
-                     FilterOption::Kind::number,
-                     "2",
-                     0,
-                     10,
-                     {},
-                     "weight of the centre in covariances; 2 suits a Gaussian (SPEC 8)"});
-  options.push_back({"kappa",
-                     FilterOption::Kind::number,
-                     "0",
-                     0,
-                     10,
-                     {},
-                     "second spread: alpha^2 (n + kappa) is the square of the points' distance"});
+  std::vector<Option> options = sigma_point_options();
+  options.push_back(
+      number_option("alpha", "0.9", 1e-3, 1,
+                    "spread of the sigma points; Kim's paper has 0.002, Kim's code 0.9 (SPEC 8)"));
+  options.push_back(number_option(
+      "beta", "2", 0, 10, "weight of the centre in covariances; 2 suits a Gaussian (SPEC 8)"));
+  options.push_back(
+      number_option("kappa", "0", 0, 10,
+                    "second spread: alpha^2 (n + kappa) is the square of the points' distance"));
   options.push_back(map_uncertainty_option());
   return {.name = "ufastslam",
           .long_name = "U-FastSLAM",

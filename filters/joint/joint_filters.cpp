@@ -8,30 +8,18 @@
 namespace montecarta {
 namespace {
 
-using Kind = FilterOption::Kind;
-
 // In the order of the enumerators.
 const std::vector<std::string> kErrors{"additive", "invariant"};
 const std::vector<std::string> kMotions{"linearised", "quadrature"};
 
-FilterOption iterations_option(const char* fallback) {
-  return {"iterations",
-          Kind::integer,
-          fallback,
-          0,
-          100,
-          {},
-          "times a detection is linearised again where it has moved the estimate to"};
+Option iterations_option(const char* fallback) {
+  return count_option("iterations", fallback, 0, 100,
+                      "times a detection is linearised again where it has moved the estimate to");
 }
 
-FilterOption motion_option(const char* fallback) {
-  return {"motion",
-          Kind::choice,
-          fallback,
-          0,
-          0,
-          kMotions,
-          "how noise of the control reaches the pose: by derivatives or averaged"};
+Option motion_option(const char* fallback) {
+  return choice_option("motion", fallback, kMotions,
+                       "how noise of the control reaches the pose: by derivatives or averaged");
 }
 
 int iterations(const FilterOptions& options) {
@@ -102,28 +90,18 @@ FilterKind riekf_slam_kind() {
 }
 
 FilterKind hrb_kind() {
-  std::vector<FilterOption> options = resampling_options("30");
+  std::vector<Option> options = resampling_options("30");
   options.insert(
       options.end(),
-      {{"split_beyond_deg",
-        Kind::number,
-        "0",
-        0,
-        1e9,
-        {},
-        "[degrees] a Gaussian that knows its heading worse than this draws it; 0: where that bends "
-        "its map by more than sigma_range"},
-       {"keep",
-        Kind::number,
-        "0.95",
-        0,
-        0.999,
-        {},
-        "share of the heading's standard deviation that a draw leaves; SPEC 24 has 0"},
-       {"error", Kind::choice, "invariant", 0, 0, kErrors,
-        "what the covariance is of: additive (EKF-SLAM) or invariant (RI-EKF-SLAM)"},
-       iterations_option("5"),
-       motion_option("quadrature")});
+      {number_option("split_beyond_deg", "0", 0, 1e9,
+                     "[degrees] a Gaussian that knows its heading worse than this draws it; 0: "
+                     "where that bends "
+                     "its map by more than sigma_range"),
+       number_option("keep", "0.95", 0, 0.999,
+                     "share of the heading's standard deviation that a draw leaves; SPEC 24 has 0"),
+       choice_option("error", "invariant", kErrors,
+                     "what the covariance is of: additive (EKF-SLAM) or invariant (RI-EKF-SLAM)"),
+       iterations_option("5"), motion_option("quadrature")});
   return {.name = "hrb",
           .long_name = "heading-split bank",
           .source = "SPEC 24",

@@ -9,7 +9,6 @@ namespace montecarta {
 namespace {
 
 using Names = std::vector<std::string>;
-using Kind = FilterOption::Kind;
 
 // In the order of the enumerators.
 const Names kKernels{"prior", "posterior"};
@@ -18,19 +17,6 @@ const Names kSolvers{"gauss_newton", "de"};
 const Names kObjectives{"likelihood", "squares", "squares_as_printed"};
 const Names kSums{"direct", "tree", "ifgt", "auto"};
 const Names kBases{"best", "random", "target"};
-
-FilterOption choice(const char* name, const std::string& fallback, const Names& choices,
-                    const char* meaning) {
-  return {name, Kind::choice, fallback, 0, 0, choices, meaning};
-}
-FilterOption number(const char* name, const char* fallback, double least, double most,
-                    const char* meaning) {
-  return {name, Kind::number, fallback, least, most, {}, meaning};
-}
-FilterOption integer(const char* name, const char* fallback, double least, double most,
-                     const char* meaning) {
-  return {name, Kind::integer, fallback, least, most, {}, meaning};
-}
 
 MapSettings map_settings(const FilterOptions& options) {
   return {.mode = chosen<MapMode>(options.choice("map"), kModes),
@@ -46,31 +32,35 @@ MapSettings map_settings(const FilterOptions& options) {
 
 }  // namespace
 
-std::vector<FilterOption> marginal_options(MapSolver solver) {
+std::vector<Option> marginal_options(MapSolver solver) {
   return {
-      integer("particles", "100", 1, 1e6, "number of particles"),
-      choice("kernel", "prior", kKernels, "what poses are drawn from (SPEC 14.2)"),
-      number("kernel_floor_xy", "0.01", 0, 100,
-             "[m] sigma of noise added to the motion in x and y at every scan (SPEC 14.1)"),
-      number("kernel_floor_heading", "0.001", 0, 3,
-             "[rad] sigma of noise added to the motion in heading at every scan (SPEC 14.1)"),
-      choice("kernel_sums", "auto", kSums,
-             "how the mixtures are summed; auto: direct or tree, whichever is faster (SPEC 16)"),
-      number("kernel_tolerance", "1e-9", 1e-15, 0.1,
-             "error of a sum: relative (tree), of the sum of all peaks (ifgt)"),
-      choice("map", "recursive", kModes, "what a landmark remembers of earlier scans (SPEC 15)"),
-      choice("map_solver", kSolvers[static_cast<std::size_t>(solver)], kSolvers,
-             "how the best place of a landmark is found"),
-      choice("map_objective", "likelihood", kObjectives,
-             "what a landmark is judged by (Havangi eq. 27, its bound, eq. 29)"),
-      number("map_threshold", "5.991464547107979", 0, 1e6,
-             "map=onestep_threshold: a landmark stays where its objective is below (SPEC 15.2)"),
-      integer("population", "30", 1, 10000, "map_solver=de: candidates for each landmark"),
-      integer("generations", "10", 0, 1000, "map_solver=de: at most (SPEC 12)"),
-      number("scale", "0.5", 0, 2, "map_solver=de: F (SPEC 12)"),
-      number("crossover", "0.8", 0, 1, "map_solver=de: Cr (SPEC 12)"),
-      choice("base", "random", kBases,
-             "map_solver=de: base of a trial; Havangi eq. (6) random, eq. (30) target"),
+      count_option("particles", "100", 1, 1e6, "number of particles"),
+      choice_option("kernel", "prior", kKernels, "what poses are drawn from (SPEC 14.2)"),
+      number_option("kernel_floor_xy", "0.01", 0, 100,
+                    "[m] sigma of noise added to the motion in x and y at every scan (SPEC 14.1)"),
+      number_option(
+          "kernel_floor_heading", "0.001", 0, 3,
+          "[rad] sigma of noise added to the motion in heading at every scan (SPEC 14.1)"),
+      choice_option(
+          "kernel_sums", "auto", kSums,
+          "how the mixtures are summed; auto: direct or tree, whichever is faster (SPEC 16)"),
+      number_option("kernel_tolerance", "1e-9", 1e-15, 0.1,
+                    "error of a sum: relative (tree), of the sum of all peaks (ifgt)"),
+      choice_option("map", "recursive", kModes,
+                    "what a landmark remembers of earlier scans (SPEC 15)"),
+      choice_option("map_solver", kSolvers[static_cast<std::size_t>(solver)], kSolvers,
+                    "how the best place of a landmark is found"),
+      choice_option("map_objective", "likelihood", kObjectives,
+                    "what a landmark is judged by (Havangi eq. 27, its bound, eq. 29)"),
+      number_option(
+          "map_threshold", "5.991464547107979", 0, 1e6,
+          "map=onestep_threshold: a landmark stays where its objective is below (SPEC 15.2)"),
+      count_option("population", "30", 1, 10000, "map_solver=de: candidates for each landmark"),
+      count_option("generations", "10", 0, 1000, "map_solver=de: at most (SPEC 12)"),
+      number_option("scale", "0.5", 0, 2, "map_solver=de: F (SPEC 12)"),
+      number_option("crossover", "0.8", 0, 1, "map_solver=de: Cr (SPEC 12)"),
+      choice_option("base", "random", kBases,
+                    "map_solver=de: base of a trial; Havangi eq. (6) random, eq. (30) target"),
   };
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,19 +13,55 @@
 
 namespace montecarta {
 
-/// One setting of a filter, as a user types it behind the filter's name in a cell line.
-struct FilterOption {
-  enum class Kind { number, integer, choice };
-  std::string name;
-  Kind kind = Kind::number;
-  std::string fallback;  ///< default value, as text
-  double least = 0.0;    ///< of numbers and integers, inclusive
+/// One thing that a user may set: of a filter behind its name in a cell line, of a study in a
+/// section of its file.
+struct Option {
+  enum class Kind {
+    text,     ///< anything
+    number,   ///< finite, from `least` to `most`
+    count,    ///< whole, from `least` to `most`
+    choice,   ///< one of `choices`
+    choices,  ///< a list out of `choices`
+  };
+  std::string key = {};
+  Kind kind = Kind::text;
+  std::string unit = {};                     ///< "" where there is none
+  std::optional<std::string> fallback = {};  ///< default value, as text; nullopt: must be given
+  double least = 0.0;                        ///< inclusive, as `most`
   double most = 0.0;
-  std::vector<std::string> choices;  ///< of Kind::choice
-  std::string meaning;               ///< one line, with unit and equation
+  std::vector<std::string> choices = {};
+  std::string meaning = {};  ///< one line, with unit and equation
+  std::string example = {};  ///< offered as remedy where there is no fallback
 };
 
-/// Values of a filter's options, checked against their FilterOption beforehand.
+inline Option number_option(const char* key, const char* fallback, double least, double most,
+                            const char* meaning) {
+  return {.key = key,
+          .kind = Option::Kind::number,
+          .fallback = fallback,
+          .least = least,
+          .most = most,
+          .meaning = meaning};
+}
+inline Option count_option(const char* key, const std::string& fallback, double least, double most,
+                           const char* meaning) {
+  return {.key = key,
+          .kind = Option::Kind::count,
+          .fallback = fallback,
+          .least = least,
+          .most = most,
+          .meaning = meaning};
+}
+inline Option choice_option(const char* key, const std::string& fallback,
+                            std::vector<std::string> choices, const char* meaning) {
+  return {.key = key,
+          .kind = Option::Kind::choice,
+          .fallback = fallback,
+          .choices = std::move(choices),
+          .meaning = meaning};
+}
+
+/// Values of a filter's options, checked against their Option beforehand.
 class FilterOptions {
  public:
   explicit FilterOptions(std::map<std::string, std::string, std::less<>> values)

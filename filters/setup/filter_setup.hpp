@@ -43,13 +43,13 @@ struct FilterSetup {
 
 /// A filter by name: one line in the table of factory.cpp.
 struct FilterKind {
-  std::string name;           ///< as users type it
-  std::string long_name;      ///< for legends
-  std::string source;         ///< paper and equation
-  bool has_particles = true;  ///< whether it takes the option `particles` (always listed first)
-  bool has_mixture = false;   ///< whether estimate() carries a mixture
-  bool has_joint = false;     ///< whether joint() gives anything
-  std::vector<FilterOption> options;  ///< in the order in which they are documented
+  std::string name;             ///< as users type it
+  std::string long_name;        ///< for legends
+  std::string source;           ///< paper and equation
+  bool has_particles = true;    ///< whether it takes the option `particles` (always listed first)
+  bool has_mixture = false;     ///< whether estimate() carries a mixture
+  bool has_joint = false;       ///< whether joint() gives anything
+  std::vector<Option> options;  ///< in the order in which they are documented
   std::function<std::unique_ptr<SlamFilter>(const FilterSetup&)> make;
 };
 

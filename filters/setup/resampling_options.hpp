@@ -11,7 +11,7 @@ namespace montecarta {
 
 /// How many particles, and how and when they are resampled (SPEC 18): `particles`, `resampling`,
 /// `resample_below`, in the order in which they are documented.
-std::vector<FilterOption> resampling_options(const std::string& particles);
+std::vector<Option> resampling_options(const std::string& particles);
 /// Reads `resampling`.
 Resampling chosen_resampling(const FilterOptions& options);
 

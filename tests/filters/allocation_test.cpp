@@ -27,8 +27,8 @@ class Listener {
  public:
   explicit Listener(const FilterKind& kind) {
     if (!kind.has_particles) return;
-    for (const FilterOption& option : kind.options) {
-      if (option.name == "particles") log_weights_.resize(std::stoul(option.fallback));
+    for (const Option& option : kind.options) {
+      if (option.key == "particles") log_weights_.resize(std::stoul(*option.fallback));
     }
     poses_.resize(3 * log_weights_.size()), ancestors_.resize(log_weights_.size());
   }

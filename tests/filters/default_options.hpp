@@ -13,7 +13,7 @@ namespace montecarta {
 inline FilterOptions default_options(
     const FilterKind& kind, const std::map<std::string, std::string, std::less<>>& others = {}) {
   std::map<std::string, std::string, std::less<>> values = others;
-  for (const FilterOption& option : kind.options) values.emplace(option.name, option.fallback);
+  for (const Option& option : kind.options) values.emplace(option.key, *option.fallback);
   return FilterOptions(values);
 }
 

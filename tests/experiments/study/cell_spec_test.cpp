@@ -14,11 +14,10 @@ using testing::HasSubstr;
 
 /// Two filters that exist on paper only.
 std::vector<FilterKind> paper_filters() {
-  using Kind = FilterOption::Kind;
-  const FilterOption particles{"particles", Kind::integer, "100", 1, 1e6, {}, "how many"};
-  const FilterOption threshold{"threshold", Kind::number, "0.5", 0, 1, {}, "when to resample"};
-  const FilterOption weight{
-      "weight", Kind::choice, "closed", 0, 0, {"closed", "ratio", "as_printed"}, "which form"};
+  const Option particles = count_option("particles", "100", 1, 1e6, "how many");
+  const Option threshold = number_option("threshold", "0.5", 0, 1, "when to resample");
+  const Option weight =
+      choice_option("weight", "closed", {"closed", "ratio", "as_printed"}, "which form");
   return {{"bold", "Bold filter", "", true, false, false, {particles, threshold, weight}, {}},
           {"plain", "Plain filter", "", false, false, false, {threshold}, {}}};
 }

@@ -102,7 +102,7 @@ TEST(AssociationCounts, AreMeansOverParticlesWhoseMemoryGoesWithTheirMaps) {
 std::unique_ptr<SlamFilter> make_default(const FilterKind& kind, const SmallWorldSettings& settings,
                                          Association association) {
   std::map<std::string, std::string, std::less<>> values;
-  for (const FilterOption& option : kind.options) values[option.name] = option.fallback;
+  for (const Option& option : kind.options) values[option.key] = *option.fallback;
   if (kind.has_particles) values["particles"] = "24";
   return kind.make({.belief = settings.noise,
                     .association = {.kind = association},

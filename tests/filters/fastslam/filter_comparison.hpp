@@ -44,8 +44,8 @@ inline const FilterKind& kind_of(const Variant& v) {
 
 inline FilterSetup setup_of(const Variant& v, const SmallWorldSettings& world) {
   auto values = v.options;
-  for (const FilterOption& option : kind_of(v).options) {
-    values.try_emplace(option.name, option.fallback);
+  for (const Option& option : kind_of(v).options) {
+    values.try_emplace(option.key, *option.fallback);
   }
   values["particles"] = std::to_string(v.particles);
   if (values.contains("weights")) values["weights"] = v.weights;

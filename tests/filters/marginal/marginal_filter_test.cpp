@@ -30,8 +30,8 @@ struct Variant {
   Choice choice() const { return filter == "marginal" ? Choice::by_weight : Choice::by_likelihood; }
   FilterOptions options() const {
     Texts values;
-    for (const FilterOption& option : marginal_options(MapSolver::gauss_newton))
-      values[option.name] = option.fallback;
+    for (const Option& option : marginal_options(MapSolver::gauss_newton))
+      values[option.key] = *option.fallback;
     values["particles"] = "13";  // not a multiple of the lanes
     for (const auto& [name, value] : changed) values[name] = value;
     return FilterOptions(values);
