@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <fcntl.h>
 #include <memory>
+#include <poll.h>
+#include <string>
 #include <sys/ioctl.h>
 #include <thread>
 #include <unistd.h>
@@ -82,9 +84,15 @@ class Terminal {
   Terminal& operator=(const Terminal&) = delete;
 
   std::string seen() const {
-    std::array<char, 4096> text{};
-    const ssize_t length = read(outside_, text.data(), text.size());
-    return {text.data(), static_cast<std::size_t>(std::max<ssize_t>(length, 0))};
+    std::string all;
+    pollfd waiting{.fd = outside_, .events = POLLIN, .revents = 0};
+    while (!all.ends_with('\n') && poll(&waiting, 1, 5000) == 1) {
+      std::array<char, 4096> text{};
+      const ssize_t length = read(outside_, text.data(), text.size());
+      if (length <= 0) break;
+      all.append(text.data(), static_cast<std::size_t>(length));
+    }
+    return all;
   }
   File inside{nullptr, std::fclose};
 
