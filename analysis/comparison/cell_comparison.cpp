@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/cell_comparison.hpp"
 
-#include "analysis/comparison/paired_runs.hpp"
+#include "analysis/metrics/paired_runs.hpp"
 #include "analysis/statistics/bootstrap.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/errors.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/win_matrix.hpp"
 
-#include "analysis/comparison/paired_runs.hpp"
+#include "analysis/metrics/paired_runs.hpp"
 
 #include <utility>
 

@@ -5,8 +5,6 @@
 #include "analysis/statistics/means.hpp"
 
 namespace montecarta {
-namespace {}  // namespace
-
 std::span<const Score> scores_of_cost() {
   static constexpr Score kAll[] = {
       {"numerical_faults", "1", "factorisations answered by a fallback",

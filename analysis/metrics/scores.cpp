@@ -53,17 +53,13 @@ const Score* find_score(std::string_view name) {
   return found == all_scores().end() ? nullptr : &*found;
 }
 
-std::size_t index_of(const Score& score) {
-  const auto index = static_cast<std::size_t>(&score - all_scores().data());
-  expect(index < all_scores().size(), "a score that no metric declares");
-  return index;
-}
-
 std::size_t index_of(std::string_view name) {
   const Score* score = find_score(name);
   expect(score != nullptr, "a score that no metric declares");
-  return index_of(*score);
+  return static_cast<std::size_t>(score - all_scores().data());
 }
+
+std::size_t index_of(const Score& score) { return index_of(score.name); }
 
 ScoreTable::ScoreTable() : columns_(all_scores().size()) {}
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/printed/run_samples.hpp"
 
-#include "analysis/comparison/paired_runs.hpp"
+#include "analysis/metrics/paired_runs.hpp"
 #include "analysis/statistics/means.hpp"
 #include "analysis/statistics/t_quantile.hpp"
 

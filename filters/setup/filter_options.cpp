@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 
+#include <charconv>
 #include <string>
 
 namespace montecarta {
@@ -13,7 +14,12 @@ const std::string& FilterOptions::choice(std::string_view name) const {
   return found->second;
 }
 
-double FilterOptions::number(std::string_view name) const { return std::stod(choice(name)); }
+double FilterOptions::number(std::string_view name) const {
+  const std::string& text = choice(name);
+  double value = 0.0;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
 
 std::size_t FilterOptions::integer(std::string_view name) const {
   return static_cast<std::size_t>(std::stoull(choice(name)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/comparison/paired_runs.hpp"
+#include "analysis/metrics/paired_runs.hpp"
 
 #include "analysis/statistics/means.hpp"
 
