@@ -195,16 +195,13 @@ TEST(House, ARoomIncludesOnlyWhatStandsBelowIt) {
 TEST(House, FoldersIncludeEachOtherInNoCircle) { EXPECT_THAT(circles(house()), IsEmpty()); }
 
 TEST(House, StatisticsKnowNumbersOnly) {
-  std::vector<std::string> found;
   for (const auto& [path, lines] : house()) {
     if (!path.starts_with("analysis/statistics/")) continue;
     for (const std::string& name : includes_of(lines)) {
-      if (name.starts_with("analysis/") && !name.starts_with("analysis/statistics/")) {
-        found.push_back(path + " includes " + name);
-      }
+      const bool is_ours = name.starts_with("analysis/statistics/");
+      EXPECT_TRUE(is_ours || !name.starts_with("analysis/")) << path << " includes " << name;
     }
   }
-  EXPECT_THAT(found, IsEmpty());
 }
 
 TEST(House, LibrariesAreMetInOneOrTwoFiles) {
@@ -253,19 +250,16 @@ TEST(House, NothingIsInvertedAndNothingIsLeftToDo) {
 }
 
 TEST(House, TheTreeThatIsReadIsWhole) {
-  EXPECT_TRUE(house().contains("engine/errors.hpp"));
-  EXPECT_TRUE(house().contains("tests/house_test.cpp"));
-  EXPECT_TRUE(house().contains("tests/run"));
-  EXPECT_TRUE(house().contains("filters/CMakeLists.txt"));
-  EXPECT_TRUE(house().contains("analysis/page/page.css"));
-  EXPECT_TRUE(house().contains("analysis/page/script/player.js"));
+  for (const char* path : {"engine/errors.hpp", "tests/run", "filters/CMakeLists.txt",
+                           "analysis/page/script/player.js"}) {
+    EXPECT_TRUE(house().contains(path)) << path;
+  }
 }
 
 TEST(House, CirclesAreSeen) {
   const Tree tree = {{"engine/a/one.cpp", {"#include \"engine/b/two.hpp\""}},
                      {"engine/b/three.hpp", {"#include \"engine/a/four.hpp\""}},
                      {"engine/b/two.hpp", {"#include \"engine/c/five.hpp\""}},
-                     {"engine/c/five.hpp", {}},
                      {"engine/d/six.cpp", {"#include \"engine/e/seven.hpp\""}},
                      {"engine/e/seven.hpp", {"#include \"engine/f/eight.hpp\""}},
                      {"engine/f/eight.hpp", {"#include \"engine/d/nine.hpp\""}}};
