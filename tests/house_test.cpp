@@ -119,9 +119,9 @@ std::vector<std::string> forbidden_includes(const Tree& tree) {
 
 std::string folder_of(const std::string& path) { return fs::path(path).parent_path().string(); }
 
-/// Folders outside tests that lie in a circle of includes, of any length, or between two circles:
+/// Folders outside tests that lie on a cycle of includes, of any length, or between two cycles:
 /// what is left when those that use none that is left, and those that none uses, are taken away.
-std::set<std::string> circles(const Tree& tree) {
+std::set<std::string> include_cycles(const Tree& tree) {
   std::set<std::pair<std::string, std::string>> uses;
   std::set<std::string> left;
   for (const auto& [path, lines] : tree) {
@@ -192,7 +192,7 @@ TEST(House, ARoomIncludesOnlyWhatStandsBelowIt) {
   EXPECT_THAT(forbidden_includes(house()), IsEmpty());
 }
 
-TEST(House, FoldersIncludeEachOtherInNoCircle) { EXPECT_THAT(circles(house()), IsEmpty()); }
+TEST(House, FoldersIncludeEachOtherInNoCycle) { EXPECT_THAT(include_cycles(house()), IsEmpty()); }
 
 TEST(House, StatisticsKnowNumbersOnly) {
   for (const auto& [path, lines] : house()) {
@@ -256,14 +256,14 @@ TEST(House, TheTreeThatIsReadIsWhole) {
   }
 }
 
-TEST(House, CirclesAreSeen) {
+TEST(House, IncludeCyclesAreSeen) {
   const Tree tree = {{"engine/a/one.cpp", {"#include \"engine/b/two.hpp\""}},
                      {"engine/b/three.hpp", {"#include \"engine/a/four.hpp\""}},
                      {"engine/b/two.hpp", {"#include \"engine/c/five.hpp\""}},
                      {"engine/d/six.cpp", {"#include \"engine/e/seven.hpp\""}},
                      {"engine/e/seven.hpp", {"#include \"engine/f/eight.hpp\""}},
                      {"engine/f/eight.hpp", {"#include \"engine/d/nine.hpp\""}}};
-  EXPECT_THAT(circles(tree),
+  EXPECT_THAT(include_cycles(tree),
               ElementsAre("engine/a", "engine/b", "engine/d", "engine/e", "engine/f"));
 }
 

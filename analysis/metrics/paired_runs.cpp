@@ -18,9 +18,8 @@ struct EndedRuns {
 
 EndedRuns ended_runs(const CellAnalysis& cell, const Score& score) {
   std::vector<std::pair<std::uint64_t, double>> ended;
-  for (std::size_t i = 0; i < cell.runs.size(); ++i) {
-    ended.emplace_back(cell.runs[i], cell.scores.column(score)[i]);
-  }
+  const std::vector<double>& values = cell.scores.column(score);
+  for (std::size_t i = 0; i < cell.runs.size(); ++i) ended.emplace_back(cell.runs[i], values[i]);
   for (const FailedRun& failure : cell.failures) ended.emplace_back(failure.run, kNaN);
   std::ranges::sort(ended, {}, &std::pair<std::uint64_t, double>::first);
   EndedRuns lists;
