@@ -120,7 +120,7 @@ TEST_F(MonteCarlo, GivesTheSameBitsInterruptedAndResumed) {
 
 TEST_F(MonteCarlo, StopsAtTheTimeBudgetAndGoesOnLater) {
   StudyPlan plan = scripted_study(12, 40);
-  plan.cells = {scripted_cell("slow", {.pace = std::chrono::milliseconds(1)})};
+  plan.cells = {scripted_cell("slow", {.pace = std::chrono::milliseconds(5)})};
   RunOptions how = options("study.h5");
   how.time_budget = 0.2;
   const RunOutcome first = run_study(plan, how);

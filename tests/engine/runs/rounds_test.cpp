@@ -102,7 +102,7 @@ StudyPlan disturbed_plan(std::size_t at_cell, std::uint64_t at_runs, int signal)
     if (cell == at_cell && runs == at_runs) {
       if (signal == 0) throw RunError("the disk is gone");
       raise(signal);
-      std::this_thread::sleep_for(std::chrono::milliseconds(300));  // until somebody has heard it
+      std::this_thread::sleep_for(std::chrono::seconds(1));  // until the watch has seen it
     }
     return small_at_64(unfinished, cell, runs, parallel);
   };

@@ -50,7 +50,7 @@ TEST_F(AttemptCommand, EachFileHasALineWhateverItIs) {
   const Called called = call({"status", "--each", "--whole", "out.h5", "torn.h5", "absent.h5"});
   EXPECT_EQ(called.code, 0) << called.err;
   EXPECT_THAT(called.out,
-              AllOf(ContainsRegex("^out.h5\tcomplete\t[0-9a-f]+\t6\t0\t0\t0\\.[0-9]+\t\n"),
+              AllOf(ContainsRegex("^out.h5\tcomplete\t[0-9a-f]+\t6\t0\t0\t[0-9]+\\.[0-9]+\t\n"),
                     HasSubstr("\ntorn.h5\tdamaged\t\t0\t0\t0\t0\ttorn.h5: "),
                     HasSubstr("\nabsent.h5\tdamaged\t")));
   std::string bytes = text_of("out.h5");
