@@ -3,7 +3,6 @@
 
 #include "analysis/data/run_reader.hpp"
 #include "analysis/figures/chosen_run.hpp"
-#include "analysis/figures/gnuplot.hpp"
 #include "analysis/metrics/ancestry_tree.hpp"
 #include "analysis/output/number_text.hpp"
 
@@ -16,8 +15,6 @@ namespace montecarta {
 namespace {
 
 constexpr std::size_t kMostTrees = 8, kMostLeaves = 100;
-constexpr std::size_t kThinFrom = 50;  // so many leaves need thinner lines
-constexpr std::size_t kTreePixels = 150, kGapPixels = 64, kTopPixels = 34, kBottomPixels = 48;
 
 /// A cell that is drawn.
 struct DrawnTree {
@@ -69,18 +66,6 @@ std::string title_of_end(const DrawnTree& cell) {
   return "common ancestor " + readable(cell.end - since, 3) + " s before the end";
 }
 
-std::string panel_of(const DrawnTree& cell, const std::string& title, double from) {
-  const std::string file = gnuplot_quoted("../data/ancestry_" + cell.label + ".csv");
-  const std::string style = " with vectors nohead linewidth " +
-                            std::string(cell.tree.leaves < kThinFrom ? "1.4" : "0.6") +
-                            " linecolor rgb '" + line_colour(cell.style) + "' notitle";
-  return "set title " + gnuplot_quoted(title) + " noenhanced offset 0,-0.7\nset xrange [" +
-         exact_text(from) + ":" + exact_text(cell.end) +
-         "]\nset yrange [0:" + std::to_string(cell.tree.leaves + 1) + "]\nplot " + file +
-         " using 1:3:($2-$1):(0)" + style + ", \\\n  " + file + " using 1:4:(0):($3-$4)" + style +
-         "\n";
-}
-
 /// The tree as one line with gaps: from its parent's height to its own, and on to its end.
 ChartMarks lines_of(const DrawnTree& cell, const FigureData& data) {
   constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
@@ -120,21 +105,10 @@ double beginning_of_end(const DrawnTree& cell) {
   return std::max(0.0, since - 0.08 * (cell.end - since));
 }
 
-/// Two columns; sets the figure's height.
-std::string tree_layout(std::size_t rows, Figure& figure) {
-  figure.height = kTopPixels + rows * kTreePixels + (rows - 1) * kGapPixels + kBottomPixels;
-  const auto share = [&](std::size_t pixels) {
-    return readable(static_cast<double>(pixels) / static_cast<double>(figure.height), 5);
-  };
-  return "set key off\nunset ytics\nset border 1\nset multiplot layout " + std::to_string(rows) +
-         ",2 margins 0.02,0.985," + share(kBottomPixels) + "," + share(figure.height - kTopPixels) +
-         " spacing 0.05," + share(kGapPixels) + "\n";
-}
-
 }  // namespace
 
 Figure ancestry_figure(const ResultFile& file, std::optional<std::uint64_t> run) {
-  Figure figure{"ancestry", "Whose story do the particles tell?", "", 900, 0, "", {}};
+  Figure figure{"ancestry", "Whose story do the particles tell?", ""};
   const auto run_index = chosen_run(file, run);
   const auto cells = run_index ? drawn_trees(file, *run_index) : std::vector<DrawnTree>{};
   if (cells.empty()) return figure;
@@ -145,16 +119,12 @@ Figure ancestry_figure(const ResultFile& file, std::optional<std::uint64_t> run)
       "the filter got wrong there it cannot doubt any more. The end of the run, since then, is "
       "enlarged.";
   figure.chart.x_to = figure.chart.x_first = cells.front().end;
-  figure.script = tree_layout(cells.size(), figure);
-  for (std::size_t c = 0; c < cells.size(); ++c) {
-    if (c + 1 == cells.size()) figure.script += "set xlabel 'time [s]' offset 0,0.4\n";
-    figure.data.push_back(data_of(cells[c]));
-    figure.chart.panels.push_back(chart_panel(cells[c], figure.data.back()));
-    figure.chart.x_first = std::min(figure.chart.x_first, beginning_of_end(cells[c]));
-    figure.script += panel_of(cells[c], title_of(cells[c]), 0.0) +
-                     panel_of(cells[c], title_of_end(cells[c]), beginning_of_end(cells[c]));
+  figure.chart.height = 150.0;
+  for (const DrawnTree& cell : cells) {
+    figure.data.push_back(data_of(cell));
+    figure.chart.panels.push_back(chart_panel(cell, figure.data.back()));
+    figure.chart.x_first = std::min(figure.chart.x_first, beginning_of_end(cell));
   }
-  figure.script += "unset multiplot\n";
   return figure;
 }
 

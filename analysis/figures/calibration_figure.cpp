@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/figures/calibration_figure.hpp"
 
-#include "analysis/figures/gnuplot.hpp"
 #include "analysis/output/number_text.hpp"
 
 #include <algorithm>
@@ -9,7 +8,7 @@
 namespace montecarta {
 namespace {
 
-constexpr std::size_t kMostRows = 8, kHistogramPixels = 150, kFramePixels = 60;
+constexpr std::size_t kMostRows = 8;
 
 /// A histogram that is drawn.
 struct DrawnHistogram {
@@ -46,21 +45,7 @@ FigureData data_of(const std::string& name, const DrawnHistogram& drawn) {
   return data;
 }
 
-std::string panel_of(const std::string& data_name, const DrawnHistogram& drawn, bool first,
-                     bool lowest) {
-  const std::string file = gnuplot_quoted("../data/" + data_name);
-  return "set title " +
-         gnuplot_quoted(drawn.histogram->quantity + ": " +
-                        in_words(drawn.histogram->test.verdict)) +
-         " noenhanced offset 0,-0.7\nset ylabel " + gnuplot_quoted(first ? drawn.label : "") +
-         " noenhanced offset 1,0\nset format x '" + (lowest ? "%h" : "") + "'\nplot " + file +
-         " using (0.5*($1+$2)):(0.5*($4+$5)):1:2:4:5 with boxxyerror fillcolor rgb '#707070' "
-         "fillstyle transparent solid 0.45 noborder notitle, \\\n  " +
-         file + " using (0.5*($1+$2)):3:1:2:(0):3 with boxxyerror " + line_style(drawn.cell) +
-         " fillstyle transparent solid 0.35 border notitle\n";
-}
-
-/// The same as numbers, from the rows of data_of(). The band is that of all bins.
+/// From the rows of data_of(). The band is that of all bins.
 ChartPanel chart_panel(const DrawnHistogram& drawn, const FigureData& data) {
   ChartPanel panel{drawn.histogram->quantity + ": " + in_words(drawn.histogram->test.verdict),
                    {false, 0.0, 0.0},
@@ -103,26 +88,15 @@ Figure figure_of(const StudyAnalysis& study, const std::string& by, Figure figur
   if (rows.empty()) return figure;
   std::size_t columns = 0;
   for (const auto& row : rows) columns = std::max(columns, row.size());
-  figure.height = rows.size() * kHistogramPixels + kFramePixels;
   figure.chart = empty_chart(columns);
-  figure.script =
-      "set xrange [0:1]\nset yrange [0:*]\nset xtics 0.5\nset ytics 1\n"
-      "set multiplot layout " +
-      std::to_string(rows.size()) + "," + std::to_string(columns) + "\n";
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    for (std::size_t c = 0; c < columns; ++c) {
-      if (c >= rows[r].size()) {
-        figure.script += "set multiplot next\n";
-        continue;
-      }
+  for (const auto& row : rows) {
+    for (std::size_t c = 0; c < row.size(); ++c) {
       const std::string name =
-          figure.name + "_" + rows[r][c].label + "_" + std::to_string(c + 1) + ".csv";
-      figure.data.push_back(data_of(name, rows[r][c]));
-      figure.script += panel_of(name, rows[r][c], c == 0, r + 1 == rows.size());
-      figure.chart.panels.push_back(chart_panel(rows[r][c], figure.data.back()));
+          figure.name + "_" + row[c].label + "_" + std::to_string(c + 1) + ".csv";
+      figure.data.push_back(data_of(name, row[c]));
+      figure.chart.panels.push_back(chart_panel(row[c], figure.data.back()));
     }
   }
-  figure.script += "unset multiplot\n";
   return figure;
 }
 
@@ -133,13 +107,13 @@ std::vector<Figure> calibration_figures(const StudyAnalysis& study) {
       " Bars are shares of runs, 1 is what they should be; bars that all stay in the grey band "
       "belong to a calibrated filter. A valley: the filter is too sure of itself; a hill: too "
       "cautious; a slope: it is off to one side.";
-  Figure gaussian{"calibration", "Does the truth lie where the filter says?", "", 900, 0, "", {}};
+  Figure gaussian{"calibration", "Does the truth lie where the filter says?", ""};
   gaussian.sentence =
       "Where the truth lies in the Gaussian of the filter at the end of the run, from its lower "
       "(0) "
       "to its upper end (1)." +
       reading;
-  Figure particles{"ranks", "Does the truth lie among the particles?", "", 900, 0, "", {}};
+  Figure particles{"ranks", "Does the truth lie among the particles?", ""};
   particles.sentence =
       "Which share of the weighted particles lies below the truth at the end of the run." + reading;
   return {figure_of(study, "Gaussian", gaussian), figure_of(study, "particles", particles)};

@@ -29,8 +29,7 @@ void add_band(const CellAnalysis& cell, double level, bool is_first, Panel& pane
 }  // namespace
 
 Figure joint_figure(const StudyAnalysis& study) {
-  Figure figure{
-      "joint_nees", "Is the filter right about pose and map together?", "", 900, 300, "", {}};
+  Figure figure{"joint_nees", "Is the filter right about pose and map together?", ""};
   figure.sentence =
       "Normalised error squared of the vehicle and all landmarks at once, for each component: 1 is "
       "right, and a curve between the dashed lines at every stored scan belongs to a filter whose "

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/figures/mismatch_figure.hpp"
 
-#include "analysis/figures/gnuplot.hpp"
 #include "analysis/metrics/mismatch.hpp"
 #include "analysis/output/number_text.hpp"
 
@@ -15,7 +14,7 @@ namespace {
 
 using Colour = std::array<int, 3>;  ///< red, green, blue
 
-constexpr std::size_t kMostColumns = 3, kRowPixels = 330, kColumnPixels = 330;
+constexpr std::size_t kMostColumns = 3;
 
 /// Blue, white and red (ColorBrewer's RdBu, safe for the colour-blind), light enough for dark
 /// numbers at both ends; 1 is white, ten times and a tenth are the ends.
@@ -23,26 +22,10 @@ constexpr std::array kPalette = {Colour{0x43, 0x93, 0xc3}, Colour{0xa6, 0xcf, 0x
                                  Colour{0xf7, 0xf7, 0xf7}, Colour{0xf6, 0xb7, 0x99},
                                  Colour{0xd6, 0x60, 0x4d}};
 
-constexpr const char* kColourAxis =
-    "set style fill solid 1 noborder\n"
-    "set cbrange [-1:1]\n"
-    "set cbtics ('0.1' -1, '0.3' -0.5229, '1' 0, '3' 0.4771, '10' 1)\n"
-    "set cblabel 'ANEES / components'\n";
-
 std::string hexadecimal(const Colour& colour) {
   char text[8];
   std::snprintf(text, sizeof text, "#%02x%02x%02x", colour[0], colour[1], colour[2]);
   return text;
-}
-
-/// The palette, from -1 to 1.
-std::string palette() {
-  std::string script = "set palette defined (";
-  for (std::size_t i = 0; i < kPalette.size(); ++i) {
-    const double at = 2.0 * static_cast<double>(i) / (kPalette.size() - 1) - 1.0;
-    script += (i == 0 ? "" : ", ") + exact_text(at) + " '" + hexadecimal(kPalette[i]) + "'";
-  }
-  return script + ")\n";
 }
 
 /// Of the palette at `at`, from -1 to 1.
@@ -75,35 +58,13 @@ FigureData data_of(const MismatchGrid& grid) {
   return data;
 }
 
-/// Ticks that name the factors at 0, 1, 2, ...
-std::string axis_of(const char* axis, const std::vector<double>& factors) {
-  std::string ticks;
-  for (std::size_t i = 0; i < factors.size(); ++i) {
-    ticks +=
-        (i == 0 ? "" : ", ") + gnuplot_quoted(exact_text(factors[i])) + " " + std::to_string(i);
-  }
-  return std::string("set ") + axis + "tics (" + ticks + ")\nset " + axis +
-         "range [-0.5:" + exact_text(static_cast<double>(factors.size()) - 0.5) + "]\n";
-}
-
-std::string panel_of(const MismatchGrid& grid) {
-  const std::string file = gnuplot_quoted("../data/mismatch_" + grid.family + ".csv");
-  return "set title " + gnuplot_quoted(grid.family) + " noenhanced\n" +
-         axis_of("x", grid.motion_noise) + axis_of("y", grid.sensor_noise) + "plot " + file +
-         " using 4:5:($4-0.49):($4+0.49):($5-0.49):($5+0.49):6 with boxxyerror fillcolor palette "
-         "fillstyle solid 1 noborder notitle, \\\n  " +
-         file +
-         " using 4:5:(sprintf($3 < 1000 ? '%.3g' : '%.0f', $3)) with labels textcolor rgb "
-         "'#111111' notitle\n";
-}
-
 std::vector<std::string> names_of(const std::vector<double>& factors) {
   std::vector<std::string> names;
   for (const double factor : factors) names.push_back(exact_text(factor));
   return names;
 }
 
-/// The same as numbers, from the rows of data_of().
+/// From the rows of data_of().
 ChartPanel chart_panel(const MismatchGrid& grid, const FigureData& data) {
   const auto rows = static_cast<double>(grid.sensor_noise.size());
   ChartPanel panel{
@@ -142,7 +103,7 @@ Chart chart_of(const std::vector<MismatchGrid>& grids, const std::vector<FigureD
 }  // namespace
 
 Figure mismatch_figure(const StudyAnalysis& study) {
-  Figure figure{"mismatch", "What if the filter is told wrong noise?", "", 900, 0, "", {}};
+  Figure figure{"mismatch", "What if the filter is told wrong noise?", ""};
   figure.sentence =
       "Each square is one filter that believes the noise of motion (to the right) and of the "
       "sensor "
@@ -151,19 +112,7 @@ Figure mismatch_figure(const StudyAnalysis& study) {
       "blue, below 1: too cautious. Colours end at a tenth and at ten times.";
   const std::vector<MismatchGrid> grids = mismatch_grids(study);
   if (grids.empty()) return figure;
-  const std::size_t columns = std::min(kMostColumns, grids.size());
-  const std::size_t rows = (grids.size() + columns - 1) / columns;
-  figure.width = std::max<std::size_t>(420, columns * kColumnPixels);
-  figure.height = rows * kRowPixels;
-  figure.script = palette() + kColourAxis +
-                  "set xlabel 'motion noise, believed by told'\n"
-                  "set ylabel 'sensor noise, believed by told'\nunset grid\nset multiplot layout " +
-                  std::to_string(rows) + "," + std::to_string(columns) + "\n";
-  for (const MismatchGrid& grid : grids) {
-    figure.script += panel_of(grid);
-    figure.data.push_back(data_of(grid));
-  }
-  figure.script += "unset multiplot\n";
+  for (const MismatchGrid& grid : grids) figure.data.push_back(data_of(grid));
   figure.chart = chart_of(grids, figure.data);
   return figure;
 }

@@ -11,7 +11,7 @@ namespace montecarta {
 /// A curve of a panel.
 struct Curve {
   std::string legend;          ///< empty: none
-  std::size_t style = 0;       ///< for line_style()
+  std::size_t style = 0;       ///< for line_colour()
   std::vector<double> values;  ///< one for each place on the common axis
 };
 

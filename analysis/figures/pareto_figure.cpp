@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/figures/pareto_figure.hpp"
 
-#include "analysis/figures/gnuplot.hpp"
-#include "analysis/output/number_text.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -66,20 +63,6 @@ double top_of(std::span<const CellValue> values, const Merit& merit) {
   return range.greatest > 0.0 ? 1.15 * range.greatest : 1.0;
 }
 
-/// Logarithmic, with a number at 1, 2 and 5 of each decade.
-std::string cost_axis(const CostRange& range) {
-  std::string tics;
-  for (double decade = std::pow(10.0, std::floor(std::log10(range.least)));
-       decade <= range.greatest; decade *= 10.0) {
-    for (const double step : {1.0, 2.0, 5.0}) {
-      tics += (tics.empty() ? "" : ",") + readable(step * decade, 1);
-    }
-  }
-  return "set logscale x\nset format x '%h'\nset xtics (" + tics + ")\nset xrange [" +
-         exact_text(range.least) + ":" + exact_text(range.greatest) +
-         "]\nset xlabel 'CPU time of a run [s]' offset 0,0.4\n";
-}
-
 using Corners = std::vector<std::pair<double, double>>;  ///< (cost, loss)
 
 /// The front from edge to edge: what lies above and to the right of it is beaten.
@@ -97,48 +80,6 @@ Corners corners_of(std::span<const CellValue> values, const Merit& merit, const 
 }
 
 /// As steps.
-std::string front_of(std::span<const CellValue> values, const Merit& merit,
-                     const CostRange& costs) {
-  std::string script = "$" + merit.name + "_front << EOD\ncost,loss\n";
-  for (const auto& [cost, loss] : corners_of(values, merit, costs)) {
-    script += exact_text(cost) + "," + exact_text(loss) + "\n";
-  }
-  return script + "EOD\n";
-}
-
-/// On the side where there is room; above and below by turns from the lowest point up, so that
-/// neighbours keep apart.
-std::string labels_of(std::span<const CellValue> values, const Merit& merit,
-                      const CostRange& costs) {
-  std::vector<CellValue> sorted(values.begin(), values.end());
-  std::erase_if(sorted, [&](const CellValue& value) { return !std::isfinite(merit.loss(value)); });
-  std::ranges::stable_sort(sorted, {}, merit.loss);
-  const double middle = std::sqrt(costs.least * costs.greatest);
-  std::string script = "unset label\n";
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    const bool left = cost_of(sorted[i]) > middle;
-    script += "set label " + gnuplot_quoted(sorted[i].cell) + " at " +
-              exact_text(cost_of(sorted[i])) + "," + exact_text(merit.loss(sorted[i])) +
-              (left ? " right" : " left") + " noenhanced offset " + (left ? "-0.8" : "0.8") +
-              (i % 2 == 0 ? ",-0.5\n" : ",0.5\n");
-  }
-  return script;
-}
-
-std::string panel_of(std::span<const CellValue> values, const Merit& merit,
-                     const CostRange& costs) {
-  std::string script = "set ylabel " + gnuplot_quoted(merit.label) +
-                       " offset 1.5,0\nset yrange [0:" + exact_text(top_of(values, merit)) + "]\n" +
-                       labels_of(values, merit, costs) + "plot $" + merit.name +
-                       "_front using 1:2 with steps linewidth 1 dashtype 2 linecolor rgb '#666666'";
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    script += ", \\\n  '../data/" + merit.name + ".csv' using 1:2 every ::" + std::to_string(i) +
-              "::" + std::to_string(i) + " with points pointtype 7 pointsize 0.8 " +
-              line_style(values[i].place);
-  }
-  return script + "\n";
-}
-
 ChartMarks front_marks(std::span<const CellValue> values, const Merit& merit,
                        const CostRange& costs) {
   ChartMarks front;
@@ -155,7 +96,6 @@ ChartMarks front_marks(std::span<const CellValue> values, const Merit& merit,
   return front;
 }
 
-/// The same as numbers.
 ChartPanel chart_panel(std::span<const CellValue> values, const Merit& merit,
                        const CostRange& costs) {
   ChartPanel panel{merit.label, {false, 0.0, top_of(values, merit)}, {}, {}, {}};
@@ -168,6 +108,7 @@ ChartPanel chart_panel(std::span<const CellValue> values, const Merit& merit,
     point.thickness = 10.0;
     point.x = {cost_of(value)};
     point.y = {merit.loss(value)};
+    point.text = {value.cell};
     point.facts = {{merit.label, point.y}, {"CPU time of a run [s]", point.x}};
   }
   return panel;
@@ -185,7 +126,7 @@ Chart chart_of(std::span<const CellValue> values, const CostRange& costs) {
 }  // namespace
 
 Figure pareto_figure(std::span<const CellValue> values) {
-  Figure figure{"pareto", "What does a better answer cost?", "", 900, 400, "", {}};
+  Figure figure{"pareto", "What does a better answer cost?", ""};
   figure.sentence =
       "Each point is a cell, over its complete runs: left its position error, right how far its "
       "NEES is from consistency (0: honest; 1: off by a factor of 2), both against the processor "
@@ -195,16 +136,7 @@ Figure pareto_figure(std::span<const CellValue> values) {
   std::erase_if(priced, [](const CellValue& value) { return !(cost_of(value) > 0.0); });
   if (priced.size() < 2) return figure;
   const CostRange costs = cost_range(priced);
-  figure.script = "set key off\n";
-  for (const Merit& merit : kMerits) {
-    figure.data.push_back(data_of(priced, merit));
-    figure.script += front_of(priced, merit, costs);
-  }
-  figure.script += cost_axis(costs) +
-                   "set multiplot layout 1,2 margins 0.085,0.985,0.16,0.96 "
-                   "spacing 0.1\n";
-  for (const Merit& merit : kMerits) figure.script += panel_of(priced, merit, costs);
-  figure.script += "unset multiplot\n";
+  for (const Merit& merit : kMerits) figure.data.push_back(data_of(priced, merit));
   figure.chart = chart_of(priced, costs);
   return figure;
 }

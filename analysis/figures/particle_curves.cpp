@@ -2,8 +2,6 @@
 #include "analysis/figures/particle_curves.hpp"
 
 #include "analysis/figures/cell_panels.hpp"
-#include "analysis/figures/gnuplot.hpp"
-#include "analysis/output/number_text.hpp"
 #include "analysis/tables/reference_table.hpp"
 
 #include <algorithm>
@@ -61,13 +59,6 @@ Chart empty_chart(const std::vector<std::size_t>& numbers) {
   return chart;
 }
 
-std::string particle_axis(const std::vector<std::size_t>& numbers, const Chart& chart) {
-  std::string ticks;
-  for (const std::size_t n : numbers) ticks += (ticks.empty() ? "" : ",") + std::to_string(n);
-  return "set logscale x\nset xtics (" + ticks + ")\nset xrange [" + exact_text(chart.x_from) +
-         ":" + exact_text(chart.x_to) + "]\nset xlabel 'particles' offset 0,0.4\n";
-}
-
 /// Common to both panels: from zero, or logarithmic where runs differ by more than two decades.
 ChartAxis error_axis(const std::vector<ParticleCurve>& curves,
                      const std::optional<std::array<double, 2>>& baseline) {
@@ -89,12 +80,6 @@ ChartAxis error_axis(const std::vector<ParticleCurve>& curves,
   return {wide, wide ? 0.8 * least : 0.0, 1.1 * greatest};
 }
 
-std::string script_of(const ChartAxis& axis) {
-  return std::string(axis.logarithmic ? "set logscale y\n" : "") + "set yrange [" +
-         exact_text(axis.low) + ":" + exact_text(axis.high) + "]\n";
-}
-
-/// One panel as numbers.
 ChartPanel chart_panel(const std::vector<ParticleCurve>& curves,
                        Spread ParticleCurve::Point::*error, const std::optional<double>& baseline,
                        const std::vector<std::size_t>& numbers, ChartPanel panel) {
@@ -118,47 +103,6 @@ ChartPanel chart_panel(const std::vector<ParticleCurve>& curves,
         {"EKF-SLAM", kYardstickStyle, std::vector<double>(numbers.size(), *baseline)});
   }
   return panel;
-}
-
-/// One panel; columns of a data file's mean and, three further, its least and greatest.
-std::string panel_of(const std::vector<ParticleCurve>& curves, std::size_t mean_column,
-                     const std::optional<double>& baseline, bool legend) {
-  const auto title = [&](const std::string& text) {
-    return legend ? " title " + gnuplot_quoted(text) : std::string(" notitle");
-  };
-  const std::string mean = std::to_string(mean_column), least = std::to_string(mean_column + 3),
-                    greatest = std::to_string(mean_column + 4);
-  std::string script = "plot ";
-  if (baseline) {
-    script += exact_text(*baseline) + " with lines linewidth 1.2 dashtype 2 linecolor rgb 'black'" +
-              title("EKF-SLAM") + ", \\\n  ";
-  }
-  for (std::size_t i = 0; i < curves.size(); ++i) {
-    const std::string file = gnuplot_quoted("../data/rms_" + curves[i].legend + ".csv");
-    // Bars of neighbouring curves must not cover each other.
-    const double aside =
-        1.0 + 0.03 * (static_cast<double>(i) - 0.5 * static_cast<double>(curves.size() - 1));
-    const std::string x = "($1*" + exact_text(aside) + ")", style = line_style(curves[i].style);
-    script += file + " using " + x + ":" + mean + ":" + least + ":" + greatest +
-              " with yerrorbars pointtype 7 pointsize 0.5 " + style + " notitle, \\\n  " + file +
-              " using " + x + ":" + mean + " with lines " + style + title(curves[i].legend) +
-              (i + 1 < curves.size() ? ", \\\n  " : "\n");
-  }
-  return script;
-}
-
-/// Two panels below a legend of two columns, for which the figure grows: gnuplot gives a legend the
-/// width of its own panel.
-std::string layout_of(std::size_t entries, Figure& figure) {
-  constexpr std::size_t kLegendPixels = 22, kTitlePixels = 40, kTicksPixels = 66;
-  const std::size_t top = (entries + 1) / 2 * kLegendPixels + kTitlePixels;
-  figure.height += top;
-  const auto share = [&](std::size_t pixels) {
-    return readable(static_cast<double>(pixels) / static_cast<double>(figure.height), 5);
-  };
-  return "set key at screen 0.085,0.985 left top horizontal Left reverse maxcols 2\n"
-         "set multiplot layout 1,2 margins 0.085,0.985," +
-         share(kTicksPixels) + "," + share(figure.height - top) + " spacing 0.04\n";
 }
 
 }  // namespace
@@ -203,14 +147,6 @@ void draw_particle_curves(const std::vector<ParticleCurve>& curves,
                                      {"RMS distance as it stands [m]", axis, {}, {}, {}}),
                          chart_panel(curves, &ParticleCurve::Point::aligned, base(1), numbers,
                                      {"aligned [m]", axis, {}, {}, {}})};
-  figure.script = particle_axis(numbers, figure.chart) + script_of(axis) +
-                  layout_of(curves.size() + (baseline ? 1 : 0), figure) +
-                  "set title 'as it stands' offset 0,-0.5\n"
-                  "set ylabel 'RMS distance [m]' offset 1.5,0\n" +
-                  panel_of(curves, 3, base(0), true) +
-                  "set key off\nset title 'aligned' offset 0,-0.5\nunset ylabel\n"
-                  "set format y ''\n" +
-                  panel_of(curves, 8, base(1), false) + "unset multiplot\n";
 }
 
 }  // namespace montecarta

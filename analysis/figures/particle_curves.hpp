@@ -15,7 +15,7 @@ namespace montecarta {
 /// The cells of one filter that differ in the number of particles alone.
 struct ParticleCurve {
   std::string legend;     ///< what their labels have in common, e.g. "fastslam2"
-  std::size_t style = 0;  ///< for line_style()
+  std::size_t style = 0;  ///< for line_colour()
   struct Point {
     std::size_t particles = 0;
     std::size_t runs = 0;  ///< complete

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "analysis/figures/figure.hpp"
-#include "analysis/figures/path_layout.hpp"
+#include "analysis/figures/path_bounds.hpp"
 
 #include <cstddef>
 #include <string>
@@ -13,7 +13,7 @@ namespace montecarta {
 /// What is drawn of one cell: files of path_data.hpp, those without rows are left out.
 struct DrawnPath {
   std::string label;
-  std::size_t style = 0;  ///< for line_style()
+  std::size_t style = 0;  ///< for line_colour()
   FigureData path, poses, map;
 };
 

@@ -31,10 +31,8 @@ Scale scale_of(const std::vector<Panel>& panels) {
   return greatest > kTwoDecades * least ? Scale::logarithmic : Scale::from_zero;
 }
 
-/// Adds panels to a figure, which grows where there are several.
+/// Adds panels to a figure, which says so where there are several.
 void add(const std::vector<Panel>& panels, const std::vector<double>& times, Figure& figure) {
-  constexpr std::size_t kPanelPixels = 220;
-  figure.height += (panels.size() - 1) * kPanelPixels;
   if (panels.size() > 1) figure.sentence += " One panel for each number of particles M.";
   add_panels(panels, times, figure);
 }
@@ -42,7 +40,7 @@ void add(const std::vector<Panel>& panels, const std::vector<double>& times, Fig
 }  // namespace
 
 Figure reference_error_figure(const StudyAnalysis& study) {
-  Figure figure{"reference_error", "How far from the reference over time?", "", 900, 360, "", {}};
+  Figure figure{"reference_error", "How far from the reference over time?", ""};
   if (study.references.empty()) return figure;
   const JudgedReference& reference = study.references.front();
   figure.sentence = "Distance between the estimate as it stands and each fix of " + reference.name +
@@ -62,7 +60,7 @@ Figure reference_error_figure(const StudyAnalysis& study) {
 }
 
 Figure map_size_figure(const StudyAnalysis& study) {
-  Figure figure{"map_size", "How does the map grow?", "", 900, 260, "", {}};
+  Figure figure{"map_size", "How does the map grow?", ""};
   figure.sentence =
       "Landmarks in the map, mean over runs (of a particle filter: over its weighted particles). "
       "It should level off where the vehicle meets known ground: a map that goes on growing there "
@@ -75,7 +73,7 @@ Figure map_size_figure(const StudyAnalysis& study) {
 }
 
 Figure particles_figure(const StudyAnalysis& study) {
-  Figure figure{"reference_particles", "Do more particles help?", "", 900, 340, "", {}};
+  Figure figure{"reference_particles", "Do more particles help?", ""};
   const std::vector<ParticleCurve> curves = particle_curves(study);
   if (curves.empty()) return figure;
   figure.sentence = "RMS distance to " + study.references.front().name +

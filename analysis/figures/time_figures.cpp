@@ -79,7 +79,7 @@ Panel error_panel(const StudyAnalysis& study, const std::string& name, const std
 }  // namespace
 
 Figure anees_figure(const StudyAnalysis& study) {
-  Figure figure{"anees", "Is the filter right about its own errors?", "", 900, 320, "", {}};
+  Figure figure{"anees", "Is the filter right about its own errors?", ""};
   figure.sentence =
       "Average normalised error squared (ANEES) of the pose over time. A curve inside the grey "
       "band belongs to a filter whose stated uncertainty fits its real errors; a curve that climbs "
@@ -91,7 +91,7 @@ Figure anees_figure(const StudyAnalysis& study) {
 }
 
 Figure anees_parts_figure(const StudyAnalysis& study) {
-  Figure figure{"anees_parts", "Position or heading: which one goes wrong?", "", 900, 460, "", {}};
+  Figure figure{"anees_parts", "Position or heading: which one goes wrong?", ""};
   figure.sentence =
       "The same test for position alone (two components, right around 2) and heading alone (one "
       "component, right around 1): the curve that leaves its band first shows where trouble "
@@ -103,7 +103,7 @@ Figure anees_parts_figure(const StudyAnalysis& study) {
 }
 
 Figure rmse_figure(const StudyAnalysis& study) {
-  Figure figure{"rmse", "How large are the errors?", "", 900, 460, "", {}};
+  Figure figure{"rmse", "How large are the errors?", ""};
   figure.sentence =
       "Root mean square error over runs at each scan: lower is better. It grows while the vehicle "
       "explores and falls where it meets landmarks it knows.";
@@ -127,7 +127,7 @@ Figure rmse_figure(const StudyAnalysis& study) {
 }
 
 Figure diversity_figure(const StudyAnalysis& study) {
-  Figure figure{"diversity", "How many different histories survive?", "", 900, 580, "", {}};
+  Figure figure{"diversity", "How many different histories survive?", ""};
   figure.sentence =
       "Distinct ancestors of the particles, mean over runs: parents in the last resampling, "
       "ancestors 10 s ago, and ancestors at the start. When few are left, the particles tell one "
@@ -140,7 +140,7 @@ Figure diversity_figure(const StudyAnalysis& study) {
 }
 
 Figure ess_figure(const StudyAnalysis& study) {
-  Figure figure{"ess", "How many particles still count?", "", 900, 240, "", {}};
+  Figure figure{"ess", "How many particles still count?", ""};
   figure.sentence =
       "Effective sample size as a share of all particles, mean over runs: near 100 % all particles "
       "explain the measurements about equally well; a low share means that few carry all weight.";

@@ -45,7 +45,7 @@ std::vector<Band> white_bands(const StudyAnalysis& study) {
 }  // namespace
 
 Figure survival_figure(const StudyAnalysis& study) {
-  Figure figure{"survival", "How long does a run stay right?", "", 900, 300, "", {}};
+  Figure figure{"survival", "How long does a run stay right?", ""};
   figure.sentence =
       "Share of the runs that still know how wrong they are, each judged by its own NEES: a run is "
       "lost where that stays above the band of a single run for 5 s at 5 Hz, or where it fails. A "
@@ -60,7 +60,7 @@ Figure survival_figure(const StudyAnalysis& study) {
 }
 
 Figure why_figure(const StudyAnalysis& study) {
-  Figure figure{"why", "What is wrong, scatter or bias?", "", 900, 460, "", {}};
+  Figure figure{"why", "What is wrong, scatter or bias?", ""};
   figure.sentence =
       "Above: how many times larger squared errors are than the variance the filter believes, in "
       "the direction where that is worst. Below: how much of ANEES comes from errors that all runs "
@@ -83,7 +83,7 @@ Figure why_figure(const StudyAnalysis& study) {
 }
 
 Figure innovation_figure(const StudyAnalysis& study) {
-  Figure figure{"nis", "Do measurements surprise the filter?", "", 900, 300, "", {}};
+  Figure figure{"nis", "Do measurements surprise the filter?", ""};
   figure.sentence =
       "Normalised innovation squared per component, mean over runs: near 1 the filter expects its "
       "measurements as well as it says; above, they surprise it. This test needs no truth, and a "
@@ -98,7 +98,7 @@ Figure innovation_figure(const StudyAnalysis& study) {
 }
 
 Figure whiteness_figure(const StudyAnalysis& study) {
-  Figure figure{"whiteness", "Does one surprise foretell the next?", "", 900, 260, "", {}};
+  Figure figure{"whiteness", "Does one surprise foretell the next?", ""};
   figure.sentence =
       "Correlation of the normalised innovations squared of scans that lie so many scans apart, "
       "mean over runs: inside of the grey band at every distance the innovations are white, one "

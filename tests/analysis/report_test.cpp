@@ -78,8 +78,8 @@ TEST(Report, JudgesARecordedDriveByItsReferences) {
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "report/tables/verdict.tex"));
   const std::string paths = text_in(folder / "report/figures/paths.gp");
-  EXPECT_THAT(paths, HasSubstr("'../data/fixes_gps.csv' using 2:3"));
-  EXPECT_THAT(paths, HasSubstr("'surveyed landmark'"));
+  EXPECT_THAT(paths, HasSubstr("title 'fix'"));
+  EXPECT_THAT(paths, HasSubstr("title 'true landmark'"));
   EXPECT_THAT(paths, Not(HasSubstr("true path")));
   EXPECT_THAT(text_in(folder / "report/data/map_ekf_slam.csv"), HasSubstr("\n20.3,5,"));
 }

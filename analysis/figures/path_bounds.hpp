@@ -3,11 +3,7 @@
 
 #include "analysis/figures/figure.hpp"
 
-#include <cmath>
-#include <cstddef>
 #include <limits>
-#include <string>
-#include <utility>
 #include <vector>
 
 namespace montecarta {
@@ -29,13 +25,11 @@ struct Bounds {
   }
 };
 
-/// An entry of a legend: how gnuplot draws it, and its words.
-using LegendEntry = std::pair<std::string, std::string>;
-
-/// The script of a figure of maps, one panel for each of `panels` (a title and a plot), of equal
-/// size and scale within `bounds`, side by side and wrapped beyond three, the legend in a strip of
-/// its own above; sets the figure's height.
-void lay_out_maps(const Bounds& bounds, const std::vector<std::string>& panels,
-                  const std::vector<LegendEntry>& legend, Figure& figure);
+/// Of paths (data "path_...") with their truth, and landmarks.
+Bounds path_bounds(const std::vector<FigureData>& all);
+/// Of a recorded drive. A filter that is lost may be anywhere: paths and maps (data "path_...",
+/// "map_...") reach no farther than a quarter beyond the fixes.
+Bounds recorded_bounds(const std::vector<FigureData>& all, const FigureData& fixes,
+                       const FigureData& landmarks);
 
 }  // namespace montecarta
