@@ -4,7 +4,7 @@
 #include "analysis/comparison/cell_comparison.hpp"
 #include "analysis/comparison/pareto.hpp"
 #include "analysis/comparison/win_matrix.hpp"
-#include "analysis/tables/verdict_table.hpp"
+#include "analysis/metrics/verdict_table.hpp"
 
 #include <span>
 #include <string>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/figures/figure.hpp"
 #include "analysis/figures/path_bounds.hpp"
+#include "analysis/output/figure.hpp"
 
 #include <cstddef>
 #include <string>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "analysis/data/run_rows.hpp"
-#include "analysis/figures/figure.hpp"
+#include "analysis/output/figure.hpp"
 #include "engine/records/result_file.hpp"
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/figures/figure.hpp"
+#include "analysis/output/figure.hpp"
 #include "engine/records/result_file.hpp"
 
 #include <cstdint>

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What became of detections in a run, in sums over its scans (AssociationCounts).
 #include "analysis/metrics/measured_run.hpp"
-#include "analysis/metrics/score.hpp"
+#include "analysis/metrics/metric.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/output/number_text.hpp"
 #include "analysis/statistics/means.hpp"
+
+#include <cmath>
 
 namespace montecarta {
 namespace {
@@ -12,21 +16,66 @@ double sum_of_counts(const MeasuredRun& run) {
   return sum_of(run.rows.association.*kCounts);
 }
 
+constexpr Score kAssociationScores[] = {
+    {"association_correct", "1", "detections rightly associated",
+     sum_of_counts<&AssociationRows::correct>, Better::higher},
+    {"association_wrong", "1", "detections given to a wrong landmark",
+     sum_of_counts<&AssociationRows::wrong>},
+    {"association_new_again", "1", "detections made new again",
+     sum_of_counts<&AssociationRows::new_again>},
+    {"association_missed", "1", "detections left out", sum_of_counts<&AssociationRows::missed>},
+    {"association_clutter", "1", "false alarms accepted", sum_of_counts<&AssociationRows::clutter>},
+};
+
+std::vector<std::string> association_row(const CellAnalysis& cell) {
+  const auto mean = [&](std::string_view score) { return cell.over_runs(score).mean; };
+  const double correct = mean("association_correct"), wrong = mean("association_wrong"),
+               new_again = mean("association_new_again"), missed = mean("association_missed"),
+               all = correct + wrong + new_again + missed;
+  return {cell.label,
+          readable(all, 4),
+          percent(correct / all),
+          percent(wrong / all),
+          percent(new_again / all),
+          percent(missed / all),
+          readable(mean("association_clutter"))};
+}
+
+TextTable association_table(const StudyAnalysis& study) {
+  TextTable table;
+  table.headings = {{"cell", Align::left}, {"detections"}, {"correct"},       {"wrong"},
+                    {"new again"},         {"left out"},   {"false accepted"}};
+  for (const CellAnalysis& cell : study.cells) {
+    if (!std::isnan(cell.over_runs("association_correct").mean))
+      table.rows.push_back(association_row(cell));
+  }
+  return table;
+}
+
+std::vector<std::string> association_notes() {
+  return {
+      "Detections of landmarks in a run, counted against the identities that come with them, as "
+      "the "
+      "filter's weighted particles took them: 'correct' went to their own landmark or were "
+      "rightly made new, 'wrong' to another one, 'new again' were made new although the map had "
+      "theirs, 'left out' were not used; 'false accepted' are false alarms in a run that were "
+      "used."};
+}
+
+std::vector<Section> association_sections(const StudyAnalysis& study) {
+  const TextTable table = association_table(study);
+  if (table.rows.empty()) return {};
+  Section section{"association", "Association"};
+  section.add("association", table);
+  section.add(association_notes());
+  return {section};
+}
+
 }  // namespace
 
-std::span<const Score> scores_of_association() {
-  static constexpr Score kAll[] = {
-      {"association_correct", "1", "detections rightly associated",
-       sum_of_counts<&AssociationRows::correct>, Better::higher},
-      {"association_wrong", "1", "detections given to a wrong landmark",
-       sum_of_counts<&AssociationRows::wrong>},
-      {"association_new_again", "1", "detections made new again",
-       sum_of_counts<&AssociationRows::new_again>},
-      {"association_missed", "1", "detections left out", sum_of_counts<&AssociationRows::missed>},
-      {"association_clutter", "1", "false alarms accepted",
-       sum_of_counts<&AssociationRows::clutter>},
-  };
-  return kAll;
+Metric association_metric() {
+  return {
+      .scores = kAssociationScores, .scores_are_numbers = true, .sections = association_sections};
 }
 
 }  // namespace montecarta

@@ -39,37 +39,7 @@ double rms(const Points& map, const Points& beacons, const RigidMotion& motion) 
   return std::sqrt(sum / static_cast<double>(map.size()));
 }
 
-template <double BeaconScores::*kValue>
-double of_beacons(const MeasuredRun& run) {
-  return run.beacons ? (*run.beacons).*kValue : kNaN;
-}
-
-double landmarks_in_map(const MeasuredRun& run) {
-  const RunRows& rows = run.rows;
-  if (!rows.map_size.empty()) return rows.map_size.back();
-  return rows.final_map ? static_cast<double>(rows.final_map->places().size()) : kNaN;
-}
-
 }  // namespace
-
-std::span<const Score> scores_of_beacons() {
-  static constexpr Score kAll[] = {
-      {"map_landmarks", "1", "landmarks in the final map", landmarks_in_map, Better::neither},
-      {"beacons_found", "1", "surveyed beacons found", of_beacons<&BeaconScores::found>,
-       Better::higher},
-      {"beacon_rms", "m", "RMS error of the beacons found", of_beacons<&BeaconScores::rms>},
-      {"beacon_aligned_rms", "m", "RMS error of the beacons found, aligned",
-       of_beacons<&BeaconScores::aligned_rms>},
-  };
-  return kAll;
-}
-std::span<const ScanSeries> series_of_map_size() {
-  static constexpr ScanSeries kAll[] = {{"map_landmarks", "1", [](const MeasuredRun& run) {
-                                           return run.rows.truth.empty() ? run.rows.map_size
-                                                                         : std::vector<double>();
-                                         }}};
-  return kAll;
-}
 
 BeaconScores beacon_scores(std::span<const Eigen::Vector2d> map,
                            std::span<const Eigen::Vector2d> beacons, const RigidMotion& alignment) {

@@ -21,16 +21,12 @@ Summary CellAnalysis::over_runs(std::string_view score) const {
   return sums.result();
 }
 
-Spread CellAnalysis::known_over_runs(const Score& score) const {
+Spread CellAnalysis::known_over_runs(std::string_view score) const {
   std::vector<double> values;
   for (const double value : scores.column(score)) {
     if (!std::isnan(value)) values.push_back(value);
   }
   return spread_of(values);
-}
-
-Spread CellAnalysis::known_over_runs(std::string_view score) const {
-  return known_over_runs(all_scores()[index_of(score)]);
 }
 
 Interval CellAnalysis::interval_of(std::string_view score) const {

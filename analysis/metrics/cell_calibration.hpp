@@ -20,13 +20,16 @@ struct PitHistogram {
   Uniformity test;
 };
 
+/// Of a cell; empty where nothing is judged.
+using Calibrations = std::vector<PitHistogram>;
+
 /// Collects the transforms of complete runs in the order of the calls.
 class CalibrationSums {
  public:
   void add(const RunPits& run) { runs_.push_back(run); }
   /// `times` [s] of all scans. Pose by moments, then ranks, then landmarks; what is not stored is
   /// absent.
-  std::vector<PitHistogram> result(std::span<const double> times, double level) const;
+  Calibrations result(std::span<const double> times, double level) const;
 
  private:
   std::vector<RunPits> runs_;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace montecarta {
 namespace {
@@ -14,7 +13,7 @@ namespace {
 /// runs: one bootstrap over runs at `level`.
 void put_score_intervals(CellAnalysis& cell, double level) {
   std::vector<std::vector<double>> columns;
-  for (const Score& score : all_scores()) columns.push_back(cell.scores.column(score));
+  for (const Score& score : all_scores()) columns.push_back(cell.scores.column(score.name));
   for (const NeesResult& nees : cell.nees) columns.push_back(nees.series.run_averages);
   std::vector<Interval> intervals = bootstrap_means(columns, level);
   const std::size_t scores = all_scores().size();
@@ -40,14 +39,11 @@ std::vector<double> MeanOverTime::mean() const {
 }
 
 CellSums::CellSums(const Yardsticks& sticks)
-    : sticks_(&sticks),
-      run_bound_(nees_bounds(1, dimension_of(ErrorBlock::pose), sticks.level).upper),
-      over_time_(all_scan_series().size()),
-      exits_(sticks.times.size()),
-      credibility_(sticks.times.size()),
-      moments_(sticks.times.size()),
-      innovations_(sticks.times.size()),
-      references_(sticks.references.size()) {}
+    : level_(sticks.level), over_time_(all_scan_series().size()) {
+  for (const Metric& metric : all_metrics()) {
+    if (metric.sums != nullptr) metrics_.push_back(metric.sums(sticks));
+  }
+}
 
 void CellSums::add(const MeasuredRun& run) {
   scores_.add(run);
@@ -55,51 +51,7 @@ void CellSums::add(const MeasuredRun& run) {
     const std::vector<double> values = all_scan_series()[k].of(run);
     if (!values.empty()) over_time_[k].add(values);
   }
-  add_nees(run.metrics);
-  if (!run.metrics.covariances().empty()) add_leading(run.metrics);
-  if (!run.rows.nis.empty()) innovations_.add(run.rows.nis, run.rows.nis_dof);
-  if (run.metrics.lineages() != nullptr) lineages_.add(*run.metrics.lineages());
-  for (std::size_t r = 0; r < references_.size(); ++r) references_[r].add(run.references[r]);
-  map_.add(run.map);
-  joint_.add(run.joint);
-  if (sticks_->calibrates) calibration_.add(run.pits);
-}
-
-void CellSums::add_nees(const RunMetrics& metrics) {
-  if (scores_.runs() == 1) {
-    for (const Moments moments : kMoments) {
-      if (metrics.nees(moments).value[0].empty()) continue;
-      for (const ErrorBlock block : kErrorBlocks) {
-        nees_.emplace_back(block, moments, sticks_->times.size());
-      }
-    }
-  }
-  if (!nees_.empty()) leading_ = nees_.front().moments();
-  for (NeesAccumulator& nees : nees_) nees.add(metrics);
-}
-
-void CellSums::add_leading(const RunMetrics& metrics) {
-  const std::vector<double>& nees = metrics.nees(leading_).value[0];
-  std::vector<bool> above;
-  for (const double value : nees) above.push_back(value > run_bound_);
-  const auto exit = first_lasting(above, kLastingScans);
-  run_exits_.push_back(exit ? sticks_->times[*exit] : std::numeric_limits<double>::infinity());
-  exits_.add(nees);
-  credibility_.add(metrics.errors(), nees);
-  moments_.add(metrics.errors(), metrics.covariances());
-}
-
-void CellSums::put_leading(CellAnalysis& cell) {
-  if (run_exits_.empty()) return;
-  cell.run_exits = run_exits_;
-  cell.credibility = credibility_.result();
-  cell.anatomy = moments_.result();
-  const auto pose = std::ranges::find_if(cell.nees, [&](const NeesResult& nees) {
-    return nees.block == ErrorBlock::pose && nees.moments == leading_;
-  });
-  const auto exits =
-      exits_.lasting_exits(sticks_->times, dimension_of(ErrorBlock::pose), sticks_->level);
-  pose->consistency.exit_interval = middle_of(exits, sticks_->level);
+  for (const auto& metric : metrics_) metric->add(run);
 }
 
 void CellSums::put_series(CellAnalysis& cell) const {
@@ -114,25 +66,12 @@ void CellSums::put_series(CellAnalysis& cell) const {
   }
 }
 
-CellAnalysis CellSums::result() {
-  CellAnalysis cell;
-  const double level = sticks_->level;
+void CellSums::put(CellAnalysis& cell) {
   cell.complete = scores_.runs();
-  cell.leading = leading_;
-  for (const NeesAccumulator& nees : nees_) {
-    cell.nees.push_back(nees.result(sticks_->times, level, sticks_->walks));
-  }
-  put_leading(cell);
   put_series(cell);
-  if (!lineages_.empty()) cell.lineages = lineages_.result();
-  if (!innovations_.empty()) cell.innovations = innovations_.result(level);
-  for (const ReferenceAccumulator& sums : references_) cell.references.push_back(sums.result());
-  cell.map = map_.result(level, sticks_->map.known);
-  cell.joint = joint_.result(level, sticks_->map.identities_known);
-  cell.calibration = calibration_.result(sticks_->times, level);
+  for (const auto& metric : metrics_) metric->put(cell);
   cell.scores = scores_;
-  put_score_intervals(cell, level);
-  return cell;
+  put_score_intervals(cell, level_);
 }
 
 std::vector<MeasuredRun> slots_for(const Parallel& parallel) {

@@ -3,12 +3,12 @@
 
 #include "analysis/data/run_reader.hpp"
 #include "analysis/metrics/cell_analysis.hpp"
-#include "analysis/metrics/exit_bootstrap.hpp"
 #include "analysis/metrics/measured_run.hpp"
-#include "analysis/metrics/nees_accumulator.hpp"
+#include "analysis/metrics/metric.hpp"
 #include "engine/threads/parallel.hpp"
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -36,31 +36,16 @@ class CellSums {
   void add(const MeasuredRun& run);
   /// Of the runs so far.
   const ScoreTable& scores() const { return scores_; }
-  /// Fills all that complete runs say; label, failures and missing runs are the caller's.
-  CellAnalysis result();
+  /// Fills all that complete runs say; label, failures and missing runs are there already.
+  void put(CellAnalysis& cell);
 
  private:
-  void add_nees(const RunMetrics& metrics);
-  void add_leading(const RunMetrics& metrics);
-  void put_leading(CellAnalysis& cell);
   void put_series(CellAnalysis& cell) const;
 
-  const Yardsticks* sticks_;
-  double run_bound_;  ///< upper end of the band of a single run's NEES
+  double level_;
   ScoreTable scores_;
-  std::vector<MeanOverTime> over_time_;  ///< of all_scan_series()
-  std::vector<NeesAccumulator> nees_;    ///< leading first
-  Moments leading_ = Moments::spread;
-  std::vector<double> run_exits_;  ///< [s] {run}
-  ExitBootstrap exits_;
-  CredibilitySamples credibility_;
-  ErrorMoments moments_;
-  InnovationSums innovations_;
-  LineageSums lineages_;
-  std::vector<ReferenceAccumulator> references_;
-  MapErrorSums map_;
-  JointNeesSums joint_;
-  CalibrationSums calibration_;
+  std::vector<MeanOverTime> over_time_;               ///< of all_scan_series()
+  std::vector<std::unique_ptr<MetricSums>> metrics_;  ///< those that have any
 };
 
 /// As many as are worth measuring at once.

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a run cost, and how often its arithmetic needed a fallback.
 #include "analysis/metrics/measured_run.hpp"
-#include "analysis/metrics/score.hpp"
+#include "analysis/metrics/metric.hpp"
 #include "analysis/statistics/means.hpp"
 
 namespace montecarta {
-std::span<const Score> scores_of_cost() {
-  static constexpr Score kAll[] = {
+
+Metric cost_metric() {
+  static constexpr Score kScores[] = {
       {"numerical_faults", "1", "factorisations answered by a fallback",
        [](const MeasuredRun& run) { return sum_of(run.rows.numerical_faults); }},
       {"cpu_seconds", "s", "processor time of a run",
        [](const MeasuredRun& run) { return run.rows.cpu_seconds; }},
   };
-  return kAll;
+  return {.scores = kScores, .scores_are_numbers = true};
 }
 
 }  // namespace montecarta

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -13,8 +14,10 @@ namespace montecarta {
 /// e' P^-1 e to e' S^-1 e, where S is the mean squared error matrix over runs, in decibel. 3 dB is
 /// a factor of 2.
 struct Credibility {
-  double noncredibility = 0.0;  ///< [dB] mean of the ratio's absolute logarithm; 0: right
-  double inclination = 0.0;  ///< [dB] mean of its logarithm; above 0: too sure, below: too modest
+  /// [dB] Mean of the ratio's absolute logarithm; 0: right.
+  double noncredibility = std::numeric_limits<double>::quiet_NaN();
+  /// [dB] Mean of its logarithm; above 0: too sure, below: too modest.
+  double inclination = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Keeps errors at up to a hundred scans, fewer of many runs.

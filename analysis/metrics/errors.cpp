@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/cell_panels.hpp"
 #include "analysis/metrics/measured_run.hpp"
-#include "analysis/metrics/score.hpp"
+#include "analysis/metrics/metric.hpp"
+#include "analysis/metrics/study_analysis.hpp"
 #include "analysis/statistics/means.hpp"
+#include "engine/numbers/angle.hpp"
 
 #include <cmath>
 
@@ -21,35 +24,75 @@ double position_mean(const MeasuredRun& run) {
 }
 double heading_mse(const MeasuredRun& run) { return mean_of(run.metrics.squared_heading()); }
 
+constexpr Score kErrorsScores[] = {
+    {"position_rmse", "m", "position RMSE",
+     [](const MeasuredRun& run) { return std::sqrt(position_mse(run)); }},
+    {"position_mse", "m2", "position MSE", position_mse},
+    {"position_error", "m", "mean position error", position_mean},
+    {"position_error_variance_over_time", "m2", "variance of the position error over time",
+     [](const MeasuredRun& run) {
+       const double mean = position_mean(run);
+       return position_mse(run) - mean * mean;
+     }},
+    {"heading_rmse", "rad", "heading RMSE",
+     [](const MeasuredRun& run) { return std::sqrt(heading_mse(run)); }},
+    {"heading_mse", "rad2", "heading MSE", heading_mse},
+    {"heading_error", "rad", "mean absolute heading error",
+     [](const MeasuredRun& run) { return mean_of_roots(run.metrics.squared_heading()); }},
+};
+
+constexpr ScanSeries kErrorsSeries[] = {
+    {"position_rmse", "m", [](const MeasuredRun& run) { return run.metrics.squared_position(); },
+     true},
+    {"heading_rmse", "rad", [](const MeasuredRun& run) { return run.metrics.squared_heading(); },
+     true},
+};
+
+/// The cells' curves and, as the floor below them, the Cramer-Rao bound.
+Panel error_panel(const StudyAnalysis& study, const std::string& name, const std::string& label,
+                  const CellValues& values_of, const std::vector<double>& bound) {
+  Panel panel{name, label, cell_curves(study, values_of), {}, Scale::from_zero};
+  if (!bound.empty() && !panel.curves.empty()) {
+    panel.curves.push_back({"Cramer-Rao bound", kYardstickStyle, bound});
+  }
+  return panel;
+}
+
+Figure rmse_figure(const StudyAnalysis& study) {
+  Figure figure{"rmse", "How large are the errors?", ""};
+  figure.sentence =
+      "Root mean square error over runs at each scan: lower is better. It grows while the vehicle "
+      "explores and falls where it meets landmarks it knows.";
+  const CellValues position = [](const CellAnalysis& cell) {
+    return cell.over_time("position_rmse");
+  };
+  const CellValues heading = [](const CellAnalysis& cell) {
+    return scaled(cell.over_time("heading_rmse"), 180.0 / kPi);
+  };
+  if (!study.bound.empty()) {
+    figure.sentence +=
+        " The dashed line is the Cramer-Rao bound: no filter without bias can stay below it, so "
+        "the gap is what a better filter could gain.";
+  }
+  add_panels(
+      {error_panel(study, "rmse_position", "position RMSE [m]", position, study.bound.position),
+       error_panel(study, "rmse_heading", "heading RMSE [deg]", heading,
+                   scaled(study.bound.heading, 180.0 / kPi))},
+      study.times, figure);
+  return figure;
+}
+
+std::vector<Section> errors_sections(const StudyAnalysis& study) {
+  return {figure_section("rmse", {rmse_figure(study)})};
+}
+
 }  // namespace
 
-std::span<const Score> scores_of_errors() {
-  static constexpr Score kAll[] = {
-      {"position_rmse", "m", "position RMSE",
-       [](const MeasuredRun& run) { return std::sqrt(position_mse(run)); }},
-      {"position_mse", "m2", "position MSE", position_mse},
-      {"position_error", "m", "mean position error", position_mean},
-      {"position_error_variance_over_time", "m2", "variance of the position error over time",
-       [](const MeasuredRun& run) {
-         const double mean = position_mean(run);
-         return position_mse(run) - mean * mean;
-       }},
-      {"heading_rmse", "rad", "heading RMSE",
-       [](const MeasuredRun& run) { return std::sqrt(heading_mse(run)); }},
-      {"heading_mse", "rad2", "heading MSE", heading_mse},
-      {"heading_error", "rad", "mean absolute heading error",
-       [](const MeasuredRun& run) { return mean_of_roots(run.metrics.squared_heading()); }},
-  };
-  return kAll;
-}
-std::span<const ScanSeries> series_of_errors() {
-  static constexpr ScanSeries kAll[] = {
-      {"position_rmse", "m", [](const MeasuredRun& run) { return run.metrics.squared_position(); },
-       true},
-      {"heading_rmse", "rad", [](const MeasuredRun& run) { return run.metrics.squared_heading(); },
-       true},
-  };
-  return kAll;
+Metric errors_metric() {
+  return {.scores = kErrorsScores,
+          .scan_series = kErrorsSeries,
+          .scores_are_numbers = true,
+          .sections = errors_sections};
 }
 
 }  // namespace montecarta

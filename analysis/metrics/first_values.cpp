@@ -20,7 +20,7 @@ std::vector<double> first_values(const ResultFile& file, const StoredCell& cell,
   std::vector<MeasuredRun> slots = slots_for(parallel);
   CellSums sums(sticks);
   add_runs(RunReader(file, cell), complete, cell.particles, sticks, parallel, slots, sums);
-  return sums.scores().column(score);
+  return sums.scores().column(score.name);
 }
 
 double half_width(const std::vector<double>& values, double level) {

@@ -42,16 +42,6 @@ Eigen::VectorXd error_of(std::span<const double> mean, std::span<const double> p
 
 }  // namespace
 
-std::span<const Score> scores_of_joint() {
-  static constexpr Score kAll[] = {{"joint_nees", "1", "joint NEES of pose and map per component",
-                                    [](const MeasuredRun& run) {
-                                      return run.has_identities ? nees_per_component(run.joint)
-                                                                : kNaN;
-                                    },
-                                    Better::neither}};
-  return kAll;
-}
-
 std::vector<JointScore> joint_scores(const JointRows& rows, std::span<const std::uint32_t> scans,
                                      std::span<const double> truth,
                                      std::span<const Eigen::Vector2d> landmarks) {

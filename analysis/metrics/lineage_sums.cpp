@@ -1,33 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/lineage_sums.hpp"
 
-#include "analysis/metrics/measured_run.hpp"
-#include "analysis/metrics/score.hpp"
-#include "analysis/statistics/means.hpp"
-
 #include <cmath>
 
 namespace montecarta {
-namespace {
-
-template <double Lineages::*kValue>
-double of_lineages(const MeasuredRun& run) {
-  const Lineages* lineages = run.metrics.lineages();
-  return lineages == nullptr ? kNaN : lineages->*kValue;
-}
-
-}  // namespace
-
-std::span<const Score> scores_of_lineages() {
-  static constexpr Score kAll[] = {
-      {"coalescence", "s", "time back to the common ancestor", of_lineages<&Lineages::coalescence>,
-       Better::higher},
-      {"monte_carlo_variance", "m2", "position variance by few particles",
-       of_lineages<&Lineages::monte_carlo_variance>},
-  };
-  return kAll;
-}
-
 void LineageSums::Mean::add(double value) {
   if (std::isnan(value)) return;
   sum += value;

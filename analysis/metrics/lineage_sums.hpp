@@ -5,16 +5,18 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 
 namespace montecarta {
 
 /// Ancestries over runs (Lineages).
 struct LineageSummary {
   std::array<double, kLineageLags.size()> ancestors{};  ///< {lag} mean over runs; NaN: too short
-  double coalescence = 0.0;        ///< [s] mean over the runs that have a common ancestor
-  double coalesced_share = 0.0;    ///< of the scans looked at
-  double monte_carlo_share = 0.0;  ///< of the mean squared position error that is due to few
-                                   ///< particles; NaN where particles are not stored
+  double coalescence = 0.0;      ///< [s] mean over the runs that have a common ancestor
+  double coalesced_share = 0.0;  ///< of the scans looked at
+  /// Of the mean squared position error that is due to few particles; NaN where particles are not
+  /// stored.
+  double monte_carlo_share = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Adds up Lineages over runs; what a run does not have is not averaged.

@@ -8,32 +8,6 @@
 #include <cmath>
 
 namespace montecarta {
-namespace {
-
-template <double MapScores::*kValue>
-double of_map(const MeasuredRun& run) {
-  return run.map ? (*run.map).*kValue : kNaN;
-}
-template <double Gospa::*kValue>
-double of_map(const MeasuredRun& run) {
-  return run.map ? run.map->gospa.*kValue : kNaN;
-}
-
-}  // namespace
-
-std::span<const Score> scores_of_map() {
-  static constexpr Score kAll[] = {
-      {"landmark_rms", "m", "RMS error of the landmarks in the final map", of_map<&MapScores::rms>},
-      {"landmark_nees", "1", "NEES of a landmark in the final map, mean over landmarks",
-       of_map<&MapScores::nees>},
-      {"gospa", "m", "GOSPA of the final map", of_map<&Gospa::distance>},
-      {"gospa_localisation", "m", "localisation part of GOSPA", of_map<&Gospa::localisation>},
-      {"landmarks_missed", "1", "landmarks missed by the final map", of_map<&Gospa::missed>},
-      {"landmarks_invented", "1", "landmarks invented by the final map", of_map<&Gospa::invented>},
-  };
-  return kAll;
-}
-
 double MapErrors::share_inside() const {
   double inside = 0.0, tested = 0.0;
   for (const LandmarkErrors& one : landmarks) {

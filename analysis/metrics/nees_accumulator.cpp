@@ -38,26 +38,7 @@ class BandsOf {
   std::map<std::uint32_t, Bands> known_;
 };
 
-/// Mean over the scans of a run, by its leading moments.
-double mean_nees(const MeasuredRun& run, ErrorBlock block) {
-  const NeesRows* nees = run.metrics.leading_nees();
-  return nees == nullptr ? kNaN : mean_of_finite(nees->value[static_cast<std::size_t>(block)]);
-}
-
 }  // namespace
-
-std::span<const Score> scores_of_nees() {
-  static constexpr Score kAll[] = {
-      {"nees", "1", "mean NEES of the pose",
-       [](const MeasuredRun& run) { return mean_nees(run, ErrorBlock::pose); }, Better::neither},
-      {"nees_position", "1", "mean NEES of the position",
-       [](const MeasuredRun& run) { return mean_nees(run, ErrorBlock::position); },
-       Better::neither},
-      {"nees_distance", "1", "NEES distance from consistency [doublings]",
-       [](const MeasuredRun& run) { return nees_distance(mean_nees(run, ErrorBlock::pose), 3); }},
-  };
-  return kAll;
-}
 
 double nees_distance(double nees, std::size_t dimension) {
   return std::abs(std::log2(nees / static_cast<double>(dimension)));

@@ -18,7 +18,7 @@ struct EndedRuns {
 
 EndedRuns ended_runs(const CellAnalysis& cell, const Score& score) {
   std::vector<std::pair<std::uint64_t, double>> ended;
-  const std::vector<double>& values = cell.scores.column(score);
+  const std::vector<double>& values = cell.scores.column(score.name);
   for (std::size_t i = 0; i < cell.runs.size(); ++i) ended.emplace_back(cell.runs[i], values[i]);
   for (const FailedRun& failure : cell.failures) ended.emplace_back(failure.run, kNaN);
   std::ranges::sort(ended, {}, &std::pair<std::uint64_t, double>::first);
@@ -66,7 +66,7 @@ PairedRuns paired_runs(const CellAnalysis& left, const CellAnalysis& right, cons
 }
 
 bool has_score(const CellAnalysis& cell, const Score& score) {
-  return std::ranges::any_of(cell.scores.column(score),
+  return std::ranges::any_of(cell.scores.column(score.name),
                              [](double value) { return std::isfinite(value); });
 }
 

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Effective number of particles, and how many distinct ancestors they have (Diversity).
+#include "analysis/metrics/cell_panels.hpp"
+#include "analysis/metrics/lineage_sums.hpp"
 #include "analysis/metrics/measured_run.hpp"
-#include "analysis/metrics/score.hpp"
+#include "analysis/metrics/metric.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/output/number_text.hpp"
 #include "analysis/statistics/means.hpp"
+
+#include <cmath>
 
 namespace montecarta {
 namespace {
@@ -26,33 +32,113 @@ double first_with_descendants(const MeasuredRun& run) {
   return diversity == nullptr ? kNaN : diversity->root.back();
 }
 
+constexpr Score kParticlesScores[] = {
+    {"ess", "1", "effective particles",
+     [](const MeasuredRun& run) { return mean_of(run.rows.ess); }, Better::higher},
+    {"resampling_rate", "1", "share of scans that resample",
+     [](const MeasuredRun& run) { return mean_of(run.rows.resampled); }, Better::neither},
+    {"ancestors_last_resampling", "1", "distinct particles after a resampling",
+     mean_of_counts<&Diversity::last_resampling>, Better::higher},
+    {"ancestors_10_s_ago", "1", "distinct ancestors 10 s ago", mean_of_counts<&Diversity::lag>,
+     Better::higher},
+    {"ancestors_at_start", "1", "distinct ancestors at the start", mean_of_counts<&Diversity::root>,
+     Better::higher},
+    {"ancestors_at_start_at_the_end", "1", "first particles that have descendants at the end",
+     first_with_descendants, Better::higher},
+};
+
+constexpr ScanSeries kParticlesSeries[] = {
+    {"ess", "1", [](const MeasuredRun& run) { return run.rows.ess; }},
+    {"ancestors_last_resampling", "1", counts_over_time<&Diversity::last_resampling>},
+    {"ancestors_10_s_ago", "1", counts_over_time<&Diversity::lag>},
+    {"ancestors_at_start", "1", counts_over_time<&Diversity::root>},
+};
+
+std::vector<std::string> diversity_row(const CellAnalysis& cell) {
+  std::vector<std::string> row = {cell.label, readable(cell.over_runs("ess").mean),
+                                  percent(cell.over_runs("resampling_rate").mean)};
+  const LineageSummary* lineages = cell.find<LineageSummary>();
+  if (lineages == nullptr) {
+    row.resize(8, "-");
+    return row;
+  }
+  for (const std::size_t lag : {0u, 3u, 6u}) row.push_back(readable(lineages->ancestors[lag]));
+  const bool has_met = std::isfinite(lineages->coalescence);
+  row.push_back(has_met ? readable(lineages->coalescence) + " s" : "-");
+  row.push_back(percent(lineages->coalesced_share));
+  return row;
+}
+
+TextTable diversity_table(const StudyAnalysis& study) {
+  TextTable table;
+  table.headings = {{"cell", Align::left},  {"ESS"},      {"resampled"},
+                    {"ancestors, 1 s ago"}, {"10 s ago"}, {"100 s ago"},
+                    {"common ancestor"},    {"in scans"}};
+  for (const CellAnalysis& cell : study.cells) {
+    if (!cell.over_time("ess").empty()) table.rows.push_back(diversity_row(cell));
+  }
+  return table;
+}
+
+std::vector<std::string> diversity_notes() {
+  return {
+      "How many different histories the particles tell: the effective number of particles, the "
+      "share of scans that end with a resampling, and how many different ancestors all particles "
+      "have so long ago. Behind the common ancestor there is only one history left: the filter can "
+      "no longer change its mind about what lies before it, nor know how wrong it is there. It was "
+      "found in the share of scans in the last column."};
+}
+
+/// A panel of distinct ancestors.
+Panel ancestor_panel(const StudyAnalysis& study, const std::string& series,
+                     const std::string& label) {
+  const CellValues values = [&](const CellAnalysis& cell) { return cell.over_time(series); };
+  return {series, label, cell_curves(study, values), {}, Scale::logarithmic};
+}
+
+Figure diversity_figure(const StudyAnalysis& study) {
+  Figure figure{"diversity", "How many different histories survive?", ""};
+  figure.sentence =
+      "Distinct ancestors of the particles, mean over runs: parents in the last resampling, "
+      "ancestors 10 s ago, and ancestors at the start. When few are left, the particles tell one "
+      "story in many copies, and the filter cannot know how wrong that story is.";
+  add_panels({ancestor_panel(study, "ancestors_last_resampling", "parents, last resampling"),
+              ancestor_panel(study, "ancestors_10_s_ago", "ancestors, 10 s ago"),
+              ancestor_panel(study, "ancestors_at_start", "ancestors at the start")},
+             study.times, figure);
+  return figure;
+}
+
+Figure ess_figure(const StudyAnalysis& study) {
+  Figure figure{"ess", "How many particles still count?", ""};
+  figure.sentence =
+      "Effective sample size as a share of all particles, mean over runs: near 100 % all particles "
+      "explain the measurements about equally well; a low share means that few carry all weight.";
+  const CellValues share = [](const CellAnalysis& cell) {
+    return scaled(cell.over_time("ess"), 100.0 / static_cast<double>(cell.particles));
+  };
+  add_panels(
+      {{"ess_share", "effective particles [%]", cell_curves(study, share), {}, Scale::percent}},
+      study.times, figure);
+  return figure;
+}
+
+std::vector<Section> particles_sections(const StudyAnalysis& study) {
+  Section section{"diversity", "How many histories survive?"};
+  const TextTable table = diversity_table(study);
+  section.add("diversity", table);
+  if (!table.rows.empty()) section.add(diversity_notes());
+  return {figure_section("diversity_over_time", {diversity_figure(study), ess_figure(study)}),
+          section};
+}
+
 }  // namespace
 
-std::span<const Score> scores_of_particles() {
-  static constexpr Score kAll[] = {
-      {"ess", "1", "effective particles",
-       [](const MeasuredRun& run) { return mean_of(run.rows.ess); }, Better::higher},
-      {"resampling_rate", "1", "share of scans that resample",
-       [](const MeasuredRun& run) { return mean_of(run.rows.resampled); }, Better::neither},
-      {"ancestors_last_resampling", "1", "distinct particles after a resampling",
-       mean_of_counts<&Diversity::last_resampling>, Better::higher},
-      {"ancestors_10_s_ago", "1", "distinct ancestors 10 s ago", mean_of_counts<&Diversity::lag>,
-       Better::higher},
-      {"ancestors_at_start", "1", "distinct ancestors at the start",
-       mean_of_counts<&Diversity::root>, Better::higher},
-      {"ancestors_at_start_at_the_end", "1", "first particles that have descendants at the end",
-       first_with_descendants, Better::higher},
-  };
-  return kAll;
-}
-std::span<const ScanSeries> series_of_particles() {
-  static constexpr ScanSeries kAll[] = {
-      {"ess", "1", [](const MeasuredRun& run) { return run.rows.ess; }},
-      {"ancestors_last_resampling", "1", counts_over_time<&Diversity::last_resampling>},
-      {"ancestors_10_s_ago", "1", counts_over_time<&Diversity::lag>},
-      {"ancestors_at_start", "1", counts_over_time<&Diversity::root>},
-  };
-  return kAll;
+Metric particles_metric() { return {.scores = kParticlesScores, .scores_are_numbers = true}; }
+
+/// Apart from the scores: in files its series come last.
+Metric diversity_metric() {
+  return {.scan_series = kParticlesSeries, .sections = particles_sections};
 }
 
 }  // namespace montecarta

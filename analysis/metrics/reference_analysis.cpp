@@ -9,36 +9,6 @@
 #include <cmath>
 
 namespace montecarta {
-namespace {
-
-/// By the leading reference.
-template <double ReferenceScores::*kValue>
-double of_reference(const MeasuredRun& run) {
-  return run.references.empty() ? kNaN : run.references.front().scores.*kValue;
-}
-
-}  // namespace
-
-std::span<const Score> scores_of_references() {
-  static constexpr Score kAll[] = {
-      {"reference_rms", "m", "RMS distance to the reference", of_reference<&ReferenceScores::rms>},
-      {"reference_median", "m", "median distance to the reference",
-       of_reference<&ReferenceScores::median>},
-      {"reference_gated_rms", "m", "RMS distance to the reference without outliers",
-       of_reference<&ReferenceScores::gated_rms>},
-      {"reference_aligned_rms", "m", "RMS distance to the reference, aligned",
-       of_reference<&ReferenceScores::aligned_rms>},
-      {"reference_aligned_median", "m", "median distance to the reference, aligned",
-       of_reference<&ReferenceScores::aligned_median>},
-      {"reference_aligned_gated_rms", "m",
-       "RMS distance to the reference without outliers, aligned",
-       of_reference<&ReferenceScores::aligned_gated_rms>},
-      {"reference_heading_rmse", "rad", "heading RMSE to the reference",
-       of_reference<&ReferenceScores::heading_rmse>},
-  };
-  return kAll;
-}
-
 Spread ReferenceAnalysis::over_runs(double ReferenceScores::*score) const {
   std::vector<double> values;
   for (const ReferenceScores& run : runs) values.push_back(run.*score);

@@ -21,6 +21,9 @@ struct ReferenceAnalysis {
   std::size_t better_than(double baseline) const;
 };
 
+/// One for each reference of the drive, the leading first.
+using ReferenceAnalyses = std::vector<ReferenceAnalysis>;
+
 /// Adds up runs against one reference in the order of the calls. Memory depends on fixes, and grows
 /// by a few numbers with every run.
 class ReferenceAccumulator {

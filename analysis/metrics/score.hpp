@@ -32,7 +32,7 @@ struct ScanSeries {
   bool is_square = false;  ///< the root of its mean is what is shown
 };
 
-// All of them, in the order of tables. Each metric declares its own; scores.cpp lists the metrics.
+// All of them, in the order of metrics (all_metrics()).
 std::span<const Score> all_scores();
 std::span<const ScanSeries> all_scan_series();
 
@@ -45,9 +45,7 @@ class ScoreTable {
   ScoreTable();
   void add(const MeasuredRun& run);
   std::size_t runs() const { return runs_; }
-  /// {run}; `score` is one of all_scores().
-  const std::vector<double>& column(const Score& score) const;
-  /// The same by name, which must be that of a score.
+  /// {run}; `name` must be that of a score.
   const std::vector<double>& column(std::string_view name) const;
 
   /// A row that has these scores only.
@@ -62,8 +60,7 @@ class ScoreTable {
   std::size_t runs_ = 0;
 };
 
-/// Place of a score among all_scores().
-std::size_t index_of(const Score& score);
+/// Place of the score of this name among all_scores().
 std::size_t index_of(std::string_view name);
 
 }  // namespace montecarta

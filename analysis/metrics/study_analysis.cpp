@@ -3,6 +3,7 @@
 
 #include "analysis/data/run_reader.hpp"
 #include "analysis/metrics/cell_sums.hpp"
+#include "analysis/metrics/efficiency.hpp"
 #include "engine/errors.hpp"
 
 #include <algorithm>
@@ -11,7 +12,14 @@
 namespace montecarta {
 namespace {
 
-/// Run indices in the file of the complete runs; counts and names the others in `cell`.
+/// [s] of the first scan at or after a step, or of the last one.
+double scan_time(const ResultFile& file, std::uint32_t step) {
+  const auto& steps = file.description().scan_steps;
+  const auto scan = std::ranges::lower_bound(steps, step) - steps.begin();
+  return file.scan_times()[std::min(static_cast<std::size_t>(scan), steps.size() - 1)];
+}
+
+/// Run indices in the file of the complete runs; counts and names all in `cell`.
 std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell& stored,
                                        CellAnalysis& cell) {
   const auto status = file.status(stored);
@@ -23,43 +31,26 @@ std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell&
     if (status[i] == RunStatus::missing) ++cell.missing;
     if (status[i] == RunStatus::spared) ++cell.spared;
     if (status[i] == RunStatus::failed) {
-      cell.failures.push_back({file.runs()[i], steps[i], reasons[i]});
+      cell.failures.push_back({file.runs()[i], steps[i], reasons[i], scan_time(file, steps[i])});
     }
   }
+  for (const std::size_t i : complete) cell.runs.push_back(file.runs()[i]);
   return complete;
-}
-
-/// A failed run is right until the scan at which it failed, at most.
-double failure_time(const ResultFile& file, std::uint32_t step) {
-  const auto& steps = file.description().scan_steps;
-  const auto scan = std::ranges::lower_bound(steps, step) - steps.begin();
-  return file.scan_times()[std::min(static_cast<std::size_t>(scan), steps.size() - 1)];
-}
-
-Survival survival(const CellAnalysis& cell, const ResultFile& file, const Yardsticks& sticks) {
-  std::vector<double> ends = cell.run_exits;
-  for (const FailedRun& failure : cell.failures) ends.push_back(failure_time(file, failure.step));
-  return survival_of(ends, sticks.times, sticks.level);
 }
 
 CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& stored,
                           const Yardsticks& sticks, const Parallel& parallel,
                           std::vector<MeasuredRun>& slots) {
-  CellAnalysis outcome;
-  const auto complete = complete_runs(file, stored, outcome);
-  CellSums sums(sticks);
-  add_runs(RunReader(file, stored), complete, stored.particles, sticks, parallel, slots, sums);
-  CellAnalysis cell = sums.result();
-  for (const std::size_t i : complete) cell.runs.push_back(file.runs()[i]);
+  CellAnalysis cell;
   cell.label = stored.label;
   cell.filter = stored.filter;
   cell.long_name = stored.long_name;
   cell.particles = stored.particles;
   cell.mismatch = mismatch_of(stored);
-  cell.missing = outcome.missing;
-  cell.spared = outcome.spared;
-  cell.failures = std::move(outcome.failures);
-  if (!cell.run_exits.empty()) cell.survival = survival(cell, file, sticks);
+  const auto complete = complete_runs(file, stored, cell);
+  CellSums sums(sticks);
+  add_runs(RunReader(file, stored), complete, stored.particles, sticks, parallel, slots, sums);
+  sums.put(cell);
   return cell;
 }
 
@@ -117,7 +108,9 @@ StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& para
     study.cells.push_back(analyze_cell(file, cell, sticks, parallel, slots));
   }
   study.bound = cramer_rao_bound(file, parallel);
-  for (CellAnalysis& cell : study.cells) cell.efficiency = efficiency_of(cell, study.bound);
+  for (CellAnalysis& cell : study.cells) {
+    cell.findings.put(efficiency_of(cell, study.bound));
+  }
   return study;
 }
 

@@ -17,6 +17,13 @@ struct NamedNumber {
   double value = 0.0;
 };
 
+/// A number of every scan, under the name it has in files.
+struct NamedSeries {
+  std::string name;   ///< e.g. "anees_pose_mixture"
+  std::string units;  ///< UDUNITS style, "1" where there is none
+  std::vector<double> values;
+};
+
 /// The unit belongs to the name where there is one: position_rmse_mean [m].
 std::string heading(const std::string& name, const std::string& units);
 

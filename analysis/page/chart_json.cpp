@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/page/chart_json.hpp"
 
-#include "analysis/figures/figure.hpp"
+#include "analysis/output/figure.hpp"
 #include "analysis/page/json.hpp"
 
 #include <array>

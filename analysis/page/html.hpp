@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/tables/verdict_table.hpp"
+#include "analysis/metrics/verdict_table.hpp"
 
 #include <string>
 #include <utility>

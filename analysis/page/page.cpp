@@ -61,13 +61,34 @@ std::string html_figure(const Figure& figure, const fs::path& directory) {
                                         "<br>" + links_of(figure) + "</figcaption>\n</figure>\n");
 }
 
+/// Of a table, a note or HTML.
+struct HtmlOf {
+  std::string operator()(const Section::Table& table) const { return html_table(table.table); }
+  std::string operator()(const Section::Note& note) const {
+    return "<p class=\"soft\">" + html_escape(note.text) + "</p>\n";
+  }
+  std::string operator()(const Section::Html& html) const { return html.text; }
+};
+
 std::string html_of(const Section& section, const fs::path& directory) {
-  std::string html = section.body.empty() ? "" : html_section(section.title, section.body);
+  std::string body;
+  for (const auto& block : section.blocks) body += std::visit(HtmlOf{}, block);
+  std::string html = body.empty() ? "" : html_section(section.title, body);
   for (const Figure& figure : section.figures) {
     draw(figure, directory);
     html += html_figure(figure, directory);
   }
   return html;
+}
+
+/// Its tables, for a LaTeX document.
+void write_latex_tables(const StudyAnalysis& study, const Section& section,
+                        const fs::path& directory) {
+  for (const auto& block : section.blocks) {
+    const auto* table = std::get_if<Section::Table>(&block);
+    if (table == nullptr) continue;
+    write_text(directory / (table->name + ".tex"), latex_table(study, table->table));
+  }
 }
 
 }  // namespace
@@ -77,9 +98,7 @@ void write_page(const StudyAnalysis& study, const std::vector<Section>& sections
   make_directory(directory / "tables");
   std::string body;
   for (const Section& section : sections) {
-    for (const auto& [name, table] : section.tables) {
-      write_text(directory / "tables" / (name + ".tex"), latex_table(study, table));
-    }
+    write_latex_tables(study, section, directory / "tables");
     body += html_of(section, directory);
   }
   write_text(directory / "index.html", html_page(study.study_name + ": report", body));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/page/section.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/output/section.hpp"
 
 #include <filesystem>
 #include <vector>

@@ -62,8 +62,8 @@ Sample sample_over(std::span<const double> values) {
 /// (left, right) of every run that both cells completed.
 std::vector<std::pair<double, double>> pairs_of(const CellAnalysis& left, const CellAnalysis& right,
                                                 const Score& score) {
-  const std::vector<double>&of_left = left.scores.column(score),
-        &of_right = right.scores.column(score);
+  const std::vector<double>&of_left = left.scores.column(score.name),
+        &of_right = right.scores.column(score.name);
   std::vector<std::pair<double, double>> pairs;
   for (const auto& [l, r] : common_places(left.runs, right.runs)) {
     pairs.emplace_back(of_left[l], of_right[r]);
@@ -80,8 +80,8 @@ Sample sample_of(const CellAnalysis* cell, const std::string& metric) {
   }
   const Score* score = find_score(metric);
   if (score == nullptr) return {};
-  Sample sample = sample_over(cell->scores.column(*score));
-  sample.values = cell->scores.column(*score);
+  Sample sample = sample_over(cell->scores.column(score->name));
+  sample.values = cell->scores.column(score->name);
   return sample;
 }
 

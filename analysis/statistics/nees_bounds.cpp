@@ -75,6 +75,12 @@ void add_candidates(const Quoted& quoted, std::uint64_t dimension, double level,
 
 }  // namespace
 
+std::vector<double> ends_of(const std::vector<Interval>& intervals, double Interval::*end) {
+  std::vector<double> ends;
+  for (const Interval& interval : intervals) ends.push_back(interval.*end);
+  return ends;
+}
+
 Interval nees_bounds(std::uint64_t runs, std::uint64_t dimension, double level) {
   if (runs == 0 || dimension == 0) {
     throw StudyError("NEES bounds: runs = " + std::to_string(runs) +

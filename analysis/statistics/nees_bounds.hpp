@@ -13,6 +13,9 @@ struct Interval {
   double upper = 0.0;
 };
 
+/// One end of each: `&Interval::lower` or `&Interval::upper`.
+std::vector<double> ends_of(const std::vector<Interval>& intervals, double Interval::*end);
+
 /// Where the average NEES over `runs` independent runs of an error of `dimension` components lies
 /// with probability `level`, if the filter is consistent: (runs x average) is chi-square with (runs
 /// x dimension) degrees of freedom, and both tails are equal (SPEC 19). Throws StudyError where

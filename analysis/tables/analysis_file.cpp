@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/metric.hpp"
+#include "analysis/metrics/reference_analysis.hpp"
+#include "analysis/metrics/reference_files.hpp"
+#include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/csv_file.hpp"
-#include "analysis/tables/cell_series.hpp"
-#include "analysis/tables/reference_files.hpp"
 #include "analysis/tables/tables.hpp"
-#include "analysis/tables/verdict_table.hpp"
 #include "engine/records/h5.hpp"
 
 namespace montecarta {
@@ -39,13 +40,13 @@ h5::Handle write_times(const h5::Handle& group, const std::string& name,
 
 void write_references(const h5::Handle& cell_group, const StudyAnalysis& study,
                       const CellAnalysis& cell, const Times& times) {
-  if (cell.references.empty()) return;
+  if (cell.get<ReferenceAnalyses>().empty()) return;
   const auto references = h5::create_group(cell_group, "references");
-  for (std::size_t r = 0; r < cell.references.size(); ++r) {
+  for (std::size_t r = 0; r < cell.get<ReferenceAnalyses>().size(); ++r) {
     const auto group = h5::create_group(references, study.references[r].name);
     for (const NamedNumber& number : reference_numbers(cell, r)) write_number(group, number);
     if (cell.complete == 0 || study.references[r].times.empty()) continue;
-    write_series(group, {"error_over_time", "m", cell.references[r].error_over_time},
+    write_series(group, {"error_over_time", "m", cell.get<ReferenceAnalyses>()[r].error_over_time},
                  times.fixes[r]);
   }
 }

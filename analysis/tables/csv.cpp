@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/calibration_table.hpp"
+#include "analysis/metrics/joint_table.hpp"
+#include "analysis/metrics/map_error_table.hpp"
+#include "analysis/metrics/map_files.hpp"
+#include "analysis/metrics/metric.hpp"
+#include "analysis/metrics/reference_files.hpp"
+#include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/csv_file.hpp"
 #include "analysis/output/named_rows.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/printed/comparison.hpp"
-#include "analysis/tables/calibration_table.hpp"
-#include "analysis/tables/cell_series.hpp"
-#include "analysis/tables/joint_table.hpp"
-#include "analysis/tables/map_error_table.hpp"
-#include "analysis/tables/map_files.hpp"
-#include "analysis/tables/reference_files.hpp"
 #include "analysis/tables/tables.hpp"
-#include "analysis/tables/verdict_table.hpp"
 
 namespace montecarta {
 namespace {

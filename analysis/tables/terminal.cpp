@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/metric.hpp"
+#include "analysis/metrics/reference_table.hpp"
+#include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/print_table.hpp"
 #include "analysis/printed/comparison.hpp"
-#include "analysis/tables/joint_table.hpp"
-#include "analysis/tables/map_error_table.hpp"
-#include "analysis/tables/reference_table.hpp"
 #include "analysis/tables/tables.hpp"
-#include "analysis/tables/verdict_table.hpp"
-#include "analysis/tables/why_tables.hpp"
 
 #include <algorithm>
+#include <initializer_list>
 #include <ostream>
+#include <string_view>
+#include <variant>
 
 namespace montecarta {
 namespace {
@@ -39,32 +40,38 @@ void print_warnings(std::ostream& out, const StudyAnalysis& study) {
   }
 }
 
-void print_judged_by_truth(std::ostream& out, const StudyAnalysis& study) {
-  print_table(out, verdict_table(study));
-  out << '\n';
-  print_table(out, accuracy_table(study));
-  out << '\n';
-  for (const TextTable& table : {map_error_table(study), joint_table(study), why_table(study),
-                                 diversity_table(study), innovation_table(study)}) {
-    if (table.rows.empty()) continue;
-    print_table(out, table);
-    out << '\n';
-  }
-  print_warnings(out, study);
-}
+/// The sections of a report that the terminal shows.
+class Sections {
+ public:
+  explicit Sections(const StudyAnalysis& study) : all_(sections_of(study)) {}
 
-void print_judged_by_references(std::ostream& out, const StudyAnalysis& study) {
-  if (!study.has_truth) {
-    print_wrapped(out, no_truth_sentence());
-    out << '\n';
+  /// A blank line behind each.
+  void print_tables(std::ostream& out, std::initializer_list<std::string_view> names) const {
+    for (const auto& block : blocks_of(names)) {
+      const auto* table = std::get_if<Section::Table>(&block);
+      if (table == nullptr) continue;
+      print_table(out, table->table);
+      out << '\n';
+    }
   }
-  for (const TextTable& table : {reference_table(study), baseline_table(study), map_table(study)}) {
-    if (table.rows.empty()) continue;
-    print_table(out, table);
-    out << '\n';
+  void print_notes(std::ostream& out, std::initializer_list<std::string_view> names) const {
+    for (const auto& block : blocks_of(names)) {
+      if (const auto* note = std::get_if<Section::Note>(&block)) print_wrapped(out, note->text);
+    }
   }
-  for (const std::string& note : reference_notes(study)) print_wrapped(out, note);
-}
+
+ private:
+  std::vector<Section::Block> blocks_of(std::initializer_list<std::string_view> names) const {
+    std::vector<Section::Block> blocks;
+    for (const std::string_view name : names) {
+      const auto found = std::ranges::find(all_, name, &Section::name);
+      if (found == all_.end()) continue;
+      blocks.insert(blocks.end(), found->blocks.begin(), found->blocks.end());
+    }
+    return blocks;
+  }
+  std::vector<Section> all_;
+};
 
 /// What a paper printed against what was measured, and what had to be assumed.
 void print_printed(std::ostream& out, const StudyAnalysis& study) {
@@ -83,22 +90,23 @@ void print_printed(std::ostream& out, const StudyAnalysis& study) {
 }  // namespace
 
 void print_tables(std::ostream& out, const StudyAnalysis& study) {
+  const Sections sections(study);
   out << study.study_name << ": " << study.runs_here << " of " << study.study_runs << " runs, "
       << study.times.size() << " scans each, seed " << study.seed << "\n\n";
   if (study.has_failures()) print_failures(out, study);
-  if (study.has_truth) print_judged_by_truth(out, study);
-  if (!study.has_truth || !study.references.empty()) print_judged_by_references(out, study);
-  if (const TextTable table = association_table(study); !table.rows.empty()) {
-    print_table(out, table);
-    out << '\n';
-    for (const std::string& note : association_notes()) print_wrapped(out, note);
-  }
   if (study.has_truth) {
-    for (const std::string& note : verdict_notes(study)) print_wrapped(out, note);
-    for (const std::string& note : bound_notes(study)) print_wrapped(out, note);
-    for (const std::string& note : map_error_notes(study)) print_wrapped(out, note);
-    for (const std::string& note : joint_notes(study)) print_wrapped(out, note);
+    sections.print_tables(
+        out, {"verdict", "map_errors", "joint_nees", "error_anatomy", "diversity", "innovations"});
+    print_warnings(out, study);
+  } else {
+    print_wrapped(out, no_truth_sentence());
+    out << '\n';
   }
+  for (const char* name : {"references", "association"}) {
+    sections.print_tables(out, {name});
+    sections.print_notes(out, {name});
+  }
+  if (study.has_truth) sections.print_notes(out, {"verdict", "map_errors", "joint_nees"});
   print_printed(out, study);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/report.hpp"
 
-#include "analysis/figures/gnuplot.hpp"
+#include "analysis/output/gnuplot.hpp"
 #include "engine/errors.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/plan_arguments.hpp"

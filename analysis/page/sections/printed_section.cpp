@@ -19,14 +19,14 @@ std::string assumptions(const Printed& printed) {
 
 Section printed_section(const StudyAnalysis& study) {
   if (study.printed.empty()) return {};
-  Section section{"Printed and measured"};
+  Section section{"printed", "Printed and measured"};
   if (!study.printed.source.empty()) {
-    section.body += "<p>" + html_escape(study.printed.source) + "</p>\n";
+    section.add_html("<p>" + html_escape(study.printed.source) + "</p>\n");
   }
-  add_table("printed", printed_value_table(study), section);
-  add_table("claims", printed_claim_table(study), section);
-  add_notes(printed_notes(study), section);
-  section.body += assumptions(study.printed);
+  section.add("printed", printed_value_table(study));
+  section.add("claims", printed_claim_table(study));
+  section.add(printed_notes(study));
+  section.add_html(assumptions(study.printed));
   return section;
 }
 

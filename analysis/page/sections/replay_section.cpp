@@ -62,13 +62,13 @@ Section replay_section(const ResultFile& file, std::optional<std::uint64_t> run)
   if (!index) return {};
   const Replay replay = read_replay(file, *index);
   if (replay.cells.empty()) return {};
-  Section section{"What happened in one run?"};
-  section.body =
+  Section section{"replay", "What happened in one run?"};
+  section.add_html(
       "<div class=\"player\">\n<noscript><p class=\"soft\">The player needs scripts; the "
       "paths below show the same run.</p></noscript>\n" +
-      html_data("replay-data", replay_json(replay)) + "</div>\n";
-  add_notes({shown(replay)}, section);
-  if (const std::string more = wanted(file, replay); !more.empty()) add_notes({more}, section);
+      html_data("replay-data", replay_json(replay)) + "</div>\n");
+  section.add(std::vector{shown(replay)});
+  if (const std::string more = wanted(file, replay); !more.empty()) section.add(std::vector{more});
   return section;
 }
 

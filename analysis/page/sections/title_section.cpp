@@ -5,13 +5,13 @@
 namespace montecarta {
 
 Section title_section(const StudyAnalysis& study) {
-  Section section;
-  section.body = "<h1>" + html_escape(study.title.empty() ? study.study_name : study.title) +
-                 "</h1>\n<p class=\"soft\">" + html_escape(study.study_name) + " &middot; " +
-                 std::to_string(study.runs_here) + " of " + std::to_string(study.study_runs) +
-                 " runs &middot; " + std::to_string(study.times.size()) +
-                 " scans each &middot; seed " + std::to_string(study.seed) + " &middot; " +
-                 html_escape(study.file) + "</p>\n";
+  Section section{"title", ""};
+  section.add_html("<h1>" + html_escape(study.title.empty() ? study.study_name : study.title) +
+                   "</h1>\n<p class=\"soft\">" + html_escape(study.study_name) + " &middot; " +
+                   std::to_string(study.runs_here) + " of " + std::to_string(study.study_runs) +
+                   " runs &middot; " + std::to_string(study.times.size()) +
+                   " scans each &middot; seed " + std::to_string(study.seed) + " &middot; " +
+                   html_escape(study.file) + "</p>\n");
   return section;
 }
 

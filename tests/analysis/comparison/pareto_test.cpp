@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/pareto.hpp"
 
-#include "analysis/figures/pareto_figure.hpp"
+#include "analysis/comparison/pareto_figure.hpp"
 #include "tests/analysis/comparison/compared_cells.hpp"
 
 #include <gmock/gmock.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/cell_calibration.hpp"
 
-#include "analysis/figures/calibration_figure.hpp"
+#include "analysis/metrics/calibration_figure.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
 
 #include <gmock/gmock.h>
@@ -138,8 +138,8 @@ TEST(CalibrationFigures, DrawEmptyBinsWhereThereIsNoValue) {
   StudyAnalysis study;
   study.times = {1.0};
   study.cells.resize(1);
-  study.cells[0].calibration.push_back(
-      {"landmark x", "Gaussian", 1.0, 3, judge_uniformity({}, band_for(0, 0.95))});
+  study.cells[0].findings.put(
+      Calibrations{{"landmark x", "Gaussian", 1.0, 3, judge_uniformity({}, band_for(0, 0.95))}});
   const Figure figure = calibration_figures(study).front();
   ASSERT_EQ(figure.data.size(), 1u);
   for (const auto& row : figure.data[0].rows) EXPECT_EQ(row[2], 0.0);

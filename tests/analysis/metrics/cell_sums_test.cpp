@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/cell_sums.hpp"
 
+#include "analysis/metrics/credibility.hpp"
+#include "analysis/metrics/error_anatomy.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +23,11 @@ class Sums {
     run_.measure(sticks_, particles);
     sums_.add(run_);
   }
-  CellAnalysis result() { return sums_.result(); }
+  CellAnalysis result() {
+    CellAnalysis cell;
+    sums_.put(cell);
+    return cell;
+  }
 
  private:
   std::vector<double> times_;
@@ -108,10 +114,12 @@ TEST(CellSums, SaysHowSureItIs) {
   EXPECT_LT(cell.interval_of("position_rmse").lower, cell.over_runs("position_rmse").mean);
   EXPECT_GT(cell.interval_of("position_rmse").upper, cell.over_runs("position_rmse").mean);
   EXPECT_TRUE(std::isnan(cell.interval_of("ess").lower));
-  ASSERT_TRUE(cell.credibility && cell.anatomy);
-  EXPECT_NEAR(cell.credibility->inclination, 20.0 * std::log10(1.5), 0.3);
-  EXPECT_NEAR(cell.anatomy->happened[2].back() / cell.anatomy->believed[2].back(), 1.5, 0.5);
-  EXPECT_EQ(cell.run_exits.size(), 30u);
+  ASSERT_TRUE(cell.find<Credibility>() && cell.find<ErrorAnatomy>());
+  EXPECT_NEAR(cell.find<Credibility>()->inclination, 20.0 * std::log10(1.5), 0.3);
+  EXPECT_NEAR(
+      cell.find<ErrorAnatomy>()->happened[2].back() / cell.find<ErrorAnatomy>()->believed[2].back(),
+      1.5, 0.5);
+  EXPECT_EQ(cell.get<Survival>().runs, 30u);
 }
 
 TEST(CellSums, WrapsTheHeading) {

@@ -57,9 +57,9 @@ TEST_F(BoundOfAFile, IsAttainedByEkfSlamAtTinyNoise) {
   const CellAnalysis& cell = study.cells.front();
   const double relative =
       2.5 * cell.over_runs("position_mse").standard_error() / cell.over_runs("position_mse").mean;
-  EXPECT_NEAR(cell.efficiency.position, 1.0, relative);
-  EXPECT_NEAR(cell.efficiency.heading, 1.0, 0.1);
-  EXPECT_NEAR(cell.efficiency.map, 1.0, 0.1);
+  EXPECT_NEAR(cell.get<Efficiency>().position, 1.0, relative);
+  EXPECT_NEAR(cell.get<Efficiency>().heading, 1.0, 0.1);
+  EXPECT_NEAR(cell.get<Efficiency>().map, 1.0, 0.1);
   EXPECT_NEAR(cell.over_runs("landmark_nees").mean, 2.0,
               5.0 * cell.over_runs("landmark_nees").standard_error());
 }
@@ -93,7 +93,7 @@ TEST_F(BoundOfAFile, IsMissingWithItsReason) {
   const StudyAnalysis study = analyze(ResultFile(path_));
   EXPECT_TRUE(study.bound.empty());
   EXPECT_NE(study.bound.missing.find("simulated"), std::string::npos);
-  EXPECT_TRUE(std::isnan(study.cells.front().efficiency.position));
+  EXPECT_TRUE(std::isnan(study.cells.front().get<Efficiency>().position));
 }
 
 }  // namespace

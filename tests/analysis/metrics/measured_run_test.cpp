@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/measured_run.hpp"
 
+#include "analysis/metrics/joint_nees.hpp"
+#include "analysis/metrics/map_errors.hpp"
+#include "analysis/metrics/reference_analysis.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/synthetic_result.hpp"
@@ -34,13 +37,14 @@ TEST_F(ARecordedDrive, HasReferencesAndNoVerdict) {
     EXPECT_EQ(cell.consistency().verdict, Verdict::untested);
     EXPECT_TRUE(std::isnan(cell.over_runs("position_rmse").mean));
     EXPECT_TRUE(cell.over_time("position_rmse").empty());
-    EXPECT_EQ(cell.references.size(), 2u);
+    EXPECT_EQ(cell.get<ReferenceAnalyses>().size(), 2u);
   }
 }
 
 TEST_F(ARecordedDrive, IsJudgedByItsFixes) {
   const StudyAnalysis study = analyze(ResultFile(path_));
-  const ReferenceAnalysis& gps = study.cells[2].references[0];  // 0.5 m circles, 3 m aside
+  const ReferenceAnalysis& gps =
+      study.cells[2].get<ReferenceAnalyses>()[0];  // 0.5 m circles, 3 m aside
   const Spread median = gps.over_runs(&ReferenceScores::median);
   const Spread aligned = gps.over_runs(&ReferenceScores::aligned_median);
   EXPECT_NEAR(median.summary.mean, 3.0, 0.1);
@@ -50,7 +54,7 @@ TEST_F(ARecordedDrive, IsJudgedByItsFixes) {
   EXPECT_NEAR(gated.summary.mean, std::hypot(3.0, 0.5 * 1.03), 0.05);
   EXPECT_NEAR(gps.over_runs(&ReferenceScores::gated_share).summary.mean, 299.0 / 300.0, 1e-12);
   EXPECT_NEAR(gps.over_runs(&ReferenceScores::heading_rmse).summary.mean, 0.1, 0.005);
-  const ReferenceAnalysis& coarse = study.cells[2].references[1];
+  const ReferenceAnalysis& coarse = study.cells[2].get<ReferenceAnalyses>()[1];
   EXPECT_NEAR(coarse.over_runs(&ReferenceScores::aligned_rms).summary.mean,
               std::sqrt(0.5 + 0.515 * 0.515), 0.05);
   EXPECT_TRUE(std::isnan(coarse.over_runs(&ReferenceScores::heading_rmse).summary.mean));
@@ -61,7 +65,7 @@ TEST_F(ARecordedDrive, GivesStudiesTheirScoresByName) {
   const StudyAnalysis study = analyze(ResultFile(path_));
   const CellAnalysis& cell = study.cells[1];
   for (std::size_t i = 0; i < cell.complete; ++i) {
-    EXPECT_EQ(cell.scores.column("reference_rms")[i], cell.references[0].runs[i].rms);
+    EXPECT_EQ(cell.scores.column("reference_rms")[i], cell.get<ReferenceAnalyses>()[0].runs[i].rms);
     EXPECT_EQ(cell.scores.column("map_landmarks")[i], 20.0);
     EXPECT_EQ(cell.scores.column("beacons_found")[i], 3.0);
     EXPECT_NEAR(cell.scores.column("beacon_rms")[i], 3.3, 1e-12);
@@ -90,7 +94,7 @@ TEST(ADriveWithTruth, HasNoReferences) {
   EXPECT_TRUE(study.has_truth);
   EXPECT_TRUE(study.references.empty());
   for (const CellAnalysis& cell : study.cells) {
-    EXPECT_TRUE(cell.references.empty());
+    EXPECT_TRUE(cell.get<ReferenceAnalyses>().empty());
     EXPECT_TRUE(cell.over_time("map_landmarks").empty());
     EXPECT_TRUE(std::isnan(cell.scores.column("reference_rms")[0]));
     EXPECT_TRUE(std::isnan(cell.scores.column("beacons_found")[0]));
@@ -107,7 +111,7 @@ TEST(ADriveWithTruth, HasWholeMapsDespiteRounding) {
                            [&](std::size_t, std::uint64_t, RunRecord& record) {
                              record.column<double>(*record.layout().find("map_size")).back() = size;
                            });
-    return analyze(ResultFile(folder / "out.h5")).cells[0].map.missing;
+    return analyze(ResultFile(folder / "out.h5")).cells[0].get<MapErrors>().missing;
   };
   EXPECT_EQ(map_of_size(3.0 + 1e-12), "");
   EXPECT_NE(map_of_size(3.5), "") << "one particle in two has a landmark that is not stored";
@@ -126,12 +130,13 @@ TEST(ADriveWithTruth, IsJudgedByPoseAndMapTogetherWhereThatIsStored) {
   const StudyAnalysis study = joint_of("known");
   ASSERT_EQ(study.joint_times.size(), 16u);
   EXPECT_EQ(study.joint_times.back(), study.times.back());
-  EXPECT_EQ(study.cells[0].joint.verdict, Verdict::optimistic) << "its means are all wrong";
-  EXPECT_EQ(study.cells[0].joint.dimension.back(), 9.0);
+  EXPECT_EQ(study.cells[0].get<JointConsistency>().verdict, Verdict::optimistic)
+      << "its means are all wrong";
+  EXPECT_EQ(study.cells[0].get<JointConsistency>().dimension.back(), 9.0);
   EXPECT_GT(study.cells[0].scores.column("joint_nees")[1], 1.0);
-  EXPECT_FALSE(study.cells[1].joint.stored);
+  EXPECT_FALSE(study.cells[1].get<JointConsistency>().stored);
   const StudyAnalysis unknown = joint_of("nearest");
-  EXPECT_EQ(unknown.cells[0].joint.verdict, Verdict::untested);
+  EXPECT_EQ(unknown.cells[0].get<JointConsistency>().verdict, Verdict::untested);
   EXPECT_TRUE(std::isnan(unknown.cells[0].scores.column("joint_nees")[1]));
 }
 

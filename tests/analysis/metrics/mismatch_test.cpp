@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/mismatch.hpp"
 
-#include "analysis/figures/mismatch_figure.hpp"
+#include "analysis/metrics/mismatch_figure.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "tests/analysis/studied_result.hpp"
 #include "tests/doubles/scratch_folder.hpp"

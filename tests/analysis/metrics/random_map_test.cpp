@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/cell_calibration.hpp"
+#include "analysis/metrics/efficiency.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "engine/records/merge.hpp"
 #include "tests/analysis/studied_result.hpp"
@@ -45,15 +47,15 @@ TEST_F(RandomMaps, AreTheYardstickOfTheirOwnRuns) {
   const CellAnalysis& cell = study.cells.front();
   EXPECT_LT(cell.over_runs("landmark_rms").mean, 1.0)
       << "the world's landmarks are 2 m away on the average";
-  EXPECT_GT(cell.efficiency.map, 0.3);
+  EXPECT_GT(cell.get<Efficiency>().map, 0.3);
   EXPECT_EQ(study.bound.runs, 6u);
-  ASSERT_EQ(cell.calibration.size(), 14u);
-  EXPECT_EQ(cell.calibration.back().test.verdict, Calibration::untested) << "six runs";
+  ASSERT_EQ(cell.get<Calibrations>().size(), 14u);
+  EXPECT_EQ(cell.get<Calibrations>().back().test.verdict, Calibration::untested) << "six runs";
 }
 
 TEST_F(RandomMaps, MakeEveryRunsBoundItsOwnThoughThePathIsTheSame) {
   EXPECT_EQ(analyze(studied("out.h5", {})).bound.runs, 6u);
-  EXPECT_TRUE(analyze(studied("out.h5", {})).cells.front().calibration.empty())
+  EXPECT_TRUE(analyze(studied("out.h5", {})).cells.front().get<Calibrations>().empty())
       << "not where the noise is on the controls";
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/page/chart_json.hpp"
 
-#include "analysis/figures/panel.hpp"
+#include "analysis/output/panel.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Size and whiteness of the innovations, which need no truth.
+#include "analysis/metrics/cell_panels.hpp"
+#include "analysis/metrics/innovations.hpp"
+#include "analysis/metrics/measured_run.hpp"
+#include "analysis/metrics/metric.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/output/number_text.hpp"
+#include "analysis/statistics/means.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+namespace montecarta {
+namespace {
+
+class InnovationsOverRuns final : public MetricSums {
+ public:
+  explicit InnovationsOverRuns(const Yardsticks& sticks)
+      : level_(sticks.level), innovations_(sticks.times.size()) {}
+  void add(const MeasuredRun& run) override {
+    if (!run.rows.nis.empty()) innovations_.add(run.rows.nis, run.rows.nis_dof);
+  }
+  void put(CellAnalysis& cell) override {
+    if (!innovations_.empty()) cell.findings.put(innovations_.result(level_));
+  }
+
+ private:
+  double level_;
+  InnovationSums innovations_;
+};
+
+void innovations_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
+  const bool known = cell.find<Innovations>() != nullptr;
+  const Innovations& found = cell.get<Innovations>();
+  all.push_back({"nis_per_component", "1", known ? found.mean : kNaN});
+  all.push_back({"nis_per_component_lower", "1", known ? found.interval.lower : kNaN});
+  all.push_back({"nis_per_component_upper", "1", known ? found.interval.upper : kNaN});
+  all.push_back({"nis_share_inside", "1", known ? found.share_inside : kNaN});
+  for (std::size_t lag = 1; lag <= kInnovationLags; ++lag) {
+    all.push_back({"innovation_correlation_" + std::to_string(lag), "1",
+                   known ? found.autocorrelation[lag - 1] : kNaN});
+  }
+  all.push_back({"innovation_correlation_bound", "1", known ? found.bound : kNaN});
+}
+
+void innovations_series(const CellAnalysis& cell, std::vector<NamedSeries>& all) {
+  const Innovations* innovations = cell.find<Innovations>();
+  if (innovations == nullptr) return;
+  all.push_back({"nis_per_component", "1", innovations->average});
+  all.push_back({"nis_lower", "1", ends_of(innovations->bounds, &Interval::lower)});
+  all.push_back({"nis_upper", "1", ends_of(innovations->bounds, &Interval::upper)});
+}
+
+std::vector<std::string> innovation_row(const CellAnalysis& cell) {
+  const Innovations& found = *cell.find<Innovations>();
+  const auto worst =
+      std::ranges::max_element(found.autocorrelation, {}, [](double r) { return std::abs(r); });
+  const auto lag = worst - found.autocorrelation.begin() + 1;
+  return {cell.label,
+          with_interval(found.mean, found.interval),
+          percent(found.share_inside),
+          readable(found.autocorrelation.front()),
+          readable(*worst) + " at " + std::to_string(lag),
+          readable(found.bound),
+          found.white ? "white" : "not white"};
+}
+
+TextTable innovation_table(const StudyAnalysis& study) {
+  TextTable table;
+  table.headings = {{"cell", Align::left},
+                    {"NIS per component [" + level_text(study.level) + "]"},
+                    {"scans inside"},
+                    {"correlation, 1 scan"},
+                    {"largest, scans apart"},
+                    {"white below"},
+                    {"innovations", Align::left}};
+  for (const CellAnalysis& cell : study.cells) {
+    if (cell.find<Innovations>()) table.rows.push_back(innovation_row(cell));
+  }
+  return table;
+}
+
+std::vector<std::string> innovation_notes() {
+  return {
+      "The NIS compares what the filter measured with what it expected to measure, and needs no "
+      "truth: 1 per component means it expects its measurements rightly, more that they surprise "
+      "it. "
+      "Surprises of a right filter are 'white': one says nothing of the next. The correlation over "
+      "scans that lie up to " +
+      std::to_string(kInnovationLags) +
+      " apart stays below the bound then. A filter can pass this test and still not know its "
+      "pose."};
+}
+
+/// Where white innovations stay: one band for each number of pairs of scans; where there are none
+/// so far apart, no band.
+std::vector<Band> white_bands(const StudyAnalysis& study) {
+  std::set<double> bounds;
+  for (const CellAnalysis& cell : study.cells) {
+    const Innovations* found = cell.find<Innovations>();
+    if (found != nullptr && std::isfinite(found->bound)) bounds.insert(found->bound);
+  }
+  std::vector<Band> bands;
+  for (const double bound : bounds) {
+    bands.push_back(
+        {bands.empty() ? level_text(study.level) + " band of white ones" : "", -bound, bound});
+  }
+  return bands;
+}
+
+Figure innovation_figure(const StudyAnalysis& study) {
+  Figure figure{"nis", "Do measurements surprise the filter?", ""};
+  figure.sentence =
+      "Normalised innovation squared per component, mean over runs: near 1 the filter expects its "
+      "measurements as well as it says; above, they surprise it. This test needs no truth, and a "
+      "filter that has lost its way may still pass it.";
+  const CellValues nis = [](const CellAnalysis& cell) { return cell.get<Innovations>().average; };
+  add_panels(
+      cell_panels(study, {"nis_per_component", "NIS per component", {}, {}, Scale::automatic}, nis),
+      study.times, figure);
+  return figure;
+}
+
+Figure whiteness_figure(const StudyAnalysis& study) {
+  Figure figure{"whiteness", "Does one surprise foretell the next?", ""};
+  figure.sentence =
+      "Correlation of the normalised innovations squared of scans that lie so many scans apart, "
+      "mean over runs: inside of the grey band at every distance the innovations are white, one "
+      "tells nothing of the next; a curve above it belongs to a filter that makes the same mistake "
+      "scan after scan.";
+  const CellValues correlation = [](const CellAnalysis& cell) {
+    return cell.get<Innovations>().autocorrelation;
+  };
+  std::vector<Panel> panels = cell_panels(
+      study, {"whiteness", "correlation of NIS", {}, {}, Scale::around_zero}, correlation);
+  for (Panel& panel : panels) panel.bands = white_bands(study);
+  std::vector<double> lags(kInnovationLags);
+  std::iota(lags.begin(), lags.end(), 1.0);
+  figure.chart.x_label = "scans apart";
+  add_panels(panels, lags, figure);
+  return figure;
+}
+
+std::vector<Section> innovations_sections(const StudyAnalysis& study) {
+  const TextTable table = innovation_table(study);
+  if (table.rows.empty()) return {};
+  Section section{"innovations", "Do measurements surprise the filter?"};
+  section.add("innovation", table);
+  section.add(innovation_notes());
+  return {
+      figure_section("innovations_over_time", {innovation_figure(study), whiteness_figure(study)}),
+      section};
+}
+
+}  // namespace
+
+Metric innovations_metric() {
+  return {.sums = [](const Yardsticks& sticks) -> std::unique_ptr<MetricSums> {
+            return std::make_unique<InnovationsOverRuns>(sticks);
+          },
+          .add_numbers = innovations_numbers,
+          .add_series = innovations_series,
+          .sections = innovations_sections};
+}
+
+}  // namespace montecarta

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/metrics/score.hpp"
+#include "analysis/output/named_rows.hpp"
+#include "analysis/output/section.hpp"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+struct CellAnalysis;
+struct MeasuredRun;
+struct StudyAnalysis;
+struct Yardsticks;
+
+/// Adds up the complete runs of one cell in the order of the calls.
+class MetricSums {
+ public:
+  virtual ~MetricSums() = default;
+  virtual void add(const MeasuredRun& run) = 0;
+  /// Puts what the runs say into the cell, which knows its failures and the metrics before.
+  virtual void put(CellAnalysis& cell) = 0;
+};
+
+/// What a metric contributes; what it has nothing of stays empty.
+struct Metric {
+  std::span<const Score> scores = {};            ///< of a run
+  std::span<const ScanSeries> scan_series = {};  ///< of every scan of a run
+  /// Whether means of the scores are numbers of every cell.
+  bool scores_are_numbers = false;
+  /// For more than means of scores; `sticks` outlive the sums.
+  std::unique_ptr<MetricSums> (*sums)(const Yardsticks& sticks) = nullptr;
+  /// Adds single numbers: the same names for every cell, NaN where one does not apply.
+  void (*add_numbers)(const CellAnalysis& cell, std::vector<NamedNumber>& all) = nullptr;
+  /// Adds numbers of every scan; what does not apply is absent.
+  void (*add_series)(const CellAnalysis& cell, std::vector<NamedSeries>& all) = nullptr;
+  /// Its parts of a report.
+  std::vector<Section> (*sections)(const StudyAnalysis& study) = nullptr;
+};
+
+/// All, in the order of files: a new one is a line in registry.cpp.
+std::span<const Metric> all_metrics();
+
+/// Everything a cell says in single numbers but its NEES tests.
+std::vector<NamedNumber> numbers_of(const CellAnalysis& cell);
+/// Everything a cell has over scans.
+std::vector<NamedSeries> series_of(const CellAnalysis& cell);
+/// The parts of a report that metrics have.
+std::vector<Section> sections_of(const StudyAnalysis& study);
+
+}  // namespace montecarta

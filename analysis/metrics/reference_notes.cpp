@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/beacon_scores.hpp"
+#include "analysis/metrics/reference_analysis.hpp"
+#include "analysis/metrics/reference_table.hpp"
+#include "analysis/output/number_text.hpp"
+
+namespace montecarta {
+namespace {
+
+std::string fixes_note(const StudyAnalysis& study) {
+  std::string sentence =
+      "Estimates are compared with each reference at its fixes only, interpolated linearly in time "
+      "between the poses that are stored:";
+  for (const JudgedReference& reference : study.references) {
+    sentence += " " + reference.name + " has " + std::to_string(reference.times.size()) +
+                " fixes within the drive" + (&reference == &study.references.back() ? "." : ",");
+  }
+  return sentence;
+}
+
+std::string baseline_note(const StudyAnalysis& study) {
+  if (study.references.front().times.empty()) {
+    return "No fix of " + study.references.front().name +
+           " lies within the drive, so nothing can be said by it.";
+  }
+  const CellAnalysis* baseline = baseline_of(study);
+  if (baseline == nullptr) return "No cell runs EKF-SLAM, so there is no baseline to beat.";
+  const Spread aligned =
+      baseline->get<ReferenceAnalyses>().front().over_runs(&ReferenceScores::aligned_rms);
+  return "A run beats EKF-SLAM where its aligned RMS to " + study.references.front().name +
+         " is below the mean of " + baseline->label + ", " + readable(aligned.summary.mean) +
+         " m; failed runs beat nothing.";
+}
+
+std::vector<std::string> distance_notes() {
+  return {
+      "'raw' compares as it stands; 'aligned' first turns and shifts the estimated path as a whole "
+      "(no stretching, no mirroring) to where it fits all fixes best, since nobody knows exactly "
+      "where the drive began and which way the vehicle looked.",
+      "The median is the middle fix and cares little for wild fixes; 'gated' is the aligned RMS "
+      "over the "
+      "fixes within " +
+          readable(kReferenceGate, 1) +
+          " times the run's own median error, with the share kept: a single fix may be more than a "
+          "hundred metres off. A filter that leaves the path half way keeps few fixes: read it "
+          "with the "
+          "share.",
+      "Runs see the same drive and differ by the filter's own randomness alone: numbers are means "
+      "over runs +- their standard error; 'middle run' is the median over runs of the aligned RMS, "
+      "with the best and the worst run.",
+      "A run lost the map where it failed or the median of its aligned errors exceeds " +
+          readable(kLostBeyond, 2) + " m."};
+}
+
+}  // namespace
+
+std::string no_truth_sentence() {
+  return "This drive was recorded: nobody knows its true path, so there is no verdict on "
+         "consistency (NEES) and no true error; estimates are judged by independent measurements "
+         "of the path.";
+}
+
+std::vector<std::string> reference_notes(const StudyAnalysis& study) {
+  std::vector<std::string> notes;
+  if (!study.references.empty()) {
+    notes = distance_notes();
+    notes.insert(notes.begin(), fixes_note(study));
+    notes.push_back(baseline_note(study));
+  }
+  if (study.beacons > 0) {
+    notes.push_back(
+        "A surveyed beacon is found where the final map, aligned like the path, has a landmark "
+        "within " +
+        readable(kFoundWithin, 1) +
+        " m of it; its error is the RMS over the beacons found, as the map stands and aligned.");
+  }
+  notes.emplace_back(
+      "Landmarks are those in the map after the last scan; ESS is the effective number of "
+      "particles, roots how many of the first particles still have descendants at the end, CPU the "
+      "filter's own time in a run; all of complete runs only.");
+  return notes;
+}
+
+}  // namespace montecarta

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The list of metrics, and what is made of all of them.
+#include "analysis/metrics/cell_analysis.hpp"
+#include "analysis/metrics/metric.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+namespace montecarta {
+
+// Each stands in the file of its name.
+Metric errors_metric();
+Metric nees_metric();
+Metric map_size_metric();
+Metric particles_metric();
+Metric lineages_metric();
+Metric association_metric();
+Metric references_metric();
+Metric beacons_metric();
+Metric bound_metric();
+Metric map_metric();
+Metric joint_nees_metric();
+Metric error_anatomy_metric();
+Metric survival_metric();
+Metric innovations_metric();
+Metric diversity_metric();
+Metric calibration_metric();
+Metric mismatch_metric();
+Metric cost_metric();
+
+std::span<const Metric> all_metrics() {
+  static const std::vector<Metric> all = {
+      errors_metric(),   nees_metric(),        map_size_metric(),   particles_metric(),
+      lineages_metric(), association_metric(), references_metric(), beacons_metric(),
+      bound_metric(),    map_metric(),         joint_nees_metric(), error_anatomy_metric(),
+      survival_metric(), innovations_metric(), diversity_metric(),  calibration_metric(),
+      mismatch_metric(), cost_metric()};
+  return all;
+}
+
+namespace {
+
+/// Mean, spread, standard error and interval of a score.
+void add_score(const CellAnalysis& cell, const Score& score, std::vector<NamedNumber>& all) {
+  const Summary summary = cell.over_runs(score.name);
+  const Interval interval = cell.interval_of(score.name);
+  const std::string prefix = std::string(score.name) + "_";
+  all.push_back({prefix + "mean", score.units, summary.mean});
+  all.push_back({prefix + "sd", score.units, summary.sd});
+  all.push_back({prefix + "standard_error", score.units, summary.standard_error()});
+  all.push_back({prefix + "lower", score.units, interval.lower});
+  all.push_back({prefix + "upper", score.units, interval.upper});
+}
+
+}  // namespace
+
+std::vector<NamedNumber> numbers_of(const CellAnalysis& cell) {
+  const auto count = [](std::size_t n) { return static_cast<double>(n); };
+  std::vector<NamedNumber> all = {{"runs_failed", "1", count(cell.failures.size())},
+                                  {"runs_complete", "1", count(cell.complete)},
+                                  {"runs_missing", "1", count(cell.missing)},
+                                  {"runs_spared", "1", count(cell.spared)},
+                                  {"particles", "1", count(cell.particles)}};
+  for (const Metric& metric : all_metrics()) {
+    if (metric.scores_are_numbers) {
+      for (const Score& score : metric.scores) add_score(cell, score, all);
+    }
+    if (metric.add_numbers != nullptr) metric.add_numbers(cell, all);
+  }
+  return all;
+}
+
+std::vector<NamedSeries> series_of(const CellAnalysis& cell) {
+  std::vector<NamedSeries> all;
+  if (cell.complete == 0) return all;
+  for (const Metric& metric : all_metrics()) {
+    for (const ScanSeries& series : metric.scan_series) {
+      const auto found = std::ranges::find(cell.scan_series, series.name, &NamedSeries::name);
+      if (found != cell.scan_series.end()) all.push_back(*found);
+    }
+    if (metric.add_series != nullptr) metric.add_series(cell, all);
+  }
+  return all;
+}
+
+std::vector<Section> sections_of(const StudyAnalysis& study) {
+  std::vector<Section> all;
+  for (const Metric& metric : all_metrics()) {
+    if (metric.sections == nullptr) continue;
+    std::ranges::move(metric.sections(study), std::back_inserter(all));
+  }
+  return all;
+}
+
+}  // namespace montecarta

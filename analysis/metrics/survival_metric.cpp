@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How many runs are still right, each judged by its own NEES.
+#include "analysis/metrics/cell_panels.hpp"
+#include "analysis/metrics/exit_bootstrap.hpp"
+#include "analysis/metrics/measured_run.hpp"
+#include "analysis/metrics/metric.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/statistics/means.hpp"
+#include "analysis/statistics/survival.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace montecarta {
+namespace {
+
+/// Also when the average over runs leaves its band for good, by bootstrap: it needs every run's
+/// NEES as well.
+class SurvivalOverRuns final : public MetricSums {
+ public:
+  explicit SurvivalOverRuns(const Yardsticks& sticks)
+      : sticks_(&sticks),
+        run_bound_(nees_bounds(1, dimension_of(ErrorBlock::pose), sticks.level).upper),
+        exits_(sticks.times.size()) {}
+  void add(const MeasuredRun& run) override {
+    if (run.metrics.covariances().empty()) return;
+    const std::vector<double>& nees = run.metrics.leading_nees()->value[0];
+    std::vector<bool> above;
+    for (const double value : nees) above.push_back(value > run_bound_);
+    const auto exit = first_lasting(above, kLastingScans);
+    run_exits_.push_back(exit ? sticks_->times[*exit] : std::numeric_limits<double>::infinity());
+    exits_.add(nees);
+  }
+  void put(CellAnalysis& cell) override {
+    if (run_exits_.empty()) return;
+    std::vector<double> ends = run_exits_;
+    for (const FailedRun& failure : cell.failures) ends.push_back(failure.time);
+    cell.findings.put(survival_of(ends, sticks_->times, sticks_->level));
+    const auto pose = std::ranges::find_if(cell.nees, [&](const NeesResult& nees) {
+      return nees.block == ErrorBlock::pose && nees.moments == cell.leading;
+    });
+    const auto exits =
+        exits_.lasting_exits(sticks_->times, dimension_of(ErrorBlock::pose), sticks_->level);
+    pose->consistency.exit_interval = middle_of(exits, sticks_->level);
+  }
+
+ private:
+  const Yardsticks* sticks_;
+  double run_bound_;               ///< upper end of the band of a single run's NEES
+  std::vector<double> run_exits_;  ///< [s] {run}
+  ExitBootstrap exits_;
+};
+
+void survival_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
+  const Survival& survival = cell.get<Survival>();
+  const bool known = survival.runs > 0;
+  all.push_back({"runs_lost", "1", known ? static_cast<double>(survival.lost) : kNaN});
+  all.push_back({"half_lost", "s", known ? survival.median : kNaN});
+  all.push_back({"half_lost_lower", "s", known ? survival.median_interval.lower : kNaN});
+  all.push_back({"half_lost_upper", "s", known ? survival.median_interval.upper : kNaN});
+}
+
+void survival_series(const CellAnalysis& cell, std::vector<NamedSeries>& all) {
+  const Survival& survival = cell.get<Survival>();
+  if (survival.share.empty()) return;
+  all.push_back({"runs_right", "1", survival.share});
+  all.push_back({"runs_right_lower", "1", ends_of(survival.interval, &Interval::lower)});
+  all.push_back({"runs_right_upper", "1", ends_of(survival.interval, &Interval::upper)});
+}
+
+Figure survival_figure(const StudyAnalysis& study) {
+  Figure figure{"survival", "How long does a run stay right?", ""};
+  figure.sentence =
+      "Share of the runs that still know how wrong they are, each judged by its own NEES: a run is "
+      "lost where that stays above the band of a single run for 5 s at 5 Hz, or where it fails. A "
+      "right filter loses a few runs by chance.";
+  const CellValues share = [](const CellAnalysis& cell) {
+    return scaled(cell.get<Survival>().share, 100.0);
+  };
+  add_panels(
+      cell_panels(study, {"runs_right", "runs still right [%]", {}, {}, Scale::percent}, share),
+      study.times, figure);
+  return figure;
+}
+
+std::vector<Section> survival_sections(const StudyAnalysis& study) {
+  return {figure_section("survival", {survival_figure(study)})};
+}
+
+}  // namespace
+
+Metric survival_metric() {
+  return {.sums = [](const Yardsticks& sticks) -> std::unique_ptr<MetricSums> {
+            return std::make_unique<SurvivalOverRuns>(sticks);
+          },
+          .add_numbers = survival_numbers,
+          .add_series = survival_series,
+          .sections = survival_sections};
+}
+
+}  // namespace montecarta

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/verdict_table.hpp"
+
+#include "analysis/metrics/efficiency.hpp"
+#include "analysis/metrics/nees.hpp"
+#include "analysis/output/number_text.hpp"
+#include "analysis/statistics/survival.hpp"
+#include "engine/numbers/angle.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace montecarta {
+namespace {
+
+constexpr double kDegrees = 180.0 / kPi;
+
+/// The band of all complete runs: single scans may have fewer valid ones.
+std::string band_text(const CellAnalysis& cell, std::size_t dimension, double level) {
+  if (cell.complete == 0) return "-";
+  return interval_text(nees_bounds(cell.complete, dimension, level));
+}
+
+std::string exit_text(const Consistency& consistency) {
+  if (!consistency.exit_interval) return "-";
+  return time_with_interval(
+      consistency.lasting_exit.value_or(std::numeric_limits<double>::infinity()),
+      *consistency.exit_interval);
+}
+
+std::string median_exit_text(const CellAnalysis& cell) {
+  const Survival& survival = cell.get<Survival>();
+  if (survival.runs == 0) return "-";
+  return time_with_interval(survival.median, survival.median_interval);
+}
+
+std::string score_text(const CellAnalysis& cell, std::string_view score, double factor = 1.0) {
+  const Interval interval = cell.interval_of(score);
+  return with_interval(factor * cell.over_runs(score).mean,
+                       {factor * interval.lower, factor * interval.upper});
+}
+
+std::vector<std::string> verdict_row(const CellAnalysis& cell) {
+  const Consistency verdict = cell.consistency();
+  const bool tested = verdict.verdict != Verdict::untested;
+  const auto if_tested = [&](const std::string& text) { return tested ? text : "-"; };
+  return {cell.label,
+          runs_in_words(cell),
+          in_words(verdict),
+          if_tested(with_interval(verdict.mean, verdict.average_interval)),
+          if_tested(interval_text(verdict.average_bounds)),
+          if_tested(percent(verdict.share_inside)),
+          exit_text(verdict),
+          median_exit_text(cell)};
+}
+
+std::vector<std::string> accuracy_row(const CellAnalysis& cell) {
+  return {cell.label,
+          score_text(cell, "position_rmse"),
+          score_text(cell, "heading_rmse", kDegrees),
+          percent(cell.get<Efficiency>().position),
+          readable(cell.over_runs("ess").mean),
+          readable(cell.over_runs("ancestors_at_start_at_the_end").mean),
+          readable(cell.over_runs("cpu_seconds").mean)};
+}
+
+/// The average of an ideal filter with these moments.
+double ideal_nees(const CellAnalysis& cell, const NeesResult& nees) {
+  const std::size_t d = nees.series.dimension;
+  const bool drawn = nees.moments == Moments::spread && cell.particles > 0;
+  return drawn ? ideal_spread_nees(d, cell.particles) : static_cast<double>(d);
+}
+
+std::vector<std::string> consistency_row(const CellAnalysis& cell, const NeesResult& nees,
+                                         double level) {
+  const Consistency& found = nees.consistency;
+  return {cell.label,
+          name_of(nees.block),
+          name_of(nees.moments),
+          in_words(found),
+          compact(found.mean),
+          readable(found.median / right_median(nees.series.dimension)),
+          readable(found.trimmed / right_trimmed(nees.series.dimension)),
+          readable(ideal_nees(cell, nees)),
+          band_text(cell, nees.series.dimension, level),
+          percent(found.share_inside),
+          percent(found.share_above),
+          percent(found.share_below),
+          std::to_string(nees.series.floored),
+          std::to_string(nees.series.undefined)};
+}
+
+}  // namespace
+
+std::string name_of(ErrorBlock block) {
+  return block == ErrorBlock::pose       ? "pose"
+         : block == ErrorBlock::position ? "position"
+                                         : "heading";
+}
+
+std::string name_of(Moments moments) {
+  return moments == Moments::mixture     ? "mixture"
+         : moments == Moments::corrected ? "corrected"
+                                         : "spread";
+}
+
+std::vector<NamedNumber> numbers_of(const CellAnalysis& cell, const NeesResult& nees,
+                                    double level) {
+  const Consistency& found = nees.consistency;
+  const std::size_t dimension = nees.series.dimension;
+  const Interval band = nees_bounds(cell.complete, dimension, level);
+  const Interval exits = found.exit_interval.value_or(Interval{kNaN, kNaN});
+  return {
+      {"level", "1", level},
+      {"dimension", "1", static_cast<double>(dimension)},
+      {"anees_mean", "1", found.mean},
+      {"anees_mean_lower", "1", found.average_interval.lower},
+      {"anees_mean_upper", "1", found.average_interval.upper},
+      {"right_anees_lower", "1", found.average_bounds.lower},
+      {"right_anees_upper", "1", found.average_bounds.upper},
+      {"nees_median", "1", found.median},
+      {"right_median", "1", right_median(dimension)},
+      {"nees_trimmed", "1", found.trimmed},
+      {"right_trimmed", "1", right_trimmed(dimension)},
+      {"lower", "1", band.lower},
+      {"upper", "1", band.upper},
+      {"share_inside", "1", found.share_inside},
+      {"share_above", "1", found.share_above},
+      {"share_below", "1", found.share_below},
+      {"above_whole_run_band_s", "s",
+       found.above_from.value_or(std::numeric_limits<double>::infinity())},
+      {"below_whole_run_band_s", "s",
+       found.below_from.value_or(std::numeric_limits<double>::infinity())},
+      {"lasting_exit_s", "s", found.lasting_exit.value_or(std::numeric_limits<double>::infinity())},
+      {"lasting_exit_lower_s", "s", exits.lower},
+      {"lasting_exit_upper_s", "s", exits.upper},
+      {"samples", "1", static_cast<double>(nees.series.samples)},
+      {"floored", "1", static_cast<double>(nees.series.floored)},
+      {"undefined", "1", static_cast<double>(nees.series.undefined)}};
+}
+
+std::string runs_in_words(const CellAnalysis& cell) {
+  std::string words;
+  if (!cell.failures.empty()) words += std::to_string(cell.failures.size()) + " FAILED, ";
+  if (cell.missing > 0) words += std::to_string(cell.missing) + " missing, ";
+  words += std::to_string(cell.complete) + " complete";
+  if (cell.spared == 0) return words;
+  const std::size_t made = cell.complete + cell.failures.size();
+  return words + ", stopped at " + std::to_string(made) + " of " +
+         std::to_string(made + cell.missing + cell.spared) + ": precise enough";
+}
+
+TextTable verdict_table(const StudyAnalysis& study) {
+  TextTable table;
+  table.headings = {{"cell", Align::left},    {"runs", Align::left},
+                    {"verdict", Align::left}, {"ANEES [" + level_text(study.level) + "]"},
+                    {"right within"},         {"scans inside"},
+                    {"leaves for good at"},   {"half the runs lost at"}};
+  for (const CellAnalysis& cell : study.cells) table.rows.push_back(verdict_row(cell));
+  return table;
+}
+
+TextTable accuracy_table(const StudyAnalysis& study) {
+  TextTable table;
+  table.headings = {{"cell", Align::left},
+                    {"position RMSE [m]"},
+                    {"heading RMSE [deg]"},
+                    {"efficiency"},
+                    {"ESS"},
+                    {"roots"},
+                    {"CPU [s]"}};
+  for (const CellAnalysis& cell : study.cells) table.rows.push_back(accuracy_row(cell));
+  return table;
+}
+
+TextTable consistency_table(const StudyAnalysis& study) {
+  TextTable table;
+  table.headings = {{"cell", Align::left},
+                    {"error", Align::left},
+                    {"covariance", Align::left},
+                    {"verdict", Align::left},
+                    {"ANEES"},
+                    {"median / right"},
+                    {"trimmed / right"},
+                    {"ideal"},
+                    {level_text(study.level) + " band"},
+                    {"inside"},
+                    {"above"},
+                    {"below"},
+                    {"floored"},
+                    {"undefined"}};
+  for (const CellAnalysis& cell : study.cells) {
+    for (const NeesResult& nees : cell.nees) {
+      table.rows.push_back(consistency_row(cell, nees, study.level));
+    }
+  }
+  return table;
+}
+
+TextTable failure_table(const StudyAnalysis& study) {
+  TextTable table;
+  table.headings = {{"cell", Align::left}, {"run"}, {"step"}, {"reason", Align::left}};
+  for (const CellAnalysis& cell : study.cells) {
+    for (const FailedRun& failure : cell.failures) {
+      table.rows.push_back(
+          {cell.label, std::to_string(failure.run), std::to_string(failure.step), failure.reason});
+    }
+  }
+  return table;
+}
+
+std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
+  const std::string level = level_text(study.level);
+  return {
+      "ANEES compares the errors that happened with the errors the filter expected (its "
+      "covariance), averaged over runs and scans: 3 means it knows how wrong it is (three "
+      "components: x, y, heading), more means it is too sure of itself, less that it is too "
+      "cautious. The brackets hold what infinitely many runs would give (" +
+          level + ", bootstrap over runs); 'right within' is where chance leaves a right filter.",
+      "The verdict is one test: a right filter is called consistent in " + level +
+          " of studies, however long they are. It fails where the average over runs leaves, at any "
+          "scan, a band that is wide enough for all scans together, or where the average over the "
+          "whole run is too far from 3: 'optimistic' when too large, 'conservative' when too "
+          "small.",
+      "'inconsistent from t' is optimistic for good: " + std::to_string(kLastingScans) +
+          " scans in a row above the pointwise band, the first at t. The brackets behind 'leaves "
+          "for good' hold that time for " +
+          level + " of repeated studies; 'never' means not within the " +
+          readable(study.duration, 4) +
+          " s of this study. A single run is lost when its own NEES does so, or when it fails.",
+      "'scans inside' counts the scans whose average lies in the pointwise band: " + level +
+          " of them are expected of a right filter, and neighbouring scans go together.",
+      "RMSE is the mean over runs, with the interval that holds it for infinitely many; ESS is the "
+      "effective number of particles, roots how many of the first particles still have descendants "
+      "at the end, CPU the filter's own time in a run; all of complete runs only."};
+}
+
+std::vector<std::string> consistency_notes() {
+  return {
+      "Each row is one test: of the pose or of a part of it, with the covariance of the particle "
+      "mixture or of the particle spread. The first covariance of a cell decides its verdict.",
+      "The spread of few particles is too small by construction: 'ideal' is the ANEES of a "
+      "perfect "
+      "filter, the number of components or, by the spread of M particles that are independent "
+      "draws "
+      "from the truth's distribution, more. 'corrected' puts the NEES by the spread on a scale on "
+      "which such a perfect filter has the number of components again (Hotelling's distribution "
+      "of "
+      "M draws to the chi-square), so that M alone makes no filter inconsistent.",
+      "'median' is the middle run instead of the average one, 'trimmed' the mean without the "
+      "tenth "
+      "of the runs at either end, each divided by what a right filter has: near 1 while ANEES is "
+      "far too large they say that few bad runs make the average. 'floored' counts covariances "
+      "that were singular (0.1 mm and "
+      "0.00001 rad were added), 'undefined' those that were not a number and left out."};
+}
+
+}  // namespace montecarta

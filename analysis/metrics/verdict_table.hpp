@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/output/text_table.hpp"
+
+#include <string>
+#include <vector>
+
+namespace montecarta {
+
+/// One row a cell: what became of its runs, the verdict, and the numbers behind it.
+TextTable verdict_table(const StudyAnalysis& study);
+
+/// One row a cell: errors, particles that count, and what a run costs.
+TextTable accuracy_table(const StudyAnalysis& study);
+
+/// One row a cell and definition of covariance and error: the whole NEES test.
+TextTable consistency_table(const StudyAnalysis& study);
+/// How to read it.
+std::vector<std::string> consistency_notes();
+/// One NEES test in single numbers. The band is that of all complete runs.
+std::vector<NamedNumber> numbers_of(const CellAnalysis& cell, const NeesResult& nees, double level);
+
+/// One row for each failed run: cell, run, step, reason.
+TextTable failure_table(const StudyAnalysis& study);
+
+/// How to read the verdict table, a sentence each, for someone who never heard of chi-square.
+std::vector<std::string> verdict_notes(const StudyAnalysis& study);
+
+/// "40 complete", "2 FAILED, 38 complete", ...
+std::string runs_in_words(const CellAnalysis& cell);
+
+std::string name_of(ErrorBlock block);
+std::string name_of(Moments moments);
+
+}  // namespace montecarta

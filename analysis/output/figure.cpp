@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/output/figure.hpp"
+
+#include "analysis/output/csv_file.hpp"
+#include "analysis/output/gnuplot.hpp"
+#include "analysis/output/gnuplot_chart.hpp"
+#include "analysis/output/number_text.hpp"
+
+namespace montecarta {
+namespace {
+
+/// Common to all figures. What is black here takes the colour of the text where the page is dark.
+constexpr const char* kStyle = R"(set encoding utf8
+set datafile separator comma
+set datafile missing 'nan'
+set datafile columnheaders
+set key noenhanced samplen 1.6 spacing 1.15 width 1
+)";
+
+void write_data(const FigureData& data, const std::filesystem::path& directory) {
+  CsvFile file(directory / data.name);
+  file.row(data.headings);
+  for (const auto& row : data.rows) file.row(row);
+  file.close();
+}
+
+/// The whole script: the same figure for the page and for print.
+std::string script_of(const Figure& figure) {
+  const GnuplotChart drawn = gnuplot_chart(figure.chart, figure.width);
+  const std::string size = std::to_string(figure.width) + "," + std::to_string(drawn.height);
+  const auto centimetres = [](std::size_t pixels) {
+    return readable(static_cast<double>(pixels) * 0.02, 3) + "cm";
+  };
+  return "# Drawn again by: gnuplot " + figure.name + ".gp\n" + kStyle + drawn.numbers +
+         "set terminal svg size " + size +
+         " dynamic background rgb '#ffffff' font 'sans-serif,13' linewidth 1.3\nset output '" +
+         figure.name + ".svg'\n" + drawn.commands +
+         "unset output\nreset\nset terminal pdfcairo size " + centimetres(figure.width) + "," +
+         centimetres(drawn.height) + " font 'sans,8' linewidth 1.3\nset output '" + figure.name +
+         ".pdf'\n" + kStyle + drawn.commands + "unset output\n";
+}
+
+}  // namespace
+
+void draw(const Figure& figure, const std::filesystem::path& directory) {
+  make_directory(directory / "data");
+  make_directory(directory / "figures");
+  for (const FigureData& data : figure.data) write_data(data, directory / "data");
+  const std::string script = figure.name + ".gp";
+  write_text(directory / "figures" / script, script_of(figure));
+  run_gnuplot(directory / "figures", script);
+}
+
+FigureData data_of(const std::string& name, const std::string& heading,
+                   const ThinnedSeries& thinned) {
+  FigureData data{name, {heading}, {}};
+  for (const NamedSeries& one : thinned.series) {
+    data.headings.push_back(one.units == "1" ? one.name : one.name + " [" + one.units + "]");
+  }
+  for (std::size_t k = 0; k < thinned.times.size(); ++k) {
+    std::vector<double> row = {thinned.times[k]};
+    for (const NamedSeries& one : thinned.series) row.push_back(one.values[k]);
+    data.rows.push_back(std::move(row));
+  }
+  return data;
+}
+
+}  // namespace montecarta

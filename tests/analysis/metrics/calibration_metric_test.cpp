@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/cell_calibration.hpp"
+#include "tests/analysis/reported.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace montecarta {
+namespace {
+
+/// A cell of which the Gaussian was asked at the end of the run, and no particles are stored.
+StudyAnalysis without_particles() {
+  StudyAnalysis study;
+  study.times = {0.2, 0.4};
+  study.runs_here = 100;
+  CellAnalysis cell;
+  cell.label = "ekf_slam";
+  PitHistogram histogram{"x", "Gaussian", 0.4, 0, {}};
+  histogram.test.counts.assign(10, 10);
+  cell.findings.put(Calibrations{histogram});
+  study.cells = {cell};
+  return study;
+}
+
+TEST(CalibrationSection, DrawsNothingOfParticlesThatAreNotStored) {
+  const Section section = reported_section(without_particles(), "calibration");
+  ASSERT_EQ(section.figures.size(), 1u);
+  EXPECT_EQ(section.figures.front().name, "calibration");
+}
+
+}  // namespace
+}  // namespace montecarta

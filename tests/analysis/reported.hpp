@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/metrics/metric.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+
+#include <algorithm>
+#include <string>
+#include <variant>
+
+namespace montecarta {
+
+/// The section of this name in a report; empty where there is none.
+inline Section reported_section(const StudyAnalysis& study, const std::string& name) {
+  const std::vector<Section> all = sections_of(study);
+  const auto found = std::ranges::find(all, name, &Section::name);
+  return found == all.end() ? Section{name, ""} : *found;
+}
+
+/// The first table of that section; without rows where there is none.
+inline TextTable reported_table(const StudyAnalysis& study, const std::string& section) {
+  for (const Section::Block& block : reported_section(study, section).blocks) {
+    if (const auto* table = std::get_if<Section::Table>(&block)) return table->table;
+  }
+  return {};
+}
+
+}  // namespace montecarta
