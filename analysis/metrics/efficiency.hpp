@@ -4,6 +4,8 @@
 #include "analysis/metrics/cramer_rao.hpp"
 
 #include <limits>
+#include <string>
+#include <vector>
 
 namespace montecarta {
 
@@ -20,5 +22,8 @@ struct Efficiency {
 };
 
 Efficiency efficiency_of(const CellAnalysis& cell, const CramerRaoBound& bound);
+
+/// What the bound and efficiency say, or why there is none.
+std::vector<std::string> bound_notes(const CramerRaoBound& bound);
 
 }  // namespace montecarta

@@ -5,6 +5,7 @@
 #include "analysis/output/named_rows.hpp"
 #include "analysis/output/section.hpp"
 
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <vector>
@@ -25,6 +26,13 @@ class MetricSums {
   virtual void put(CellAnalysis& cell) = 0;
 };
 
+/// A CSV file of a study.
+struct TableFile {
+  const char* name;
+  bool (*applies)(const StudyAnalysis& study);
+  void (*write)(const StudyAnalysis& study, const std::filesystem::path& path);
+};
+
 /// What a metric contributes; what it has nothing of stays empty.
 struct Metric {
   std::span<const Score> scores = {};            ///< of a run
@@ -39,6 +47,7 @@ struct Metric {
   void (*add_series)(const CellAnalysis& cell, std::vector<NamedSeries>& all) = nullptr;
   /// Its parts of a report.
   std::vector<Section> (*sections)(const StudyAnalysis& study) = nullptr;
+  std::vector<TableFile> files = {};
 };
 
 /// All, in the order of files: a new one is a line in registry.cpp.

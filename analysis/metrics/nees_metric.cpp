@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // NEES of the pose and its parts: what the verdict is made of.
 #include "analysis/metrics/cell_panels.hpp"
-#include "analysis/metrics/map_error_table.hpp"
+#include "analysis/metrics/efficiency.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/nees_accumulator.hpp"
@@ -138,7 +138,7 @@ Section verdict_section(const StudyAnalysis& study) {
   section.add("verdict", verdict_table(study));
   section.add("accuracy", accuracy_table(study));
   section.add(verdict_notes(study));
-  section.add(bound_notes(study));
+  section.add(bound_notes(study.bound));
   return section;
 }
 

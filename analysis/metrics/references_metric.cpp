@@ -4,7 +4,9 @@
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/reference_analysis.hpp"
 #include "analysis/metrics/reference_figures.hpp"
+#include "analysis/metrics/reference_files.hpp"
 #include "analysis/metrics/reference_table.hpp"
+#include "analysis/metrics/study_analysis.hpp"
 #include "analysis/statistics/means.hpp"
 
 namespace montecarta {
@@ -60,6 +62,8 @@ std::vector<Section> references_sections(const StudyAnalysis& study) {
   return {section, figures};
 }
 
+bool has_references(const StudyAnalysis& study) { return !study.references.empty(); }
+
 }  // namespace
 
 Metric references_metric() {
@@ -67,7 +71,9 @@ Metric references_metric() {
           .sums = [](const Yardsticks& sticks) -> std::unique_ptr<MetricSums> {
             return std::make_unique<ReferencesOverRuns>(sticks);
           },
-          .sections = references_sections};
+          .sections = references_sections,
+          .files = {{"references.csv", has_references, write_references},
+                    {"reference_errors.csv", has_references, write_reference_errors}}};
 }
 
 }  // namespace montecarta

@@ -1,10 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/calibration_table.hpp"
-#include "analysis/metrics/joint_table.hpp"
-#include "analysis/metrics/map_error_table.hpp"
-#include "analysis/metrics/map_files.hpp"
 #include "analysis/metrics/metric.hpp"
-#include "analysis/metrics/reference_files.hpp"
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/csv_file.hpp"
 #include "analysis/output/named_rows.hpp"
@@ -20,12 +15,6 @@ constexpr const char* kCells = "cells.csv";
 constexpr const char* kConsistency = "consistency.csv";
 constexpr const char* kPrinted = "printed.csv";
 constexpr const char* kClaims = "claims.csv";
-constexpr const char* kReferences = "references.csv";
-constexpr const char* kReferenceErrors = "reference_errors.csv";
-constexpr const char* kBound = "bound.csv";
-constexpr const char* kLandmarks = "landmarks.csv";
-constexpr const char* kJointNees = "joint_nees.csv";
-constexpr const char* kCalibration = "calibration.csv";
 std::string series_name(const std::string& label) { return "series_" + label + ".csv"; }
 
 void write_cells(const StudyAnalysis& study, const std::filesystem::path& path) {
@@ -79,9 +68,10 @@ void write_series(const StudyAnalysis& study, const CellAnalysis& cell,
 }  // namespace
 
 std::vector<std::string> csv_names(const std::vector<std::string>& labels) {
-  std::vector<std::string> names = {kFailures,  kCells,      kConsistency,     kPrinted,
-                                    kClaims,    kReferences, kReferenceErrors, kBound,
-                                    kLandmarks, kJointNees,  kCalibration};
+  std::vector<std::string> names = {kFailures, kCells, kConsistency, kPrinted, kClaims};
+  for (const Metric& metric : all_metrics()) {
+    for (const TableFile& file : metric.files) names.emplace_back(file.name);
+  }
   for (const std::string& label : labels) names.push_back(series_name(label));
   return names;
 }
@@ -93,14 +83,11 @@ void write_csv(const StudyAnalysis& study, const std::filesystem::path& director
   write_consistency(study, directory / kConsistency);
   write_table(printed_value_table(study), directory / kPrinted);
   write_table(printed_claim_table(study), directory / kClaims);
-  if (!study.references.empty()) {
-    write_references(study, directory / kReferences);
-    write_reference_errors(study, directory / kReferenceErrors);
+  for (const Metric& metric : all_metrics()) {
+    for (const TableFile& file : metric.files) {
+      if (file.applies(study)) file.write(study, directory / file.name);
+    }
   }
-  if (!study.bound.empty()) write_bound(study, directory / kBound);
-  if (has_map_errors(study)) write_landmarks(study, directory / kLandmarks);
-  if (has_joint_nees(study)) write_joint_nees(study, directory / kJointNees);
-  if (has_calibration(study)) write_calibration(study, directory / kCalibration);
   for (const CellAnalysis& cell : study.cells) {
     write_series(study, cell, directory / series_name(cell.label));
   }

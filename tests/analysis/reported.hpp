@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace montecarta {
 
@@ -23,6 +24,16 @@ inline TextTable reported_table(const StudyAnalysis& study, const std::string& s
     if (const auto* table = std::get_if<Section::Table>(&block)) return table->table;
   }
   return {};
+}
+
+/// The notes of that section.
+inline std::vector<std::string> reported_notes(const StudyAnalysis& study,
+                                               const std::string& section) {
+  std::vector<std::string> notes;
+  for (const Section::Block& block : reported_section(study, section).blocks) {
+    if (const auto* note = std::get_if<Section::Note>(&block)) notes.push_back(note->text);
+  }
+  return notes;
 }
 
 }  // namespace montecarta

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/cell_calibration.hpp"
 
-#include "analysis/metrics/calibration_figure.hpp"
+#include "tests/analysis/reported.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
 
 #include <gmock/gmock.h>
@@ -140,7 +140,7 @@ TEST(CalibrationFigures, DrawEmptyBinsWhereThereIsNoValue) {
   study.cells.resize(1);
   study.cells[0].findings.put(
       Calibrations{{"landmark x", "Gaussian", 1.0, 3, judge_uniformity({}, band_for(0, 0.95))}});
-  const Figure figure = calibration_figures(study).front();
+  const Figure figure = reported_section(study, "calibration").figures.at(0);
   ASSERT_EQ(figure.data.size(), 1u);
   for (const auto& row : figure.data[0].rows) EXPECT_EQ(row[2], 0.0);
   EXPECT_GT(figure.chart.panels[0].axis.high, 0.0);

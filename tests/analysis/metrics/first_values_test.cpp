@@ -24,7 +24,7 @@ TEST(FirstValues, AreThoseOfTheAnalysis) {
       const auto values = first_values(file, file.cells()[c], score, 7, Parallel(Backend::tbb, 2));
       ASSERT_EQ(values.size(), 7u);
       for (std::size_t i = 0; i < 7; ++i)
-        EXPECT_EQ(values[i], study.cells[c].scores.column(score)[i]);
+        EXPECT_EQ(values[i], study.cells[c].scores.column(score.name)[i]);
     }
   }
   const auto all =

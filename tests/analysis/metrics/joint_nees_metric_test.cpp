@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/joint_table.hpp"
 
-#include "analysis/metrics/joint_figure.hpp"
 #include "analysis/metrics/joint_nees.hpp"
+#include "analysis/tables/tables.hpp"
+#include "tests/analysis/reported.hpp"
 #include "tests/doubles/csv_table.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 
@@ -40,7 +40,7 @@ StudyAnalysis study_of_two() {
 }
 
 TEST(JointTable, HasARowForACellThatWasJudged) {
-  const TextTable table = joint_table(study_of_two());
+  const TextTable table = reported_table(study_of_two(), "joint_nees");
   ASSERT_EQ(table.rows.size(), 1u);
   EXPECT_THAT(table.rows[0], ElementsAre("ekf_slam", "9.50", "1.20", "[0.950, 1.05]",
                                          "0.500 at 5.00 s", "optimistic"));
@@ -51,35 +51,35 @@ TEST(JointTable, IsFarthestWhereThereIsANumber) {
   JointConsistency joint = study.cells[0].get<JointConsistency>();
   joint.average[0] = std::numeric_limits<double>::quiet_NaN();
   study.cells[0].findings.put(joint);
-  EXPECT_EQ(joint_table(study).rows[0][4], "1.20 at 10.0 s");
+  EXPECT_EQ(reported_table(study, "joint_nees").rows[0][4], "1.20 at 10.0 s");
 }
 
 TEST(JointTable, SaysWhatWasLeftOut) {
   StudyAnalysis study = study_of_two();
-  EXPECT_THAT(joint_notes(study),
+  EXPECT_THAT(reported_notes(study, "joint_nees"),
               ElementsAre(HasSubstr("all 2 stored scans"), HasSubstr("of 40 joint covariances 1")));
   study.cells[0].findings.put(JointConsistency{});
-  EXPECT_THAT(joint_notes(study), IsEmpty());
-  EXPECT_THAT(joint_table(study).rows, IsEmpty());
-  EXPECT_THAT(joint_figure(study).data, IsEmpty());
+  EXPECT_THAT(reported_notes(study, "joint_nees"), IsEmpty());
+  EXPECT_THAT(reported_table(study, "joint_nees").rows, IsEmpty());
+  EXPECT_THAT(reported_section(study, "joint_nees_over_time").figures, IsEmpty());
   JointConsistency unjudged;
   unjudged.missing = "nobody knows";
   study.cells[0].findings.put(unjudged);
-  EXPECT_THAT(joint_notes(study),
+  EXPECT_THAT(reported_notes(study, "joint_nees"),
               ElementsAre(HasSubstr("ekf_slam: pose and map together are not")));
 }
 
 TEST(JointTable, HasEveryNumberAsCsv) {
   const ScratchFolder folder;
-  write_joint_nees(study_of_two(), folder / "joint.csv");
-  auto rows = read_csv(folder / "joint.csv");
+  write_csv(study_of_two(), folder.path());
+  auto rows = read_csv(folder / "joint_nees.csv");
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[1]["nees_per_component"], "1.2");
   EXPECT_EQ(rows[1]["runs"], "19");
 }
 
 TEST(JointFigure, ShowsTheCellAndItsBand) {
-  const Figure figure = joint_figure(study_of_two());
+  const Figure figure = reported_section(study_of_two(), "joint_nees_over_time").figures.at(0);
   ASSERT_EQ(figure.data.size(), 1u);
   EXPECT_EQ(figure.data[0].rows.size(), 2u);
   EXPECT_EQ(figure.data[0].rows[0].size(), 4u) << "time, the cell, both ends of the band";
