@@ -6,7 +6,7 @@
 
 namespace montecarta::reference {
 
-/// DE-SRCD-FastSLAM (SPEC 13): SrcdFastSlam between its own evolution and its own weights.
+/// DE-SRCD-FastSLAM (EQUATIONS 10): SrcdFastSlam between its own evolution and its own weights.
 class DeSrcdFastSlam : public SrcdFastSlam {
  public:
   DeSrcdFastSlam(const FastSlamSettings& settings, const SrcdParts& parts, const DeSettings& de)
