@@ -39,7 +39,7 @@ class DeadReckoning final : public SlamFilter {
 inline FilterKind dead_reckoning_kind() {
   return {.name = "dead_reckoning",
           .long_name = "dead reckoning",
-          .source = "SPEC 2.1",
+          .source = "EQUATIONS 1",
           .has_particles = false,
           .has_mixture = false,
           .options = {},

@@ -13,7 +13,7 @@
 namespace montecarta {
 
 /// The average NEES leaves its band for good when it stays above the upper bound for so many
-/// consecutive scans (5 s at 5 Hz); a single scan above it means nothing (SPEC 19).
+/// consecutive scans (5 s at 5 Hz); a single scan above it means nothing (STATISTICS 5).
 inline constexpr std::size_t kLastingScans = 25;
 
 /// The trimmed mean of NEES leaves out so large a share of the runs at either end.
@@ -32,7 +32,7 @@ struct NeesSeries {
   double average_level = 0.0;              ///< of the average over the run, by itself
   std::vector<double> run_averages;        ///< {run} over its scans; NaN where none is finite
   std::uint64_t samples = 0;               ///< scans x complete runs
-  std::uint64_t floored = 0;               ///< of them: singular covariance, floor added (SPEC 19)
+  std::uint64_t floored = 0;               ///< of them: singular covariance, floor was added
   std::uint64_t undefined = 0;  ///< of them: not a number, left out of average and median
 };
 

@@ -10,7 +10,7 @@
 
 namespace montecarta {
 
-/// How far back the middle one of the three diversities looks [s] (SPEC 18).
+/// How far back the middle one of the three diversities looks [s] (STATISTICS 14).
 inline constexpr double kDiversityLag = 10.0;
 
 /// Distinct ancestors of the particles of every scan of one run.

@@ -6,7 +6,7 @@
 
 namespace montecarta {
 
-/// Which mean and covariance of a filter are judged (SPEC 19).
+/// Which mean and covariance of a filter are judged (STATISTICS 1).
 enum class Moments {
   mixture,    ///< spread of the particles plus each particle's own covariance, before sampling
   corrected,  ///< spread of the particles, its NEES put on the chi-square's scale (SamplerScale)

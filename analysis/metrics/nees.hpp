@@ -7,26 +7,27 @@
 
 namespace montecarta {
 
-/// A covariance counts as singular below this: SPEC 19's floor, standard deviations [m, m, rad].
+/// A covariance counts as singular below this floor (STATISTICS 2), standard deviations [m, m,
+/// rad].
 inline const Eigen::Vector3d kNeesFloor{1e-4, 1e-4, 1e-5};
 
 /// Normalised estimation error squared of one sample.
 struct Nees {
   double value = 0.0;    ///< e' P^-1 e; NaN where error or covariance is not finite
-  bool floored = false;  ///< P was singular: SPEC 19's floor was added
+  bool floored = false;  ///< P was singular: the floor was added
 };
 
 /// NEES of the components [first, first + Dimension) of a pose error (x [m], y [m], heading [rad])
 /// with that block of the covariance, of which the lower triangle is read. Singular means: a
 /// variance below 1e-10 of the floor's, or a pivot of the correlation matrix below 1e-12 (a thin
-/// but honest covariance after few noisy steps has 1e-6). The floor answers both (SPEC 19).
+/// but honest covariance after few noisy steps has 1e-6). The floor answers both (STATISTICS 2).
 template <int Dimension>
 Nees nees(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, int first = 0);
 
 /// What the NEES of `dimension` components is on the average if a filter is perfect but its
-/// covariance is the spread, with 1 / particles, of so many independent draws (Hotelling; SPEC 19):
-/// d (M + 1) / (M - d - 2), infinite where there are too few. Weights and common ancestors make it
-/// larger.
+/// covariance is the spread, with 1 / particles, of so many independent draws (Hotelling;
+/// STATISTICS 4): d (M + 1) / (M - d - 2), infinite where there are too few. Weights and common
+/// ancestors make it larger.
 double ideal_spread_nees(std::size_t dimension, std::size_t particles);
 
 extern template Nees nees<1>(const Eigen::Vector3d&, const Eigen::Matrix3d&, int);

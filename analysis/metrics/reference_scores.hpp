@@ -17,7 +17,7 @@ inline constexpr double kReferenceGate = 4.0;
 /// A run has lost the map where the median of its aligned errors is larger [m].
 inline constexpr double kLostBeyond = 10.0;
 
-/// How far the estimate of one run is from the fixes of a reference (SPEC 20: at fixes only). The
+/// How far the estimate of one run is from the fixes of a reference (STATISTICS 16). The
 /// distances are raw, or aligned: after the rigid motion that brings the estimate nearest to all
 /// fixes, which takes away what nobody knows of the start's position and heading. NaN of no fixes.
 struct ReferenceScores {

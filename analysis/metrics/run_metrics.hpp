@@ -20,7 +20,7 @@ namespace montecarta {
 /// NEES of one run by one definition of the moments; empty where no covariance is stored.
 struct NeesRows {
   std::array<std::vector<double>, 3> value;          ///< {block}{scan}
-  std::array<std::vector<std::uint8_t>, 3> floored;  ///< {block}{scan} SPEC 19's floor was added
+  std::array<std::vector<std::uint8_t>, 3> floored;  ///< {block}{scan} the floor was added
 };
 
 /// What one run says, scan by scan. Keeps its memory from run to run; one per thread.

@@ -18,8 +18,8 @@ std::vector<double> ends_of(const std::vector<Interval>& intervals, double Inter
 
 /// Where the average NEES over `runs` independent runs of an error of `dimension` components lies
 /// with probability `level`, if the filter is consistent: (runs x average) is chi-square with (runs
-/// x dimension) degrees of freedom, and both tails are equal (SPEC 19). Throws StudyError where
-/// runs or dimension is 0 or level is not inside (0, 1).
+/// x dimension) degrees of freedom, and both tails are equal (STATISTICS 3). Throws StudyError
+/// where runs or dimension is 0 or level is not inside (0, 1).
 Interval nees_bounds(std::uint64_t runs, std::uint64_t dimension, double level);
 
 /// A test that a quoted interval may belong to.

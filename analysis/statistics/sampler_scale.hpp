@@ -8,10 +8,10 @@ namespace montecarta {
 
 /// Puts the NEES by the spread of particles on the scale of the chi-square. If the particles are
 /// independent draws from the distribution that the truth was drawn from, that NEES is
-/// d (M + 1) / (M - d) times an F variable with d and M - d degrees of freedom (Hotelling; SPEC
-/// 19), far larger than a chi-square where M is small. What is as probable under the F as some
-/// value under the chi-square becomes that value: of such an ideal sampler the result is chi-square
-/// exactly.
+/// d (M + 1) / (M - d) times an F variable with d and M - d degrees of freedom (Hotelling;
+/// STATISTICS 4), far larger than a chi-square where M is small. What is as probable under the F as
+/// some value under the chi-square becomes that value: of such an ideal sampler the result is
+/// chi-square exactly.
 class SamplerScale {
  public:
   /// `particles` > `dimension`.

@@ -18,7 +18,8 @@ struct Control {
   double speed = 0.0;  ///< [m/s]
   double steer = 0.0;  ///< [rad]
 
-  /// A vehicle that stands does not move, whatever noise its motion has (SPEC 20): no prediction.
+  /// A vehicle that stands does not move, whatever noise its motion has (EQUATIONS 1): no
+  /// prediction.
   bool stands() const { return speed == 0.0; }
 };
 

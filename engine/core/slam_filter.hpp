@@ -20,7 +20,7 @@ struct PoseMoments {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
-/// What a filter believes now (SPEC 19).
+/// What a filter believes now (EQUATIONS 19).
 struct PoseEstimate {
   PoseMoments spread;  ///< of the weighted particles; of the Gaussian for a Kalman filter
   std::optional<PoseMoments>
@@ -42,8 +42,9 @@ struct AssociationCounts {
 struct ScanReport {
   double ess = 0.0;        ///< effective number of particles after weighing, before resampling
   bool resampled = false;  ///< whether this update ended with a resampling
-  /// log p(scan | past scans) of the matched detections; with unknown association also log p0 (SPEC
-  /// 17) for each detection that matches nothing, so that all particles count as many factors.
+  /// log p(scan | past scans) of the matched detections; with unknown association also log p0
+  /// (EQUATIONS 17) for each detection that matches nothing, so that all particles count as many
+  /// factors.
   double log_likelihood = 0.0;
   double nis = 0.0;           ///< normalised innovation squared, sum over matched detections
   std::uint32_t nis_dof = 0;  ///< its degrees of freedom
@@ -89,7 +90,7 @@ class SlamFilter {
   virtual void predict(const StepContext& context, const Control& control, double duration) = 0;
   /// The sensor saw `scan` (may be empty).
   virtual void update(const StepContext& context, Scan scan) = 0;
-  /// After update(): before resampling (SPEC 5, step 4). Between scans: the predicted belief.
+  /// After update(): before resampling (EQUATIONS 4). Between scans: the predicted belief.
   virtual PoseEstimate estimate() const = 0;
   /// Of the last update().
   virtual const ScanReport& report() const = 0;

@@ -10,7 +10,7 @@ inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 /// The angle in (-pi, pi] that differs from `angle` [rad] by full turns; finite for any finite
-/// angle, exactly idempotent, wrap(pi) = wrap(-pi) = pi (SPEC 0).
+/// angle, exactly idempotent, wrap(pi) = wrap(-pi) = pi.
 inline double wrap(double angle) {
   if (angle > -kPi && angle <= kPi) return angle;
   const double wrapped = std::remainder(angle, kTwoPi);

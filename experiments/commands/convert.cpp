@@ -44,8 +44,9 @@ Command convert_command() {
                         {"SECTION.KEY=VALUE"},
                         "override a setting of the study; repeatable",
                         true}},
-           .details = "The files are described in experiments/README.md; the results of the new "
-                      "study are the same numbers.\n"},
+           .details =
+               "The files are described in experiments/RECORDED_DRIVES.md; the results of the new "
+               "study are the same numbers.\n"},
           convert};
 }
 

@@ -68,7 +68,7 @@ void list_scenarios() {
     rows.push_back({"world = " + name, std::to_string(world.landmarks.size()) + " landmarks",
                     std::to_string(world.waypoints.size()) + " way-points"});
   }
-  std::cout << "simulated: way-points, range and bearing (SPEC 1)\n" << aligned(rows);
+  std::cout << "simulated: way-points, range and bearing (EQUATIONS 1)\n" << aligned(rows);
   list_settings({"scenario"});
 }
 

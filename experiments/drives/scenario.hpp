@@ -9,7 +9,7 @@
 
 namespace montecarta {
 
-/// Where the noise of the control goes (SPEC 1.3).
+/// Where the noise of the control goes (EQUATIONS 1).
 enum class NoiseMode {
   measured_control,  ///< the truth obeys the nominal control; the filter is given a noisy one
   matched,           ///< the truth obeys a noisy control; the filter is given the nominal one

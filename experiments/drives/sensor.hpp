@@ -23,10 +23,10 @@ struct Sight {
   double bearing = 0.0;  ///< [rad]
 };
 
-/// Measured ranges are never below this [m], however large the noise (SPEC 3).
+/// Measured ranges are never below this [m], however large the noise (EQUATIONS 2).
 inline constexpr double kLeastRange = 1e-3;
 
-/// The range-bearing sensor of SPEC 1.1 and 3.
+/// The range-bearing sensor of EQUATIONS 1 and 2.
 class Sensor {
  public:
   explicit Sensor(const Scenario& scenario);

@@ -18,9 +18,9 @@ namespace montecarta {
 /// pen.
 inline constexpr std::size_t kMostSteps = 20'000'000;
 
-/// A vehicle simulated along the way-points of a world (SPEC 1). Every run has the steps and scans
-/// of the noise-free drive; where noise moves the truth it drives on along the loop. The noise
-/// depends on (seed, run) only.
+/// A vehicle simulated along the way-points of a world (EQUATIONS 1). Every run has the steps and
+/// scans of the noise-free drive; where noise moves the truth it drives on along the loop. The
+/// noise depends on (seed, run) only.
 class SimulatedDrive final : public DriveSource {
  public:
   /// Throws StudyError where a way-point cannot be reached or the drive is longer than kMostSteps.

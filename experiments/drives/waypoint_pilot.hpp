@@ -12,8 +12,8 @@
 
 namespace montecarta {
 
-/// Steers from way-point to way-point, loop after loop (SPEC 1.1). `waypoints` and `scenario` must
-/// outlive it.
+/// Steers from way-point to way-point, loop after loop (EQUATIONS 1). `waypoints` and `scenario`
+/// must outlive it.
 class WaypointPilot {
  public:
   WaypointPilot(const std::vector<Eigen::Vector2d>& waypoints, const Scenario& scenario)

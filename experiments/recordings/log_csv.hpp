@@ -7,9 +7,10 @@
 
 namespace montecarta {
 
-/// Reads a drive from a folder of comma-separated files, described in experiments/README.md:
-/// start.csv, odometry.csv, detections.csv, reference.csv or reference_NAME.csv, landmarks.csv.
-/// Throws StudyError naming file and line or record where one is missing or malformed.
+/// Reads a drive from a folder of comma-separated files, described in
+/// experiments/RECORDED_DRIVES.md: start.csv, odometry.csv, detections.csv, reference.csv or
+/// reference_NAME.csv, landmarks.csv. Throws StudyError naming file and line or record where one is
+/// missing or malformed.
 DriveLog read_log_csv(const std::filesystem::path& folder);
 
 /// Writes `log` to a folder that is new or empty, so that reading it gives the same log bit for

@@ -9,7 +9,7 @@
 namespace montecarta {
 
 /// The reflecting poles in one sweep of ranges [m] and intensities: centre of the pole, by
-/// increasing bearing, none identified. See [reflectors] of experiments/README.md.
+/// increasing bearing, none identified. See [reflectors] of experiments/RECORDED_DRIVES.md.
 std::vector<Detection> detect_reflectors(LaserSweep ranges, LaserSweep intensities);
 
 }  // namespace montecarta

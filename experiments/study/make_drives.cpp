@@ -13,7 +13,7 @@ namespace montecarta {
 namespace {
 
 /// Scans happen at every so-many-th control step: a whole number, for an integer counter never
-/// drifts (SPEC 0).
+/// drifts (EQUATIONS 1).
 std::uint32_t steps_per_scan(const Settings& settings) {
   const double ratio =
       settings.number("scenario", "control_rate") / settings.number("scenario", "scan_rate");

@@ -15,13 +15,13 @@ void add_drive(std::vector<Setting>& table) {
                "web_loop"));
   add(count(s, "loops", "1", 1, 10'000, "times round the way-points"));
   add(choice(s, "noise", {"measured-control", "matched"},
-             "noise on the controls the filter is given, or on the truth's motion (SPEC 1.3)"));
+             "noise on the controls the filter is given, or on the truth's motion (EQUATIONS 1)"));
   add(choice(s, "map", {"fixed", "random"},
              "landmarks where the world has them, or displaced anew in every run"));
   add(number(s, "map_shift", "m", "10", 0, 1e4, "farthest that a random map displaces one"));
   add(choice(s, "vehicle", kVehicles,
-             "pose and speed of the middle of the front axle (SPEC 2.1), or pose of the sensor and "
-             "speed of a rear wheel (SPEC 2.2)"));
+             "pose and speed of the middle of the front axle, or pose of the sensor and speed of a "
+             "rear wheel (EQUATIONS 1)"));
   add(number(s, "wheelbase", "m", "4", 1e-3, 1000, "between the axles"));
   add(number(s, "wheel_left", "m", "0", -1000, 1000, "measured rear wheel left of the middle"));
   add(number(s, "sensor_ahead", "m", "0", -1000, 1000, "sensor ahead of the rear axle"));

@@ -20,15 +20,15 @@ void add_study(std::vector<Setting>& table) {
 /// The fallback gates are chi-square 5.991 (95 %) and 25 with two degrees of freedom.
 void add_association(std::vector<Setting>& table) {
   const char* s = "association";
-  table.push_back(for_recorded(
-      choice(s, "kind", {"known", "nearest"}, "who says which landmark a detection is (SPEC 17)"),
-      "nearest"));
+  table.push_back(for_recorded(choice(s, "kind", {"known", "nearest"},
+                                      "who says which landmark a detection is (EQUATIONS 17)"),
+                               "nearest"));
   table.push_back(number(s, "gate_sigma", "sigma", "1.959963984540054", 0.01, 30,
                          "nearer: may be that landmark"));
   table.push_back(number(s, "new_gate_sigma", "sigma", "4.626072265579014", 0.01, 30,
                          "farther from all: a new one"));
-  table.push_back(
-      number(s, "log_new_density_offset", "1", "0", -1000, 1000, "added to log p0 of SPEC 17"));
+  table.push_back(number(s, "log_new_density_offset", "1", "0", -1000, 1000,
+                         "added to log p0 of EQUATIONS (17.2)"));
   table.push_back(
       count(s, "most_landmarks", "1000", 1, 100'000, "a larger map has run away: the run fails"));
 }

@@ -23,8 +23,8 @@ struct Pairing {
   double cost = 0.0;           ///< where matched: ND = D^2 + log det S
 };
 
-/// The search for the landmark that explains one detection best (SPEC 17): offer every landmark of
-/// the map, in any order but always the same one, then judge.
+/// The search for the landmark that explains one detection best (EQUATIONS 17): offer every
+/// landmark of the map, in any order but always the same one, then judge.
 struct NearestSearch {
   double least_distance = std::numeric_limits<double>::infinity();  ///< D^2 over all offered
   double least_cost = std::numeric_limits<double>::infinity();  ///< ND over those inside the gate
@@ -48,9 +48,9 @@ Pairing judge(const NearestSearch& search, const AssociationSettings& settings);
 /// ignored. Of equals the first wins.
 void exclude_rivals(std::span<Pairing> pairings);
 
-/// log p0 of SPEC 17: what a detection that matches nothing contributes to a particle's log-weight,
-/// so that all particles weigh by the same number of factors: log N at the inner gate with S =
-/// diag(2 R), plus the offset.
+/// log p0 of EQUATIONS (17.2): what a detection that matches nothing contributes to a particle's
+/// log-weight, so that all particles weigh by the same number of factors: log N at the inner gate
+/// with S = diag(2 R), plus the offset.
 double log_new_density(const AssociationSettings& settings, const Belief& belief);
 
 }  // namespace montecarta

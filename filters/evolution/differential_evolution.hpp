@@ -47,7 +47,7 @@ struct Evolved {
   Real fitness;
 };
 
-/// Fewest members with which trials can be made of members that differ (SPEC 12).
+/// Fewest members with which trials can be made of members that differ (EQUATIONS 9).
 constexpr std::size_t least_population(EvolutionBase base) {
   return base == EvolutionBase::random ? 4 : 3;
 }
@@ -100,7 +100,7 @@ template <class Real, std::size_t D>
   return member;
 }
 
-/// Mutation, binomial crossover and repair of member i (SPEC 12).
+/// Mutation, binomial crossover and repair of member i (EQUATIONS 9).
 template <class Real, std::size_t D>
 [[gnu::always_inline]] inline std::array<Real, D> trial(Population<Real, D> population,
                                                         std::size_t i,
@@ -161,11 +161,11 @@ class OneByOne {
   Objective objective_;
 };
 
-/// Differential evolution (SPEC 12): `population` moves towards where its members are fittest, and
-/// the best is returned. `judge(candidates, fitness)` says how fit a candidate in the place of each
-/// member is; lanes that it never writes to are over before they begin. `Real` = Lanes: every lane
-/// evolves a population of its own with random numbers of its own. Members must lie in `box`. Below
-/// least_population() nothing moves. Allocates only where `scratch` has to grow.
+/// Differential evolution (EQUATIONS 9): `population` moves towards where its members are fittest,
+/// and the best is returned. `judge(candidates, fitness)` says how fit a candidate in the place of
+/// each member is; lanes that it never writes to are over before they begin. `Real` = Lanes: every
+/// lane evolves a population of its own with random numbers of its own. Members must lie in `box`.
+/// Below least_population() nothing moves. Allocates only where `scratch` has to grow.
 template <class Real, std::size_t D, class Judge>
 Evolved<Real, D> evolve(std::span<std::array<Real, D>> population, const SearchBox<Real, D>& box,
                         const EvolutionSettings& settings, const EvolutionDraws& draws,

@@ -20,8 +20,7 @@ struct SearchBox {
   [[gnu::always_inline]] Real difference(std::size_t j, const Real& a, const Real& b) const {
     return is_angle[j] ? wrap(Real(a - b)) : Real(a - b);
   }
-  /// `value` where it lies inside; otherwise reflected once at the wall it crossed, then clamped
-  /// [D].
+  /// `value` where it lies inside; otherwise reflected once at the wall it crossed, then clamped.
   [[gnu::always_inline]] Real repaired(std::size_t j, const Real& value) const {
     const Real out = difference(j, value, centre[j]);
     Real in = select(out > half[j], Real(half[j] + half[j] - out), out);

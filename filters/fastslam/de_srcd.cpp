@@ -14,8 +14,8 @@ const std::vector<std::string> kEvolutionModes{"honest", "as_printed", "prior", 
 
 std::vector<Option> options_of_evolution() {
   return {choice_option("mode", "honest", kEvolutionModes,
-                        "what is evolved, and whether the draw is paid for (SPEC 13)"),
-          number_option("scale", "0.4", 0, 2, "F, of the difference vectors (SPEC 12)"),
+                        "what is evolved, and whether the draw is paid for (EQUATIONS 10)"),
+          number_option("scale", "0.4", 0, 2, "F, of the difference vectors (EQUATIONS 9)"),
           number_option("crossover", "0.8", 0, 1, "Cr, share of components that cross"),
           count_option("generations", "10", 0, 1000, "at most; the paper does not say"),
           count_option(
@@ -46,7 +46,7 @@ FilterKind de_srcd_kind() {
   options.push_back(map_uncertainty_option());
   return {.name = "de_srcd",
           .long_name = "DE-SRCD-FastSLAM",
-          .source = "Ankishan et al. 2016; SPEC 13",
+          .source = "Ankishan et al. 2016; EQUATIONS 10",
           .has_particles = true,
           .has_mixture = true,
           .options = std::move(options),

@@ -10,8 +10,8 @@ namespace montecarta {
 /// What evolution was told to be.
 EvolvedSettings evolved_settings(const FilterOptions& options);
 
-/// DE-SRCD-FastSLAM (Ankishan 2016; SPEC 13): SRCD-FastSLAM with its poses moved by differential
-/// evolution.
+/// DE-SRCD-FastSLAM (Ankishan 2016; EQUATIONS 10): SRCD-FastSLAM with its poses moved by
+/// differential evolution.
 template <class Real>
 std::unique_ptr<SlamFilter> make_de_srcd(const FilterSetup& setup) {
   const FastSlamSettings settings = fast_slam_settings(setup.options);

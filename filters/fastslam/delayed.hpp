@@ -8,7 +8,7 @@ namespace montecarta {
 
 DrawTimes draw_times(const FilterOptions& options);
 
-/// FastSLAM II with delayed draws (SPEC 24, last lines).
+/// FastSLAM II with delayed draws (EQUATIONS 11).
 template <class Real>
 std::unique_ptr<SlamFilter> make_delayed(const FilterSetup& setup) {
   const FastSlamSettings settings = fast_slam_settings(setup.options);

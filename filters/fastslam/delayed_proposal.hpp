@@ -21,7 +21,7 @@ struct DrawTimes {
   double beyond = std::numeric_limits<double>::infinity();  ///< [rad] heading uncertain by more
 };
 
-/// FastSLAM II that draws the pose only now and then (SPEC 24, last lines). In between a particle
+/// FastSLAM II that draws the pose only now and then (EQUATIONS 11). In between a particle
 /// is a joint Gaussian over its pose and the landmarks seen since the draw, updated as EKF-SLAM is;
 /// all others are independent of the pose, given where it was drawn. Where every scan draws, this
 /// is GaussianProposal; where none does, every particle is EKF-SLAM.

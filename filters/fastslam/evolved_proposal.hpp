@@ -11,7 +11,7 @@
 
 namespace montecarta {
 
-/// What differential evolution is used for in DE-SRCD-FastSLAM (SPEC 13).
+/// What differential evolution is used for in DE-SRCD-FastSLAM (EQUATIONS 10).
 enum class EvolutionMode {
   honest,      ///< each particle seeks its most probable pose, draws about it and pays for the draw
   as_printed,  ///< the cloud climbs the likelihood and is then refined by the same scan once more
@@ -28,7 +28,7 @@ struct EvolvedSettings {
 };
 
 /// The proposal of SRCD-FastSLAM moved by differential evolution. Where the draw is paid for by the
-/// ratio of SPEC 7.2 r, the weights are right whatever centre evolution found, since it knows
+/// ratio (6.3) of EQUATIONS, the weights are right whatever centre evolution found, since it knows
 /// nothing but the past and the scan.
 template <class Real>
 class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {

@@ -18,8 +18,8 @@
 
 namespace montecarta {
 
-/// Rao-Blackwellised particle filter with one map per particle (SPEC 5). `Real`: double or Lanes.
-/// `Proposal` moves, weighs and draws poses and updates the maps of one block; `Associating`
+/// Rao-Blackwellised particle filter with one map per particle (EQUATIONS 4). `Real`: double or
+/// Lanes. `Proposal` moves, weighs and draws poses and updates the maps of one block; `Associating`
 /// decides which landmark a detection is. Between update() and the next predict() the particles are
 /// weighed and drawn but not yet resampled: that is the state that is estimated and recorded.
 template <class Real, class Proposal, class Associating>

@@ -14,10 +14,10 @@ namespace montecarta {
 struct FastSlamSettings {
   std::size_t particles = 100;
   Resampling resampling = Resampling::systematic;
-  double resample_below = 0.5;  ///< resample where ESS < this times particles (SPEC 18)
+  double resample_below = 0.5;  ///< resample where ESS < this times particles (EQUATIONS 18)
 };
 
-/// The three ways to weigh a particle of FastSLAM II (SPEC 7.2).
+/// The three ways to weigh a particle of FastSLAM II (EQUATIONS 6).
 enum class WeightForm {
   closed,  ///< product of N(innovation; S), each before absorbing the detection
   ratio,   ///< likelihood times prior over proposal at the drawn pose

@@ -6,7 +6,7 @@ namespace montecarta {
 FilterKind fastslam1_kind() {
   return {.name = "fastslam1",
           .long_name = "FastSLAM I",
-          .source = "Montemerlo et al. 2002; SPEC 6",
+          .source = "Montemerlo et al. 2002; EQUATIONS 5",
           .has_particles = true,
           .has_mixture = false,
           .options = fast_slam_options(),

@@ -6,10 +6,10 @@ namespace montecarta {
 FilterKind fastslam2_kind() {
   std::vector<Option> options = fast_slam_options();
   options.push_back(choice_option("weights", "closed", weight_form_names(),
-                                  "form of the importance weight (SPEC 7.2 c, r, b)"));
+                                  "form of the importance weight (EQUATIONS 6)"));
   return {.name = "fastslam2",
           .long_name = "FastSLAM II",
-          .source = "Montemerlo et al. 2003; SPEC 7",
+          .source = "Montemerlo et al. 2003; EQUATIONS 6",
           .has_particles = true,
           .has_mixture = true,
           .options = std::move(options),

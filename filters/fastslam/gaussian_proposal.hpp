@@ -9,7 +9,7 @@
 
 namespace montecarta {
 
-/// The predicted pose is refined by the scan before it is drawn (SPEC 7, 8, 10).
+/// The predicted pose is refined by the scan before it is drawn (EQUATIONS 6 to 8).
 template <class Real, class PoseTransform, class MapTransform>
 class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> {
  public:

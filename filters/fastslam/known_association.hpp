@@ -14,8 +14,9 @@
 
 namespace montecarta {
 
-/// Detections carry the identity of their landmark, the same for all particles (SPEC 17); clutter
-/// is known to be clutter. Slots are given out in the order in which landmarks are first seen.
+/// Detections carry the identity of their landmark, the same for all particles (EQUATIONS 17);
+/// clutter is known to be clutter. Slots are given out in the order in which landmarks are first
+/// seen.
 template <class Real>
 class KnownAssociation {
  public:

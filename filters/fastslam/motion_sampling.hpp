@@ -12,8 +12,8 @@
 
 namespace montecarta {
 
-/// FastSLAM I (SPEC 6): every particle moves with control noise of its own at every step; the scan
-/// only weighs it.
+/// FastSLAM I (EQUATIONS 5): every particle moves with control noise of its own at every step; the
+/// scan only weighs it.
 template <class Real>
 class MotionSampling : public DrawnPoses<Real> {
  public:

@@ -19,8 +19,9 @@
 
 namespace montecarta {
 
-/// Every particle decides for itself which landmark of its own map a detection is (SPEC 17), with
-/// the covariance of its predicted pose in the innovation. Particle i owns slots 0 to count(i) - 1.
+/// Every particle decides for itself which landmark of its own map a detection is (EQUATIONS 17),
+/// with the covariance of its predicted pose in the innovation. Particle i owns slots 0 to count(i)
+/// - 1.
 template <class Real>
 class NearestAssociation {
  public:

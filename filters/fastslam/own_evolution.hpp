@@ -13,7 +13,7 @@
 namespace montecarta {
 
 /// Evolves a population for every particle of one block apart from all others, in standard
-/// deviations of the particle's refined Gaussian (SPEC 13, DE-H).
+/// deviations of the particle's refined Gaussian (EQUATIONS 10).
 template <class Real>
 class OwnEvolution {
  public:

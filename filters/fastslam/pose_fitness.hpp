@@ -32,7 +32,7 @@ class PoseFitness {
   PoseFitness(const PoseGaussian<Real>& predicted, const SensorNoise& noise)
       : predicted_(predicted), noise_(noise) {}
 
-  /// Log of Ankishan eq. (32) read for range and bearing: sum of -1/2 nu' R^-1 nu (SPEC 13).
+  /// Log of Ankishan eq. (32) read for range and bearing: sum of -1/2 nu' R^-1 nu (EQUATIONS 10).
   /// Neither the motion nor the map's covariance counts.
   Real likelihood(const BasicPose<Real>& pose, std::span<const Sighting<Real>> scan) const {
     Real sum(0.0);
@@ -45,7 +45,7 @@ class PoseFitness {
   }
 
   /// Log of the pose's posterior density up to a constant: the map's covariance in the innovation,
-  /// and the prediction as prior (SPEC 13, DE-Q).
+  /// and the prediction as prior (EQUATIONS 10).
   Real posterior(const BasicPose<Real>& pose, std::span<const Sighting<Real>> scan) const {
     Evidence<Real> evidence;
     for (const Sighting<Real>& one : scan) {

@@ -6,7 +6,7 @@ namespace montecarta {
 std::vector<Option> sigma_point_options() {
   std::vector<Option> options = fast_slam_options();
   options.push_back(choice_option("weights", "closed", {"closed", "ratio"},
-                                  "form of the importance weight (SPEC 7.2 c, r)"));
+                                  "form of the importance weight (EQUATIONS 6)"));
   return options;
 }
 
@@ -24,7 +24,7 @@ std::vector<Option> central_difference_options() {
   return {
       number_option(
           "interval", "1.7320508075688772", 1, 10,
-          "h of the central differences; its square is the kurtosis, 3 for a Gaussian (SPEC 9)"),
+          "h of the central differences; h^2 is the kurtosis: 3 for a Gaussian (see EQUATIONS 3)"),
       choice_option("weights_of_sigma_points", "corrected", {"corrected", "as_printed"},
                     "as_printed: the misprints of Ankishan eq. (14), about the central point")};
 }

@@ -12,11 +12,11 @@ namespace montecarta {
 /// of the weight, closed or ratio.
 std::vector<Option> sigma_point_options();
 
-/// Whether the landmark's covariance is part of the pose's innovation (SPEC 8.1).
+/// Whether the landmark's covariance is part of the pose's innovation (EQUATIONS 7).
 Option map_uncertainty_option();
 MapUncertainty map_uncertainty(const FilterOptions& options);
 
-/// Interval and weights of central differences (SPEC 9).
+/// Interval and weights of central differences (EQUATIONS 3).
 std::vector<Option> central_difference_options();
 /// Central differences for every stage; `map_uncertainty` matters to the pose alone.
 SigmaPoints central_difference_points(const FilterSetup& setup, MapUncertainty map_uncertainty);

@@ -8,7 +8,7 @@ FilterKind srcd_kind() {
   options.push_back(map_uncertainty_option());
   return {.name = "srcd",
           .long_name = "SRCD-FastSLAM",
-          .source = "Ankishan et al. 2016; SPEC 10",
+          .source = "Ankishan et al. 2016; EQUATIONS 8",
           .has_particles = true,
           .has_mixture = true,
           .options = std::move(options),

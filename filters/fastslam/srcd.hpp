@@ -10,7 +10,7 @@ inline SigmaPoints srcd_points(const FilterSetup& setup) {
   return central_difference_points(setup, map_uncertainty(setup.options));
 }
 
-/// SRCD-FastSLAM (Ankishan 2016; SPEC 10): FastSLAM II with every Gaussian carried by central
+/// SRCD-FastSLAM (Ankishan 2016; EQUATIONS 8): FastSLAM II with every Gaussian carried by central
 /// differences. Covariances are kept, and the factor is taken where points are drawn: the same
 /// numbers as the square-root recursion, to rounding.
 template <class Real>
@@ -19,15 +19,15 @@ std::unique_ptr<SlamFilter> make_srcd(const FilterSetup& setup) {
   return make_refined<Real>(setup, points, points);
 }
 
-/// SRCD-aided FastSLAM (SPEC 11): the poses of FastSLAM II, landmarks by central differences.
+/// SRCD-aided FastSLAM (EQUATIONS 8): the poses of FastSLAM II, landmarks by central differences.
 template <class Real>
 std::unique_ptr<SlamFilter> make_srcd_aided(const FilterSetup& setup) {
   return make_refined<Real>(setup, Linearised(),
                             central_difference_points(setup, MapUncertainty::on));
 }
 
-/// SRCD-particle-filter based FastSLAM (SPEC 11): poses by central differences, the landmarks of
-/// FastSLAM II.
+/// SRCD-particle-filter based FastSLAM (EQUATIONS 8): poses by central differences, the landmarks
+/// of FastSLAM II.
 template <class Real>
 std::unique_ptr<SlamFilter> make_srcd_pf(const FilterSetup& setup) {
   return make_refined<Real>(setup, srcd_points(setup), Linearised());

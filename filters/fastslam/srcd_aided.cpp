@@ -6,7 +6,7 @@ namespace montecarta {
 FilterKind srcd_aided_kind() {
   return {.name = "srcd_aided",
           .long_name = "SRCD-aided FastSLAM",
-          .source = "Ankishan et al. 2016, Table 1; SPEC 11",
+          .source = "Ankishan et al. 2016, Table 1; EQUATIONS 8",
           .has_particles = true,
           .has_mixture = true,
           .options = srcd_options(),

@@ -8,7 +8,7 @@ FilterKind srcd_pf_kind() {
   options.push_back(map_uncertainty_option());
   return {.name = "srcd_pf",
           .long_name = "SRCD-PF FastSLAM",
-          .source = "Ankishan et al. 2016, Table 1; SPEC 11",
+          .source = "Ankishan et al. 2016, Table 1; EQUATIONS 8",
           .has_particles = true,
           .has_mixture = true,
           .options = std::move(options),

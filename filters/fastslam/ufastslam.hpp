@@ -6,8 +6,8 @@
 
 namespace montecarta {
 
-/// The scaled unscented transform of every stage (SPEC 8): dimension 5 for motion (pose, control)
-/// and for a sight (pose, landmark), 2 for a landmark.
+/// The scaled unscented transform of every stage (EQUATIONS 7): dimension 5 for motion (pose,
+/// control) and for a sight (pose, landmark), 2 for a landmark.
 inline SigmaPoints unscented_points(const FilterSetup& setup) {
   const auto rule = [&](double n) {
     return unscented_rule(n, setup.options.number("alpha"), setup.options.number("beta"),

@@ -103,7 +103,8 @@ void GaussianBank::report_innovations(Scan scan) {
   }
 }
 
-/// SPEC 24: the draws decompose the Gaussian (JointGaussian::draw_heading()), so no weight changes.
+/// EQUATIONS 16: the draws decompose the Gaussian (JointGaussian::draw_heading()), so no weight
+/// changes.
 void GaussianBank::split(const StepContext& context) {
   is_due_.assign(beliefs_.size(), false);
   for (const std::uint32_t slot : active_) is_due_[slot] = is_due(beliefs_[slot]);

@@ -17,7 +17,7 @@ namespace montecarta {
 
 /// How the noise of a control reaches the pose.
 enum class Motion {
-  linearised,  ///< SPEC 2.1
+  linearised,  ///< EQUATIONS 1
   quadrature,  ///< moved_by_quadrature()
 };
 
@@ -26,7 +26,7 @@ struct BankSettings {
   std::size_t particles = 1;  ///< components
   Retraction retraction = Retraction::additive;
   Resampling resampling = Resampling::systematic;
-  double resample_below = 0.5;  ///< resample where ESS < this times particles (SPEC 18)
+  double resample_below = 0.5;  ///< resample where ESS < this times particles (EQUATIONS 18)
   /// [rad] a component that knows its heading worse than this after a scan draws it; nothing: where
   /// the second-order error that it makes over the extent D of the map, sigma^2 D / 2, exceeds
   /// sigma_range
@@ -37,8 +37,8 @@ struct BankSettings {
   bool tells_particles = false;  ///< whether there is a mixture to tell of
 };
 
-/// A mixture of joint Gaussians over pose and map (SPEC 24). Only the heading is ever drawn, by a
-/// split of the Gaussian, and only where it is uncertain: what a component does not draw it
+/// A mixture of joint Gaussians over pose and map (EQUATIONS 16). Only the heading is ever drawn,
+/// by a split of the Gaussian, and only where it is uncertain: what a component does not draw it
 /// keeps in its covariance. One component that never splits is EKF-SLAM.
 ///
 /// Particles that are copies of each other share one belief until they are split; so a bank costs

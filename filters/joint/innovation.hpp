@@ -35,7 +35,7 @@ struct InnovationFactor {
   return InnovationFactor{l00, l10, std::sqrt(pivot)};
 }
 
-/// log N(v; S) of a two-dimensional innovation with squared norm D^2 (SPEC 0).
+/// log N(v; S) of a two-dimensional innovation with squared norm D^2 (EQUATIONS (0.1)).
 inline double log_normal_density(double squared_distance, const InnovationFactor& L) {
   return -0.5 * (squared_distance + L.log_det()) - std::log(kTwoPi);
 }

@@ -55,7 +55,7 @@ void JointBelief::absorb(const MotionIncrement& motion, Scan scan) {
     if (pairings_[k].verdict == Verdict::matched) {
       absorb(k, scan[k]);
     } else if (!known()) {
-      outcome_.log_likelihood += log_new_density_;  // as every belief does (SPEC 17)
+      outcome_.log_likelihood += log_new_density_;  // as every belief does (EQUATIONS 17)
     }
   }
 }

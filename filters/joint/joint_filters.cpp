@@ -70,7 +70,7 @@ std::unique_ptr<SlamFilter> make_hrb(const FilterSetup& setup) {
 FilterKind ekf_slam_kind() {
   return {.name = "ekf_slam",
           .long_name = "EKF-SLAM",
-          .source = "Smith, Self, Cheeseman 1990; SPEC 24 with one component",
+          .source = "Smith, Self, Cheeseman 1990; EQUATIONS 15",
           .has_particles = false,
           .has_mixture = false,
           .has_joint = true,
@@ -98,13 +98,13 @@ FilterKind hrb_kind() {
                      "where that bends "
                      "its map by more than sigma_range"),
        number_option("keep", "0.95", 0, 0.999,
-                     "share of the heading's standard deviation that a draw leaves; SPEC 24 has 0"),
+                     "share of the heading's standard deviation that a draw leaves; 0: none"),
        choice_option("error", "invariant", kErrors,
                      "what the covariance is of: additive (EKF-SLAM) or invariant (RI-EKF-SLAM)"),
        iterations_option("5"), motion_option("quadrature")});
   return {.name = "hrb",
           .long_name = "heading-split bank",
-          .source = "SPEC 24",
+          .source = "EQUATIONS 16",
           .has_particles = true,
           .has_mixture = true,
           .has_joint = true,

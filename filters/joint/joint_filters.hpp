@@ -8,7 +8,7 @@
 
 namespace montecarta {
 
-/// EKF-SLAM: one Gaussian over the pose and all landmarks (SPEC 24 with one component), detections
+/// EKF-SLAM: one Gaussian over the pose and all landmarks (EQUATIONS 15), detections
 /// absorbed one by one in the order of the scan.
 std::unique_ptr<SlamFilter> make_ekf_slam(const FilterSetup& setup);
 
@@ -17,7 +17,7 @@ std::unique_ptr<SlamFilter> make_ekf_slam(const FilterSetup& setup);
 std::unique_ptr<SlamFilter> make_riekf_slam(const FilterSetup& setup);
 
 /// Heading-split Rao-Blackwellised bank: many joint Gaussians, of which only the heading is drawn
-/// (SPEC 24).
+/// (EQUATIONS 16).
 std::unique_ptr<SlamFilter> make_hrb(const FilterSetup& setup);
 
 /// Their lines in the table of filters.

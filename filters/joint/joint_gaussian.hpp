@@ -32,8 +32,9 @@ struct ExpectedSight {
   }
 };
 
-/// One Gaussian over the pose and all landmarks: the state of EKF-SLAM (SPEC 24). Its covariance is
-/// kept in three parts, [pose cross'; cross map]. Landmarks are numbered in order of birth.
+/// One Gaussian over the pose and all landmarks: the state of EKF-SLAM (EQUATIONS 15). Its
+/// covariance is kept in three parts, [pose cross'; cross map]. Landmarks are numbered in order of
+/// birth.
 ///
 /// The invariant error of Barrau turns pose and map together: xi = e - J p e_heading for every
 /// point p, J = [0 -1; 1 0]. Held is the covariance of e, in the map frame; it is that of xi at the
@@ -79,11 +80,11 @@ class JointGaussian {
   /// Tells what ended the iterations too early, if anything: then the one before stands.
   Trouble absorb(std::size_t slot, const RangeBearing<double>& detected, int iterations,
                  ExpectedSight& expected);
-  /// Draws the heading's part of all that is uncertain (SPEC 24): N(m, P) is the mean over standard
-  /// normal z of N(m + g z, P - g g'), exactly for the additive error and to first order in the
-  /// turn for the invariant one, with g = P e sqrt(1 - keep^2) / sqrt(h), e the heading's axis and
-  /// h its variance. `keep` in [0, 1) is the share of the heading's standard deviation that
-  /// remains; SPEC 24 keeps nothing.
+  /// Draws the heading's part of all that is uncertain (EQUATIONS 16): N(m, P) is the mean over
+  /// standard normal z of N(m + g z, P - g g'), exactly for the additive error and to first order
+  /// in the turn for the invariant one, with g = P e sqrt(1 - keep^2) / sqrt(h), e the heading's
+  /// axis and h its variance. `keep` in [0, 1) is the share of the heading's standard deviation
+  /// that remains; 0 keeps nothing.
   void draw_heading(double keep, double normal);
   /// Adds a landmark seen so, correlated with everything the pose is correlated with.
   void append(const RangeBearing<double>& sight);

@@ -35,10 +35,10 @@ inline void move_along(PoseMoments& pose, const Eigen::Vector3d& way) {
   pose.mean = {pose.mean.x + way(0), pose.mean.y + way(1), wrap(pose.mean.heading + way(2))};
 }
 
-/// Adds up Gaussians to the mean and covariance of their mixture (SPEC 19), as differences from one
-/// of them: components that are all equal give exactly their own moments, whatever their weights
-/// are rounded to. Headings are taken the shorter way from that one. NaN of landmarks never seen
-/// stays NaN. `Gaussian`: PoseMoments, JointEstimate or LandmarkEstimate.
+/// Adds up Gaussians to the mean and covariance of their mixture (EQUATIONS 19), as differences
+/// from one of them: components that are all equal give exactly their own moments, whatever their
+/// weights are rounded to. Headings are taken the shorter way from that one. NaN of landmarks never
+/// seen stays NaN. `Gaussian`: PoseMoments, JointEstimate or LandmarkEstimate.
 template <class Gaussian>
 class Mixture {
  public:

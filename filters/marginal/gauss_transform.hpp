@@ -42,7 +42,7 @@ std::size_t monomials_below(int order) {
 }
 
 /// Fewest degrees with which the series of a source at distance `radius` from its centre is exact
-/// to `tolerance` at every target up to `reach` from the centre, if at most `most` (SPEC 16).
+/// to `tolerance` at every target up to `reach` from the centre, if at most `most` (EQUATIONS 13).
 inline std::optional<int> series_order(double radius, double reach, double tolerance, int most) {
   double factor = 1.0;  // (2 a b)^p / p!
   for (int p = 1; p <= most; ++p) {
@@ -54,8 +54,8 @@ inline std::optional<int> series_order(double radius, double reach, double toler
   return std::nullopt;
 }
 
-/// Improved fast Gauss transform (SPEC 16; Havangi, appendix): Sum_j q_n[j] exp(-|y - x_j|^2) for N
-/// sets of weights at once, with an error of at most tolerance Sum_j |q_n[j]|.
+/// Improved fast Gauss transform (EQUATIONS 13; Havangi, appendix): Sum_j q_n[j] exp(-|y - x_j|^2)
+/// for N sets of weights at once, with an error of at most tolerance Sum_j |q_n[j]|.
 template <std::size_t D, std::size_t N>
 class GaussTransform {
  public:

@@ -12,9 +12,9 @@
 
 namespace montecarta {
 
-/// Mixtures summed by the improved fast Gauss transform (Havangi, appendix; SPEC 16). It takes one
-/// covariance for all kernels, that of the kernel at the mean heading: exact only if all headings
-/// agree (SPEC 14.1 iv). Where a sum is not far above the error it is summed directly.
+/// Mixtures summed by the improved fast Gauss transform (Havangi, appendix; EQUATIONS 13). It takes
+/// one covariance for all kernels, that of the kernel at the mean heading: exact only if all
+/// headings agree. Where a sum is not far above the error it is summed directly.
 template <std::size_t N>
 class IfgtSums {
  public:

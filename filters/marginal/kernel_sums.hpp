@@ -19,8 +19,8 @@
 
 namespace montecarta {
 
-/// log Sum_j weights_n[j] N(target; gaussian_j) for blocks of targets and every n (SPEC 14, 16), by
-/// the method asked for.
+/// log Sum_j weights_n[j] N(target; gaussian_j) for blocks of targets and every n (EQUATIONS 13),
+/// by the method asked for.
 template <class Real, std::size_t N>
 class KernelSummation {
  public:
@@ -104,7 +104,7 @@ class KernelSummation {
 };
 
 /// The factor by which the weights of a marginal filter differ from the likelihood: Sum_j w_j
-/// N(s_i; prior_j) / Sum_j lambda_j N(s_i; proposal_j) (SPEC 14, step 3).
+/// N(s_i; prior_j) / Sum_j lambda_j N(s_i; proposal_j) (EQUATIONS (12.4)).
 template <class Real>
 class KernelRatios {
  public:

@@ -40,7 +40,7 @@ class LandmarkEvidence {
     }
   }
 
-  /// The objective at `place`, in units of a chi-square (SPEC 15.1, 15.3): the less the better.
+  /// The objective at `place`, in units of a chi-square (EQUATIONS 14): the less the better.
   double cost(const Point& place) {
     return objective_ == MapObjective::likelihood ? minus_two_log_likelihood(place)
                                                   : mean_square(place);
@@ -52,7 +52,7 @@ class LandmarkEvidence {
       return objective_ == MapObjective::likelihood ? exp(terms_[b] - Real(log_sum_)) : share(b);
     });
   }
-  /// Sum of w H' R^-1 H at `place` (SPEC 15.3).
+  /// Sum of w H' R^-1 H at `place` (EQUATIONS 14).
   Symmetric2<double> information(const Point& place) const {
     return sums(place, [&](std::size_t b) { return weights_->linear()[b]; }).information;
   }

@@ -15,7 +15,7 @@
 
 namespace montecarta {
 
-/// How landmarks of the shared map are born, and how they learn from a scan (SPEC 15).
+/// How landmarks of the shared map are born, and how they learn from a scan (EQUATIONS 14).
 template <class Real>
 class MapLearning {
  public:
@@ -46,7 +46,7 @@ class MapLearning {
     prior_ = settings_.mode == MapMode::recursive ? landmark : SharedLandmark{landmark.mean, {}};
     if (settings_.mode == MapMode::onestep_threshold &&
         cost(landmark.mean) <= settings_.threshold) {
-      return;  // the dead zone of SPEC 15.2
+      return;  // the dead zone of EQUATIONS 14
     }
     landmark.mean = settings_.solver == MapSolver::de
                         ? evolved_place(context.identity(Draw::evolution, index), heading, seen)
@@ -62,7 +62,7 @@ class MapLearning {
   static constexpr double kSurelyGood = 1e-6;  // [m]
   static constexpr double kShortStep = 1e-12;  // [m]
 
-  /// J of SPEC 15: what the detection says plus what is known already.
+  /// J of EQUATIONS 14: what the detection says plus what is known already.
   double cost(const Point& place) {
     const Point d{place.x - prior_.mean.x, place.y - prior_.mean.y};
     const Symmetric2<double>& L = prior_.information;
@@ -94,7 +94,7 @@ class MapLearning {
   }
 
   /// DE over offsets from the old place, which is the first member; the others are scattered evenly
-  /// over three sigmas of the sensor (SPEC 15.4).
+  /// over three sigmas of the sensor (EQUATIONS 14).
   Point evolved_place(const StreamIdentity& identity, double heading,
                       const RangeBearing<double>& seen) {
     const Direction<double> ahead = direction_of(heading);

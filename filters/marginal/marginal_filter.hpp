@@ -19,8 +19,8 @@
 
 namespace montecarta {
 
-/// Marginal and auxiliary marginal particle filter with one map for all particles (SPEC 14, 15;
-/// Havangi). `Real`: double or Lanes.
+/// Marginal and auxiliary marginal particle filter with one map for all particles (EQUATIONS 12,
+/// 14; Havangi). `Real`: double or Lanes.
 template <class Real>
 class MarginalFilter final : public SlamFilter {
  public:
@@ -78,7 +78,7 @@ class MarginalFilter final : public SlamFilter {
     motion_.restart();
     is_drawn_ = true;
   }
-  /// p(s | s_j) for every particle: the motion since the last draw, and the floor (SPEC 14.1).
+  /// p(s | s_j) for every particle: the motion since the last draw, and the floor (EQUATIONS 12).
   void propagate_kernels() {
     for (std::size_t b = 0; b < poses_.size(); ++b) {
       priors_[b] = motion_.from(poses_[b]);
@@ -144,7 +144,7 @@ class MarginalFilter final : public SlamFilter {
       report_.numerical_faults += static_cast<std::uint32_t>(faults);
   }
 
-  /// One map, learnt with the weighed poses (SPEC 15).
+  /// One map, learnt with the weighed poses (EQUATIONS 14).
   void learn_map(const StepContext& context) {
     const double heading = drawn_mean().heading;
     for (const SharedMatch& match : association_.matches())

@@ -9,21 +9,21 @@
 
 namespace montecarta {
 
-/// From what the kernels are chosen that are drawn from (SPEC 14, step 1).
+/// From what the kernels are chosen that are drawn from (EQUATIONS (12.2)).
 enum class Choice {
   by_weight,      ///< lambda = w: marginal particle filter
   by_likelihood,  ///< lambda = w p(z | m): auxiliary marginal particle filter
 };
-/// What poses are drawn from (SPEC 14.2).
+/// What poses are drawn from (EQUATIONS 12).
 enum class Kernel {
   prior,      ///< the motion model
   posterior,  ///< the motion model refined by the scan
 };
-/// What a landmark remembers of earlier scans (SPEC 15).
+/// What a landmark remembers of earlier scans (EQUATIONS 14).
 enum class MapMode {
-  onestep_converged,  ///< nothing: the best explanation of this scan alone (15.1)
-  onestep_threshold,  ///< nothing, but it stays where it explains the scan well enough (15.2)
-  recursive,          ///< a quadratic summary of all of them (15.3)
+  onestep_converged,  ///< nothing: the best explanation of this scan alone
+  onestep_threshold,  ///< nothing, but it stays where it explains the scan well enough
+  recursive,          ///< a quadratic summary of all of them
 };
 enum class MapSolver { gauss_newton, de };
 /// What a landmark is judged by.

@@ -8,7 +8,8 @@
 
 namespace montecarta {
 
-/// The drawn poses; between scans with the motion since then, as the kernels have it (SPEC 19).
+/// The drawn poses; between scans with the motion since then, as the kernels have it (EQUATIONS
+/// 19).
 template <class Real>
 PoseEstimate MarginalFilter<Real>::estimate() const {
   if (is_drawn_) return {spread_of(weights_, poses_), std::nullopt};

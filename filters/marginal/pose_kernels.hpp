@@ -15,7 +15,7 @@ namespace montecarta {
 
 /// One Gaussian of a mixture over poses, ready to be evaluated anywhere: its mean, and the factor W
 /// with W' W = C^-1 / 2, so that N(s; m, C) is proportional to exp(-|W (s - m)|^2). Every kernel
-/// has a factor of its own: C turns with the heading (SPEC 14.1 iv).
+/// has a factor of its own: C turns with the heading.
 template <std::size_t N>
 struct PoseKernel {
   double x, y, heading;           ///< mean; heading relative to the mixture's reference

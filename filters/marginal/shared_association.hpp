@@ -19,7 +19,7 @@ struct SharedMatch {
 };
 
 /// Which landmark of the shared map a detection is, once for all particles: by identity, or the
-/// nearest to a Gaussian pose (SPEC 17).
+/// nearest to a Gaussian pose (EQUATIONS 17).
 class SharedAssociation {
  public:
   explicit SharedAssociation(const FilterSetup& setup);
@@ -37,7 +37,7 @@ class SharedAssociation {
   const std::vector<Detection>& fresh() const { return fresh_; }
   /// Against the simulator's identities.
   const AssociationCounts& counts() const { return counts_; }
-  /// log p0 for every detection that matches nothing, if association is not known (SPEC 17).
+  /// log p0 for every detection that matches nothing, if association is not known (EQUATIONS 17).
   double unmatched_log_density() const;
 
   /// Remembers that a fresh detection became the landmark at `slot`; throws where the map has run

@@ -18,7 +18,7 @@ class SharedLikelihood {
   SharedLikelihood(const SensorNoise& noise, MapMode mode) : noise_(noise), mode_(mode) {}
 
   /// One-step maps are parameters, known exactly as far as the likelihood goes (Havangi eq. 28);
-  /// recursive ones add Hf Lambda^-1 Hf' to R (SPEC 15.3).
+  /// recursive ones add Hf Lambda^-1 Hf' to R (EQUATIONS 14).
   bool map_is_exact() const { return mode_ != MapMode::recursive; }
 
   void see(const std::vector<SharedMatch>& matches, const SharedMap& map) {
@@ -56,7 +56,7 @@ class SharedLikelihood {
     return at(kernel.mean);
   }
 
-  /// The kernel becomes p(s | s_j, z); returns log p(z | s_j) (SPEC 14.2).
+  /// The kernel becomes p(s | s_j, z); returns log p(z | s_j) (EQUATIONS 12).
   Weighing<Real> refine(PoseGaussian<Real>& kernel, std::size_t b, const Real& weight,
                         InnovationSums<Real>& innovations) const {
     Evidence<Real> evidence;

@@ -16,8 +16,8 @@ inline Point solve(const Symmetric2<double>& A, const Point& b) {
   return {(b.x - A.xy * y) / A.xx, y};
 }
 
-/// A landmark of the one map that all particles share (SPEC 15): where it is, and how well that is
-/// known if the pose were.
+/// A landmark of the one map that all particles share (EQUATIONS 14): where it is, and how well
+/// that is known if the pose were.
 struct SharedLandmark {
   Point mean;
   Symmetric2<double> information;  ///< Lambda [1/m^2]

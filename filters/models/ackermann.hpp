@@ -9,7 +9,7 @@
 
 namespace montecarta {
 
-/// Derivatives of one step (SPEC 2): only the elements that are not 0 or 1.
+/// Derivatives of one step (EQUATIONS 1): only the elements that are not 0 or 1.
 /// Fx = [1 0 x_heading; 0 1 y_heading; 0 0 1], Fu = [x_speed x_steer; y_speed y_steer;
 /// heading_speed heading_steer].
 template <class Real>
@@ -38,7 +38,7 @@ BasicPoint<Real> in_world(const Direction<Real>& heading, const Real& forward, c
           heading.sine * forward + heading.cosine * left};
 }
 
-/// One step of a vehicle (SPEC 2.1 and 2.2; Ankishan eq. (38) prints cos in both rows). `speed`
+/// One step of a vehicle (EQUATIONS 1; Ankishan eq. (38) prints cos in both rows). `speed`
 /// [m/s] and `steer` [rad] are common to all lanes (double) or one a lane (Real); `duration` [s].
 template <class Real, class Input>
 BasicPose<Real> move(const BasicPose<Real>& pose, const Input& speed, const Input& steer,

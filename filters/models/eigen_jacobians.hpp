@@ -8,7 +8,7 @@
 
 namespace montecarta {
 
-/// The models' derivatives as the matrices of SPEC 2.1 and 3, for code that is not per particle.
+/// The models' derivatives as the matrices of EQUATIONS 1 and 2, for code that is not per particle.
 using Matrix32 = Eigen::Matrix<double, 3, 2>;
 using Matrix23 = Eigen::Matrix<double, 2, 3>;
 

@@ -20,7 +20,7 @@ struct InView {
   double range = 0.0;        ///< [m]
 };
 
-/// What a sensor can see: nearer than a range and ahead, both strictly (SPEC 1.1).
+/// What a sensor can see: nearer than a range and ahead, both strictly (EQUATIONS 2).
 class FieldOfView {
  public:
   /// `max_range` [m]; `angle` [rad] in full, centred ahead.

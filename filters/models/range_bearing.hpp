@@ -17,7 +17,7 @@ struct RangeBearing {
   Real bearing{};  ///< [rad] relative to the heading, in (-pi, pi]
 };
 
-/// What the sensor should see, with derivatives (SPEC 3). Hf = [range_x range_y; bearing_x
+/// What the sensor should see, with derivatives (EQUATIONS 2). Hf = [range_x range_y; bearing_x
 /// bearing_y] by the landmark; Hx = [-Hf, (0, -1)'] by the pose.
 template <class Real>
 struct LinearisedSight {
@@ -28,8 +28,8 @@ struct LinearisedSight {
   Real bearing_y;  ///< [rad/m]
 };
 
-/// Where a detection places a landmark, with derivatives (SPEC 3). Gz = [x_range x_bearing; y_range
-/// y_bearing] by the detection; Gx = [1 0 x_bearing; 0 1 y_bearing] by the pose.
+/// Where a detection places a landmark, with derivatives (EQUATIONS 2). Gz = [x_range x_bearing;
+/// y_range y_bearing] by the detection; Gx = [1 0 x_bearing; 0 1 y_bearing] by the pose.
 template <class Real>
 struct LinearisedPlace {
   BasicPoint<Real> point;
@@ -39,8 +39,8 @@ struct LinearisedPlace {
   Real y_bearing;  ///< [m/rad]
 };
 
-/// Nearer than this [m] a bearing has no derivative: the caller must leave the detection out (SPEC
-/// 3).
+/// Nearer than this [m] a bearing has no derivative: the caller must leave the detection out
+/// (EQUATIONS 2).
 inline constexpr double kLeastDistance = 1e-6;
 
 /// h(x, f): the sight of `landmark` from `pose`.

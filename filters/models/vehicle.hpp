@@ -11,8 +11,8 @@ namespace montecarta {
 /// A car steered at the front: which of its points the pose is of, and what its controls mean.
 struct Vehicle {
   enum class Kind {
-    front_axle,  ///< pose and speed are of the middle of the front axle (SPEC 2.1)
-    rear_wheel   ///< pose is of the sensor, speed of a rear wheel (SPEC 2.2)
+    front_axle,  ///< pose and speed are of the middle of the front axle (EQUATIONS 1)
+    rear_wheel   ///< pose is of the sensor, speed of a rear wheel (EQUATIONS 1)
   };
   Kind kind = Kind::front_axle;
   double wheelbase = 4.0;     ///< L [m]
@@ -21,8 +21,9 @@ struct Vehicle {
   double sensor_left = 0.0;   ///< b [m] likewise
 };
 
-/// The least share of the rear axle's speed that the measured wheel may have (SPEC 2.2: a guard).
-/// Nearer to the point about which the vehicle turns, that wheel says nothing of the vehicle.
+/// The least share of the rear axle's speed that the measured wheel may have (EQUATIONS 1: a
+/// guard). Nearer to the point about which the vehicle turns, that wheel says nothing of the
+/// vehicle.
 inline constexpr double kLeastWheelShare = 0.1;
 
 /// Whether at this steering angle [rad] the measured wheel is that near.
@@ -40,7 +41,7 @@ struct BodyStep {
 };
 
 /// One control step: `speed` [m/s] and the direction of the steered wheel, of one vehicle (double)
-/// or one a lane; `duration` [s]. Linear in the speed. SPEC 2.1 and 2.2, in the frame of the
+/// or one a lane; `duration` [s]. Linear in the speed. EQUATIONS 1, in the frame of the
 /// vehicle.
 template <class Real>
 BodyStep<Real> body_step(const Vehicle& vehicle, const Real& speed, const Direction<Real>& wheel,

@@ -39,7 +39,7 @@ Pose pose_of_particle(const PoseOf& pose_of, std::size_t i) {
   return {get(block.x, lane), get(block.y, lane), get(block.heading, lane)};
 }
 
-/// Weighted mean of poses: headings as differences from the heaviest particle's (SPEC 19).
+/// Weighted mean of poses: headings as differences from the heaviest particle's (EQUATIONS 19).
 template <class Real, class PoseOf>
 Pose weighted_mean(const Weights<Real>& weights, const PoseOf& pose_of) {
   const Pose reference = pose_of_particle<Real>(pose_of, weights.heaviest());
@@ -63,7 +63,7 @@ PoseMoments spread_of(const Weights<Real>& weights, const std::vector<BasicPose<
   return {mean, symmetric({C[0], C[1], C[2], C[3], C[4], C[5]})};
 }
 
-/// Mean and covariance of a mixture of Gaussians (SPEC 19).
+/// Mean and covariance of a mixture of Gaussians (EQUATIONS 19).
 template <class Real>
 PoseMoments mixture_of(const Weights<Real>& weights,
                        const std::vector<PoseGaussian<Real>>& gaussians) {

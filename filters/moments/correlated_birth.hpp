@@ -7,7 +7,7 @@
 namespace montecarta {
 
 /// A landmark seen for the first time from an uncertain pose, with all it is correlated with:
-/// g(x, z), Gx P Gx' + Gz R Gz' and Gx P (SPEC 24).
+/// g(x, z), Gx P Gx' + Gz R Gz' and Gx P (EQUATIONS 15).
 template <class Real>
 struct NewLandmark {
   LandmarkGaussian<Real> landmark;

@@ -14,8 +14,8 @@ struct DrivenPose {
   BasicPoint<Real> lever;  ///< [m/rad]
 };
 
-/// Fx P Fx' with the motion's own covariance turned into the map (SPEC 2.1). Of several steps Fx is
-/// again [1 0 a; 0 1 b; 0 0 1], so one increment stands for all since the last scan.
+/// Fx P Fx' with the motion's own covariance turned into the map (EQUATIONS 1). Of several steps Fx
+/// is again [1 0 a; 0 1 b; 0 0 1], so one increment stands for all since the last scan.
 template <class Real>
 DrivenPose<Real> driven(const PoseGaussian<Real>& before, const MotionIncrement& motion) {
   const auto& [mean, P] = before;

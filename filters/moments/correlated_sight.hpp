@@ -83,7 +83,7 @@ void apply_gains(CorrelatedMap<Real>& maps, std::size_t b, const WhiteGain<Real>
 }
 
 /// Absorbs a detection of landmark `at` into pose and map of block b: the update of EKF-SLAM
-/// (SPEC 24). `matched`: which lanes saw it.
+/// (EQUATIONS 15). `matched`: which lanes saw it.
 template <class Real, class Where, class Mask>
 Innovation<Real> absorb(CorrelatedMap<Real>& maps, std::size_t b, const Where& at,
                         const RangeBearing<Real>& seen, const SensorNoise& noise,

@@ -37,7 +37,7 @@ BasicPose<Real> draw_from(const PoseFactor<Real>& factor, const StreamIdentity& 
 }
 
 /// log N(pose; gaussian) without 2 pi, which cancels in a ratio; the covariance is made invertible
-/// by 1e-12 m^2 and 1e-14 rad^2 (SPEC 7.2 r).
+/// by 1e-12 m^2 and 1e-14 rad^2 (EQUATIONS (6.3)).
 template <class Real>
 class PoseDensity {
  public:

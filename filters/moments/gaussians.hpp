@@ -48,7 +48,7 @@ template <class Real>
           .hh = P.hh};
 }
 
-/// F P F' for F = [1 0 x; 0 1 y; 0 0 1]: a heading that errs bends the way (SPEC 2.1).
+/// F P F' for F = [1 0 x; 0 1 y; 0 0 1]: a heading that errs bends the way (EQUATIONS 1).
 template <class Real>
 [[gnu::always_inline]] inline Symmetric3<Real> sheared(const Symmetric3<Real>& P, const Real& x,
                                                        const Real& y) {
@@ -128,7 +128,7 @@ template <class Real>
   P.hh = fma(weight * column.h, column.h, P.hh);
 }
 
-/// Lower triangular factor; a pivot that is zero but for rounding gives a zero column (SPEC 4).
+/// Lower triangular factor; a pivot that is zero but for rounding gives a zero column.
 template <class Real>
 struct Cholesky3 {
   Real xx, yx, yy, hx, hy, hh;

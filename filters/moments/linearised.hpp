@@ -66,13 +66,13 @@ Real as_number(const Mask& mask) {
   return select(mask, Real(1.0), Real(0.0));
 }
 
-/// Nearer than kLeastDistance a bearing has no derivative: the detection is left out (SPEC 3).
+/// Nearer than kLeastDistance a bearing has no derivative: the detection is left out (EQUATIONS 2).
 template <class Real>
 [[gnu::always_inline]] inline auto is_usable(const Sightline<Real>& s) {
   return s.predicted.range > Real(kLeastDistance);
 }
 
-/// What a detection says of a pose Gaussian (SPEC 7.1): innovation, its covariance S, and P Hx'
+/// What a detection says of a pose Gaussian (EQUATIONS 6): innovation, its covariance S, and P Hx'
 /// with Hx = [-ux -uy 0; uy/d -ux/d -1].
 template <class Real>
 struct Innovation {
@@ -142,7 +142,7 @@ struct Decorrelated {
   }
 };
 
-/// Kalman update of a pose by an innovation, in the lanes of `use` (SPEC 7.1).
+/// Kalman update of a pose by an innovation, in the lanes of `use` (EQUATIONS 6).
 template <class Real, class Mask>
 [[gnu::always_inline]] inline Density<Real> condition(PoseGaussian<Real>& pose,
                                                       const Innovation<Real>& v, const Mask& use) {
@@ -159,7 +159,7 @@ template <class Real, class Mask>
   return d.density;
 }
 
-/// Absorbs one detection into a pose Gaussian by the extended Kalman filter (SPEC 7.1), with the
+/// Absorbs one detection into a pose Gaussian by the extended Kalman filter (EQUATIONS 6), with the
 /// model linearised on the sightline `s`. `matched`: which lanes saw it.
 template <class Real, class Mask>
 [[gnu::always_inline]] inline Innovation<Real> absorb(PoseGaussian<Real>& pose,
@@ -176,7 +176,7 @@ template <class Real, class Mask>
   return v;
 }
 
-/// absorb() with the model linearised at the refined pose: sequential refinement (SPEC 7.1).
+/// absorb() with the model linearised at the refined pose: sequential refinement (EQUATIONS 6).
 template <class Real, class Mask>
 [[gnu::always_inline]] inline Innovation<Real> refine_pose(PoseGaussian<Real>& pose,
                                                            const LandmarkGaussian<Real>& landmark,
@@ -189,7 +189,8 @@ template <class Real, class Mask>
 }
 
 /// absorb() with the model linearised at the predicted pose for all detections alike: the sequence
-/// then is the batch update with the stacked innovation, and its evidence N(nu; S) (SPEC 7.2 b).
+/// then is the batch update with the stacked innovation, and its evidence N(nu; S) (EQUATIONS
+/// (6.4)).
 template <class Real, class Mask>
 [[gnu::always_inline]] inline void refine_pose_in_batch(
     PoseGaussian<Real>& pose, const BasicPose<Real>& predicted,
@@ -215,8 +216,8 @@ template <class Real>
           along_y * s.uy + across_y * s.ux};
 }
 
-/// Absorbs one detection into a landmark seen from an exactly known pose (SPEC 7.3). In the frame
-/// of the line of sight the noise R is diagonal, and the new covariance P (P + R)^-1 R has no
+/// Absorbs one detection into a landmark seen from an exactly known pose (EQUATIONS 4). In the
+/// frame of the line of sight the noise R is diagonal, and the new covariance P (P + R)^-1 R has no
 /// difference that could turn negative; the gain is that times R^-1.
 template <class Real, class Mask, class Weighed>
 [[gnu::always_inline]] inline Innovation<Real> update_landmark(
@@ -254,7 +255,8 @@ template <class Real, class Mask, class Weighed>
   return {innovation, S.along, S.cross * s.per_range, S.across * s.per_range * s.per_range, {}, {}};
 }
 
-/// A landmark seen for the first time from an exactly known pose: g(x, z) and Gz R Gz' (SPEC 7.3).
+/// A landmark seen for the first time from an exactly known pose: g(x, z) and Gz R Gz' (EQUATIONS
+/// 4).
 template <class Real>
 LandmarkGaussian<Real> new_landmark(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
                                     const SensorNoise& noise) {

@@ -11,7 +11,7 @@
 /// them moves the pose and which keeps the map.
 namespace montecarta {
 
-/// The extended Kalman filter (SPEC 7).
+/// The extended Kalman filter (EQUATIONS 3).
 struct Linearised {
   void advance(MotionIncrement& motion, const Control& control, double duration,
                const Belief& belief) const {
@@ -40,7 +40,7 @@ struct Linearised {
   }
 };
 
-/// Sigma points: unscented (SPEC 8) or central differences (SPEC 9, 10), by their rules.
+/// Sigma points: unscented or central differences (EQUATIONS 3), by their rules.
 class SigmaPoints {
  public:
   struct Rules {

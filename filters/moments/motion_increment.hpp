@@ -11,8 +11,8 @@ namespace montecarta {
 /// The motion since poses were last drawn, in the frame of the drawn pose. The vehicle does not
 /// know where in the world it is, so this Gaussian is the same for every particle: it is predicted
 /// once for all of them and turned to each particle's heading only when it is needed. Exact: equal
-/// to one prediction per particle and step, by the extended Kalman filter (SPEC 2.1: advance()) or
-/// by sigma points (sigma_motion.hpp).
+/// to one prediction per particle and step, by the extended Kalman filter (EQUATIONS 1: advance())
+/// or by sigma points (sigma_motion.hpp).
 class MotionIncrement {
  public:
   MotionIncrement() = default;
@@ -37,7 +37,8 @@ class MotionIncrement {
   const Pose& pose() const { return pose_; }
   const Symmetric3<double>& covariance() const { return covariance_; }
 
-  /// What a particle that was at `origin` exactly believes now (SPEC 5: P_i accumulates from zero).
+  /// What a particle that was at `origin` exactly believes now (EQUATIONS (1.6): P_i accumulates
+  /// from zero).
   template <class Real>
   [[gnu::always_inline]] PoseGaussian<Real> from(const BasicPose<Real>& origin) const {
     const Direction<Real> d = direction_of(origin.heading);

@@ -58,7 +58,8 @@ struct LandmarkSight {
             (c_r * v.s_bb - c_b * v.s_rb) * inverse, (c_b * v.s_rr - c_r * v.s_rb) * inverse};
   }
 
-  /// [S - K A, K sqrt(N)] times its transpose: a sum of squares, nothing to turn negative (SPEC 4).
+  /// [S - K A, K sqrt(N)] times its transpose: a sum of squares, nothing to turn negative
+  /// (EQUATIONS 3).
   [[gnu::always_inline]] Turned<Real> after(const LandmarkGain<Real>& K) const {
     const Real a = column.along - K.along_range * slope.range - K.along_bearing * slope.bearing;
     const Real c = column.across - K.across_range * slope.range - K.across_bearing * slope.bearing;
@@ -73,7 +74,7 @@ struct LandmarkSight {
   }
 };
 
-/// Absorbs one detection into a landmark seen from an exactly known pose (SPEC 8.2, 10).
+/// Absorbs one detection into a landmark seen from an exactly known pose (EQUATIONS 7, 8).
 template <class Real, class Mask, class Weighed>
 [[gnu::always_inline]] inline Innovation<Real> update_landmark_by_sigma_points(
     LandmarkGaussian<Real>& landmark, const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
@@ -100,7 +101,7 @@ template <class Real, class Mask, class Weighed>
 }
 
 /// A landmark seen for the first time from an exactly known pose: the points z +- spread sqrt(R)
-/// e_i sent through g(x, .) (SPEC 10). The range's points lie on the ray; those of the bearing
+/// e_i sent through g(x, .) (EQUATIONS 8). The range's points lie on the ray; those of the bearing
 /// stand `ray` = (cos, sin)(spread sigma_bearing) to both sides of it.
 template <class Real>
 LandmarkGaussian<Real> new_landmark_by_sigma_points(const BasicPose<Real>& pose,

@@ -42,7 +42,7 @@ Pair steer_pair(const BodyStep<double>& centre, const BodyStep<double>& leftward
 
 /// The column of the square root that carries the heading; zero where the heading is certain.
 Column3<double> heading_column(const Symmetric3<double>& P) {
-  if (P.hh <= 1e-18) return {0.0, 0.0, 0.0};  // SPEC 4
+  if (P.hh <= 1e-18) return {0.0, 0.0, 0.0};  // certain but for rounding
   const double root = std::sqrt(P.hh), inverse = 1.0 / root;
   return {P.xh * inverse, P.yh * inverse, root};
 }

@@ -6,7 +6,7 @@
 
 namespace montecarta {
 
-/// One control step of `duration` [s] by sigma points of (pose, control noise) (SPEC 8.2, 9). The
+/// One control step of `duration` [s] by sigma points of (pose, control noise) (EQUATIONS 3). The
 /// square root has the heading first: its column alone bends, those of x and y are carried along
 /// unchanged. Equal to sending all eleven points through the vehicle.
 MotionIncrement moved_by_sigma_points(const MotionIncrement& before, const Control& control,

@@ -6,7 +6,7 @@
 namespace montecarta {
 
 /// Whether a landmark's own covariance is part of the innovation that moves the pose. Kim 2008 and
-/// Ankishan eq. (16)-(18) print it without; it always is part of the weight (SPEC 8.1).
+/// Ankishan eq. (16)-(18) print it without; it always is part of the weight (EQUATIONS 7).
 enum class MapUncertainty { on, off };
 
 /// Column of three given along and across the line of sight, turned into the map.
@@ -56,7 +56,7 @@ template <class Real>
 }
 
 /// Absorbs one detection into a pose Gaussian by sigma points, drawn anew from what the detection
-/// before left (SPEC 8.2, 9). `matched`: which lanes saw it.
+/// before left (EQUATIONS 7, 8). `matched`: which lanes saw it.
 template <class Real, class Mask>
 [[gnu::always_inline]] inline Innovation<Real> refine_pose_by_sigma_points(
     PoseGaussian<Real>& pose, const LandmarkGaussian<Real>& landmark,

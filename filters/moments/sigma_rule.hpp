@@ -3,9 +3,9 @@
 
 namespace montecarta {
 
-/// A sigma-point transform as numbers (SPEC 8, 9). Points lie in pairs at centre +- spread times a
-/// column of the square root. With Y0 the image of the centre, D = (Y+ - Y-)/2 and
-/// E = (Y+ + Y-)/2 - Y0 of every pair, the moments of the image are
+/// A sigma-point transform as numbers (EQUATIONS 3). Points lie in pairs at centre +- spread times
+/// a column of the square root. With Y0 the image of the centre, D = (Y+ - Y-)/2 and E = (Y+ +
+/// Y-)/2 - Y0 of every pair, the moments of the image are
 ///   mean = Y0 + e with e = mean_weight sum E,
 ///   covariance = sum of (antisymmetric D D' + symmetric E E') + shift e e',
 ///   cross-covariance = antisymmetric spread sum of (column D').
@@ -19,17 +19,18 @@ struct SigmaRule {
   double shift;          ///< of e e' in the covariance
 };
 
-/// Scaled unscented transform of `n` dimensions (SPEC 8): spread^2 = n + lambda = alpha^2 (n +
+/// Scaled unscented transform of `n` dimensions (EQUATIONS 3): spread^2 = n + lambda = alpha^2 (n +
 /// kappa). The weights w0 = lambda/(n + lambda), wc0 = w0 + 1 - alpha^2 + beta, wi = 1/(2(n +
 /// lambda)) collected by pairs leave beta - alpha^2 for e e'.
 SigmaRule unscented_rule(double n, double alpha, double beta, double kappa);
 
-/// Central differences of interval h (SPEC 9); h^2 is the kurtosis of the prior, 3 for a Gaussian.
+/// Central differences of interval h (EQUATIONS 3); h^2 is the kurtosis of the prior, 3 for a
+/// Gaussian.
 SigmaRule central_difference_rule(double h);
 
 /// The weights that Ankishan eq. (14) prints: (h^2 - L)/h, 1/(2h), 1/(4h^2), (h^2 - 1)/(4h^2). The
 /// first two sum to h instead of one; here they weigh deviations from Y0, without which a pose at a
-/// distance from the origin would be multiplied by sqrt(3) at every step (SPEC 9).
+/// distance from the origin would be multiplied by sqrt(3) at every step (EQUATIONS 3).
 SigmaRule central_difference_rule_as_printed(double h);
 
 }  // namespace montecarta

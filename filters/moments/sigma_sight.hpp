@@ -4,7 +4,7 @@
 #include "filters/moments/linearised.hpp"
 #include "filters/moments/sigma_rule.hpp"
 
-/// Sigma points of a sight (SPEC 8.2, 9), in the frame of the line of sight. The square roots there
+/// Sigma points of a sight (EQUATIONS 3), in the frame of the line of sight. The square roots there
 /// have the component across the line first, because range and bearing are curved in that one
 /// alone: every other column leaves the relative position on the line, where the range
 /// is minus `along` and the bearing minus `heading` exactly, so that its two points need not be
@@ -17,7 +17,7 @@ struct AcrossColumn {
   Real along, across, heading;
 };
 
-/// 1 / sqrt(square), or 0 where the square is zero but for rounding (SPEC 4).
+/// 1 / sqrt(square), or 0 where the square is zero but for rounding.
 template <class Real>
 [[gnu::always_inline]] inline Real inverse_root(const Real& square) {
   return select(square > 1e-18 * (Real(1.0) + square), Real(1.0) / sqrt(square), Real(0.0));

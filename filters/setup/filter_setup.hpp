@@ -24,12 +24,12 @@ struct Belief {
 
 enum class Association { known, nearest };
 
-/// Who decides which landmark a detection belongs to (study file: [association]; SPEC 17).
+/// Who decides which landmark a detection belongs to (study file: [association]; EQUATIONS 17).
 struct AssociationSettings {
   Association kind = Association::known;
   double gate = 5.991464547107979;  ///< chi-square, 2 dof: a detection nearer than this may match
   double new_gate = 25.0;           ///< farther than this from every landmark: a new one
-  double log_new_density_offset = 0.0;  ///< added to log p0 of SPEC 17 [D]
+  double log_new_density_offset = 0.0;  ///< added to log p0 of EQUATIONS 17
   std::size_t most_landmarks = 1000;  ///< a map that grows beyond this has run away: the run fails
 };
 

@@ -14,7 +14,7 @@ const std::vector<std::string> kResamplings{"systematic", "stratified", "residua
 std::vector<Option> resampling_options(const std::string& particles) {
   return {
       count_option("particles", particles, 1, 1e6, "number of particles"),
-      choice_option("resampling", "systematic", kResamplings, "how parents are drawn (SPEC 18)"),
+      choice_option("resampling", "systematic", kResamplings, "draw of the parents (EQUATIONS 18)"),
       number_option("resample_below", "0.5", 0, 1,
                     "resample where ESS < this times particles; Bailey's simulator has 0.75")};
 }

@@ -9,8 +9,8 @@
 
 namespace montecarta {
 
-/// How many particles, and how and when they are resampled (SPEC 18): `particles`, `resampling`,
-/// `resample_below`, in the order in which they are documented.
+/// How many particles, and how and when they are resampled (EQUATIONS 18): `particles`,
+/// `resampling`, `resample_below`, in the order in which they are documented.
 std::vector<Option> resampling_options(const std::string& particles);
 /// Reads `resampling`.
 Resampling chosen_resampling(const FilterOptions& options);

@@ -21,8 +21,7 @@ double nees(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
   return error.dot(covariance.llt().solve(error));
 }
 
-/// One vehicle in a linear world and the Kalman filter that knows the world's matrices
-/// (SPEC 23.10).
+/// One vehicle in a linear world and the Kalman filter that knows the world's matrices.
 class LinearRun {
  public:
   explicit LinearRun(std::uint64_t run) : draw_({.seed = 2310, .run = run, .purpose = Draw::test}) {
@@ -112,8 +111,8 @@ PoseGaussian<double> gaussian_of(const Eigen::Vector3d& mean, const Eigen::Matri
 }
 
 TEST(FastSlam2Weights, InALinearCaseTheRatioIsTheClosedFormWhateverWasDrawn) {
-  // SPEC 23.5: p(z | x) N(x; prior) / N(x; posterior) is p(z), for every x. Drawn and weighed by
-  // what the filters draw and weigh with; a tenth keeps headings within half a turn.
+  // EQUATIONS (6.3): p(z | x) N(x; prior) / N(x; posterior) is p(z), for every x. Drawn and weighed
+  // by what the filters draw and weigh with; a tenth keeps headings within half a turn.
   RngStream draw({.seed = 235, .purpose = Draw::test});
   for (int n = 0; n < 200; ++n) {
     const Eigen::Matrix3d P = 0.01 * random_covariance<3>(draw);
@@ -146,8 +145,7 @@ TEST(FastSlam2Weights, InALinearCaseTheRatioIsTheClosedFormWhateverWasDrawn) {
 
 TEST(FastSlam2, SeeingAgainFromAKnownPoseIsTheKalmanFiltersUpdate) {
   // Landmarks born at an exactly known pose are independent of it and of each other, so the first
-  // scan that sees them again is the same Bayesian update for both filters, likelihood included
-  // (SPEC 23.5: M = 1).
+  // scan that sees them again is the same Bayesian update for both filters, likelihood included.
   const SmallWorld world = drive_of_two_scans();
   const auto kalman = make_ekf_slam({.belief = {},
                                      .association = {},
@@ -171,7 +169,7 @@ TEST(FastSlam2, SeeingAgainFromAKnownPoseIsTheKalmanFiltersUpdate) {
 }
 
 TEST(FastSlam2, WeighsAllDrawsAlikeByTheRatioWhereTheModelsAreStraight) {
-  // SPEC 23.5 of the filter itself: before the second scan the particles are equal, so their
+  // The same of the filter itself: before the second scan the particles are equal, so their
   // weights stay equal, wherever each was drawn, and sum to the closed form.
   SmallWorldSettings settings = settings_of_two_scans();
   settings.noise = fine();

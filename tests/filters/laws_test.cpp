@@ -261,8 +261,8 @@ std::string text_of(const std::string& path) {
 TEST(OwnFilterPage, QuotesTheExampleThatIsCompiled) {
   const std::string example = text_of("filters/dead_reckoning.hpp");
   ASSERT_FALSE(example.empty());
-  EXPECT_NE(text_of("filters/README.md").find(example), std::string::npos)
-      << "filters/README.md must quote filters/dead_reckoning.hpp as it stands";
+  EXPECT_NE(text_of("filters/WRITE_YOUR_OWN.md").find(example), std::string::npos)
+      << "filters/WRITE_YOUR_OWN.md must quote filters/dead_reckoning.hpp as it stands";
 }
 
 }  // namespace

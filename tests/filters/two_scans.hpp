@@ -4,7 +4,7 @@
 #include "tests/filters/small_world.hpp"
 
 /// The first scan that sees landmarks again: a case in which FastSLAM II and the Kalman filter are
-/// one (SPEC 23.5).
+/// one.
 namespace montecarta {
 
 inline SmallWorldSettings settings_of_two_scans() { return {.seed = 77, .landmarks = 40}; }

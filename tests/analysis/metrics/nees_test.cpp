@@ -32,7 +32,7 @@ TEST(Nees, EqualsTheQuadraticFormOfEachBlock) {
   }
 }
 
-// After eight noisy steps the deviations along the axes are 14 mm, 8 mm and 0.07 mm (SPEC 2.1).
+// After eight noisy steps the deviations along the axes are 14 mm, 8 mm and 0.07 mm (EQUATIONS 1).
 TEST(Nees, BelievesAThinCovariance) {
   const Eigen::Vector3d axes(0.0141, 0.0081, 7.3e-5);
   const Eigen::Matrix3d turn = Eigen::Quaterniond(0.9, 0.1, 0.3, 0.2).normalized().matrix();
@@ -88,7 +88,7 @@ Summary mean_nees_of_draws(int particles, int samples) {
   return summary.result();
 }
 
-// SPEC 23.11: even a perfect filter of M particles has d (M + 1) / (M - d - 2) by the spread.
+// STATISTICS 4: even a perfect filter of M particles has d (M + 1) / (M - d - 2) by the spread.
 TEST(Nees, OfAParticleCloudHasHotellingsMean) {
   for (const int particles : {20, 30, 100}) {
     const Summary found = mean_nees_of_draws(particles, 10'000);
@@ -96,7 +96,7 @@ TEST(Nees, OfAParticleCloudHasHotellingsMean) {
     EXPECT_NEAR(found.mean, expected, 5.0 * found.standard_error()) << particles;
     EXPECT_LT(found.standard_error(), 0.02 * expected);
   }
-  EXPECT_DOUBLE_EQ(ideal_spread_nees(3, 10), 6.6);  // SPEC 19
+  EXPECT_DOUBLE_EQ(ideal_spread_nees(3, 10), 6.6);  // STATISTICS 4
   EXPECT_TRUE(std::isinf(ideal_spread_nees(3, 5)));
 }
 

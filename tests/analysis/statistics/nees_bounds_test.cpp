@@ -32,7 +32,7 @@ void expect_match(const IntervalMatch& match, std::uint64_t runs, std::uint64_t 
   EXPECT_DOUBLE_EQ(match.level, level);
 }
 
-// Havangi prints this interval as 95 %: it is the one of 90 % (SPEC 22).
+// Havangi prints this interval as 95 %: it is the one of 90 % (STATISTICS 3).
 TEST(MatchInterval, FindsHavangisIntervalAtNinetyPercent) {
   const auto matches = match_interval(1.3, 2.79);
   ASSERT_FALSE(matches.empty());

@@ -192,7 +192,7 @@ TEST(SimulatedDrive, SaysWhichWaypointCannotBeReached) {
   }
 }
 
-// The facts of SPEC 1.2.
+// Facts of the benchmark map.
 TEST(SimulatedDrive, RepeatsThePublishedBenchmark) {
   const std::filesystem::path map = published_data("bailey/example_webmap.mat");
   if (map.empty())

@@ -87,7 +87,7 @@ TEST(Plan, RefusesJointEstimatesThatNoCellHas) {
 TEST(Plan, CanScanAsThePublicSimulatorDoes) {
   const StudyPlan plan =
       make_plan(parsed(with("[cells]", "scan_rate = 4.444444444444445\n[cells]")));
-  EXPECT_EQ(plan.drives->itinerary().scan_step[0], 8U) << "every ninth step (SPEC 0)";
+  EXPECT_EQ(plan.drives->itinerary().scan_step[0], 8U) << "every ninth step (EQUATIONS 1)";
 }
 
 }  // namespace

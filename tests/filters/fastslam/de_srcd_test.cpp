@@ -116,7 +116,7 @@ TEST(DeSrcd, TurnsWithTheWorldInEveryMode) {
 }
 
 TEST(DeSrcd, WeighsItsDrawsSoThatTheyAreThePosteriorWhereverItDrawsAbout) {
-  // The first scan that sees landmarks again is the Kalman filter's update (SPEC 23.5). In mode
+  // The first scan that sees landmarks again is the Kalman filter's update. In mode
   // shared all particles still stand at one place, so evolution leaves the centre at the
   // prediction, and the vehicle drove another way, so that the posterior is elsewhere; in both too
   // much is drawn from. The weights must make up for that.
@@ -183,7 +183,7 @@ Weighed average(const Draw& draw) {
   return {w / kDraws, wx / kDraws, error(w, ww), error(wx, wxwx)};
 }
 
-TEST(DeSrcd, HonestWeightsAreUnbiasedForAMisplacedCentreAndPrintedOnesAreNot) {  // SPEC 23.8
+TEST(DeSrcd, HonestWeightsAreUnbiasedForAMisplacedCentreAndPrintedOnesAreNot) {
   const LinearCase c;
   const PoseGaussian<double> posterior = c.refined(c.prior.mean.x);
   const double evidence = std::exp(c.log_evidence(c.prior.mean.x));

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <vector>
 
-// Acceptance test 7 of the specification: the weights of the auxiliary marginal filter.
+// EQUATIONS (12.4): the weights of the auxiliary marginal filter.
 namespace montecarta {
 namespace {
 

@@ -75,7 +75,7 @@ int clouds_within_the_bound() {
   return n_transformed;
 }
 
-// Acceptance test 9 of the specification.
+// EQUATIONS (13.3).
 TEST(GaussTransform, ErrsByNoMoreThanItsBound) {
   EXPECT_GE(clouds_within_the_bound<1>(), 16);
   EXPECT_GE(clouds_within_the_bound<2>(), 10);

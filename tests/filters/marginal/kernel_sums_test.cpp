@@ -32,7 +32,7 @@ std::vector<std::array<double, 2>> log_sums(const KernelCloud<Real>& cloud, Kern
   return flat;
 }
 
-/// The sums as SPEC 14 writes them.
+/// The sums as EQUATIONS 12 writes them.
 std::vector<std::array<double, 2>> plain_log_sums(const KernelCloud<double>& cloud) {
   std::vector<std::array<double, 2>> logs;
   for (const Pose& target : cloud.targets) {
@@ -95,7 +95,8 @@ TEST(DirectSums, SurviveTargetsFarFromEveryKernel) {
   EXPECT_LT(greatest_difference(log_sums(cloud, KernelSums::tree), logs), 1e-8);
 }
 
-// SPEC 14: neither the order of particles nor a particle that is written as two makes a difference.
+// EQUATIONS 12: neither the order of particles nor a particle that is written as two makes a
+// difference.
 TEST(DirectSums, DoNotDependOnOrderOrOnParticlesSplitInTwo) {
   const KernelCloud<double> cloud(17, 2.0, 0.3, 0.01);
   KernelCloud<double> other = cloud;

@@ -92,7 +92,7 @@ TEST(MapLearning, RecursiveMapsAverageWhatTheySaw) {
   EXPECT_LT(landmark.covariance().xx, 0.04 / 400.0 * 1.5);
 }
 
-// SPEC 15.1: what (25) calls Bellman's principle forgets all scans but the last.
+// EQUATIONS 14: what (25) calls Bellman's principle forgets all scans but the last.
 TEST(MapLearning, OneStepMapsForgetWhateverWasBefore) {
   const Cloud<Lanes> cloud(0.0);
   const MapSettings settings{.mode = MapMode::onestep_converged};

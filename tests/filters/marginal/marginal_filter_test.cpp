@@ -162,7 +162,7 @@ SmallWorld with_echoes(const SmallWorld& world) {
   return other;
 }
 
-/// What of SPEC 12, 15.2 and 17 the runs of a test met.
+/// What of EQUATIONS 9, 14 and 17 the runs of a test met.
 struct Met {
   std::size_t fresh = 0, between_the_gates = 0, lost_to_a_rival = 0, left_alone = 0, accepted = 0;
 

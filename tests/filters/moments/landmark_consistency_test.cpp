@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A landmark seen again and again from one exactly known pose (SPEC 23.13).
+// A landmark seen again and again from one exactly known pose.
 #include "filters/models/eigen_jacobians.hpp"
 #include "filters/moments/moment_transforms.hpp"
 #include "tests/filters/moments/random_gaussians.hpp"

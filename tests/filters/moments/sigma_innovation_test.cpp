@@ -42,7 +42,7 @@ void expect_moments(const Innovation<double>& v, const RandomSight& c,
   EXPECT_LT((to_vector(v.value) - nu).norm(), 1e-13 * (1 + nu.norm()));
 }
 
-TEST(SigmaInnovation, OfALandmarkAddsTheNoiseThatPointsWouldCarry) {  // SPEC 23.3
+TEST(SigmaInnovation, OfALandmarkAddsTheNoiseThatPointsWouldCarry) {
   RngStream draw({.seed = 233, .purpose = Draw::test});
   for (int n = 0; n < 500; ++n) {
     const RandomSight c(draw);
@@ -64,7 +64,7 @@ TEST(SigmaInnovation, OfALandmarkAddsTheNoiseThatPointsWouldCarry) {  // SPEC 23
   }
 }
 
-TEST(SigmaInnovation, OfAPoseAddsTheNoiseThatPointsWouldCarry) {  // SPEC 23.3
+TEST(SigmaInnovation, OfAPoseAddsTheNoiseThatPointsWouldCarry) {
   RngStream draw({.seed = 234, .purpose = Draw::test});
   for (int n = 0; n < 500; ++n) {
     const RandomSight c(draw);
@@ -104,7 +104,7 @@ struct LinearSight {
   Eigen::Matrix2d whole() const { return of_pose + of_map + of_sensor; }
 };
 
-TEST(SigmaInnovation, IsThatOfPoseMapAndSensorWhereTheModelsAreStraight) {  // SPEC 23.6
+TEST(SigmaInnovation, IsThatOfPoseMapAndSensorWhereTheModelsAreStraight) {
   RngStream draw({.seed = 236, .purpose = Draw::test});
   for (int n = 0; n < 500; ++n) {
     const RandomSight c(draw, 1e-4);
@@ -125,7 +125,7 @@ TEST(SigmaInnovation, IsThatOfPoseMapAndSensorWhereTheModelsAreStraight) {  // S
   }
 }
 
-TEST(LinearisedInnovation, IsThatOfPoseMapAndSensor) {  // SPEC 23.6
+TEST(LinearisedInnovation, IsThatOfPoseMapAndSensor) {
   RngStream draw({.seed = 237, .purpose = Draw::test});
   for (int n = 0; n < 500; ++n) {
     const RandomSight c(draw);

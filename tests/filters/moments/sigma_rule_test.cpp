@@ -109,7 +109,7 @@ TEST(SigmaRule, SevenDimensionsWithKappaLessByTwoAreFive) {
 }
 
 TEST(SigmaRule, CentralDifferencesHaveTheVarianceOfAQuadraticAndThePrintHasNot) {
-  // SPEC 9: y = a + b x + c x^2 at x ~ N(m, s^2) has variance (b + 2 c m)^2 s^2 + 2 c^2 s^4.
+  // EQUATIONS 3: y = a + b x + c x^2 at x ~ N(m, s^2) has variance (b + 2 c m)^2 s^2 + 2 c^2 s^4.
   const double h = std::sqrt(3.0), b = 0.7, c = -0.4, m = 1.3, s = 0.8;
   const double D = (b + 2 * c * m) * h * s, E = c * h * h * s * s;
   const double truth = (b + 2 * c * m) * (b + 2 * c * m) * s * s + 2 * c * c * s * s * s * s;

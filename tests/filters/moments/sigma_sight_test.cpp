@@ -67,7 +67,7 @@ TEST(SigmaSight, RefinesAPoseAsFifteenPointsOfSevenDimensionsDo) {
   }
 }
 
-/// Updates by the square-root recursion of SPEC 10, which never forms a covariance.
+/// Updates by the square-root recursion of EQUATIONS 8, which never forms a covariance.
 TEST(SigmaSight, UpdatesALandmarkAsTheSquareRootRecursionDoes) {
   RngStream draw({.seed = 93, .purpose = Draw::test});
   for (int n = 0; n < 500; ++n) {

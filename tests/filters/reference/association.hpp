@@ -32,8 +32,8 @@ inline std::vector<Pairing> pair_by_identity(Scan scan, const Landmarks& map) {
   return pairings;
 }
 
-/// Individual-compatibility nearest neighbour (SPEC 17), literally: a map as it looks from a pose
-/// of covariance P.
+/// Individual-compatibility nearest neighbour (EQUATIONS 17), literally: a map as it looks from a
+/// pose of covariance P.
 struct NearestNeighbour {
   AssociationSettings settings;
   Eigen::Matrix2d R;
@@ -80,7 +80,7 @@ struct NearestNeighbour {
   }
 };
 
-/// log p0 (SPEC 17): log N at D^2 = the gate with S = diag(2 sigma_r^2, 2 sigma_b^2).
+/// log p0 (EQUATIONS 17): log N at D^2 = the gate with S = diag(2 sigma_r^2, 2 sigma_b^2).
 inline double log_unmatched(const AssociationSettings& settings, const Belief& belief) {
   const double det_S_ref =
       2.0 * std::pow(belief.sigma_range, 2) * 2.0 * std::pow(belief.sigma_bearing, 2);

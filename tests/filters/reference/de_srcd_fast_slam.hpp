@@ -6,7 +6,7 @@
 
 namespace montecarta::reference {
 
-/// DE-SRCD-FastSLAM (SPEC 13): SrcdFastSlam between its own evolution and its own weights.
+/// DE-SRCD-FastSLAM (EQUATIONS 10): SrcdFastSlam between its own evolution and its own weights.
 class DeSrcdFastSlam : public SrcdFastSlam {
  public:
   DeSrcdFastSlam(const FastSlamSettings& settings, const SrcdParts& parts, const DeSettings& de)
@@ -63,7 +63,7 @@ class DeSrcdFastSlam : public SrcdFastSlam {
 
   bool pays() const { return de_.mode == DeMode::honest || de_.mode == DeMode::shared; }
 
-  /// DE-H: a population of the particle's own, in standard deviations of its refined Gaussian.
+  /// Mode honest: a population of its own, in standard deviations of its refined Gaussian.
   Eigen::Vector3d most_probable(const StreamIdentity& chance, const Particle& p,
                                 const Eigen::Matrix3d& root, const Eigen::Vector3d& predicted,
                                 const Eigen::Matrix3d& P_predicted, Scan scan) {
@@ -88,7 +88,7 @@ class DeSrcdFastSlam : public SrcdFastSlam {
         }));
   }
 
-  /// DE-P, DE-Q, DE-S: the particles are the population; its frame is the cloud's.
+  /// The other modes: the particles are the population; its frame is the cloud's.
   void move_cloud(const StepContext& context, Scan scan) {
     centres_.clear();
     for (const Particle& p : particles_) centres_.push_back(p.pose);
@@ -142,7 +142,7 @@ class DeSrcdFastSlam : public SrcdFastSlam {
     return sum;
   }
 
-  /// J of DE-Q: log p(pose) p(scan given pose), the map uncertain.
+  /// J of EQUATIONS (10.2): log p(pose) p(scan given pose), the map uncertain.
   double log_posterior(const Eigen::Vector3d& pose, const Particle& p,
                        const Eigen::Vector3d& predicted, const Eigen::Matrix3d& P_predicted,
                        Scan scan) const {

@@ -8,7 +8,7 @@
 
 namespace montecarta::reference {
 
-/// FastSLAM II that draws poses at every `every`-th scan (SPEC 24, last lines), each particle a
+/// FastSLAM II that draws poses at every `every`-th scan (EQUATIONS 11), each particle a
 /// full EKF-SLAM in between; known association, no clutter.
 class DelayedFastSlam final : public SlamFilter {
  public:

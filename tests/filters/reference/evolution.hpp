@@ -15,12 +15,12 @@
 
 namespace montecarta::reference {
 
-/// What a trial starts from (SPEC 12): DE/best/1, DE/rand/1, DE/current/1.
+/// What a trial starts from (EQUATIONS 9): DE/best/1, DE/rand/1, DE/current/1.
 enum class Base { best, random, target };
 
-/// Differential evolution (SPEC 12) with binomial crossover, of vectors of D numbers, literally.
-/// Generation g draws for member i some blocks of a stream, which are pairs: two numbers for who
-/// mates, D for who crosses.
+/// Differential evolution (EQUATIONS 9) with binomial crossover, of vectors of D numbers,
+/// literally. Generation g draws for member i some blocks of a stream, which are pairs: two numbers
+/// for who mates, D for who crosses.
 template <int D>
 class Evolution : public EvolutionRecord {
  public:

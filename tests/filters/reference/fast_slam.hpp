@@ -13,8 +13,9 @@
 
 namespace montecarta::reference {
 
-/// The skeleton of SPEC 5, particle by particle and step by step: what production is held to and
-/// compared with in speed. Filters differ in predict() and in how they refine(), weigh and draw.
+/// The skeleton of EQUATIONS 4, particle by particle and step by step: what production is held to
+/// and compared with in speed. Filters differ in predict() and in how they refine(), weigh and
+/// draw.
 class FastSlam : public SlamFilter {
  public:
   explicit FastSlam(const FastSlamSettings& settings)

@@ -5,8 +5,8 @@
 
 namespace montecarta::reference {
 
-/// FastSLAM I (SPEC 6): poses are drawn from the motion model at every step, and weighed by the
-/// scan.
+/// FastSLAM I (EQUATIONS 5): poses are drawn from the motion model at every step, and weighed by
+/// the scan.
 class FastSlam1 : public FastSlam {
  public:
   using FastSlam::FastSlam;

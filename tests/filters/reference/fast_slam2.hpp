@@ -9,8 +9,8 @@
 
 namespace montecarta::reference {
 
-/// FastSLAM II (SPEC 7): the pose Gaussian is refined by the scan, weighed, and a pose drawn from
-/// it. Filters with other Gaussians differ in move_gaussian(), absorb() and log_likelihood().
+/// FastSLAM II (EQUATIONS 6): the pose Gaussian is refined by the scan, weighed, and a pose drawn
+/// from it. Filters with other Gaussians differ in move_gaussian(), absorb() and log_likelihood().
 class FastSlam2 : public FastSlam {
  public:
   FastSlam2(const FastSlamSettings& settings, Weight weight)
@@ -34,8 +34,8 @@ class FastSlam2 : public FastSlam {
     p.pose = Eigen::Vector3d(step.pose.x, step.pose.y, step.pose.heading);
   }
 
-  /// SPEC 7.1: refines (p.pose, p.covariance) by one detection and returns log N(nu; S_z); nothing
-  /// where the landmark is too near.
+  /// EQUATIONS 6: refines (p.pose, p.covariance) by one detection and returns log N(nu; S_z);
+  /// nothing where the landmark is too near.
   virtual std::optional<double> absorb(Particle& p, const Landmark& landmark,
                                        const Detection& detection) const {
     const auto seen = seen_from(p.pose, landmark, detection, R_);

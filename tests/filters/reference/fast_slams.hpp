@@ -22,17 +22,17 @@ struct FastSlamSettings {
   std::size_t landmarks = 0;  ///< of the world, with known association
 };
 
-/// The three forms of SPEC 7.2.
+/// The three forms of EQUATIONS 6.
 enum class Weight { closed, ratio, batch };
 
-/// Parameters of the scaled unscented transform (SPEC 8).
+/// Parameters of the scaled unscented transform (EQUATIONS 7).
 struct Unscented {
   double alpha = 0.9;
   double beta = 2.0;
   double kappa = 0.0;
 };
 
-/// Where SRCD-FastSLAM and its variants (SPEC 10, 11) use central differences; elsewhere they are
+/// Where SRCD-FastSLAM and its variants (EQUATIONS 8) use central differences; elsewhere they are
 /// FastSLAM II.
 struct SrcdParts {
   bool pose = true;
@@ -41,7 +41,7 @@ struct SrcdParts {
   double h = 1.7320508075688772;
 };
 
-/// What evolution moves in DE-SRCD-FastSLAM (SPEC 13): DE-H, DE-P, DE-Q, DE-S.
+/// What evolution moves in DE-SRCD-FastSLAM (EQUATIONS 10).
 enum class DeMode { honest, as_printed, prior, shared };
 
 struct DeSettings {

@@ -11,7 +11,7 @@
 /// two-by-two matrices as those write it, K = P H' S^-1; nowhere else does anything invert.
 namespace montecarta::reference {
 
-/// log N(v; S), the zero-mean density of SPEC 0, by the Cholesky factor of S, which takes its place
+/// log N(v; S), the density (0.1) of EQUATIONS, by the Cholesky factor of S, which takes its place
 /// column by column. Eigen's own takes the compiler seconds a size.
 template <int N>
 double log_gaussian(const Eigen::Matrix<double, N, 1>& v, Eigen::Matrix<double, N, N> S) {
@@ -32,7 +32,7 @@ double log_gaussian(const Eigen::Matrix<double, N, 1>& v, Eigen::Matrix<double, 
 }
 
 /// Lower Cholesky factor that allows zero pivots: a pivot <= 1e-18 (1 + |P_jj|) gives a zero column
-/// (SPEC 4).
+/// (EQUATIONS, Notation).
 template <int N>
 Eigen::Matrix<double, N, N> psd_chol(const Eigen::Matrix<double, N, N>& P) {
   Eigen::Matrix<double, N, N> L = Eigen::Matrix<double, N, N>::Zero();

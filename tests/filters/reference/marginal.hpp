@@ -17,8 +17,8 @@
 
 namespace montecarta::reference {
 
-/// Marginal and auxiliary marginal particle filter as SPEC 14 writes them, in plain Eigen: what
-/// production is held to.
+/// Marginal and auxiliary marginal particle filter as EQUATIONS 12 writes them, in plain Eigen:
+/// what production is held to.
 class Marginal : public SlamFilter {
  public:
   Marginal(const MarginalSettings& settings, const FilterSetup& setup)
@@ -119,8 +119,8 @@ class Marginal : public SlamFilter {
         [&](const Gaussian& kernel) -> Eigen::Matrix3d { return kernel.covariance + floor; });
   }
 
-  /// SPEC 17: once for all, from the weighted mean pose. Landmarks of a one-step map are parameters
-  /// to the likelihood, without a covariance.
+  /// EQUATIONS 17: once for all, from the weighted mean pose. Landmarks of a one-step map are
+  /// parameters to the likelihood, without a covariance.
   void pair(Scan scan) {
     const auto [mean, P] = mixture(floor_);
     const NearestNeighbour nearest{setup_.association, R_, to_vector(mean), P};
@@ -136,7 +136,7 @@ class Marginal : public SlamFilter {
     return n;
   }
 
-  /// SPEC 14, steps 1 to 4.
+  /// EQUATIONS (12.2) to (12.4).
   void draw_and_weigh(const StepContext& context, Scan scan) {
     const std::size_t M = kernels_.size();
     const std::vector<double> w = weights();
@@ -227,7 +227,7 @@ class Marginal : public SlamFilter {
     return x;
   }
 
-  /// SPEC 15: landmarks seen again first.
+  /// EQUATIONS 14: landmarks seen again first.
   void learn(const StepContext& context, Scan scan) {
     WeighedPoses cloud{.pose = {}, .weight = weights()};
     for (const Gaussian& kernel : kernels_) cloud.pose.push_back(kernel.mean);

@@ -18,7 +18,8 @@ struct Landmark {
   Eigen::Matrix2d factor = Eigen::Matrix2d::Zero();  ///< where the filter keeps square roots
 };
 
-/// One particle of the FastSLAM family (SPEC 5), with its own map and its own opinion on the scan.
+/// One particle of the FastSLAM family (EQUATIONS 4), with its own map and its own opinion on the
+/// scan.
 struct Particle {
   Eigen::Vector3d pose = Eigen::Vector3d::Zero();        ///< x_i; drawn after a scan
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< P_i, accumulated since the last draw
@@ -35,7 +36,7 @@ struct Particle {
 inline Pose as_pose(const Eigen::Vector3d& x) { return {x(0), x(1), x(2)}; }
 inline Eigen::Vector3d to_vector(const Pose& pose) { return {pose.x, pose.y, pose.heading}; }
 
-/// A landmark seen from a pose: everything SPEC 7 derives from h.
+/// A landmark seen from a pose: everything EQUATIONS 6 derives from h.
 struct Seen {
   Matrix23 Hx;
   Eigen::Matrix2d Hf;
@@ -43,7 +44,7 @@ struct Seen {
   Eigen::Vector2d nu;   ///< innovation, bearing wrapped
 };
 
-/// Nothing where the landmark is too near (SPEC 3).
+/// Nothing where the landmark is too near (EQUATIONS 2).
 inline std::optional<Seen> seen_from(const Eigen::Vector3d& pose, const Landmark& landmark,
                                      const Detection& detection, const Eigen::Matrix2d& R) {
   const auto at = linearised_sight(as_pose(pose), Point{landmark.mean(0), landmark.mean(1)});
@@ -53,7 +54,7 @@ inline std::optional<Seen> seen_from(const Eigen::Vector3d& pose, const Landmark
               to_vector(residual(sight_of(detection), at.sight))};
 }
 
-/// Feature EKF at an exactly known pose, Joseph form (SPEC 7.3).
+/// Feature EKF at an exactly known pose, Joseph form (EQUATIONS 4).
 inline void update_landmark(Landmark& landmark, const Seen& seen, const Eigen::Matrix2d& R) {
   const Eigen::Matrix2d K = landmark.covariance * seen.Hf.transpose() * seen.S_f.inverse();
   const Eigen::Matrix2d I_KH = Eigen::Matrix2d::Identity() - K * seen.Hf;
@@ -62,7 +63,7 @@ inline void update_landmark(Landmark& landmark, const Seen& seen, const Eigen::M
       (I_KH * landmark.covariance * I_KH.transpose() + K * R * K.transpose()).eval();
 }
 
-/// mu = g(x, z), Sigma = Gz R Gz' (SPEC 7.3).
+/// mu = g(x, z), Sigma = Gz R Gz' (EQUATIONS 4).
 inline Landmark new_landmark(const Eigen::Vector3d& pose, const Detection& detection,
                              const Eigen::Matrix2d& R) {
   const auto placed = linearised_place(as_pose(pose), sight_of(detection));

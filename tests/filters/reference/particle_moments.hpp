@@ -11,7 +11,7 @@
 namespace montecarta::reference {
 
 /// Moments of sum_i w_i N(mean(i), covariance(i)), headings as differences from the heaviest
-/// particle (SPEC 19). `Weighed`: whatever has a log_weight.
+/// particle (EQUATIONS 19). `Weighed`: whatever has a log_weight.
 template <class Weighed, class Mean, class Covariance>
 PoseMoments mixture_moments(const std::vector<Weighed>& particles, const Mean& mean,
                             const Covariance& covariance) {

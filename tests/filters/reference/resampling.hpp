@@ -10,7 +10,7 @@
 namespace montecarta::reference {
 
 /// Parents of the next generation: particle m descends from the first whose cumulated weight
-/// exceeds u_m = (m + U) / M, one U for all (systematic) or one each (stratified) (SPEC 18).
+/// exceeds u_m = (m + U) / M, one U for all (systematic) or one each (stratified) (EQUATIONS 18).
 inline std::vector<std::uint32_t> draw_parents(Scheme scheme, const std::vector<double>& weights,
                                                const StepContext& context) {
   std::vector<std::uint32_t> parents(weights.size());

@@ -21,8 +21,8 @@ struct WeighedPoses {
   std::vector<double> weight;
 };
 
-/// How a landmark of the one map learns from a detection made from all poses, as SPEC 15 writes it,
-/// in plain Eigen: by evolution, or by Gauss-Newton with numerical care left out.
+/// How a landmark of the one map learns from a detection made from all poses, as EQUATIONS 14
+/// writes it, in plain Eigen: by evolution, or by Gauss-Newton with numerical care left out.
 class SharedMapLearning {
  public:
   SharedMapLearning(const MapSettings& settings, const Belief& belief)
@@ -67,7 +67,7 @@ class SharedMapLearning {
   }
 
   const Evolution<2>& evolution() const { return evolution_; }
-  /// Landmarks in the dead zone of SPEC 15.2, so far.
+  /// Landmarks in the dead zone of EQUATIONS 14, so far.
   std::size_t left_alone() const { return left_alone_; }
 
  private:
@@ -85,7 +85,7 @@ class SharedMapLearning {
     return nu.dot(R_.inverse() * nu);
   }
 
-  /// -2 log Sum w exp(-nu' R^-1 nu / 2), or a mean of squares (SPEC 15.1).
+  /// -2 log Sum w exp(-nu' R^-1 nu / 2), or a mean of squares (EQUATIONS 14).
   double objective(const Eigen::Vector2d& place, const WeighedPoses& cloud,
                    const Detection& detection) const {
     double mean = 0.0, printed = 0.0;
@@ -104,7 +104,7 @@ class SharedMapLearning {
     return -2.0 * (peak + std::log(sum));
   }
 
-  /// SPEC 15.4.
+  /// EQUATIONS 14.
   Eigen::Vector2d evolved_place(const StreamIdentity& chance, double heading,
                                 const WeighedPoses& cloud, const Detection& detection,
                                 const Known& known) {
@@ -128,7 +128,7 @@ class SharedMapLearning {
     return known.mean + ahead * best;
   }
 
-  /// SPEC 15.3 by Newton's method with the Gauss-Newton matrix, until it rests.
+  /// EQUATIONS 14 by Newton's method with the Gauss-Newton matrix, until it rests.
   Eigen::Vector2d gauss_newton_place(const WeighedPoses& cloud, const Detection& detection,
                                      const Known& known) const {
     Landmark at{.mean = known.mean, .covariance = Eigen::Matrix2d::Zero()};

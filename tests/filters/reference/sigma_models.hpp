@@ -75,7 +75,7 @@ Eigen::Matrix<double, A + B + C, A + B + C> blocks(const Eigen::Matrix<double, A
   return S;
 }
 
-/// Whether a bearing can be told (SPEC 3).
+/// Whether a bearing can be told (EQUATIONS 2).
 inline bool is_far_enough(const Vector<3>& pose, const Landmark& landmark) {
   return (landmark.mean - pose.head<2>()).norm() >= kLeastDistance;
 }

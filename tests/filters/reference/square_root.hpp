@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-/// The square-root toolbox of SPEC 4 and the central differences of SPEC 9, literally.
+/// The square-root form and the central differences of EQUATIONS 3, literally.
 namespace montecarta::reference {
 
 /// The lower triangular L, diagonal not negative, with L L' = A A' (the papers' "qr"): each row of
@@ -51,7 +51,7 @@ template <int N, int M>
   return true;
 }
 
-/// First (A) and second (B) differences of a model, and the mean of its image (SPEC 9).
+/// First (A) and second (B) differences of a model, and the mean of its image (EQUATIONS 3).
 template <int N, int M>
 struct Differences {
   Vector<M> mean;
@@ -77,7 +77,7 @@ Differences<N, M> central_differences(const Vector<N>& x, const Eigen::Matrix<do
   return image;
 }
 
-/// K = (P_xz / S_y') / S_y (SPEC 4).
+/// K = (P_xz / S_y') / S_y (EQUATIONS 3).
 template <int N, int M>
 Eigen::Matrix<double, N, M> gain(const Eigen::Matrix<double, N, M>& P_xz,
                                  const Eigen::Matrix<double, M, M>& S_y) {

@@ -54,8 +54,8 @@ class SquareRootEkfSlam {
     move_by(lower.bottomLeftCorner(n, 2) * white);
   }
 
-  /// SPEC 24 in a square root: a turn of the columns leaves the heading to the first of them, and
-  /// of that the drawn share is taken.
+  /// EQUATIONS 16 in a square root: a turn of the columns leaves the heading to the first of them,
+  /// and of that the drawn share is taken.
   void draw_heading(double keep, double normal) {
     const Eigen::VectorXd heading = F.row(2).transpose();
     const double sigma = heading.norm();

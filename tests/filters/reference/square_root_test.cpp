@@ -30,7 +30,7 @@ struct LinearSystem {
         R(random_matrix<2, 2>(draw) + Eigen::Matrix2d::Identity()) {}
 };
 
-/// SPEC 9 with the process noise augmented and the sensor's added.
+/// EQUATIONS 3 with the process noise augmented and the sensor's added.
 struct SquareRootFilter {
   Vector<3> x = Vector<3>::Zero();
   Eigen::Matrix3d S = Eigen::Matrix3d::Identity();
@@ -81,7 +81,7 @@ struct KalmanFilter {
   }
 };
 
-TEST(SquareRootCentralDifferences, AreTheKalmanFilterOnLinearSystems) {  // SPEC 23.1
+TEST(SquareRootCentralDifferences, AreTheKalmanFilterOnLinearSystems) {
   RngStream draw({.seed = 231, .purpose = Draw::test});
   for (int n = 0; n < 1000; ++n) {
     const LinearSystem system(draw);
@@ -98,7 +98,7 @@ TEST(SquareRootCentralDifferences, AreTheKalmanFilterOnLinearSystems) {  // SPEC
   }
 }
 
-TEST(CentralDifferences, HaveTheMomentsOfAQuadraticButNotOfAProduct) {  // SPEC 23.2
+TEST(CentralDifferences, HaveTheMomentsOfAQuadraticButNotOfAProduct) {
   RngStream draw({.seed = 232, .purpose = Draw::test});
   using One = Vector<1>;
   for (int n = 0; n < 200; ++n) {
@@ -122,7 +122,7 @@ Vector<2> bent(const Vector<3>& x) {
   return {std::sqrt(4.0 + x.squaredNorm()), std::atan2(x(1), 3.0 + x(0)) - x(2)};
 }
 
-TEST(CentralDifferences, NoiseAsPointsIsNoiseAdded) {  // SPEC 23.3
+TEST(CentralDifferences, NoiseAsPointsIsNoiseAdded) {
   RngStream draw({.seed = 233, .purpose = Draw::test});
   for (int n = 0; n < 200; ++n) {
     const Eigen::Matrix3d S = 0.3 * random_matrix<3, 3>(draw);
@@ -143,7 +143,7 @@ TEST(CentralDifferences, NoiseAsPointsIsNoiseAdded) {  // SPEC 23.3
   }
 }
 
-TEST(SquareRootUpdate, ThreeFormsAgree) {  // SPEC 23.4
+TEST(SquareRootUpdate, ThreeFormsAgree) {
   RngStream draw({.seed = 234, .purpose = Draw::test});
   for (int n = 0; n < 1000; ++n) {
     Eigen::Matrix3d S = tria<3, 3>(0.3 * random_matrix<3, 3>(draw));
@@ -165,7 +165,7 @@ TEST(SquareRootUpdate, ThreeFormsAgree) {  // SPEC 23.4
   }
 }
 
-TEST(SquareRootUpdate, ADowndateThatTakesMoreThanThereIsIsRefused) {  // SPEC 23.4
+TEST(SquareRootUpdate, ADowndateThatTakesMoreThanThereIsIsRefused) {
   Eigen::Matrix2d S;
   S << 1.0, 0.0, 0.5, 0.3;
   EXPECT_FALSE((cholupdate<2, 1>(S, Vector<2>(1.0, 0.0))));
@@ -175,7 +175,7 @@ TEST(SquareRootUpdate, ADowndateThatTakesMoreThanThereIsIsRefused) {  // SPEC 23
   EXPECT_TRUE((cholupdate<2, 1>(S, Vector<2>(0.0, 0.2))));
 }
 
-TEST(InnovationOfEquation26, IsThatOfPoseMapAndSensorOnALinearModel) {  // SPEC 23.6
+TEST(InnovationOfEquation26, IsThatOfPoseMapAndSensorOnALinearModel) {
   RngStream draw({.seed = 236, .purpose = Draw::test});
   for (int n = 0; n < 200; ++n) {
     const Eigen::Matrix3d S = tria<3, 3>(random_matrix<3, 3>(draw));

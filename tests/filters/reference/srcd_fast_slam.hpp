@@ -7,7 +7,7 @@
 
 namespace montecarta::reference {
 
-/// SRCD-FastSLAM (SPEC 9, 10) as printed and corrected: seven dimensions, fifteen points, and
+/// SRCD-FastSLAM (EQUATIONS 8) as printed and corrected: seven dimensions, fifteen points, and
 /// square roots alone from scan to scan. Covariances are formed for those who only look.
 class SrcdFastSlam : public FastSlam2 {
  public:

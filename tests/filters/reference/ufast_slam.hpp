@@ -6,9 +6,9 @@
 
 namespace montecarta::reference {
 
-/// U-FastSLAM (SPEC 8) as printed: seven dimensions and fifteen points for motion and pose, two and
-/// five for landmarks. The points' distance is that of five dimensions (SPEC 8, default), which is
-/// kappa - 2 in seven.
+/// U-FastSLAM (EQUATIONS 7) as printed: seven dimensions and fifteen points for motion and pose,
+/// two and five for landmarks. The points' distance is that of five dimensions (EQUATIONS 7), which
+/// is kappa - 2 in seven.
 class UFastSlam : public FastSlam2 {
  public:
   UFastSlam(const FastSlamSettings& settings, Weight weight, const Unscented& unscented,
