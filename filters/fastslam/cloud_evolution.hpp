@@ -3,7 +3,7 @@
 
 #include "filters/evolution/differential_evolution.hpp"
 #include "filters/fastslam/pose_fitness.hpp"
-#include "filters/moments/cloud_moments.hpp"
+#include "filters/population/cloud_moments.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -40,7 +40,7 @@ EvolvedSettings evolved_settings(const FilterOptions& options) {
 }
 
 FilterKind de_srcd_kind() {
-  std::vector<Option> options = fast_slam_options();
+  std::vector<Option> options = population_options();
   for (Option& option : options_of_evolution()) options.push_back(std::move(option));
   for (Option& option : central_difference_options()) options.push_back(std::move(option));
   options.push_back(map_uncertainty_option());

@@ -14,7 +14,7 @@ EvolvedSettings evolved_settings(const FilterOptions& options);
 /// evolution.
 template <class Real>
 std::unique_ptr<SlamFilter> make_de_srcd(const FilterSetup& setup) {
-  const FastSlamSettings settings = fast_slam_settings(setup.options);
+  const PopulationSettings settings = population_settings(setup.options);
   return make_fast_slam<Real>(
       setup, settings,
       EvolvedProposal<Real>(settings.particles, setup.belief, evolved_settings(setup.options),

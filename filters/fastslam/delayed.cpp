@@ -6,7 +6,7 @@
 namespace montecarta {
 
 std::vector<Option> delayed_options() {
-  std::vector<Option> options = fast_slam_options();
+  std::vector<Option> options = population_options();
   options.push_back(
       count_option("draw_every", "10", 0, 1e9,
                    "scans from one draw of the poses to the next; 1 = FastSLAM II, 0 = never"));

@@ -90,7 +90,7 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
     this->update_landmarks(matches, b, pose, drawn);
     const Real faults = closed.left_out() + factor.L.faults;
     if (!pays_for_draw()) return {closed.log_density(), faults};
-    proposal.covariance = scaled(proposal.covariance, settings_.inflation);
+    proposal.covariance = settings_.inflation * proposal.covariance;
     const Real ratio = PoseDensity<Real>(prior)(pose) - PoseDensity<Real>(proposal)(pose);
     return {drawn.log_density() + ratio, faults};
   }

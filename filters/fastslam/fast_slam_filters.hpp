@@ -18,7 +18,7 @@ namespace montecarta {
 /// FastSLAM with a proposal of the caller's making; the association is the setup's.
 template <class Real, class Proposal>
 std::unique_ptr<SlamFilter> make_fast_slam(const FilterSetup& setup,
-                                           const FastSlamSettings& settings, Proposal proposal) {
+                                           const PopulationSettings& settings, Proposal proposal) {
   if (setup.association.kind == Association::known) {
     using Known = KnownAssociation<Real>;
     return std::make_unique<FastSlam<Real, Proposal, Known>>(settings, std::move(proposal),
@@ -34,7 +34,7 @@ template <class Real, class PoseTransform, class MapTransform>
 std::unique_ptr<SlamFilter> make_refined(const FilterSetup& setup,
                                          const PoseTransform& pose_transform,
                                          const MapTransform& map_transform) {
-  const FastSlamSettings settings = fast_slam_settings(setup.options);
+  const PopulationSettings settings = population_settings(setup.options);
   return make_fast_slam<Real>(setup, settings,
                               GaussianProposal<Real, PoseTransform, MapTransform>(
                                   settings.particles, setup.belief, weight_form(setup.options),
@@ -49,7 +49,7 @@ extern template std::unique_ptr<SlamFilter> make_refined<Lanes>(const FilterSetu
 /// `Real` = double is the same filter one particle at a time, for tests.
 template <class Real>
 std::unique_ptr<SlamFilter> make_fastslam1(const FilterSetup& setup) {
-  return make_fast_slam<Real>(setup, fast_slam_settings(setup.options),
+  return make_fast_slam<Real>(setup, population_settings(setup.options),
                               MotionSampling<Real>(setup.belief));
 }
 template <class Real>

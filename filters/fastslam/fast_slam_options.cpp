@@ -2,7 +2,6 @@
 #include "filters/fastslam/fast_slam_options.hpp"
 
 #include "filters/setup/filter_options.hpp"
-#include "filters/setup/resampling_options.hpp"
 
 #include <string>
 
@@ -12,14 +11,6 @@ namespace {
 const std::vector<std::string> kWeightForms{"closed", "ratio", "batch"};
 
 }  // namespace
-
-std::vector<Option> fast_slam_options() { return resampling_options("100"); }
-
-FastSlamSettings fast_slam_settings(const FilterOptions& options) {
-  return {.particles = options.integer("particles"),
-          .resampling = chosen_resampling(options),
-          .resample_below = options.number("resample_below")};
-}
 
 const std::vector<std::string>& weight_form_names() { return kWeightForms; }
 

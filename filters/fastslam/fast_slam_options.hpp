@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/particles/resampling.hpp"
-#include "filters/setup/filter_setup.hpp"
+#include "filters/population/population.hpp"
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace montecarta {
-
-/// What every filter of the family can be told.
-struct FastSlamSettings {
-  std::size_t particles = 100;
-  Resampling resampling = Resampling::systematic;
-  double resample_below = 0.5;  ///< resample where ESS < this times particles (SPEC 18)
-};
 
 /// The three ways to weigh a particle of FastSLAM II (SPEC 7.2).
 enum class WeightForm {
@@ -24,10 +15,6 @@ enum class WeightForm {
   batch,   ///< N of the stacked innovation, linearised at the predicted pose
 };
 
-/// The options that the whole family shares, in the order in which they are documented.
-std::vector<Option> fast_slam_options();
-/// Reads them.
-FastSlamSettings fast_slam_settings(const FilterOptions& options);
 /// Names of the weight forms, in the order of the enumerators.
 const std::vector<std::string>& weight_form_names();
 WeightForm weight_form(const FilterOptions& options);

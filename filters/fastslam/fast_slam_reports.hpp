@@ -3,19 +3,9 @@
 
 // What a FastSlam tells of itself; included by fast_slam.hpp.
 
-#include "engine/particles/tell_particles.hpp"
 #include "filters/fastslam/fast_slam.hpp"
 
 namespace montecarta {
-
-template <class Real, class Proposal, class Associating>
-void FastSlam<Real, Proposal, Associating>::report_innovations() {
-  for (std::size_t k = 0; k < association_.matches(); ++k) {
-    if (matched_weights_[k] < 0.5) continue;  // most of the filter takes it for something else
-    report_.nis += innovations_.normalised_squared(k, matched_weights_[k]);
-    report_.nis_dof += 2;
-  }
-}
 
 template <class Real, class Proposal, class Associating>
 void FastSlam<Real, Proposal, Associating>::particles(const ParticleColumns& columns) const {
@@ -23,7 +13,7 @@ void FastSlam<Real, Proposal, Associating>::particles(const ParticleColumns& col
     return pose_of_particle<Real>(
         [&](std::size_t b) { return proposal_.predicted(b, poses_[b]).mean; }, i);
   };
-  tell_particles(columns, pose_of, weights_.log_scalars(), ancestors_);
+  population_.tell(columns, pose_of);
 }
 
 template <class Real, class Proposal, class Associating>
@@ -41,9 +31,9 @@ std::optional<LandmarkEstimate> FastSlam<Real, Proposal, Associating>::landmark(
     const std::int32_t slot = association_.slot_of(j);
     if (slot == Associating::kUnseen) return std::nullopt;
     maps_.copy_slot(static_cast<std::uint32_t>(slot), slot_source_, slot_blocks_);
-    return mixture_of_landmarks(weights_, slot_blocks_);
+    return mixture_of_landmarks(weights(), slot_blocks_);
   } else {
-    const std::size_t heaviest = weights_.heaviest();
+    const std::size_t heaviest = weights().heaviest();
     if (j >= association_.count_of(heaviest)) return std::nullopt;
     return maps_.landmark_of(static_cast<std::uint32_t>(j), static_cast<std::uint32_t>(heaviest));
   }

@@ -9,7 +9,7 @@ FilterKind fastslam1_kind() {
           .source = "Montemerlo et al. 2002; SPEC 6",
           .has_particles = true,
           .has_mixture = false,
-          .options = fast_slam_options(),
+          .options = population_options(),
           .make = make_fastslam1<Lanes>};
 }
 

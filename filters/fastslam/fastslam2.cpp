@@ -4,7 +4,7 @@
 namespace montecarta {
 
 FilterKind fastslam2_kind() {
-  std::vector<Option> options = fast_slam_options();
+  std::vector<Option> options = population_options();
   options.push_back(choice_option("weights", "closed", weight_form_names(),
                                   "form of the importance weight (SPEC 7.2 c, r, b)"));
   return {.name = "fastslam2",

@@ -5,8 +5,8 @@
 #include "engine/random/normals.hpp"
 #include "filters/fastslam/drawn_poses.hpp"
 #include "filters/models/ackermann.hpp"
-#include "filters/moments/cloud_moments.hpp"
 #include "filters/moments/linearised.hpp"
+#include "filters/population/cloud_moments.hpp"
 
 #include <vector>
 

@@ -201,7 +201,7 @@ class NearestAssociation {
     for (std::size_t k = 0; k < seen_.size(); ++k) {
       const Real distance = select(owned, spread.squared(residual(seen_[k], s)), never);
       if (!any(distance < Real(settings_.new_gate))) continue;
-      const Real cost = distance + log(spread.determinant());
+      const Real cost = distance + log(spread.S.determinant());
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         searches[k * kLanes + lane].offer(static_cast<std::uint32_t>(j), get(distance, lane),
                                           get(cost, lane), settings_.gate);

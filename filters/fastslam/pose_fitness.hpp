@@ -53,10 +53,9 @@ class PoseFitness {
       const auto use = one.matched > Real(0.5) && is_usable(s);
       const Turned<Real> map = turned(one.landmark.covariance, s);
       const auto [r, b] = residual(one.seen, s);
-      const Real rr = noise_.range + map.along, rb = map.cross * s.per_range;
-      const Real bb = noise_.bearing + map.across * s.per_range * s.per_range;
-      const Real determinant = rr * bb - rb * rb;
-      const Real squared = (bb * r * r - 2.0 * rb * r * b + rr * b * b) / determinant;
+      const Symmetric2<Real> S{noise_.range + map.along, map.cross * s.per_range,
+                               noise_.bearing + map.across * s.per_range * s.per_range};
+      const Real determinant = S.determinant(), squared = S.adjugate_form(r, b) / determinant;
       evidence.add(select(use, squared, Real(0.0)), select(use, determinant, Real(1.0)),
                    as_number<Real>(use), one.matched);
     }

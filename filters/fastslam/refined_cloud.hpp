@@ -2,8 +2,8 @@
 #pragma once
 
 #include "filters/fastslam/drawn_poses.hpp"
-#include "filters/moments/cloud_moments.hpp"
 #include "filters/moments/moment_transforms.hpp"
+#include "filters/population/cloud_moments.hpp"
 
 #include <optional>
 #include <vector>

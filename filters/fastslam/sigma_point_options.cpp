@@ -4,7 +4,7 @@
 namespace montecarta {
 
 std::vector<Option> sigma_point_options() {
-  std::vector<Option> options = fast_slam_options();
+  std::vector<Option> options = population_options();
   options.push_back(choice_option("weights", "closed", {"closed", "ratio"},
                                   "form of the importance weight (SPEC 7.2 c, r)"));
   return options;

@@ -3,7 +3,6 @@
 
 // What a MarginalFilter tells of itself; included by marginal_filter.hpp.
 
-#include "engine/particles/tell_particles.hpp"
 #include "filters/marginal/marginal_filter.hpp"
 
 namespace montecarta {
@@ -11,8 +10,8 @@ namespace montecarta {
 /// The drawn poses; between scans with the motion since then, as the kernels have it (SPEC 19).
 template <class Real>
 PoseEstimate MarginalFilter<Real>::estimate() const {
-  if (is_drawn_) return {spread_of(weights_, poses_), std::nullopt};
-  if (!moments_) moments_.emplace(weights_, poses_);
+  if (is_drawn_) return {spread_of(weights(), poses_), std::nullopt};
+  if (!moments_) moments_.emplace(weights(), poses_);
   return {moments_->moved_by(motion_).mixture.value(), std::nullopt};
 }
 
@@ -21,7 +20,7 @@ void MarginalFilter<Real>::particles(const ParticleColumns& columns) const {
   const auto pose_of = [&](std::size_t i) {
     return motion_.from(pose_of_particle<Real>([&](std::size_t b) { return poses_[b]; }, i)).mean;
   };
-  tell_particles(columns, pose_of, weights_.log_scalars(), ancestors_);
+  population_.tell(columns, pose_of);
 }
 
 template <class Real>

@@ -44,7 +44,7 @@ void SharedAssociation::associate(Scan scan, const SharedMap& map, bool map_is_e
       const auto covariance = map_is_exact ? Symmetric2<double>{} : map[slot].covariance();
       const auto v = innovation_of(P, s, residual(sight_of(scan[k]), s), covariance, noise_);
       const double distance = v.squared();
-      search.offer(slot, distance, distance + std::log(v.determinant()), settings_.gate);
+      search.offer(slot, distance, distance + std::log(v.S.determinant()), settings_.gate);
     }
     pairings_[k] = judge(search, settings_);
   }
