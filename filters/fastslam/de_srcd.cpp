@@ -47,7 +47,6 @@ FilterKind de_srcd_kind() {
   return {.name = "de_srcd",
           .long_name = "DE-SRCD-FastSLAM",
           .source = "Ankishan et al. 2016; SPEC 13",
-          .has_particles = true,
           .has_mixture = true,
           .options = std::move(options),
           .make = make_de_srcd<Lanes>};

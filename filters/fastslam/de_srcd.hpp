@@ -3,7 +3,6 @@
 
 #include "filters/fastslam/evolved_proposal.hpp"
 #include "filters/fastslam/fast_slam_filters.hpp"
-#include "filters/fastslam/sigma_point_options.hpp"
 
 namespace montecarta {
 

@@ -27,7 +27,6 @@ FilterKind delayed_kind() {
   return {.name = "delayed",
           .long_name = "FastSLAM II with delayed draws",
           .source = "SPEC 24, last lines",
-          .has_particles = true,
           .has_mixture = true,
           .options = delayed_options(),
           .make = make_delayed<Lanes>};

@@ -17,6 +17,4 @@ std::unique_ptr<SlamFilter> make_delayed(const FilterSetup& setup) {
       DelayedProposal<Real>(settings.particles, setup.belief, draw_times(setup.options)));
 }
 
-FilterKind delayed_kind();
-
 }  // namespace montecarta

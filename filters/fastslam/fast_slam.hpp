@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/slam_filter.hpp"
 #include "engine/particles/block_tasks.hpp"
-#include "filters/fastslam/particle_maps.hpp"
+#include "filters/fastslam/concepts.hpp"
 #include "filters/population/cloud_moments.hpp"
-#include "filters/population/population.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -14,119 +12,118 @@
 namespace montecarta {
 
 /// Rao-Blackwellised particle filter with one map per particle (SPEC 5). `Real`: double or Lanes.
-/// `Proposal` moves, weighs and draws poses and updates the maps of one block; `Associating`
-/// decides which landmark a detection is. Between update() and the next predict() the particles are
-/// weighed and drawn but not yet resampled: that is the state that is estimated and recorded.
-template <class Real, class Proposal, class Associating>
+/// Between update() and the next predict() the particles are weighed and drawn but not yet
+/// resampled: that is the state that is estimated and recorded.
+template <class Real, class Proposal, class Association>
+requires Associator<Association, Real> && PoseProposal<Proposal, Real, Association>
 class FastSlam final : public SlamFilter {
  public:
-  FastSlam(const PopulationSettings& settings, Proposal proposal, Associating association)
+  FastSlam(const PopulationSettings& settings, Proposal proposal, Association association)
       : proposal_(std::move(proposal)),
         association_(std::move(association)),
         population_(settings),
         poses_(population_.blocks()),
         resampled_poses_(poses_.size()),
+        predicted_(poses_.size()),
         maps_(settings.particles) {}
 
   void start(const Pose& start) override {
     population_.start();
     maps_.clear();
-    association_.clear();
+    association_.start();
+    proposal_.start();
     std::fill(poses_.begin(), poses_.end(), BasicPose<Real>{start.x, start.y, start.heading});
-    proposal_.start(poses_);
   }
 
   void predict(const StepContext& context, const Control& control, double duration) override {
-    settle();
-    proposal_.predict(context, control, duration, weights(), poses_);
+    resample();
+    proposal_.predict(context, control, duration, poses_);
   }
 
   void update(const StepContext& context, Scan scan) override {
-    settle();
-    proposal_.begin_scan(context, poses_);
-    association_.associate(
-        context, scan, maps_, [&](std::size_t b) { return proposal_.predicted(b, poses_[b]); },
-        [&](auto&&... sight) { return proposal_.expected(sight...); });
+    resample();
     population_.begin_scan();
-    const bool blind = association_.found_nothing();
-    if (!blind) weigh_and_draw(context);
+    predict_poses(context);
+    association_.associate(context, scan, maps_, predicted_, proposal_.joint());
+    const bool found = !association_.found_nothing();
+    if (found) weigh_and_draw(context);
     population_.report().association = association_.counts(weights());
-    if (!blind) add_new_landmarks();
+    if (found) initialise_landmarks();
     population_.report().map_size = association_.map_size(maps_, weights());
-    if (!blind) population_.decide_on_resampling(context);
+    if (found) population_.decide_on_resampling(context);
   }
 
   PoseEstimate estimate() const override { return proposal_.estimate(weights(), poses_); }
   const ScanReport& report() const override { return population_.report(); }
-  void particles(const ParticleColumns& columns) const override;
-  void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override;
+  void particles(const ParticleColumns& columns) const override {
+    const auto mean_of = [&](std::size_t b) { return proposal_.predicted(b, poses_[b]).mean; };
+    population_.tell(columns, [&](std::size_t i) { return pose_of_particle<Real>(mean_of, i); });
+  }
+  void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override {
+    for (std::size_t j = 0; j < landmarks.size(); ++j)
+      landmarks[j] = association_.landmark(j, maps_, weights());
+  }
 
  private:
   const Weights<Real>& weights() const { return population_.weights(); }
 
+  void predict_poses(const StepContext& context) {
+    proposal_.begin_scan(context, poses_);
+    BlockTasks<Real>(poses_.size()).run(context, [&](std::size_t /*task*/, std::size_t b) {
+      predicted_[b] = proposal_.predicted(b, poses_[b]);
+    });
+  }
+
   void weigh_and_draw(const StepContext& context) {
     const BlockTasks<Real> tasks(poses_.size());
     innovations_.start(tasks.count(), association_.matches());
-    for (std::size_t k = 0; k < association_.matches(); ++k) {
+    for (std::size_t k = 0; k < association_.matches(); ++k)
       innovations_.matched_weight(k) = association_.matched_weight(k, weights());
-    }
-    proposal_.prepare(context, association_, weights(), poses_, maps_);
+    proposal_.prepare(context, association_, weights(), poses_, predicted_, maps_);
     tasks.run(context,
               [&](std::size_t task, std::size_t b) { weigh_and_draw_block(context, task, b); });
+    proposal_.end_scan();
     population_.normalise();
     innovations_.add_to(population_.report());
-    proposal_.end_scan();
   }
 
   void weigh_and_draw_block(const StepContext& context, std::size_t task, std::size_t b) {
     const auto innovations = innovations_.of_block(task, weights().linear()[b]);
-    const auto note = [&](std::size_t k, const Innovation<Real>& innovation, const auto& matched) {
-      innovations.add(k, innovation, matched);
-    };
+    association_.fetch(b);
+    auto refined = proposal_.refine(context, b, predicted_[b], association_, innovations);
+    poses_[b] = proposal_.draw(context, b, refined);
     const Weighing<Real> weighing =
-        proposal_.weigh_and_draw(context, association_, b, poses_[b], note);
+        proposal_.update_map(b, poses_[b], association_, refined, innovations);
     population_.weigh(
         b, {weighing.log_weight + association_.unmatched_log_weight(b), weighing.faults});
   }
 
-  void add_new_landmarks() {
-    association_.add_new(
-        maps_,
-        [&](std::size_t b, const RangeBearing<Real>& seen) {
-          return proposal_.birth(b, poses_[b], seen);
-        },
-        [&](std::size_t b, std::uint32_t slot, const auto& put) {
-          proposal_.settled(maps_, b, slot, put);
-        });
+  void initialise_landmarks() {
+    for (const FreshLandmark<Real>& fresh : association_.new_landmarks(maps_))
+      proposal_.initialise(fresh, poses_[fresh.block], maps_);
   }
 
-  std::optional<LandmarkEstimate> landmark(std::size_t j) const;
-
-  /// Ends the time in which the particles of the last scan can be asked for: resampling takes
-  /// effect.
-  void settle() {
+  /// Ends the time in which the particles of the last scan can be asked for.
+  void resample() {
     if (!population_.is_after_scan()) return;
+    std::span<const std::uint32_t> parents;
     if (population_.resample()) {
-      const std::span<const std::uint32_t> parents = population_.ancestors();
+      parents = population_.ancestors();
       gather<Real>(poses_, parents, resampled_poses_);
       std::swap(poses_, resampled_poses_);
       maps_.resample(parents);
       association_.resample(parents);
-      proposal_.resample(parents);
     }
-    proposal_.settle();
+    proposal_.begin_step(parents);
   }
 
   Proposal proposal_;
-  Associating association_;
+  Association association_;
   Population<Real> population_;
   std::vector<BasicPose<Real>> poses_, resampled_poses_;
+  std::vector<PoseGaussian<Real>> predicted_;  ///< by the motion, of the scan's poses
   ParticleMaps<Real> maps_;
   MixtureInnovations<Real> innovations_;
-  mutable std::vector<std::uint32_t> slot_source_;           ///< scratch of map()
-  mutable std::vector<LandmarkGaussian<Real>> slot_blocks_;  ///< scratch of map()
 };
 
 }  // namespace montecarta
-
-#include "filters/fastslam/fast_slam_reports.hpp"

@@ -17,12 +17,14 @@ struct Sighting {
   Real matched;  ///< 1, or 0 where the particle takes it for nothing it knows
 };
 
-/// Appends what the particles of block b take every match of a scan for.
-template <class Real, class Matches>
-void append_sightings(const Matches& matches, std::size_t b, std::vector<Sighting<Real>>& scan) {
-  matches.read(b, [&](std::size_t, const auto& landmark, const auto& seen, const auto& mask) {
+/// Appends what the particles of block b, once fetched, take every match of a scan for.
+template <class Real, class Association>
+void append_sightings(const Association& association, std::size_t b,
+                      std::vector<Sighting<Real>>& scan) {
+  for (std::size_t k = 0; k < association.matches(); ++k) {
+    const auto& [landmark, seen, mask] = association.match(b, k);
     scan.push_back({landmark, seen, as_number<Real>(mask)});
-  });
+  }
 }
 
 /// How well a pose explains a scan.

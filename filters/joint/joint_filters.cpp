@@ -102,7 +102,6 @@ FilterKind hrb_kind() {
   return {.name = "hrb",
           .long_name = "heading-split bank",
           .source = "SPEC 24",
-          .has_particles = true,
           .has_mixture = true,
           .has_joint = true,
           .options = std::move(options),
