@@ -21,8 +21,8 @@ class CloudEvolution {
   enum class Aim { likelihood, posterior };
 
   /// Looks at where the particles are and what each takes the detections for.
-  template <class Association>
-  void gather(const Association& association, const Weights<Real>& weights,
+  template <class Associating>
+  void gather(const Associating& association, const Weights<Real>& weights,
               const std::vector<PoseGaussian<Real>>& predicted, const SensorNoise& noise) {
     moments_ = mixture_of(weights, predicted);
     frame_ = direction_of(moments_.mean.heading);

@@ -32,13 +32,13 @@ class DelayedMap {
   bool holds(std::uint32_t slot) const {
     return slot < index_of_.size() && index_of_[slot] != kOut;
   }
-  /// What a landmark of a slot it holds should look like from the pose of block b: the covariance.
-  Innovation<Real> expected(std::uint32_t slot, std::size_t b, const PoseGaussian<Real>& pose,
-                            const Landmark& landmark, const Sightline<Real>& s,
-                            const SensorNoise& noise) const {
+  /// Of the innovation of a landmark, of a slot that it holds, seen from the pose of block b.
+  Symmetric2<Real> covariance(std::uint32_t slot, std::size_t b, const PoseGaussian<Real>& pose,
+                              const Landmark& landmark, const Sightline<Real>& s,
+                              const SensorNoise& noise) const {
     return correlated_innovation(pose.covariance, landmark.covariance,
-                                 map_.pose_cross(index_of_[slot], b), SightRows<Real>(s), {},
-                                 noise);
+                                 map_.pose_cross(index_of_[slot], b), SightRows<Real>(s), {}, noise)
+        .S;
   }
 
   /// Takes in the slots of all matches; every block of each must then be fill()ed and written back.
@@ -73,13 +73,13 @@ class DelayedMap {
   }
 
   /// Which landmark match k of a scan is in block b.
-  template <class Association>
-  auto where(const Association& association, std::size_t b, std::size_t k) const {
+  template <class Associating>
+  auto where(const Associating& association, std::size_t b, std::size_t k) const {
     return association.where(b, k, std::span<const std::size_t>(index_of_));
   }
   /// Pose and matched landmarks alone, detection by detection, into block b of `to`.
-  template <class Association>
-  void copy_matches(const Association& association, std::size_t b, CorrelatedMap<Real>& to) const {
+  template <class Associating>
+  void copy_matches(const Associating& association, std::size_t b, CorrelatedMap<Real>& to) const {
     to.pose(b) = map_.pose(b);
     for (std::size_t k = 0; map_.size() > 0 && k < to.size(); ++k) {
       const auto at = where(association, b, k);

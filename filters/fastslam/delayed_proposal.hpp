@@ -4,10 +4,7 @@
 #include "engine/particles/block_tasks.hpp"
 #include "filters/fastslam/delayed_map.hpp"
 #include "filters/fastslam/gaussian_proposal.hpp"
-#include "filters/moments/correlated_birth.hpp"
-#include "filters/moments/correlated_draw.hpp"
-#include "filters/moments/correlated_motion.hpp"
-#include "filters/moments/correlated_sight.hpp"
+#include "filters/moments/correlated_steps.hpp"
 
 #include <cmath>
 #include <limits>
@@ -18,8 +15,7 @@ namespace montecarta {
 /// When a delayed filter draws its poses.
 struct DrawTimes {
   std::size_t every = 10;  ///< scans that see something; 0 = never for their number
-  double beyond = std::numeric_limits<double>::infinity();  ///< [rad] heading uncertain by
-                                                            ///< more
+  double beyond = std::numeric_limits<double>::infinity();  ///< [rad] heading uncertain by more
 };
 
 /// FastSLAM II that draws the pose only now and then (SPEC 24, last lines). In between a particle
@@ -45,10 +41,12 @@ class DelayedProposal {
   }
   void predict(const StepContext& context, const Control& control, double duration,
                std::vector<BasicPose<Real>>& poses) {
+    is_driven_ = false;
     immediate_.predict(context, control, duration, poses);
   }
   PoseGaussian<Real> predicted(std::size_t b, const BasicPose<Real>& pose) const {
     if (!is_open_) return immediate_.predicted(b, pose);
+    if (is_driven_) return joint_.map().pose(b);
     return driven(joint_.map().pose(b), immediate_.motion()).pose;
   }
   void begin_scan(const StepContext& context, std::vector<BasicPose<Real>>& poses) {
@@ -59,8 +57,8 @@ class DelayedProposal {
   const DelayedMap<Real>* joint() const { return is_open_ ? &joint_ : nullptr; }
 
   /// Decides whether this scan draws, and takes what it sees into the joint Gaussian.
-  template <class Association>
-  void prepare(const StepContext& context, const Association& association,
+  template <class Associating>
+  void prepare(const StepContext& context, const Associating& association,
                const Weights<Real>& weights, const std::vector<BasicPose<Real>>& poses,
                const std::vector<PoseGaussian<Real>>& predicted, ParticleMaps<Real>& maps) {
     ++scans_;
@@ -74,25 +72,23 @@ class DelayedProposal {
 
   /// The scan updates pose and map together, as in EKF-SLAM; or, where it draws, a copy of the pose
   /// and the landmarks that it shows.
-  template <class Association, class Innovations>
+  template <class Associating, class Innovations>
   Refined refine(const StepContext& context, std::size_t b, const PoseGaussian<Real>& predicted,
-                 const Association& association, const Innovations& innovations) {
+                 const Associating& association, const Innovations& innovations) {
     if (!is_open_) return immediate_.refine(context, b, predicted, association, innovations);
     joint_.fill(b);
     if (draws_) joint_.copy_matches(association, b, scanned_);
     CorrelatedMap<Real>& map = draws_ ? scanned_ : joint_.map();
-    Refined refined{predicted, predicted, {}, {}};
+    Evidence<Real> evidence;
     for (std::size_t k = 0; map.size() > 0 && k < association.matches(); ++k) {
       const auto match = association.match(b, k);
-      const auto update = [&](const auto& at) {
-        return absorb(map, b, at, match.seen, immediate_.noise(), match.mask, refined.evidence);
+      const auto absorb_at = [&](const auto& at) {
+        innovations.add(k, absorb(map, b, at, match.seen, immediate_.noise(), match.mask, evidence),
+                        match.mask);
       };
-      innovations.add(k, draws_ ? update(ForAll{k}) : update(joint_.where(association, b, k)),
-                      match.mask);
+      draws_ ? absorb_at(ForAll{k}) : absorb_at(joint_.where(association, b, k));
     }
-    refined.posterior = map.pose(b);
-    refined.faults = refined.evidence.left_out();
-    return refined;
+    return {predicted, map.pose(b), evidence, evidence.left_out()};
   }
 
   BasicPose<Real> draw(const StepContext& context, std::size_t b, Refined& refined) {
@@ -102,9 +98,9 @@ class DelayedProposal {
 
   /// Where the pose is drawn, the landmarks are those of the joint Gaussian before the scan, given
   /// that pose, and take in the scan from there.
-  template <class Association, class Innovations>
+  template <class Associating, class Innovations>
   Weighing<Real> update_map(std::size_t b, const BasicPose<Real>& pose,
-                            const Association& association, Refined& refined,
+                            const Associating& association, Refined& refined,
                             const Innovations& innovations) {
     if (is_open_ && !draws_) {
       joint_.write_back(b, [](const auto& landmark, const auto&) { return landmark; });
@@ -175,6 +171,7 @@ class DelayedProposal {
       montecarta::drive(joint_.map(), b, immediate_.motion());
     });
     immediate_.motion().restart();
+    is_driven_ = true;
   }
 
   Immediate immediate_;
@@ -183,9 +180,9 @@ class DelayedProposal {
   CorrelatedMap<Real> scanned_;  ///< scratch: pose and the landmarks of one scan that draws
   mutable std::vector<PoseGaussian<Real>> predicted_;  ///< scratch of estimate()
   std::size_t scans_ = 0;                              ///< since the draw
-  bool is_open_ = false;  ///< poses are uncertain within a particle, the joint
-                          ///< Gaussian holds
-  bool draws_ = false;    ///< this scan
+  bool is_open_ = false;    ///< poses are uncertain within a particle, the joint Gaussian holds
+  bool is_driven_ = false;  ///< ... up to now, with no motion since
+  bool draws_ = false;      ///< this scan
 };
 
 }  // namespace montecarta

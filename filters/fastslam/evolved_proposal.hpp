@@ -13,10 +13,8 @@ namespace montecarta {
 
 /// What differential evolution is used for in DE-SRCD-FastSLAM (SPEC 13).
 enum class EvolutionMode {
-  honest,      ///< each particle seeks its most probable pose, draws about it and
-               ///< pays for the draw
-  as_printed,  ///< the cloud climbs the likelihood and is then refined by the
-               ///< same scan once more
+  honest,      ///< each particle seeks its most probable pose, draws about it and pays for the draw
+  as_printed,  ///< the cloud climbs the likelihood and is then refined by the same scan once more
   prior,       ///< the same with the motion and the map's covariance in the fitness
   shared,      ///< the cloud seeks the centres, and every particle pays for its draw
 };
@@ -55,8 +53,8 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
   };
 
   /// Moves the cloud, in the modes in which it is one population.
-  template <class Association>
-  void prepare(const StepContext& context, const Association& association,
+  template <class Associating>
+  void prepare(const StepContext& context, const Associating& association,
                const Weights<Real>& weights, const std::vector<BasicPose<Real>>& /*poses*/,
                const std::vector<PoseGaussian<Real>>& predicted, ParticleMaps<Real>& /*maps*/) {
     if (settings_.mode == EvolutionMode::honest) return;
@@ -71,12 +69,13 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
   }
 
   /// Refines the pose, and in mode honest seeks the most probable one about it.
-  template <class Association, class Innovations>
+  template <class Associating, class Innovations>
   Refined refine(const StepContext& context, std::size_t b, const PoseGaussian<Real>& predicted,
-                 const Association& association, const Innovations& innovations) {
+                 const Associating& association, const Innovations& innovations) {
     PoseGaussian<Real> posterior = predicted;
     if (!pays_for_draw()) posterior.mean = centres_[b];
-    const Evidence<Real> evidence = this->absorb_scan(association, b, posterior, innovations);
+    Evidence<Real> evidence;
+    this->absorb_scan(association, b, posterior, innovations, evidence);
     this->keep(b, posterior);
     Refined refined{predicted, posterior, posterior.mean, evidence, PoseFactor<Real>(posterior)};
     if (settings_.mode == EvolutionMode::shared) refined.centre = centres_[b];
@@ -97,9 +96,9 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
   }
 
   /// Updates the landmarks, and returns the log of the weight's factor.
-  template <class Association, class Innovations>
+  template <class Associating, class Innovations>
   Weighing<Real> update_map(std::size_t b, const BasicPose<Real>& pose,
-                            const Association& association, const Refined& refined,
+                            const Associating& association, const Refined& refined,
                             const Innovations& /*innovations*/) const {
     Evidence<Real> drawn;
     this->update_landmarks(association, b, pose, drawn);

@@ -14,11 +14,11 @@ namespace montecarta {
 /// Rao-Blackwellised particle filter with one map per particle (SPEC 5). `Real`: double or Lanes.
 /// Between update() and the next predict() the particles are weighed and drawn but not yet
 /// resampled: that is the state that is estimated and recorded.
-template <class Real, class Proposal, class Association>
-requires Associator<Association, Real> && PoseProposal<Proposal, Real, Association>
+template <class Real, class Proposal, class Associating>
+requires Associator<Associating, Real> && PoseProposal<Proposal, Real, Associating>
 class FastSlam final : public SlamFilter {
  public:
-  FastSlam(const PopulationSettings& settings, Proposal proposal, Association association)
+  FastSlam(const PopulationSettings& settings, Proposal proposal, Associating association)
       : proposal_(std::move(proposal)),
         association_(std::move(association)),
         population_(settings),
@@ -118,7 +118,7 @@ class FastSlam final : public SlamFilter {
   }
 
   Proposal proposal_;
-  Association association_;
+  Associating association_;
   Population<Real> population_;
   std::vector<BasicPose<Real>> poses_, resampled_poses_;
   std::vector<PoseGaussian<Real>> predicted_;  ///< by the motion, of the scan's poses

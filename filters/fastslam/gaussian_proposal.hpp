@@ -9,8 +9,7 @@ namespace montecarta {
 enum class WeightForm {
   closed,  ///< product of N(innovation; S), each before absorbing the detection
   ratio,   ///< likelihood times prior over proposal at the drawn pose
-  batch,   ///< N of the stacked innovation, linearised at the predicted pose:
-           ///< `Linearised` only
+  batch,   ///< N of the stacked innovation, linearised at the predicted pose: `Linearised` only
 };
 
 /// The predicted pose is refined by the scan before it is drawn (SPEC 7, 8, 10).
@@ -31,18 +30,19 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
       : Cloud(particles, belief, pose_transform, map_transform), form_(form) {}
 
   /// Nothing is to be decided for all particles together.
-  template <class Association, class... State>
-  void prepare(const StepContext& /*context*/, const Association& /*association*/,
+  template <class Associating, class... State>
+  void prepare(const StepContext& /*context*/, const Associating& /*association*/,
                State&... /*state*/) {}
 
-  template <class Association, class Innovations>
+  template <class Associating, class Innovations>
   Refined refine(const StepContext& /*context*/, std::size_t b, const PoseGaussian<Real>& predicted,
-                 const Association& association, const Innovations& innovations) const {
-    Refined refined{predicted, predicted, {}, {}};
-    refined.evidence = this->absorb_scan(association, b, refined.posterior, innovations);
-    refined.faults = refined.evidence.left_out();
-    if (form_ == WeightForm::batch) refined.evidence = batch_evidence(association, b, predicted);
-    return refined;
+                 const Associating& association, const Innovations& innovations) const {
+    PoseGaussian<Real> posterior = predicted;
+    Evidence<Real> evidence;
+    this->absorb_scan(association, b, posterior, innovations, evidence);
+    const Real faults = evidence.left_out();
+    if (form_ == WeightForm::batch) evidence = batch_evidence(association, b, predicted);
+    return {predicted, posterior, evidence, faults};
   }
 
   BasicPose<Real> draw(const StepContext& context, std::size_t b, Refined& refined) {
@@ -53,9 +53,9 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
   }
 
   /// Updates the landmarks, and returns the log of the weight's factor.
-  template <class Association, class Innovations>
+  template <class Associating, class Innovations>
   Weighing<Real> update_map(std::size_t b, const BasicPose<Real>& pose,
-                            const Association& association, Refined& refined,
+                            const Associating& association, Refined& refined,
                             const Innovations& /*innovations*/) const {
     if (form_ != WeightForm::ratio) {
       Unweighed<Real> unweighed;
@@ -71,8 +71,8 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
 
  private:
   /// Only of a transform that offers it.
-  template <class Association>
-  Evidence<Real> batch_evidence(const Association& association, std::size_t b,
+  template <class Associating>
+  Evidence<Real> batch_evidence(const Associating& association, std::size_t b,
                                 const PoseGaussian<Real>& predicted) const {
     Evidence<Real> evidence;
     PoseGaussian<Real> refined = predicted;

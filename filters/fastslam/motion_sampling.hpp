@@ -16,7 +16,7 @@ namespace montecarta {
 template <class Real>
 class MotionSampling {
  public:
-  using Refined = PoseGaussian<Real>;
+  using Refined = BasicPose<Real>;
 
   explicit MotionSampling(const Belief& belief)
       : belief_(belief), noise_(SensorNoise::of(belief)) {}
@@ -37,23 +37,23 @@ class MotionSampling {
 
   void begin_scan(const StepContext& /*context*/, std::vector<BasicPose<Real>>& /*poses*/) {}
   const DelayedMap<Real>* joint() const { return nullptr; }
-  template <class Association, class... State>
-  void prepare(const StepContext& /*context*/, const Association& /*association*/,
+  template <class Associating, class... State>
+  void prepare(const StepContext& /*context*/, const Associating& /*association*/,
                State&... /*state*/) {}
 
-  template <class Association, class Innovations>
+  template <class Associating, class Innovations>
   Refined refine(const StepContext& /*context*/, std::size_t /*b*/,
-                 const PoseGaussian<Real>& predicted, const Association& /*association*/,
+                 const PoseGaussian<Real>& predicted, const Associating& /*association*/,
                  const Innovations& /*innovations*/) const {
-    return predicted;
+    return predicted.mean;
   }
   BasicPose<Real> draw(const StepContext& /*context*/, std::size_t /*b*/, Refined& refined) const {
-    return refined.mean;
+    return refined;
   }
-  template <class Association, class Innovations>
-  Weighing<Real> update_map(std::size_t b, const BasicPose<Real>& pose,
-                            const Association& association, Refined& /*refined*/,
-                            const Innovations& innovations) const {
+  template <class Associating, class Innovations>
+  [[gnu::flatten]] Weighing<Real> update_map(std::size_t b, const BasicPose<Real>& pose,
+                                             const Associating& association, Refined& /*refined*/,
+                                             const Innovations& innovations) const {
     Evidence<Real> likelihood;
     for (std::size_t k = 0; k < association.matches(); ++k) {
       auto match = association.match(b, k);

@@ -3,7 +3,6 @@
 
 #include "engine/errors.hpp"
 #include "filters/association/association_counts.hpp"
-#include "filters/association/birth_identities.hpp"
 #include "filters/association/nearest.hpp"
 #include "filters/fastslam/concepts.hpp"
 
@@ -179,14 +178,16 @@ class NearestAssociation {
     const auto owned = Real(static_cast<double>(j)) < counts_[b];
     const Real never(std::numeric_limits<double>::infinity());
     // Only the innovation itself differs from detection to detection; most lie far away.
-    const Innovation<Real> spread =
+    const Symmetric2<Real> S =
         joint && joint->holds(j)
-            ? joint->expected(j, b, pose, landmark, s, noise_)
-            : innovation_of(pose.covariance, s, {}, landmark.covariance, noise_);
+            ? joint->covariance(j, b, pose, landmark, s, noise_)
+            : innovation_of(pose.covariance, s, {}, landmark.covariance, noise_).S;
+    const Real determinant = S.determinant();
     for (std::size_t k = 0; k < seen_.size(); ++k) {
-      const Real distance = select(owned, spread.squared(residual(seen_[k], s)), never);
+      const RangeBearing<Real> v = residual(seen_[k], s);
+      const Real distance = select(owned, S.adjugate_form(v.range, v.bearing) / determinant, never);
       if (!any(distance < Real(settings_.new_gate))) continue;
-      const Real cost = distance + log(spread.S.determinant());
+      const Real cost = distance + log(determinant);
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         searches[k * kLanes + lane].offer(j, get(distance, lane), get(cost, lane), settings_.gate);
       }

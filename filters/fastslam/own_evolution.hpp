@@ -24,8 +24,8 @@ class OwnEvolution {
   /// The most probable pose that is found within `bounds` standard deviations, in standard
   /// deviations of `refined`: where the particles of block b, who expected `predicted`, take the
   /// detections for what `association` says.
-  template <class Association>
-  std::array<Real, 3> most_probable(const Association& association, std::size_t b,
+  template <class Associating>
+  std::array<Real, 3> most_probable(const Associating& association, std::size_t b,
                                     const PoseGaussian<Real>& predicted,
                                     const PoseGaussian<Real>& refined, const SensorNoise& noise,
                                     double bounds, const EvolutionSettings& settings,
@@ -45,8 +45,8 @@ class OwnEvolution {
   using Candidates = std::span<const std::array<Real, 3>>;
 
   /// What the particles of block b believe, in the order of packed candidates.
-  template <class Association>
-  void look(const Association& association, std::size_t b, const PoseGaussian<Real>& predicted,
+  template <class Associating>
+  void look(const Associating& association, std::size_t b, const PoseGaussian<Real>& predicted,
             const PoseGaussian<Real>& refined, const SensorNoise& noise) {
     fitness_.clear(), factors_.clear(), scan_.clear(), packed_scan_.clear();
     append_sightings(association, b, scan_);

@@ -18,8 +18,8 @@ struct Sighting {
 };
 
 /// Appends what the particles of block b, once fetched, take every match of a scan for.
-template <class Real, class Association>
-void append_sightings(const Association& association, std::size_t b,
+template <class Real, class Associating>
+void append_sightings(const Associating& association, std::size_t b,
                       std::vector<Sighting<Real>>& scan) {
   for (std::size_t k = 0; k < association.matches(); ++k) {
     const auto& [landmark, seen, mask] = association.match(b, k);

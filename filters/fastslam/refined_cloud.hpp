@@ -67,22 +67,23 @@ class RefinedCloud {
   const SensorNoise& noise() const { return noise_; }
 
  protected:
+  // Flattened, for out of line their arrays of registers pass through memory.
+
   /// Absorbs the scan of block b into `pose`, one detection after the other.
-  template <class Association, class Innovations>
-  Evidence<Real> absorb_scan(const Association& association, std::size_t b,
-                             PoseGaussian<Real>& pose, const Innovations& innovations) const {
-    Evidence<Real> evidence;
+  template <class Associating, class Innovations>
+  [[gnu::flatten]] void absorb_scan(const Associating& association, std::size_t b,
+                                    PoseGaussian<Real>& pose, const Innovations& innovations,
+                                    Evidence<Real>& evidence) const {
     for (std::size_t k = 0; k < association.matches(); ++k) {
       const auto& [landmark, seen, mask] = association.match(b, k);
       innovations.add(k, pose_transform_.refine(pose, landmark, seen, noise_, mask, evidence),
                       mask);
     }
-    return evidence;
   }
   /// Absorbs the scan into the landmarks of block b, seen from `pose`.
-  template <class Association, class Weighed>
-  void update_landmarks(const Association& association, std::size_t b, const BasicPose<Real>& pose,
-                        Weighed& evidence) const {
+  template <class Associating, class Weighed>
+  [[gnu::flatten]] void update_landmarks(const Associating& association, std::size_t b,
+                                         const BasicPose<Real>& pose, Weighed& evidence) const {
     for (std::size_t k = 0; k < association.matches(); ++k) {
       auto match = association.match(b, k);
       map_transform_.update(match.landmark, pose, match.seen, noise_, match.mask, evidence);

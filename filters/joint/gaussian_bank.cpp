@@ -2,9 +2,7 @@
 #include "filters/joint/gaussian_bank.hpp"
 
 #include "engine/random/normal_quantile.hpp"
-#include "filters/association/association_counts.hpp"
 #include "filters/joint/mixture.hpp"
-#include "filters/moments/quadrature_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -74,7 +72,7 @@ void GaussianBank::weigh() {
   if (!settings_.tells_particles) report.ess = 0.0;
   innovations_.add_to(report);
   for (std::size_t i = 0; i < slot_of_.size(); ++i) {
-    add(belief_of(i).outcome().association, weight_of(i), report.association);
+    add(belief_of(i).association().counts(), weight_of(i), report.association);
   }
   for (std::uint32_t slot : active_) report.numerical_faults += beliefs_[slot].outcome().faults;
 }

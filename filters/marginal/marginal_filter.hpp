@@ -12,6 +12,7 @@
 #include "filters/population/population.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -141,7 +142,7 @@ class MarginalFilter final : public SlamFilter {
       learning_.learn(context, match.landmark, heading, poses_, weights(), match.seen,
                       map_[match.landmark]);
     for (const Detection& fresh : association_.fresh()) {
-      association_.give_slot(fresh, map_.size());
+      association_.add(fresh);
       map_.push_back(learning_.born(poses_, weights(), sight_of(fresh)));
     }
   }
@@ -183,6 +184,38 @@ class MarginalFilter final : public SlamFilter {
   bool is_drawn_ = false;  ///< whether the poses were drawn by the last update()
 };
 
-}  // namespace montecarta
+/// The drawn poses; between scans with the motion since then, as the kernels have it (SPEC 19).
+template <class Real>
+PoseEstimate MarginalFilter<Real>::estimate() const {
+  if (is_drawn_) return {spread_of(weights(), poses_), std::nullopt};
+  if (!moments_) moments_.emplace(weights(), poses_);
+  return {moments_->moved_by(motion_).mixture.value(), std::nullopt};
+}
 
-#include "filters/marginal/marginal_reports.hpp"
+template <class Real>
+void MarginalFilter<Real>::particles(const ParticleColumns& columns) const {
+  const auto pose_of = [&](std::size_t i) {
+    return motion_.from(pose_of_particle<Real>([&](std::size_t b) { return poses_[b]; }, i)).mean;
+  };
+  population_.tell(columns, pose_of);
+}
+
+template <class Real>
+void MarginalFilter<Real>::map(std::span<std::optional<LandmarkEstimate>> landmarks) const {
+  for (std::size_t k = 0; k < landmarks.size(); ++k) {
+    const std::size_t slot = association_.slot_of_row(k);
+    landmarks[k] = slot < map_.size() ? std::optional(estimate_of(map_[slot])) : std::nullopt;
+  }
+}
+
+/// `Real` = double is the same filter one particle at a time, for tests.
+template <class Real, Choice choice>
+std::unique_ptr<SlamFilter> make_marginal(const FilterSetup& setup) {
+  return std::make_unique<MarginalFilter<Real>>(setup, marginal_settings(setup.options, choice));
+}
+
+/// Lines for the table of factory.cpp.
+FilterKind marginal_kind();
+FilterKind ampf_de_kind();
+
+}  // namespace montecarta

@@ -4,7 +4,6 @@
 #include "filters/moments/linearised.hpp"
 #include "filters/moments/motion_increment.hpp"
 #include "filters/moments/sigma_landmark.hpp"
-#include "filters/moments/sigma_motion.hpp"
 #include "filters/moments/sigma_pose.hpp"
 
 /// The ways to carry a Gaussian through motion and sight. Filters of the family differ in which of

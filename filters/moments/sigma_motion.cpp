@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "filters/moments/sigma_motion.hpp"
-
-#include "engine/numbers/directions.hpp"
+#include "filters/moments/motion_increment.hpp"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "filters/marginal/marginal_filters.hpp"
+#include "filters/marginal/marginal_filter.hpp"
 
 namespace montecarta {
 
