@@ -2,10 +2,9 @@
 #include "filters/factory.hpp"
 
 #include "filters/dead_reckoning.hpp"
-#include "filters/fastslam/delayed.hpp"
 #include "filters/fastslam/fast_slam_filters.hpp"
 #include "filters/joint/joint_filters.hpp"
-#include "filters/marginal/marginal_filters.hpp"
+#include "filters/marginal/marginal_filter.hpp"
 
 namespace montecarta {
 

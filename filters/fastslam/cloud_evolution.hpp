@@ -3,7 +3,7 @@
 
 #include "filters/evolution/differential_evolution.hpp"
 #include "filters/fastslam/pose_fitness.hpp"
-#include "filters/moments/cloud_moments.hpp"
+#include "filters/population/cloud_moments.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,15 +21,16 @@ class CloudEvolution {
   enum class Aim { likelihood, posterior };
 
   /// Looks at where the particles are and what each takes the detections for.
-  template <class Matches>
-  void gather(const Matches& matches, const Weights<Real>& weights,
+  template <class Associating>
+  void gather(const Associating& association, const Weights<Real>& weights,
               const std::vector<PoseGaussian<Real>>& predicted, const SensorNoise& noise) {
     moments_ = mixture_of(weights, predicted);
     frame_ = direction_of(moments_.mean.heading);
     population_.resize(weights.particles());
     fitness_.clear(), sightings_.clear();
     for (std::size_t b = 0; b < predicted.size(); ++b) {
-      append_sightings(matches, b, sightings_);
+      association.fetch(b);
+      append_sightings(association, b, sightings_);
       fitness_.emplace_back(predicted[b], noise);
       const std::array<Real, 3> members = block_of_members(predicted[b].mean);
       for (std::size_t i = b * kLanes; i < end_of(b); ++i)

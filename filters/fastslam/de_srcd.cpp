@@ -40,14 +40,13 @@ EvolvedSettings evolved_settings(const FilterOptions& options) {
 }
 
 FilterKind de_srcd_kind() {
-  std::vector<Option> options = fast_slam_options();
+  std::vector<Option> options = population_options();
   for (Option& option : options_of_evolution()) options.push_back(std::move(option));
   for (Option& option : central_difference_options()) options.push_back(std::move(option));
   options.push_back(map_uncertainty_option());
   return {.name = "de_srcd",
           .long_name = "DE-SRCD-FastSLAM",
-          .source = "Ankishan et al. 2016; EQUATIONS 10",
-          .has_particles = true,
+          .source = "Ankishan et al. 2016; SPEC 13",
           .has_mixture = true,
           .options = std::move(options),
           .make = make_de_srcd<Lanes>};

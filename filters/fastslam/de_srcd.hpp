@@ -3,7 +3,6 @@
 
 #include "filters/fastslam/evolved_proposal.hpp"
 #include "filters/fastslam/fast_slam_filters.hpp"
-#include "filters/fastslam/sigma_point_options.hpp"
 
 namespace montecarta {
 
@@ -14,7 +13,7 @@ EvolvedSettings evolved_settings(const FilterOptions& options);
 /// differential evolution.
 template <class Real>
 std::unique_ptr<SlamFilter> make_de_srcd(const FilterSetup& setup) {
-  const FastSlamSettings settings = fast_slam_settings(setup.options);
+  const PopulationSettings settings = population_settings(setup.options);
   return make_fast_slam<Real>(
       setup, settings,
       EvolvedProposal<Real>(settings.particles, setup.belief, evolved_settings(setup.options),

@@ -6,7 +6,7 @@
 namespace montecarta {
 
 std::vector<Option> delayed_options() {
-  std::vector<Option> options = fast_slam_options();
+  std::vector<Option> options = population_options();
   options.push_back(
       count_option("draw_every", "10", 0, 1e9,
                    "scans from one draw of the poses to the next; 1 = FastSLAM II, 0 = never"));
@@ -26,8 +26,7 @@ DrawTimes draw_times(const FilterOptions& options) {
 FilterKind delayed_kind() {
   return {.name = "delayed",
           .long_name = "FastSLAM II with delayed draws",
-          .source = "EQUATIONS 11",
-          .has_particles = true,
+          .source = "SPEC 24, last lines",
           .has_mixture = true,
           .options = delayed_options(),
           .make = make_delayed<Lanes>};

@@ -11,12 +11,10 @@ DrawTimes draw_times(const FilterOptions& options);
 /// FastSLAM II with delayed draws (EQUATIONS 11).
 template <class Real>
 std::unique_ptr<SlamFilter> make_delayed(const FilterSetup& setup) {
-  const FastSlamSettings settings = fast_slam_settings(setup.options);
+  const PopulationSettings settings = population_settings(setup.options);
   return make_fast_slam<Real>(
       setup, settings,
       DelayedProposal<Real>(settings.particles, setup.belief, draw_times(setup.options)));
 }
-
-FilterKind delayed_kind();
 
 }  // namespace montecarta

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "filters/fastslam/particle_maps.hpp"
-#include "filters/moments/correlated_map.hpp"
+#include "filters/moments/correlated_sight.hpp"
 
 #include <cstdint>
 #include <limits>
@@ -32,25 +32,28 @@ class DelayedMap {
   bool holds(std::uint32_t slot) const {
     return slot < index_of_.size() && index_of_[slot] != kOut;
   }
-  std::size_t index_of(std::uint32_t slot) const { return index_of_[slot]; }
+  /// Of the innovation of a landmark, of a slot that it holds, seen from the pose of block b.
+  Symmetric2<Real> covariance(std::uint32_t slot, std::size_t b, const PoseGaussian<Real>& pose,
+                              const Landmark& landmark, const Sightline<Real>& s,
+                              const SensorNoise& noise) const {
+    return correlated_innovation(pose.covariance, landmark.covariance,
+                                 map_.pose_cross(index_of_[slot], b), SightRows<Real>(s), {}, noise)
+        .S;
+  }
 
-  /// Takes in the slots of all matches; every block of each must then be fill()ed and written
-  /// back.
-  template <class Matches>
-  void enter_matches(const Matches& matches, Maps& maps) {
+  /// Takes in the slots of all matches; every block of each must then be fill()ed and written back.
+  void enter(std::span<const std::uint32_t> matched_slots, Maps& maps) {
     first_entered_ = slots_.size();
-    matches.each_slot([&](std::uint32_t slot) {
+    for (const std::uint32_t slot : matched_slots) {
       if (!holds(slot)) enter(slot);
-    });
+    }
     written_.resize(slots_.size());
     for (std::size_t i = 0; i < slots_.size(); ++i) written_[i] = maps.rewrite(slots_[i]);
   }
-  /// Copies what block b held of the slots that came in by this scan.
-  template <class Matches>
-  void fill(const Matches& matches, std::size_t b) {
-    for (std::size_t i = first_entered_; i < slots_.size(); ++i) {
-      map_.landmark(i, b) = matches.landmark_in(slots_[i], b);
-    }
+  /// Copies what block b, once fetched, holds of the slots that came in by this scan.
+  void fill(std::size_t b) {
+    for (std::size_t i = first_entered_; i < slots_.size(); ++i)
+      map_.landmark(i, b) = written_[i][b];
   }
   /// Writes believed(landmark, cross-covariance with the pose) of every landmark to block b of its
   /// slot.
@@ -61,7 +64,7 @@ class DelayedMap {
     }
   }
   /// The number of a slot that has just been added to, taken in where it is not yet.
-  std::size_t enter(std::uint32_t slot, Maps& maps) {
+  std::size_t index_of_added(std::uint32_t slot, Maps& maps) {
     if (holds(slot)) return index_of_[slot];
     const std::size_t i = enter(slot);
     const std::span<const Landmark> blocks = maps.blocks_of(slot);
@@ -69,21 +72,21 @@ class DelayedMap {
     return i;
   }
 
-  /// Which landmark detection k of a scan is in block b.
-  template <class Matches>
-  auto where(const Matches& matches, std::size_t b, std::size_t k) const {
-    return matches.where(b, k, [&](std::uint32_t slot) { return index_of_[slot]; });
+  /// Which landmark match k of a scan is in block b.
+  template <class Associating>
+  auto where(const Associating& association, std::size_t b, std::size_t k) const {
+    return association.where(b, k, std::span<const std::size_t>(index_of_));
   }
   /// Pose and matched landmarks alone, detection by detection, into block b of `to`.
-  template <class Matches>
-  void copy_matches(const Matches& matches, std::size_t b, CorrelatedMap<Real>& to) const {
+  template <class Associating>
+  void copy_matches(const Associating& association, std::size_t b, CorrelatedMap<Real>& to) const {
     to.pose(b) = map_.pose(b);
     for (std::size_t k = 0; map_.size() > 0 && k < to.size(); ++k) {
-      const auto at = where(matches, b, k);
+      const auto at = where(association, b, k);
       to.landmark(k, b) = map_.landmark(at, b);
       to.pose_cross(k, b) = map_.pose_cross(at, b);
       for (std::size_t l = 0; l < k; ++l) {
-        to.map_cross(k, l, b) = map_.covariance(at, where(matches, b, l), b);
+        to.map_cross(k, l, b) = map_.covariance(at, where(association, b, l), b);
       }
     }
   }

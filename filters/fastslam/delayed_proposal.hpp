@@ -4,10 +4,7 @@
 #include "engine/particles/block_tasks.hpp"
 #include "filters/fastslam/delayed_map.hpp"
 #include "filters/fastslam/gaussian_proposal.hpp"
-#include "filters/moments/correlated_birth.hpp"
-#include "filters/moments/correlated_draw.hpp"
-#include "filters/moments/correlated_motion.hpp"
-#include "filters/moments/correlated_sight.hpp"
+#include "filters/moments/correlated_steps.hpp"
 
 #include <cmath>
 #include <limits>
@@ -26,164 +23,166 @@ struct DrawTimes {
 /// all others are independent of the pose, given where it was drawn. Where every scan draws, this
 /// is GaussianProposal; where none does, every particle is EKF-SLAM.
 template <class Real>
-class DelayedProposal : public GaussianProposal<Real, Linearised, Linearised> {
+class DelayedProposal {
  public:
   using Immediate = GaussianProposal<Real, Linearised, Linearised>;
+  using Refined = typename Immediate::Refined;
+
   DelayedProposal(std::size_t particles, const Belief& belief, const DrawTimes& times)
-      : Immediate(particles, belief, WeightForm::closed, Linearised(), Linearised()),
+      : immediate_(particles, belief, WeightForm::closed, Linearised(), Linearised()),
         times_(times),
         joint_(blocks_for<Real>(particles)),
-        refined_(blocks_for<Real>(particles)),
+        scanned_(blocks_for<Real>(particles)),
         predicted_(blocks_for<Real>(particles)) {}
 
-  void start(const std::vector<BasicPose<Real>>& poses) {
-    Immediate::start(poses);
-    joint_.clear();
-    is_open_ = false;
-    scans_ = 0;
+  void start() {
+    immediate_.start();
+    close();
+  }
+  void predict(const StepContext& context, const Control& control, double duration,
+               std::vector<BasicPose<Real>>& poses) {
+    is_driven_ = false;
+    immediate_.predict(context, control, duration, poses);
   }
   PoseGaussian<Real> predicted(std::size_t b, const BasicPose<Real>& pose) const {
-    if (!is_open_) return Immediate::predicted(b, pose);
-    return driven(joint_.map().pose(b), this->motion()).pose;
+    if (!is_open_) return immediate_.predicted(b, pose);
+    if (is_driven_) return joint_.map().pose(b);
+    return driven(joint_.map().pose(b), immediate_.motion()).pose;
   }
   void begin_scan(const StepContext& context, std::vector<BasicPose<Real>>& poses) {
-    if (is_open_) drive_on(context, poses);
+    if (!is_open_) return;
+    drive(context);
+    for (std::size_t b = 0; b < poses.size(); ++b) poses[b] = joint_.map().pose(b).mean;
   }
-  Innovation<Real> expected(std::size_t b, std::uint32_t slot, const PoseGaussian<Real>& pose,
-                            const LandmarkGaussian<Real>& landmark,
-                            const Sightline<Real>& s) const {
-    if (!is_open_ || !joint_.holds(slot)) {
-      return Immediate::expected(b, slot, pose, landmark, s);
-    }
-    return correlated_innovation(pose.covariance, landmark.covariance,
-                                 joint_.map().pose_cross(joint_.index_of(slot), b),
-                                 SightRows<Real>(s), RangeBearing<Real>{}, this->noise());
-  }
+  const DelayedMap<Real>* joint() const { return is_open_ ? &joint_ : nullptr; }
 
   /// Decides whether this scan draws, and takes what it sees into the joint Gaussian.
-  template <class Matches>
-  void prepare(const StepContext& context, const Matches& matches, const Weights<Real>& weights,
-               const std::vector<BasicPose<Real>>& poses, ParticleMaps<Real>& maps) {
+  template <class Associating>
+  void prepare(const StepContext& context, const Associating& association,
+               const Weights<Real>& weights, const std::vector<BasicPose<Real>>& poses,
+               const std::vector<PoseGaussian<Real>>& predicted, ParticleMaps<Real>& maps) {
     ++scans_;
-    draws_ = is_time(weights, poses);
+    draws_ = is_time(weights, predicted);
     if (draws_ && !is_open_) return;
     if (!is_open_) open(context, poses);
-    joint_.enter_matches(matches, maps);
-    refined_.clear();
-    for (std::size_t k = 0; draws_ && k < matches.matches(); ++k) refined_.add();
+    joint_.enter(association.matched_slots(), maps);
+    scanned_.clear();
+    for (std::size_t k = 0; draws_ && k < association.matches(); ++k) scanned_.add();
   }
 
-  template <class Matches, class Note>
-  Weighing<Real> weigh_and_draw(const StepContext& context, const Matches& matches, std::size_t b,
-                                BasicPose<Real>& pose, const Note& note) {
-    if (!is_open_) return Immediate::weigh_and_draw(context, matches, b, pose, note);
-    joint_.fill(matches, b);
-    return draws_ ? draw(context, matches, b, pose, note) : absorb_scan(matches, b, pose, note);
+  /// The scan updates pose and map together, as in EKF-SLAM; or, where it draws, a copy of the pose
+  /// and the landmarks that it shows.
+  template <class Associating, class Innovations>
+  Refined refine(const StepContext& context, std::size_t b, const PoseGaussian<Real>& predicted,
+                 const Associating& association, const Innovations& innovations) {
+    if (!is_open_) return immediate_.refine(context, b, predicted, association, innovations);
+    joint_.fill(b);
+    if (draws_) joint_.copy_matches(association, b, scanned_);
+    CorrelatedMap<Real>& map = draws_ ? scanned_ : joint_.map();
+    Evidence<Real> evidence;
+    for (std::size_t k = 0; map.size() > 0 && k < association.matches(); ++k) {
+      const auto match = association.match(b, k);
+      const auto absorb_at = [&](const auto& at) {
+        innovations.add(k, absorb(map, b, at, match.seen, immediate_.noise(), match.mask, evidence),
+                        match.mask);
+      };
+      draws_ ? absorb_at(ForAll{k}) : absorb_at(joint_.where(association, b, k));
+    }
+    return {predicted, map.pose(b), evidence, evidence.left_out()};
   }
 
-  LandmarkGaussian<Real> birth(std::size_t b, const BasicPose<Real>& pose,
-                               const RangeBearing<Real>& seen) {
-    if (!is_open_) return Immediate::birth(b, pose, seen);
-    newborn_ = new_correlated_landmark(joint_.map().pose(b), seen, this->noise());
-    return newborn_.landmark;
+  BasicPose<Real> draw(const StepContext& context, std::size_t b, Refined& refined) {
+    if (is_open_ && !draws_) return refined.posterior.mean;
+    return immediate_.draw(context, b, refined);
   }
-  template <class Put>
-  void settled(ParticleMaps<Real>& maps, std::size_t b, std::uint32_t slot, const Put& put) {
-    if (is_open_) place(joint_.map(), b, joint_.enter(slot, maps), newborn_, put);
+
+  /// Where the pose is drawn, the landmarks are those of the joint Gaussian before the scan, given
+  /// that pose, and take in the scan from there.
+  template <class Associating, class Innovations>
+  Weighing<Real> update_map(std::size_t b, const BasicPose<Real>& pose,
+                            const Associating& association, Refined& refined,
+                            const Innovations& innovations) {
+    if (is_open_ && !draws_) {
+      joint_.write_back(b, [](const auto& landmark, const auto&) { return landmark; });
+      return {refined.evidence.log_density(), refined.faults};
+    }
+    if (is_open_) {
+      const KnownPose<Real> known(joint_.map().pose(b), pose);
+      joint_.write_back(b, [&](const auto& landmark, const auto& cross) {
+        return known.condition(landmark, cross);
+      });
+      refined.faults += known.faults();
+    }
+    return immediate_.update_map(b, pose, association, refined, innovations);
   }
-  void resample(std::span<const std::uint32_t> parents) {
-    if (is_open_) joint_.map().resample(parents);
-  }
+
   void end_scan() {
     if (!draws_) return;
-    Immediate::end_scan();
-    joint_.clear();
-    is_open_ = false;
-    scans_ = 0;
+    immediate_.end_scan();
+    close();
+  }
+  void initialise(const FreshLandmark<Real>& fresh, const BasicPose<Real>& pose,
+                  ParticleMaps<Real>& maps) {
+    if (!is_open_) return immediate_.initialise(fresh, pose, maps);
+    CorrelatedMap<Real>& map = joint_.map();
+    const std::size_t b = fresh.block;
+    const NewLandmark<Real> added =
+        new_correlated_landmark(map.pose(b), sight_of<Real>(fresh.detection), immediate_.noise());
+    fresh.put(added.landmark, maps.blocks_of(fresh.slot)[b]);
+    place(map, b, joint_.index_of_added(fresh.slot, maps), added,
+          [&](const auto& from, auto& to) { fresh.put(from, to); });
+  }
+  void begin_step(std::span<const std::uint32_t> parents) {
+    if (is_open_ && !parents.empty()) joint_.map().resample(parents);
+    immediate_.begin_step(parents);
   }
   /// Poses that were not drawn are as uncertain as the whole mixture.
   PoseEstimate estimate(const Weights<Real>& weights,
                         const std::vector<BasicPose<Real>>& poses) const {
-    if (!is_open_) return Immediate::estimate(weights, poses);
+    if (!is_open_) return immediate_.estimate(weights, poses);
     for (std::size_t b = 0; b < poses.size(); ++b) predicted_[b] = predicted(b, poses[b]);
     const PoseMoments mixture = mixture_of(weights, predicted_);
     return {mixture, mixture};
   }
 
  private:
-  bool is_time(const Weights<Real>& weights, const std::vector<BasicPose<Real>>& poses) const {
+  bool is_time(const Weights<Real>& weights,
+               const std::vector<PoseGaussian<Real>>& predicted) const {
     if (times_.every > 0 && scans_ >= times_.every) return true;
     if (std::isinf(times_.beyond)) return false;
-    const auto variance = weighted_sums<Real, 1>(weights, [&](std::size_t b) {
-      return std::array<Real, 1>{predicted(b, poses[b]).covariance.hh};
-    });
+    const auto variance = weighted_sums<Real, 1>(
+        weights, [&](std::size_t b) { return std::array<Real, 1>{predicted[b].covariance.hh}; });
     return std::sqrt(variance[0]) > times_.beyond;
   }
   /// From here on poses are uncertain within a particle.
   void open(const StepContext& context, const std::vector<BasicPose<Real>>& poses) {
     is_open_ = true;
-    BlockTasks<Real>(poses.size()).run(context, [&](std::size_t /*task*/, std::size_t b) {
-      joint_.map().pose(b) = {poses[b], {}};
-      drive(joint_.map(), b, this->motion());
-    });
-    this->motion().restart();
+    for (std::size_t b = 0; b < poses.size(); ++b) joint_.map().pose(b) = {poses[b], {}};
+    drive(context);
   }
-  void drive_on(const StepContext& context, std::vector<BasicPose<Real>>& poses) {
-    BlockTasks<Real>(poses.size()).run(context, [&](std::size_t /*task*/, std::size_t b) {
-      drive(joint_.map(), b, this->motion());
-      poses[b] = joint_.map().pose(b).mean;
-    });
-    this->motion().restart();
+  void close() {
+    joint_.clear();
+    is_open_ = false;
+    scans_ = 0;
   }
-
-  /// The scan updates pose and map together, as in EKF-SLAM; nothing is drawn.
-  template <class Matches, class Note>
-  Weighing<Real> absorb_scan(const Matches& matches, std::size_t b, BasicPose<Real>& pose,
-                             const Note& note) {
-    Evidence<Real> evidence;
-    matches.read(b, [&](std::size_t k, const auto&, const auto& seen, const auto& mask) {
-      if (joint_.map().size() == 0) return;
-      note(
-          k,
-          absorb(joint_.map(), b, joint_.where(matches, b, k), seen, this->noise(), mask, evidence),
-          mask);
+  /// Takes the motion since the last scan into the joint Gaussian.
+  void drive(const StepContext& context) {
+    BlockTasks<Real>(joint_.map().blocks()).run(context, [&](std::size_t /*task*/, std::size_t b) {
+      montecarta::drive(joint_.map(), b, immediate_.motion());
     });
-    pose = joint_.map().pose(b).mean;
-    joint_.write_back(b, [](const auto& landmark, const auto&) { return landmark; });
-    return {evidence.log_density(), evidence.left_out()};
+    immediate_.motion().restart();
+    is_driven_ = true;
   }
 
-  /// The pose is drawn from what the joint Gaussian and the scan say of it; then the landmarks are
-  /// those of the Gaussian before the scan, given that pose, and take in the scan from there.
-  template <class Matches, class Note>
-  Weighing<Real> draw(const StepContext& context, const Matches& matches, std::size_t b,
-                      BasicPose<Real>& pose, const Note& note) {
-    Evidence<Real> evidence;
-    joint_.copy_matches(matches, b, refined_);
-    matches.read(b, [&](std::size_t k, const auto&, const auto& seen, const auto& mask) {
-      note(k, absorb(refined_, b, ForAll{k}, seen, this->noise(), mask, evidence), mask);
-    });
-    const PoseFactor<Real> factor(refined_.pose(b));
-    pose = draw_from(factor, context.identity(Draw::pose_proposal,
-                                              static_cast<std::uint32_t>(b * kLanesOf<Real>)));
-    const KnownPose<Real> known(joint_.map().pose(b), pose);
-    joint_.write_back(b, [&](const auto& landmark, const auto& cross) {
-      return known.condition(landmark, cross);
-    });
-    Unweighed<Real> unweighed;
-    this->update_landmarks(matches, b, pose, unweighed);
-    this->keep(b, refined_.pose(b));
-    return {evidence.log_density(), evidence.left_out() + factor.L.faults + known.faults()};
-  }
-
+  Immediate immediate_;
   DrawTimes times_;
   DelayedMap<Real> joint_;       ///< pose and the landmarks seen since the draw
-  CorrelatedMap<Real> refined_;  ///< scratch: pose and the landmarks of one scan that draws
+  CorrelatedMap<Real> scanned_;  ///< scratch: pose and the landmarks of one scan that draws
   mutable std::vector<PoseGaussian<Real>> predicted_;  ///< scratch of estimate()
-  NewLandmark<Real> newborn_;
-  std::size_t scans_ = 0;  ///< since the draw
-  bool is_open_ = false;   ///< poses are uncertain within a particle, the joint Gaussian holds
-  bool draws_ = false;     ///< this scan
+  std::size_t scans_ = 0;                              ///< since the draw
+  bool is_open_ = false;    ///< poses are uncertain within a particle, the joint Gaussian holds
+  bool is_driven_ = false;  ///< ... up to now, with no motion since
+  bool draws_ = false;      ///< this scan
 };
 
 }  // namespace montecarta

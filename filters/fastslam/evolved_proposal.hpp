@@ -38,60 +38,76 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
                   const SigmaPoints& points)
       : Cloud(particles, belief, points, points),
         settings_(settings),
-        predicted_(blocks_for<Real>(particles)),
-        centres_(predicted_.size()) {
+        centres_(blocks_for<Real>(particles)) {
     if (settings.mode != EvolutionMode::honest) return;
     for (std::size_t i = 0; i < particles; i += kLanesOf<Real>)
       own_.emplace_back(std::min(particles - i, kLanesOf<Real>), settings.population);
   }
 
+  /// A pose on its way from the prediction to the draw.
+  struct Refined {
+    PoseGaussian<Real> predicted, posterior;
+    BasicPose<Real> centre;   ///< of the draw
+    Evidence<Real> evidence;  ///< of the scan, before the draw
+    PoseFactor<Real> factor;
+  };
+
   /// Moves the cloud, in the modes in which it is one population.
-  template <class Matches, class Maps>
-  void prepare(const StepContext& context, const Matches& matches, const Weights<Real>& weights,
-               const std::vector<BasicPose<Real>>& poses, Maps& /*maps*/) {
+  template <class Associating>
+  void prepare(const StepContext& context, const Associating& association,
+               const Weights<Real>& weights, const std::vector<BasicPose<Real>>& /*poses*/,
+               const std::vector<PoseGaussian<Real>>& predicted, ParticleMaps<Real>& /*maps*/) {
     if (settings_.mode == EvolutionMode::honest) return;
-    for (std::size_t b = 0; b < poses.size(); ++b) {
-      predicted_[b] = this->predicted(b, poses[b]);
-      centres_[b] = predicted_[b].mean;
-    }
-    if (matches.matches() == 0) return;
+    for (std::size_t b = 0; b < predicted.size(); ++b) centres_[b] = predicted[b].mean;
+    if (association.matches() == 0) return;
     const auto aim = settings_.mode == EvolutionMode::as_printed
                          ? CloudEvolution<Real>::Aim::likelihood
                          : CloudEvolution<Real>::Aim::posterior;
-    cloud_.gather(matches, weights, predicted_, this->noise());
+    cloud_.gather(association, weights, predicted, this->noise());
     cloud_.evolve(aim, settings_.bounds, settings_.evolution, context.identity(Draw::evolution, 0),
                   centres_);
   }
 
-  /// Refines, evolves, draws and weighs one block and updates its landmarks.
-  template <class Matches, class Note>
-  Weighing<Real> weigh_and_draw(const StepContext& context, const Matches& matches, std::size_t b,
-                                BasicPose<Real>& pose, const Note& note) {
-    const PoseGaussian<Real> prior = this->predicted(b, pose);
-    PoseGaussian<Real> posterior = prior;
+  /// Refines the pose, and in mode honest seeks the most probable one about it.
+  template <class Associating, class Innovations>
+  Refined refine(const StepContext& context, std::size_t b, const PoseGaussian<Real>& predicted,
+                 const Associating& association, const Innovations& innovations) {
+    PoseGaussian<Real> posterior = predicted;
     if (!pays_for_draw()) posterior.mean = centres_[b];
-    Evidence<Real> closed, drawn;
-    this->refine(matches, b, posterior, closed, note);
+    Evidence<Real> evidence;
+    this->absorb_scan(association, b, posterior, innovations, evidence);
     this->keep(b, posterior);
-    const PoseFactor<Real> factor(posterior);
-    PoseGaussian<Real> proposal = posterior;
-    if (settings_.mode == EvolutionMode::shared) proposal.mean = centres_[b];
+    Refined refined{predicted, posterior, posterior.mean, evidence, PoseFactor<Real>(posterior)};
+    if (settings_.mode == EvolutionMode::shared) refined.centre = centres_[b];
     if (settings_.mode == EvolutionMode::honest) {
-      const auto [e0, e1, e2] =
-          own_[b].most_probable(matches, b, prior, posterior, this->noise(), settings_.bounds,
-                                settings_.evolution, identity(context, Draw::evolution, b));
-      proposal.mean = factor.at(e0, e1, e2);
+      const auto [e0, e1, e2] = own_[b].most_probable(
+          association, b, predicted, posterior, this->noise(), settings_.bounds,
+          settings_.evolution, Cloud::identity(context, Draw::evolution, b));
+      refined.centre = refined.factor.at(e0, e1, e2);
     }
+    return refined;
+  }
 
-    PoseFactor<Real> about = factor;
-    about.mean = proposal.mean;
+  BasicPose<Real> draw(const StepContext& context, std::size_t b, Refined& refined) const {
+    PoseFactor<Real> about = refined.factor;
+    about.mean = refined.centre;
     const double spread = pays_for_draw() ? std::sqrt(settings_.inflation) : 1.0;
-    pose = draw_from(about, identity(context, Draw::pose_proposal, b), Real(spread));
-    this->update_landmarks(matches, b, pose, drawn);
-    const Real faults = closed.left_out() + factor.L.faults;
-    if (!pays_for_draw()) return {closed.log_density(), faults};
-    proposal.covariance = scaled(proposal.covariance, settings_.inflation);
-    const Real ratio = PoseDensity<Real>(prior)(pose) - PoseDensity<Real>(proposal)(pose);
+    return draw_from(about, Cloud::identity(context, Draw::pose_proposal, b), Real(spread));
+  }
+
+  /// Updates the landmarks, and returns the log of the weight's factor.
+  template <class Associating, class Innovations>
+  Weighing<Real> update_map(std::size_t b, const BasicPose<Real>& pose,
+                            const Associating& association, const Refined& refined,
+                            const Innovations& /*innovations*/) const {
+    Evidence<Real> drawn;
+    this->update_landmarks(association, b, pose, drawn);
+    const Real faults = refined.evidence.left_out() + refined.factor.L.faults;
+    if (!pays_for_draw()) return {refined.evidence.log_density(), faults};
+    const PoseGaussian<Real> proposal{refined.centre,
+                                      settings_.inflation * refined.posterior.covariance};
+    const Real ratio =
+        PoseDensity<Real>(refined.predicted)(pose) - PoseDensity<Real>(proposal)(pose);
     return {drawn.log_density() + ratio, faults};
   }
 
@@ -99,14 +115,10 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
   bool pays_for_draw() const {
     return settings_.mode == EvolutionMode::honest || settings_.mode == EvolutionMode::shared;
   }
-  static StreamIdentity identity(const StepContext& context, Draw purpose, std::size_t b) {
-    return context.identity(purpose, static_cast<std::uint32_t>(b * kLanesOf<Real>));
-  }
 
   EvolvedSettings settings_;
-  std::vector<PoseGaussian<Real>> predicted_;  ///< of every block, where the cloud is moved
-  std::vector<BasicPose<Real>> centres_;       ///< where the cloud moved to
-  std::vector<OwnEvolution<Real>> own_;  ///< of every block, where each particle evolves alone
+  std::vector<BasicPose<Real>> centres_;  ///< where the cloud moved to
+  std::vector<OwnEvolution<Real>> own_;   ///< of every block, where each particle evolves alone
   CloudEvolution<Real> cloud_;
 };
 

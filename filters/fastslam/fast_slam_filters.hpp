@@ -2,13 +2,10 @@
 #pragma once
 
 #include "filters/fastslam/fast_slam.hpp"
-#include "filters/fastslam/fast_slam_options.hpp"
 #include "filters/fastslam/gaussian_proposal.hpp"
 #include "filters/fastslam/known_association.hpp"
 #include "filters/fastslam/motion_sampling.hpp"
 #include "filters/fastslam/nearest_association.hpp"
-#include "filters/moments/moment_transforms.hpp"
-#include "filters/setup/filter_setup.hpp"
 
 #include <memory>
 #include <utility>
@@ -18,7 +15,7 @@ namespace montecarta {
 /// FastSLAM with a proposal of the caller's making; the association is the setup's.
 template <class Real, class Proposal>
 std::unique_ptr<SlamFilter> make_fast_slam(const FilterSetup& setup,
-                                           const FastSlamSettings& settings, Proposal proposal) {
+                                           const PopulationSettings& settings, Proposal proposal) {
   if (setup.association.kind == Association::known) {
     using Known = KnownAssociation<Real>;
     return std::make_unique<FastSlam<Real, Proposal, Known>>(settings, std::move(proposal),
@@ -29,33 +26,80 @@ std::unique_ptr<SlamFilter> make_fast_slam(const FilterSetup& setup,
       settings, std::move(proposal), Nearest(settings.particles, setup.association, setup.belief));
 }
 
+/// Reads the option `weights`.
+WeightForm weight_form(const FilterOptions& options);
+
 /// FastSLAM whose poses are refined by the scan, each Gaussian carried by a transform of its own.
 template <class Real, class PoseTransform, class MapTransform>
 std::unique_ptr<SlamFilter> make_refined(const FilterSetup& setup,
                                          const PoseTransform& pose_transform,
                                          const MapTransform& map_transform) {
-  const FastSlamSettings settings = fast_slam_settings(setup.options);
+  const PopulationSettings settings = population_settings(setup.options);
   return make_fast_slam<Real>(setup, settings,
                               GaussianProposal<Real, PoseTransform, MapTransform>(
                                   settings.particles, setup.belief, weight_form(setup.options),
                                   pose_transform, map_transform));
 }
 
-// Compiled apart: both SRCD-FastSLAM and U-FastSLAM are it.
-extern template std::unique_ptr<SlamFilter> make_refined<Lanes>(const FilterSetup&,
-                                                                const SigmaPoints&,
-                                                                const SigmaPoints&);
+/// Whether the landmark's covariance is part of the pose's innovation (SPEC 8.1).
+Option map_uncertainty_option();
+MapUncertainty map_uncertainty(const FilterOptions& options);
+
+/// Interval and weights of central differences (SPEC 9), for every stage; `map_uncertainty` matters
+/// to the pose alone.
+std::vector<Option> central_difference_options();
+SigmaPoints central_difference_points(const FilterSetup& setup, MapUncertainty map_uncertainty);
+/// The scaled unscented transform of every stage (SPEC 8): dimension 5 for motion (pose, control)
+/// and for a sight (pose, landmark), 2 for a landmark.
+SigmaPoints unscented_points(const FilterSetup& setup);
 
 /// `Real` = double is the same filter one particle at a time, for tests.
 template <class Real>
 std::unique_ptr<SlamFilter> make_fastslam1(const FilterSetup& setup) {
-  return make_fast_slam<Real>(setup, fast_slam_settings(setup.options),
+  return make_fast_slam<Real>(setup, population_settings(setup.options),
                               MotionSampling<Real>(setup.belief));
 }
 template <class Real>
 std::unique_ptr<SlamFilter> make_fastslam2(const FilterSetup& setup) {
   return make_refined<Real>(setup, Linearised(), Linearised());
 }
+/// Unscented FastSLAM (Kim 2008): FastSLAM II with every Gaussian carried by the unscented
+/// transform.
+template <class Real>
+std::unique_ptr<SlamFilter> make_ufastslam(const FilterSetup& setup) {
+  const SigmaPoints unscented = unscented_points(setup);
+  return make_refined<Real>(setup, unscented, unscented);
+}
+/// SRCD-FastSLAM (Ankishan 2016; SPEC 10): FastSLAM II with every Gaussian carried by central
+/// differences. Covariances are kept, and the factor is taken where points are drawn: the same
+/// numbers as the square-root recursion, to rounding.
+template <class Real>
+std::unique_ptr<SlamFilter> make_srcd(const FilterSetup& setup) {
+  const SigmaPoints points = central_difference_points(setup, map_uncertainty(setup.options));
+  return make_refined<Real>(setup, points, points);
+}
+/// SRCD-aided FastSLAM (SPEC 11): the poses of FastSLAM II, landmarks by central differences.
+template <class Real>
+std::unique_ptr<SlamFilter> make_srcd_aided(const FilterSetup& setup) {
+  return make_refined<Real>(setup, Linearised(),
+                            central_difference_points(setup, MapUncertainty::on));
+}
+/// SRCD-particle-filter based FastSLAM (SPEC 11): poses by central differences, the landmarks of
+/// FastSLAM II.
+template <class Real>
+std::unique_ptr<SlamFilter> make_srcd_pf(const FilterSetup& setup) {
+  return make_refined<Real>(setup, central_difference_points(setup, map_uncertainty(setup.options)),
+                            Linearised());
+}
+
+// Compiled apart: the templates are large, and both SRCD-FastSLAM and U-FastSLAM are the last.
+extern template std::unique_ptr<SlamFilter> make_fastslam1<Lanes>(const FilterSetup&);
+extern template std::unique_ptr<SlamFilter> make_fastslam2<Lanes>(const FilterSetup&);
+extern template std::unique_ptr<SlamFilter> make_srcd_aided<Lanes>(const FilterSetup&);
+extern template std::unique_ptr<SlamFilter> make_srcd_pf<Lanes>(const FilterSetup&);
+extern template std::unique_ptr<SlamFilter> make_refined<Lanes>(const FilterSetup&,
+                                                                const SigmaPoints&,
+                                                                const SigmaPoints&);
 
 /// Lines for the table of factory.cpp.
 FilterKind fastslam1_kind();
@@ -65,5 +109,6 @@ FilterKind srcd_kind();
 FilterKind srcd_aided_kind();
 FilterKind srcd_pf_kind();
 FilterKind de_srcd_kind();
+FilterKind delayed_kind();
 
 }  // namespace montecarta

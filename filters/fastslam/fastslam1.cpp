@@ -1,16 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/fast_slam_filters.hpp"
 
-namespace montecarta {
-
-FilterKind fastslam1_kind() {
-  return {.name = "fastslam1",
-          .long_name = "FastSLAM I",
-          .source = "Montemerlo et al. 2002; EQUATIONS 5",
-          .has_particles = true,
-          .has_mixture = false,
-          .options = fast_slam_options(),
-          .make = make_fastslam1<Lanes>};
-}
-
-}  // namespace montecarta
+template std::unique_ptr<montecarta::SlamFilter> montecarta::make_fastslam1<montecarta::Lanes>(
+    const FilterSetup&);

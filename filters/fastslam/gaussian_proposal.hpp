@@ -1,72 +1,93 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/fastslam/fast_slam_options.hpp"
 #include "filters/fastslam/refined_cloud.hpp"
-#include "filters/moments/gaussian_draw.hpp"
-
-#include <type_traits>
 
 namespace montecarta {
 
-/// The predicted pose is refined by the scan before it is drawn (EQUATIONS 6 to 8).
+/// The three ways to weigh a particle of FastSLAM II (SPEC 7.2).
+enum class WeightForm {
+  closed,  ///< product of N(innovation; S), each before absorbing the detection
+  ratio,   ///< likelihood times prior over proposal at the drawn pose
+  batch,   ///< N of the stacked innovation, linearised at the predicted pose: `Linearised` only
+};
+
+/// The predicted pose is refined by the scan before it is drawn (SPEC 7, 8, 10).
 template <class Real, class PoseTransform, class MapTransform>
 class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> {
  public:
   using Cloud = RefinedCloud<Real, PoseTransform, MapTransform>;
+
+  /// A pose on its way from the prediction to the draw.
+  struct Refined {
+    PoseGaussian<Real> predicted, posterior;
+    Evidence<Real> evidence;  ///< of the scan, before the draw
+    Real faults;
+  };
+
   GaussianProposal(std::size_t particles, const Belief& belief, WeightForm form,
                    const PoseTransform& pose_transform, const MapTransform& map_transform)
       : Cloud(particles, belief, pose_transform, map_transform), form_(form) {}
 
   /// Nothing is to be decided for all particles together.
-  template <class Matches, class Maps>
-  void prepare(const StepContext& /*context*/, const Matches& /*matches*/,
-               const Weights<Real>& /*weights*/, const std::vector<BasicPose<Real>>& /*poses*/,
-               Maps& /*maps*/) {}
+  template <class Associating, class... State>
+  void prepare(const StepContext& /*context*/, const Associating& /*association*/,
+               State&... /*state*/) {}
 
-  /// Refines, draws and weighs one block and updates its landmarks; returns the log of the weight's
-  /// factor.
-  template <class Matches, class Note>
-  Weighing<Real> weigh_and_draw(const StepContext& context, const Matches& matches, std::size_t b,
-                                BasicPose<Real>& pose, const Note& note) {
-    const PoseGaussian<Real> prior = this->predicted(b, pose);
-    PoseGaussian<Real> posterior = prior;
-    Evidence<Real> closed, drawn;
-    this->refine(matches, b, posterior, closed, note);
-    const Real batch = form_ == WeightForm::batch ? batch_log_weight(matches, b, prior) : Real(0.0);
-    const PoseFactor<Real> factor(posterior);
-    pose = draw_from(factor, context.identity(Draw::pose_proposal,
-                                              static_cast<std::uint32_t>(b * kLanesOf<Real>)));
-    Unweighed<Real> unweighed;
-    form_ == WeightForm::ratio ? this->update_landmarks(matches, b, pose, drawn)
-                               : this->update_landmarks(matches, b, pose, unweighed);
-    this->keep(b, posterior);
-    const Real faults = closed.left_out() + factor.L.faults;
-    switch (form_) {
-      case WeightForm::closed:
-        return {closed.log_density(), faults};
-      case WeightForm::batch:
-        return {batch, faults};
-      case WeightForm::ratio:
-        break;
+  template <class Associating, class Innovations>
+  Refined refine(const StepContext& /*context*/, std::size_t b, const PoseGaussian<Real>& predicted,
+                 const Associating& association, const Innovations& innovations) const {
+    PoseGaussian<Real> posterior = predicted;
+    Evidence<Real> evidence;
+    this->absorb_scan(association, b, posterior, innovations, evidence);
+    const Real faults = evidence.left_out();
+    if (form_ == WeightForm::batch) evidence = batch_evidence(association, b, predicted);
+    return {predicted, posterior, evidence, faults};
+  }
+
+  BasicPose<Real> draw(const StepContext& context, std::size_t b, Refined& refined) {
+    const PoseFactor<Real> factor(refined.posterior);
+    refined.faults += factor.L.faults;
+    this->keep(b, refined.posterior);
+    return draw_from(factor, Cloud::identity(context, Draw::pose_proposal, b));
+  }
+
+  /// Updates the landmarks, and returns the log of the weight's factor.
+  template <class Associating, class Innovations>
+  Weighing<Real> update_map(std::size_t b, const BasicPose<Real>& pose,
+                            const Associating& association, Refined& refined,
+                            const Innovations& /*innovations*/) const {
+    if (form_ != WeightForm::ratio) {
+      Unweighed<Real> unweighed;
+      this->update_landmarks(association, b, pose, unweighed);
+      return {refined.evidence.log_density(), refined.faults};
     }
-    const Real ratio = PoseDensity<Real>(prior)(pose) - PoseDensity<Real>(posterior)(pose);
-    return {drawn.log_density() + ratio, faults};
+    Evidence<Real> drawn;
+    this->update_landmarks(association, b, pose, drawn);
+    const Real ratio =
+        PoseDensity<Real>(refined.predicted)(pose) - PoseDensity<Real>(refined.posterior)(pose);
+    return {drawn.log_density() + ratio, refined.faults};
   }
 
  private:
-  /// Of linearised poses only; the other filters do not offer it.
-  template <class Matches>
-  Real batch_log_weight(const Matches& matches, std::size_t b,
-                        const PoseGaussian<Real>& prior) const {
+  /// Only of a transform that offers it.
+  template <class Associating>
+  Evidence<Real> batch_evidence(const Associating& association, std::size_t b,
+                                const PoseGaussian<Real>& predicted) const {
     Evidence<Real> evidence;
-    if constexpr (std::is_same_v<PoseTransform, Linearised>) {
-      PoseGaussian<Real> refined = prior;
-      matches.read(b, [&](std::size_t, const auto& landmark, const auto& seen, const auto& mask) {
-        refine_pose_in_batch(refined, prior.mean, landmark, seen, this->noise(), mask, evidence);
-      });
+    PoseGaussian<Real> refined = predicted;
+    for (std::size_t k = 0; k < association.matches(); ++k) {
+      const auto& [landmark, seen, mask] = association.match(b, k);
+      const PoseTransform& transform = this->pose_transform();
+      if constexpr (requires {
+                      transform.refine_in_batch(refined, predicted.mean, landmark, seen,
+                                                this->noise(), mask, evidence);
+                    }) {
+        transform.refine_in_batch(refined, predicted.mean, landmark, seen, this->noise(), mask,
+                                  evidence);
+      }
     }
-    return evidence.log_density();
+    return evidence;
   }
 
   WeightForm form_;

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/drive.hpp"
-#include "engine/core/slam_filter.hpp"
-#include "engine/particles/weights.hpp"
-#include "filters/fastslam/particle_maps.hpp"
-#include "filters/moments/correlated_map.hpp"
-#include "filters/moments/linearised.hpp"
+#include "filters/fastslam/concepts.hpp"
+#include "filters/population/cloud_moments.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -22,12 +18,12 @@ class KnownAssociation {
  public:
   explicit KnownAssociation(std::size_t landmarks) : slot_of_(landmarks, kUnseen) {}
 
-  void clear() { std::fill(slot_of_.begin(), slot_of_.end(), kUnseen); }
+  void start() { std::fill(slot_of_.begin(), slot_of_.end(), kUnseen); }
 
   /// Sorts the scan into known and new landmarks.
-  template <class Predicted, class Expected>
   void associate(const StepContext& /*context*/, Scan scan, ParticleMaps<Real>& maps,
-                 const Predicted& /*predicted*/, const Expected& /*expected*/) {
+                 const std::vector<PoseGaussian<Real>>& /*predicted*/,
+                 const DelayedMap<Real>* /*joint*/) {
     slots_.clear(), seen_.clear(), new_.clear();
     for (const Detection& detection : scan) {
       if (detection.identity == Detection::kClutter) continue;
@@ -47,32 +43,20 @@ class KnownAssociation {
   /// The weight of the particles that matched detection k: all.
   double matched_weight(std::size_t /*k*/, const Weights<Real>& /*weights*/) const { return 1.0; }
 
-  /// visit(k, landmark, seen, mask) for every match of block b; the first visit of a scan.
-  template <class Visit>
-  [[gnu::always_inline]] void read(std::size_t b, const Visit& visit) const {
-    for (std::size_t k = 0; k < slots_.size(); ++k)
-      visit(k, opened_[k].fetch(b), seen_[k], Everywhere());
+  const std::vector<std::uint32_t>& matched_slots() const { return slots_; }
+
+  void fetch(std::size_t b) const {
+    for (const auto& slot : opened_) slot.fetch(b);
   }
-  /// visit(k, landmark, seen, mask), which may change the landmark; after read().
-  template <class Visit>
-  [[gnu::always_inline]] void update(std::size_t b, const Visit& visit) const {
-    for (std::size_t k = 0; k < slots_.size(); ++k)
-      visit(k, opened_[k].at(b), seen_[k], Everywhere());
+  [[gnu::always_inline]] Match<Real, LandmarkGaussian<Real>&, Everywhere> match(
+      std::size_t b, std::size_t k) const {
+    return {opened_[k].at(b), seen_[k], {}};
   }
-  /// visit(slot) for the landmarks of all matches.
-  template <class Visit>
-  void each_slot(const Visit& visit) const {
-    for (const std::uint32_t slot : slots_) visit(slot);
-  }
-  /// Block b of a slot of a match.
-  const LandmarkGaussian<Real>& landmark_in(std::uint32_t slot, std::size_t b) const {
-    const auto found = std::find(slots_.begin(), slots_.end(), slot);
-    return opened_[static_cast<std::size_t>(found - slots_.begin())].fetch(b);
-  }
-  /// Which landmark of a correlated map match k is; index_of(slot) says where that holds a slot.
-  template <class IndexOf>
-  ForAll where(std::size_t /*b*/, std::size_t k, const IndexOf& index_of) const {
-    return {index_of(slots_[k])};
+  /// match() refers to the map itself.
+  template <class Changed>
+  void store(std::size_t /*b*/, std::size_t /*k*/, const Changed& /*match*/) const {}
+  ForAll where(std::size_t /*b*/, std::size_t k, std::span<const std::size_t> index_of) const {
+    return {index_of[slots_[k]]};
   }
   /// Nobody errs: clutter is left out, all else goes where it belongs.
   AssociationCounts counts(const Weights<Real>& /*weights*/) const {
@@ -85,36 +69,38 @@ class KnownAssociation {
   /// All particles explain the same detections, so there is nothing to make equal.
   Real unmatched_log_weight(std::size_t /*b*/) const { return Real(0.0); }
 
-  /// Gives every new landmark a slot, filled by birth(block, seen); then settled(block, slot,
-  /// put), where put(from, to) copies the lanes it is new for.
-  template <class Birth, class Settled>
-  void add_new(ParticleMaps<Real>& maps, const Birth& birth, const Settled& settled) {
+  /// Gives every new landmark a slot.
+  const std::vector<FreshLandmark<Real>>& new_landmarks(ParticleMaps<Real>& maps) {
+    fresh_.clear();
     for (const Detection& detection : new_) {
       const std::uint32_t slot = maps.add();
       slot_of_[static_cast<std::size_t>(detection.identity)] = static_cast<std::int32_t>(slot);
-      const auto blocks = maps.blocks_of(slot);
-      for (std::size_t b = 0; b < blocks.size(); ++b) {
-        blocks[b] = birth(b, sight_of<Real>(detection));
-        settled(b, slot, [](const auto& from, auto& to) { to = from; });
-      }
+      for (std::size_t b = 0; b < maps.blocks(); ++b)
+        fresh_.push_back({detection, b, slot, std::nullopt});
     }
+    return fresh_;
   }
   void resample(std::span<const std::uint32_t> /*parents*/) {}
 
-  /// The slot of the landmark with this identity, or kUnseen.
-  std::int32_t slot_of(std::size_t identity) const {
-    return identity < slot_of_.size() ? slot_of_[identity] : kUnseen;
+  /// Of identity j: the mixture of all particles, for which a slot is the same landmark.
+  std::optional<LandmarkEstimate> landmark(std::size_t j, const ParticleMaps<Real>& maps,
+                                           const Weights<Real>& weights) const {
+    if (j >= slot_of_.size() || slot_of_[j] == kUnseen) return std::nullopt;
+    maps.copy_slot(static_cast<std::uint32_t>(slot_of_[j]), source_, copied_);
+    return mixture_of_landmarks(weights, copied_);
   }
-  /// A slot is the same landmark for all particles, so a map is reported as their mixture.
-  static constexpr bool kShared = true;
-  static constexpr std::int32_t kUnseen = -1;
 
  private:
-  std::vector<std::int32_t> slot_of_;
+  static constexpr std::int32_t kUnseen = -1;
+
+  std::vector<std::int32_t> slot_of_;  ///< {identity}
   std::vector<std::uint32_t> slots_;
   std::vector<RangeBearing<Real>> seen_;
   std::vector<Detection> new_;
   std::vector<typename ParticleMaps<Real>::OpenSlot> opened_;
+  std::vector<FreshLandmark<Real>> fresh_;
+  mutable std::vector<std::uint32_t> source_;           ///< scratch of landmark()
+  mutable std::vector<LandmarkGaussian<Real>> copied_;  ///< likewise
 };
 
 }  // namespace montecarta

@@ -3,27 +3,27 @@
 
 #include "engine/particles/block_tasks.hpp"
 #include "engine/random/normals.hpp"
-#include "filters/fastslam/drawn_poses.hpp"
+#include "filters/fastslam/concepts.hpp"
 #include "filters/models/ackermann.hpp"
-#include "filters/moments/cloud_moments.hpp"
-#include "filters/moments/linearised.hpp"
+#include "filters/population/cloud_moments.hpp"
 
 #include <vector>
 
 namespace montecarta {
 
-/// FastSLAM I (EQUATIONS 5): every particle moves with control noise of its own at every step; the
-/// scan only weighs it.
+/// FastSLAM I (SPEC 6): every particle moves with control noise of its own at every step; the scan
+/// only weighs it, by the likelihood at its pose.
 template <class Real>
-class MotionSampling : public DrawnPoses<Real> {
+class MotionSampling {
  public:
+  using Refined = BasicPose<Real>;
+
   explicit MotionSampling(const Belief& belief)
-      : DrawnPoses<Real>(SensorNoise::of(belief)), belief_(belief) {}
+      : belief_(belief), noise_(SensorNoise::of(belief)) {}
 
-  void start(const std::vector<BasicPose<Real>>& /*poses*/) {}
-
+  void start() {}
   void predict(const StepContext& context, const Control& control, double duration,
-               const Weights<Real>& /*weights*/, std::vector<BasicPose<Real>>& poses) {
+               std::vector<BasicPose<Real>>& poses) {
     constexpr std::size_t kBlocksPerTask = 1024 / kLanesOf<Real>;
     BlockTasks<Real>(poses.size(), kBlocksPerTask)
         .run(context, [&](std::size_t /*task*/, std::size_t b) {
@@ -35,28 +35,43 @@ class MotionSampling : public DrawnPoses<Real> {
     return {pose, {}};
   }
 
-  template <class Matches, class Maps>
-  void prepare(const StepContext& /*context*/, const Matches& /*matches*/,
-               const Weights<Real>& /*weights*/, const std::vector<BasicPose<Real>>& /*poses*/,
-               Maps& /*maps*/) {}
+  void begin_scan(const StepContext& /*context*/, std::vector<BasicPose<Real>>& /*poses*/) {}
+  const DelayedMap<Real>* joint() const { return nullptr; }
+  template <class Associating, class... State>
+  void prepare(const StepContext& /*context*/, const Associating& /*association*/,
+               State&... /*state*/) {}
 
-  /// Weighs one block by the likelihood at its poses and updates its landmarks.
-  template <class Matches, class Note>
-  Weighing<Real> weigh_and_draw(const StepContext& /*context*/, const Matches& matches,
-                                std::size_t b, const BasicPose<Real>& pose, const Note& note) {
+  template <class Associating, class Innovations>
+  Refined refine(const StepContext& /*context*/, std::size_t /*b*/,
+                 const PoseGaussian<Real>& predicted, const Associating& /*association*/,
+                 const Innovations& /*innovations*/) const {
+    return predicted.mean;
+  }
+  BasicPose<Real> draw(const StepContext& /*context*/, std::size_t /*b*/, Refined& refined) const {
+    return refined;
+  }
+  template <class Associating, class Innovations>
+  [[gnu::flatten]] Weighing<Real> update_map(std::size_t b, const BasicPose<Real>& pose,
+                                             const Associating& association, Refined& /*refined*/,
+                                             const Innovations& innovations) const {
     Evidence<Real> likelihood;
-    matches.read(b, [](auto&&...) {});
-    matches.update(b, [&](std::size_t k, auto& landmark, const auto& seen, const auto& mask) {
-      note(k, update_landmark(landmark, pose, seen, this->noise(), mask, likelihood), mask);
-    });
+    for (std::size_t k = 0; k < association.matches(); ++k) {
+      auto match = association.match(b, k);
+      innovations.add(
+          k, update_landmark(match.landmark, pose, match.seen, noise_, match.mask, likelihood),
+          match.mask);
+      association.store(b, k, match);
+    }
     return {likelihood.log_density(), likelihood.left_out()};
   }
-  LandmarkGaussian<Real> birth(std::size_t /*b*/, const BasicPose<Real>& pose,
-                               const RangeBearing<Real>& seen) const {
-    return new_landmark(pose, seen, this->noise());
-  }
+
   void end_scan() {}
-  void settle() {}
+  void initialise(const FreshLandmark<Real>& fresh, const BasicPose<Real>& pose,
+                  ParticleMaps<Real>& maps) const {
+    fresh.put(new_landmark(pose, sight_of<Real>(fresh.detection), noise_),
+              maps.blocks_of(fresh.slot)[fresh.block]);
+  }
+  void begin_step(std::span<const std::uint32_t> /*parents*/) {}
   PoseEstimate estimate(const Weights<Real>& weights,
                         const std::vector<BasicPose<Real>>& poses) const {
     return {spread_of(weights, poses), std::nullopt};
@@ -73,6 +88,7 @@ class MotionSampling : public DrawnPoses<Real> {
   }
 
   Belief belief_;
+  SensorNoise noise_;
 };
 
 }  // namespace montecarta

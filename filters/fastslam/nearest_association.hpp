@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/drive.hpp"
-#include "engine/core/step_context.hpp"
 #include "engine/errors.hpp"
-#include "engine/particles/weights.hpp"
 #include "filters/association/association_counts.hpp"
-#include "filters/association/birth_identities.hpp"
 #include "filters/association/nearest.hpp"
-#include "filters/fastslam/particle_maps.hpp"
-#include "filters/moments/correlated_map.hpp"
-#include "filters/moments/linearised.hpp"
+#include "filters/fastslam/concepts.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -29,21 +23,20 @@ class NearestAssociation {
                      const Belief& belief)
       : particles_(particles),
         settings_(settings),
+        noise_(SensorNoise::of(belief)),
         log_new_density_(log_new_density(settings, belief)),
         counts_(blocks_for<Real>(particles), Real(0.0)),
         resampled_counts_(counts_),
         made_of_(particles) {}
 
-  void clear() {
+  void start() {
     std::fill(counts_.begin(), counts_.end(), Real(0.0));
     made_of_.clear();
   }
 
-  /// Judges every detection by every particle's map; predicted(b) is the pose Gaussian of block b,
-  /// expected(b, slot, pose, landmark, sightline) the covariance of what should be seen.
-  template <class Predicted, class Expected>
+  /// Judges every detection by every particle's map.
   void associate(const StepContext& context, Scan scan, ParticleMaps<Real>& maps,
-                 const Predicted& predicted, const Expected& expected) {
+                 const std::vector<PoseGaussian<Real>>& predicted, const DelayedMap<Real>* joint) {
     scan_ = scan;
     seen_.clear();
     for (const Detection& detection : scan) seen_.push_back(sight_of<Real>(detection));
@@ -53,7 +46,11 @@ class NearestAssociation {
     pairings_.resize(maps.blocks() * kLanes * seen_.size());
     searches_.resize(pairings_.size());
     context.parallel_for(maps.blocks(),
-                         [&](std::size_t b) { judge_block(b, predicted(b), expected); });
+                         [&](std::size_t b) { judge_block(b, predicted[b], joint); });
+    matched_slots_.clear();
+    for (const Pairing& pairing : pairings_) {
+      if (pairing.verdict == Verdict::matched) matched_slots_.push_back(pairing.landmark);
+    }
   }
 
   bool found_nothing() const {
@@ -74,45 +71,28 @@ class NearestAssociation {
     return sum;
   }
 
-  template <class Visit>
-  void read(std::size_t b, const Visit& visit) const {
-    for (std::size_t k = 0; k < seen_.size(); ++k) {
-      visit(k, collect(b, k), seen_[k], matched(b, k) > Real(0.5));
+  const std::vector<std::uint32_t>& matched_slots() const { return matched_slots_; }
+
+  /// Was done to judge.
+  void fetch(std::size_t /*b*/) const {}
+  using Matched = Match<Real, LandmarkGaussian<Real>, decltype(Real() > Real())>;
+  Matched match(std::size_t b, std::size_t k) const {
+    return {collect(b, k), seen_[k], matched(b, k) > Real(0.5)};
+  }
+  void store(std::size_t b, std::size_t k, const Matched& changed) const {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const Pairing& pairing = pairings_of(b * kLanes + lane)[k];
+      if (pairing.verdict == Verdict::matched)
+        copy_lane<Real>(changed.landmark, opened_[pairing.landmark].at(b), lane);
     }
   }
-  template <class Visit>
-  void update(std::size_t b, const Visit& visit) const {
-    for (std::size_t k = 0; k < seen_.size(); ++k) {
-      LandmarkGaussian<Real> landmark = collect(b, k);
-      visit(k, landmark, seen_[k], matched(b, k) > Real(0.5));
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const Pairing& pairing = pairings_of(b * kLanes + lane)[k];
-        if (pairing.verdict == Verdict::matched)
-          copy_lane<Real>(landmark, opened_[pairing.landmark].at(b), lane);
-      }
-    }
-  }
-  /// visit(slot) for the landmarks of all matches, each perhaps many times.
-  template <class Visit>
-  void each_slot(const Visit& visit) const {
-    for (const Pairing& pairing : pairings_) {
-      if (pairing.verdict == Verdict::matched) visit(pairing.landmark);
-    }
-  }
-  /// Block b of any slot.
-  const LandmarkGaussian<Real>& landmark_in(std::uint32_t slot, std::size_t b) const {
-    return opened_[slot].at(b);
-  }
-  /// Which landmark of a correlated map each lane takes detection k for; index_of(slot) says where
-  /// that holds a slot. A lane without a match gets a harmless one.
-  template <class IndexOf>
-  ForEach<Real> where(std::size_t b, std::size_t k, const IndexOf& index_of) const {
+  /// A lane without a match gets a harmless landmark.
+  ForEach<Real> where(std::size_t b, std::size_t k, std::span<const std::size_t> index_of) const {
     ForEach<Real> at{};
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const Pairing& pairing = pairings_of(b * kLanes + lane)[k];
-      if (pairing.verdict == Verdict::matched) {
-        at.index[lane] = static_cast<std::uint32_t>(index_of(pairing.landmark));
-      }
+      if (pairing.verdict == Verdict::matched)
+        at.index[lane] = static_cast<std::uint32_t>(index_of[pairing.landmark]);
     }
     return at;
   }
@@ -124,7 +104,7 @@ class NearestAssociation {
     return sum;
   }
 
-  /// Against the simulator's identities; before add_new().
+  /// Against the simulator's identities; before new_landmarks().
   AssociationCounts counts(const Weights<Real>& weights) const {
     AssociationCounts mean;
     for (std::size_t i = 0; i < particles_; ++i) {
@@ -143,24 +123,27 @@ class NearestAssociation {
     return mean;
   }
 
-  /// Adds birth(block, seen) to the maps that have it new; then settled(block, slot, put), where
-  /// put(from, to) copies the one lane that has that slot for it.
-  template <class Birth, class Settled>
-  void add_new(ParticleMaps<Real>& maps, const Birth& birth, const Settled& settled) {
+  /// Gives every particle a slot of its own for each detection that is new to it.
+  const std::vector<FreshLandmark<Real>>& new_landmarks(ParticleMaps<Real>& maps) {
+    fresh_.clear();
     for (std::size_t k = 0; k < seen_.size(); ++k) {
-      for (std::size_t b = 0; b < maps.blocks(); ++b) add_to_block(maps, b, k, birth, settled);
+      for (std::size_t i = 0; i < particles_; ++i) {
+        if (pairings_of(i)[k].verdict == Verdict::fresh) add_slot(scan_[k], i, maps);
+      }
     }
+    return fresh_;
   }
   void resample(std::span<const std::uint32_t> parents) {
     gather<Real>(counts_, parents, resampled_counts_);
     std::swap(counts_, resampled_counts_);
     made_of_.resample(parents);
   }
-  /// Slots are given out by every particle for itself, so only one particle's map makes sense.
-  static constexpr bool kShared = false;
-  /// How many landmarks a particle has.
-  std::size_t count_of(std::size_t particle) const {
-    return static_cast<std::size_t>(get(counts_[particle / kLanes], particle % kLanes));
+  /// In order of birth, of the heaviest particle: particles do not share slots.
+  std::optional<LandmarkEstimate> landmark(std::size_t j, const ParticleMaps<Real>& maps,
+                                           const Weights<Real>& weights) const {
+    const std::size_t heaviest = weights.heaviest();
+    if (j >= count_of(heaviest)) return std::nullopt;
+    return maps.landmark_of(static_cast<std::uint32_t>(j), static_cast<std::uint32_t>(heaviest));
   }
 
  private:
@@ -173,13 +156,12 @@ class NearestAssociation {
     return std::span(pairings_).subspan(particle * seen_.size(), seen_.size());
   }
 
-  template <class Expected>
-  void judge_block(std::size_t b, const PoseGaussian<Real>& pose, const Expected& expected) {
+  void judge_block(std::size_t b, const PoseGaussian<Real>& pose, const DelayedMap<Real>* joint) {
     const std::span<NearestSearch> searches =
         std::span(searches_).subspan(b * kLanes * seen_.size(), kLanes * seen_.size());
     std::ranges::fill(searches, NearestSearch{});
-    for (std::size_t j = 0; j < opened_.size(); ++j)
-      offer(b, j, opened_[j].fetch(b), pose, expected, searches);
+    for (std::uint32_t j = 0; j < opened_.size(); ++j)
+      offer(b, j, opened_[j].fetch(b), pose, joint, searches);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::span<Pairing> pairings = pairings_of(b * kLanes + lane);
       for (std::size_t k = 0; k < seen_.size(); ++k) {
@@ -190,22 +172,25 @@ class NearestAssociation {
   }
 
   /// Offers landmark j to every detection of the scan; `searches` {detection, lane}.
-  template <class Expected>
-  void offer(std::size_t b, std::size_t j, const LandmarkGaussian<Real>& landmark,
-             const PoseGaussian<Real>& pose, const Expected& expected,
+  void offer(std::size_t b, std::uint32_t j, const LandmarkGaussian<Real>& landmark,
+             const PoseGaussian<Real>& pose, const DelayedMap<Real>* joint,
              std::span<NearestSearch> searches) const {
     const Sightline<Real> s = sightline(pose.mean, landmark.mean);
     const auto owned = Real(static_cast<double>(j)) < counts_[b];
     const Real never(std::numeric_limits<double>::infinity());
     // Only the innovation itself differs from detection to detection; most lie far away.
-    const Innovation<Real> spread = expected(b, static_cast<std::uint32_t>(j), pose, landmark, s);
+    const Symmetric2<Real> S =
+        joint && joint->holds(j)
+            ? joint->covariance(j, b, pose, landmark, s, noise_)
+            : innovation_of(pose.covariance, s, {}, landmark.covariance, noise_).S;
+    const Real determinant = S.determinant();
     for (std::size_t k = 0; k < seen_.size(); ++k) {
-      const Real distance = select(owned, spread.squared(residual(seen_[k], s)), never);
+      const RangeBearing<Real> v = residual(seen_[k], s);
+      const Real distance = select(owned, S.adjugate_form(v.range, v.bearing) / determinant, never);
       if (!any(distance < Real(settings_.new_gate))) continue;
-      const Real cost = distance + log(spread.determinant());
+      const Real cost = distance + log(determinant);
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        searches[k * kLanes + lane].offer(static_cast<std::uint32_t>(j), get(distance, lane),
-                                          get(cost, lane), settings_.gate);
+        searches[k * kLanes + lane].offer(j, get(distance, lane), get(cost, lane), settings_.gate);
       }
     }
   }
@@ -230,37 +215,35 @@ class NearestAssociation {
     return landmark;
   }
 
-  template <class Birth, class Settled>
-  void add_to_block(ParticleMaps<Real>& maps, std::size_t b, std::size_t k, const Birth& birth,
-                    const Settled& settled) {
-    const LandmarkGaussian<Real> born = birth(b, seen_[k]);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const std::size_t particle = b * kLanes + lane;
-      if (particle >= particles_ || pairings_of(particle)[k].verdict != Verdict::fresh) continue;
-      const auto slot = static_cast<std::uint32_t>(get(counts_[b], lane));
-      if (slot >= settings_.most_landmarks) {
-        throw RunError("the map of a particle grew beyond " +
-                       std::to_string(settings_.most_landmarks) + " landmarks");
-      }
-      if (slot == maps.slots()) maps.add();
-      copy_lane<Real>(born, maps.blocks_of(slot)[b], lane);
-      set(counts_[b], lane, slot + 1.0);
-      made_of_.add(particle, scan_[k].identity);
-      settled(b, slot, [lane](const auto& from, auto& to) { copy_lane<Real>(from, to, lane); });
+  /// How many landmarks a particle has.
+  std::size_t count_of(std::size_t particle) const {
+    return static_cast<std::size_t>(get(counts_[particle / kLanes], particle % kLanes));
+  }
+  void add_slot(const Detection& detection, std::size_t particle, ParticleMaps<Real>& maps) {
+    const auto slot = static_cast<std::uint32_t>(count_of(particle));
+    if (slot >= settings_.most_landmarks) {
+      throw RunError("the map of a particle grew beyond " +
+                     std::to_string(settings_.most_landmarks) + " landmarks");
     }
+    if (slot == maps.slots()) maps.add();
+    set(counts_[particle / kLanes], particle % kLanes, slot + 1.0);
+    made_of_.add(particle, detection.identity);
+    fresh_.push_back({detection, particle / kLanes, slot, particle % kLanes});
   }
 
   std::size_t particles_;
   AssociationSettings settings_;
+  SensorNoise noise_;
   double log_new_density_;
   std::vector<Real> counts_, resampled_counts_;
   BirthIdentities made_of_;
   Scan scan_;  ///< the caller's, for the time of an update
   std::vector<RangeBearing<Real>> seen_;
-  std::vector<std::uint32_t> slots_;
+  std::vector<std::uint32_t> slots_, matched_slots_;
   std::vector<Pairing> pairings_;        ///< {particle, detection}
   std::vector<NearestSearch> searches_;  ///< {block, detection, lane}
   std::vector<typename ParticleMaps<Real>::OpenSlot> opened_;
+  std::vector<FreshLandmark<Real>> fresh_;
 };
 
 }  // namespace montecarta

@@ -23,14 +23,14 @@ class OwnEvolution {
 
   /// The most probable pose that is found within `bounds` standard deviations, in standard
   /// deviations of `refined`: where the particles of block b, who expected `predicted`, take the
-  /// detections for what `matches` says.
-  template <class Matches>
-  std::array<Real, 3> most_probable(const Matches& matches, std::size_t b,
+  /// detections for what `association` says.
+  template <class Associating>
+  std::array<Real, 3> most_probable(const Associating& association, std::size_t b,
                                     const PoseGaussian<Real>& predicted,
                                     const PoseGaussian<Real>& refined, const SensorNoise& noise,
                                     double bounds, const EvolutionSettings& settings,
                                     const StreamIdentity& chance) {
-    look(matches, b, predicted, refined, noise);
+    look(association, b, predicted, refined, noise);
     if (scan_.empty()) return {Real(0.0), Real(0.0), Real(0.0)};
     begin(bounds, chance);
     const Real bound(bounds);
@@ -45,11 +45,11 @@ class OwnEvolution {
   using Candidates = std::span<const std::array<Real, 3>>;
 
   /// What the particles of block b believe, in the order of packed candidates.
-  template <class Matches>
-  void look(const Matches& matches, std::size_t b, const PoseGaussian<Real>& predicted,
+  template <class Associating>
+  void look(const Associating& association, std::size_t b, const PoseGaussian<Real>& predicted,
             const PoseGaussian<Real>& refined, const SensorNoise& noise) {
     fitness_.clear(), factors_.clear(), scan_.clear(), packed_scan_.clear();
-    append_sightings(matches, b, scan_);
+    append_sightings(association, b, scan_);
     for (std::size_t p = 0; p < packed_.patterns(); ++p) {
       fitness_.emplace_back(packed_.said_of(predicted, p), noise);
       factors_.emplace_back(packed_.said_of(refined, p));

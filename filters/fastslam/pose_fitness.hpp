@@ -17,12 +17,14 @@ struct Sighting {
   Real matched;  ///< 1, or 0 where the particle takes it for nothing it knows
 };
 
-/// Appends what the particles of block b take every match of a scan for.
-template <class Real, class Matches>
-void append_sightings(const Matches& matches, std::size_t b, std::vector<Sighting<Real>>& scan) {
-  matches.read(b, [&](std::size_t, const auto& landmark, const auto& seen, const auto& mask) {
+/// Appends what the particles of block b, once fetched, take every match of a scan for.
+template <class Real, class Associating>
+void append_sightings(const Associating& association, std::size_t b,
+                      std::vector<Sighting<Real>>& scan) {
+  for (std::size_t k = 0; k < association.matches(); ++k) {
+    const auto& [landmark, seen, mask] = association.match(b, k);
     scan.push_back({landmark, seen, as_number<Real>(mask)});
-  });
+  }
 }
 
 /// How well a pose explains a scan.
@@ -53,10 +55,9 @@ class PoseFitness {
       const auto use = one.matched > Real(0.5) && is_usable(s);
       const Turned<Real> map = turned(one.landmark.covariance, s);
       const auto [r, b] = residual(one.seen, s);
-      const Real rr = noise_.range + map.along, rb = map.cross * s.per_range;
-      const Real bb = noise_.bearing + map.across * s.per_range * s.per_range;
-      const Real determinant = rr * bb - rb * rb;
-      const Real squared = (bb * r * r - 2.0 * rb * r * b + rr * b * b) / determinant;
+      const Symmetric2<Real> S{noise_.range + map.along, map.cross * s.per_range,
+                               noise_.bearing + map.across * s.per_range * s.per_range};
+      const Real determinant = S.determinant(), squared = S.adjugate_form(r, b) / determinant;
       evidence.add(select(use, squared, Real(0.0)), select(use, determinant, Real(1.0)),
                    as_number<Real>(use), one.matched);
     }

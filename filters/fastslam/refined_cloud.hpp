@@ -1,50 +1,56 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/fastslam/drawn_poses.hpp"
-#include "filters/moments/cloud_moments.hpp"
+#include "filters/fastslam/concepts.hpp"
+#include "filters/moments/gaussian_draw.hpp"
 #include "filters/moments/moment_transforms.hpp"
+#include "filters/population/cloud_moments.hpp"
 
 #include <optional>
 #include <vector>
 
 namespace montecarta {
 
-/// What filters have in common whose poses are drawn from Gaussians that the scan refined
-/// (EQUATIONS 4): prediction, refinement, maps, and the estimate between scans. The transforms
-/// carry the Gaussians: `PoseTransform` those of the pose, `MapTransform` those of the landmarks.
-template <class Real, class PoseTransform, class MapTransform>
-class RefinedCloud : public DrawnPoses<Real> {
+/// What filters have in common whose poses are drawn from Gaussians that the scan refined (SPEC 5):
+/// prediction, refinement, maps, and the estimate between scans. The transforms carry the
+/// Gaussians: `PoseTransform` those of the pose, `MapTransform` those of the landmarks.
+template <class Real, MomentTransform<Real> PoseTransform, MomentTransform<Real> MapTransform>
+class RefinedCloud {
  public:
   RefinedCloud(std::size_t particles, const Belief& belief, const PoseTransform& pose_transform,
                const MapTransform& map_transform)
-      : DrawnPoses<Real>(SensorNoise::of(belief)),
-        belief_(belief),
+      : belief_(belief),
+        noise_(SensorNoise::of(belief)),
         pose_transform_(pose_transform),
         map_transform_(map_transform),
         posterior_(blocks_for<Real>(particles)) {}
 
-  void start(const std::vector<BasicPose<Real>>& /*poses*/) {
+  void start() {
     motion_.restart();
-    settle();
+    begin_step({});
   }
   void predict(const StepContext& /*context*/, const Control& control, double duration,
-               const Weights<Real>& /*weights*/, std::vector<BasicPose<Real>>& /*poses*/) {
+               std::vector<BasicPose<Real>>& /*poses*/) {
     pose_transform_.advance(motion_, control, duration, belief_);
   }
   PoseGaussian<Real> predicted(std::size_t /*b*/, const BasicPose<Real>& drawn) const {
     return motion_.from(drawn);
   }
-  LandmarkGaussian<Real> birth(std::size_t /*b*/, const BasicPose<Real>& pose,
-                               const RangeBearing<Real>& seen) const {
-    return map_transform_.birth(pose, seen, this->noise());
-  }
+  /// Every scan draws: pose and map are never correlated within a particle.
+  void begin_scan(const StepContext& /*context*/, std::vector<BasicPose<Real>>& /*poses*/) {}
+  const DelayedMap<Real>* joint() const { return nullptr; }
+
   /// All poses were drawn: nothing is uncertain within a particle.
   void end_scan() {
     motion_.restart();
     is_drawn_ = true;
   }
-  void settle() {
+  void initialise(const FreshLandmark<Real>& fresh, const BasicPose<Real>& pose,
+                  ParticleMaps<Real>& maps) const {
+    fresh.put(map_transform_.initialise(pose, sight_of<Real>(fresh.detection), noise_),
+              maps.blocks_of(fresh.slot)[fresh.block]);
+  }
+  void begin_step(std::span<const std::uint32_t> /*parents*/) {
     moments_.reset();
     is_drawn_ = false;
   }
@@ -55,31 +61,46 @@ class RefinedCloud : public DrawnPoses<Real> {
     return moments_->moved_by(motion_);
   }
 
+  /// The motion since poses were drawn; whoever takes it into account himself restarts it.
+  MotionIncrement& motion() { return motion_; }
+  const MotionIncrement& motion() const { return motion_; }
+  const SensorNoise& noise() const { return noise_; }
+
  protected:
+  // Flattened, for out of line their arrays of registers pass through memory.
+
   /// Absorbs the scan of block b into `pose`, one detection after the other.
-  template <class Matches, class Note>
-  void refine(const Matches& matches, std::size_t b, PoseGaussian<Real>& pose,
-              Evidence<Real>& evidence, const Note& note) const {
-    matches.read(b, [&](std::size_t k, const auto& landmark, const auto& seen, const auto& mask) {
-      note(k, pose_transform_.refine(pose, landmark, seen, this->noise(), mask, evidence), mask);
-    });
+  template <class Associating, class Innovations>
+  [[gnu::flatten]] void absorb_scan(const Associating& association, std::size_t b,
+                                    PoseGaussian<Real>& pose, const Innovations& innovations,
+                                    Evidence<Real>& evidence) const {
+    for (std::size_t k = 0; k < association.matches(); ++k) {
+      const auto& [landmark, seen, mask] = association.match(b, k);
+      innovations.add(k, pose_transform_.refine(pose, landmark, seen, noise_, mask, evidence),
+                      mask);
+    }
   }
   /// Absorbs the scan into the landmarks of block b, seen from `pose`.
-  template <class Matches, class Weighed>
-  void update_landmarks(const Matches& matches, std::size_t b, const BasicPose<Real>& pose,
-                        Weighed& evidence) const {
-    matches.update(b, [&](std::size_t, auto& landmark, const auto& seen, const auto& mask) {
-      map_transform_.update(landmark, pose, seen, this->noise(), mask, evidence);
-    });
+  template <class Associating, class Weighed>
+  [[gnu::flatten]] void update_landmarks(const Associating& association, std::size_t b,
+                                         const BasicPose<Real>& pose, Weighed& evidence) const {
+    for (std::size_t k = 0; k < association.matches(); ++k) {
+      auto match = association.match(b, k);
+      map_transform_.update(match.landmark, pose, match.seen, noise_, match.mask, evidence);
+      association.store(b, k, match);
+    }
   }
   /// What the particles of block b believed of their poses before they were drawn.
   void keep(std::size_t b, const PoseGaussian<Real>& posterior) { posterior_[b] = posterior; }
+  const PoseTransform& pose_transform() const { return pose_transform_; }
 
-  MotionIncrement& motion() { return motion_; }
-  const MotionIncrement& motion() const { return motion_; }
+  static StreamIdentity identity(const StepContext& context, Draw purpose, std::size_t b) {
+    return context.identity(purpose, static_cast<std::uint32_t>(b * kLanesOf<Real>));
+  }
 
  private:
   Belief belief_;
+  SensorNoise noise_;
   PoseTransform pose_transform_;
   MapTransform map_transform_;
   MotionIncrement motion_;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/joint/joint_gaussian.hpp"
-#include "filters/joint/packs.hpp"
 
 #include <cmath>
 #include <utility>

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/joint/gaussian_bank.hpp"
 
-#include "engine/particles/tell_particles.hpp"
 #include "engine/random/normal_quantile.hpp"
-#include "filters/association/association_counts.hpp"
 #include "filters/joint/mixture.hpp"
-#include "filters/moments/quadrature_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace montecarta {
@@ -18,28 +14,23 @@ GaussianBank::GaussianBank(const FilterSetup& setup, const BankSettings& setting
     : belief_(setup.belief),
       settings_(settings),
       known_(setup.association.kind == Association::known),
-      weights_(settings.particles),
-      slot_of_(settings.particles),
-      parents_(settings.particles),
-      ancestors_(settings.particles),
-      weights_before_scan_(settings.particles) {
-  beliefs_.reserve(settings.particles);
+      population_(settings.population),
+      slot_of_(population_.particles()),
+      old_slot_of_(slot_of_) {
+  beliefs_.reserve(slot_of_.size());
   FilterSetup idle = setup;  // grows when it becomes a copy
   idle.landmarks = 0;
-  for (std::size_t i = 0; i < settings.particles; ++i) {
+  for (std::size_t i = 0; i < slot_of_.size(); ++i) {
     beliefs_.emplace_back(i == 0 ? setup : idle, settings.retraction, settings.iterations);
   }
 }
 
 void GaussianBank::start(const Pose& start) {
   motion_.restart();
-  weights_.make_equal();
+  population_.start();
   beliefs_.front().start(start);
   std::fill(slot_of_.begin(), slot_of_.end(), 0U);
   active_.assign(1, 0U);
-  std::iota(ancestors_.begin(), ancestors_.end(), 0U);
-  report_ = {};
-  after_update_ = false;
 }
 
 void GaussianBank::predict(const StepContext& /*context*/, const Control& control,
@@ -54,52 +45,46 @@ void GaussianBank::predict(const StepContext& /*context*/, const Control& contro
 
 void GaussianBank::update(const StepContext& context, Scan scan) {
   settle();
-  after_update_ = true;
+  population_.begin_scan();
   context.parallel_for(active_.size(),
                        [&](std::size_t a) { beliefs_[active_[a]].absorb(motion_, scan); });
   motion_.restart();
+  gather_innovations(scan);
   weigh();
-  report_innovations(scan);
   estimate_of_scan_ = mixture();
   split(context);
   context.parallel_for(active_.size(),
                        [&](std::size_t a) { beliefs_[active_[a]].give_birth(scan); });
   for (std::size_t i = 0; i < slot_of_.size(); ++i) {
-    report_.map_size +=
-        weights_.linear()[i] * static_cast<double>(belief_of(i).gaussian().landmarks());
+    population_.report().map_size +=
+        weight_of(i) * static_cast<double>(belief_of(i).gaussian().landmarks());
   }
-  decide_on_resampling(context);
+  population_.decide_on_resampling(context);
 }
 
 /// Every particle's weight is multiplied by what its belief expected of the scan.
 void GaussianBank::weigh() {
-  report_ = {};
-  std::ranges::copy(weights_.linear_scalars(), weights_before_scan_.begin());
   for (std::size_t i = 0; i < slot_of_.size(); ++i) {
-    weights_.multiply(i, belief_of(i).outcome().log_likelihood);
+    population_.weigh(i, {belief_of(i).outcome().log_likelihood, 0.0});
   }
-  report_.log_likelihood = weights_.normalise();
-  if (settings_.tells_particles) report_.ess = weights_.effective();
+  population_.normalise();
+  ScanReport& report = population_.report();
+  if (!settings_.tells_particles) report.ess = 0.0;
+  innovations_.add_to(report);
   for (std::size_t i = 0; i < slot_of_.size(); ++i) {
-    add(belief_of(i).outcome().association, weights_.linear()[i], report_.association);
+    add(belief_of(i).association().counts(), weight_of(i), report.association);
   }
-  for (std::uint32_t slot : active_) report_.numerical_faults += beliefs_[slot].outcome().faults;
+  for (std::uint32_t slot : active_) report.numerical_faults += beliefs_[slot].outcome().faults;
 }
 
-void GaussianBank::report_innovations(Scan scan) {
-  innovations_.start(1, scan.size());
-  matched_weights_.assign(scan.size(), 0.0);
+void GaussianBank::gather_innovations(Scan scan) {
+  innovations_.start(1, scan.size(), 0.0);
   for (std::size_t i = 0; i < slot_of_.size(); ++i) {
-    const double weight = weights_before_scan_[i];
+    const auto innovations = innovations_.of_block(0, weight_of(i));
     for (const auto& [k, v, S] : belief_of(i).sightings()) {
-      innovations_.add(0, k, {{v(0), v(1)}, S(0, 0), S(1, 0), S(1, 1), {}, {}}, weight);
-      matched_weights_[k] += weight;
+      innovations.add(k, {{v(0), v(1)}, {S(0, 0), S(1, 0), S(1, 1)}}, Everywhere());
+      innovations_.matched_weight(k) += weight_of(i);
     }
-  }
-  for (std::size_t k = 0; k < scan.size(); ++k) {
-    if (matched_weights_[k] < 0.5) continue;  // most of the bank takes it for something else
-    report_.nis += innovations_.normalised_squared(k, matched_weights_[k]);
-    report_.nis_dof += 2;
   }
 }
 
@@ -164,26 +149,14 @@ void GaussianBank::note_active() {
   active_.erase(std::unique(active_.begin(), active_.end()), active_.end());
 }
 
-void GaussianBank::decide_on_resampling(const StepContext& context) {
-  report_.resampled =
-      weights_.effective() < settings_.resample_below * static_cast<double>(settings_.particles);
-  if (report_.resampled) {
-    draw_parents(settings_.resampling, weights_.linear_scalars(), context, parents_);
-  }
-}
-
 /// Ends the time in which the particles of the last scan can be asked for: resampling takes effect.
 void GaussianBank::settle() {
-  if (!std::exchange(after_update_, false)) return;
-  if (!report_.resampled) {
-    std::iota(ancestors_.begin(), ancestors_.end(), 0U);
-    return;
+  if (!population_.resample()) return;
+  std::swap(slot_of_, old_slot_of_);
+  for (std::size_t i = 0; i < slot_of_.size(); ++i) {
+    slot_of_[i] = old_slot_of_[population_.ancestors()[i]];
   }
-  ancestors_ = parents_;
-  for (std::size_t i = 0; i < parents_.size(); ++i) parents_[i] = slot_of_[ancestors_[i]];
-  std::swap(slot_of_, parents_);
   note_active();
-  weights_.make_equal();
 }
 
 PoseEstimate GaussianBank::mixture() const {
@@ -192,7 +165,7 @@ PoseEstimate GaussianBank::mixture() const {
   for (const std::uint32_t slot : active_) {
     poses_[slot] = beliefs_[slot].gaussian().pose_after(motion_);
   }
-  Mixture mixture(poses_[slot_of_[weights_.heaviest()]]);
+  Mixture mixture(poses_[slot_of_[population_.weights().heaviest()]]);
   for (const std::uint32_t slot : active_) mixture.add(slot_weights_[slot], poses_[slot]);
   const PoseMoments whole = mixture.result();
   if (!settings_.tells_particles) return {whole, std::nullopt};
@@ -200,19 +173,18 @@ PoseEstimate GaussianBank::mixture() const {
 }
 
 PoseEstimate GaussianBank::estimate() const {
-  return after_update_ ? estimate_of_scan_ : mixture();
+  return population_.is_after_scan() ? estimate_of_scan_ : mixture();
 }
 
 void GaussianBank::particles(const ParticleColumns& columns) const {
-  tell_particles(
-      columns, [&](std::size_t i) { return belief_of(i).gaussian().pose_after(motion_).mean; },
-      weights_.log_scalars(), ancestors_);
+  population_.tell(columns,
+                   [&](std::size_t i) { return belief_of(i).gaussian().pose_after(motion_).mean; });
 }
 
 void GaussianBank::weigh_beliefs() const {
   slot_weights_.assign(beliefs_.size(), 0.0);
   for (std::size_t i = 0; i < slot_of_.size(); ++i) {
-    slot_weights_[slot_of_[i]] += weights_.linear()[i];
+    slot_weights_[slot_of_[i]] += weight_of(i);
   }
 }
 
@@ -231,7 +203,7 @@ void GaussianBank::map(std::span<std::optional<LandmarkEstimate>> landmarks) con
 /// Known association: the mixture of all beliefs, by identity. Otherwise the heaviest particle's
 /// map in the order in which it met its landmarks.
 std::optional<LandmarkEstimate> GaussianBank::landmark(std::size_t k) const {
-  auto about = belief_of(weights_.heaviest()).landmark(k);
+  auto about = belief_of(population_.weights().heaviest()).landmark(k);
   if (!known_ || !about) return about;
   Mixture mixture(*about);
   for_beliefs(
@@ -241,7 +213,7 @@ std::optional<LandmarkEstimate> GaussianBank::landmark(std::size_t k) const {
 
 /// Likewise; headings that were drawn after the scan are in it as they were drawn.
 std::optional<JointEstimate> GaussianBank::joint(std::size_t landmarks) const {
-  const JointBelief& heaviest = belief_of(weights_.heaviest());
+  const JointBelief& heaviest = belief_of(population_.weights().heaviest());
   if (!known_ || active_.size() == 1) return heaviest.joint(landmarks);
   weigh_beliefs();
   Mixture mixture(heaviest.joint(landmarks));

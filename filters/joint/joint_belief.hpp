@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/association/nearest.hpp"
+#include "filters/association/map_association.hpp"
 #include "filters/joint/compressed_gaussian.hpp"
 
 #include <cstdint>
@@ -39,9 +39,9 @@ class JointBelief {
   struct Outcome {
     double log_likelihood = 0.0;
     std::uint32_t faults = 0;
-    AssociationCounts association = {};
   };
   const Outcome& outcome() const { return outcome_; }
+  const MapAssociation& association() const { return association_; }
   /// A detection that was absorbed.
   struct Sighting {
     std::size_t detection;  ///< its place in the scan
@@ -51,26 +51,16 @@ class JointBelief {
   std::span<const Sighting> sightings() const { return sightings_; }
 
  private:
-  bool known() const { return association_.kind == Association::known; }
-  std::size_t slot_of(std::size_t k) const;
-  void associate(Scan scan);
-  Pairing pairing_by_identity(const Detection& detection) const;
   void pair_nearest(Scan scan);
   void attend();
   bool look_at(std::size_t slot, ExpectedSight& expected);
   void absorb(std::size_t k, const Detection& detection);
-  void give_birth(const Detection& detection);
-  void expect_room_to_grow() const;
 
-  AssociationSettings association_;
-  double log_new_density_;
+  MapAssociation association_;
   CompressedGaussian gaussian_;
   int iterations_;
-  std::vector<std::uint32_t> slot_of_identity_;  ///< known association only
-  std::vector<std::int32_t> made_of_;            ///< {slot} identity at birth, to count errors
-  std::vector<Pairing> pairings_;                ///< of the current scan
-  std::vector<NearestSearch> searches_;
-  std::vector<std::uint32_t> matched_;  ///< scratch: slots that the current scan shows
+  std::vector<NearestSearch> searches_;  ///< scratch
+  std::vector<std::uint32_t> matched_;   ///< scratch: slots that the current scan shows
   std::vector<Sighting> sightings_;
   Outcome outcome_;
 };

@@ -3,7 +3,6 @@
 
 #include "filters/joint/gaussian_bank.hpp"
 #include "filters/setup/filter_options.hpp"
-#include "filters/setup/resampling_options.hpp"
 
 namespace montecarta {
 namespace {
@@ -56,10 +55,8 @@ std::unique_ptr<SlamFilter> make_riekf_slam(const FilterSetup& setup) {
 std::unique_ptr<SlamFilter> make_hrb(const FilterSetup& setup) {
   const FilterOptions& options = setup.options;
   return std::make_unique<GaussianBank>(
-      setup, BankSettings{.particles = options.integer("particles"),
+      setup, BankSettings{.population = population_settings(options),
                           .retraction = chosen<Retraction>(options.choice("error"), kErrors),
-                          .resampling = chosen_resampling(options),
-                          .resample_below = options.number("resample_below"),
                           .split_beyond = split_beyond(options),
                           .keep = options.number("keep"),
                           .iterations = iterations(options),
@@ -90,7 +87,7 @@ FilterKind riekf_slam_kind() {
 }
 
 FilterKind hrb_kind() {
-  std::vector<Option> options = resampling_options("30");
+  std::vector<Option> options = population_options("30");
   options.insert(
       options.end(),
       {number_option("split_beyond_deg", "0", 0, 1e9,
@@ -104,8 +101,7 @@ FilterKind hrb_kind() {
        iterations_option("5"), motion_option("quadrature")});
   return {.name = "hrb",
           .long_name = "heading-split bank",
-          .source = "EQUATIONS 16",
-          .has_particles = true,
+          .source = "SPEC 24",
           .has_mixture = true,
           .has_joint = true,
           .options = std::move(options),

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/joint/joint_gaussian.hpp"
 
-#include "filters/joint/packs.hpp"
-
 #include <algorithm>
 #include <cmath>
 

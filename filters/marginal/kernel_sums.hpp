@@ -9,7 +9,7 @@
 #include "filters/marginal/marginal_options.hpp"
 #include "filters/marginal/pose_kernels.hpp"
 #include "filters/marginal/tree_sums.hpp"
-#include "filters/moments/cloud_moments.hpp"
+#include "filters/population/cloud_moments.hpp"
 
 #include <algorithm>
 #include <array>

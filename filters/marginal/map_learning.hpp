@@ -4,8 +4,8 @@
 #include "engine/core/step_context.hpp"
 #include "filters/evolution/differential_evolution.hpp"
 #include "filters/marginal/landmark_evidence.hpp"
-#include "filters/moments/cloud_moments.hpp"
 #include "filters/moments/linearised.hpp"
+#include "filters/population/cloud_moments.hpp"
 
 #include <algorithm>
 #include <array>

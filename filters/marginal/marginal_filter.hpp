@@ -2,18 +2,17 @@
 #pragma once
 
 #include "engine/particles/block_tasks.hpp"
-#include "engine/particles/resampling.hpp"
 #include "filters/marginal/kernel_sums.hpp"
 #include "filters/marginal/map_learning.hpp"
 #include "filters/marginal/marginal_options.hpp"
 #include "filters/marginal/shared_association.hpp"
 #include "filters/marginal/shared_likelihood.hpp"
 #include "filters/moments/gaussian_draw.hpp"
-#include "filters/moments/innovation_sums.hpp"
 #include "filters/moments/motion_increment.hpp"
+#include "filters/population/population.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -31,22 +30,19 @@ class MarginalFilter final : public SlamFilter {
         likelihood_(SensorNoise::of(setup.belief), settings.map.mode),
         learning_(settings.map, SensorNoise::of(setup.belief)),
         ratios_(settings),
-        weights_(settings.particles),
+        population_({.particles = settings.particles, .resampling = Resampling::stratified}),
         lambda_(settings.particles),
-        poses_(blocks_for<Real>(settings.particles)),
+        poses_(population_.blocks()),
         priors_(poses_.size()),
-        kernels_(poses_.size()),
-        faults_(poses_.size()),
-        ancestors_(poses_.size() * kLanesOf<Real>) {}
+        kernels_(poses_.size()) {}
 
   void start(const Pose& start) override {
     std::fill(poses_.begin(), poses_.end(), BasicPose<Real>{start.x, start.y, start.heading});
-    weights_.make_equal();
+    population_.start();
     map_.clear();
     association_.clear();
     motion_.restart();
     forget_scan();
-    report_ = {};
   }
 
   void predict(const StepContext& /*context*/, const Control& control, double duration) override {
@@ -58,17 +54,20 @@ class MarginalFilter final : public SlamFilter {
     forget_scan();
     propagate_kernels();
     associate(scan);
-    report_ = {.ess = weights_.effective(), .association = association_.counts()};
+    population_.begin_scan();
+    population_.report().association = association_.counts();
     if (!association_.found_nothing()) learn(context);  // else the kernels go on growing
-    report_.map_size = static_cast<double>(map_.size());
+    population_.report().map_size = static_cast<double>(map_.size());
   }
 
   PoseEstimate estimate() const override;
-  const ScanReport& report() const override { return report_; }
+  const ScanReport& report() const override { return population_.report(); }
   void particles(const ParticleColumns& columns) const override;
   void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override;
 
  private:
+  const Weights<Real>& weights() const { return population_.weights(); }
+
   void learn(const StepContext& context) {
     likelihood_.see(association_.matches(), map_);
     choose_kernels(context);
@@ -93,23 +92,23 @@ class MarginalFilter final : public SlamFilter {
 
   void associate(Scan scan) {
     if (association_.known()) return association_.associate(scan);
-    association_.associate(scan, map_, likelihood_.map_is_exact(), mixture_of(weights_, priors_));
+    association_.associate(scan, map_, likelihood_.map_is_exact(), mixture_of(weights(), priors_));
   }
 
   /// Step 1: lambda_j, from the weights and, if auxiliary, from how kernel j explains the scan.
   void choose_kernels(const StepContext& context) {
     innovations_.start(kernels_.size(), likelihood_.matches());
-    lambda_ = weights_;
+    lambda_ = weights();
     over_blocks(context, [&](std::size_t b) {
+      const auto innovations = innovations_.of_block(b, weights().linear()[b]);
       const Weighing<Real> explained =
           settings_.kernel == Kernel::prior
-              ? likelihood_.at_mean(priors_[b], b, weights_.linear()[b], innovations_)
-              : likelihood_.refine(kernels_[b] = priors_[b], b, weights_.linear()[b], innovations_);
-      faults_[b] = explained.faults;
+              ? likelihood_.at_mean(priors_[b], innovations)
+              : likelihood_.refine(kernels_[b] = priors_[b], innovations);
       if (settings_.choice == Choice::by_likelihood) lambda_.multiply(b, explained.log_weight);
     });
     if (settings_.choice == Choice::by_likelihood) lambda_.normalise();
-    report_innovations();
+    innovations_.add_to(population_.report());
   }
   const std::vector<PoseGaussian<Real>>& proposal() const {
     return settings_.kernel == Kernel::prior ? priors_ : kernels_;
@@ -117,11 +116,10 @@ class MarginalFilter final : public SlamFilter {
 
   /// Step 2: one pose per particle, from the very Gaussians that step 3 evaluates.
   void draw_poses(const StepContext& context) {
-    draw_parents(Resampling::stratified, lambda_.linear_scalars(), context,
-                 std::span(ancestors_).first(settings_.particles));
+    population_.draw_ancestors(context, lambda_.linear_scalars());
     over_blocks(context, [&](std::size_t b) {
       const auto chosen =
-          gather_block<Real, PoseGaussian<Real>>(proposal(), std::span(ancestors_), b);
+          gather_block<Real, PoseGaussian<Real>>(proposal(), population_.ancestors(), b);
       poses_[b] = draw_from(PoseFactor<Real>(chosen),
                             context.identity(Draw::kernel_sample, first_particle(b)));
     });
@@ -129,30 +127,23 @@ class MarginalFilter final : public SlamFilter {
 
   /// Step 3 and 4: w' = p(z | s) Sum w N(s; prior) / Sum lambda N(s; proposal).
   void weigh(const StepContext& context) {
-    ratios_.assign(priors_, proposal(), weights_, lambda_);
-    weights_.make_equal();
-    over_blocks(context, [&](std::size_t b) {
-      const Weighing<Real> likelihood = likelihood_.at(poses_[b]);
-      faults_[b] = likelihood.faults;
-      weights_.multiply(b, likelihood.log_weight);
-    });
-    ratios_.multiply(context, poses_, weights_);
-    report_.log_likelihood = weights_.normalise() + association_.unmatched_log_density();
-    report_.ess = weights_.effective();
-    report_.resampled = true;  // in step 2
-    for (const double faults : scalars(faults_).first(settings_.particles))
-      report_.numerical_faults += static_cast<std::uint32_t>(faults);
+    ratios_.assign(priors_, proposal(), weights(), lambda_);
+    population_.weights().make_equal();
+    over_blocks(context, [&](std::size_t b) { population_.weigh(b, likelihood_.at(poses_[b])); });
+    ratios_.multiply(context, poses_, population_.weights());
+    population_.normalise();
+    population_.report().log_likelihood += association_.unmatched_log_density();
   }
 
   /// One map, learnt with the weighed poses (EQUATIONS 14).
   void learn_map(const StepContext& context) {
     const double heading = drawn_mean().heading;
     for (const SharedMatch& match : association_.matches())
-      learning_.learn(context, match.landmark, heading, poses_, weights_, match.seen,
+      learning_.learn(context, match.landmark, heading, poses_, weights(), match.seen,
                       map_[match.landmark]);
     for (const Detection& fresh : association_.fresh()) {
-      association_.give_slot(fresh, map_.size());
-      map_.push_back(learning_.born(poses_, weights_, sight_of(fresh)));
+      association_.add(fresh);
+      map_.push_back(learning_.born(poses_, weights(), sight_of(fresh)));
     }
   }
 
@@ -166,17 +157,11 @@ class MarginalFilter final : public SlamFilter {
     return static_cast<std::uint32_t>(b * kLanesOf<Real>);
   }
   Pose drawn_mean() const {
-    return weighted_mean<Real>(weights_, [&](std::size_t b) { return poses_[b]; });
-  }
-  void report_innovations() {
-    for (std::size_t k = 0; k < likelihood_.matches(); ++k) {
-      report_.nis += innovations_.normalised_squared(k, 1.0);
-      report_.nis_dof += 2;
-    }
+    return weighted_mean<Real>(weights(), [&](std::size_t b) { return poses_[b]; });
   }
   /// The particles of the last scan can no longer be asked for.
   void forget_scan() {
-    std::iota(ancestors_.begin(), ancestors_.end(), 0U);
+    population_.forget_ancestors();
     moments_.reset();
     is_drawn_ = false;
   }
@@ -188,20 +173,49 @@ class MarginalFilter final : public SlamFilter {
   MapLearning<Real> learning_;
   KernelRatios<Real> ratios_;
   MotionIncrement motion_;
-  Weights<Real> weights_;  ///< w
+  Population<Real> population_;  ///< its weights: w
   Weights<Real> lambda_;
   std::vector<BasicPose<Real>> poses_;       ///< drawn at the last scan that was of use
   std::vector<PoseGaussian<Real>> priors_;   ///< p(s | s_j)
   std::vector<PoseGaussian<Real>> kernels_;  ///< p(s | s_j, z), if asked for
-  InnovationSums<Real> innovations_;
-  std::vector<Real> faults_;
-  std::vector<std::uint32_t> ancestors_;  ///< a_i
+  MixtureInnovations<Real> innovations_;
   SharedMap map_;
   mutable std::optional<CloudMoments> moments_;  ///< of the poses, once asked for
-  ScanReport report_;
   bool is_drawn_ = false;  ///< whether the poses were drawn by the last update()
 };
 
-}  // namespace montecarta
+/// The drawn poses; between scans with the motion since then, as the kernels have it (SPEC 19).
+template <class Real>
+PoseEstimate MarginalFilter<Real>::estimate() const {
+  if (is_drawn_) return {spread_of(weights(), poses_), std::nullopt};
+  if (!moments_) moments_.emplace(weights(), poses_);
+  return {moments_->moved_by(motion_).mixture.value(), std::nullopt};
+}
 
-#include "filters/marginal/marginal_reports.hpp"
+template <class Real>
+void MarginalFilter<Real>::particles(const ParticleColumns& columns) const {
+  const auto pose_of = [&](std::size_t i) {
+    return motion_.from(pose_of_particle<Real>([&](std::size_t b) { return poses_[b]; }, i)).mean;
+  };
+  population_.tell(columns, pose_of);
+}
+
+template <class Real>
+void MarginalFilter<Real>::map(std::span<std::optional<LandmarkEstimate>> landmarks) const {
+  for (std::size_t k = 0; k < landmarks.size(); ++k) {
+    const std::size_t slot = association_.slot_of_row(k);
+    landmarks[k] = slot < map_.size() ? std::optional(estimate_of(map_[slot])) : std::nullopt;
+  }
+}
+
+/// `Real` = double is the same filter one particle at a time, for tests.
+template <class Real, Choice choice>
+std::unique_ptr<SlamFilter> make_marginal(const FilterSetup& setup) {
+  return std::make_unique<MarginalFilter<Real>>(setup, marginal_settings(setup.options, choice));
+}
+
+/// Lines for the table of factory.cpp.
+FilterKind marginal_kind();
+FilterKind ampf_de_kind();
+
+}  // namespace montecarta

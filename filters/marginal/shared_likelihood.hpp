@@ -3,8 +3,8 @@
 
 #include "filters/marginal/marginal_options.hpp"
 #include "filters/marginal/shared_association.hpp"
-#include "filters/moments/innovation_sums.hpp"
 #include "filters/moments/linearised.hpp"
+#include "filters/population/innovation_sums.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -43,28 +43,26 @@ class SharedLikelihood {
     return {evidence.log_density(), evidence.left_out()};
   }
 
-  /// log p(z | mean of the kernel) (Havangi eq. 16); notes what block `b` of weight w predicted.
-  Weighing<Real> at_mean(const PoseGaussian<Real>& kernel, std::size_t b, const Real& weight,
-                         InnovationSums<Real>& innovations) const {
+  using Innovations = typename MixtureInnovations<Real>::OfBlock;
+  /// log p(z | mean of the kernel) (Havangi eq. 16).
+  Weighing<Real> at_mean(const PoseGaussian<Real>& kernel, const Innovations& innovations) const {
     for (std::size_t k = 0; k < seen_.size(); ++k) {
       const Sightline<Real> s = sightline(kernel.mean, seen_[k].landmark.mean);
-      innovations.add(b, k,
+      innovations.add(k,
                       innovation_of(kernel.covariance, s, residual(seen_[k].sight, s),
                                     seen_[k].landmark.covariance, noise_),
-                      weight);
+                      Everywhere());
     }
     return at(kernel.mean);
   }
 
-  /// The kernel becomes p(s | s_j, z); returns log p(z | s_j) (EQUATIONS 12).
-  Weighing<Real> refine(PoseGaussian<Real>& kernel, std::size_t b, const Real& weight,
-                        InnovationSums<Real>& innovations) const {
+  /// The kernel becomes p(s | s_j, z); returns log p(z | s_j) (SPEC 14.2).
+  Weighing<Real> refine(PoseGaussian<Real>& kernel, const Innovations& innovations) const {
     Evidence<Real> evidence;
     for (std::size_t k = 0; k < seen_.size(); ++k) {
       innovations.add(
-          b, k,
-          refine_pose(kernel, seen_[k].landmark, seen_[k].sight, noise_, Everywhere(), evidence),
-          weight);
+          k, refine_pose(kernel, seen_[k].landmark, seen_[k].sight, noise_, Everywhere(), evidence),
+          Everywhere());
     }
     return {evidence.log_density(), evidence.left_out()};
   }

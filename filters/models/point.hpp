@@ -8,6 +8,13 @@ template <class Real>
 struct BasicPoint {
   Real x{};  ///< [m]
   Real y{};  ///< [m]
+
+  [[gnu::always_inline]] friend BasicPoint operator+(const BasicPoint& a, const BasicPoint& b) {
+    return {a.x + b.x, a.y + b.y};
+  }
+  [[gnu::always_inline]] friend BasicPoint operator-(const BasicPoint& a, const BasicPoint& b) {
+    return {a.x - b.x, a.y - b.y};
+  }
 };
 using Point = BasicPoint<double>;
 

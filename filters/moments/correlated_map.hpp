@@ -43,10 +43,8 @@ struct MapGain {
 template <class Real>
 void change(LandmarkGaussian<Real>& landmark, const BasicPoint<Real>& step,
             const Symmetric2<Real>& less) {
-  landmark.mean.x += step.x;
-  landmark.mean.y += step.y;
-  auto& P = landmark.covariance;
-  P = {P.xx - less.xx, P.xy - less.xy, P.yy - less.yy};
+  landmark.mean = landmark.mean + step;
+  landmark.covariance = landmark.covariance - less;
 }
 
 /// Which landmark of a correlated map is meant: the same for every particle of a block ...

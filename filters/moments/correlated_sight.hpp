@@ -39,9 +39,9 @@ template <class Real>
   const Real dx_r = fx.range - x.range, dy_r = fy.range - y.range;
   const Real dx_b = fx.bearing - x.bearing, dy_b = fy.bearing - y.bearing;
   return {value,
-          noise.range + rows.range_x * dx_r + rows.range_y * dy_r,
-          rows.range_x * dx_b + rows.range_y * dy_b,
-          noise.bearing + rows.bearing_x * dx_b + rows.bearing_y * dy_b - h.bearing,
+          {noise.range + rows.range_x * dx_r + rows.range_y * dy_r,
+           rows.range_x * dx_b + rows.range_y * dy_b,
+           noise.bearing + rows.bearing_x * dx_b + rows.bearing_y * dy_b - h.bearing},
           {x.range, y.range, h.range},
           {x.bearing, y.bearing, h.bearing}};
 }

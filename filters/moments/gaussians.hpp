@@ -9,12 +9,39 @@
 
 namespace montecarta {
 
+/// Column over (x, y, heading).
+template <class Real>
+struct Column3 {
+  Real x, y, h;
+
+  [[gnu::always_inline]] friend Column3 operator+(const Column3& a, const Column3& b) {
+    return {a.x + b.x, a.y + b.y, a.h + b.h};
+  }
+  [[gnu::always_inline]] friend Column3 operator-(const Column3& a, const Column3& b) {
+    return {a.x - b.x, a.y - b.y, a.h - b.h};
+  }
+  [[gnu::always_inline]] friend Column3 operator*(const Real& factor, const Column3& a) {
+    return {factor * a.x, factor * a.y, factor * a.h};
+  }
+};
+
 /// Symmetric matrix over (x, y, heading).
 template <class Real>
 struct Symmetric3 {
   Real xx{}, xy{}, yy{};  ///< [m^2]
   Real xh{}, yh{};        ///< [m rad]
   Real hh{};              ///< [rad^2]
+
+  [[gnu::always_inline]] friend Symmetric3 operator+(const Symmetric3& A, const Symmetric3& B) {
+    return {A.xx + B.xx, A.xy + B.xy, A.yy + B.yy, A.xh + B.xh, A.yh + B.yh, A.hh + B.hh};
+  }
+  [[gnu::always_inline]] friend Symmetric3 operator-(const Symmetric3& A, const Symmetric3& B) {
+    return {A.xx - B.xx, A.xy - B.xy, A.yy - B.yy, A.xh - B.xh, A.yh - B.yh, A.hh - B.hh};
+  }
+  [[gnu::always_inline]] friend Symmetric3 operator*(double factor, const Symmetric3& P) {
+    return {factor * P.xx, factor * P.xy, factor * P.yy,
+            factor * P.xh, factor * P.yh, factor * P.hh};
+  }
 };
 
 /// As a matrix.
@@ -57,23 +84,47 @@ template <class Real>
       P.xx + x * P.xh + x * xh, P.xy + y * P.xh + x * yh, P.yy + y * P.yh + y * yh, xh, yh, P.hh};
 }
 
-template <class Real>
-[[gnu::always_inline]] inline Symmetric3<Real> operator+(const Symmetric3<Real>& A,
-                                                         const Symmetric3<Real>& B) {
-  return {A.xx + B.xx, A.xy + B.xy, A.yy + B.yy, A.xh + B.xh, A.yh + B.yh, A.hh + B.hh};
-}
-
-/// factor P.
-template <class Real>
-Symmetric3<Real> scaled(const Symmetric3<Real>& P, double factor) {
-  return {factor * P.xx, factor * P.xy, factor * P.yy, factor * P.xh, factor * P.yh, factor * P.hh};
-}
-
-/// Symmetric matrix over (x, y) [m^2].
+/// Symmetric matrix over (x, y) [m^2] or over (range, bearing).
 template <class Real>
 struct Symmetric2 {
   Real xx{}, xy{}, yy{};
+
+  [[gnu::always_inline]] friend Symmetric2 operator+(const Symmetric2& A, const Symmetric2& B) {
+    return {A.xx + B.xx, A.xy + B.xy, A.yy + B.yy};
+  }
+  [[gnu::always_inline]] friend Symmetric2 operator-(const Symmetric2& A, const Symmetric2& B) {
+    return {A.xx - B.xx, A.xy - B.xy, A.yy - B.yy};
+  }
+  [[gnu::always_inline]] friend Symmetric2 operator*(const Real& factor, const Symmetric2& P) {
+    return {factor * P.xx, factor * P.xy, factor * P.yy};
+  }
+  [[gnu::always_inline]] Real determinant() const { return xx * yy - xy * xy; }
+  /// v' A^-1 v times the determinant, of v = (x, y).
+  [[gnu::always_inline]] Real adjugate_form(const Real& x, const Real& y) const {
+    return yy * x * x - 2.0 * xy * x * y + xx * y * y;
+  }
 };
+
+/// weight v v'; weighted lane by lane or alike in all.
+template <class Weight, class Real>
+[[gnu::always_inline]] inline Symmetric2<Real> outer(const Weight& weight,
+                                                     const RangeBearing<Real>& v) {
+  const Real range = weight * v.range, bearing = weight * v.bearing;
+  return {range * v.range, range * v.bearing, bearing * v.bearing};
+}
+/// a b' of two columns in one direction, so that it is symmetric.
+template <class Real>
+[[gnu::always_inline]] inline Symmetric3<Real> outer(const Column3<Real>& a,
+                                                     const Column3<Real>& b) {
+  return {a.x * b.x, a.x * b.y, a.y * b.y, a.x * b.h, a.y * b.h, a.h * b.h};
+}
+
+/// A in the lanes of `use`, else B.
+template <class Real, class Mask>
+[[gnu::always_inline]] inline Symmetric2<Real> select(const Mask& use, const Symmetric2<Real>& A,
+                                                      const Symmetric2<Real>& B) {
+  return {select(use, A.xx, B.xx), select(use, A.xy, B.xy), select(use, A.yy, B.yy)};
+}
 
 /// What one particle believes about its own pose since it was last drawn.
 template <class Real>
@@ -97,24 +148,6 @@ struct LandmarkGaussian {
   BasicPoint<Real> mean{};
   Symmetric2<Real> covariance{};
 };
-
-/// Column of three: (x, y, heading).
-template <class Real>
-struct Column3 {
-  Real x, y, h;
-};
-
-/// P minus gain times column transposed; symmetric where gain is a multiple of column.
-template <class Real>
-[[gnu::always_inline]] inline void subtract_outer(Symmetric3<Real>& P, const Column3<Real>& gain,
-                                                  const Column3<Real>& column) {
-  P.xx -= gain.x * column.x;
-  P.xy -= gain.x * column.y;
-  P.yy -= gain.y * column.y;
-  P.xh -= gain.x * column.h;
-  P.yh -= gain.y * column.h;
-  P.hh -= gain.h * column.h;
-}
 
 /// P plus `weight` times column column'.
 [[gnu::always_inline]] inline void add_outer(Symmetric3<double>& P, double weight,

@@ -77,17 +77,14 @@ template <class Real>
 template <class Real>
 struct Innovation {
   RangeBearing<Real> value;
-  Real s_rr, s_rb, s_bb;
-  Column3<Real> range, bearing;
+  Symmetric2<Real> S;  ///< over (range, bearing)
+  Column3<Real> range{}, bearing{};
 
-  Real determinant() const { return s_rr * s_bb - s_rb * s_rb; }
   /// value' S^-1 value
   Real squared() const { return squared(value); }
   /// The same for another innovation with this covariance.
   Real squared(const RangeBearing<Real>& other) const {
-    const Real& r = other.range;
-    const Real& b = other.bearing;
-    return (s_bb * r * r - 2.0 * s_rb * r * b + s_rr * b * b) / determinant();
+    return S.adjugate_form(other.range, other.bearing) / S.determinant();
   }
 };
 
@@ -104,10 +101,10 @@ template <class Real>
   const Column3<Real> bearing{P.xx * cy - P.xy * cx - P.xh, P.xy * cy - P.yy * cx - P.yh,
                               P.xh * cy - P.yh * cx - P.hh};
   return {value,
-          noise.range + map.along - (s.ux * range.x + s.uy * range.y),
-          map.cross * s.per_range - (s.ux * bearing.x + s.uy * bearing.y),
-          noise.bearing + map.across * s.per_range * s.per_range + cy * bearing.x - cx * bearing.y -
-              bearing.h,
+          {noise.range + map.along - (s.ux * range.x + s.uy * range.y),
+           map.cross * s.per_range - (s.ux * bearing.x + s.uy * bearing.y),
+           noise.bearing + map.across * s.per_range * s.per_range + cy * bearing.x -
+               cx * bearing.y - bearing.h},
           range,
           bearing};
 }
@@ -130,11 +127,11 @@ struct Decorrelated {
 
   template <class Mask>
   [[gnu::always_inline]] Decorrelated(const Innovation<Real>& v, const Mask& use) {
-    const Real determinant = v.determinant();
-    const Real inverse = select(use, 1.0 / (v.s_rr * determinant), Real(0.0));
+    const Real determinant = v.S.determinant();
+    const Real inverse = select(use, 1.0 / (v.S.xx * determinant), Real(0.0));
     per_rr = determinant * inverse;
-    per_bb = v.s_rr * v.s_rr * inverse;
-    slope = v.s_rb * per_rr;
+    per_bb = v.S.xx * v.S.xx * inverse;
+    slope = v.S.xy * per_rr;
     first = v.value.range;
     second = v.value.bearing - slope * first;
     density = {first * first * per_rr + second * second * per_bb,
@@ -147,15 +144,11 @@ template <class Real, class Mask>
 [[gnu::always_inline]] inline Density<Real> condition(PoseGaussian<Real>& pose,
                                                       const Innovation<Real>& v, const Mask& use) {
   const Decorrelated<Real> d(v, use);
-  const Column3<Real> column{v.bearing.x - d.slope * v.range.x, v.bearing.y - d.slope * v.range.y,
-                             v.bearing.h - d.slope * v.range.h};
-  const Column3<Real> range_gain{v.range.x * d.per_rr, v.range.y * d.per_rr, v.range.h * d.per_rr};
-  const Column3<Real> gain{column.x * d.per_bb, column.y * d.per_bb, column.h * d.per_bb};
-  pose.mean.x += range_gain.x * d.first + gain.x * d.second;
-  pose.mean.y += range_gain.y * d.first + gain.y * d.second;
-  pose.mean.heading += range_gain.h * d.first + gain.h * d.second;
-  subtract_outer(pose.covariance, range_gain, v.range);
-  subtract_outer(pose.covariance, gain, column);
+  const Column3<Real> bearing = v.bearing - d.slope * v.range;
+  const Column3<Real> range_gain = d.per_rr * v.range, bearing_gain = d.per_bb * bearing;
+  const Column3<Real> step = d.first * range_gain + d.second * bearing_gain;
+  pose.mean = {pose.mean.x + step.x, pose.mean.y + step.y, pose.mean.heading + step.h};
+  pose.covariance = pose.covariance - outer(range_gain, v.range) - outer(bearing_gain, bearing);
   return d.density;
 }
 
@@ -205,6 +198,13 @@ template <class Real, class Mask>
   absorb(pose, s, innovation, landmark.covariance, noise, matched, evidence);
 }
 
+/// A way along and across the line of sight, in the map.
+template <class Real>
+[[gnu::always_inline]] inline BasicPoint<Real> in_map(const Real& along, const Real& across,
+                                                      const Sightline<Real>& s) {
+  return {s.ux * along - s.uy * across, s.uy * along + s.ux * across};
+}
+
 /// turned() back into the frame of the map.
 template <class Real>
 [[gnu::always_inline]] inline Symmetric2<Real> turned_back(const Turned<Real>& P,
@@ -230,8 +230,8 @@ template <class Real, class Mask, class Weighed>
   const Real along = innovation.range, across = innovation.bearing * s.predicted.range;
   const Turned<Real> R{noise.range, Real(0.0),
                        noise.bearing * s.predicted.range * s.predicted.range};
-  const Turned<Real> S{P.along + R.along, P.cross, P.across + R.across};
-  const Real determinant = S.along * S.across - S.cross * S.cross;
+  const Symmetric2<Real> S{P.along + R.along, P.cross, P.across + R.across};
+  const Real determinant = S.determinant();
   const Real inverse = select(use, 1.0 / determinant, Real(0.0));
 
   const Real determinant_of_map = P.along * P.across - P.cross * P.cross;
@@ -239,20 +239,14 @@ template <class Real, class Mask, class Weighed>
                        (determinant_of_map + P.across * R.along) * inverse};
   const Real move_along = g.along * along + g.cross * R.along * across;
   const Real move_across = g.cross * R.across * along + g.across * across;
-  landmark.mean.x += s.ux * move_along - s.uy * move_across;
-  landmark.mean.y += s.uy * move_along + s.ux * move_across;
+  landmark.mean = landmark.mean + in_map(move_along, move_across, s);
   const Symmetric2<Real> after = turned_back(
       Turned<Real>{g.along * R.along, g.cross * R.along * R.across, g.across * R.across}, s);
-  landmark.covariance = {select(use, after.xx, landmark.covariance.xx),
-                         select(use, after.xy, landmark.covariance.xy),
-                         select(use, after.yy, landmark.covariance.yy)};
-
-  const Real squared =
-      (S.across * along * along - 2.0 * S.cross * along * across + S.along * across * across) *
-      inverse;
-  evidence.add(squared, select(use, determinant * s.per_range * s.per_range, Real(1.0)),
+  landmark.covariance = select(use, after, landmark.covariance);
+  evidence.add(S.adjugate_form(along, across) * inverse,
+               select(use, determinant * s.per_range * s.per_range, Real(1.0)),
                as_number<Real>(use), as_number<Real>(matched));
-  return {innovation, S.along, S.cross * s.per_range, S.across * s.per_range * s.per_range, {}, {}};
+  return {innovation, {S.xx, S.xy * s.per_range, S.yy * s.per_range * s.per_range}};
 }
 
 /// A landmark seen for the first time from an exactly known pose: g(x, z) and Gz R Gz' (EQUATIONS

@@ -4,7 +4,6 @@
 #include "filters/moments/linearised.hpp"
 #include "filters/moments/motion_increment.hpp"
 #include "filters/moments/sigma_landmark.hpp"
-#include "filters/moments/sigma_motion.hpp"
 #include "filters/moments/sigma_pose.hpp"
 
 /// The ways to carry a Gaussian through motion and sight. Filters of the family differ in which of
@@ -25,6 +24,13 @@ struct Linearised {
                                                  Evidence<Real>& evidence) const {
     return refine_pose(pose, landmark, seen, noise, matched, evidence);
   }
+  template <class Real, class Mask>
+  void refine_in_batch(PoseGaussian<Real>& pose, const BasicPose<Real>& predicted,
+                       const LandmarkGaussian<Real>& landmark, const RangeBearing<Real>& seen,
+                       const SensorNoise& noise, const Mask& matched,
+                       Evidence<Real>& evidence) const {
+    refine_pose_in_batch(pose, predicted, landmark, seen, noise, matched, evidence);
+  }
   template <class Real, class Mask, class Weighed>
   [[gnu::always_inline]] Innovation<Real> update(LandmarkGaussian<Real>& landmark,
                                                  const BasicPose<Real>& pose,
@@ -34,8 +40,8 @@ struct Linearised {
     return update_landmark(landmark, pose, seen, noise, matched, evidence);
   }
   template <class Real>
-  LandmarkGaussian<Real> birth(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
-                               const SensorNoise& noise) const {
+  LandmarkGaussian<Real> initialise(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
+                                    const SensorNoise& noise) const {
     return new_landmark(pose, seen, noise);
   }
 };
@@ -76,8 +82,8 @@ class SigmaPoints {
                                            rules_.landmark);
   }
   template <class Real>
-  LandmarkGaussian<Real> birth(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
-                               const SensorNoise& noise) const {
+  LandmarkGaussian<Real> initialise(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
+                                    const SensorNoise& noise) const {
     return new_landmark_by_sigma_points(pose, seen, noise, rules_.landmark, ray_);
   }
 

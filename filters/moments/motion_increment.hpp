@@ -4,6 +4,7 @@
 #include "engine/numbers/directions.hpp"
 #include "filters/models/ackermann.hpp"
 #include "filters/moments/gaussians.hpp"
+#include "filters/moments/sigma_rule.hpp"
 #include "filters/setup/filter_setup.hpp"
 
 namespace montecarta {
@@ -11,8 +12,8 @@ namespace montecarta {
 /// The motion since poses were last drawn, in the frame of the drawn pose. The vehicle does not
 /// know where in the world it is, so this Gaussian is the same for every particle: it is predicted
 /// once for all of them and turned to each particle's heading only when it is needed. Exact: equal
-/// to one prediction per particle and step, by the extended Kalman filter (EQUATIONS 1: advance())
-/// or by sigma points (sigma_motion.hpp).
+/// to one prediction per particle and step, by the extended Kalman filter (SPEC 2.1: advance()) or
+/// by sigma points.
 class MotionIncrement {
  public:
   MotionIncrement() = default;
@@ -52,5 +53,19 @@ class MotionIncrement {
   Pose pose_;
   Symmetric3<double> covariance_;
 };
+
+/// One control step of `duration` [s] by sigma points of (pose, control noise) (SPEC 8.2, 9). The
+/// square root has the heading first: its column alone bends, those of x and y are carried along
+/// unchanged. Equal to sending all eleven points through the vehicle.
+MotionIncrement moved_by_sigma_points(const MotionIncrement& before, const Control& control,
+                                      double duration, const Belief& belief, const SigmaRule& rule);
+
+/// One control step of `duration` [s] whose noise is averaged instead of linearised: mean and
+/// covariance of the vehicle's own displacement are exact in the speed, which enters as a factor,
+/// and by Gauss-Hermite quadrature with three nodes in the steering angle. What a linearised step
+/// leaves out is that a vehicle whose steering trembles gets less far, and that noise on the speed
+/// multiplies noise on the steering. The heading it began with is carried along linearised.
+MotionIncrement moved_by_quadrature(const MotionIncrement& before, const Control& control,
+                                    double duration, const Belief& belief);
 
 }  // namespace montecarta

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "filters/moments/quadrature_motion.hpp"
-
-#include "engine/numbers/directions.hpp"
+#include "filters/moments/motion_increment.hpp"
 
 #include <array>
 #include <cmath>
@@ -27,15 +25,14 @@ BodyMoments body_moments(std::span<const Direction<double>> wheels, double speed
   Symmetric3<double> second;            // likewise, about the origin
   for (std::size_t k = 0; k < kNodes.size(); ++k) {
     const auto step = body_step(belief.vehicle, 1.0, wheels[k], duration);
-    mean.x += kWeights[k] * step.forward;
-    mean.y += kWeights[k] * step.left;
-    mean.h += kWeights[k] * step.turn;
-    add_outer(second, kWeights[k], {step.forward, step.left, step.turn});
+    const Column3<double> way{step.forward, step.left, step.turn};
+    mean = mean + kWeights[k] * way;
+    add_outer(second, kWeights[k], way);
   }
   const double square = speed * speed;
-  Symmetric3<double> covariance = scaled(second, square + belief.sigma_speed * belief.sigma_speed);
+  Symmetric3<double> covariance = (square + belief.sigma_speed * belief.sigma_speed) * second;
   add_outer(covariance, -square, mean);
-  return {{speed * mean.x, speed * mean.y, speed * mean.h}, covariance};
+  return {speed * mean, covariance};
 }
 
 }  // namespace

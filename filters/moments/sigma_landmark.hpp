@@ -24,7 +24,7 @@ struct LandmarkSight {
   AcrossColumn<Real> column;  ///< first column of the square root
   RangeBearing<Real> slope;   ///< its image
   Real rest;                  ///< square of the second column, which lies along the line
-  Real n_rr, n_rb, n_bb;      ///< covariance of what no column of the landmark explains
+  Symmetric2<Real> N;         ///< covariance of what no column of the landmark explains
   Innovation<Real> innovation;
 
   [[gnu::always_inline]] LandmarkSight(const Symmetric2<Real>& covariance, const Sightline<Real>& s,
@@ -37,25 +37,20 @@ struct LandmarkSight {
         sight_pair(s.predicted.range, rule.spread * column.along, rule.spread * column.across);
     const double per_spread = rule.antisymmetric * rule.spread, bend = bend_weight(rule);
     slope = {per_spread * odd.range, per_spread * odd.bearing};
-    n_rr = noise.range + bend * even.range * even.range;
-    n_rb = bend * even.range * even.bearing;
-    n_bb = noise.bearing + bend * even.bearing * even.bearing;
+    N = outer(bend, even);
+    N.xx += noise.range, N.yy += noise.bearing;
     innovation = {
         residual(seen, s, {rule.mean_weight * even.range, rule.mean_weight * even.bearing}),
-        n_rr + rest + slope.range * slope.range,
-        n_rb + slope.range * slope.bearing,
-        n_bb + slope.bearing * slope.bearing,
-        {},
-        {}};
+        Symmetric2<Real>{N.xx + rest, N.xy, N.yy} + outer(1.0, slope)};
   }
 
   /// K = P_xz S^-1; `inverse` = 1 / det S, or 0 where nothing is to be absorbed.
   [[gnu::always_inline]] LandmarkGain<Real> gain(const Real& inverse) const {
     const Real a_r = column.along * slope.range + rest, a_b = column.along * slope.bearing;
     const Real c_r = column.across * slope.range, c_b = column.across * slope.bearing;
-    const Innovation<Real>& v = innovation;
-    return {(a_r * v.s_bb - a_b * v.s_rb) * inverse, (a_b * v.s_rr - a_r * v.s_rb) * inverse,
-            (c_r * v.s_bb - c_b * v.s_rb) * inverse, (c_b * v.s_rr - c_r * v.s_rb) * inverse};
+    const Symmetric2<Real>& S = innovation.S;
+    return {(a_r * S.yy - a_b * S.xy) * inverse, (a_b * S.xx - a_r * S.xy) * inverse,
+            (c_r * S.yy - c_b * S.xy) * inverse, (c_b * S.xx - c_r * S.xy) * inverse};
   }
 
   /// [S - K A, K sqrt(N)] times its transpose: a sum of squares, nothing to turn negative
@@ -64,10 +59,10 @@ struct LandmarkSight {
     const Real a = column.along - K.along_range * slope.range - K.along_bearing * slope.bearing;
     const Real c = column.across - K.across_range * slope.range - K.across_bearing * slope.bearing;
     const Real rest_a = 1.0 - K.along_range, rest_c = -K.across_range;
-    const Real a_r = K.along_range * n_rr + K.along_bearing * n_rb;
-    const Real a_b = K.along_range * n_rb + K.along_bearing * n_bb;
-    const Real c_r = K.across_range * n_rr + K.across_bearing * n_rb;
-    const Real c_b = K.across_range * n_rb + K.across_bearing * n_bb;
+    const Real a_r = K.along_range * N.xx + K.along_bearing * N.xy;
+    const Real a_b = K.along_range * N.xy + K.along_bearing * N.yy;
+    const Real c_r = K.across_range * N.xx + K.across_bearing * N.xy;
+    const Real c_b = K.across_range * N.xy + K.across_bearing * N.yy;
     return {a * a + rest * rest_a * rest_a + a_r * K.along_range + a_b * K.along_bearing,
             a * c + rest * rest_a * rest_c + a_r * K.across_range + a_b * K.across_bearing,
             c * c + rest * rest_c * rest_c + c_r * K.across_range + c_b * K.across_bearing};
@@ -83,19 +78,14 @@ template <class Real, class Mask, class Weighed>
   const auto use = matched && is_usable(s);
   const LandmarkSight<Real> sight(landmark.covariance, s, seen, noise, rule);
   const Innovation<Real>& v = sight.innovation;
-  const Real determinant = v.determinant();
+  const Real determinant = v.S.determinant();
   const Real inverse = select(use, 1.0 / determinant, Real(0.0));
   const LandmarkGain<Real> K = sight.gain(inverse);
   const Real along = K.along_range * v.value.range + K.along_bearing * v.value.bearing;
   const Real across = K.across_range * v.value.range + K.across_bearing * v.value.bearing;
-  landmark.mean.x += s.ux * along - s.uy * across;
-  landmark.mean.y += s.uy * along + s.ux * across;
-  const Symmetric2<Real> after = turned_back(sight.after(K), s);
-  landmark.covariance = {select(use, after.xx, landmark.covariance.xx),
-                         select(use, after.xy, landmark.covariance.xy),
-                         select(use, after.yy, landmark.covariance.yy)};
-  const auto& [r, b] = v.value;
-  evidence.add((v.s_bb * r * r - 2.0 * v.s_rb * r * b + v.s_rr * b * b) * inverse,
+  landmark.mean = landmark.mean + in_map(along, across, s);
+  landmark.covariance = select(use, turned_back(sight.after(K), s), landmark.covariance);
+  evidence.add(v.S.adjugate_form(v.value.range, v.value.bearing) * inverse,
                select(use, determinant, Real(1.0)), as_number<Real>(use), as_number<Real>(matched));
   return v;
 }

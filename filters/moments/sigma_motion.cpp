@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "filters/moments/sigma_motion.hpp"
-
-#include "engine/numbers/directions.hpp"
+#include "filters/moments/motion_increment.hpp"
 
 #include <cmath>
 
@@ -14,9 +12,9 @@ struct Pair {
 };
 
 /// A step as the vehicle sees it, in the world: its displacement and its turn.
-Column3<double> turned(const BodyStep<double>& step, const Direction<double>& course) {
-  const Point way = in_world(course, step.forward, step.left);
-  return {way.x, way.y, step.turn};
+Column3<double> turned(const Column3<double>& step, const Direction<double>& course) {
+  const Point way = in_world(course, step.x, step.y);
+  return {way.x, way.y, step.h};
 }
 
 /// Points that differ in heading, by `turn`, and in place: `column` is the spread column of the
@@ -29,15 +27,10 @@ Pair heading_pair(const Column3<double>& step, const Column3<double>& column,
 }
 
 /// Points that differ in steering angle; their images are combined before they are turned.
-Pair steer_pair(const BodyStep<double>& centre, const BodyStep<double>& leftward,
-                const BodyStep<double>& rightward, const Direction<double>& course) {
-  return {turned({0.5 * (leftward.forward - rightward.forward),
-                  0.5 * (leftward.left - rightward.left), 0.5 * (leftward.turn - rightward.turn)},
-                 course),
-          turned({0.5 * (leftward.forward + rightward.forward) - centre.forward,
-                  0.5 * (leftward.left + rightward.left) - centre.left,
-                  0.5 * (leftward.turn + rightward.turn) - centre.turn},
-                 course)};
+Pair steer_pair(const Column3<double>& centre, const Column3<double>& leftward,
+                const Column3<double>& rightward, const Direction<double>& course) {
+  return {turned(0.5 * (leftward - rightward), course),
+          turned(0.5 * (leftward + rightward) - centre, course)};
 }
 
 /// The column of the square root that carries the heading; zero where the heading is certain.
@@ -62,9 +55,10 @@ MotionIncrement moved_by_sigma_points(const MotionIncrement& before, const Contr
   const auto [course, turn, ahead, aside] = directions_of<4>(
       {from.heading, rule.spread * column.h, control.steer, rule.spread * belief.sigma_steer});
   const auto image = [&](double speed, const Direction<double>& wheel) {
-    return body_step(belief.vehicle, speed, wheel, duration);
+    const auto step = body_step(belief.vehicle, speed, wheel, duration);
+    return Column3<double>{step.forward, step.left, step.turn};
   };
-  const BodyStep<double> centre = image(control.speed, ahead);
+  const Column3<double> centre = image(control.speed, ahead);
   const Column3<double> step = turned(centre, course);
   Symmetric3<double> P = before.covariance();
   add_outer(P, -1.0, column);
@@ -74,13 +68,11 @@ MotionIncrement moved_by_sigma_points(const MotionIncrement& before, const Contr
     add_outer(P, rule.symmetric, pair.even);
     return pair.even;
   };
-  const Column3<double> a = add(heading_pair(
-      step, {rule.spread * column.x, rule.spread * column.y, rule.spread * column.h}, turn));
+  const Column3<double> a = add(heading_pair(step, rule.spread * column, turn));
   const Column3<double> b =
       add(steer_pair(centre, image(control.speed, at_sum(ahead, aside)),
                      image(control.speed, at_sum(ahead, {aside.cosine, -aside.sine})), course));
-  const Column3<double> e{rule.mean_weight * (a.x + b.x), rule.mean_weight * (a.y + b.y),
-                          rule.mean_weight * (a.h + b.h)};
+  const Column3<double> e = rule.mean_weight * (a + b);
   add_outer(P, rule.shift, e);
   return {{from.x + step.x + e.x, from.y + step.y + e.y, wrap(from.heading + step.h + e.h)}, P};
 }

@@ -13,7 +13,8 @@ enum class MapUncertainty { on, off };
 template <class Real>
 [[gnu::always_inline]] inline Column3<Real> in_map(const Real& along, const Real& across,
                                                    const Real& heading, const Sightline<Real>& s) {
-  return {s.ux * along - s.uy * across, s.uy * along + s.ux * across, heading};
+  const BasicPoint<Real> place = in_map(along, across, s);
+  return {place.x, place.y, heading};
 }
 
 /// A sight predicted by the sigma points of (pose, landmark).
@@ -38,11 +39,11 @@ template <class Real>
   pair.odd = {-pair.odd.range, -pair.odd.bearing - rule.spread * q.heading};
   const Real aa = P.xx - q.along * q.along;  // of the columns after the first
   const Real ah = P.xh - q.along * q.heading, hh = P.hh - q.heading * q.heading;
-  SightMoments<Real> own{.rr = noise.range + aa, .rb = ah, .bb = noise.bearing + hh};
+  SightMoments<Real> own{.covariance = {noise.range + aa, ah, noise.bearing + hh}};
   own.add(pair, rule);
   SightMoments<Real> whole = own;
   whole.add(sight_pair(range, rule.spread * m.along, rule.spread * m.across), rule);
-  whole.rr += map.along - m.along * m.along;
+  whole.covariance.xx += map.along - m.along * m.along;
 
   SigmaSight<Real> sight;
   sight.whole = whole.innovation(seen, s, rule);
@@ -69,7 +70,7 @@ template <class Real, class Mask>
   Density<Real> density = condition(pose, sight.proposal, use);
   if (map_uncertainty == MapUncertainty::off) {
     density = {select(use, sight.whole.squared(), Real(0.0)),
-               select(use, sight.whole.determinant(), Real(1.0))};
+               select(use, sight.whole.S.determinant(), Real(1.0))};
   }
   evidence.add(density.squared, density.determinant, as_number<Real>(use),
                as_number<Real>(matched));

@@ -66,28 +66,20 @@ template <class Real>
 /// Moments of a predicted sight, gathered column by column.
 template <class Real>
 struct SightMoments {
+  Symmetric2<Real> covariance;                     ///< as yet without the term in e e'
   RangeBearing<Real> shift{Real(0.0), Real(0.0)};  ///< e: of the mean from the centre's sight
-  Real rr, rb, bb;                                 ///< covariance, as yet without the term in e e'
 
   [[gnu::always_inline]] void add(const SightPair<Real>& pair, const SigmaRule& rule) {
-    const auto& [odd, even] = pair;
-    const double a = rule.antisymmetric, b = rule.symmetric;
-    shift.range += rule.mean_weight * even.range;
-    shift.bearing += rule.mean_weight * even.bearing;
-    rr += a * odd.range * odd.range + b * even.range * even.range;
-    rb += a * odd.range * odd.bearing + b * even.range * even.bearing;
-    bb += a * odd.bearing * odd.bearing + b * even.bearing * even.bearing;
+    shift.range += rule.mean_weight * pair.even.range;
+    shift.bearing += rule.mean_weight * pair.even.bearing;
+    covariance =
+        covariance + (outer(rule.antisymmetric, pair.odd) + outer(rule.symmetric, pair.even));
   }
   /// The innovation of `seen`, with cross-covariances for the caller to fill in.
   [[gnu::always_inline]] Innovation<Real> innovation(const RangeBearing<Real>& seen,
                                                      const Sightline<Real>& s,
                                                      const SigmaRule& rule) const {
-    return {residual(seen, s, shift),
-            rr + rule.shift * shift.range * shift.range,
-            rb + rule.shift * shift.range * shift.bearing,
-            bb + rule.shift * shift.bearing * shift.bearing,
-            {},
-            {}};
+    return {residual(seen, s, shift), covariance + outer(rule.shift, shift)};
   }
 };
 

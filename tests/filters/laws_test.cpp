@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/factory.hpp"
-#include "filters/moments/cloud_moments.hpp"
+#include "filters/population/cloud_moments.hpp"
 #include "tests/filters/default_options.hpp"
 #include "tests/filters/small_world.hpp"
 #include "tests/filters/told_bits.hpp"

@@ -2,7 +2,6 @@
 #include "filters/association/association_counts.hpp"
 
 #include "filters/factory.hpp"
-#include "filters/fastslam/drawn_poses.hpp"
 #include "filters/fastslam/nearest_association.hpp"
 #include "tests/filters/small_world.hpp"
 
@@ -57,22 +56,16 @@ LandmarkGaussian<double> born_at(double x, double y) {
 AssociationCounts look(NearestAssociation<double>& association, ParticleMaps<double>& maps,
                        const Weights<double>& weights, double second,
                        const std::vector<Detection>& scan) {
-  const auto x = [second](std::size_t b) { return b == 0 ? 0.0 : second; };
-  const DrawnPoses<double> certain(SensorNoise{0.01, 1e-4});
-  association.associate(
-      StepContext(1, 0, 0, Parallel::serial()), scan, maps,
-      [&](std::size_t b) {
-        return PoseGaussian<double>{.mean = {x(b), 0.0, 0.0}, .covariance = {}};
-      },
-      [&](auto&&... sight) { return certain.expected(sight...); });
+  std::vector<PoseGaussian<double>> poses(2);
+  poses[1].mean.x = second;
+  association.associate(StepContext(1, 0, 0, Parallel::serial()), scan, maps, poses, nullptr);
   const AssociationCounts counts = association.counts(weights);
-  association.add_new(
-      maps,
-      [&](std::size_t b, const RangeBearing<double>& seen) {
-        return born_at(x(b) + seen.range * std::cos(seen.bearing),
-                       seen.range * std::sin(seen.bearing));
-      },
-      [](auto&&...) {});
+  for (const auto& fresh : association.new_landmarks(maps)) {
+    const auto& [range, bearing, identity] = fresh.detection;
+    fresh.put(
+        born_at(poses[fresh.block].mean.x + range * std::cos(bearing), range * std::sin(bearing)),
+        maps.blocks_of(fresh.slot)[fresh.block]);
+  }
   return counts;
 }
 

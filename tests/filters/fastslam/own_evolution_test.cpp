@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/own_evolution.hpp"
 
+#include "filters/fastslam/concepts.hpp"
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -13,20 +15,19 @@ namespace {
 /// What the particles of one block take a scan for: a landmark and a detection of their own each,
 /// and the second landmark known to every other particle only.
 struct Matches {
-  template <class Visit>
-  void read(std::size_t /*b*/, const Visit& visit) const {
-    for (std::size_t k = 0; k < 2; ++k) {
-      LandmarkGaussian<Lanes> landmark{{Lanes(0.0), Lanes(0.0)},
-                                       {Lanes(0.2), Lanes(0.05), Lanes(0.1)}};
-      Lanes known(1.0);
-      for (std::size_t lane = 0; lane < Lanes::kSize; ++lane) {
-        set(landmark.mean.x, lane, 10.0 + 0.1 * static_cast<double>(lane + k));
-        set(landmark.mean.y, lane, 5.0 - 8.0 * static_cast<double>(k));
-        if (k == 1) set(known, lane, static_cast<double>(lane % 2));
-      }
-      visit(k, landmark, RangeBearing<Lanes>{Lanes(11.0), Lanes(0.4 - 0.7 * double(k))},
-            known > Lanes(0.5));
+  std::size_t matches() const { return 2; }
+  auto match(std::size_t /*b*/, std::size_t k) const {
+    LandmarkGaussian<Lanes> landmark{{Lanes(0.0), Lanes(0.0)},
+                                     {Lanes(0.2), Lanes(0.05), Lanes(0.1)}};
+    Lanes known(1.0);
+    for (std::size_t lane = 0; lane < Lanes::kSize; ++lane) {
+      set(landmark.mean.x, lane, 10.0 + 0.1 * static_cast<double>(lane + k));
+      set(landmark.mean.y, lane, 5.0 - 8.0 * static_cast<double>(k));
+      if (k == 1) set(known, lane, static_cast<double>(lane % 2));
     }
+    const auto mask = known > Lanes(0.5);
+    return Match<Lanes, LandmarkGaussian<Lanes>, decltype(known > Lanes(0.5))>{
+        landmark, {Lanes(11.0), Lanes(0.4 - 0.7 * double(k))}, mask};
   }
 };
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "filters/fastslam/srcd.hpp"
-
+#include "filters/fastslam/fast_slam_filters.hpp"
 #include "tests/filters/fastslam/filter_comparison.hpp"
 
 namespace montecarta {

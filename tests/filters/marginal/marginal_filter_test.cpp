@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "filters/marginal/marginal_filters.hpp"
+#include "filters/marginal/marginal_filter.hpp"
+
 #include "tests/filters/reference/marginal.hpp"
 #include "tests/filters/same_runs.hpp"
 #include "tests/filters/small_world.hpp"

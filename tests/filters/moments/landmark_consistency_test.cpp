@@ -34,7 +34,7 @@ std::map<int, Averages> watch(const Transform& transform, const Belief& belief) 
       const RangeBearing<double> seen{kTruth.x() + belief.sigma_range * draw.normal(),
                                       belief.sigma_bearing * draw.normal()};
       if (n == 1) {
-        landmark = transform.birth(Pose(), seen, noise);
+        landmark = transform.initialise(Pose(), seen, noise);
       } else {
         transform.update(landmark, Pose(), seen, noise, Everywhere(), evidence);
       }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "filters/moments/quadrature_motion.hpp"
+#include "filters/moments/motion_increment.hpp"
 
 #include <gtest/gtest.h>
 

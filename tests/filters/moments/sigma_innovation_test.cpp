@@ -15,7 +15,7 @@ using reference::Vector;
 const double kInterval = std::sqrt(3.0);
 
 Eigen::Matrix2d covariance_of(const Innovation<double>& v) {
-  return Eigen::Matrix2d{{v.s_rr, v.s_rb}, {v.s_rb, v.s_bb}};
+  return Eigen::Matrix2d{{v.S.xx, v.S.xy}, {v.S.xy, v.S.yy}};
 }
 /// P_xz, the columns by range and by bearing.
 Matrix32 cross_of(const Innovation<double>& v) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "filters/moments/sigma_motion.hpp"
-
+#include "filters/moments/motion_increment.hpp"
 #include "tests/filters/moments/random_gaussians.hpp"
 #include "tests/filters/reference/sigma_models.hpp"
 #include "tests/filters/reference/square_root.hpp"

@@ -51,30 +51,28 @@ Pose weighted_mean(const Weights<Real>& weights, const PoseOf& pose_of) {
   return {reference.x + sums[0], reference.y + sums[1], wrap(reference.heading + sums[2])};
 }
 
-/// Mean and spread of the drawn poses.
-template <class Real>
-PoseMoments spread_of(const Weights<Real>& weights, const std::vector<BasicPose<Real>>& poses) {
-  const Pose mean = weighted_mean<Real>(weights, [&](std::size_t b) { return poses[b]; });
+/// Mean and covariance of a mixture of Gaussians (SPEC 19); `gaussian_of(block)`.
+template <class Real, class GaussianOf>
+PoseMoments mixture_of(const Weights<Real>& weights, const GaussianOf& gaussian_of) {
+  const Pose mean =
+      weighted_mean<Real>(weights, [&](std::size_t b) { return gaussian_of(b).mean; });
   const auto C = weighted_sums<Real, 6>(weights, [&](std::size_t b) {
-    const Real x = poses[b].x - mean.x, y = poses[b].y - mean.y;
-    const Real h = wrap(poses[b].heading - mean.heading);
-    return std::array<Real, 6>{x * x, x * y, y * y, x * h, y * h, h * h};
-  });
-  return {mean, symmetric({C[0], C[1], C[2], C[3], C[4], C[5]})};
-}
-
-/// Mean and covariance of a mixture of Gaussians (EQUATIONS 19).
-template <class Real>
-PoseMoments mixture_of(const Weights<Real>& weights,
-                       const std::vector<PoseGaussian<Real>>& gaussians) {
-  const Pose mean = weighted_mean<Real>(weights, [&](std::size_t b) { return gaussians[b].mean; });
-  const auto C = weighted_sums<Real, 6>(weights, [&](std::size_t b) {
-    const auto& [m, P] = gaussians[b];
+    const auto& [m, P] = gaussian_of(b);
     const Real x = m.x - mean.x, y = m.y - mean.y, h = wrap(m.heading - mean.heading);
     return std::array<Real, 6>{P.xx + x * x, P.xy + x * y, P.yy + y * y,
                                P.xh + x * h, P.yh + y * h, P.hh + h * h};
   });
   return {mean, symmetric({C[0], C[1], C[2], C[3], C[4], C[5]})};
+}
+template <class Real>
+PoseMoments mixture_of(const Weights<Real>& weights,
+                       const std::vector<PoseGaussian<Real>>& gaussians) {
+  return mixture_of<Real>(weights, [&](std::size_t b) { return gaussians[b]; });
+}
+/// Mean and spread of the drawn poses.
+template <class Real>
+PoseMoments spread_of(const Weights<Real>& weights, const std::vector<BasicPose<Real>>& poses) {
+  return mixture_of<Real>(weights, [&](std::size_t b) { return PoseGaussian<Real>{poses[b], {}}; });
 }
 
 /// What the particles together believe about one landmark: mean and covariance of the mixture.

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "filters/setup/resampling_options.hpp"
-
-#include "filters/setup/filter_options.hpp"
+#include "filters/population/population.hpp"
 
 namespace montecarta {
 namespace {
@@ -11,7 +9,7 @@ const std::vector<std::string> kResamplings{"systematic", "stratified", "residua
 
 }  // namespace
 
-std::vector<Option> resampling_options(const std::string& particles) {
+std::vector<Option> population_options(const std::string& particles) {
   return {
       count_option("particles", particles, 1, 1e6, "number of particles"),
       choice_option("resampling", "systematic", kResamplings, "draw of the parents (EQUATIONS 18)"),
@@ -19,8 +17,10 @@ std::vector<Option> resampling_options(const std::string& particles) {
                     "resample where ESS < this times particles; Bailey's simulator has 0.75")};
 }
 
-Resampling chosen_resampling(const FilterOptions& options) {
-  return chosen<Resampling>(options.choice("resampling"), kResamplings);
+PopulationSettings population_settings(const FilterOptions& options) {
+  return {.particles = options.integer("particles"),
+          .resampling = chosen<Resampling>(options.choice("resampling"), kResamplings),
+          .resample_below = options.number("resample_below")};
 }
 
 }  // namespace montecarta

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "filters/moments/cloud_moments.hpp"
+#include "filters/population/cloud_moments.hpp"
 
 namespace montecarta {
 

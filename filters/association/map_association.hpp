@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/association/association_counts.hpp"
+#include "filters/association/nearest.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace montecarta {
+
+/// Which landmark of one map a detection is, by identity or the nearest (SPEC 17), for filters
+/// whose map is the same for all particles, or that have a map for each belief. Landmarks are
+/// numbered in the order in which they are added.
+class MapAssociation {
+ public:
+  explicit MapAssociation(const FilterSetup& setup);
+
+  void clear();
+  bool known() const { return settings_.kind == Association::known; }
+  const AssociationSettings& settings() const { return settings_; }
+
+  /// Pairs a scan by identity, or by what a search of the map found for each detection.
+  void pair_by_identity(Scan scan);
+  void pair_nearest(Scan scan, std::span<const NearestSearch> searches);
+  std::span<const Pairing> pairings() const { return pairings_; }
+  /// Against the simulator's identities.
+  const AssociationCounts& counts() const { return counts_; }
+  /// log p0: what a detection that matches nothing is worth (SPEC 17); 0 where identities are
+  /// known.
+  double unmatched_log_density() const { return known() ? 0.0 : log_new_density_; }
+
+  /// Remembers that the map's next landmark is made of this detection. Throws RunError where the
+  /// map has run away.
+  void add(const Detection& fresh);
+  /// Where the map holds landmark k of a report: of identity k if they are known, else the k-th
+  /// added. Any number beyond the map's size where it does not.
+  std::size_t slot_of(std::size_t k) const;
+
+ private:
+  static constexpr std::uint32_t kUnseen = std::numeric_limits<std::uint32_t>::max();
+
+  Pairing pairing_by_identity(const Detection& detection) const;
+
+  AssociationSettings settings_;
+  double log_new_density_;
+  std::vector<std::uint32_t> slot_of_identity_;  ///< where they are known
+  std::vector<std::int32_t> made_of_;            ///< {slot} identity at birth, to count errors
+  std::vector<Pairing> pairings_;                ///< of the last scan
+  AssociationCounts counts_;
+};
+
+}  // namespace montecarta

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/fastslam/delayed_map.hpp"
+#include "filters/fastslam/particle_maps.hpp"
+#include "filters/moments/linearised.hpp"
+#include "filters/moments/motion_increment.hpp"
+#include "filters/population/population.hpp"
+
+#include <concepts>
+#include <optional>
+#include <vector>
+
+// What the arguments of the FastSLAM templates must offer, and what passes between them.
+
+namespace montecarta {
+
+template <class T, class U>
+concept Is = std::same_as<T, U>;
+
+/// Carries the Gaussians of poses and landmarks through motion and sight: `Linearised` and
+/// `SigmaPoints` of moments/moment_transforms.hpp.
+template <class T, class Real>
+concept MomentTransform = requires(const T t, MotionIncrement& motion, PoseGaussian<Real>& pose,
+                                   LandmarkGaussian<Real>& landmark, const RangeBearing<Real>& seen,
+                                   const SensorNoise& R, Evidence<Real>& evidence,
+                                   const Belief& belief) {
+  // one control step of `duration`
+  t.advance(motion, Control(), /*duration*/ 0.1, belief);
+  // pose, or landmark seen from a known pose, absorbs one detection: its innovation before
+  { t.refine(pose, landmark, seen, R, Everywhere(), evidence) } -> Is<Innovation<Real>>;
+  { t.update(landmark, pose.mean, seen, R, Everywhere(), evidence) } -> Is<Innovation<Real>>;
+  // a landmark seen for the first time from a known pose
+  { t.initialise(pose.mean, seen, R) } -> Is<LandmarkGaussian<Real>>;
+};
+
+/// A detection, and the landmark that the particles of one block take it for.
+template <class Real, class Landmark, class Mask>
+struct Match {
+  Landmark landmark;  ///< the map's own, or a copy where each particle has another one
+  RangeBearing<Real> seen;
+  Mask mask;  ///< the particles that matched it
+};
+
+/// A landmark that particles of one block see for the first time.
+template <class Real>
+struct FreshLandmark {
+  Detection detection;
+  std::size_t block;
+  std::uint32_t slot;               ///< that was added to their maps
+  std::optional<std::size_t> lane;  ///< of the particle; nothing: all of the block
+
+  template <class Block>
+  void put(const Block& from, Block& to) const {
+    lane ? copy_lane<Real>(from, to, *lane) : void(to = from);
+  }
+};
+
+/// Decides which landmark of its map a particle takes a detection for.
+template <class A, class Real>
+concept Associator = requires(A a, const A decided, const StepContext& context, Scan scan,
+                              ParticleMaps<Real>& maps,
+                              const std::vector<PoseGaussian<Real>>& predicted,
+                              const DelayedMap<Real>* joint, const Weights<Real>& weights,
+                              std::size_t block, std::size_t k) {
+  // a run: no landmark is known
+  a.start();
+  // a scan: decides for all particles, by their `predicted` poses {block}; `joint` as a
+  // PoseProposal has it
+  a.associate(context, scan, maps, predicted, joint);
+  { decided.found_nothing() } -> Is<bool>;
+  // detections that some particle may have matched, and the weight of those that did
+  { decided.matches() } -> Is<std::size_t>;
+  { decided.matched_weight(k, weights) } -> Is<double>;
+  // the landmarks of all matches, each perhaps many times
+  { decided.matched_slots() } -> std::convertible_to<std::span<const std::uint32_t>>;
+
+  // a block: first fetch(), then a Match for each k, and store() where its landmark changed
+  decided.fetch(block);
+  decided.store(block, k, decided.match(block, k));
+  // which landmark of a CorrelatedMap a match is: ForAll or ForEach; `index_of` {slot}
+  decided.where(block, k, /*index_of*/ std::span<const std::size_t>());
+  // log p0 for every detection that a particle has not matched (SPEC 17)
+  { decided.unmatched_log_weight(block) } -> Is<Real>;
+
+  // adds slots to the maps, for the caller to fill
+  { a.new_landmarks(maps) } -> std::convertible_to<std::span<const FreshLandmark<Real>>>;
+  a.resample(/*parents*/ std::span<const std::uint32_t>());
+  // for reports
+  { decided.counts(weights) } -> Is<AssociationCounts>;
+  { decided.map_size(maps, weights) } -> Is<double>;
+  { decided.landmark(k, maps, weights) } -> Is<std::optional<LandmarkEstimate>>;
+};
+
+/// Moves the particles, and draws and weighs their poses, given what `A` decided.
+template <class P, class Real, class A>
+concept PoseProposal = requires(P p, const P now, const StepContext& context, std::size_t block,
+                                std::vector<BasicPose<Real>>& poses,
+                                const std::vector<PoseGaussian<Real>>& predicted, const A& a,
+                                const Weights<Real>& weights, ParticleMaps<Real>& maps,
+                                const typename MixtureInnovations<Real>::OfBlock& innovations,
+                                typename P::Refined& refined, const FreshLandmark<Real>& fresh) {
+  // a run, and a control step of `duration`
+  p.start();
+  p.predict(context, Control(), /*duration*/ 0.1, poses);
+  // what a particle believes of its pose before the scan is looked at
+  { now.predicted(block, poses[block]) } -> Is<PoseGaussian<Real>>;
+
+  // a scan, once for all particles: before it is associated, and after
+  p.begin_scan(context, poses);
+  { now.joint() } -> Is<const DelayedMap<Real>*>;  // of pose and map, if one is kept
+  p.prepare(context, a, weights, poses, predicted, maps);
+
+  // a block: the pose refined by the scan, the pose drawn from that, and the landmarks updated
+  // from there with the log of the weight's factor; P::Refined is what one leaves for the next
+  { p.refine(context, block, predicted[block], a, innovations) } -> Is<typename P::Refined>;
+  { p.draw(context, block, refined) } -> Is<BasicPose<Real>>;
+  { p.update_map(block, poses[block], a, refined, innovations) } -> Is<Weighing<Real>>;
+
+  p.end_scan();
+  p.initialise(fresh, poses[block], maps);  // fills the slot of a new landmark
+  // before the next step: `parents` of the particles, none where they were not resampled
+  p.begin_step(/*parents*/ std::span<const std::uint32_t>());
+  { now.estimate(weights, poses) } -> Is<PoseEstimate>;
+};
+
+}  // namespace montecarta

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/fastslam/fast_slam_filters.hpp"
+
+#include <string>
+
+namespace montecarta {
+namespace {
+
+const std::vector<std::string> kWeightForms{"closed", "ratio", "batch"};
+
+/// In the order in which they are documented.
+std::vector<Option> joined(std::initializer_list<std::vector<Option>> parts) {
+  std::vector<Option> options;
+  for (const auto& part : parts) options.insert(options.end(), part.begin(), part.end());
+  return options;
+}
+
+Option weights_of_sigma_points_option() {
+  return choice_option("weights", "closed", {"closed", "ratio"},
+                       "form of the importance weight (SPEC 7.2 c, r)");
+}
+
+}  // namespace
+
+WeightForm weight_form(const FilterOptions& options) {
+  return chosen<WeightForm>(options.choice("weights"), kWeightForms);
+}
+
+Option map_uncertainty_option() {
+  return choice_option(
+      "map_uncertainty", "on", {"on", "off"},
+      "whether a landmark's covariance counts when the pose is refined; printed without");
+}
+
+MapUncertainty map_uncertainty(const FilterOptions& options) {
+  return options.choice("map_uncertainty") == "on" ? MapUncertainty::on : MapUncertainty::off;
+}
+
+std::vector<Option> central_difference_options() {
+  return {
+      number_option(
+          "interval", "1.7320508075688772", 1, 10,
+          "h of the central differences; its square is the kurtosis, 3 for a Gaussian (SPEC 9)"),
+      choice_option("weights_of_sigma_points", "corrected", {"corrected", "as_printed"},
+                    "as_printed: the misprints of Ankishan eq. (14), about the central point")};
+}
+
+SigmaPoints central_difference_points(const FilterSetup& setup, MapUncertainty map_uncertainty) {
+  const double h = setup.options.number("interval");
+  const bool corrected = setup.options.choice("weights_of_sigma_points") == "corrected";
+  const SigmaRule rule =
+      corrected ? central_difference_rule(h) : central_difference_rule_as_printed(h);
+  return SigmaPoints({.motion = rule, .pose = rule, .landmark = rule}, setup.belief,
+                     map_uncertainty);
+}
+
+SigmaPoints unscented_points(const FilterSetup& setup) {
+  const auto rule = [&](double n) {
+    return unscented_rule(n, setup.options.number("alpha"), setup.options.number("beta"),
+                          setup.options.number("kappa"));
+  };
+  return SigmaPoints({.motion = rule(5), .pose = rule(5), .landmark = rule(2)}, setup.belief,
+                     map_uncertainty(setup.options));
+}
+
+FilterKind fastslam1_kind() {
+  return {.name = "fastslam1",
+          .long_name = "FastSLAM I",
+          .source = "Montemerlo et al. 2002; SPEC 6",
+          .options = population_options(),
+          .make = make_fastslam1<Lanes>};
+}
+
+FilterKind fastslam2_kind() {
+  return {.name = "fastslam2",
+          .long_name = "FastSLAM II",
+          .source = "Montemerlo et al. 2003; SPEC 7",
+          .has_mixture = true,
+          .options = joined({population_options(),
+                             {choice_option("weights", "closed", kWeightForms,
+                                            "form of the importance weight (SPEC 7.2 c, r, b)")}}),
+          .make = make_fastslam2<Lanes>};
+}
+
+FilterKind ufastslam_kind() {
+  return {.name = "ufastslam",
+          .long_name = "U-FastSLAM",
+          .source = "Kim et al. 2008; SPEC 8",
+          .has_mixture = true,
+          .options = joined(
+              {population_options(),
+               {weights_of_sigma_points_option(),
+                number_option(
+                    "alpha", "0.9", 1e-3, 1,
+                    "spread of the sigma points; Kim's paper has 0.002, Kim's code 0.9 (SPEC 8)"),
+                number_option("beta", "2", 0, 10,
+                              "weight of the centre in covariances; 2 suits a Gaussian (SPEC 8)"),
+                number_option("kappa", "0", 0, 10,
+                              "second spread: alpha^2 (n + kappa) is the square of the points' "
+                              "distance"),
+                map_uncertainty_option()}}),
+          .make = make_ufastslam<Lanes>};
+}
+
+FilterKind srcd_kind() {
+  return {.name = "srcd",
+          .long_name = "SRCD-FastSLAM",
+          .source = "Ankishan et al. 2016; SPEC 10",
+          .has_mixture = true,
+          .options = joined({population_options(),
+                             {weights_of_sigma_points_option()},
+                             central_difference_options(),
+                             {map_uncertainty_option()}}),
+          .make = make_srcd<Lanes>};
+}
+
+FilterKind srcd_aided_kind() {
+  return {
+      .name = "srcd_aided",
+      .long_name = "SRCD-aided FastSLAM",
+      .source = "Ankishan et al. 2016, Table 1; SPEC 11",
+      .has_mixture = true,
+      .options = joined(
+          {population_options(), {weights_of_sigma_points_option()}, central_difference_options()}),
+      .make = make_srcd_aided<Lanes>};
+}
+
+FilterKind srcd_pf_kind() {
+  return {.name = "srcd_pf",
+          .long_name = "SRCD-PF FastSLAM",
+          .source = "Ankishan et al. 2016, Table 1; SPEC 11",
+          .has_mixture = true,
+          .options = srcd_kind().options,
+          .make = make_srcd_pf<Lanes>};
+}
+
+}  // namespace montecarta
