@@ -11,7 +11,7 @@
 
 namespace montecarta {
 
-/// Which landmark of one map a detection is, by identity or the nearest (SPEC 17), for filters
+/// Which landmark of one map a detection is, by identity or the nearest (EQUATIONS 17), for filters
 /// whose map is the same for all particles, or that have a map for each belief. Landmarks are
 /// numbered in the order in which they are added.
 class MapAssociation {
@@ -28,7 +28,7 @@ class MapAssociation {
   std::span<const Pairing> pairings() const { return pairings_; }
   /// Against the simulator's identities.
   const AssociationCounts& counts() const { return counts_; }
-  /// log p0: what a detection that matches nothing is worth (SPEC 17); 0 where identities are
+  /// log p0: what a detection that matches nothing is worth (EQUATIONS 17); 0 where identities are
   /// known.
   double unmatched_log_density() const { return known() ? 0.0 : log_new_density_; }
 

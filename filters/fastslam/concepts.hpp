@@ -80,7 +80,7 @@ concept Associator = requires(A a, const A decided, const StepContext& context, 
   decided.store(block, k, decided.match(block, k));
   // which landmark of a CorrelatedMap a match is: ForAll or ForEach; `index_of` {slot}
   decided.where(block, k, /*index_of*/ std::span<const std::size_t>());
-  // log p0 for every detection that a particle has not matched (SPEC 17)
+  // log p0 for every detection that a particle has not matched (EQUATIONS 17)
   { decided.unmatched_log_weight(block) } -> Is<Real>;
 
   // adds slots to the maps, for the caller to fill

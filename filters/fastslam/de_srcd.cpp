@@ -46,7 +46,7 @@ FilterKind de_srcd_kind() {
   options.push_back(map_uncertainty_option());
   return {.name = "de_srcd",
           .long_name = "DE-SRCD-FastSLAM",
-          .source = "Ankishan et al. 2016; SPEC 13",
+          .source = "Ankishan et al. 2016; EQUATIONS 10",
           .has_mixture = true,
           .options = std::move(options),
           .make = make_de_srcd<Lanes>};

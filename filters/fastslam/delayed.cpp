@@ -26,7 +26,7 @@ DrawTimes draw_times(const FilterOptions& options) {
 FilterKind delayed_kind() {
   return {.name = "delayed",
           .long_name = "FastSLAM II with delayed draws",
-          .source = "SPEC 24, last lines",
+          .source = "EQUATIONS 11",
           .has_mixture = true,
           .options = delayed_options(),
           .make = make_delayed<Lanes>};

@@ -11,8 +11,8 @@
 
 namespace montecarta {
 
-/// Rao-Blackwellised particle filter with one map per particle (SPEC 5). `Real`: double or Lanes.
-/// Between update() and the next predict() the particles are weighed and drawn but not yet
+/// Rao-Blackwellised particle filter with one map per particle (EQUATIONS 4). `Real`: double or
+/// Lanes. Between update() and the next predict() the particles are weighed and drawn but not yet
 /// resampled: that is the state that is estimated and recorded.
 template <class Real, class Proposal, class Associating>
 requires Associator<Associating, Real> && PoseProposal<Proposal, Real, Associating>

@@ -17,7 +17,7 @@ std::vector<Option> joined(std::initializer_list<std::vector<Option>> parts) {
 
 Option weights_of_sigma_points_option() {
   return choice_option("weights", "closed", {"closed", "ratio"},
-                       "form of the importance weight (SPEC 7.2 c, r)");
+                       "form of the importance weight (EQUATIONS 6)");
 }
 
 }  // namespace
@@ -37,12 +37,11 @@ MapUncertainty map_uncertainty(const FilterOptions& options) {
 }
 
 std::vector<Option> central_difference_options() {
-  return {
-      number_option(
-          "interval", "1.7320508075688772", 1, 10,
-          "h of the central differences; its square is the kurtosis, 3 for a Gaussian (SPEC 9)"),
-      choice_option("weights_of_sigma_points", "corrected", {"corrected", "as_printed"},
-                    "as_printed: the misprints of Ankishan eq. (14), about the central point")};
+  return {number_option("interval", "1.7320508075688772", 1, 10,
+                        "h of the central differences; its square is the kurtosis, 3 for a "
+                        "Gaussian (EQUATIONS 3)"),
+          choice_option("weights_of_sigma_points", "corrected", {"corrected", "as_printed"},
+                        "as_printed: the misprints of Ankishan eq. (14), about the central point")};
 }
 
 SigmaPoints central_difference_points(const FilterSetup& setup, MapUncertainty map_uncertainty) {
@@ -66,7 +65,7 @@ SigmaPoints unscented_points(const FilterSetup& setup) {
 FilterKind fastslam1_kind() {
   return {.name = "fastslam1",
           .long_name = "FastSLAM I",
-          .source = "Montemerlo et al. 2002; SPEC 6",
+          .source = "Montemerlo et al. 2002; EQUATIONS 5",
           .options = population_options(),
           .make = make_fastslam1<Lanes>};
 }
@@ -74,38 +73,39 @@ FilterKind fastslam1_kind() {
 FilterKind fastslam2_kind() {
   return {.name = "fastslam2",
           .long_name = "FastSLAM II",
-          .source = "Montemerlo et al. 2003; SPEC 7",
+          .source = "Montemerlo et al. 2003; EQUATIONS 6",
           .has_mixture = true,
           .options = joined({population_options(),
                              {choice_option("weights", "closed", kWeightForms,
-                                            "form of the importance weight (SPEC 7.2 c, r, b)")}}),
+                                            "form of the importance weight (EQUATIONS 6)")}}),
           .make = make_fastslam2<Lanes>};
 }
 
 FilterKind ufastslam_kind() {
-  return {.name = "ufastslam",
-          .long_name = "U-FastSLAM",
-          .source = "Kim et al. 2008; SPEC 8",
-          .has_mixture = true,
-          .options = joined(
-              {population_options(),
-               {weights_of_sigma_points_option(),
-                number_option(
-                    "alpha", "0.9", 1e-3, 1,
-                    "spread of the sigma points; Kim's paper has 0.002, Kim's code 0.9 (SPEC 8)"),
-                number_option("beta", "2", 0, 10,
-                              "weight of the centre in covariances; 2 suits a Gaussian (SPEC 8)"),
-                number_option("kappa", "0", 0, 10,
-                              "second spread: alpha^2 (n + kappa) is the square of the points' "
-                              "distance"),
-                map_uncertainty_option()}}),
-          .make = make_ufastslam<Lanes>};
+  return {
+      .name = "ufastslam",
+      .long_name = "U-FastSLAM",
+      .source = "Kim et al. 2008; EQUATIONS 7",
+      .has_mixture = true,
+      .options = joined(
+          {population_options(),
+           {weights_of_sigma_points_option(),
+            number_option(
+                "alpha", "0.9", 1e-3, 1,
+                "spread of the sigma points; Kim's paper has 0.002, Kim's code 0.9 (EQUATIONS 7)"),
+            number_option("beta", "2", 0, 10,
+                          "weight of the centre in covariances; 2 suits a Gaussian (EQUATIONS 7)"),
+            number_option("kappa", "0", 0, 10,
+                          "second spread: alpha^2 (n + kappa) is the square of the points' "
+                          "distance"),
+            map_uncertainty_option()}}),
+      .make = make_ufastslam<Lanes>};
 }
 
 FilterKind srcd_kind() {
   return {.name = "srcd",
           .long_name = "SRCD-FastSLAM",
-          .source = "Ankishan et al. 2016; SPEC 10",
+          .source = "Ankishan et al. 2016; EQUATIONS 8",
           .has_mixture = true,
           .options = joined({population_options(),
                              {weights_of_sigma_points_option()},
@@ -118,7 +118,7 @@ FilterKind srcd_aided_kind() {
   return {
       .name = "srcd_aided",
       .long_name = "SRCD-aided FastSLAM",
-      .source = "Ankishan et al. 2016, Table 1; SPEC 11",
+      .source = "Ankishan et al. 2016, Table 1; EQUATIONS 8",
       .has_mixture = true,
       .options = joined(
           {population_options(), {weights_of_sigma_points_option()}, central_difference_options()}),
@@ -128,7 +128,7 @@ FilterKind srcd_aided_kind() {
 FilterKind srcd_pf_kind() {
   return {.name = "srcd_pf",
           .long_name = "SRCD-PF FastSLAM",
-          .source = "Ankishan et al. 2016, Table 1; SPEC 11",
+          .source = "Ankishan et al. 2016, Table 1; EQUATIONS 8",
           .has_mixture = true,
           .options = srcd_kind().options,
           .make = make_srcd_pf<Lanes>};

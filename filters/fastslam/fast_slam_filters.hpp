@@ -41,16 +41,16 @@ std::unique_ptr<SlamFilter> make_refined(const FilterSetup& setup,
                                   pose_transform, map_transform));
 }
 
-/// Whether the landmark's covariance is part of the pose's innovation (SPEC 8.1).
+/// Whether the landmark's covariance is part of the pose's innovation (EQUATIONS 7).
 Option map_uncertainty_option();
 MapUncertainty map_uncertainty(const FilterOptions& options);
 
-/// Interval and weights of central differences (SPEC 9), for every stage; `map_uncertainty` matters
-/// to the pose alone.
+/// Interval and weights of central differences (EQUATIONS 3), for every stage; `map_uncertainty`
+/// matters to the pose alone.
 std::vector<Option> central_difference_options();
 SigmaPoints central_difference_points(const FilterSetup& setup, MapUncertainty map_uncertainty);
-/// The scaled unscented transform of every stage (SPEC 8): dimension 5 for motion (pose, control)
-/// and for a sight (pose, landmark), 2 for a landmark.
+/// The scaled unscented transform of every stage (EQUATIONS 7): dimension 5 for motion (pose,
+/// control) and for a sight (pose, landmark), 2 for a landmark.
 SigmaPoints unscented_points(const FilterSetup& setup);
 
 /// `Real` = double is the same filter one particle at a time, for tests.
@@ -70,7 +70,7 @@ std::unique_ptr<SlamFilter> make_ufastslam(const FilterSetup& setup) {
   const SigmaPoints unscented = unscented_points(setup);
   return make_refined<Real>(setup, unscented, unscented);
 }
-/// SRCD-FastSLAM (Ankishan 2016; SPEC 10): FastSLAM II with every Gaussian carried by central
+/// SRCD-FastSLAM (Ankishan 2016; EQUATIONS 8): FastSLAM II with every Gaussian carried by central
 /// differences. Covariances are kept, and the factor is taken where points are drawn: the same
 /// numbers as the square-root recursion, to rounding.
 template <class Real>
@@ -78,14 +78,14 @@ std::unique_ptr<SlamFilter> make_srcd(const FilterSetup& setup) {
   const SigmaPoints points = central_difference_points(setup, map_uncertainty(setup.options));
   return make_refined<Real>(setup, points, points);
 }
-/// SRCD-aided FastSLAM (SPEC 11): the poses of FastSLAM II, landmarks by central differences.
+/// SRCD-aided FastSLAM (EQUATIONS 8): the poses of FastSLAM II, landmarks by central differences.
 template <class Real>
 std::unique_ptr<SlamFilter> make_srcd_aided(const FilterSetup& setup) {
   return make_refined<Real>(setup, Linearised(),
                             central_difference_points(setup, MapUncertainty::on));
 }
-/// SRCD-particle-filter based FastSLAM (SPEC 11): poses by central differences, the landmarks of
-/// FastSLAM II.
+/// SRCD-particle-filter based FastSLAM (EQUATIONS 8): poses by central differences, the landmarks
+/// of FastSLAM II.
 template <class Real>
 std::unique_ptr<SlamFilter> make_srcd_pf(const FilterSetup& setup) {
   return make_refined<Real>(setup, central_difference_points(setup, map_uncertainty(setup.options)),

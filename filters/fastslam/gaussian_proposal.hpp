@@ -5,14 +5,14 @@
 
 namespace montecarta {
 
-/// The three ways to weigh a particle of FastSLAM II (SPEC 7.2).
+/// The three ways to weigh a particle of FastSLAM II (EQUATIONS 6).
 enum class WeightForm {
   closed,  ///< product of N(innovation; S), each before absorbing the detection
   ratio,   ///< likelihood times prior over proposal at the drawn pose
   batch,   ///< N of the stacked innovation, linearised at the predicted pose: `Linearised` only
 };
 
-/// The predicted pose is refined by the scan before it is drawn (SPEC 7, 8, 10).
+/// The predicted pose is refined by the scan before it is drawn (EQUATIONS 6, 7, 8).
 template <class Real, class PoseTransform, class MapTransform>
 class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> {
  public:

@@ -11,8 +11,8 @@
 
 namespace montecarta {
 
-/// FastSLAM I (SPEC 6): every particle moves with control noise of its own at every step; the scan
-/// only weighs it, by the likelihood at its pose.
+/// FastSLAM I (EQUATIONS 5): every particle moves with control noise of its own at every step; the
+/// scan only weighs it, by the likelihood at its pose.
 template <class Real>
 class MotionSampling {
  public:

@@ -11,9 +11,9 @@
 
 namespace montecarta {
 
-/// What filters have in common whose poses are drawn from Gaussians that the scan refined (SPEC 5):
-/// prediction, refinement, maps, and the estimate between scans. The transforms carry the
-/// Gaussians: `PoseTransform` those of the pose, `MapTransform` those of the landmarks.
+/// What filters have in common whose poses are drawn from Gaussians that the scan refined
+/// (EQUATIONS 4): prediction, refinement, maps, and the estimate between scans. The transforms
+/// carry the Gaussians: `PoseTransform` those of the pose, `MapTransform` those of the landmarks.
 template <class Real, MomentTransform<Real> PoseTransform, MomentTransform<Real> MapTransform>
 class RefinedCloud {
  public:

@@ -101,7 +101,7 @@ FilterKind hrb_kind() {
        iterations_option("5"), motion_option("quadrature")});
   return {.name = "hrb",
           .long_name = "heading-split bank",
-          .source = "SPEC 24",
+          .source = "EQUATIONS 16",
           .has_mixture = true,
           .has_joint = true,
           .options = std::move(options),

@@ -6,7 +6,7 @@ namespace montecarta {
 FilterKind marginal_kind() {
   return {.name = "marginal",
           .long_name = "marginal particle filter with one map",
-          .source = "Martinez-Cantin et al. 2007; Klaas et al. 2005; SPEC 14",
+          .source = "Martinez-Cantin et al. 2007; Klaas et al. 2005; EQUATIONS 12",
           .has_mixture = false,
           .options = marginal_options(MapSolver::gauss_newton),
           .make = make_marginal<Lanes, Choice::by_weight>};
@@ -15,7 +15,7 @@ FilterKind marginal_kind() {
 FilterKind ampf_de_kind() {
   return {.name = "ampf_de",
           .long_name = "auxiliary marginal particle filter, map by DE",
-          .source = "Havangi et al. 2013; SPEC 14, 15",
+          .source = "Havangi et al. 2013; EQUATIONS 12, 14",
           .has_mixture = false,
           .options = marginal_options(MapSolver::de),
           .make = make_marginal<Lanes, Choice::by_likelihood>};

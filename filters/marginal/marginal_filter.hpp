@@ -184,7 +184,8 @@ class MarginalFilter final : public SlamFilter {
   bool is_drawn_ = false;  ///< whether the poses were drawn by the last update()
 };
 
-/// The drawn poses; between scans with the motion since then, as the kernels have it (SPEC 19).
+/// The drawn poses; between scans with the motion since then, as the kernels have it (EQUATIONS
+/// 19).
 template <class Real>
 PoseEstimate MarginalFilter<Real>::estimate() const {
   if (is_drawn_) return {spread_of(weights(), poses_), std::nullopt};

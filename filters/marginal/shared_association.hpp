@@ -18,7 +18,7 @@ struct SharedMatch {
 };
 
 /// A scan sorted by what it shows of the shared map, once for all particles: by identity, or by the
-/// nearest to a Gaussian pose (SPEC 17).
+/// nearest to a Gaussian pose (EQUATIONS 17).
 class SharedAssociation {
  public:
   explicit SharedAssociation(const FilterSetup& setup)

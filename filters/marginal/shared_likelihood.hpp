@@ -56,7 +56,7 @@ class SharedLikelihood {
     return at(kernel.mean);
   }
 
-  /// The kernel becomes p(s | s_j, z); returns log p(z | s_j) (SPEC 14.2).
+  /// The kernel becomes p(s | s_j, z); returns log p(z | s_j) (EQUATIONS 12).
   Weighing<Real> refine(PoseGaussian<Real>& kernel, const Innovations& innovations) const {
     Evidence<Real> evidence;
     for (std::size_t k = 0; k < seen_.size(); ++k) {

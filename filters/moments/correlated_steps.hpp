@@ -17,8 +17,8 @@ struct DrivenPose {
   BasicPoint<Real> lever;  ///< [m/rad]
 };
 
-/// Fx P Fx' with the motion's own covariance turned into the map (SPEC 2.1). Of several steps Fx is
-/// again [1 0 a; 0 1 b; 0 0 1], so one increment stands for all since the last scan.
+/// Fx P Fx' with the motion's own covariance turned into the map (EQUATIONS 1). Of several steps Fx
+/// is again [1 0 a; 0 1 b; 0 0 1], so one increment stands for all since the last scan.
 template <class Real>
 DrivenPose<Real> driven(const PoseGaussian<Real>& before, const MotionIncrement& motion) {
   const auto& [mean, P] = before;
@@ -46,7 +46,7 @@ void drive(CorrelatedMap<Real>& maps, std::size_t b, const MotionIncrement& moti
 }
 
 /// A landmark seen for the first time from an uncertain pose, with all it is correlated with:
-/// g(x, z), Gx P Gx' + Gz R Gz' and Gx P (SPEC 24).
+/// g(x, z), Gx P Gx' + Gz R Gz' and Gx P (EQUATIONS 15).
 template <class Real>
 struct NewLandmark {
   LandmarkGaussian<Real> landmark;

@@ -12,8 +12,8 @@ namespace montecarta {
 /// The motion since poses were last drawn, in the frame of the drawn pose. The vehicle does not
 /// know where in the world it is, so this Gaussian is the same for every particle: it is predicted
 /// once for all of them and turned to each particle's heading only when it is needed. Exact: equal
-/// to one prediction per particle and step, by the extended Kalman filter (SPEC 2.1: advance()) or
-/// by sigma points.
+/// to one prediction per particle and step, by the extended Kalman filter (EQUATIONS 1: advance())
+/// or by sigma points.
 class MotionIncrement {
  public:
   MotionIncrement() = default;
@@ -54,7 +54,7 @@ class MotionIncrement {
   Symmetric3<double> covariance_;
 };
 
-/// One control step of `duration` [s] by sigma points of (pose, control noise) (SPEC 8.2, 9). The
+/// One control step of `duration` [s] by sigma points of (pose, control noise) (EQUATIONS 3). The
 /// square root has the heading first: its column alone bends, those of x and y are carried along
 /// unchanged. Equal to sending all eleven points through the vehicle.
 MotionIncrement moved_by_sigma_points(const MotionIncrement& before, const Control& control,

@@ -51,7 +51,7 @@ Pose weighted_mean(const Weights<Real>& weights, const PoseOf& pose_of) {
   return {reference.x + sums[0], reference.y + sums[1], wrap(reference.heading + sums[2])};
 }
 
-/// Mean and covariance of a mixture of Gaussians (SPEC 19); `gaussian_of(block)`.
+/// Mean and covariance of a mixture of Gaussians (EQUATIONS 19); `gaussian_of(block)`.
 template <class Real, class GaussianOf>
 PoseMoments mixture_of(const Weights<Real>& weights, const GaussianOf& gaussian_of) {
   const Pose mean =

@@ -15,7 +15,7 @@
 
 namespace montecarta {
 
-/// How many particles there are, and how and when they are resampled (SPEC 18).
+/// How many particles there are, and how and when they are resampled (EQUATIONS 18).
 struct PopulationSettings {
   std::size_t particles = 100;
   Resampling resampling = Resampling::systematic;
@@ -96,7 +96,7 @@ class Population {
     return true;
   }
 
-  /// Draws the ancestors at once, by weights of the caller's (SPEC 14, step 2).
+  /// Draws the ancestors at once, by weights of the caller's (EQUATIONS 12).
   void draw_ancestors(const StepContext& context, std::span<const double> weights) {
     report_.resampled = true;
     draw_parents(settings_.resampling, weights, context,

@@ -80,7 +80,8 @@ TEST_F(ARecordedDrive, GivesTheSameBitsForAnyNumberOfThreads) {
   const ResultFile file(path_);
   const StudyAnalysis one = analyze(file), many = analyze(file, 0.95, Parallel(Backend::tbb, 3));
   for (std::size_t c = 0; c < one.cells.size(); ++c) {
-    const ReferenceAnalysis &a = one.cells[c].get<ReferenceAnalyses>()[0], &b = many.cells[c].get<ReferenceAnalyses>()[0];
+    const ReferenceAnalysis &a = one.cells[c].get<ReferenceAnalyses>()[0],
+                            &b = many.cells[c].get<ReferenceAnalyses>()[0];
     EXPECT_EQ(a.error_over_time, b.error_over_time);
     EXPECT_EQ(a.over_runs(&ReferenceScores::aligned_rms).summary.mean,
               b.over_runs(&ReferenceScores::aligned_rms).summary.mean);
