@@ -2,6 +2,7 @@
 #include "analysis/report.hpp"
 
 #include "analysis/comparison/comparison_csv.hpp"
+#include "analysis/comparison/pareto_figure.hpp"
 #include "analysis/figures/ancestry_figure.hpp"
 #include "analysis/figures/path_figure.hpp"
 #include "analysis/metrics/metric.hpp"
@@ -29,7 +30,8 @@ void refuse_existing(const fs::path& directory, ExistingReport existing) {
   }
 }
 
-/// The page from top to bottom, by the names of sections; others follow before the last two.
+/// The page from top to bottom, by the names of sections and figures; others come before the last
+/// two.
 constexpr std::array kReadingOrder = {"title",
                                       "verdict",
                                       "map_errors",
@@ -37,19 +39,27 @@ constexpr std::array kReadingOrder = {"title",
                                       "references",
                                       "failures",
                                       "replay",
-                                      "paths",
-                                      "references_over_time",
-                                      "anees",
-                                      "rmse",
-                                      "diversity_over_time",
-                                      "joint_nees_over_time",
-                                      "ancestry",
-                                      "survival",
-                                      "error_anatomy_over_time",
-                                      "innovations_over_time",
-                                      "mismatch",
+                                      "figure_paths",
+                                      "figure_reference_error",
+                                      "figure_reference_particles",
+                                      "figure_map_size",
+                                      "figure_anees",
+                                      "figure_anees_parts",
+                                      "figure_rmse",
+                                      "figure_diversity",
+                                      "figure_ess",
+                                      "figure_joint_nees",
+                                      "figure_ancestry",
+                                      "figure_survival",
+                                      "figure_why",
+                                      "figure_nis",
+                                      "figure_whiteness",
+                                      "figure_mismatch",
                                       "calibration",
+                                      "figure_calibration",
+                                      "figure_ranks",
                                       "comparison",
+                                      "figure_pareto",
                                       "association",
                                       "error_anatomy",
                                       "diversity",
@@ -70,13 +80,15 @@ std::size_t place_of(const Section& section) {
 std::vector<Section> all_sections(const ResultFile& file, const StudyAnalysis& study,
                                   const StudyComparison& comparison, const ReportOptions& options) {
   std::vector<Section> sections = sections_of(study);
-  for (Section& section : std::vector<Section>{
-           title_section(study), failure_section(study), replay_section(file, options.run),
-           figure_section("paths", {path_figure(file, options.run)}),
-           figure_section("ancestry", {ancestry_figure(file, options.run)}),
-           comparison_section(study, comparison), origin_section(file, study),
-           printed_section(study)}) {
-    sections.push_back(std::move(section));
+  sections.insert(
+      sections.end(),
+      {title_section(study), failure_section(study), replay_section(file, options.run),
+       comparison_section(study, comparison), origin_section(file, study), printed_section(study)});
+  std::vector<Figure> figures = figures_of(study);
+  figures.insert(figures.end(), {path_figure(file, options.run), ancestry_figure(file, options.run),
+                                 pareto_figure(comparison.values)});
+  for (const Figure& figure : figures) {
+    if (!figure.data.empty()) sections.push_back({"figure_" + figure.name, "", {}, {figure}});
   }
   std::ranges::stable_sort(sections, {}, place_of);
   return sections;

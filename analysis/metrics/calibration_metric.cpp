@@ -272,7 +272,6 @@ std::vector<Section> calibration_sections(const StudyAnalysis& study) {
   Section section{"calibration", "Calibration"};
   section.add("calibration", calibration_table(study));
   section.add(calibration_notes(study));
-  for (const Figure& figure : calibration_figures(study)) section.add(figure);
   return {section};
 }
 
@@ -283,6 +282,7 @@ Metric calibration_metric() {
             return std::make_unique<CalibrationOverRuns>(sticks);
           },
           .sections = calibration_sections,
+          .figures = calibration_figures,
           .files = {{"calibration.csv", has_calibration, write_calibration}}};
 }
 

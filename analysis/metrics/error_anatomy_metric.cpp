@@ -163,7 +163,11 @@ std::vector<Section> error_anatomy_sections(const StudyAnalysis& study) {
   Section section{"error_anatomy", "Why?"};
   section.add("why", table);
   section.add(why_notes(study));
-  return {figure_section("error_anatomy_over_time", {why_figure(study)}), section};
+  return {section};
+}
+
+std::vector<Figure> error_anatomy_figures(const StudyAnalysis& study) {
+  return {why_figure(study)};
 }
 
 }  // namespace
@@ -174,7 +178,8 @@ Metric error_anatomy_metric() {
           },
           .add_numbers = error_anatomy_numbers,
           .add_series = error_anatomy_series,
-          .sections = error_anatomy_sections};
+          .sections = error_anatomy_sections,
+          .figures = error_anatomy_figures};
 }
 
 }  // namespace montecarta

@@ -82,9 +82,7 @@ Figure rmse_figure(const StudyAnalysis& study) {
   return figure;
 }
 
-std::vector<Section> errors_sections(const StudyAnalysis& study) {
-  return {figure_section("rmse", {rmse_figure(study)})};
-}
+std::vector<Figure> errors_figures(const StudyAnalysis& study) { return {rmse_figure(study)}; }
 
 }  // namespace
 
@@ -92,7 +90,7 @@ Metric errors_metric() {
   return {.scores = kErrorsScores,
           .scan_series = kErrorsSeries,
           .scores_are_numbers = true,
-          .sections = errors_sections};
+          .figures = errors_figures};
 }
 
 }  // namespace montecarta

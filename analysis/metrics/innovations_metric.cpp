@@ -150,9 +150,11 @@ std::vector<Section> innovations_sections(const StudyAnalysis& study) {
   Section section{"innovations", "Do measurements surprise the filter?"};
   section.add("innovation", table);
   section.add(innovation_notes());
-  return {
-      figure_section("innovations_over_time", {innovation_figure(study), whiteness_figure(study)}),
-      section};
+  return {section};
+}
+
+std::vector<Figure> innovations_figures(const StudyAnalysis& study) {
+  return {innovation_figure(study), whiteness_figure(study)};
 }
 
 }  // namespace
@@ -163,7 +165,8 @@ Metric innovations_metric() {
           },
           .add_numbers = innovations_numbers,
           .add_series = innovations_series,
-          .sections = innovations_sections};
+          .sections = innovations_sections,
+          .figures = innovations_figures};
 }
 
 }  // namespace montecarta

@@ -184,8 +184,10 @@ std::vector<Section> joint_nees_sections(const StudyAnalysis& study) {
   Section section{"joint_nees", "Pose and map together"};
   section.add("joint_nees", joint_table(study));
   section.add(joint_notes(study));
-  return {section, figure_section("joint_nees_over_time", {joint_figure(study)})};
+  return {section};
 }
+
+std::vector<Figure> joint_nees_figures(const StudyAnalysis& study) { return {joint_figure(study)}; }
 
 }  // namespace
 
@@ -196,6 +198,7 @@ Metric joint_nees_metric() {
           },
           .add_numbers = joint_nees_numbers,
           .sections = joint_nees_sections,
+          .figures = joint_nees_figures,
           .files = {{"joint_nees.csv", has_joint_nees, write_joint_nees}}};
 }
 

@@ -45,8 +45,10 @@ struct Metric {
   void (*add_numbers)(const CellAnalysis& cell, std::vector<NamedNumber>& all) = nullptr;
   /// Adds numbers of every scan; what does not apply is absent.
   void (*add_series)(const CellAnalysis& cell, std::vector<NamedSeries>& all) = nullptr;
-  /// Its parts of a report.
+  /// Its parts of a report, tables with notes.
   std::vector<Section> (*sections)(const StudyAnalysis& study) = nullptr;
+  /// Those without data are left out.
+  std::vector<Figure> (*figures)(const StudyAnalysis& study) = nullptr;
   std::vector<TableFile> files = {};
 };
 
@@ -59,5 +61,6 @@ std::vector<NamedNumber> numbers_of(const CellAnalysis& cell);
 std::vector<NamedSeries> series_of(const CellAnalysis& cell);
 /// The parts of a report that metrics have.
 std::vector<Section> sections_of(const StudyAnalysis& study);
+std::vector<Figure> figures_of(const StudyAnalysis& study);
 
 }  // namespace montecarta

@@ -119,8 +119,8 @@ Figure mismatch_figure(const StudyAnalysis& study) {
 }
 
 Metric mismatch_metric() {
-  return {.sections = [](const StudyAnalysis& study) -> std::vector<Section> {
-    return {figure_section("mismatch", {mismatch_figure(study)})};
+  return {.figures = [](const StudyAnalysis& study) -> std::vector<Figure> {
+    return {mismatch_figure(study)};
   }};
 }
 

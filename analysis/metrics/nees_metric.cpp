@@ -150,9 +150,12 @@ Section consistency_section(const StudyAnalysis& study) {
 }
 
 std::vector<Section> nees_sections(const StudyAnalysis& study) {
-  const Section anees = figure_section("anees", {anees_figure(study), anees_parts_figure(study)});
-  if (!study.has_truth) return {anees};
-  return {verdict_section(study), anees, consistency_section(study)};
+  if (!study.has_truth) return {};
+  return {verdict_section(study), consistency_section(study)};
+}
+
+std::vector<Figure> nees_figures(const StudyAnalysis& study) {
+  return {anees_figure(study), anees_parts_figure(study)};
 }
 
 }  // namespace
@@ -163,7 +166,8 @@ Metric nees_metric() {
             return std::make_unique<NeesOverRuns>(sticks);
           },
           .add_series = nees_series,
-          .sections = nees_sections};
+          .sections = nees_sections,
+          .figures = nees_figures};
 }
 
 }  // namespace montecarta

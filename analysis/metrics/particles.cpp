@@ -128,8 +128,11 @@ std::vector<Section> particles_sections(const StudyAnalysis& study) {
   const TextTable table = diversity_table(study);
   section.add("diversity", table);
   if (!table.rows.empty()) section.add(diversity_notes());
-  return {figure_section("diversity_over_time", {diversity_figure(study), ess_figure(study)}),
-          section};
+  return {section};
+}
+
+std::vector<Figure> particles_figures(const StudyAnalysis& study) {
+  return {diversity_figure(study), ess_figure(study)};
 }
 
 }  // namespace
@@ -138,7 +141,9 @@ Metric particles_metric() { return {.scores = kParticlesScores, .scores_are_numb
 
 /// Apart from the scores: in files its series come last.
 Metric diversity_metric() {
-  return {.scan_series = kParticlesSeries, .sections = particles_sections};
+  return {.scan_series = kParticlesSeries,
+          .sections = particles_sections,
+          .figures = particles_figures};
 }
 
 }  // namespace montecarta

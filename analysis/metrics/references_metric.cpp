@@ -51,15 +51,14 @@ class ReferencesOverRuns final : public MetricSums {
 };
 
 std::vector<Section> references_sections(const StudyAnalysis& study) {
-  const Section figures = figure_section("references_over_time", reference_figures(study));
-  if (study.has_truth && study.references.empty()) return {figures};
+  if (study.has_truth && study.references.empty()) return {};
   Section section{"references", "Judged by references"};
   if (!study.has_truth) section.add_html("<p>" + no_truth_sentence() + "</p>\n");
   section.add("reference", reference_table(study));
   section.add("baseline", baseline_table(study));
   section.add("map", map_table(study));
   section.add(reference_notes(study));
-  return {section, figures};
+  return {section};
 }
 
 bool has_references(const StudyAnalysis& study) { return !study.references.empty(); }
@@ -72,6 +71,7 @@ Metric references_metric() {
             return std::make_unique<ReferencesOverRuns>(sticks);
           },
           .sections = references_sections,
+          .figures = reference_figures,
           .files = {{"references.csv", has_references, write_references},
                     {"reference_errors.csv", has_references, write_reference_errors}}};
 }

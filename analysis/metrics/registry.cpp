@@ -92,4 +92,14 @@ std::vector<Section> sections_of(const StudyAnalysis& study) {
   return all;
 }
 
+std::vector<Figure> figures_of(const StudyAnalysis& study) {
+  std::vector<Figure> all;
+  for (const Metric& metric : all_metrics()) {
+    if (metric.figures == nullptr) continue;
+    std::ranges::move(metric.figures(study), std::back_inserter(all));
+  }
+  std::erase_if(all, [](const Figure& figure) { return figure.data.empty(); });
+  return all;
+}
+
 }  // namespace montecarta

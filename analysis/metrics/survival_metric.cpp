@@ -83,8 +83,8 @@ Figure survival_figure(const StudyAnalysis& study) {
   return figure;
 }
 
-std::vector<Section> survival_sections(const StudyAnalysis& study) {
-  return {figure_section("survival", {survival_figure(study)})};
+std::vector<Figure> survival_figures(const StudyAnalysis& study) {
+  return {survival_figure(study)};
 }
 
 }  // namespace
@@ -95,7 +95,7 @@ Metric survival_metric() {
           },
           .add_numbers = survival_numbers,
           .add_series = survival_series,
-          .sections = survival_sections};
+          .figures = survival_figures};
 }
 
 }  // namespace montecarta

@@ -13,14 +13,4 @@ void Section::add(const std::vector<std::string>& notes) {
 
 void Section::add_html(const std::string& html) { blocks.emplace_back(Html{html}); }
 
-void Section::add(const Figure& figure) {
-  if (!figure.data.empty()) figures.push_back(figure);
-}
-
-Section figure_section(const std::string& name, const std::vector<Figure>& figures) {
-  Section section{name, ""};
-  for (const Figure& figure : figures) section.add(figure);
-  return section;
-}
-
 }  // namespace montecarta

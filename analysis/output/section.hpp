@@ -37,12 +37,6 @@ struct Section {
   void add(const std::string& table_name, const TextTable& table);
   void add(const std::vector<std::string>& notes);
   void add_html(const std::string& html);
-  /// Nothing where it has no data.
-  void add(const Figure& figure);
-  bool empty() const { return blocks.empty() && figures.empty(); }
 };
-
-/// A section of figures alone.
-Section figure_section(const std::string& name, const std::vector<Figure>& figures);
 
 }  // namespace montecarta

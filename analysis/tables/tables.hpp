@@ -10,9 +10,13 @@
 
 namespace montecarta {
 
-/// The table of a terminal: failed runs first, then one row a cell with its verdict; of a recorded
+/// Whether sentences say how tables are read.
+enum class Explanations { hidden, shown };
+
+/// The tables of a terminal: failed runs first, then one row a cell with its verdict; of a recorded
 /// drive, one row a cell and reference instead.
-void print_tables(std::ostream& out, const StudyAnalysis& study);
+void print_tables(std::ostream& out, const StudyAnalysis& study,
+                  Explanations explanations = Explanations::hidden);
 
 /// Writes failures.csv, cells.csv (one row a cell), consistency.csv (one row a cell and definition
 /// of error and covariance), printed.csv and claims.csv (what a paper says and what was measured;

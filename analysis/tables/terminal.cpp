@@ -89,8 +89,9 @@ void print_printed(std::ostream& out, const StudyAnalysis& study) {
 
 }  // namespace
 
-void print_tables(std::ostream& out, const StudyAnalysis& study) {
+void print_tables(std::ostream& out, const StudyAnalysis& study, Explanations explanations) {
   const Sections sections(study);
+  const bool explains = explanations == Explanations::shown;
   out << study.study_name << ": " << study.runs_here << " of " << study.study_runs << " runs, "
       << study.times.size() << " scans each, seed " << study.seed << "\n\n";
   if (study.has_failures()) print_failures(out, study);
@@ -104,9 +105,12 @@ void print_tables(std::ostream& out, const StudyAnalysis& study) {
   }
   for (const char* name : {"references", "association"}) {
     sections.print_tables(out, {name});
-    sections.print_notes(out, {name});
+    if (explains) sections.print_notes(out, {name});
   }
-  if (study.has_truth) sections.print_notes(out, {"verdict", "map_errors", "joint_nees"});
+  if (explains && study.has_truth) {
+    sections.print_notes(
+        out, {"verdict", "map_errors", "joint_nees", "error_anatomy", "diversity", "innovations"});
+  }
   print_printed(out, study);
 }
 

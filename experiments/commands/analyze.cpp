@@ -52,7 +52,9 @@ int analyze_files(const Arguments& arguments) {
     check_outputs(arguments, file);
     const StudyAnalysis study = analyze(file, level, parallel_of(arguments));
     if (names.size() > 1) std::cout << (name == names.front() ? "" : "\n") << name << "\n";
-    print_tables(std::cout, study);
+    const bool explains = arguments.has("explain");
+    print_tables(std::cout, study, explains ? Explanations::shown : Explanations::hidden);
+    if (!explains) tell_what_explains(name);
     if (const auto directory = arguments.text("csv")) write_csv(study, *directory);
     if (const auto output = arguments.text("output")) write_analysis_file(study, *output);
   }
@@ -68,6 +70,7 @@ Command analyze_command() {
        .operands = {{"FILE.h5", 1, SIZE_MAX}},
        .options = {{"output", "o", {"OUT.h5"}, "write every metric over time as HDF5"},
                    {"csv", "", {"DIR"}, "write tables and series as CSV"},
+                   {"explain", "", {}, "say what the columns mean"},
                    {"level", "", {"L"}, "probability inside the NEES bounds; default 0.95"},
                    {"force", "", {}, "replace OUT.h5 and the tables in DIR"},
                    {"threads", "", {"N"}, "default: what this process may use"},

@@ -9,6 +9,7 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_guard.hpp"
 #include "experiments/commands/plan_arguments.hpp"
+#include "experiments/commands/stored_result.hpp"
 #include "experiments/text/table.hpp"
 
 #include <filesystem>
@@ -78,6 +79,7 @@ void tell_verdict(const RunOptions& options) {
   }
   const ResultFile file(options.output);
   print_tables(std::cout, analyze(file, 0.95, options.parallel));
+  tell_what_explains(options.output.string());
 }
 
 int run(const Arguments& arguments) {

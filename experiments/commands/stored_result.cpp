@@ -2,6 +2,7 @@
 #include "experiments/commands/stored_result.hpp"
 
 #include "engine/records/output_path.hpp"
+#include "experiments/commands/arguments.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -14,6 +15,12 @@ ResultFile open_stored(const std::string& name) {
   if (is_there(name) || !is_there(part)) return ResultFile(name);
   std::cerr << "montecarta: " << name << " is unfinished; reading " << part.string() << "\n";
   return ResultFile(part);
+}
+
+void tell_what_explains(const std::string& name) {
+  const std::string file = shell_quoted(name);
+  std::cout << "How to read this: montecarta analyze " << file << " --explain\n"
+            << "With figures:     montecarta report " << file << " -o DIR\n";
 }
 
 StatusCounts count_status(const std::vector<RunStatus>& status) {

@@ -12,6 +12,9 @@ namespace montecarta {
 /// error).
 ResultFile open_stored(const std::string& name);
 
+/// Names on standard output what explains the tables of a file.
+void tell_what_explains(const std::string& name);
+
 /// How many runs of a cell are in which state.
 struct StatusCounts {
   std::size_t complete = 0;

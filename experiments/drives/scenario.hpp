@@ -16,7 +16,7 @@ enum class NoiseMode {
 };
 
 /// Where landmarks stand.
-enum class MapMode {
+enum class MapPlacement {
   fixed,  ///< where the world has them, in every run
   random  ///< every run displaces each of them, uniformly within Scenario::map_shift
 };
@@ -24,7 +24,7 @@ enum class MapMode {
 /// How a simulated vehicle drives through a world and what it sees (study file: [scenario]).
 struct Scenario {
   NoiseMode noise = NoiseMode::measured_control;
-  MapMode map = MapMode::fixed;
+  MapPlacement map = MapPlacement::fixed;
   double map_shift = 10.0;           ///< [m] greatest displacement of a landmark of a random map
   std::uint32_t loops = 1;           ///< times round the way-points
   std::uint32_t steps_per_scan = 8;  ///< control_rate / scan_rate

@@ -39,7 +39,7 @@ double patience(const Pose& pose, const Eigen::Vector2d& waypoint, const Scenari
 
 SimulatedDrive::SimulatedDrive(World world, const Scenario& scenario, std::uint64_t seed)
     : world_(std::move(world)), scenario_(scenario), seed_(seed), sensor_(scenario) {
-  if (scenario_.map == MapMode::random) {
+  if (scenario_.map == MapPlacement::random) {
     random_map_.emplace(world_.landmarks, scenario_.map_shift, seed_);
   }
   drive_without_noise();

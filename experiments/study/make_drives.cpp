@@ -30,7 +30,7 @@ Scenario scenario_of(const Settings& s) {
   const char* in = "scenario";
   scenario.noise =
       s.text(in, "noise") == "matched" ? NoiseMode::matched : NoiseMode::measured_control;
-  scenario.map = s.text(in, "map") == "random" ? MapMode::random : MapMode::fixed;
+  scenario.map = s.text(in, "map") == "random" ? MapPlacement::random : MapPlacement::fixed;
   scenario.map_shift = s.number(in, "map_shift");
   scenario.loops = static_cast<std::uint32_t>(s.count(in, "loops"));
   scenario.steps_per_scan = steps_per_scan(s);
@@ -127,7 +127,7 @@ std::function<std::vector<Eigen::Vector2d>(std::uint64_t run)> own_landmarks_of(
     const Study& study, std::uint64_t seed) {
   if (study.log != nullptr) return {};
   const Scenario scenario = scenario_of(study.settings);
-  if (scenario.map == MapMode::fixed) return {};
+  if (scenario.map == MapPlacement::fixed) return {};
   return RandomMap(study.world.landmarks, scenario.map_shift, seed);
 }
 

@@ -11,10 +11,10 @@ namespace {
 double* count_of(std::int32_t identity, const Pairing& pairing,
                  std::span<const std::int32_t> made_of, AssociationCounts& counts) {
   if (identity == Detection::kUnidentified) return nullptr;
-  const bool left_out = pairing.verdict == Verdict::ignored;
+  const bool left_out = pairing.kind == PairingKind::ignored;
   if (identity == Detection::kClutter) return left_out ? nullptr : &counts.clutter;
   if (left_out) return &counts.missed;
-  if (pairing.verdict == Verdict::matched) {
+  if (pairing.kind == PairingKind::matched) {
     return made_of[pairing.landmark] == identity ? &counts.correct : &counts.wrong;
   }
   const bool held = std::ranges::find(made_of, identity) != made_of.end();

@@ -27,8 +27,8 @@ void MapAssociation::pair_by_identity(Scan scan) {
 Pairing MapAssociation::pairing_by_identity(const Detection& detection) const {
   if (detection.identity == Detection::kClutter) return {};
   const std::size_t slot = slot_of(static_cast<std::size_t>(detection.identity));
-  if (slot == kUnseen) return {.verdict = Verdict::fresh};
-  return {.verdict = Verdict::matched, .landmark = static_cast<std::uint32_t>(slot)};
+  if (slot == kUnseen) return {.kind = PairingKind::fresh};
+  return {.kind = PairingKind::matched, .landmark = static_cast<std::uint32_t>(slot)};
 }
 
 void MapAssociation::pair_nearest(Scan scan, std::span<const NearestSearch> searches) {

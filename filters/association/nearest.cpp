@@ -9,22 +9,22 @@ namespace montecarta {
 
 Pairing judge(const NearestSearch& search, const AssociationSettings& settings) {
   if (search.least_cost < std::numeric_limits<double>::infinity()) {
-    return {Verdict::matched, search.landmark, search.least_cost};
+    return {PairingKind::matched, search.landmark, search.least_cost};
   }
-  if (search.least_distance > settings.new_gate) return {.verdict = Verdict::fresh};
-  return {.verdict = Verdict::ignored};
+  if (search.least_distance > settings.new_gate) return {.kind = PairingKind::fresh};
+  return {.kind = PairingKind::ignored};
 }
 
 void exclude_rivals(std::span<Pairing> pairings) {
   for (std::size_t later = 1; later < pairings.size(); ++later) {
-    if (pairings[later].verdict != Verdict::matched) continue;
+    if (pairings[later].kind != PairingKind::matched) continue;
     for (std::size_t k = 0; k < later; ++k) {
       Pairing& earlier = pairings[k];
-      if (earlier.verdict != Verdict::matched || earlier.landmark != pairings[later].landmark) {
+      if (earlier.kind != PairingKind::matched || earlier.landmark != pairings[later].landmark) {
         continue;
       }
       Pairing& loser = pairings[later].cost < earlier.cost ? earlier : pairings[later];
-      loser.verdict = Verdict::ignored;
+      loser.kind = PairingKind::ignored;
       break;  // at most one earlier detection still held this landmark
     }
   }

@@ -10,7 +10,7 @@
 namespace montecarta {
 
 /// What becomes of a detection.
-enum class Verdict : std::uint8_t {
+enum class PairingKind : std::uint8_t {
   ignored,  ///< too far from every landmark to be one, too near to be new; or it lost to a rival
   matched,  ///< it is `landmark`
   fresh,    ///< a landmark not seen before
@@ -18,7 +18,7 @@ enum class Verdict : std::uint8_t {
 
 /// A detection judged by one map.
 struct Pairing {
-  Verdict verdict = Verdict::ignored;
+  PairingKind kind = PairingKind::ignored;
   std::uint32_t landmark = 0;  ///< where matched
   double cost = 0.0;           ///< where matched: ND = D^2 + log det S
 };

@@ -49,14 +49,14 @@ class NearestAssociation {
                          [&](std::size_t b) { judge_block(b, predicted[b], joint); });
     matched_slots_.clear();
     for (const Pairing& pairing : pairings_) {
-      if (pairing.verdict == Verdict::matched) matched_slots_.push_back(pairing.landmark);
+      if (pairing.kind == PairingKind::matched) matched_slots_.push_back(pairing.landmark);
     }
   }
 
   bool found_nothing() const {
     for (std::size_t i = 0; i < particles_; ++i) {
       for (const Pairing& pairing : pairings_of(i)) {
-        if (pairing.verdict != Verdict::ignored) return false;
+        if (pairing.kind != PairingKind::ignored) return false;
       }
     }
     return true;
@@ -66,7 +66,7 @@ class NearestAssociation {
   double matched_weight(std::size_t k, const Weights<Real>& weights) const {
     double sum = 0.0;
     for (std::size_t i = 0; i < particles_; ++i) {
-      if (pairings_of(i)[k].verdict == Verdict::matched) sum += weights.linear_scalars()[i];
+      if (pairings_of(i)[k].kind == PairingKind::matched) sum += weights.linear_scalars()[i];
     }
     return sum;
   }
@@ -82,7 +82,7 @@ class NearestAssociation {
   void store(std::size_t b, std::size_t k, const Matched& changed) const {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const Pairing& pairing = pairings_of(b * kLanes + lane)[k];
-      if (pairing.verdict == Verdict::matched)
+      if (pairing.kind == PairingKind::matched)
         copy_lane<Real>(changed.landmark, opened_[pairing.landmark].at(b), lane);
     }
   }
@@ -91,7 +91,7 @@ class NearestAssociation {
     ForEach<Real> at{};
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const Pairing& pairing = pairings_of(b * kLanes + lane)[k];
-      if (pairing.verdict == Verdict::matched)
+      if (pairing.kind == PairingKind::matched)
         at.index[lane] = static_cast<std::uint32_t>(index_of[pairing.landmark]);
     }
     return at;
@@ -128,7 +128,7 @@ class NearestAssociation {
     fresh_.clear();
     for (std::size_t k = 0; k < seen_.size(); ++k) {
       for (std::size_t i = 0; i < particles_; ++i) {
-        if (pairings_of(i)[k].verdict == Verdict::fresh) add_slot(scan_[k], i, maps);
+        if (pairings_of(i)[k].kind == PairingKind::fresh) add_slot(scan_[k], i, maps);
       }
     }
     return fresh_;
@@ -199,7 +199,7 @@ class NearestAssociation {
   Real matched(std::size_t b, std::size_t k) const {
     Real flags(0.0);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      if (pairings_of(b * kLanes + lane)[k].verdict == Verdict::matched) set(flags, lane, 1.0);
+      if (pairings_of(b * kLanes + lane)[k].kind == PairingKind::matched) set(flags, lane, 1.0);
     }
     return flags;
   }
@@ -209,7 +209,7 @@ class NearestAssociation {
     LandmarkGaussian<Real> landmark{};
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const Pairing& pairing = pairings_of(b * kLanes + lane)[k];
-      if (pairing.verdict == Verdict::matched)
+      if (pairing.kind == PairingKind::matched)
         copy_lane<Real>(opened_[pairing.landmark].at(b), landmark, lane);
     }
     return landmark;

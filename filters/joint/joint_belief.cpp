@@ -41,7 +41,7 @@ void JointBelief::absorb(const MotionIncrement& motion, Scan scan) {
   association_.known() ? association_.pair_by_identity(scan) : pair_nearest(scan);
   attend();
   for (std::size_t k = 0; k < scan.size(); ++k) {
-    if (association_.pairings()[k].verdict == Verdict::matched) {
+    if (association_.pairings()[k].kind == PairingKind::matched) {
       absorb(k, scan[k]);
     } else {
       outcome_.log_likelihood += association_.unmatched_log_density();  // as every belief does
@@ -53,14 +53,14 @@ void JointBelief::absorb(const MotionIncrement& motion, Scan scan) {
 void JointBelief::attend() {
   matched_.clear();
   for (const Pairing& pairing : association_.pairings()) {
-    if (pairing.verdict == Verdict::matched) matched_.push_back(pairing.landmark);
+    if (pairing.kind == PairingKind::matched) matched_.push_back(pairing.landmark);
   }
   gaussian_.attend(matched_);
 }
 
 void JointBelief::give_birth(Scan scan) {
   for (std::size_t k = 0; k < scan.size(); ++k) {
-    if (association_.pairings()[k].verdict != Verdict::fresh) continue;
+    if (association_.pairings()[k].kind != PairingKind::fresh) continue;
     association_.add(scan[k]);
     gaussian_.append(sight_of(scan[k]));
   }

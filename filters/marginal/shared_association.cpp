@@ -37,9 +37,9 @@ void SharedAssociation::sort_out(Scan scan) {
   unmatched_ = 0;
   for (std::size_t k = 0; k < scan.size(); ++k) {
     const Pairing& pairing = association_.pairings()[k];
-    unmatched_ += pairing.verdict != Verdict::matched;
-    if (pairing.verdict == Verdict::fresh) fresh_.push_back(scan[k]);
-    if (pairing.verdict == Verdict::matched)
+    unmatched_ += pairing.kind != PairingKind::matched;
+    if (pairing.kind == PairingKind::fresh) fresh_.push_back(scan[k]);
+    if (pairing.kind == PairingKind::matched)
       matches_.push_back({pairing.landmark, sight_of(scan[k])});
   }
 }

@@ -26,6 +26,13 @@ inline TextTable reported_table(const StudyAnalysis& study, const std::string& s
   return {};
 }
 
+/// The figure of this name; without data where there is none.
+inline Figure reported_figure(const StudyAnalysis& study, const std::string& name) {
+  const std::vector<Figure> all = figures_of(study);
+  const auto found = std::ranges::find(all, name, &Figure::name);
+  return found == all.end() ? Figure{name, "", ""} : *found;
+}
+
 /// The notes of that section.
 inline std::vector<std::string> reported_notes(const StudyAnalysis& study,
                                                const std::string& section) {

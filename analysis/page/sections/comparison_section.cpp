@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/comparison_tables.hpp"
-#include "analysis/comparison/pareto_figure.hpp"
 #include "analysis/page/sections.hpp"
 
 namespace montecarta {
@@ -17,7 +16,6 @@ Section comparison_section(const StudyAnalysis& study, const StudyComparison& co
   section.add(std::vector{win_note(all.level)});
   section.add("pareto", pareto_table(comparison.values));
   section.add(std::vector{pareto_note()});
-  section.add(pareto_figure(comparison.values));
   return section;
 }
 

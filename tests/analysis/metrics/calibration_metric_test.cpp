@@ -23,10 +23,9 @@ StudyAnalysis without_particles() {
   return study;
 }
 
-TEST(CalibrationSection, DrawsNothingOfParticlesThatAreNotStored) {
-  const Section section = reported_section(without_particles(), "calibration");
-  ASSERT_EQ(section.figures.size(), 1u);
-  EXPECT_EQ(section.figures.front().name, "calibration");
+TEST(CalibrationFigures, DrawNothingOfParticlesThatAreNotStored) {
+  EXPECT_FALSE(reported_figure(without_particles(), "calibration").data.empty());
+  EXPECT_TRUE(reported_figure(without_particles(), "ranks").data.empty());
 }
 
 }  // namespace

@@ -140,7 +140,7 @@ TEST(CalibrationFigures, DrawEmptyBinsWhereThereIsNoValue) {
   study.cells.resize(1);
   study.cells[0].findings.put(
       Calibrations{{"landmark x", "Gaussian", 1.0, 3, judge_uniformity({}, band_for(0, 0.95))}});
-  const Figure figure = reported_section(study, "calibration").figures.at(0);
+  const Figure figure = reported_figure(study, "calibration");
   ASSERT_EQ(figure.data.size(), 1u);
   for (const auto& row : figure.data[0].rows) EXPECT_EQ(row[2], 0.0);
   EXPECT_GT(figure.chart.panels[0].axis.high, 0.0);

@@ -61,7 +61,7 @@ TEST(JointTable, SaysWhatWasLeftOut) {
   study.cells[0].findings.put(JointConsistency{});
   EXPECT_THAT(reported_notes(study, "joint_nees"), IsEmpty());
   EXPECT_THAT(reported_table(study, "joint_nees").rows, IsEmpty());
-  EXPECT_THAT(reported_section(study, "joint_nees_over_time").figures, IsEmpty());
+  EXPECT_THAT(reported_figure(study, "joint_nees").data, IsEmpty());
   JointConsistency unjudged;
   unjudged.missing = "nobody knows";
   study.cells[0].findings.put(unjudged);
@@ -79,7 +79,7 @@ TEST(JointTable, HasEveryNumberAsCsv) {
 }
 
 TEST(JointFigure, ShowsTheCellAndItsBand) {
-  const Figure figure = reported_section(study_of_two(), "joint_nees_over_time").figures.at(0);
+  const Figure figure = reported_figure(study_of_two(), "joint_nees");
   ASSERT_EQ(figure.data.size(), 1u);
   EXPECT_EQ(figure.data[0].rows.size(), 2u);
   EXPECT_EQ(figure.data[0].rows[0].size(), 4u) << "time, the cell, both ends of the band";

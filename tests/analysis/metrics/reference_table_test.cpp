@@ -33,7 +33,7 @@ StudyAnalysis study_with_truth() {
 
 std::string printed(const StudyAnalysis& study) {
   std::ostringstream out;
-  print_tables(out, study);
+  print_tables(out, study, Explanations::shown);
   return out.str();
 }
 

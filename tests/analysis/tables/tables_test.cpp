@@ -104,6 +104,11 @@ TEST(PrintTables, PutFailedRunsFirstAndTheVerdictInWords) {
   EXPECT_THAT(text, HasSubstr("never [4.2, never]"));
   EXPECT_THAT(text, HasSubstr("1.93 [1.81, 2.05]"));
   EXPECT_THAT(text, HasSubstr("scans inside"));
+  EXPECT_THAT(text, Not(HasSubstr("ANEES compares")));
+  std::ostringstream explained;
+  print_tables(explained, small_study(), Explanations::shown);
+  EXPECT_THAT(explained.str(), testing::StartsWith(text));
+  EXPECT_THAT(explained.str(), HasSubstr("ANEES compares"));
 }
 
 TEST(WriteCsv, WritesOneRowACellAndOneRowAScan) {

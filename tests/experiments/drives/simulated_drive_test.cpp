@@ -213,7 +213,7 @@ TEST(SimulatedDrive, RepeatsThePublishedBenchmark) {
 TEST(SimulatedDrive, SeesTheLandmarksOfTheRunsOwnMap) {
   for (const NoiseMode noise : {NoiseMode::measured_control, NoiseMode::matched}) {
     const Scenario scenario{.noise = noise,
-                            .map = MapMode::random,
+                            .map = MapPlacement::random,
                             .map_shift = 4.0,
                             .sigma_range = 0.0,
                             .sigma_bearing = 0.0};

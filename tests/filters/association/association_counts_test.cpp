@@ -27,16 +27,16 @@ TEST(AssociationCounts, EveryDecisionHasItsPlace) {
     double AssociationCounts::*count;
   };
   const Case cases[] = {
-      {4, {.verdict = Verdict::matched, .landmark = 1}, &AssociationCounts::correct},
-      {4, {.verdict = Verdict::matched, .landmark = 0}, &AssociationCounts::wrong},
-      {4, {.verdict = Verdict::matched, .landmark = 2}, &AssociationCounts::wrong},
-      {5, {.verdict = Verdict::fresh}, &AssociationCounts::correct},
-      {7, {.verdict = Verdict::fresh}, &AssociationCounts::new_again},
-      {7, {.verdict = Verdict::ignored}, &AssociationCounts::missed},
-      {5, {.verdict = Verdict::ignored}, &AssociationCounts::missed},
-      {kClutter, {.verdict = Verdict::matched, .landmark = 2}, &AssociationCounts::clutter},
-      {kClutter, {.verdict = Verdict::fresh}, &AssociationCounts::clutter},
-      {kClutter, {.verdict = Verdict::ignored}, nullptr},
+      {4, {.kind = PairingKind::matched, .landmark = 1}, &AssociationCounts::correct},
+      {4, {.kind = PairingKind::matched, .landmark = 0}, &AssociationCounts::wrong},
+      {4, {.kind = PairingKind::matched, .landmark = 2}, &AssociationCounts::wrong},
+      {5, {.kind = PairingKind::fresh}, &AssociationCounts::correct},
+      {7, {.kind = PairingKind::fresh}, &AssociationCounts::new_again},
+      {7, {.kind = PairingKind::ignored}, &AssociationCounts::missed},
+      {5, {.kind = PairingKind::ignored}, &AssociationCounts::missed},
+      {kClutter, {.kind = PairingKind::matched, .landmark = 2}, &AssociationCounts::clutter},
+      {kClutter, {.kind = PairingKind::fresh}, &AssociationCounts::clutter},
+      {kClutter, {.kind = PairingKind::ignored}, nullptr},
   };
   for (const Case& each : cases) {
     const Detection detection{10.0, 0.0, each.identity};

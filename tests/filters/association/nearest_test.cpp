@@ -26,11 +26,11 @@ Pairing judged(std::initializer_list<Candidate> candidates) {
   return judge(search, kNearest);
 }
 
-TEST(Nearest, AnEmptyMapMakesALandmark) { EXPECT_EQ(judged({}).verdict, Verdict::fresh); }
+TEST(Nearest, AnEmptyMapMakesALandmark) { EXPECT_EQ(judged({}).kind, PairingKind::fresh); }
 
 TEST(Nearest, ChoosesTheNearestInsideTheGate) {
   const Pairing pairing = judged({{5.0}, {1.0}, {3.0}});
-  EXPECT_EQ(pairing.verdict, Verdict::matched);
+  EXPECT_EQ(pairing.kind, PairingKind::matched);
   EXPECT_EQ(pairing.landmark, 1u);
   EXPECT_EQ(pairing.cost, 1.0);
 }
@@ -45,50 +45,52 @@ TEST(Nearest, TheGateAppliesToDistanceNotToCost) {
 }
 
 TEST(Nearest, BetweenTheGatesADetectionIsIgnored) {
-  EXPECT_EQ(judged({{6.0}}).verdict, Verdict::ignored);
-  EXPECT_EQ(judged({{25.0}, {300.0}}).verdict, Verdict::ignored);
+  EXPECT_EQ(judged({{6.0}}).kind, PairingKind::ignored);
+  EXPECT_EQ(judged({{25.0}, {300.0}}).kind, PairingKind::ignored);
 }
 
 TEST(Nearest, BeyondTheOuterGateOfAllItIsNew) {
-  EXPECT_EQ(judged({{25.1}, {300.0}}).verdict, Verdict::fresh);
+  EXPECT_EQ(judged({{25.1}, {300.0}}).kind, PairingKind::fresh);
 }
 
 TEST(Nearest, OfEqualsTheFirstOfferedWins) { EXPECT_EQ(judged({{2.0}, {2.0}}).landmark, 0u); }
 
 TEST(MutualExclusion, TheBetterOfTwoRivalsKeepsTheLandmark) {
-  std::array<Pairing, 3> pairings{
-      {{Verdict::matched, 4, 2.0}, {Verdict::matched, 7, 9.0}, {Verdict::matched, 4, 1.0}}};
+  std::array<Pairing, 3> pairings{{{PairingKind::matched, 4, 2.0},
+                                   {PairingKind::matched, 7, 9.0},
+                                   {PairingKind::matched, 4, 1.0}}};
   exclude_rivals(pairings);
-  EXPECT_EQ(pairings[0].verdict, Verdict::ignored);
-  EXPECT_EQ(pairings[1].verdict, Verdict::matched);
-  EXPECT_EQ(pairings[2].verdict, Verdict::matched);
+  EXPECT_EQ(pairings[0].kind, PairingKind::ignored);
+  EXPECT_EQ(pairings[1].kind, PairingKind::matched);
+  EXPECT_EQ(pairings[2].kind, PairingKind::matched);
 }
 
 TEST(MutualExclusion, OneOfThreeRivalsRemainsWhateverTheOrder) {
   std::array<double, 3> costs{1.0, 2.0, 3.0};
   do {
     std::array<Pairing, 3> pairings;
-    for (std::size_t k = 0; k < 3; ++k) pairings[k] = {Verdict::matched, 5, costs[k]};
+    for (std::size_t k = 0; k < 3; ++k) pairings[k] = {PairingKind::matched, 5, costs[k]};
     exclude_rivals(pairings);
     for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_EQ(pairings[k].verdict == Verdict::matched, costs[k] == 1.0);
+      EXPECT_EQ(pairings[k].kind == PairingKind::matched, costs[k] == 1.0);
     }
   } while (std::next_permutation(costs.begin(), costs.end()));
 }
 
 TEST(MutualExclusion, OfEqualRivalsTheFirstWins) {
-  std::array<Pairing, 2> pairings{{{Verdict::matched, 0, 1.0}, {Verdict::matched, 0, 1.0}}};
+  std::array<Pairing, 2> pairings{{{PairingKind::matched, 0, 1.0}, {PairingKind::matched, 0, 1.0}}};
   exclude_rivals(pairings);
-  EXPECT_EQ(pairings[0].verdict, Verdict::matched);
-  EXPECT_EQ(pairings[1].verdict, Verdict::ignored);
+  EXPECT_EQ(pairings[0].kind, PairingKind::matched);
+  EXPECT_EQ(pairings[1].kind, PairingKind::ignored);
 }
 
 TEST(MutualExclusion, NewAndIgnoredDetectionsAreNobodysRivals) {
-  std::array<Pairing, 3> pairings{
-      {{Verdict::fresh, 0, 0.0}, {Verdict::ignored, 0, 0.0}, {Verdict::matched, 0, 5.0}}};
+  std::array<Pairing, 3> pairings{{{PairingKind::fresh, 0, 0.0},
+                                   {PairingKind::ignored, 0, 0.0},
+                                   {PairingKind::matched, 0, 5.0}}};
   exclude_rivals(pairings);
-  EXPECT_EQ(pairings[0].verdict, Verdict::fresh);
-  EXPECT_EQ(pairings[2].verdict, Verdict::matched);
+  EXPECT_EQ(pairings[0].kind, PairingKind::fresh);
+  EXPECT_EQ(pairings[2].kind, PairingKind::matched);
 }
 
 TEST(NewDensity, IsTheGaussianAtTheGateWithTwiceTheSensorNoise) {

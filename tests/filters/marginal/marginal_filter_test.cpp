@@ -169,8 +169,8 @@ struct Met {
 
   void add(const std::vector<Pairing>& scan) {
     for (const Pairing& one : scan) {
-      if (one.verdict == Verdict::fresh) ++fresh;
-      if (one.verdict == Verdict::ignored)
+      if (one.kind == PairingKind::fresh) ++fresh;
+      if (one.kind == PairingKind::ignored)
         ++(one.cost == 0.0 ? between_the_gates : lost_to_a_rival);
     }
   }

@@ -26,7 +26,7 @@ inline std::vector<Pairing> pair_by_identity(Scan scan, const Landmarks& map) {
     if (detection.identity == Detection::kClutter) {
       pairings.push_back({});
     } else {
-      pairings.push_back({map[place] ? Verdict::matched : Verdict::fresh, place, 0.0});
+      pairings.push_back({map[place] ? PairingKind::matched : PairingKind::fresh, place, 0.0});
     }
   }
   return pairings;
@@ -59,23 +59,23 @@ struct NearestNeighbour {
       const double D2 = seen->nu.dot(S_z.inverse() * seen->nu);
       const double ND = D2 + std::log(S_z.determinant());
       least_D2 = std::min(least_D2, D2);
-      if (D2 < settings.gate && ND < best.cost) best = {Verdict::matched, j, ND};
+      if (D2 < settings.gate && ND < best.cost) best = {PairingKind::matched, j, ND};
     }
-    if (best.verdict == Verdict::matched) return best;
-    return {.verdict = least_D2 > settings.new_gate ? Verdict::fresh : Verdict::ignored};
+    if (best.kind == PairingKind::matched) return best;
+    return {.kind = least_D2 > settings.new_gate ? PairingKind::fresh : PairingKind::ignored};
   }
 
   /// Of all detections that picked landmark j the one with the least ND keeps it.
   static void keep_one(std::uint32_t j, std::vector<Pairing>& pairings) {
     const auto picked_it = [j](const Pairing& one) {
-      return one.verdict == Verdict::matched && one.landmark == j;
+      return one.kind == PairingKind::matched && one.landmark == j;
     };
     Pairing* winner = nullptr;
     for (Pairing& one : pairings) {
       if (picked_it(one) && (winner == nullptr || one.cost < winner->cost)) winner = &one;
     }
     for (Pairing& one : pairings) {
-      if (picked_it(one) && &one != winner) one.verdict = Verdict::ignored;
+      if (picked_it(one) && &one != winner) one.kind = PairingKind::ignored;
     }
   }
 };

@@ -53,7 +53,7 @@ class DeSrcdFastSlam : public SrcdFastSlam {
     }
     double log_seen = 0.0;
     for (std::size_t k = 0; k < scan.size(); ++k) {
-      if (p.pairings[k].verdict != Verdict::matched) continue;
+      if (p.pairings[k].kind != PairingKind::matched) continue;
       const Landmark& landmark = *p.map[p.pairings[k].landmark];
       log_seen += log_likelihood(p.pose, landmark, scan[k]).value_or(0.0);
     }
@@ -123,7 +123,7 @@ class DeSrcdFastSlam : public SrcdFastSlam {
   bool somebody_matched() const {
     for (const Particle& p : particles_) {
       for (const Pairing& pairing : p.pairings) {
-        if (pairing.verdict == Verdict::matched) return true;
+        if (pairing.kind == PairingKind::matched) return true;
       }
     }
     return false;
@@ -133,7 +133,7 @@ class DeSrcdFastSlam : public SrcdFastSlam {
   double log_printed(const Eigen::Vector3d& pose, const Particle& p, Scan scan) const {
     double sum = 0.0;
     for (std::size_t k = 0; k < scan.size(); ++k) {
-      if (p.pairings[k].verdict != Verdict::matched) continue;
+      if (p.pairings[k].kind != PairingKind::matched) continue;
       const Eigen::Vector2d& f = p.map[p.pairings[k].landmark]->mean;
       const Eigen::Vector2d nu = montecarta::to_vector(
           residual(sight_of(scan[k]), predicted_sight(as_pose(pose), Point{f(0), f(1)})));
@@ -148,7 +148,7 @@ class DeSrcdFastSlam : public SrcdFastSlam {
                        Scan scan) const {
     double sum = log_density(pose, predicted, P_predicted);
     for (std::size_t k = 0; k < scan.size(); ++k) {
-      if (p.pairings[k].verdict != Verdict::matched) continue;
+      if (p.pairings[k].kind != PairingKind::matched) continue;
       const auto seen = seen_from(pose, *p.map[p.pairings[k].landmark], scan[k], R_);
       if (seen) sum += log_gaussian<2>(seen->nu, seen->S_f);
     }

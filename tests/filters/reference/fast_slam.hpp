@@ -118,7 +118,7 @@ class FastSlam : public SlamFilter {
   bool nothing_to_use() const {
     for (const Particle& p : particles_) {
       for (const Pairing& pairing : p.pairings) {
-        if (pairing.verdict != Verdict::ignored) return false;
+        if (pairing.kind != PairingKind::ignored) return false;
       }
     }
     return true;
@@ -126,7 +126,7 @@ class FastSlam : public SlamFilter {
 
   static double unmatched(const Particle& p) {
     double count = 0.0;
-    for (const Pairing& pairing : p.pairings) count += pairing.verdict != Verdict::matched;
+    for (const Pairing& pairing : p.pairings) count += pairing.kind != PairingKind::matched;
     return count;
   }
 
@@ -154,14 +154,14 @@ class FastSlam : public SlamFilter {
 
   void update_maps(Particle& p, Scan scan) const {
     for (std::size_t k = 0; k < scan.size(); ++k) {
-      if (p.pairings[k].verdict != Verdict::matched) continue;
+      if (p.pairings[k].kind != PairingKind::matched) continue;
       update_map(p.pose, *p.map[p.pairings[k].landmark], scan[k]);
     }
   }
 
   void add_new_landmarks(Particle& p, Scan scan) const {
     for (std::size_t k = 0; k < scan.size(); ++k) {
-      if (p.pairings[k].verdict != Verdict::fresh) continue;
+      if (p.pairings[k].kind != PairingKind::fresh) continue;
       const Landmark landmark = born(p.pose, scan[k]);
       if (known()) {
         p.map[p.pairings[k].landmark] = landmark;

@@ -25,7 +25,7 @@ class FastSlam1 : public FastSlam {
 
   void weigh_and_draw(const StepContext&, std::uint32_t, Particle& p, Scan scan) override {
     for (std::size_t k = 0; k < scan.size(); ++k) {
-      if (p.pairings[k].verdict != Verdict::matched) continue;
+      if (p.pairings[k].kind != PairingKind::matched) continue;
       const auto seen = seen_from(p.pose, *p.map[p.pairings[k].landmark], scan[k], R_);
       if (seen) p.log_weight += log_gaussian<2>(seen->nu, seen->S_f);
     }

@@ -61,7 +61,7 @@ class FastSlam2 : public FastSlam {
   double refine(Particle& p, Scan scan) const {
     double log_evidence = 0.0;
     for (std::size_t k = 0; k < scan.size(); ++k) {
-      if (p.pairings[k].verdict != Verdict::matched) continue;
+      if (p.pairings[k].kind != PairingKind::matched) continue;
       log_evidence += absorb(p, *p.map[p.pairings[k].landmark], scan[k]).value_or(0.0);
     }
     return log_evidence;
@@ -104,7 +104,7 @@ class FastSlam2 : public FastSlam {
     Eigen::MatrixXd S = Eigen::MatrixXd::Zero(H.rows(), H.rows());
     Eigen::Index rows = 0;
     for (std::size_t k = 0; k < scan.size(); ++k) {
-      if (p.pairings[k].verdict != Verdict::matched) continue;
+      if (p.pairings[k].kind != PairingKind::matched) continue;
       const auto seen = seen_from(p.pose, *p.map[p.pairings[k].landmark], scan[k], R_);
       if (!seen) continue;
       H.middleRows<2>(rows) = seen->Hx;
@@ -137,7 +137,7 @@ class FastSlam2 : public FastSlam {
     double likelihood = 0.0;
     bool matched = false;
     for (std::size_t k = 0; k < scan.size(); ++k) {
-      if (p.pairings[k].verdict != Verdict::matched) continue;
+      if (p.pairings[k].kind != PairingKind::matched) continue;
       const auto seen = log_likelihood(p.pose, *p.map[p.pairings[k].landmark], scan[k]);
       likelihood += seen.value_or(0.0);
       matched = matched || seen;

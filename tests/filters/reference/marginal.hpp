@@ -58,10 +58,10 @@ class Marginal : public SlamFilter {
     std::iota(ancestors_.begin(), ancestors_.end(), 0U);
     report_ = {.ess = effective(weights())};
     pair(scan);
-    if (count(Verdict::ignored) < scan.size()) {  // else the kernels go on growing
+    if (count(PairingKind::ignored) < scan.size()) {  // else the kernels go on growing
       draw_and_weigh(context, scan);
       if (!known()) {
-        const auto unmatched = static_cast<double>(scan.size() - count(Verdict::matched));
+        const auto unmatched = static_cast<double>(scan.size() - count(PairingKind::matched));
         report_.log_likelihood += unmatched * log_unmatched(setup_.association, setup_.belief);
       }
       learn(context, scan);
@@ -130,9 +130,9 @@ class Marginal : public SlamFilter {
     }
     pairings_ = known() ? pair_by_identity(scan, map_) : nearest.pair(scan, believed_);
   }
-  std::size_t count(Verdict verdict) const {
+  std::size_t count(PairingKind kind) const {
     std::size_t n = 0;
-    for (const Pairing& pairing : pairings_) n += pairing.verdict == verdict;
+    for (const Pairing& pairing : pairings_) n += pairing.kind == kind;
     return n;
   }
 
@@ -172,7 +172,7 @@ class Marginal : public SlamFilter {
   double log_likelihood(const Eigen::Vector3d& x, Scan scan) const {
     double sum = 0.0;
     for (std::size_t k = 0; k < scan.size(); ++k) {
-      if (pairings_[k].verdict != Verdict::matched) continue;
+      if (pairings_[k].kind != PairingKind::matched) continue;
       const auto seen = seen_from(x, *believed_[pairings_[k].landmark], scan[k], R_);
       sum += log_gaussian<2>(seen->nu, seen->S_f);
     }
@@ -183,7 +183,7 @@ class Marginal : public SlamFilter {
   double explain(Gaussian& g, Scan scan, double weight) {
     double sum = 0.0;
     for (std::size_t k = 0; k < scan.size(); ++k) {
-      if (pairings_[k].verdict != Verdict::matched) continue;
+      if (pairings_[k].kind != PairingKind::matched) continue;
       const auto seen = seen_from(g.mean, *believed_[pairings_[k].landmark], scan[k], R_);
       const Eigen::Matrix2d S = seen->Hx * g.covariance * seen->Hx.transpose() + seen->S_f;
       predicted_[k].mean += weight * seen->nu;
@@ -201,7 +201,7 @@ class Marginal : public SlamFilter {
   /// nu' S^-1 nu of what all kernels together predicted.
   void tell_innovations() {
     for (std::size_t k = 0; k < pairings_.size(); ++k) {
-      if (pairings_[k].verdict != Verdict::matched) continue;
+      if (pairings_[k].kind != PairingKind::matched) continue;
       const auto& [mean, square] = predicted_[k];
       const Eigen::Matrix2d S = square - mean * mean.transpose();
       report_.nis += mean.dot(S.inverse() * mean);
@@ -233,13 +233,13 @@ class Marginal : public SlamFilter {
     for (const Gaussian& kernel : kernels_) cloud.pose.push_back(kernel.mean);
     const Pose mean = mixture(Eigen::Matrix3d::Zero()).mean;
     for (std::size_t k = 0; k < scan.size(); ++k) {
-      if (pairings_[k].verdict != Verdict::matched) continue;
+      if (pairings_[k].kind != PairingKind::matched) continue;
       const std::uint32_t row = pairings_[k].landmark;
       learning_.learn(context.identity(Draw::evolution, births_[row]), mean.heading, cloud, scan[k],
                       *map_[row]);
     }
     for (std::size_t k = 0; k < scan.size(); ++k) {
-      if (pairings_[k].verdict != Verdict::fresh) continue;
+      if (pairings_[k].kind != PairingKind::fresh) continue;
       const std::size_t row = known() ? pairings_[k].landmark : map_.size();
       map_.resize(std::max(map_.size(), row + 1));
       births_.resize(map_.size());
