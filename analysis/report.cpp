@@ -33,11 +33,11 @@ void refuse_existing(const fs::path& directory, ExistingReport existing) {
 /// The page from top to bottom, by the names of sections and figures; others come before the last
 /// two.
 constexpr std::array kReadingOrder = {"title",
+                                      "failures",
                                       "verdict",
                                       "map_errors",
                                       "joint_nees",
                                       "references",
-                                      "failures",
                                       "replay",
                                       "figure_paths",
                                       "figure_reference_error",
@@ -88,7 +88,8 @@ std::vector<Section> all_sections(const ResultFile& file, const StudyAnalysis& s
   figures.insert(figures.end(), {path_figure(file, options.run), ancestry_figure(file, options.run),
                                  pareto_figure(comparison.values)});
   for (const Figure& figure : figures) {
-    if (!figure.data.empty()) sections.push_back({"figure_" + figure.name, "", {}, {figure}});
+    if (!figure.data.empty())
+      sections.push_back({"figure_" + figure.name, "", {}, false, {figure}});
   }
   std::ranges::stable_sort(sections, {}, place_of);
   return sections;

@@ -95,6 +95,7 @@ ChartPanel chart_panel(const DrawnTree& cell, const FigureData& data) {
                    {},
                    {},
                    cell.label};
+  panel.y_names = {""};  // heights mean nothing
   panel.marks.push_back(lines_of(cell, data));
   return panel;
 }
@@ -116,14 +117,20 @@ Figure ancestry_figure(const ResultFile& file, std::optional<std::uint64_t> run)
       "Run " + std::to_string(file.runs()[*run_index]) +
       ": the lines of descent of the particles at the end of the run (right edge); lines meet in "
       "a common ancestor, and to the left of the last meeting all particles share one past: what "
-      "the filter got wrong there it cannot doubt any more. The end of the run, since then, is "
-      "enlarged.";
-  figure.chart.x_to = figure.chart.x_first = cells.front().end;
+      "the filter got wrong there it cannot doubt any more.";
+  const double end = cells.front().end;
+  figure.chart.x_to = figure.chart.x_first = end;
   figure.chart.height = 150.0;
   for (const DrawnTree& cell : cells) {
     figure.data.push_back(data_of(cell));
     figure.chart.panels.push_back(chart_panel(cell, figure.data.back()));
+    if (cell.tree.common_ancestor() == 0.0) continue;  // nothing to enlarge
     figure.chart.x_first = std::min(figure.chart.x_first, beginning_of_end(cell));
+  }
+  if (figure.chart.x_first < end) {
+    figure.sentence += " The end of the run, since the earliest of these meetings, is enlarged.";
+  } else {
+    figure.chart.x_first = 0.0;
   }
   return figure;
 }

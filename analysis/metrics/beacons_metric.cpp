@@ -37,6 +37,6 @@ constexpr ScanSeries kMapSize[] = {{"map_landmarks", "1", [](const MeasuredRun& 
 
 Metric map_size_metric() { return {.scan_series = kMapSize}; }
 
-Metric beacons_metric() { return {.scores = kBeaconsScores}; }
+Metric beacons_metric() { return {.scores = kBeaconsScores, .scores_are_numbers = false}; }
 
 }  // namespace montecarta

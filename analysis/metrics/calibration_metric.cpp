@@ -193,8 +193,7 @@ FigureData data_of(const std::string& name, const DrawnHistogram& drawn) {
 
 /// From the rows of data_of(). The band is that of all bins.
 ChartPanel chart_panel(const DrawnHistogram& drawn, const FigureData& data) {
-  ChartPanel panel{drawn.label + ", " + drawn.histogram->quantity + ": " +
-                       in_words(drawn.histogram->test.verdict),
+  ChartPanel panel{drawn.label + ", " + drawn.histogram->quantity,
                    {false, 0.0, 0.0},
                    {},
                    {},
@@ -270,6 +269,7 @@ std::vector<Figure> calibration_figures(const StudyAnalysis& study) {
 std::vector<Section> calibration_sections(const StudyAnalysis& study) {
   if (!has_calibration(study)) return {};
   Section section{"calibration", "Calibration"};
+  section.is_for_terminal = false;
   section.add("calibration", calibration_table(study));
   section.add(calibration_notes(study));
   return {section};
@@ -278,9 +278,7 @@ std::vector<Section> calibration_sections(const StudyAnalysis& study) {
 }  // namespace
 
 Metric calibration_metric() {
-  return {.sums = [](const Yardsticks& sticks) -> std::unique_ptr<MetricSums> {
-            return std::make_unique<CalibrationOverRuns>(sticks);
-          },
+  return {.sums = make_sums<CalibrationOverRuns>,
           .sections = calibration_sections,
           .figures = calibration_figures,
           .files = {{"calibration.csv", has_calibration, write_calibration}}};

@@ -37,12 +37,12 @@ struct FailedRun {
   double time = 0.0;  ///< [s] of the scan at or after the step
 };
 
-/// What metrics found, one result of a type.
+/// What metrics found, one result of a type: a later one replaces it.
 class Findings {
  public:
   template <class T>
   void put(T result) {
-    results_[typeid(T)] = std::move(result);
+    results_.insert_or_assign(typeid(T), std::move(result));
   }
   /// nullptr where there is none.
   template <class T>

@@ -69,8 +69,8 @@ void CellSums::put_series(CellAnalysis& cell) const {
 void CellSums::put(CellAnalysis& cell) {
   cell.complete = scores_.runs();
   put_series(cell);
-  for (const auto& metric : metrics_) metric->put(cell);
   cell.scores = scores_;
+  for (const auto& metric : metrics_) metric->put(cell);
   put_score_intervals(cell, level_);
 }
 

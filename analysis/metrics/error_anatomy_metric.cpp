@@ -173,9 +173,7 @@ std::vector<Figure> error_anatomy_figures(const StudyAnalysis& study) {
 }  // namespace
 
 Metric error_anatomy_metric() {
-  return {.sums = [](const Yardsticks& sticks) -> std::unique_ptr<MetricSums> {
-            return std::make_unique<ErrorAnatomyOverRuns>(sticks);
-          },
+  return {.sums = make_sums<ErrorAnatomyOverRuns>,
           .add_numbers = error_anatomy_numbers,
           .add_series = error_anatomy_series,
           .sections = error_anatomy_sections,

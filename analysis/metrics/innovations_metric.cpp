@@ -160,9 +160,7 @@ std::vector<Figure> innovations_figures(const StudyAnalysis& study) {
 }  // namespace
 
 Metric innovations_metric() {
-  return {.sums = [](const Yardsticks& sticks) -> std::unique_ptr<MetricSums> {
-            return std::make_unique<InnovationsOverRuns>(sticks);
-          },
+  return {.sums = make_sums<InnovationsOverRuns>,
           .add_numbers = innovations_numbers,
           .add_series = innovations_series,
           .sections = innovations_sections,

@@ -193,9 +193,8 @@ std::vector<Figure> joint_nees_figures(const StudyAnalysis& study) { return {joi
 
 Metric joint_nees_metric() {
   return {.scores = kJointNeesScores,
-          .sums = [](const Yardsticks& sticks) -> std::unique_ptr<MetricSums> {
-            return std::make_unique<JointNeesOverRuns>(sticks);
-          },
+          .scores_are_numbers = false,
+          .sums = make_sums<JointNeesOverRuns>,
           .add_numbers = joint_nees_numbers,
           .sections = joint_nees_sections,
           .figures = joint_nees_figures,

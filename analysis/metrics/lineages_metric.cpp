@@ -53,9 +53,8 @@ void lineages_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
 
 Metric lineages_metric() {
   return {.scores = kLineagesScores,
-          .sums = [](const Yardsticks& sticks) -> std::unique_ptr<MetricSums> {
-            return std::make_unique<LineagesOverRuns>(sticks);
-          },
+          .scores_are_numbers = false,
+          .sums = make_sums<LineagesOverRuns>,
           .add_numbers = lineages_numbers};
 }
 

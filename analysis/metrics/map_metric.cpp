@@ -167,10 +167,7 @@ std::vector<Section> map_sections(const StudyAnalysis& study) {
 
 Metric map_metric() {
   return {.scores = kMapScores,
-          .scores_are_numbers = true,
-          .sums = [](const Yardsticks& sticks) -> std::unique_ptr<MetricSums> {
-            return std::make_unique<MapOverRuns>(sticks);
-          },
+          .sums = make_sums<MapOverRuns>,
           .add_numbers = map_numbers,
           .sections = map_sections,
           .files = {{"landmarks.csv", has_map_errors, write_landmarks}}};

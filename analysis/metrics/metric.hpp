@@ -22,7 +22,8 @@ class MetricSums {
  public:
   virtual ~MetricSums() = default;
   virtual void add(const MeasuredRun& run) = 0;
-  /// Puts what the runs say into the cell, which knows its failures and the metrics before.
+  /// Puts what the runs say into the cell, which has failures, scores (without intervals), series
+  /// and what the metrics before put.
   virtual void put(CellAnalysis& cell) = 0;
 };
 
@@ -33,13 +34,18 @@ struct TableFile {
   void (*write)(const StudyAnalysis& study, const std::filesystem::path& path);
 };
 
+template <class Sums>
+std::unique_ptr<MetricSums> make_sums(const Yardsticks& sticks) {
+  return std::make_unique<Sums>(sticks);
+}
+
 /// What a metric contributes; what it has nothing of stays empty.
 struct Metric {
   std::span<const Score> scores = {};            ///< of a run
   std::span<const ScanSeries> scan_series = {};  ///< of every scan of a run
-  /// Whether means of the scores are numbers of every cell.
-  bool scores_are_numbers = false;
-  /// For more than means of scores; `sticks` outlive the sums.
+  /// Whether means of the scores are numbers of every cell, in cells.csv and HDF5.
+  bool scores_are_numbers = true;
+  /// For more than means of scores, e.g. make_sums<MySums>; `sticks` outlive the sums.
   std::unique_ptr<MetricSums> (*sums)(const Yardsticks& sticks) = nullptr;
   /// Adds single numbers: the same names for every cell, NaN where one does not apply.
   void (*add_numbers)(const CellAnalysis& cell, std::vector<NamedNumber>& all) = nullptr;

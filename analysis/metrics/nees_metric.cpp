@@ -144,6 +144,7 @@ Section verdict_section(const StudyAnalysis& study) {
 
 Section consistency_section(const StudyAnalysis& study) {
   Section section{"consistency", "The whole test"};
+  section.is_for_terminal = false;
   section.add("consistency", consistency_table(study));
   section.add(consistency_notes());
   return section;
@@ -162,9 +163,8 @@ std::vector<Figure> nees_figures(const StudyAnalysis& study) {
 
 Metric nees_metric() {
   return {.scores = kNeesScores,
-          .sums = [](const Yardsticks& sticks) -> std::unique_ptr<MetricSums> {
-            return std::make_unique<NeesOverRuns>(sticks);
-          },
+          .scores_are_numbers = false,
+          .sums = make_sums<NeesOverRuns>,
           .add_series = nees_series,
           .sections = nees_sections,
           .figures = nees_figures};

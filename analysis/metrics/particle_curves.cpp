@@ -144,6 +144,7 @@ void draw_particle_curves(const std::vector<ParticleCurve>& curves,
   const std::vector<std::size_t> numbers = particle_numbers(curves);
   const ChartAxis axis = error_axis(curves, baseline);
   figure.chart = empty_chart(numbers);
+  figure.chart.x_ticks.assign(numbers.begin(), numbers.end());
   figure.chart.panels = {chart_panel(curves, &ParticleCurve::Point::raw, base(0), numbers,
                                      {"RMS distance as it stands [m]", axis, {}, {}, {}}),
                          chart_panel(curves, &ParticleCurve::Point::aligned, base(1), numbers,

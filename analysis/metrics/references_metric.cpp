@@ -67,9 +67,8 @@ bool has_references(const StudyAnalysis& study) { return !study.references.empty
 
 Metric references_metric() {
   return {.scores = kReferencesScores,
-          .sums = [](const Yardsticks& sticks) -> std::unique_ptr<MetricSums> {
-            return std::make_unique<ReferencesOverRuns>(sticks);
-          },
+          .scores_are_numbers = false,
+          .sums = make_sums<ReferencesOverRuns>,
           .sections = references_sections,
           .figures = reference_figures,
           .files = {{"references.csv", has_references, write_references},

@@ -2,13 +2,14 @@
 // The list of metrics, and what is made of all of them.
 #include "analysis/metrics/cell_analysis.hpp"
 #include "analysis/metrics/metric.hpp"
+#include "engine/errors.hpp"
 
 #include <algorithm>
 #include <iterator>
 
 namespace montecarta {
 
-// Each stands in the file of its name.
+// Each is defined in a file *_metric.cpp.
 Metric errors_metric();
 Metric nees_metric();
 Metric map_size_metric();
@@ -79,6 +80,9 @@ std::vector<NamedSeries> series_of(const CellAnalysis& cell) {
       if (found != cell.scan_series.end()) all.push_back(*found);
     }
     if (metric.add_series != nullptr) metric.add_series(cell, all);
+  }
+  for (const NamedSeries& series : all) {
+    expect(series.values.size() == all.front().values.size(), "a series has a value for each scan");
   }
   return all;
 }

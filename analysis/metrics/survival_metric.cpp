@@ -7,6 +7,7 @@
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/statistics/means.hpp"
 #include "analysis/statistics/survival.hpp"
+#include "engine/errors.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -39,6 +40,7 @@ class SurvivalOverRuns final : public MetricSums {
     const auto pose = std::ranges::find_if(cell.nees, [&](const NeesResult& nees) {
       return nees.block == ErrorBlock::pose && nees.moments == cell.leading;
     });
+    expect(pose != cell.nees.end(), "NEES is put before survival");
     const auto exits =
         exits_.lasting_exits(sticks_->times, dimension_of(ErrorBlock::pose), sticks_->level);
     pose->consistency.exit_interval = middle_of(exits, sticks_->level);
@@ -90,9 +92,7 @@ std::vector<Figure> survival_figures(const StudyAnalysis& study) {
 }  // namespace
 
 Metric survival_metric() {
-  return {.sums = [](const Yardsticks& sticks) -> std::unique_ptr<MetricSums> {
-            return std::make_unique<SurvivalOverRuns>(sticks);
-          },
+  return {.sums = make_sums<SurvivalOverRuns>,
           .add_numbers = survival_numbers,
           .add_series = survival_series,
           .figures = survival_figures};

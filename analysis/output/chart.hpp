@@ -82,6 +82,7 @@ struct Chart {
   double x_from = 0.0, x_to = 0.0;
   std::vector<ChartPanel> panels;
   bool x_logarithmic = false;
+  std::vector<double> x_ticks = {};  ///< in print; empty: round numbers
   /// Where it begins before it is zoomed; NaN: at x_from.
   double x_first = std::numeric_limits<double>::quiet_NaN();
   std::size_t columns = 1;  ///< side by side, where there is room; else one above the other

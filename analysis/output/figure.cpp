@@ -12,7 +12,6 @@ namespace {
 /// Common to all figures. What is black here takes the colour of the text where the page is dark.
 constexpr const char* kStyle = R"(set encoding utf8
 set datafile separator comma
-set datafile missing 'nan'
 set datafile columnheaders
 set key noenhanced samplen 1.6 spacing 1.15 width 1
 )";

@@ -5,10 +5,10 @@
 #include "analysis/output/gnuplot_marks.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/output/print_layout.hpp"
+#include "engine/errors.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <vector>
 
 namespace montecarta {
@@ -23,8 +23,7 @@ set grid linecolor rgb '#bbbbbb' linewidth 0.4 dashtype (2,4)
 )";
 
 std::string range(const char* axis, double from, double to) {
-  return std::string("set ") + axis + "range [" + exact_text(from) + ":" +
-         (std::isnan(to) ? "*" : exact_text(to)) + "]\n";
+  return std::string("set ") + axis + "range [" + exact_text(from) + ":" + exact_text(to) + "]\n";
 }
 
 /// Ticks with these names at 0, 1, 2, ...; gnuplot's own where there are none.
@@ -37,34 +36,76 @@ std::string ticks(const char* axis, const std::vector<std::string>& names) {
   return script + ")\n";
 }
 
-/// Of a logarithmic axis: 1, 2 and 5 of each decade.
+std::string ticks_at(const std::vector<double>& places) {
+  std::string at;
+  for (const double place : places) at += (at.empty() ? "" : ",") + exact_text(place);
+  return "set xtics nomirror (" + at + ")\n";
+}
+
+/// Of a logarithmic axis: 1, 2 and 5 of each decade, 1 alone of many.
 std::string logarithmic_ticks(double from, double to) {
+  expect(from > 0.0 && to < 1e200, "a logarithmic axis has positive ends");
+  const bool is_long = to > 2000.0 * from;
   std::string at;
   for (double decade = std::pow(10.0, std::floor(std::log10(from))); decade <= to; decade *= 10.0) {
     for (const double step : {1.0, 2.0, 5.0}) {
+      if (is_long && step > 1.0) continue;
       at += (at.empty() ? "" : ",") + readable(step * decade, 1);
     }
   }
   return "set xtics nomirror (" + at + ")\n";
 }
 
+/// One label for all columns stands below the drawing (common_label()).
 std::string horizontal_axis(const Chart& chart, const ChartPanel& panel, const PanelBox& box) {
+  const std::string label = box.is_alone_in_row
+                                ? "set xlabel " + gnuplot_quoted(chart.x_label) + " offset 0,0.4\n"
+                                : "unset xlabel\n";
   return std::string(chart.x_logarithmic ? "set" : "unset") + " logscale x\n" +
-         (chart.x_logarithmic ? logarithmic_ticks(box.x_from, box.x_to)
-                              : ticks("x", panel.x_names)) +
+         (!chart.x_ticks.empty() ? ticks_at(chart.x_ticks)
+          : chart.x_logarithmic  ? logarithmic_ticks(box.x_from, box.x_to)
+                                 : ticks("x", panel.x_names)) +
          range("x", box.x_from, box.x_to) +
-         (box.is_lowest
-              ? "set format x '%h'\nset xlabel " + gnuplot_quoted(chart.x_label) + " offset 0,0.4\n"
-              : "set format x ''\nunset xlabel\n");
+         (box.is_lowest ? "set format x '%h'\n" + label : "set format x ''\nunset xlabel\n");
+}
+
+std::string common_label(const Chart& chart, const PrintLayout& layout) {
+  if (layout.boxes.front().is_alone_in_row) return "";
+  return "set label " + gnuplot_quoted(chart.x_label) + " at screen 0.5, screen " +
+         readable(10.0 / layout.height, 4) + " center\n";
+}
+
+/// As far as curves and bands reach, where the axis does not say.
+double upper_end(const ChartPanel& panel) {
+  if (!std::isnan(panel.axis.high)) return panel.axis.high;
+  double greatest = panel.axis.low;
+  const auto include = [&](double value) {
+    if (std::isfinite(value)) greatest = std::max(greatest, value);
+  };
+  for (const ChartPanel::Curve& curve : panel.curves) std::ranges::for_each(curve.values, include);
+  for (const Band& band : panel.bands) include(band.upper);
+  return greatest > panel.axis.low ? 1.05 * greatest : panel.axis.low + 1.0;
+}
+
+/// A distance of 1, 2 or 5 times a power of ten that leaves room for the numbers.
+std::string linear_ticks(double from, double to, double pixels) {
+  const double least = (to - from) * 26.0 / pixels;
+  const double power = std::pow(10.0, std::floor(std::log10(least)));
+  const double steps = least / power;
+  const double step = power * (steps <= 1.0 ? 1.0 : steps <= 2.0 ? 2.0 : steps <= 5.0 ? 5.0 : 10.0);
+  return "set ytics nomirror " + exact_text(step) + "\n";
 }
 
 std::string vertical_axis(const ChartPanel& panel, const PanelBox& box) {
   const ChartAxis& axis = panel.axis;
   const bool is_plain = !axis.logarithmic || (axis.low >= 0.01 && axis.high <= 1e4);
+  const bool is_free = axis.logarithmic || !panel.y_names.empty();
+  const double to = upper_end(panel);
   const std::string label = gnuplot_quoted(panel.label) + " noenhanced";
   return std::string(axis.logarithmic ? "set" : "unset") + " logscale y\n" +
-         ticks("y", panel.y_names) + "set format y '" + (is_plain ? "%h" : "10^{%T}") + "'\n" +
-         range("y", axis.low, axis.high) + "unset label\n" +
+         (is_free ? ticks("y", panel.y_names) : linear_ticks(axis.low, to, box.bottom - box.top)) +
+         "set format y '" + (is_plain ? "%h" : "10^{%T}") + "'\n" + range("y", axis.low, to) +
+         "unset label\n" +
          (box.has_heading
               ? "unset ylabel\nset label " + label + " at graph 0,1 left offset -3,0.8\n"
               : "set ylabel " + label + " offset 0.8,0\n");
@@ -126,7 +167,7 @@ std::vector<LegendEntry> legend_of(const Chart& chart) {
     for (const auto& curve : panel.curves) add(curve_style(curve.style), curve.legend);
     for (const ChartMarks& marks : panel.marks) {
       if (!marks.text.empty()) continue;
-      const bool is_named = panel.label.starts_with(marks.cell);
+      const bool is_named = panel.cell == marks.cell;
       if (chart.is_map || !is_named) add(mark_style(marks), chart.is_map ? marks.name : marks.cell);
     }
   }
@@ -174,8 +215,8 @@ GnuplotChart gnuplot_chart(const Chart& chart, std::size_t width) {
     if (k % layout.views == 0) drawn.numbers += plots.numbers;
     drawn.commands += place(layout.boxes[k], w, layout.height) +
                       horizontal_axis(chart, panel, layout.boxes[k]) +
-                      vertical_axis(panel, layout.boxes[k]) + texts(chart, panel) + "plot " +
-                      plots.commands + "\n";
+                      vertical_axis(panel, layout.boxes[k]) + texts(chart, panel) +
+                      (k == 0 ? common_label(chart, layout) : "") + "plot " + plots.commands + "\n";
   }
   drawn.commands += "unset multiplot\n";
   return drawn;

@@ -57,8 +57,9 @@ class PanelWriter {
       return;
     }
     // Bars of neighbouring curves must not cover each other.
-    const double place =
-        static_cast<double>(i) - 0.5 * static_cast<double>(panel_.curves.size() - 1);
+    const auto bars = std::ranges::count_if(
+        panel_.curves, [](const ChartPanel::Curve& one) { return !one.least.empty(); });
+    const double place = static_cast<double>(i) - 0.5 * static_cast<double>(bars - 1);
     std::vector<double> x = panel_.x;
     for (double& at : x) at *= 1.0 + 0.03 * place;
     plot({&x, &curve.values}, "1:2", curve_style(curve.style));
@@ -85,7 +86,7 @@ class PanelWriter {
 
   /// None so small that it cannot be seen.
   void add_ellipses(const ChartMarks& marks) {
-    const double least = 0.005 * (chart_.x_to - chart_.x_from);
+    const double least = 0.012 * (chart_.x_to - chart_.x_from);
     std::vector<double> width = marks.width, height = marks.height;
     for (double& one : width) one = one < least ? least : one;
     for (double& one : height) one = one < least ? least : one;

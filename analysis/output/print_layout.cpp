@@ -11,6 +11,7 @@ namespace {
 // [px]
 constexpr double kAxisRoom = 76.0, kNarrowAxisRoom = 48.0;  // beside a panel: numbers and label
 constexpr double kRightRoom = 14.0, kHeading = 26.0, kTicks = 54.0, kGap = 18.0;
+constexpr std::size_t kMostColumns = 3;
 constexpr double kSingleHeight = 250.0, kUsualHeight = 160.0;
 
 double panel_height(const Chart& chart, double panel_width) {
@@ -26,7 +27,8 @@ PrintLayout print_layout(const Chart& chart, double width, double legend_height)
   const bool is_zoomed = chart.x_first > chart.x_from;
   layout.views = is_zoomed ? 2 : 1;
   const std::size_t count = layout.views * chart.panels.size();
-  const std::size_t columns = std::min(is_zoomed ? 2 : chart.columns, count);
+  const std::size_t columns =
+      std::min(is_zoomed ? 2 : std::min(chart.columns, kMostColumns), count);
   const std::size_t rows = (count + columns - 1) / columns;
   const bool headings = columns > 1 || !chart.panels.front().cell.empty();
   const double room = headings ? kNarrowAxisRoom : kAxisRoom;
@@ -45,7 +47,7 @@ PrintLayout print_layout(const Chart& chart, double width, double legend_height)
     const double left = start + static_cast<double>(k % columns) * each + room;
     const double top = first_top + static_cast<double>(k / columns) * pitch;
     layout.boxes.push_back({left, left + panel_width, top, top + height, k + columns >= count,
-                            headings, begins[k % layout.views], chart.x_to});
+                            columns == 1, headings, begins[k % layout.views], chart.x_to});
   }
   return layout;
 }

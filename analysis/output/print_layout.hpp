@@ -11,7 +11,8 @@ namespace montecarta {
 /// Where a panel lies in a printed chart [px], from the upper left corner.
 struct PanelBox {
   double left = 0.0, right = 0.0, top = 0.0, bottom = 0.0;
-  bool is_lowest = true;    ///< of its column: has the numbers of the horizontal axis
+  bool is_lowest = true;  ///< of its column: has the numbers of the horizontal axis
+  bool is_alone_in_row = true;
   bool has_heading = true;  ///< its label stands above it, else beside its axis
   double x_from = 0.0, x_to = 0.0;
 };

@@ -31,6 +31,7 @@ struct Section {
   std::string name;   ///< its place in the order of reading
   std::string title;  ///< a heading; empty: none
   std::vector<Block> blocks = {};
+  bool is_for_terminal = true;       ///< else of the page alone
   std::vector<Figure> figures = {};  ///< each with a heading of its own
 
   /// Nothing where it has no rows.

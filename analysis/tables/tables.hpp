@@ -20,12 +20,9 @@ void print_tables(std::ostream& out, const StudyAnalysis& study,
 
 /// Writes failures.csv, cells.csv (one row a cell), consistency.csv (one row a cell and definition
 /// of error and covariance), printed.csv and claims.csv (what a paper says and what was measured;
-/// headings alone where the study repeats none), where there is a
-/// Cramer-Rao bound bound.csv (one row a scan), where maps are stored landmarks.csv (one row a cell
-/// and landmark), where the drive has references references.csv (one
-/// row a cell and reference) and reference_errors.csv (one row a fix of the leading one), and, for
-/// each cell, series_<label>.csv (one row a scan) into `directory`, which is made where it is
-/// missing. Throws RunError naming the file that cannot be written.
+/// headings alone where the study repeats none), the files of metrics that apply (Metric::files)
+/// and, for each cell, series_<label>.csv (one row a scan) into `directory`, which is made where it
+/// is missing. Throws RunError naming the file that cannot be written.
 void write_csv(const StudyAnalysis& study, const std::filesystem::path& directory);
 
 /// Names of the files that write_csv() makes of cells with these labels.

@@ -7,9 +7,8 @@
 #include "analysis/tables/tables.hpp"
 
 #include <algorithm>
-#include <initializer_list>
+#include <array>
 #include <ostream>
-#include <string_view>
 #include <variant>
 
 namespace montecarta {
@@ -40,38 +39,34 @@ void print_warnings(std::ostream& out, const StudyAnalysis& study) {
   }
 }
 
-/// The sections of a report that the terminal shows.
-class Sections {
- public:
-  explicit Sections(const StudyAnalysis& study) : all_(sections_of(study)) {}
+/// In this order; tables of other sections follow.
+constexpr std::array kTerminalOrder = {"verdict",   "map_errors",  "joint_nees", "error_anatomy",
+                                       "diversity", "innovations", "references", "association"};
 
-  /// A blank line behind each.
-  void print_tables(std::ostream& out, std::initializer_list<std::string_view> names) const {
-    for (const auto& block : blocks_of(names)) {
-      const auto* table = std::get_if<Section::Table>(&block);
-      if (table == nullptr) continue;
-      print_table(out, table->table);
-      out << '\n';
-    }
-  }
-  void print_notes(std::ostream& out, std::initializer_list<std::string_view> names) const {
-    for (const auto& block : blocks_of(names)) {
-      if (const auto* note = std::get_if<Section::Note>(&block)) print_wrapped(out, note->text);
-    }
-  }
+std::vector<Section> terminal_sections(const StudyAnalysis& study) {
+  std::vector<Section> sections = sections_of(study);
+  std::erase_if(sections, [](const Section& section) { return !section.is_for_terminal; });
+  std::ranges::stable_sort(sections, {}, [](const Section& section) {
+    return std::ranges::find(kTerminalOrder, section.name) - kTerminalOrder.begin();
+  });
+  return sections;
+}
 
- private:
-  std::vector<Section::Block> blocks_of(std::initializer_list<std::string_view> names) const {
-    std::vector<Section::Block> blocks;
-    for (const std::string_view name : names) {
-      const auto found = std::ranges::find(all_, name, &Section::name);
-      if (found == all_.end()) continue;
-      blocks.insert(blocks.end(), found->blocks.begin(), found->blocks.end());
-    }
-    return blocks;
+/// A blank line behind each.
+void print_section_tables(std::ostream& out, const Section& section) {
+  for (const Section::Block& block : section.blocks) {
+    const auto* table = std::get_if<Section::Table>(&block);
+    if (table == nullptr) continue;
+    print_table(out, table->table);
+    out << '\n';
   }
-  std::vector<Section> all_;
-};
+}
+
+void print_section_notes(std::ostream& out, const Section& section) {
+  for (const Section::Block& block : section.blocks) {
+    if (const auto* note = std::get_if<Section::Note>(&block)) print_wrapped(out, note->text);
+  }
+}
 
 /// What a paper printed against what was measured, and what had to be assumed.
 void print_printed(std::ostream& out, const StudyAnalysis& study) {
@@ -90,26 +85,18 @@ void print_printed(std::ostream& out, const StudyAnalysis& study) {
 }  // namespace
 
 void print_tables(std::ostream& out, const StudyAnalysis& study, Explanations explanations) {
-  const Sections sections(study);
-  const bool explains = explanations == Explanations::shown;
+  const std::vector<Section> sections = terminal_sections(study);
   out << study.study_name << ": " << study.runs_here << " of " << study.study_runs << " runs, "
       << study.times.size() << " scans each, seed " << study.seed << "\n\n";
   if (study.has_failures()) print_failures(out, study);
-  if (study.has_truth) {
-    sections.print_tables(
-        out, {"verdict", "map_errors", "joint_nees", "error_anatomy", "diversity", "innovations"});
-    print_warnings(out, study);
-  } else {
+  if (!study.has_truth) {
     print_wrapped(out, no_truth_sentence());
     out << '\n';
   }
-  for (const char* name : {"references", "association"}) {
-    sections.print_tables(out, {name});
-    if (explains) sections.print_notes(out, {name});
-  }
-  if (explains && study.has_truth) {
-    sections.print_notes(
-        out, {"verdict", "map_errors", "joint_nees", "error_anatomy", "diversity", "innovations"});
+  for (const Section& section : sections) print_section_tables(out, section);
+  if (study.has_truth) print_warnings(out, study);
+  if (explanations == Explanations::shown) {
+    for (const Section& section : sections) print_section_notes(out, section);
   }
   print_printed(out, study);
 }

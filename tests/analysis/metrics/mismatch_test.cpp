@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/mismatch.hpp"
 
-#include "analysis/metrics/mismatch_figure.hpp"
 #include "analysis/metrics/study_analysis.hpp"
+#include "tests/analysis/reported.hpp"
 #include "tests/analysis/studied_result.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 
@@ -52,7 +52,7 @@ TEST(MismatchGrids, HoldTheTestOfEveryPairOfFactors) {
   EXPECT_EQ(grids[0].anees(0, 1), 1.0);
   EXPECT_EQ(grids[0].anees(1, 1), 2.0);
   EXPECT_TRUE(std::isnan(grids[0].anees(1, 0)));
-  const Figure figure = mismatch_figure(study);
+  const Figure figure = reported_figure(study, "mismatch");
   ASSERT_EQ(figure.data.size(), 1u);
   EXPECT_THAT(figure.data[0].rows, testing::Contains(ElementsAre(2, 1, 2, 1, 1, std::log10(2.0))));
   ASSERT_EQ(figure.chart.panels.size(), 1u);

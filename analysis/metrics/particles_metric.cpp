@@ -137,7 +137,7 @@ std::vector<Figure> particles_figures(const StudyAnalysis& study) {
 
 }  // namespace
 
-Metric particles_metric() { return {.scores = kParticlesScores, .scores_are_numbers = true}; }
+Metric particles_metric() { return {.scores = kParticlesScores}; }
 
 /// Apart from the scores: in files its series come last.
 Metric diversity_metric() {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/mismatch_figure.hpp"
-
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/mismatch.hpp"
+#include "analysis/metrics/study_analysis.hpp"
 #include "analysis/output/number_text.hpp"
 
 #include <algorithm>
@@ -101,8 +100,6 @@ Chart chart_of(const std::vector<MismatchGrid>& grids, const std::vector<FigureD
   return chart;
 }
 
-}  // namespace
-
 Figure mismatch_figure(const StudyAnalysis& study) {
   Figure figure{"mismatch", "What if the filter is told wrong noise?", ""};
   figure.sentence =
@@ -117,6 +114,8 @@ Figure mismatch_figure(const StudyAnalysis& study) {
   figure.chart = chart_of(grids, figure.data);
   return figure;
 }
+
+}  // namespace
 
 Metric mismatch_metric() {
   return {.figures = [](const StudyAnalysis& study) -> std::vector<Figure> {

@@ -87,10 +87,7 @@ std::vector<Figure> errors_figures(const StudyAnalysis& study) { return {rmse_fi
 }  // namespace
 
 Metric errors_metric() {
-  return {.scores = kErrorsScores,
-          .scan_series = kErrorsSeries,
-          .scores_are_numbers = true,
-          .figures = errors_figures};
+  return {.scores = kErrorsScores, .scan_series = kErrorsSeries, .figures = errors_figures};
 }
 
 }  // namespace montecarta

@@ -13,7 +13,7 @@ Metric cost_metric() {
       {"cpu_seconds", "s", "processor time of a run",
        [](const MeasuredRun& run) { return run.rows.cpu_seconds; }},
   };
-  return {.scores = kScores, .scores_are_numbers = true};
+  return {.scores = kScores};
 }
 
 }  // namespace montecarta

@@ -74,8 +74,7 @@ std::vector<Section> association_sections(const StudyAnalysis& study) {
 }  // namespace
 
 Metric association_metric() {
-  return {
-      .scores = kAssociationScores, .scores_are_numbers = true, .sections = association_sections};
+  return {.scores = kAssociationScores, .sections = association_sections};
 }
 
 }  // namespace montecarta
