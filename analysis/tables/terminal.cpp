@@ -40,8 +40,8 @@ void print_warnings(std::ostream& out, const StudyAnalysis& study) {
 }
 
 /// In this order; tables of other sections follow.
-constexpr std::array kTerminalOrder = {"verdict",   "map_errors",  "joint_nees", "error_anatomy",
-                                       "diversity", "innovations", "references", "association"};
+constexpr std::array kTerminalOrder = {"verdict",       "references", "map_errors",  "joint_nees",
+                                       "error_anatomy", "diversity",  "innovations", "association"};
 
 std::vector<Section> terminal_sections(const StudyAnalysis& study) {
   std::vector<Section> sections = sections_of(study);
