@@ -3,6 +3,7 @@
 
 #include "analysis/metrics/credibility.hpp"
 #include "analysis/metrics/error_anatomy.hpp"
+#include "analysis/statistics/survival.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
 
 #include <gtest/gtest.h>
