@@ -2,7 +2,6 @@
 #include "analysis/metrics/consistency.hpp"
 
 #include "analysis/statistics/means.hpp"
-#include "analysis/statistics/t_quantile.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/gamma.hpp>
@@ -83,19 +82,18 @@ std::optional<std::size_t> first_lasting(const std::vector<bool>& above, std::si
 }
 
 Interval run_average_bounds(std::span<const double> run_averages, std::size_t dimension,
-                            double level) {
+                            double deviate) {
   const auto n = static_cast<double>(run_averages.size());
   double mean = 0.0, squares = 0.0;
   for (const double average : run_averages) mean += average / n;
   for (const double average : run_averages) squares += (average - mean) * (average - mean);
   if (n < 3.0) return {0.0, std::numeric_limits<double>::infinity()};
   const auto d = static_cast<double>(dimension);
-  // Of a right filter the average varies no more than a single scan does; runs that went astray do.
-  const double most = 2.0 * d;  // also where they went too far for numbers
-  const double variance =
-      (squares <= most * n ? std::clamp(squares / (n - 1.0), kLeastVariance * d, most) : most) / n;
-  // The variance is an estimate, which Student's t answers.
-  const double deviate = t_quantile(run_averages.size(), level);
+  // Of a right filter the average varies no more than a single scan does; runs that went astray do,
+  // also where they went too far for numbers. Of gamma samples the deviation divided by the mean,
+  // not the deviation itself, is independent of the mean (Lukacs).
+  const double most = 2.0 * d, estimate = squares / (n - 1.0) * (d / mean) * (d / mean);
+  const double variance = (estimate <= most ? std::max(estimate, kLeastVariance * d) : most) / n;
   const double tail = boost::math::cdf(boost::math::normal(), -deviate);
   const boost::math::gamma_distribution<> average(d * d / variance, variance / d);
   return {boost::math::quantile(average, tail),
@@ -122,7 +120,7 @@ Consistency judge(const NeesSeries& series, std::span<const double> times) {
   result.median = mean_of_numbers(series.median);
   result.trimmed = mean_of_numbers(series.trimmed);
   const std::vector<double> averages = numbers_in(series.run_averages);
-  result.average_bounds = run_average_bounds(averages, series.dimension, series.average_level);
+  result.average_bounds = run_average_bounds(averages, series.dimension, series.average_deviate);
   compare_scans(series, times, result);
   result.verdict = verdict(result);
   return result;

@@ -79,8 +79,8 @@ NeesSeries NeesAccumulator::series(double level, const BandWalks& walks) const {
   series.undefined = undefined_;
   series.runs = runs_;
   series.run_averages = run_averages_;
-  const WholeRunTest test = walks.test(neighbours_.result(), level);
-  series.average_level = test.average_level;
+  const WholeRunTest test = walks.test(neighbours_.result(), run_averages_.size(), level);
+  series.average_deviate = test.average_deviate;
   BandsOf bands(series.dimension, level, std::erf(test.deviate / std::sqrt(2.0)));
   for (std::size_t s = 0; s < sum_.size(); ++s) {
     series.bounds.push_back(bands.of(runs_[s]).pointwise);

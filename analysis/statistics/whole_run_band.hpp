@@ -10,8 +10,8 @@ namespace montecarta {
 /// A test in two parts that together accuse a right filter with the probability that the level
 /// leaves, each part as often as the other.
 struct WholeRunTest {
-  double deviate = 0.0;        ///< of the band: the process stays within so many deviations
-  double average_level = 0.0;  ///< of the average over the run, by itself
+  double deviate = 0.0;          ///< of the band: the process stays within so many deviations
+  double average_deviate = 0.0;  ///< of the average over the run, in estimated deviations
 };
 
 /// Walks of a Gaussian process, drawn once for all bands of a study: 4000 of them, fewer where runs
@@ -22,8 +22,9 @@ class BandWalks {
 
   /// For a process of variance 1 with `correlation` {scan - 1} in [0, 1) of each scan with the
   /// next, a Markov chain (first-order autoregression). What goes together for longer than that
-  /// leaves a band less often, so the band errs to the wide side.
-  WholeRunTest test(std::span<const double> correlation, double level) const;
+  /// leaves a band less often, so the band errs to the wide side. The deviation of the average is
+  /// estimated from `runs` (taken as three where there are fewer), but at most that of one scan.
+  WholeRunTest test(std::span<const double> correlation, std::size_t runs, double level) const;
 
  private:
   /// How far a walk gets from 0, and its average.
@@ -34,7 +35,8 @@ class BandWalks {
               std::span<const double> rest) const;
 
   std::size_t scans_;
-  std::vector<float> normals_;  ///< {walk, scan}
+  std::vector<float> normals_;       ///< {walk, scan}
+  std::vector<double> of_variance_;  ///< {walk} standard normal
 };
 
 }  // namespace montecarta

@@ -27,7 +27,7 @@ NeesSeries series_of(const std::vector<double>& averages) {
   series.runs.assign(averages.size(), 30);
   series.trimmed = averages;
   series.bounds.assign(averages.size(), nees_bounds(30, 3, 0.95));
-  series.average_level = 0.975;
+  series.average_deviate = 2.364;  // Student's t of 30 runs, 97.5 %
   series.whole_run_bounds.assign(averages.size(), nees_bounds(30, 3, 0.9999));
   return series;
 }
@@ -106,17 +106,26 @@ TEST(RunAverageBounds, AreThoseOfTheChiSquareWhereRunsAreOneScanLong) {
     }
   }
   const Interval exact = nees_bounds(2000, 3, 0.95);
-  const Interval found = run_average_bounds(nees, 3, 0.95);
+  const Interval found = run_average_bounds(nees, 3, 1.96);
   EXPECT_NEAR(found.lower, exact.lower, 0.01);
   EXPECT_NEAR(found.upper, exact.upper, 0.01);
 }
 
 TEST(RunAverageBounds, AreNeverWiderThanThoseOfOneScan) {
   const std::vector<double> astray = {1.0, 2.0, 1e20, 3.0, 4.0};
-  EXPECT_LT(run_average_bounds(astray, 3, 0.95).upper, 10.0);
+  EXPECT_LT(run_average_bounds(astray, 3, 1.96).upper, 10.0);
   const std::vector<double> beyond = {1.0, 2.0, std::numeric_limits<double>::infinity(), 3.0, 4.0};
-  EXPECT_EQ(run_average_bounds(beyond, 3, 0.95).upper, run_average_bounds(astray, 3, 0.95).upper);
-  EXPECT_TRUE(std::isinf(run_average_bounds(std::vector<double>{3.0, 3.0}, 3, 0.95).upper));
+  EXPECT_EQ(run_average_bounds(beyond, 3, 1.96).upper, run_average_bounds(astray, 3, 1.96).upper);
+  EXPECT_TRUE(std::isinf(run_average_bounds(std::vector<double>{3.0, 3.0}, 3, 1.96).upper));
+}
+
+// The coefficient of variation of gamma samples is independent of their mean (Lukacs), so that runs
+// which lie low by chance do not narrow the bounds.
+TEST(RunAverageBounds, DoNotDependOnTheScaleOfTheRuns) {
+  const std::vector<double> runs = {2.0, 3.5, 2.5, 3.0}, twice = {4.0, 7.0, 5.0, 6.0};
+  const Interval bounds = run_average_bounds(runs, 3, 1.96);
+  EXPECT_NEAR(run_average_bounds(twice, 3, 1.96).lower, bounds.lower, 1e-12);
+  EXPECT_NEAR(run_average_bounds(twice, 3, 1.96).upper, bounds.upper, 1e-12);
 }
 
 TEST(RightValues, AreThoseOfTheChiSquare) {

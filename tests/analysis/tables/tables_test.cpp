@@ -40,7 +40,7 @@ CellAnalysis consistent_cell() {
   pose.series.trimmed = {2.6, 2.7};
   pose.series.runs = {30, 30};
   for (int run = 0; run < 30; ++run) pose.series.run_averages.push_back(run % 2 == 0 ? 2.0 : 4.5);
-  pose.series.average_level = 0.975;
+  pose.series.average_deviate = 2.364;
   pose.series.whole_run_bounds.assign(2, nees_bounds(30, 3, 0.99));
   pose.series.bounds.assign(2, nees_bounds(30, 3, 0.95));
   pose.consistency = judge(pose.series, std::vector<double>{0.2, 0.4});
