@@ -33,11 +33,11 @@ void refuse_existing(const fs::path& directory, ExistingReport existing) {
 /// The page from top to bottom, by the names of sections and figures; others come before the last
 /// two.
 constexpr std::array kReadingOrder = {"title",
-                                      "failures",
                                       "verdict",
                                       "map_errors",
                                       "joint_nees",
                                       "references",
+                                      "failures",
                                       "replay",
                                       "figure_paths",
                                       "figure_reference_error",

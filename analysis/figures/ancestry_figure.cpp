@@ -95,7 +95,6 @@ ChartPanel chart_panel(const DrawnTree& cell, const FigureData& data) {
                    {},
                    {},
                    cell.label};
-  panel.y_names = {""};  // heights mean nothing
   panel.marks.push_back(lines_of(cell, data));
   return panel;
 }

@@ -82,7 +82,10 @@ double upper_end(const ChartPanel& panel) {
   const auto include = [&](double value) {
     if (std::isfinite(value)) greatest = std::max(greatest, value);
   };
-  for (const ChartPanel::Curve& curve : panel.curves) std::ranges::for_each(curve.values, include);
+  for (const ChartPanel::Curve& curve : panel.curves) {
+    std::ranges::for_each(curve.values, include);
+    std::ranges::for_each(curve.greatest, include);
+  }
   for (const Band& band : panel.bands) include(band.upper);
   return greatest > panel.axis.low ? 1.05 * greatest : panel.axis.low + 1.0;
 }

@@ -47,7 +47,7 @@ TEST(GnuplotChart, HasOneLegendOfAllThatAnyPanelHolds) {
   EXPECT_THAT(commands, ContainsRegex("keyentry with filledcurves [^\n]*title 'right'"));
   EXPECT_THAT(commands, HasSubstr("set yrange [1:1e+06]"));
   EXPECT_THAT(commands, HasSubstr("set format y '10^{%T}'"));
-  EXPECT_THAT(commands, HasSubstr("set yrange [0:*]"));
+  EXPECT_THAT(commands, HasSubstr("set yrange [0:3.15"));
   EXPECT_THAT(commands, HasSubstr("set xlabel 'time [s]'"));
 }
 
@@ -60,6 +60,12 @@ TEST(GnuplotChart, InterruptsALineWhereAPlaceIsMissing) {
   chart.panels = {{"panel", {false, 0.0, 3.0}, {}, {}, {}}};
   chart.panels[0].marks = {marks_of(ChartMarks::Shape::line)};
   EXPECT_THAT(gnuplot_chart(chart, 900).numbers, HasSubstr("\n0.5,1\n\n1.5,2\n"));
+}
+
+TEST(GnuplotChart, HasAnAxisWhereNothingIsANumber) {
+  Chart chart = two_panels();
+  chart.panels[1].curves = {{"two", 1, {kNothing, kNothing}}};
+  EXPECT_THAT(gnuplot_chart(chart, 900).commands, HasSubstr("set yrange [0:1]"));
 }
 
 TEST(GnuplotChart, NamesPlacesOfAnAxis) {
