@@ -89,7 +89,7 @@ TEST(PublishedDrives, EkfSlamFindsEveryPoleOfTheCarPark) {
   EXPECT_LT(slam.beacons().aligned_rms, 0.15);
 }
 
-TEST(PublishedDrives, EkfSlamKeepsItsMapOfVictoriaPark) {
+TEST(SlowPublishedDrives, EkfSlamKeepsItsMapOfVictoriaPark) {
   if (published_data("victoria_park").empty()) GTEST_SKIP() << "the published data is not at hand";
   const Journey slam = journey("victoria_park", "ekf_slam", kGates);
   EXPECT_LE(slam.scores(0).rms, 2.6);
