@@ -44,8 +44,9 @@ PrintLayout print_layout(const Chart& chart, double width, double legend_height)
       std::ceil(first_top + static_cast<double>(rows) * pitch - (pitch - height) + kTicks);
   const std::array<double, 2> begins = {chart.x_from, chart.x_first};
   for (std::size_t k = 0; k < count; ++k) {
-    const double left = start + static_cast<double>(k % columns) * each + room;
-    const double top = first_top + static_cast<double>(k / columns) * pitch;
+    const std::size_t row = k / columns, column = k % columns;
+    const double left = start + static_cast<double>(column) * each + room;
+    const double top = first_top + static_cast<double>(row) * pitch;
     layout.boxes.push_back({left, left + panel_width, top, top + height, k + columns >= count,
                             columns == 1, headings, begins[k % layout.views], chart.x_to});
   }

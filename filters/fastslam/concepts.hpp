@@ -30,6 +30,8 @@ concept MomentTransform = requires(const T t, MotionIncrement& motion, PoseGauss
   // pose, or landmark seen from a known pose, absorbs one detection: its innovation before
   { t.refine(pose, landmark, seen, R, Everywhere(), evidence) } -> Is<Innovation<Real>>;
   { t.update(landmark, pose.mean, seen, R, Everywhere(), evidence) } -> Is<Innovation<Real>>;
+  // whether it can refine a pose by a whole scan with fixed Jacobians, refine_in_batch()
+  { T::kRefinesInBatch } -> std::convertible_to<bool>;
   // a landmark seen for the first time from a known pose
   { t.initialise(pose.mean, seen, R) } -> Is<LandmarkGaussian<Real>>;
 };

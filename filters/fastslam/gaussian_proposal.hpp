@@ -75,16 +75,12 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
   Evidence<Real> batch_evidence(const Associating& association, std::size_t b,
                                 const PoseGaussian<Real>& predicted) const {
     Evidence<Real> evidence;
-    PoseGaussian<Real> refined = predicted;
-    for (std::size_t k = 0; k < association.matches(); ++k) {
-      const auto& [landmark, seen, mask] = association.match(b, k);
-      const PoseTransform& transform = this->pose_transform();
-      if constexpr (requires {
-                      transform.refine_in_batch(refined, predicted.mean, landmark, seen,
-                                                this->noise(), mask, evidence);
-                    }) {
-        transform.refine_in_batch(refined, predicted.mean, landmark, seen, this->noise(), mask,
-                                  evidence);
+    if constexpr (PoseTransform::kRefinesInBatch) {
+      PoseGaussian<Real> refined = predicted;
+      for (std::size_t k = 0; k < association.matches(); ++k) {
+        const auto& [landmark, seen, mask] = association.match(b, k);
+        this->pose_transform().refine_in_batch(refined, predicted.mean, landmark, seen,
+                                               this->noise(), mask, evidence);
       }
     }
     return evidence;

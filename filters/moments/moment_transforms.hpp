@@ -12,6 +12,7 @@ namespace montecarta {
 
 /// The extended Kalman filter (EQUATIONS 3).
 struct Linearised {
+  static constexpr bool kRefinesInBatch = true;
   void advance(MotionIncrement& motion, const Control& control, double duration,
                const Belief& belief) const {
     motion.advance(control, duration, belief);
@@ -49,6 +50,7 @@ struct Linearised {
 /// Sigma points: unscented or central differences (EQUATIONS 3), by their rules.
 class SigmaPoints {
  public:
+  static constexpr bool kRefinesInBatch = false;
   struct Rules {
     SigmaRule motion;    ///< of (pose, control noise): 5 dimensions
     SigmaRule pose;      ///< of (pose, landmark): 5
