@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// A character within quotes. "<" may not stand in a script: it could end it.
@@ -67,4 +67,4 @@ JsonWriter& JsonWriter::value(double number, int digits) {
   return literal({buffer.data(), written.ptr});
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

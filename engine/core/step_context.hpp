@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// What the engine lends a filter for one step: its place in the study, random streams, and
 /// threads.
@@ -39,4 +39,4 @@ class StepContext {
   const Parallel* parallel_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

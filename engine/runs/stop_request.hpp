@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
+
 #include <atomic>
 #include <cstdint>
 
-namespace montecarta {
+namespace montecarta::engine {
 
-/// Why a sitting of a study ended.
+/// Why a session of a study ended.
 enum class StopReason : std::uint8_t {
   complete,     ///< nothing is missing
   time_budget,  ///< --time-budget is used up
@@ -31,4 +33,4 @@ class StopRequest {
   std::atomic<StopReason> reason_{StopReason::complete};
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

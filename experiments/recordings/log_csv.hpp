@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// Reads a drive from a folder of comma-separated files, described in
 /// experiments/RECORDED_DRIVES.md: start.csv, odometry.csv, detections.csv, reference.csv or
@@ -18,4 +18,4 @@ DriveLog read_log_csv(const std::filesystem::path& folder);
 /// (references out of the order in which they are read), RunError where writing fails.
 void write_log_csv(const DriveLog& log, const std::filesystem::path& folder);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <initializer_list>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -112,4 +112,4 @@ void write_log_csv(const DriveLog& log, const fs::path& folder) {
   if (!log.landmarks.empty()) landmark_table(log.landmarks).save(folder / "landmarks.csv");
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

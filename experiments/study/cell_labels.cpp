@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// A value as part of a label: 0.75 -> 0p75, -1 -> m1.
@@ -50,4 +50,4 @@ void label_cells(std::vector<CellSpec>& cells) {
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

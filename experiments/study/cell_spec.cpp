@@ -9,7 +9,7 @@
 #include <cctype>
 #include <map>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// The values that a line lists for each option, checked.
@@ -167,4 +167,4 @@ std::string cell_line(const CellSpec& cell) {
   return line;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// Why the study cannot store joint estimates, as the end of a StudyError: "(why): remedy"; empty
 /// where it can.
@@ -18,4 +18,4 @@ std::string objection_to_joint(const Study& study);
 /// Throws StudyError where settings that are right alone do not fit together.
 StudyPlan make_plan(const Study& study, std::optional<RunRange> range = std::nullopt);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

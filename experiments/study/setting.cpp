@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using Kind = Option::Kind;
@@ -43,6 +43,16 @@ void check_choice(const Option& option, const std::string& word, const std::stri
   if (std::ranges::find(option.choices, word) != option.choices.end()) return;
   throw StudyError(place + ": " + option.key + " = " + word + " (" + demand_of(option) +
                    " is needed): " + nearest_spelling(word, option.choices));
+}
+
+/// A word of earlier versions is replaced by today's.
+std::string checked_choice(const Option& option, const std::string& word,
+                           const std::string& place) {
+  for (const auto& [former, choice] : option.former_choices) {
+    if (word == former) return choice;
+  }
+  check_choice(option, word, place);
+  return word;
 }
 
 /// In the order of the table, without repetition.
@@ -110,12 +120,11 @@ std::string checked_value(const Option& option, std::string_view text, const std
     case Kind::count:
       return checked_count(option, text, place);
     case Kind::choice:
-      check_choice(option, std::string(text), place);
-      return std::string(text);
+      return checked_choice(option, std::string(text), place);
     case Kind::choices:
       return checked_choices(option, text, place);
   }
   return {};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
+
 #include <algorithm>
 #include <cstddef>
 #include <functional>
@@ -11,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// One thing that a user may set: of a filter behind its name in a cell line, of a study in a
 /// section of its file.
@@ -30,6 +32,8 @@ struct Option {
   double least = 0.0;                        ///< inclusive, as `most`
   double most = 0.0;
   std::vector<std::string> choices = {};
+  /// (word of earlier versions, choice that it means); read, never written.
+  std::vector<std::pair<std::string, std::string>> former_choices = {};
   std::string meaning = {};  ///< one line, with unit and equation
   std::string example = {};  ///< offered as remedy where there is no fallback
 };
@@ -82,4 +86,4 @@ Enumerator chosen(const std::string& choice, const std::vector<std::string>& cho
                                  choices.begin());
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::ElementsAre;
@@ -16,8 +16,9 @@ using testing::HasSubstr;
 std::vector<FilterKind> paper_filters() {
   const Option particles = count_option("particles", "100", 1, 1e6, "how many");
   const Option threshold = number_option("threshold", "0.5", 0, 1, "when to resample");
-  const Option weight =
+  Option weight =
       choice_option("weight", "closed", {"closed", "ratio", "as_printed"}, "which form");
+  weight.former_choices = {{"exact", "closed"}};
   return {{"bold", "Bold filter", "", true, false, false, {particles, threshold, weight}, {}},
           {"plain", "Plain filter", "", false, false, false, {threshold}, {}}};
 }
@@ -72,6 +73,12 @@ TEST(Cells, FillInTheOptionsNotGiven) {
   EXPECT_EQ(cell.distinction, "100 particles");
 }
 
+TEST(Cells, ReadAChoiceOfEarlierVersions) {
+  const auto filters = paper_filters();
+  const CellSpec cell = cells_of(filters, {"bold weight=exact"}).at(0);
+  EXPECT_EQ(cell_line(cell), "bold label=bold_m100 particles=100 threshold=0.5 weight=closed");
+}
+
 TEST(Cells, RefuseWhatAFilterDoesNotTake) {
   EXPECT_THAT(complaint_about("bold particles=0"),
               HasSubstr("particles = 0 (a whole number from 1 to"));
@@ -102,4 +109,4 @@ TEST(Cells, AreToldWrongNoiseWhereTheLineSaysSo) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments
