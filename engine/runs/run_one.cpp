@@ -42,7 +42,7 @@ class Walk {
   std::string_view take_step() {
     const Itinerary& itinerary = conditions_.itinerary;
     const StepContext context(conditions_.seed, conditions_.run, step_,
-                              conditions_.spare_threads.lend(particles_));
+                              conditions_.spare_threads.lend(particles_), &conditions_.stop);
     const Control& control = conditions_.drive.controls[step_];
     if (!control.stands()) filter_.predict(context, control, itinerary.duration(step_));
     while (scan_ < itinerary.scans() && itinerary.scan_step[scan_] == step_) {
@@ -81,6 +81,7 @@ RunEnd run_one(const RunConditions& conditions, SlamFilter& filter, Recorder& re
   } catch (const std::bad_alloc&) {
     throw;  // says something of the machine, not of the filter: no result of the study
   } catch (const std::exception& error) {
+    if (conditions.stop.made()) return RunEnd::dropped;  // it may be why the filter gave up
     record.mark_failed(walk.step(), error.what(), clock.seconds());
   } catch (...) {
     record.mark_failed(walk.step(), "an exception that is no std::exception", clock.seconds());
