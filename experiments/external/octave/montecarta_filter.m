@@ -23,13 +23,16 @@ function montecarta_filter(filter)
     filter.map = @(belief) zeros(0, 6);
   end
   belief = [];
-  line = fgetl(stdin);
-  while ischar(line)
+  while true
+    try
+      line = input('', 's');  % fgetl() would wait for the line after it
+    catch
+      return  % there are no more
+    end
     message = jsondecode(line);
     [belief, members] = answer(filter, belief, message, line);
     printf('{"id":%d%s}\n', message.id, members);
     fflush(stdout);
-    line = fgetl(stdin);
   end
 end
 

@@ -85,8 +85,8 @@ TEST(Answer, WhatIsWrongIsSaid) {
       {with_covariance("[[1,0.5,0],[0.4,1,0],[0,0,1]]"), "covariance is not symmetric"},
       {with_covariance("[[1,0,0],[0,-1,0],[0,0,1]]"), "not positive definite"},
       {with_covariance("[[1,2,0],[2,1,0],[0,0,1]]"), "not positive definite"},
-      {with_covariance("[[1,1e-3,0],[1e-3,0,0],[0,0,1]]"), "not symmetric"},
-      {with_covariance("[[1e300,1e300,0],[1e300,1e-300,0],[0,0,1]]"), "not symmetric"},
+      {with_covariance("[[1,1e-3,0],[1e-3,0,0],[0,0,1]]"), "correlation with a variance of zero"},
+      {with_covariance("[[1e300,1e300,0],[1e300,1e-300,0],[0,0,1]]"), "beyond all bounds"},
       {kGood + R"(,"nis_dof":-1})", "nis_dof is no whole number from 0: -1"},
       {kGood + R"(,"nis_dof":1e99})", "nis_dof is no whole number"},
       {kGood + R"(,"nis":null})", "nis is not a number"}};
@@ -191,7 +191,8 @@ TEST(Answer, NumbersRoundTrip) {
   for (int i = 0; i < 10'000; ++i) {
     const double x = std::bit_cast<double>(random.bits());
     if (!std::isfinite(x)) continue;
-    const std::string message = predict_message(0, std::array{ControlRow{x, 3.0, 0.0}});
+    const ControlRow controls[] = {{x, 3.0, 0.0}};
+    const std::string message = predict_message(0, controls);
     const std::size_t begin = message.find("[[") + 2;
     const std::string text = message.substr(begin, message.find(',', begin) - begin);
     EXPECT_NE(text.find_first_of(".e"), std::string::npos) << text;

@@ -67,7 +67,6 @@ TEST_F(External, ThreadsChangeNothing) {
   EXPECT_EQ(difference(result_of(scripted(""), {}, 1), result_of(scripted(""), {}, 2)), "");
   const std::string exits = scripted("exit 30");
   EXPECT_EQ(difference(result_of(exits, {}, 1), result_of(exits, {}, 2)), "");
-}, 1)));
 }
 
 TEST_F(External, ProcessesLeaveNoZombieAndInheritNoFile) {
