@@ -56,6 +56,7 @@ void do_at_message(const std::string& mode, const std::string& text) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::ios::sync_with_stdio(false);
   const std::string mode = argc > 1 ? argv[1] : "";
   const int at = argc > 2 ? std::atoi(argv[2]) : -1;
   const std::string text = argc > 3 ? argv[3] : "";

@@ -68,8 +68,8 @@ def serve(filter):
     """Answers montecarta's messages until there are no more."""
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
+    encode = json.JSONEncoder(default=lambda array: array.tolist()).encode
     while line := sys.stdin.buffer.readline():
         message = json.loads(line.decode())
-        answer = {"id": message["id"], **_answer(filter, message)}
-        answers.write(json.dumps(answer, default=lambda array: array.tolist()) + "\n")
+        answers.write(encode({"id": message["id"], **_answer(filter, message)}) + "\n")
         answers.flush()
