@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/runs/run_one.hpp"
 
+#include "engine/errors.hpp"
 #include "engine/threads/cpu_clock.hpp"
 
 #include <cmath>
@@ -80,6 +81,8 @@ RunEnd run_one(const RunConditions& conditions, SlamFilter& filter, Recorder& re
     record.mark_complete(clock.seconds());
   } catch (const std::bad_alloc&) {
     throw;  // says something of the machine, not of the filter: no result of the study
+  } catch (const RunError&) {
+    throw;  // likewise
   } catch (const std::exception& error) {
     if (conditions.stop.made()) return RunEnd::dropped;  // it may be why the filter gave up
     record.mark_failed(walk.step(), error.what(), clock.seconds());

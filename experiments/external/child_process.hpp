@@ -52,7 +52,7 @@ class ChildProcess {
   /// The most bytes that one line of an answer may have.
   static constexpr std::size_t kLongestLine = std::size_t{4} << 20;
 
-  /// Starts words[0] with the others as arguments. Throws ProgramError where that fails.
+  /// Starts words[0] with the others as arguments. Throws RunError where that fails.
   explicit ChildProcess(std::span<const std::string> words);
   /// Closes the program's standard input and gives it a moment to end, unless an exchange has
   /// failed; then kills it and all of its process group. Leaves no zombie.

@@ -142,8 +142,10 @@ void ChildProcess::start(std::span<const std::string> words, int input, int outp
   const int failure =
       ::posix_spawnp(&process_, arguments.front().c_str(), orders.actions(), orders.attributes(),
                      pointers_to(arguments).data(), pointers_to(variables).data());
-  if (failure != 0)
-    throw ProgramError(std::string("program cannot be started: ") + std::strerror(failure));
+  if (failure == 0) return;
+  throw RunError("program '" + words.front() + "' cannot be started (" + std::strerror(failure) +
+                 "): a script needs a first line like #!/usr/bin/python3; else free memory, or use "
+                 "fewer threads");
 }
 
 }  // namespace montecarta

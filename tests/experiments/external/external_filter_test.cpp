@@ -140,6 +140,17 @@ TEST_F(External, AChildOfTheProgramDiesWithIt) {
   ::close(handle);
 }
 
+TEST_F(External, AFileThatIsNoProgramEndsTheStudy) {
+  std::ofstream(folder_ / "script") << "no first line\n";
+  std::filesystem::permissions(folder_ / "script", std::filesystem::perms::owner_all);
+  try {
+    result_of("external command=" + (folder_ / "script").string());
+    FAIL();
+  } catch (const RunError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("/script' cannot be started (Exec format error)"));
+  }
+}
+
 TEST_F(External, WhatACommandLacksIsSaid) {
   EXPECT_THAT(complaint_of([&] { plan_of("external label=mine"); }),
               AllOf(StartsWith("--set cells.cell: command = "), HasSubstr("give e.g. command")));
