@@ -45,6 +45,7 @@ void do_at_message(const std::string& mode, const std::string& text) {
     ::close(STDOUT_FILENO);
     ::pause();
   }
+  if (mode == "deaf") ::close(STDIN_FILENO);
   if (mode == "flood") {
     while (std::cout << std::string(1 << 16, ' ')) continue;
   }
@@ -76,6 +77,7 @@ int main(int argc, char** argv) {
     if (mode == "pid") x = std::to_string(::getpid());
     if (mode == "descriptors") x = std::to_string(open_descriptors());
     std::cout << answer_to(line, x) << std::endl;
+    if (message == at && mode == "deaf") ::pause();
     if (message == at && mode == "twice") std::cout << answer_to(line, "-1") << std::endl;
   }
 }

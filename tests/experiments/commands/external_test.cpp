@@ -68,10 +68,12 @@ TEST_F(ExternalCommands, VerifyFindsWhatAProgramKeepsFromRunToRun) {
 }
 
 TEST_F(ExternalCommands, AStopEndsTheWaitAndIsNoFailure) {
-  write_study("hang 0", "answer_limit=86400");
-  const Called stopped = run({"--allow-external", "--time-budget", "0.2"});
+  write("study.ini", kBlink);
+  const std::string cell = "external command=" + in_quotes(MONTECARTA_SCRIPTED_PROGRAM " hang 0");
+  const Called stopped = run({"--allow-external", "--time-budget", "0.2", "--set",
+                              "cells.cell=" + cell + " answer_limit=86400"});  // a day
   EXPECT_EQ(stopped.code, 85) << stopped.err;
-  EXPECT_THAT(stopped.err, HasSubstr("runs are missing"));
+  EXPECT_THAT(stopped.err, HasSubstr("3 runs are missing"));
   EXPECT_THAT(stopped.err, HasSubstr("--allow-external"));
 }
 

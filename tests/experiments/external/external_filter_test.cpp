@@ -86,6 +86,11 @@ TEST_F(External, ADeadProgramIsReportedWithItsLastWords) {
   EXPECT_EQ(first_failure("exit 0").step, 0U);
 }
 
+TEST_F(External, APipeThatNobodyReadsIsNoDeath) {
+  EXPECT_EQ(first_failure("deaf 2").reason, "program closed its standard input or output");
+  EXPECT_EQ(first_failure("deaf 2").step, 5U);
+}
+
 TEST_F(External, AfterAFailureTheNextRunHasANewProcess) {
   const ResultFile file = result_of(scripted("exit 150"), {kAtScans});  // in the second run
   using enum RunStatus;
