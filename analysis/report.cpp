@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <array>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 namespace fs = std::filesystem;
@@ -108,4 +108,4 @@ void write_report(const ResultFile& file, const fs::path& directory, const Repor
   write_page(study, sections, directory);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

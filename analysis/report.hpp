@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <optional>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// What to do with a report that is already there.
 enum class ExistingReport { refuse, replace };
@@ -27,4 +27,4 @@ struct ReportOptions {
 void write_report(const ResultFile& file, const std::filesystem::path& directory,
                   const ReportOptions& options = {});
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

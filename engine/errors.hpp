@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
+
 #include <stdexcept>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// The user's input is wrong (exit code 2). Worded "place: problem (why): remedy", e.g.
 /// "sim3.ini:12: particles = 0 (a filter needs at least one): give particles = 1 or more".
@@ -25,4 +27,4 @@ inline void expect(bool condition, const char* what) {
   if (!condition) throw std::logic_error(std::string("internal error, please report: ") + what);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -6,5 +6,5 @@
 int main(int argc, char** argv) {
   // A file that grows beyond `ulimit -f` shall be an error with a remedy, not a sudden death.
   std::signal(SIGXFSZ, SIG_IGN);
-  return montecarta::run_program(std::vector<std::string>(argv + 1, argv + argc));
+  return montecarta::experiments::run_program(std::vector<std::string>(argv + 1, argv + argc));
 }

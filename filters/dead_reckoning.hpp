@@ -4,7 +4,7 @@
 #include "filters/moments/motion_increment.hpp"
 #include "filters/setup/filter_setup.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Adds up the controls and looks at no landmark: what every SLAM filter must beat.
 class DeadReckoning final : public SlamFilter {
@@ -46,4 +46,4 @@ inline FilterKind dead_reckoning_kind() {
           .make = [](const FilterSetup& setup) { return std::make_unique<DeadReckoning>(setup); }};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

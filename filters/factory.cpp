@@ -6,7 +6,7 @@
 #include "filters/joint/joint_filters.hpp"
 #include "filters/marginal/marginal_filter.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 
 std::span<const FilterKind> filter_kinds() {
   static const std::vector<FilterKind> kinds{
@@ -18,4 +18,4 @@ std::span<const FilterKind> filter_kinds() {
   return kinds;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

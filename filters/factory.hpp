@@ -5,9 +5,9 @@
 
 #include <span>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// All filters, in the order in which they are listed.
 std::span<const FilterKind> filter_kinds();
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

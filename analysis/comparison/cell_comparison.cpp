@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 Wins wins_of(const PairedRuns& pairs, const Score& score) {
@@ -113,4 +113,4 @@ std::vector<const Score*> usual_scores(bool has_truth) {
   return scores;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// How often the one of two cells was better, run by run in the same worlds. A run that failed in
 /// one of them is won by the other.
@@ -62,7 +62,7 @@ Wins wins_of(const CellAnalysis& left, const CellAnalysis& right, const Score& s
 Comparisons compare_cells(const StudyAnalysis& study, const std::string& baseline,
                           std::span<const Score* const> scores);
 
-/// Accuracy, honesty and cost; without a true path the distance to the leading reference.
+/// Accuracy, consistency and cost; without a true path the distance to the leading reference.
 std::vector<const Score*> usual_scores(bool has_truth);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -4,7 +4,7 @@
 #include "analysis/output/csv_file.hpp"
 #include "analysis/output/named_rows.hpp"
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr const char* kComparison = "comparison.csv";
@@ -72,8 +72,8 @@ void write_values(const std::vector<CellValue>& values, const std::filesystem::p
               {"position_rmse_mean", "m", value.position_rmse.mean},
               {"nees_distance", "1", value.nees_distance},
               {"runs_failed", "1", count(value.failed)},
-              {"on_accuracy_front", "1", value.accurate_for_it ? 1.0 : 0.0},
-              {"on_consistency_front", "1", value.honest_for_it ? 1.0 : 0.0}});
+              {"on_accuracy_front", "1", value.accurate_for_cost ? 1.0 : 0.0},
+              {"on_consistency_front", "1", value.consistent_for_cost ? 1.0 : 0.0}});
   }
   file.close();
 }
@@ -92,4 +92,4 @@ void write_comparison_csv(const StudyComparison& comparison,
   write_values(comparison.values, directory / kPareto);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Names of the files that write_comparison_csv() makes.
 std::vector<std::string> comparison_csv_names();
@@ -18,4 +18,4 @@ std::vector<std::string> comparison_csv_names();
 void write_comparison_csv(const StudyComparison& comparison,
                           const std::filesystem::path& directory);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

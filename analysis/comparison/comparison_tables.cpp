@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// How many runs the difference is of, and what became of the others.
@@ -36,8 +36,8 @@ std::vector<std::string> row_of(const CellComparison& row, double level) {
 }
 
 std::string front_text(const CellValue& value) {
-  if (value.accurate_for_it && value.honest_for_it) return "both";
-  return value.accurate_for_it ? "accuracy" : value.honest_for_it ? "consistency" : "no";
+  if (value.accurate_for_cost && value.consistent_for_cost) return "both";
+  return value.accurate_for_cost ? "accuracy" : value.consistent_for_cost ? "consistency" : "no";
 }
 
 /// "40 of 200 runs" of failures in words; nothing where there are none.
@@ -119,7 +119,8 @@ std::vector<std::string> comparison_notes(const StudyAnalysis& study,
           " tests of the table (Holm): the probability of one false word in all of it is at most " +
           level_text(1.0 - comparisons.level) + ".",
       "'nees_distance' is how many times the mean NEES of the pose of a run must be halved or "
-      "doubled to be 3, what an honest filter has: 0 is honest, 1 is off by a factor of 2. It is "
+      "doubled to be 3, what a consistent filter has: 0 is consistent, 1 is off by a factor of 2. "
+      "It is "
       "of "
       "the covariance that the verdict is of: of the mixture, or corrected for few particles."};
   note_failures(study, notes);
@@ -139,8 +140,9 @@ std::string pareto_note() {
   return "On the Pareto front is a cell when no other is as fast and more accurate (or as accurate "
          "and faster): all others are beaten by one of these outright. 'consistency' says the same "
          "of the NEES distance, how many times ANEES must be halved or doubled to be that of an "
-         "honest filter. All of complete runs alone, by their means: cells whose numbers differ by "
+         "consistent filter. All of complete runs alone, by their means: cells whose numbers "
+         "differ by "
          "less than their +- may change places with more runs.";
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// One row a cell and score: the difference from the baseline and its tests.
 TextTable comparison_table(const Comparisons& comparisons);
@@ -25,4 +25,4 @@ std::vector<std::string> comparison_notes(const StudyAnalysis& study,
 std::string win_note(double level);
 std::string pareto_note();
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 bool is_known(const Offer& offer) { return std::isfinite(offer.cost) && std::isfinite(offer.loss); }
@@ -45,17 +45,17 @@ std::vector<CellValue> cell_values(const StudyAnalysis& study) {
   for (std::size_t i = 0; i < study.cells.size(); ++i) {
     if (study.cells[i].complete > 0) values.push_back(value_of(study.cells[i], i));
   }
-  std::vector<Offer> accuracy, honesty;
+  std::vector<Offer> accuracy, consistency;
   for (const CellValue& value : values) {
     accuracy.push_back({value.cpu_seconds.mean, value.position_rmse.mean});
-    honesty.push_back({value.cpu_seconds.mean, value.nees_distance});
+    consistency.push_back({value.cpu_seconds.mean, value.nees_distance});
   }
-  const std::vector<bool> accurate = pareto_front(accuracy), honest = pareto_front(honesty);
+  const std::vector<bool> accurate = pareto_front(accuracy), consistent = pareto_front(consistency);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i].accurate_for_it = accurate[i];
-    values[i].honest_for_it = honest[i];
+    values[i].accurate_for_cost = accurate[i];
+    values[i].consistent_for_cost = consistent[i];
   }
   return values;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Cost and merit of something, less is better in both.
 struct Offer {
@@ -26,13 +26,13 @@ struct CellValue {
   std::size_t place = 0;   ///< among the study's cells
   std::size_t failed = 0;  ///< runs, which are in none of the numbers
   Summary cpu_seconds;
-  Summary position_rmse;         ///< [m]
-  double nees_distance = 0.0;    ///< |log2(ANEES / components)| of the pose (nees_distance())
-  bool accurate_for_it = false;  ///< on the front of position RMSE against CPU time
-  bool honest_for_it = false;    ///< on the front of NEES distance against CPU time
+  Summary position_rmse;             ///< [m]
+  double nees_distance = 0.0;        ///< |log2(ANEES / components)| of the pose (nees_distance())
+  bool accurate_for_cost = false;    ///< on the front of position RMSE against CPU time
+  bool consistent_for_cost = false;  ///< on the front of NEES distance against CPU time
 };
 
 /// Of the cells with complete runs; none where nobody knows the true path.
 std::vector<CellValue> cell_values(const StudyAnalysis& study);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

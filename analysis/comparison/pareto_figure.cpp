@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// One panel: a loss against cost.
@@ -20,9 +20,10 @@ struct Merit {
 
 const Merit kMerits[] = {
     {"pareto_accuracy", "position RMSE [m]",
-     [](const CellValue& value) { return value.position_rmse.mean; }, &CellValue::accurate_for_it},
+     [](const CellValue& value) { return value.position_rmse.mean; },
+     &CellValue::accurate_for_cost},
     {"pareto_consistency", "NEES distance [doublings]",
-     [](const CellValue& value) { return value.nees_distance; }, &CellValue::honest_for_it}};
+     [](const CellValue& value) { return value.nees_distance; }, &CellValue::consistent_for_cost}};
 
 double cost_of(const CellValue& value) { return value.cpu_seconds.mean; }
 
@@ -83,7 +84,7 @@ Corners corners_of(std::span<const CellValue> values, const Merit& merit, const 
 ChartMarks front_marks(std::span<const CellValue> values, const Merit& merit,
                        const CostRange& costs) {
   ChartMarks front;
-  front.style = kYardstickStyle;
+  front.style = kReferenceStyle;
   double above = 0.0;
   for (const auto& [cost, loss] : corners_of(values, merit, costs)) {
     if (!front.x.empty()) {
@@ -129,7 +130,8 @@ Figure pareto_figure(std::span<const CellValue> values) {
   Figure figure{"pareto", "What does a better answer cost?", ""};
   figure.sentence =
       "Each point is a cell, over its complete runs: left its position error, right how far its "
-      "NEES is from consistency (0: honest; 1: off by a factor of 2), both against the processor "
+      "NEES is from consistency (0: consistent; 1: off by a factor of 2), both against the "
+      "processor "
       "time of a run. Down and to the left is better; the dashed line is the Pareto front, and "
       "whatever lies above it is beaten by a cell on it.";
   std::vector<CellValue> priced(values.begin(), values.end());
@@ -141,4 +143,4 @@ Figure pareto_figure(std::span<const CellValue> values) {
   return figure;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 StudyComparison compare_study(const StudyAnalysis& study, const std::string& baseline,
                               std::span<const Score* const> scores) {
@@ -15,4 +15,4 @@ StudyComparison compare_study(const StudyAnalysis& study, const std::string& bas
   return comparison;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

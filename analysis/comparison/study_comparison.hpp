@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// What is said of the cells beside each other, whoever it is said to.
 struct StudyComparison {
@@ -21,4 +21,4 @@ struct StudyComparison {
 StudyComparison compare_study(const StudyAnalysis& study, const std::string& baseline,
                               std::span<const Score* const> scores);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

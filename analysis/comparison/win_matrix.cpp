@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 Wins seen_from_the_other(Wins wins) {
@@ -50,4 +50,4 @@ WinMatrix win_matrix(const StudyAnalysis& study, const Score& score) {
   return matrix;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Every cell against every other by one score.
 struct WinMatrix {
@@ -18,4 +18,4 @@ struct WinMatrix {
 /// Tests are adjusted for all pairs of the matrix.
 WinMatrix win_matrix(const StudyAnalysis& study, const Score& score);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// The map of a run after its last scan, row by row; rows are identities of the world with known
-/// association, else the order of birth.
+/// association, else the order of initialisation.
 struct FinalMap {
   std::vector<std::uint32_t> seen;          ///< {landmark} 1 where it is in the map
   std::vector<Eigen::Vector2d> mean;        ///< [m] {landmark}
@@ -26,4 +26,4 @@ struct FinalMap {
   }
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

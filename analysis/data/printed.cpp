@@ -7,7 +7,7 @@
 #include <cmath>
 #include <sstream>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr const char* kValueForm =
@@ -92,7 +92,7 @@ PrintedValue value_in(const std::string& text) {
   return value;
 }
 
-PrintedClaim claim_in(const std::string& text) {
+PrintedClaim parse_claim(const std::string& text) {
   const Line line = split_line(text);
   const auto& words = line.words;
   const bool good = words.size() == 4 && (words[2] == "<" || words[2] == ">" || words[2] == "~");
@@ -124,7 +124,7 @@ void take_printed_line(const std::string& key, const std::string& text, Printed&
   if (key == "value") {
     printed.values.push_back(value_in(text));
   } else if (key == "claim") {
-    printed.claims.push_back(claim_in(text));
+    printed.claims.push_back(parse_claim(text));
   } else if (key == "assume") {
     printed.assumptions.push_back(text);
   } else if (key == "source") {
@@ -170,4 +170,4 @@ Printed printed_in(const std::string& study_text) {
   return printed;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

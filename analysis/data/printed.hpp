@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A number that a paper printed, and what of ours it is compared with.
 struct PrintedValue {
@@ -51,4 +51,4 @@ std::string printed_text(const Printed& printed);
 /// The section of a resolved study, as a result file holds it; empty where there is none.
 Printed printed_in(const std::string& study_text);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::string_view kFinalMapSeen = "final_map_seen";
@@ -175,4 +175,4 @@ RunRows read_run(const ResultFile& file, const StoredCell& cell, std::size_t i) 
   return rows;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

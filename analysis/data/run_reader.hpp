@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Reads the runs of one cell at its scans. Any number of threads may call read(), each with its
 /// own rows and scratch. The file and the cell must outlive it.
@@ -51,4 +51,4 @@ class RunReader {
 /// One run alone, index `i`.
 RunRows read_run(const ResultFile& file, const StoredCell& cell, std::size_t i);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

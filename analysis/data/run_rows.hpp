@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Mean and covariance of the pose at every scan of one run, row by row; empty where not stored.
 struct MomentRows {
@@ -76,4 +76,4 @@ struct RunRows {
   double cpu_seconds = 0.0;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

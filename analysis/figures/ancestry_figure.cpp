@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kMostTrees = 8, kMostLeaves = 100;
@@ -100,7 +100,7 @@ ChartPanel chart_panel(const DrawnTree& cell, const FigureData& data) {
 }
 
 /// Where the second panel of a row begins: shortly before the youngest common ancestor.
-double beginning_of_end(const DrawnTree& cell) {
+double begin_of_resolved(const DrawnTree& cell) {
   const double since = cell.tree.common_ancestor();
   return std::max(0.0, since - 0.08 * (cell.end - since));
 }
@@ -124,7 +124,7 @@ Figure ancestry_figure(const ResultFile& file, std::optional<std::uint64_t> run)
     figure.data.push_back(data_of(cell));
     figure.chart.panels.push_back(chart_panel(cell, figure.data.back()));
     if (cell.tree.common_ancestor() == 0.0) continue;  // nothing to enlarge
-    figure.chart.x_first = std::min(figure.chart.x_first, beginning_of_end(cell));
+    figure.chart.x_first = std::min(figure.chart.x_first, begin_of_resolved(cell));
   }
   if (figure.chart.x_first < end) {
     figure.sentence += " The end of the run, since the earliest of these meetings, is enlarged.";
@@ -134,4 +134,4 @@ Figure ancestry_figure(const ResultFile& file, std::optional<std::uint64_t> run)
   return figure;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

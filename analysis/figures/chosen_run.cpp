@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// In how many cells each run is complete.
@@ -39,4 +39,4 @@ std::optional<std::size_t> chosen_run(const ResultFile& file, std::optional<std:
   return static_cast<std::size_t>(best - cells.begin());
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

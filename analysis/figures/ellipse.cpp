@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 Ellipse two_sigma_ellipse(double x, double y, double xx, double xy, double yy) {
   const double middle = 0.5 * (xx + yy);
@@ -16,4 +16,4 @@ Ellipse two_sigma_ellipse(double x, double y, double xx, double xy, double yy) {
           angle * 180.0 / kPi};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

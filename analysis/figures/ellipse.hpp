@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// An ellipse as gnuplot draws it.
 struct Ellipse {
@@ -16,4 +16,4 @@ struct Ellipse {
 /// covariance with a negative eigenvalue has a diameter of NaN, which is not drawn.
 Ellipse two_sigma_ellipse(double x, double y, double xx, double xy, double yy);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Where points lie: (x, y) in columns `x` and `x` + 1 of data whose name begins with `name`.
@@ -88,4 +88,4 @@ Bounds recorded_bounds(const std::vector<FigureData>& all, const FigureData& fix
   return bounds.widened();
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A rectangle of the plane [m].
 struct Bounds {
@@ -32,4 +32,4 @@ Bounds path_bounds(const std::vector<FigureData>& all);
 Bounds recorded_bounds(const std::vector<FigureData>& all, const FigureData& fixes,
                        const FigureData& landmarks);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using Shape = ChartMarks::Shape;
@@ -72,7 +72,7 @@ ChartPanel panel_of(const DrawnPath& cell, const FigureData& landmarks, const Fi
     panel.marks.push_back(ellipses_of(cell.poses, "2 sigma of the pose", cell.style));
   }
   if (!landmarks.rows.empty()) {
-    panel.marks.push_back(marks_at(landmarks, 0, "true landmark", Shape::crosses, kYardstickStyle));
+    panel.marks.push_back(marks_at(landmarks, 0, "true landmark", Shape::crosses, kReferenceStyle));
   }
   for (ChartMarks& marks : panel.marks) {
     if (marks.style == cell.style) marks.cell = cell.label;
@@ -95,4 +95,4 @@ Chart path_chart(const std::vector<DrawnPath>& cells, const FigureData& landmark
   return chart;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// What is drawn of one cell: files of path_data.hpp, those without rows are left out.
 struct DrawnPath {
@@ -21,4 +21,4 @@ struct DrawnPath {
 Chart path_chart(const std::vector<DrawnPath>& cells, const FigureData& landmarks,
                  const FigureData& fixes, const Bounds& bounds);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

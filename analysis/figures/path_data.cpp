@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kMostPoints = 500;
@@ -91,4 +91,4 @@ FigureData landmark_data(const ResultFile& file, std::size_t run_index) {
   return data;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -7,7 +7,7 @@
 
 #include <cstddef>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// How many ellipses of the pose lie along a path.
 inline constexpr std::size_t kPoseEllipses = 16;
@@ -25,4 +25,4 @@ FigureData fix_data(const ResultFile& file);
 /// True landmarks in a run.
 FigureData landmark_data(const ResultFile& file, std::size_t run_index);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kMostPanels = 8, kMostRecordedPanels = 18;
@@ -42,7 +42,8 @@ std::string sentence_of(const ResultFile& file, std::size_t run_index, std::size
            ": the true path in grey, the filter's in colour. Ellipses hold two standard deviations "
            "of the pose, at " +
            std::to_string(kPoseEllipses) +
-           " moments, and of landmarks at the end: where the filter is honest, the truth is seldom "
+           " moments, and of landmarks at the end: where the filter is consistent, the truth is "
+           "seldom "
            "outside.";
   }
   return run +
@@ -76,4 +77,4 @@ Figure path_figure(const ResultFile& file, std::optional<std::uint64_t> run) {
   return figure;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

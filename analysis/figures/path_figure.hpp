@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// The true and the estimated path of one run, a panel a cell, with landmarks (estimated ones where
 /// the map is stored) and ellipses of two standard deviations; of a recorded drive the fixes of the
@@ -16,4 +16,4 @@ namespace montecarta {
 /// the file does not hold `run`.
 Figure path_figure(const ResultFile& file, std::optional<std::uint64_t> run);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 StoredMap::StoredMap(const ResultFile& file, const StoredCell& cell, std::size_t run)
     : final_only_(!cell.has("map_seen")) {
@@ -32,4 +32,4 @@ std::vector<Ellipse> StoredMap::at(std::size_t scan) const {
   return ellipses;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// The map of one cell in one run, as far as the file holds it: at every scan, or the final one.
 class StoredMap {
@@ -27,4 +27,4 @@ class StoredMap {
   std::vector<double> mean_, covariance_, seen_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

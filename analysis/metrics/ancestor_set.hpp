@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Ancestors of all particles of a scan, each once, while a genealogy is walked back. Keeps its
 /// memory from walk to walk.
@@ -49,4 +49,4 @@ class AncestorSet {
   std::uint64_t now_ = 0;             ///< stamp of the set being made
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

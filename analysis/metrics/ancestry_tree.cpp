@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using Branch = AncestryTree::Branch;
@@ -125,4 +125,4 @@ AncestryTree ancestry_tree(std::span<const std::uint32_t> ancestor, std::size_t 
   return tree;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// The lines of descent of one run that reach its end. Nothing but where lines meet is kept, so the
 /// tree is as large as the particles are many, however long the run.
@@ -34,4 +34,4 @@ struct AncestryTree {
 AncestryTree ancestry_tree(std::span<const std::uint32_t> ancestor, std::size_t particles,
                            std::span<const double> times, std::size_t most);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -5,21 +5,21 @@
 
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
-constexpr Eigen::Index kNobody = -1;
+constexpr Eigen::Index kUnassigned = -1;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Prices of rows and columns, none above what a pair costs and equal to it for every pair that is
 /// assigned: as long as that holds, what is assigned is assigned as cheaply as can be.
-struct Market {
-  explicit Market(const Eigen::MatrixXd& costs)
+struct Assignment {
+  explicit Assignment(const Eigen::MatrixXd& costs)
       : cost(&costs),
         row_price(costs.rowwise().minCoeff()),
         column_price(Eigen::VectorXd::Zero(costs.cols())),
-        column_of(static_cast<std::size_t>(costs.rows()), kNobody),
-        row_of(static_cast<std::size_t>(costs.cols()), kNobody) {}
+        column_of(static_cast<std::size_t>(costs.rows()), kUnassigned),
+        row_of(static_cast<std::size_t>(costs.cols()), kUnassigned) {}
 
   double excess(Eigen::Index row, Eigen::Index column) const {
     return (*cost)(row, column) - row_price(row) - column_price(column);
@@ -36,37 +36,37 @@ struct Market {
 };
 
 /// Every row takes its cheapest column where nobody has it.
-void take_what_is_free(Market& market) {
-  for (Eigen::Index row = 0; row < market.cost->rows(); ++row) {
+void assign_cheapest(Assignment& assignment) {
+  for (Eigen::Index row = 0; row < assignment.cost->rows(); ++row) {
     Eigen::Index column = 0;
-    market.cost->row(row).minCoeff(&column);
-    if (market.owner(column) == kNobody) market.assign(row, column);
+    assignment.cost->row(row).minCoeff(&column);
+    if (assignment.owner(column) == kUnassigned) assignment.assign(row, column);
   }
 }
 
 /// The cheapest ways from one row to all columns (Dijkstra), until one ends at a free column.
 struct Search {
-  Search(const Market& market, Eigen::Index start)
-      : distance(static_cast<std::size_t>(market.cost->cols()), kInfinity),
-        previous(distance.size(), kNobody),
+  Search(const Assignment& assignment, Eigen::Index start)
+      : distance(static_cast<std::size_t>(assignment.cost->cols()), kInfinity),
+        previous(distance.size(), kUnassigned),
         done(distance.size(), false) {
-    Eigen::Index row = start, last = kNobody;
+    Eigen::Index row = start, last = kUnassigned;
     double so_far = 0.0;
-    while (row != kNobody) {
-      relax(market, row, last, so_far);
+    while (row != kUnassigned) {
+      relax(assignment, row, last, so_far);
       last = nearest();
       so_far = distance[static_cast<std::size_t>(last)];
       done[static_cast<std::size_t>(last)] = true;
-      row = market.owner(last);
+      row = assignment.owner(last);
     }
     end = last;
     length = so_far;
   }
 
-  void relax(const Market& market, Eigen::Index row, Eigen::Index from, double so_far) {
+  void relax(const Assignment& assignment, Eigen::Index row, Eigen::Index from, double so_far) {
     for (std::size_t c = 0; c < distance.size(); ++c) {
       if (done[c]) continue;
-      const double way = so_far + market.excess(row, static_cast<Eigen::Index>(c));
+      const double way = so_far + assignment.excess(row, static_cast<Eigen::Index>(c));
       if (way >= distance[c]) continue;
       distance[c] = way;
       previous[c] = from;
@@ -81,27 +81,27 @@ struct Search {
   }
 
   std::vector<double> distance;
-  std::vector<Eigen::Index> previous;  ///< column before on the way; kNobody: the start
+  std::vector<Eigen::Index> previous;  ///< column before on the way; kUnassigned: the start
   std::vector<bool> done;
-  Eigen::Index end = kNobody;
+  Eigen::Index end = kUnassigned;
   double length = 0.0;
 };
 
 /// Gives `start` a column by moving the rows on the cheapest way along it.
-void augment(Market& market, Eigen::Index start) {
-  const Search search(market, start);
-  market.row_price(start) += search.length;
+void augment(Assignment& assignment, Eigen::Index start) {
+  const Search search(assignment, start);
+  assignment.row_price(start) += search.length;
   for (std::size_t c = 0; c < search.done.size(); ++c) {
     const auto column = static_cast<Eigen::Index>(c);
     if (!search.done[c] || column == search.end) continue;
     const double shorter = search.length - search.distance[c];
-    market.column_price(column) -= shorter;
-    market.row_price(market.owner(column)) += shorter;
+    assignment.column_price(column) -= shorter;
+    assignment.row_price(assignment.owner(column)) += shorter;
   }
   Eigen::Index column = search.end;
-  for (Eigen::Index before; column != kNobody; column = before) {
+  for (Eigen::Index before; column != kUnassigned; column = before) {
     before = search.previous[static_cast<std::size_t>(column)];
-    market.assign(before == kNobody ? start : market.owner(before), column);
+    assignment.assign(before == kUnassigned ? start : assignment.owner(before), column);
   }
 }
 
@@ -110,12 +110,13 @@ void augment(Market& market, Eigen::Index start) {
 std::vector<std::size_t> cheapest_assignment(const Eigen::MatrixXd& cost) {
   expect(cost.rows() <= cost.cols() && cost.allFinite(), "costs are finite, wide as high");
   if (cost.rows() == 0) return {};
-  Market market(cost);
-  take_what_is_free(market);
+  Assignment assignment(cost);
+  assign_cheapest(assignment);
   for (Eigen::Index row = 0; row < cost.rows(); ++row) {
-    if (market.column_of[static_cast<std::size_t>(row)] == kNobody) augment(market, row);
+    if (assignment.column_of[static_cast<std::size_t>(row)] == kUnassigned)
+      augment(assignment, row);
   }
-  return {market.column_of.begin(), market.column_of.end()};
+  return {assignment.column_of.begin(), assignment.column_of.end()};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

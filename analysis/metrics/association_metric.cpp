@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 template <std::vector<double> AssociationRows::*kCounts>
@@ -77,4 +77,4 @@ Metric association_metric() {
   return {.scores = kAssociationScores, .sections = association_sections};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

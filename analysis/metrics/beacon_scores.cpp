@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
@@ -56,4 +56,4 @@ BeaconScores beacon_scores(std::span<const Eigen::Vector2d> map,
           rms(estimated, surveyed, alignment)};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

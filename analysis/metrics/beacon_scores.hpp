@@ -8,7 +8,7 @@
 #include <limits>
 #include <span>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A surveyed beacon is found where an aligned landmark lies within this distance [m].
 inline constexpr double kFoundWithin = 1.0;
@@ -26,4 +26,4 @@ struct BeaconScores {
 BeaconScores beacon_scores(std::span<const Eigen::Vector2d> map,
                            std::span<const Eigen::Vector2d> beacons, const RigidMotion& alignment);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

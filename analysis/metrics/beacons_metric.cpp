@@ -5,7 +5,7 @@
 #include "analysis/metrics/metric.hpp"
 #include "analysis/statistics/means.hpp"
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 template <double BeaconScores::*kValue>
@@ -39,4 +39,4 @@ Metric map_size_metric() { return {.scan_series = kMapSize}; }
 
 Metric beacons_metric() { return {.scores = kBeaconsScores, .scores_are_numbers = false}; }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -5,7 +5,7 @@
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/output/csv_file.hpp"
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 void bound_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
@@ -49,4 +49,4 @@ Metric bound_metric() {
                      write_bound}}};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -10,21 +10,21 @@
 #include <algorithm>
 #include <array>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 class CalibrationOverRuns final : public MetricSums {
  public:
-  explicit CalibrationOverRuns(const Yardsticks& sticks) : sticks_(&sticks) {}
+  explicit CalibrationOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
   void add(const MeasuredRun& run) override {
-    if (sticks_->calibrates) calibration_.add(run.pits);
+    if (criteria_->calibrates) calibration_.add(run.pits);
   }
   void put(CellAnalysis& cell) override {
-    cell.findings.put(calibration_.result(sticks_->times, sticks_->level));
+    cell.findings.put(calibration_.result(criteria_->times, criteria_->level));
   }
 
  private:
-  const Yardsticks* sticks_;
+  const RunCriteria* criteria_;
   CalibrationSums calibration_;
 };
 
@@ -252,8 +252,8 @@ Figure figure_of(const StudyAnalysis& study, const std::string& by, Figure figur
 std::vector<Figure> calibration_figures(const StudyAnalysis& study) {
   const std::string reading =
       " Bars are shares of runs, 1 is what they should be; bars that all stay in the grey band "
-      "belong to a calibrated filter. A valley: the filter is too sure of itself; a hill: too "
-      "cautious; a slope: it is off to one side.";
+      "belong to a calibrated filter. A valley: the filter is overconfident; a hill: "
+      "conservative; a slope: it is off to one side.";
   Figure gaussian{"calibration", "Does the truth lie where the filter says?", ""};
   gaussian.sentence =
       "Where the truth lies in the Gaussian of the filter at the end of the run, from its lower "
@@ -284,4 +284,4 @@ Metric calibration_metric() {
           .files = {{"calibration.csv", has_calibration, write_calibration}}};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 const NeesResult* CellAnalysis::find_nees(ErrorBlock block, Moments moments) const {
   const auto found = std::ranges::find_if(nees, [&](const NeesResult& candidate) {
@@ -44,4 +44,4 @@ Consistency CellAnalysis::consistency() const {
   return pose == nullptr ? Consistency{} : pose->consistency;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

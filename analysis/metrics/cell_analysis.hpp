@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A NEES series and what it says.
 struct NeesResult {
@@ -100,4 +100,4 @@ struct CellAnalysis {
   Consistency consistency() const;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -6,7 +6,7 @@
 #include <functional>
 #include <map>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::array kComponents = {"x", "y", "heading"};
@@ -63,4 +63,4 @@ std::vector<PitHistogram> CalibrationSums::result(std::span<const double> times,
   return std::move(histograms.found);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// One histogram over runs.
 struct PitHistogram {
@@ -35,4 +35,4 @@ class CalibrationSums {
   std::vector<RunPits> runs_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

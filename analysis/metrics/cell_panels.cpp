@@ -5,7 +5,7 @@
 #include <limits>
 #include <set>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kMostCurves = 8;
@@ -97,4 +97,4 @@ std::vector<Panel> cell_panels(const StudyAnalysis& study, const Panel& blank,
   return panels;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

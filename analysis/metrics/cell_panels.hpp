@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// The label of a cell without its number of particles: "fastslam2_gps" of "fastslam2_m100_gps".
 std::string label_without_particles(const CellAnalysis& cell);
@@ -32,4 +32,4 @@ std::vector<double> scaled(std::vector<double> values, double factor);
 std::vector<Panel> cell_panels(const StudyAnalysis& study, const Panel& blank,
                                const CellValues& values_of);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Fills CellAnalysis::score_intervals, and Consistency::average_interval of every test from its
@@ -38,10 +38,10 @@ std::vector<double> MeanOverTime::mean() const {
   return means;
 }
 
-CellSums::CellSums(const Yardsticks& sticks)
-    : level_(sticks.level), over_time_(all_scan_series().size()) {
+CellSums::CellSums(const RunCriteria& criteria)
+    : level_(criteria.level), over_time_(all_scan_series().size()) {
   for (const Metric& metric : all_metrics()) {
-    if (metric.sums != nullptr) metrics_.push_back(metric.sums(sticks));
+    if (metric.sums != nullptr) metrics_.push_back(metric.sums(criteria));
   }
 }
 
@@ -80,16 +80,16 @@ std::vector<MeasuredRun> slots_for(const Parallel& parallel) {
 }
 
 void add_runs(const RunReader& reader, std::span<const std::size_t> runs, std::size_t particles,
-              const Yardsticks& sticks, const Parallel& parallel, std::vector<MeasuredRun>& slots,
-              CellSums& sums) {
+              const RunCriteria& criteria, const Parallel& parallel,
+              std::vector<MeasuredRun>& slots, CellSums& sums) {
   for (std::size_t first = 0; first < runs.size(); first += slots.size()) {
     const std::size_t here = std::min(slots.size(), runs.size() - first);
     parallel.for_each(here, [&](std::size_t k) {
       reader.read(runs[first + k], slots[k].rows, slots[k].scratch);
-      slots[k].measure(sticks, particles);
+      slots[k].measure(criteria, particles);
     });
     for (std::size_t k = 0; k < here; ++k) sums.add(slots[k]);
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

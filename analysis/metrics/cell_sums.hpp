@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Adds up a number of every scan over runs.
 class MeanOverTime {
@@ -30,8 +30,8 @@ class MeanOverTime {
 /// by a few numbers with every run.
 class CellSums {
  public:
-  /// `sticks` must outlive it.
-  explicit CellSums(const Yardsticks& sticks);
+  /// `criteria` must outlive it.
+  explicit CellSums(const RunCriteria& criteria);
 
   void add(const MeasuredRun& run);
   /// Of the runs so far.
@@ -53,7 +53,7 @@ std::vector<MeasuredRun> slots_for(const Parallel& parallel);
 
 /// Measures runs at once, a slot each, and adds them up in order, whoever was first.
 void add_runs(const RunReader& reader, std::span<const std::size_t> runs, std::size_t particles,
-              const Yardsticks& sticks, const Parallel& parallel, std::vector<MeasuredRun>& slots,
-              CellSums& sums);
+              const RunCriteria& criteria, const Parallel& parallel,
+              std::vector<MeasuredRun>& slots, CellSums& sums);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -13,7 +13,7 @@
 #include <cstdio>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr double kLeastVariance = 1e-9;  // of run averages that are equal: times the dimension
@@ -89,9 +89,9 @@ Interval run_average_bounds(std::span<const double> run_averages, std::size_t di
   for (const double average : run_averages) squares += (average - mean) * (average - mean);
   if (n < 3.0) return {0.0, std::numeric_limits<double>::infinity()};
   const auto d = static_cast<double>(dimension);
-  // Of a right filter the average varies no more than a single scan does; runs that went astray do,
-  // also where they went too far for numbers. Of gamma samples the deviation divided by the mean,
-  // not the deviation itself, is independent of the mean (Lukacs).
+  // Of a consistent filter the average varies no more than a single scan does; runs that went
+  // astray do, also where they went too far for numbers. Of gamma samples the deviation divided by
+  // the mean, not the deviation itself, is independent of the mean (Lukacs).
   const double most = 2.0 * d, estimate = squares / (n - 1.0) * (d / mean) * (d / mean);
   const double variance = (estimate <= most ? std::max(estimate, kLeastVariance * d) : most) / n;
   const double tail = boost::math::cdf(boost::math::normal(), -deviate);
@@ -100,12 +100,12 @@ Interval run_average_bounds(std::span<const double> run_averages, std::size_t di
           boost::math::quantile(boost::math::complement(average, tail))};
 }
 
-double right_median(std::size_t dimension) {
+double expected_median(std::size_t dimension) {
   return boost::math::median(boost::math::chi_squared(static_cast<double>(dimension)));
 }
 
 // The mean of a chi-square between two quantiles, by x f_d(x) = d f_{d+2}(x).
-double right_trimmed(std::size_t dimension) {
+double expected_trimmed(std::size_t dimension) {
   const auto d = static_cast<double>(dimension);
   const boost::math::chi_squared nees(d), weighted(d + 2.0);
   const double low = boost::math::quantile(nees, kTrimmedShare);
@@ -144,4 +144,4 @@ std::string in_words(const Consistency& consistency) {
   return text.data();
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// The average NEES leaves its band for good when it stays above the upper bound for so many
 /// consecutive scans (5 s at 5 Hz); a single scan above it means nothing (STATISTICS 5).
@@ -45,9 +45,10 @@ enum class Verdict {
 };
 
 /// What a NeesSeries says in a few numbers. The verdict is one test at the level of the study: a
-/// right filter is called consistent with that probability, however many scans a run has. It has
-/// two parts that share the probability of a false alarm (WholeRunTest): the average over runs at
-/// every scan against whole_run_bounds, and the average over runs and scans against average_bounds.
+/// consistent filter is called consistent with that probability, however many scans a run has. It
+/// has two parts that share the probability of a false alarm (WholeRunTest): the average over runs
+/// at every scan against whole_run_bounds, and the average over runs and scans against
+/// average_bounds.
 struct Consistency {
   Verdict verdict = Verdict::untested;
   double mean = 0.0;                 ///< of the averages, over scans
@@ -56,7 +57,7 @@ struct Consistency {
   double share_inside = 0.0;         ///< of scans with a valid run; the three add up to 1
   double share_above = 0.0;          ///< pointwise band, as share_below
   double share_below = 0.0;          ///< of scans
-  Interval average_bounds = {};      ///< where the mean of a right filter lies
+  Interval average_bounds = {};      ///< where the mean of a consistent filter lies
   Interval average_interval = {};    ///< where the mean over infinitely many runs lies (bootstrap)
   std::optional<double> above_from;  ///< [s] first scan above whole_run_bounds
   std::optional<double> below_from;  ///< [s] first scan below them
@@ -65,18 +66,19 @@ struct Consistency {
                                           ///< infinity: never; leading moments of the pose only
 };
 
-/// Where the average over runs and scans of a right filter lies: its mean is `dimension`; its
+/// Where the average over runs and scans of a consistent filter lies: its mean is `dimension`; its
 /// deviation that of `run_averages`, in proportion to their mean, but at most what a single scan
 /// has; its shape a gamma (of one scan: the chi-square of nees_bounds()), between the quantiles at
 /// which a normal distribution has `deviate` deviations. Everything where there are fewer than
 /// three runs. Of few runs of nearly constant NEES the estimated deviation is noisier than a
-/// chi-square says: of 20 or 30 the verdict accuses about 6 % of right filters at a level of 95 %.
+/// chi-square says: of 20 or 30 the verdict accuses about 6 % of consistent filters at a level of
+/// 95 %.
 Interval run_average_bounds(std::span<const double> run_averages, std::size_t dimension,
                             double deviate);
 
-/// What a right filter has for Consistency::median and ::trimmed.
-double right_median(std::size_t dimension);
-double right_trimmed(std::size_t dimension);
+/// What a consistent filter has for Consistency::median and ::trimmed.
+double expected_median(std::size_t dimension);
+double expected_trimmed(std::size_t dimension);
 
 /// Index at which the first `length` consecutive true values begin; nullopt = never.
 std::optional<std::size_t> first_lasting(const std::vector<bool>& above, std::size_t length);
@@ -87,4 +89,4 @@ Consistency judge(const NeesSeries& series, std::span<const double> times);
 /// The verdict as one reads it: "consistent", "inconsistent from 4.2 s", ...
 std::string in_words(const Consistency& consistency);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

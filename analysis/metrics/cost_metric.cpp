@@ -4,7 +4,7 @@
 #include "analysis/metrics/metric.hpp"
 #include "analysis/statistics/means.hpp"
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 Metric cost_metric() {
   static constexpr Score kScores[] = {
@@ -16,4 +16,4 @@ Metric cost_metric() {
   return {.scores = kScores};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

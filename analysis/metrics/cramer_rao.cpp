@@ -10,7 +10,7 @@
 #include <cmath>
 #include <complex>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using Complex = std::complex<double>;
@@ -123,9 +123,9 @@ CramerRaoBound none_for(const std::string& reason) {
 
 CramerRaoBound squared_bound(const SimulatedWorld& world, const TruePath& path) {
   // A detection that may be missed brings its information times the chance that it is there.
-  const Eigen::Vector2d sight_variance = world.sigma_sight.cwiseAbs2() / world.detected;
+  const Eigen::Vector2d observation_variance = world.sigma_observation.cwiseAbs2() / world.detected;
   JointBound joint(path.landmarks.size(), world.vehicle, world.sigma_control.cwiseAbs2(),
-                   sight_variance);
+                   observation_variance);
   CramerRaoBound bound;
   std::size_t row = 0;
   for (const std::uint32_t scan_row : path.scan_rows) {
@@ -145,7 +145,7 @@ CramerRaoBound squared_bound(const SimulatedWorld& world, const TruePath& path) 
 CramerRaoBound cramer_rao_bound(const ResultFile& file, const Parallel& parallel) {
   const auto world = simulated_world_of(file);
   if (!world) return none_for("the file does not describe a simulated vehicle and its sensor");
-  if (!(world->sigma_sight.minCoeff() > 0.0)) return none_for("the sensor has no noise");
+  if (!(world->sigma_observation.minCoeff() > 0.0)) return none_for("the sensor has no noise");
   const bool same = world->same_path && !file.has_own_landmarks();
   std::vector<TruePath> paths;
   for (const std::size_t run : first_runs(file, same ? 1 : kBoundRuns)) {
@@ -158,4 +158,4 @@ CramerRaoBound cramer_rao_bound(const ResultFile& file, const Parallel& parallel
   return root_mean(squares);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Runs that the bound is averaged over where every run has a path of its own.
 inline constexpr std::size_t kBoundRuns = 16;
@@ -50,4 +50,4 @@ struct TruePath {
 /// apart all steps turn and advance alike. `missing` where it cannot be computed.
 CramerRaoBound squared_bound(const SimulatedWorld& world, const TruePath& path);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

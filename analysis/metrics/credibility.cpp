@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kMostScans = 100, kMostSamples = 2'000'000;
@@ -59,4 +59,4 @@ Credibility CredibilitySamples::result() const {
   return {absolute / n, sum / n};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// How far the covariance is from the errors that happened (Li, Zhao and Duan 2006): the ratio of
 /// e' P^-1 e to e' S^-1 e, where S is the mean squared error matrix over runs, in decibel. 3 dB is
@@ -16,7 +16,7 @@ namespace montecarta {
 struct Credibility {
   /// [dB] Mean of the ratio's absolute logarithm; 0: right.
   double noncredibility = std::numeric_limits<double>::quiet_NaN();
-  /// [dB] Mean of its logarithm; above 0: too sure, below: too modest.
+  /// [dB] Mean of its logarithm; above 0: overconfident, below: conservative.
   double inclination = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -45,4 +45,4 @@ class CredibilitySamples {
   std::size_t samples_ = 0;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

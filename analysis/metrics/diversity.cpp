@@ -7,7 +7,7 @@
 #include <numeric>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Throws RunError where a parent does not exist.
@@ -99,4 +99,4 @@ const Diversity& DiversityCounter::count(Row ancestor, std::size_t particles,
   return result_;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

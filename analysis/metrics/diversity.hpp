@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// How far back the middle one of the three diversities looks [s] (STATISTICS 14).
 inline constexpr double kDiversityLag = 10.0;
@@ -48,4 +48,4 @@ class DiversityCounter {
   std::vector<std::uint32_t> previous_;  ///< root_ one resampling earlier
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 double mean_square(const std::vector<double>& values) {
@@ -23,4 +23,4 @@ Efficiency efficiency_of(const CellAnalysis& cell, const CramerRaoBound& bound) 
           .map = bound.map / std::sqrt(mean_square(cell.scores.column("landmark_rms")))};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

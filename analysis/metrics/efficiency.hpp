@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 struct CellAnalysis;
 
@@ -26,4 +26,4 @@ Efficiency efficiency_of(const CellAnalysis& cell, const CramerRaoBound& bound);
 /// What the bound and efficiency say, or why there is none.
 std::vector<std::string> bound_notes(const CramerRaoBound& bound);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

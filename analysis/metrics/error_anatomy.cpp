@@ -12,7 +12,7 @@
 #include <cmath>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr double kFewestRunsOfMoments = 4.0;
@@ -71,7 +71,7 @@ class OverScans {
 
 // Bartlett's decomposition: n times the mean squared error of whitened errors is T T', T lower
 // triangular of normals below roots of chi-squares.
-double right_worst_ratio(std::size_t runs, double level) {
+double expected_worst_ratio(std::size_t runs, double level) {
   if (runs < 3) return std::numeric_limits<double>::infinity();
   const auto n = static_cast<double>(runs);
   std::vector<double> ratios;
@@ -125,4 +125,4 @@ ErrorAnatomy ErrorMoments::result() const {
   return anatomy;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

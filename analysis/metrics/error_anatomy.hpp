@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Names of the components of an error in the frame of the true vehicle.
 inline constexpr std::array kErrorComponents = {"forward", "left", "heading"};
@@ -31,7 +31,7 @@ struct ErrorAnatomy {
 
 /// What mean_worst_ratio at one scan is below with probability `level` if a filter is right: the
 /// largest of three ratios is above 1 even then.
-double right_worst_ratio(std::size_t runs, double level);
+double expected_worst_ratio(std::size_t runs, double level);
 
 /// Adds up the moments of errors and the covariances over runs.
 class ErrorMoments {
@@ -52,4 +52,4 @@ class ErrorMoments {
   std::vector<Sums> scans_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -13,13 +13,13 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 class ErrorAnatomyOverRuns final : public MetricSums {
  public:
-  explicit ErrorAnatomyOverRuns(const Yardsticks& sticks)
-      : credibility_(sticks.times.size()), moments_(sticks.times.size()) {}
+  explicit ErrorAnatomyOverRuns(const RunCriteria& criteria)
+      : credibility_(criteria.times.size()), moments_(criteria.times.size()) {}
   void add(const MeasuredRun& run) override {
     const RunMetrics& metrics = run.metrics;
     if (metrics.covariances().empty()) return;
@@ -84,7 +84,7 @@ std::vector<std::string> why_row(const CellAnalysis& cell, double level) {
   const double share = cell.get<LineageSummary>().monte_carlo_share;
   return {cell.label,
           readable(anatomy.mean_worst_ratio),
-          readable(right_worst_ratio(cell.complete, level)),
+          readable(expected_worst_ratio(cell.complete, level)),
           direction_text(anatomy),
           percent(anatomy.mean_bias_share),
           decibel(credibility.noncredibility),
@@ -96,7 +96,7 @@ TextTable why_table(const StudyAnalysis& study) {
   TextTable table;
   table.headings = {{"cell", Align::left},
                     {"worst variance ratio"},
-                    {"right below"},
+                    {"expected below"},
                     {"worst direction"},
                     {"bias"},
                     {"noncredibility"},
@@ -112,26 +112,29 @@ std::vector<std::string> why_notes(const StudyAnalysis& study) {
   return {
       "The worst variance ratio is how many times larger the squared errors are than the filter's "
       "variance, in the direction where that is worst (seen from the true vehicle: forward, left, "
-      "heading), geometric mean over scans; of a right filter it is below 'right below' at " +
+      "heading), geometric mean over scans; of a consistent filter it is below 'expected below' "
+      "at " +
           level_text(study.level) +
           " of scans. The direction says which component that is, in units of its deviation.",
       "'bias' is the part of ANEES that the mean error makes: what is left is scatter that the "
-      "filter does not know of. Bias calls for a better model, scatter for more honest noise.",
+      "filter does not know of. Bias calls for a better model, scatter for a noise model that "
+      "matches.",
       "Noncredibility is how far, up or down, covariances are from the errors that happened (3 dB: "
       "a "
-      "factor of 2 in variance); the inclination has a sign: above 0 too sure, below 0 too modest.",
+      "factor of 2 in variance); the inclination has a sign: above 0 overconfident, below 0 "
+      "conservative.",
       "'Monte Carlo share' is the part of the squared position error that comes from the particles "
       "being few, by how far their families differ; it needs record.columns with ancestry and "
       "particles."};
 }
 
-/// Where the worst ratio of a right filter lies, by the cell with the fewest runs.
-Band right_ratios(const StudyAnalysis& study) {
+/// Where the worst ratio of a consistent filter lies, by the cell with the fewest runs.
+Band expected_ratios(const StudyAnalysis& study) {
   std::size_t fewest = study.runs_here;
   for (const CellAnalysis& cell : study.cells) {
     if (cell.find<ErrorAnatomy>()) fewest = std::min(fewest, cell.complete);
   }
-  return {"right filter", 1.0, right_worst_ratio(fewest, study.level)};
+  return {"consistent filter", 1.0, expected_worst_ratio(fewest, study.level)};
 }
 
 Figure why_figure(const StudyAnalysis& study) {
@@ -148,7 +151,7 @@ Figure why_figure(const StudyAnalysis& study) {
   };
   std::vector<Panel> panels = cell_panels(
       study, {"worst_variance_ratio", "worst variance ratio", {}, {}, Scale::automatic}, ratio);
-  for (Panel& panel : panels) panel.bands.push_back(right_ratios(study));
+  for (Panel& panel : panels) panel.bands.push_back(expected_ratios(study));
   for (Panel& panel :
        cell_panels(study, {"bias_share", "bias in ANEES [%]", {}, {}, Scale::percent}, bias)) {
     panels.push_back(std::move(panel));
@@ -180,4 +183,4 @@ Metric error_anatomy_metric() {
           .figures = error_anatomy_figures};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 double mean_of_roots(const std::vector<double>& squares) {
@@ -53,7 +53,7 @@ Panel error_panel(const StudyAnalysis& study, const std::string& name, const std
                   const CellValues& values_of, const std::vector<double>& bound) {
   Panel panel{name, label, cell_curves(study, values_of), {}, Scale::from_zero};
   if (!bound.empty() && !panel.curves.empty()) {
-    panel.curves.push_back({"Cramer-Rao bound", kYardstickStyle, bound});
+    panel.curves.push_back({"Cramer-Rao bound", kReferenceStyle, bound});
   }
   return panel;
 }
@@ -90,4 +90,4 @@ Metric errors_metric() {
   return {.scores = kErrorsScores, .scan_series = kErrorsSeries, .figures = errors_figures};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

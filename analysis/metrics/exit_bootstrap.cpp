@@ -9,7 +9,7 @@
 #include <limits>
 #include <map>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr Eigen::Index kReplicates = 400, kBatch = 16;
@@ -90,4 +90,4 @@ Interval middle_of(std::vector<double> values, double level) {
   return {values[low], values[values.size() - 1 - low]};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

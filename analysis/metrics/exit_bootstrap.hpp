@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Averages of a NEES over runs that are drawn again and again: every run counts in every replicate
 /// as often as a Poisson variable of mean 1 says (Hanley and MacGibbon 2006), so that runs need not
@@ -47,4 +47,4 @@ class ExitBootstrap {
 /// Where a share `level` of `values` lies, both tails equal; infinity is a value like others.
 Interval middle_of(std::vector<double> values, double level);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

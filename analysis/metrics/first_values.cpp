@@ -7,7 +7,7 @@
 
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 std::vector<double> first_values(const ResultFile& file, const StoredCell& cell, const Score& score,
                                  std::size_t runs, const Parallel& parallel) {
@@ -16,10 +16,10 @@ std::vector<double> first_values(const ResultFile& file, const StoredCell& cell,
   for (std::size_t i = 0; i < runs; ++i) {
     if (status[i] == RunStatus::complete) complete.push_back(i);
   }
-  const Yardsticks sticks = yardsticks_of(file, 0.95);
+  const RunCriteria criteria = criteria_of(file, 0.95);
   std::vector<MeasuredRun> slots = slots_for(parallel);
-  CellSums sums(sticks);
-  add_runs(RunReader(file, cell), complete, cell.particles, sticks, parallel, slots, sums);
+  CellSums sums(criteria);
+  add_runs(RunReader(file, cell), complete, cell.particles, criteria, parallel, slots, sums);
   return sums.scores().column(score.name);
 }
 
@@ -30,4 +30,4 @@ double half_width(const std::vector<double>& values, double level) {
   return t_quantile(values.size(), level) * sums.result().standard_error();
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A score of each complete run among the first `runs` that a file holds of a cell, in their order;
 /// the file may be unfinished. The same for any number of threads.
@@ -19,4 +19,4 @@ std::vector<double> first_values(const ResultFile& file, const StoredCell& cell,
 /// `level`, by Student's t; infinite of fewer than two values, NaN where one is.
 double half_width(const std::vector<double>& values, double level);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

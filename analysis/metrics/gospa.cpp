@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using PointSpan = std::span<const Eigen::Vector2d>;
@@ -47,4 +47,4 @@ Gospa gospa(PointSpan map, PointSpan truth, double cutoff) {
   return result;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

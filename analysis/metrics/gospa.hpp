@@ -5,7 +5,7 @@
 
 #include <span>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A landmark farther than this [m] from where it is believed to be counts as missed and invented.
 inline constexpr double kGospaCutoff = 5.0;
@@ -24,4 +24,4 @@ struct Gospa {
 Gospa gospa(std::span<const Eigen::Vector2d> map, std::span<const Eigen::Vector2d> truth,
             double cutoff = kGospaCutoff);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Sums over pairs of scans `lag` apart that both have innovations.
@@ -93,4 +93,4 @@ Innovations InnovationSums::result(double level) const {
   return result;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,14 +8,14 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// How many scans back innovations are compared.
 inline constexpr std::size_t kInnovationLags = 20;
 
-/// What the normalised innovations squared (NIS) say: a test that needs no truth. A right filter
-/// has 1 for each degree of freedom, and one scan's tells nothing of the next one's (they are
-/// white).
+/// What the normalised innovations squared (NIS) say: a test that needs no truth. A consistent
+/// filter has 1 for each degree of freedom, and one scan's tells nothing of the next one's (they
+/// are white).
 struct Innovations {
   std::vector<double> average;   ///< {scan} NIS over degrees of freedom, over runs; NaN: none
   std::vector<Interval> bounds;  ///< {scan} of the average (chi-square)
@@ -47,4 +47,4 @@ class InnovationSums {
   std::vector<double> deviations_;    ///< {scan} of the run at hand; NaN without detections
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -13,13 +13,13 @@
 #include <numeric>
 #include <set>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 class InnovationsOverRuns final : public MetricSums {
  public:
-  explicit InnovationsOverRuns(const Yardsticks& sticks)
-      : level_(sticks.level), innovations_(sticks.times.size()) {}
+  explicit InnovationsOverRuns(const RunCriteria& criteria)
+      : level_(criteria.level), innovations_(criteria.times.size()) {}
   void add(const MeasuredRun& run) override {
     if (!run.rows.nis.empty()) innovations_.add(run.rows.nis, run.rows.nis_dof);
   }
@@ -88,7 +88,8 @@ std::vector<std::string> innovation_notes() {
       "The NIS compares what the filter measured with what it expected to measure, and needs no "
       "truth: 1 per component means it expects its measurements rightly, more that they surprise "
       "it. "
-      "Surprises of a right filter are 'white': one says nothing of the next. The correlation over "
+      "Surprises of a consistent filter are 'white': one says nothing of the next. The correlation "
+      "over "
       "scans that lie up to " +
       std::to_string(kInnovationLags) +
       " apart stays below the bound then. A filter can pass this test and still not know its "
@@ -167,4 +168,4 @@ Metric innovations_metric() {
           .figures = innovations_figures};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

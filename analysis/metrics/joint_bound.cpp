@@ -7,7 +7,7 @@
 
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 void mirror_lower(Eigen::Matrix3d& P) { P.triangularView<Eigen::StrictlyUpper>() = P.transpose(); }
@@ -16,10 +16,10 @@ void mirror_lower(Eigen::Matrix3d& P) { P.triangularView<Eigen::StrictlyUpper>()
 
 JointBound::JointBound(std::size_t landmarks, const Vehicle& vehicle,
                        const Eigen::Vector2d& control_variance,
-                       const Eigen::Vector2d& sight_variance)
+                       const Eigen::Vector2d& observation_variance)
     : vehicle_(vehicle),
       sigma_control_(control_variance.cwiseSqrt()),
-      sight_variance_(sight_variance),
+      observation_variance_(observation_variance),
       row_(landmarks, 0) {
   const auto rows = 3 + 2 * static_cast<Eigen::Index>(landmarks);
   joint_.setZero(rows, rows);
@@ -66,28 +66,29 @@ Eigen::VectorXd JointBound::column(Eigen::Index j) const {
   return column;
 }
 
-/// P <- P - P H' S^-1 H P for all sights of a scan at once, with S = L L' and W = P H' L^-T.
+/// P <- P - P H' S^-1 H P for all observations of a scan at once, with S = L L' and W = P H' L^-T.
 bool JointBound::correct(const Pose& pose, std::span<const Seen> landmarks) {
   const auto m = 2 * static_cast<Eigen::Index>(landmarks.size());
   Eigen::MatrixXd gain(size_, m);  // P H'
   Eigen::MatrixXd S(m, m);
-  std::vector<LinearisedSight<double>> sights;
+  std::vector<LinearisedObservation<double>> observations;
   for (const Seen& landmark : landmarks) {
-    const auto i = 2 * static_cast<Eigen::Index>(sights.size());
-    const auto& sight = sights.emplace_back(linearised_sight(pose, landmark.point));
+    const auto i = 2 * static_cast<Eigen::Index>(observations.size());
+    const auto& observation =
+        observations.emplace_back(linearised_observation(pose, landmark.point));
     const Eigen::Index row = row_of(landmark.identity);
-    const Matrix23 Hx = pose_jacobian(sight);
-    const Eigen::Matrix2d Hf = landmark_jacobian(sight);
+    const Matrix23 Hx = pose_jacobian(observation);
+    const Eigen::Matrix2d Hf = landmark_jacobian(observation);
     gain.middleCols<2>(i).noalias() = joint_.block(0, 0, size_, 3) * Hx.transpose();
     gain.middleCols<2>(i) += column(row) * Hf.col(0).transpose();
     gain.middleCols<2>(i) += column(row + 1) * Hf.col(1).transpose();
   }
-  for (std::size_t k = 0; k < sights.size(); ++k) {
+  for (std::size_t k = 0; k < observations.size(); ++k) {
     const auto i = 2 * static_cast<Eigen::Index>(k);
     S.middleRows<2>(i) =
-        pose_jacobian(sights[k]) * gain.topRows<3>() +
-        landmark_jacobian(sights[k]) * gain.middleRows<2>(row_of(landmarks[k].identity));
-    S.diagonal().segment<2>(i) += sight_variance_;
+        pose_jacobian(observations[k]) * gain.topRows<3>() +
+        landmark_jacobian(observations[k]) * gain.middleRows<2>(row_of(landmarks[k].identity));
+    S.diagonal().segment<2>(i) += observation_variance_;
   }
   const Eigen::LLT<Eigen::MatrixXd> factor(S);
   if (factor.info() != Eigen::Success) return false;
@@ -100,13 +101,13 @@ bool JointBound::correct(const Pose& pose, std::span<const Seen> landmarks) {
 }
 
 void JointBound::append(const Pose& pose, const Seen& landmark) {
-  const auto placed = linearised_place(pose, predicted_sight(pose, landmark.point));
+  const auto placed = linearised_place(pose, predicted_observation(pose, landmark.point));
   const Matrix23 Gx = pose_jacobian(placed);
-  const Eigen::Matrix2d Gz = sight_jacobian(placed);
+  const Eigen::Matrix2d Gz = observation_jacobian(placed);
   row_of(landmark.identity) = size_;
   joint_.block(size_, 0, 2, size_).noalias() = Gx * joint_.block(0, 0, size_, 3).transpose();
   joint_.block<2, 2>(size_, size_) =
-      Gx * pose_ * Gx.transpose() + Gz * sight_variance_.asDiagonal() * Gz.transpose();
+      Gx * pose_ * Gx.transpose() + Gz * observation_variance_.asDiagonal() * Gz.transpose();
   size_ += 2;
 }
 
@@ -121,4 +122,4 @@ Eigen::MatrixXd JointBound::covariance() const {
   return P;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -12,16 +12,16 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// The Cramer-Rao bound on pose and landmarks together, as a covariance that is carried along a
 /// known path: the recursion of a Kalman filter with all Jacobians at the truth, and nothing known
-/// of a landmark before its first sight. The pose is known exactly at the start.
+/// of a landmark before its first observation. The pose is known exactly at the start.
 class JointBound {
  public:
   /// Room for all `landmarks`; nothing is allocated later. `control_variance`: (speed, steering).
   JointBound(std::size_t landmarks, const Vehicle& vehicle, const Eigen::Vector2d& control_variance,
-             const Eigen::Vector2d& sight_variance);
+             const Eigen::Vector2d& observation_variance);
 
   /// One control step from the true `pose`; returns where it leads.
   Pose move(const Pose& pose, const Control& control, double duration);
@@ -38,7 +38,7 @@ class JointBound {
   std::size_t seen() const { return static_cast<std::size_t>(size_ - 3) / 2; }
   /// [m^2] Mean of the squared position error over the landmarks seen; NaN where none is.
   double mean_map_variance() const;
-  /// All that is known, pose first, landmarks in the order of their first sight.
+  /// All that is known, pose first, landmarks in the order of their first observation.
   Eigen::MatrixXd covariance() const;
 
  private:
@@ -50,7 +50,7 @@ class JointBound {
 
   Vehicle vehicle_;
   Eigen::Vector2d sigma_control_;
-  Eigen::Vector2d sight_variance_;
+  Eigen::Vector2d observation_variance_;
   Eigen::Matrix3d pose_ = Eigen::Matrix3d::Zero();  ///< symmetric
   double pending_x_heading_ = 0.0;                  ///< [m/rad] of Fx since the last scan
   double pending_y_heading_ = 0.0;                  ///< [m/rad]
@@ -59,4 +59,4 @@ class JointBound {
   std::vector<Eigen::Index> row_;                   ///< of each landmark; 0: never seen
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -85,7 +85,7 @@ void JointNeesSums::add(std::span<const JointScore> run) {
 }
 
 /// The sum over runs is chi-square with the sum of the dimensions; each of K rows is tested at
-/// 1 - (1 - level) / K, so that a right filter passes all with probability `level` at least.
+/// 1 - (1 - level) / K, so that a consistent filter passes all with probability `level` at least.
 JointConsistency JointNeesSums::result(double level, bool identities_known) const {
   JointConsistency found;
   found.stored = n_runs_ > 0;
@@ -117,4 +117,4 @@ JointConsistency JointNeesSums::result(double level, bool identities_known) cons
   return found;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Normalised error squared of pose and map together, of one run at one scan.
 struct JointScore {
@@ -59,4 +59,4 @@ class JointNeesSums {
   std::uint64_t n_runs_ = 0;  ///< with joint estimates
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr Score kJointNeesScores[] = {
@@ -29,14 +29,14 @@ constexpr Score kJointNeesScores[] = {
 
 class JointNeesOverRuns final : public MetricSums {
  public:
-  explicit JointNeesOverRuns(const Yardsticks& sticks) : sticks_(&sticks) {}
+  explicit JointNeesOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
   void add(const MeasuredRun& run) override { joint_.add(run.joint); }
   void put(CellAnalysis& cell) override {
-    cell.findings.put(joint_.result(sticks_->level, sticks_->map.identities_known));
+    cell.findings.put(joint_.result(criteria_->level, criteria_->map.identities_known));
   }
 
  private:
-  const Yardsticks* sticks_;
+  const RunCriteria* criteria_;
   JointNeesSums joint_;
 };
 
@@ -108,8 +108,8 @@ std::vector<std::string> joint_notes(const StudyAnalysis& study) {
     notes.push_back(
         "Pose and map together: the squared error of the vehicle and of all landmarks at once, "
         "measured by the covariance that the filter has of them all, for each component (1 is "
-        "right, more is too sure of itself). It also sees wrong correlations, which no part by "
-        "itself shows. 'Right' is where a right filter stays at all " +
+        "right, more is overconfident). It also sees wrong correlations, which no part by "
+        "itself shows. 'Right' is where a consistent filter stays at all " +
         std::to_string(study.joint_times.size()) + " stored scans with a probability of " +
         percent(study.level) + " at least.");
   }
@@ -154,12 +154,12 @@ void add_band(const CellAnalysis& cell, double level, bool is_first, Panel& pane
     upper.push_back(bounds.upper);
   }
   panel.curves.push_back(
-      {is_first ? level_text(level) + " band" : "", kYardstickStyle, std::move(lower)});
-  panel.curves.push_back({"", kYardstickStyle, std::move(upper)});
+      {is_first ? level_text(level) + " band" : "", kReferenceStyle, std::move(lower)});
+  panel.curves.push_back({"", kReferenceStyle, std::move(upper)});
 }
 
 /// NEES of pose and map together at the scans at which joint estimates are stored, with the band of
-/// a right filter. Without data where no cell was judged by them.
+/// a consistent filter. Without data where no cell was judged by them.
 Figure joint_figure(const StudyAnalysis& study) {
   Figure figure{"joint_nees", "Is the filter right about pose and map together?", ""};
   figure.sentence =
@@ -201,4 +201,4 @@ Metric joint_nees_metric() {
           .files = {{"joint_nees.csv", has_joint_nees, write_joint_nees}}};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

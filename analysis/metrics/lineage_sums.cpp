@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 void LineageSums::Mean::add(double value) {
   if (std::isnan(value)) return;
   sum += value;
@@ -32,4 +32,4 @@ LineageSummary LineageSums::result() const {
   return summary;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Ancestries over runs (Lineages).
 struct LineageSummary {
@@ -37,4 +37,4 @@ class LineageSums {
   Mean coalescence_, coalesced_, variance_, squared_error_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

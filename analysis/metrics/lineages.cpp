@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kMostScansOfLineages = 32;
@@ -89,4 +89,4 @@ Lineages LineageWalker::walk(const RunRows& rows, std::size_t particles,
   return lineages;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

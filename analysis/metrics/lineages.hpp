@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// How far back [s] distinct ancestors are counted.
 inline constexpr std::array kLineageLags = {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0};
@@ -49,4 +49,4 @@ class LineageWalker {
   std::vector<double> families_;         ///< {ancestor, 2} weighted deviation of its descendants
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -7,7 +7,7 @@
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/means.hpp"
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 template <double Lineages::*kValue>
@@ -25,7 +25,7 @@ constexpr Score kLineagesScores[] = {
 
 class LineagesOverRuns final : public MetricSums {
  public:
-  explicit LineagesOverRuns(const Yardsticks& /*sticks*/) {}
+  explicit LineagesOverRuns(const RunCriteria& /*criteria*/) {}
   void add(const MeasuredRun& run) override {
     if (run.metrics.lineages() != nullptr) lineages_.add(*run.metrics.lineages());
   }
@@ -58,4 +58,4 @@ Metric lineages_metric() {
           .add_numbers = lineages_numbers};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

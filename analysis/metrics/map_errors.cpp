@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 double MapErrors::share_inside() const {
   double inside = 0.0, tested = 0.0;
   for (const LandmarkErrors& one : landmarks) {
@@ -68,4 +68,4 @@ MapErrors MapErrorSums::result(double level, bool known) const {
   return errors;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

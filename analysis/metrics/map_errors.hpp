@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// One landmark over the runs that have it in their map.
 struct LandmarkErrors {
@@ -51,4 +51,4 @@ class MapErrorSums {
   std::size_t n_runs_ = 0, n_maps_ = 0, undefined_ = 0;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -15,7 +15,7 @@
 #include <string>
 #include <string_view>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 template <double MapScores::*kValue>
@@ -39,14 +39,14 @@ constexpr Score kMapScores[] = {
 
 class MapOverRuns final : public MetricSums {
  public:
-  explicit MapOverRuns(const Yardsticks& sticks) : sticks_(&sticks) {}
+  explicit MapOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
   void add(const MeasuredRun& run) override { map_.add(run.map); }
   void put(CellAnalysis& cell) override {
-    cell.findings.put(map_.result(sticks_->level, sticks_->map.known));
+    cell.findings.put(map_.result(criteria_->level, criteria_->map.known));
   }
 
  private:
-  const Yardsticks* sticks_;
+  const RunCriteria* criteria_;
   MapErrorSums map_;
 };
 
@@ -108,7 +108,8 @@ std::vector<std::string> map_error_notes(const StudyAnalysis& study) {
     notes.push_back(
         "The map after the last scan: landmark RMSE is how far landmarks are from where they "
         "stand; "
-        "landmark NEES compares that with what the filter expected (2 is right, more is too sure "
+        "landmark NEES compares that with what the filter expected (2 is right, more is "
+        "overconfident "
         "of "
         "itself), and 'landmarks inside' is the share of landmarks whose NEES over runs is in "
         "its " +
@@ -173,4 +174,4 @@ Metric map_metric() {
           .files = {{"landmarks.csv", has_map_errors, write_landmarks}}};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

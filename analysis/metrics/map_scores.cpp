@@ -5,17 +5,17 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// The landmarks that came into view on the way.
-std::vector<Eigen::Vector2d> seen_along(std::span<const double> path, const MapYardstick& sticks,
+std::vector<Eigen::Vector2d> seen_along(std::span<const double> path, const MapCriteria& criteria,
                                         std::span<const Eigen::Vector2d> landmarks) {
-  if (!sticks.view) return {landmarks.begin(), landmarks.end()};
+  if (!criteria.view) return {landmarks.begin(), landmarks.end()};
   std::vector<bool> seen(landmarks.size());
   for (std::size_t s = 0; s + 2 < path.size(); s += 3) {
-    sticks.view->look({path[s], path[s + 1], path[s + 2]}, landmarks,
-                      [&](const InView& one) { seen[one.landmark] = true; });
+    criteria.view->look({path[s], path[s + 1], path[s + 2]}, landmarks,
+                        [&](const InView& one) { seen[one.landmark] = true; });
   }
   std::vector<Eigen::Vector2d> found;
   for (std::size_t l = 0; l < seen.size(); ++l) {
@@ -55,12 +55,12 @@ void score_by_identity(const FinalMap& map, std::span<const Eigen::Vector2d> lan
 
 }  // namespace
 
-MapScores map_scores(const FinalMap& map, const MapYardstick& sticks,
+MapScores map_scores(const FinalMap& map, const MapCriteria& criteria,
                      std::span<const Eigen::Vector2d> landmarks, std::span<const double> path) {
   MapScores scores;
-  scores.gospa = gospa(map.places(), seen_along(path, sticks, landmarks));
-  if (sticks.identities_known) score_by_identity(map, landmarks, scores);
+  scores.gospa = gospa(map.places(), seen_along(path, criteria, landmarks));
+  if (criteria.identities_known) score_by_identity(map, landmarks, scores);
   return scores;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -10,10 +10,10 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// What the final maps of a study are judged by.
-struct MapYardstick {
+struct MapCriteria {
   bool known = false;               ///< whether anybody knows where the landmarks really are
   std::optional<FieldOfView> view;  ///< of the sensor; without it all count as seen
   bool identities_known = false;    ///< rows of a map are identities of the world
@@ -37,7 +37,7 @@ struct MapScores {
 };
 
 /// `landmarks`: [m] where they really are. `path`: true poses at scans {scan, 3} [m, m, rad].
-MapScores map_scores(const FinalMap& map, const MapYardstick& sticks,
+MapScores map_scores(const FinalMap& map, const MapCriteria& criteria,
                      std::span<const Eigen::Vector2d> landmarks, std::span<const double> path);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 bool says(const ResultFile& file, const char* setting, const char* value) {
@@ -18,58 +18,58 @@ bool noise_is_matched(const ResultFile& file) {
 }
 
 /// Of a drive whose truth is known; a recorded one is judged by its beacons.
-MapYardstick map_yardstick_of(const ResultFile& file) {
-  MapYardstick sticks;
-  if (!file.has_truth()) return sticks;
-  sticks.known = !file.landmarks().empty();
-  if (const auto world = simulated_world_of(file)) sticks.view = world->view;
-  sticks.identities_known = says(file, "association.kind", "known");
-  return sticks;
+MapCriteria map_criteria_of(const ResultFile& file) {
+  MapCriteria criteria;
+  if (!file.has_truth()) return criteria;
+  criteria.known = !file.landmarks().empty();
+  if (const auto world = simulated_world_of(file)) criteria.view = world->view;
+  criteria.identities_known = says(file, "association.kind", "known");
+  return criteria;
 }
 
 }  // namespace
 
-Yardsticks yardsticks_of(const ResultFile& file, double level) {
+RunCriteria criteria_of(const ResultFile& file, double level) {
   const std::size_t scans = file.has_truth() ? file.scan_times().size() : 0;
-  Yardsticks sticks{.times = file.scan_times(),
-                    .level = level,
-                    .references = {},
-                    .beacons = {},
-                    .map = map_yardstick_of(file),
-                    .joint_scans = file.description().joint_scans,
-                    .walks = BandWalks(scans),
-                    .calibrates = noise_is_matched(file)};
+  RunCriteria criteria{.times = file.scan_times(),
+                       .level = level,
+                       .references = {},
+                       .beacons = {},
+                       .map = map_criteria_of(file),
+                       .joint_scans = file.description().joint_scans,
+                       .walks = BandWalks(scans),
+                       .calibrates = noise_is_matched(file)};
   for (const ReferencePath& path : file.references()) {
-    sticks.references.emplace_back(path, file.times(), file.description().start);
+    criteria.references.emplace_back(path, file.times(), file.description().start);
   }
-  for (const auto& [x, y] : file.landmarks()) sticks.beacons.emplace_back(x, y);
-  return sticks;
+  for (const auto& [x, y] : file.landmarks()) criteria.beacons.emplace_back(x, y);
+  return criteria;
 }
 
-void MeasuredRun::measure(const Yardsticks& sticks, std::size_t particles) {
-  metrics.measure(rows, particles, sticks.times);
+void MeasuredRun::measure(const RunCriteria& criteria, std::size_t particles) {
+  metrics.measure(rows, particles, criteria.times);
   references.clear();
-  for (const PathAtFixes& fixes : sticks.references) {
+  for (const PathAtFixes& fixes : criteria.references) {
     references.push_back(measure_against(fixes, rows.path));
   }
   map.reset();
-  if (sticks.map.known && rows.final_map) {
-    map = map_scores(*rows.final_map, sticks.map, rows.landmarks, rows.truth);
+  if (criteria.map.known && rows.final_map) {
+    map = map_scores(*rows.final_map, criteria.map, rows.landmarks, rows.truth);
   }
-  has_identities = sticks.map.identities_known;
+  has_identities = criteria.map.identities_known;
   joint.clear();
   if (!rows.truth.empty()) {
-    joint = joint_scores(rows.joint, sticks.joint_scans, rows.truth, rows.landmarks);
+    joint = joint_scores(rows.joint, criteria.joint_scans, rows.truth, rows.landmarks);
   }
-  if (sticks.calibrates)
+  if (criteria.calibrates)
     pits = pits_of(rows, rows.run,
-                   sticks.map.identities_known ? std::span<const Eigen::Vector2d>(rows.landmarks)
-                                               : std::span<const Eigen::Vector2d>());
+                   criteria.map.identities_known ? std::span<const Eigen::Vector2d>(rows.landmarks)
+                                                 : std::span<const Eigen::Vector2d>());
   beacons.reset();
-  if (sticks.beacons.empty() || !rows.final_map) return;
-  if (references.empty() && !rows.truth.empty()) return;  // the truth is the better yardstick
+  if (criteria.beacons.empty() || !rows.final_map) return;
+  if (references.empty() && !rows.truth.empty()) return;  // the truth is the better reference
   const RigidMotion alignment = references.empty() ? RigidMotion() : references.front().alignment;
-  beacons = beacon_scores(rows.final_map->places(), sticks.beacons, alignment);
+  beacons = beacon_scores(rows.final_map->places(), criteria.beacons, alignment);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -17,21 +17,21 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// What runs are measured by, common to all cells of a file, which must outlive it.
-struct Yardsticks {
+struct RunCriteria {
   std::span<const double> times;  ///< [s] of the scans
   double level = 0.95;            ///< of NEES bounds
   std::vector<PathAtFixes> references;
   std::vector<Eigen::Vector2d> beacons;        ///< [m]
-  MapYardstick map;                            ///< of a simulation
+  MapCriteria map;                             ///< of a simulation
   std::span<const std::uint32_t> joint_scans;  ///< of joint estimates
   BandWalks walks;                             ///< of as many scans where there is a truth
   bool calibrates = false;  ///< whether calibration is judged: where noise is matched
 };
 
-Yardsticks yardsticks_of(const ResultFile& file, double level);
+RunCriteria criteria_of(const ResultFile& file, double level);
 
 /// One run being read and measured while others are. Keeps its memory from run to run.
 struct MeasuredRun {
@@ -46,7 +46,7 @@ struct MeasuredRun {
   RunPits pits;                         ///< where calibration is judged
 
   /// Of `rows` of a complete run.
-  void measure(const Yardsticks& sticks, std::size_t particles);
+  void measure(const RunCriteria& criteria, std::size_t particles);
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -10,12 +10,12 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 struct CellAnalysis;
 struct MeasuredRun;
 struct StudyAnalysis;
-struct Yardsticks;
+struct RunCriteria;
 
 /// Adds up the complete runs of one cell in the order of the calls.
 class MetricSums {
@@ -35,8 +35,8 @@ struct TableFile {
 };
 
 template <class Sums>
-std::unique_ptr<MetricSums> make_sums(const Yardsticks& sticks) {
-  return std::make_unique<Sums>(sticks);
+std::unique_ptr<MetricSums> make_sums(const RunCriteria& criteria) {
+  return std::make_unique<Sums>(criteria);
 }
 
 /// What a metric contributes; what it has nothing of stays empty.
@@ -45,8 +45,8 @@ struct Metric {
   std::span<const ScanSeries> scan_series = {};  ///< of every scan of a run
   /// Whether means of the scores are numbers of every cell, in cells.csv and HDF5.
   bool scores_are_numbers = true;
-  /// For more than means of scores, e.g. make_sums<MySums>; `sticks` outlive the sums.
-  std::unique_ptr<MetricSums> (*sums)(const Yardsticks& sticks) = nullptr;
+  /// For more than means of scores, e.g. make_sums<MySums>; `criteria` outlive the sums.
+  std::unique_ptr<MetricSums> (*sums)(const RunCriteria& criteria) = nullptr;
   /// Adds single numbers: the same names for every cell, NaN where one does not apply.
   void (*add_numbers)(const CellAnalysis& cell, std::vector<NamedNumber>& all) = nullptr;
   /// Adds numbers of every scan; what does not apply is absent.
@@ -69,4 +69,4 @@ std::vector<NamedSeries> series_of(const CellAnalysis& cell);
 std::vector<Section> sections_of(const StudyAnalysis& study);
 std::vector<Figure> figures_of(const StudyAnalysis& study);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -9,7 +9,7 @@
 #include <regex>
 #include <string_view>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 double factor_of(const StoredCell& cell, std::string_view name) {
@@ -79,4 +79,4 @@ std::vector<MismatchGrid> mismatch_grids(const StudyAnalysis& study) {
   return grids;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 struct StudyAnalysis;
 
@@ -34,4 +34,4 @@ struct MismatchGrid {
 /// Every family with at least two factors of each kind, in the order of the study.
 std::vector<MismatchGrid> mismatch_grids(const StudyAnalysis& study);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

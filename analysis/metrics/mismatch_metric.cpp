@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using Colour = std::array<int, 3>;  ///< red, green, blue
@@ -101,13 +101,13 @@ Chart chart_of(const std::vector<MismatchGrid>& grids, const std::vector<FigureD
 }
 
 Figure mismatch_figure(const StudyAnalysis& study) {
-  Figure figure{"mismatch", "What if the filter is told wrong noise?", ""};
+  Figure figure{"mismatch", "What if the filter is given wrong noise?", ""};
   figure.sentence =
       "Each square is one filter that believes the noise of motion (to the right) and of the "
       "sensor "
       "(upwards) to be so many times what the study tells; its number is ANEES by components, mean "
-      "over scans. 1 is white: the filter knows how wrong it is. Red, above 1: too sure of itself; "
-      "blue, below 1: too cautious. Colours end at a tenth and at ten times.";
+      "over scans. 1 is white: the filter knows how wrong it is. Red, above 1: overconfident; "
+      "blue, below 1: conservative. Colours end at a tenth and at ten times.";
   const std::vector<MismatchGrid> grids = mismatch_grids(study);
   if (grids.empty()) return figure;
   for (const MismatchGrid& grid : grids) figure.data.push_back(data_of(grid));
@@ -123,4 +123,4 @@ Metric mismatch_metric() {
   }};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Which mean and covariance of a filter are judged (STATISTICS 1).
 enum class Moments {
@@ -31,4 +31,4 @@ constexpr std::size_t dimension_of(ErrorBlock block) {
   return block == ErrorBlock::pose ? 3 : block == ErrorBlock::position ? 2 : 1;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

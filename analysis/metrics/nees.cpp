@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr double kLeastVarianceShare = 1e-10;
@@ -69,4 +69,4 @@ template Nees nees<1>(const Eigen::Vector3d&, const Eigen::Matrix3d&, int);
 template Nees nees<2>(const Eigen::Vector3d&, const Eigen::Matrix3d&, int);
 template Nees nees<3>(const Eigen::Vector3d&, const Eigen::Matrix3d&, int);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

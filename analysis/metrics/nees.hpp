@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A covariance counts as singular below this floor (STATISTICS 2), standard deviations [m, m,
 /// rad].
@@ -20,7 +20,7 @@ struct Nees {
 /// NEES of the components [first, first + Dimension) of a pose error (x [m], y [m], heading [rad])
 /// with that block of the covariance, of which the lower triangle is read. Singular means: a
 /// variance below 1e-10 of the floor's, or a pivot of the correlation matrix below 1e-12 (a thin
-/// but honest covariance after few noisy steps has 1e-6). The floor answers both (STATISTICS 2).
+/// but correct covariance after few noisy steps has 1e-6). The floor answers both (STATISTICS 2).
 template <int Dimension>
 Nees nees(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, int first = 0);
 
@@ -34,4 +34,4 @@ extern template Nees nees<1>(const Eigen::Vector3d&, const Eigen::Matrix3d&, int
 extern template Nees nees<2>(const Eigen::Vector3d&, const Eigen::Matrix3d&, int);
 extern template Nees nees<3>(const Eigen::Vector3d&, const Eigen::Matrix3d&, int);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <map>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
-/// A right filter's NEES is above ten times its mean once in a million samples.
+/// A consistent filter's NEES is above ten times its mean once in a million samples.
 constexpr double kCapFactor = 10.0;
 
 /// Both bands of every scan, from the runs that are valid there: nearly always of one number.
@@ -99,4 +99,4 @@ NeesResult NeesAccumulator::result(std::span<const double> times, double level,
   return result;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// How many doublings (or halvings) an average NEES of `dimension` components is away from that of
 /// a consistent filter: |log2(nees / dimension)|, 0 where they agree.
@@ -40,4 +40,4 @@ class NeesAccumulator {
   std::uint64_t samples_ = 0, floored_ = 0, undefined_ = 0;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -12,7 +12,7 @@
 
 #include <set>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Mean over the scans of a run, by its leading moments.
@@ -32,7 +32,7 @@ constexpr Score kNeesScores[] = {
 
 class NeesOverRuns final : public MetricSums {
  public:
-  explicit NeesOverRuns(const Yardsticks& sticks) : sticks_(&sticks) {}
+  explicit NeesOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
   void add(const MeasuredRun& run) override {
     if (is_first_) begin(run.metrics);
     is_first_ = false;
@@ -41,7 +41,7 @@ class NeesOverRuns final : public MetricSums {
   void put(CellAnalysis& cell) override {
     if (!nees_.empty()) cell.leading = nees_.front().moments();
     for (const NeesAccumulator& nees : nees_) {
-      cell.nees.push_back(nees.result(sticks_->times, sticks_->level, sticks_->walks));
+      cell.nees.push_back(nees.result(criteria_->times, criteria_->level, criteria_->walks));
     }
   }
 
@@ -51,12 +51,12 @@ class NeesOverRuns final : public MetricSums {
     for (const Moments moments : kMoments) {
       if (metrics.nees(moments).value[0].empty()) continue;
       for (const ErrorBlock block : kErrorBlocks) {
-        nees_.emplace_back(block, moments, sticks_->times.size());
+        nees_.emplace_back(block, moments, criteria_->times.size());
       }
     }
   }
 
-  const Yardsticks* sticks_;
+  const RunCriteria* criteria_;
   bool is_first_ = true;
   std::vector<NeesAccumulator> nees_;  ///< leading first
 };
@@ -170,4 +170,4 @@ Metric nees_metric() {
           .figures = nees_figures};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// The runs that ended, and a value of each; NaN where it failed.
@@ -74,4 +74,4 @@ bool is_judged_by(const CellAnalysis& cell, const Score& score) {
   return has_score(cell, score) || (cell.complete == 0 && !cell.failures.empty());
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

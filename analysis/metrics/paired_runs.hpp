@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Places (left, right) of the numbers that two increasing lists share.
 std::vector<std::pair<std::size_t, std::size_t>> common_places(
@@ -38,4 +38,4 @@ bool has_score(const CellAnalysis& cell, const Score& score);
 /// whose every run failed by anything.
 bool is_judged_by(const CellAnalysis& cell, const Score& score);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 ParticleCurve::Point point_of(const CellAnalysis& cell) {
@@ -101,7 +101,7 @@ ChartPanel chart_panel(const std::vector<ParticleCurve>& curves,
   }
   if (baseline) {
     panel.curves.push_back(
-        {"EKF-SLAM", kYardstickStyle, std::vector<double>(numbers.size(), *baseline)});
+        {"EKF-SLAM", kReferenceStyle, std::vector<double>(numbers.size(), *baseline)});
   }
   return panel;
 }
@@ -151,4 +151,4 @@ void draw_particle_curves(const std::vector<ParticleCurve>& curves,
                                      {"aligned [m]", axis, {}, {}, {}})};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

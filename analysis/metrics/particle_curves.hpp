@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// The cells of one filter that differ in the number of particles alone.
 struct ParticleCurve {
@@ -34,4 +34,4 @@ std::optional<std::array<double, 2>> baseline_errors(const StudyAnalysis& study)
 void draw_particle_curves(const std::vector<ParticleCurve>& curves,
                           const std::optional<std::array<double, 2>>& baseline, Figure& figure);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using Counts = std::vector<std::uint32_t>;
@@ -146,4 +146,4 @@ Metric diversity_metric() {
           .figures = particles_figures};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

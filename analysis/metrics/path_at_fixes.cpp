@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 Pose pose_at(std::span<const double> path, std::size_t row) {
@@ -49,4 +49,4 @@ std::vector<Pose> PathAtFixes::interpolate(std::span<const double> path) const {
   return poses;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

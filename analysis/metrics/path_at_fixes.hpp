@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// The fixes of a reference that lie within a drive's time span, and where each lies between the
 /// rows of an estimated path. The same for all runs of all cells; any number of threads may use it.
@@ -45,4 +45,4 @@ class PathAtFixes {
   std::vector<Place> places_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

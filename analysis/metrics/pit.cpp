@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 double wrapped(std::size_t component, double difference) {
@@ -87,4 +87,4 @@ RunPits pits_of(const RunRows& rows, std::uint64_t run,
   return pits;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

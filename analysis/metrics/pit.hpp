@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Probability integral transforms of one run: which share of what a filter holds for possible lies
 /// below the truth. Uniform over runs if the filter is calibrated. NaN where not defined.
@@ -27,4 +27,4 @@ struct RunPits {
 /// Every run gives one landmark alone, another one from run to run: those of one map go together.
 RunPits pits_of(const RunRows& rows, std::uint64_t run, std::span<const Eigen::Vector2d> landmarks);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

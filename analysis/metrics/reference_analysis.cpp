@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 Spread ReferenceAnalysis::over_runs(double ReferenceScores::*score) const {
   std::vector<double> values;
   for (const ReferenceScores& run : runs) values.push_back(run.*score);
@@ -38,4 +38,4 @@ ReferenceAnalysis ReferenceAccumulator::result() const {
   return analysis;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

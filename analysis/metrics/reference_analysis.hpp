@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// The complete runs of a cell against one reference.
 struct ReferenceAnalysis {
@@ -36,4 +36,4 @@ class ReferenceAccumulator {
   std::vector<double> squared_;  ///< [m^2] {fix} sum over runs
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Nearer than this a reference cannot tell [m]: satellite positions are good to a centimetre.
@@ -93,4 +93,4 @@ std::vector<Figure> reference_figures(const StudyAnalysis& study) {
   return figures;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// RMS over runs of the raw distance to the leading reference at each of its fixes, one curve a
 /// cell; logarithmic where it spans more than two decades.
@@ -21,4 +21,4 @@ Figure map_size_figure(const StudyAnalysis& study);
 /// All of the above that have something to show.
 std::vector<Figure> reference_figures(const StudyAnalysis& study);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 
 #include <string>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 void add(const std::string& name, const std::string& units, const Spread& spread,
@@ -86,4 +86,4 @@ void write_reference_errors(const StudyAnalysis& study, const std::filesystem::p
   file.close();
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// What a cell says against one reference, under the names it has in files: each number over runs
 /// as mean, standard error, median, least and greatest; and of its maps.
@@ -19,4 +19,4 @@ void write_references(const StudyAnalysis& study, const std::filesystem::path& p
 /// One row a fix of the leading reference, one column a cell: RMS distance over runs.
 void write_reference_errors(const StudyAnalysis& study, const std::filesystem::path& path);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -4,7 +4,7 @@
 #include "analysis/metrics/reference_table.hpp"
 #include "analysis/output/number_text.hpp"
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 std::string fixes_note(const StudyAnalysis& study) {
@@ -81,4 +81,4 @@ std::vector<std::string> reference_notes(const StudyAnalysis& study) {
   return notes;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
@@ -80,4 +80,4 @@ ReferenceRun measure_against(const PathAtFixes& fixes, std::span<const double> p
   return run;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

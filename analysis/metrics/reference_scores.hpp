@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A fix counts for gated numbers where its error is at most so many times the run's own median
 /// error: a GPS fix may be 136 m off. To be read with the share: a filter that leaves the path half
@@ -46,4 +46,4 @@ struct ReferenceRun {
 /// `path` {row, 3} [m, m, rad] over the rows that `fixes` were made for.
 ReferenceRun measure_against(const PathAtFixes& fixes, std::span<const double> path);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

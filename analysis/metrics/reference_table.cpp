@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// No fix is known better than to a centimetre, no heading than to a hundredth of a degree.
@@ -159,4 +159,4 @@ TextTable baseline_table(const StudyAnalysis& study) {
   return table;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

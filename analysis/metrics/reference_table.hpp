@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// One row a cell and reference: how far its runs are from the fixes, and how many lost the map.
 TextTable reference_table(const StudyAnalysis& study);
@@ -29,4 +29,4 @@ std::vector<std::string> reference_notes(const StudyAnalysis& study);
 /// nullptr where there is none.
 const CellAnalysis* baseline_of(const StudyAnalysis& study);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -9,7 +9,7 @@
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/statistics/means.hpp"
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// By the leading reference.
@@ -36,7 +36,8 @@ constexpr Score kReferencesScores[] = {
 
 class ReferencesOverRuns final : public MetricSums {
  public:
-  explicit ReferencesOverRuns(const Yardsticks& sticks) : references_(sticks.references.size()) {}
+  explicit ReferencesOverRuns(const RunCriteria& criteria)
+      : references_(criteria.references.size()) {}
   void add(const MeasuredRun& run) override {
     for (std::size_t r = 0; r < references_.size(); ++r) references_[r].add(run.references[r]);
   }
@@ -75,4 +76,4 @@ Metric references_metric() {
                     {"reference_errors.csv", has_references, write_reference_errors}}};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

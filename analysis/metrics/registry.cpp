@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 // Each is defined in a file *_metric.cpp.
 Metric errors_metric();
@@ -106,4 +106,4 @@ std::vector<Figure> figures_of(const StudyAnalysis& study) {
   return all;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

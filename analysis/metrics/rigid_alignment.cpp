@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 Eigen::Vector2d centre_of(std::span<const Eigen::Vector2d> points) {
@@ -40,4 +40,4 @@ RigidMotion rigid_alignment(std::span<const Eigen::Vector2d> from,
   return motion;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -5,7 +5,7 @@
 
 #include <span>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A turn of the plane and then a shift: neither stretches nor mirrors.
 struct RigidMotion {
@@ -21,4 +21,4 @@ struct RigidMotion {
 RigidMotion rigid_alignment(std::span<const Eigen::Vector2d> from,
                             std::span<const Eigen::Vector2d> onto);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
@@ -104,4 +104,4 @@ void RunMetrics::measure(const RunRows& rows, std::size_t particles,
   lineages_ = walker_.walk(rows, particles, times, squared_position_);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

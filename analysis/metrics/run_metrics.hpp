@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// NEES of one run by one definition of the moments; empty where no covariance is stored.
 struct NeesRows {
@@ -63,4 +63,4 @@ class RunMetrics {
   std::optional<Lineages> lineages_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 struct MeasuredRun;
 
@@ -63,4 +63,4 @@ class ScoreTable {
 /// Place of the score of this name among all_scores().
 std::size_t index_of(std::string_view name);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

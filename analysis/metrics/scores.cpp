@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 namespace {
 
@@ -60,4 +60,4 @@ const std::vector<double>& ScoreTable::column(std::string_view name) const {
   return columns_[index_of(name)];
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <string_view>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Settings of a scenario by name; notes whether all that was asked for is there.
@@ -52,7 +52,7 @@ std::optional<SimulatedWorld> simulated_world_of(const ResultFile& file) {
   SimulatedWorld world{
       .vehicle = vehicle_of(facts),
       .sigma_control = {facts.number("sigma_speed"), facts.radians("sigma_steer_deg")},
-      .sigma_sight = {facts.number("sigma_range"), facts.radians("sigma_bearing_deg")},
+      .sigma_observation = {facts.number("sigma_range"), facts.radians("sigma_bearing_deg")},
       .detected = 1.0 - facts.number("miss_probability"),
       .view = FieldOfView(facts.number("max_range"), facts.radians("field_of_view_deg")),
       .same_path = facts.text("noise") != "matched"};
@@ -60,4 +60,4 @@ std::optional<SimulatedWorld> simulated_world_of(const ResultFile& file) {
   return world;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

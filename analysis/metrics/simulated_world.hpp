@@ -10,14 +10,14 @@
 #include <optional>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Vehicle, sensor and their noise as they really are in a simulation, whatever filters believe.
 struct SimulatedWorld {
   Vehicle vehicle;
-  Eigen::Vector2d sigma_control;  ///< speed [m/s], steering [rad]
-  Eigen::Vector2d sigma_sight;    ///< range [m], bearing [rad]
-  double detected = 1.0;          ///< probability that what is in view is detected
+  Eigen::Vector2d sigma_control;      ///< speed [m/s], steering [rad]
+  Eigen::Vector2d sigma_observation;  ///< range [m], bearing [rad]
+  double detected = 1.0;              ///< probability that what is in view is detected
   FieldOfView view;
   bool same_path = true;  ///< of all runs: the noise is on the controls that filters are given
 };
@@ -26,4 +26,4 @@ struct SimulatedWorld {
 /// a simulation, or lacks any of it.
 std::optional<SimulatedWorld> simulated_world_of(const ResultFile& file);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

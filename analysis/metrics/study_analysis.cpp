@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <span>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// [s] of the first scan at or after a step, or of the last one.
@@ -39,7 +39,7 @@ std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell&
 }
 
 CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& stored,
-                          const Yardsticks& sticks, const Parallel& parallel,
+                          const RunCriteria& criteria, const Parallel& parallel,
                           std::vector<MeasuredRun>& slots) {
   CellAnalysis cell;
   cell.label = stored.label;
@@ -48,8 +48,8 @@ CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& stored,
   cell.particles = stored.particles;
   cell.mismatch = mismatch_of(stored);
   const auto complete = complete_runs(file, stored, cell);
-  CellSums sums(sticks);
-  add_runs(RunReader(file, stored), complete, stored.particles, sticks, parallel, slots, sums);
+  CellSums sums(criteria);
+  add_runs(RunReader(file, stored), complete, stored.particles, criteria, parallel, slots, sums);
   sums.put(cell);
   return cell;
 }
@@ -99,13 +99,13 @@ StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& para
                      ": no scans (metrics are taken at scans): choose "
                      "another file");
   }
-  const Yardsticks sticks = yardsticks_of(file, level);
-  for (const PathAtFixes& fixes : sticks.references) {
+  const RunCriteria criteria = criteria_of(file, level);
+  for (const PathAtFixes& fixes : criteria.references) {
     study.references.push_back({fixes.name(), fixes.times(), !fixes.headings().empty()});
   }
   std::vector<MeasuredRun> slots = slots_for(parallel);
   for (const StoredCell& cell : file.cells()) {
-    study.cells.push_back(analyze_cell(file, cell, sticks, parallel, slots));
+    study.cells.push_back(analyze_cell(file, cell, criteria, parallel, slots));
   }
   study.bound = cramer_rao_bound(file, parallel);
   for (CellAnalysis& cell : study.cells) {
@@ -114,4 +114,4 @@ StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& para
   return study;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// An independent measurement of the path, as far as estimates are judged by it.
 struct JudgedReference {
@@ -48,4 +48,4 @@ struct StudyAnalysis {
 StudyAnalysis analyze(const ResultFile& file, double level = 0.95,
                       const Parallel& parallel = Parallel::serial());
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

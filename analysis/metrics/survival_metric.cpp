@@ -12,42 +12,42 @@
 #include <algorithm>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Also when the average over runs leaves its band for good, by bootstrap: it needs every run's
 /// NEES as well.
 class SurvivalOverRuns final : public MetricSums {
  public:
-  explicit SurvivalOverRuns(const Yardsticks& sticks)
-      : sticks_(&sticks),
-        run_bound_(nees_bounds(1, dimension_of(ErrorBlock::pose), sticks.level).upper),
-        exits_(sticks.times.size()) {}
+  explicit SurvivalOverRuns(const RunCriteria& criteria)
+      : criteria_(&criteria),
+        run_bound_(nees_bounds(1, dimension_of(ErrorBlock::pose), criteria.level).upper),
+        exits_(criteria.times.size()) {}
   void add(const MeasuredRun& run) override {
     if (run.metrics.covariances().empty()) return;
     const std::vector<double>& nees = run.metrics.leading_nees()->value[0];
     std::vector<bool> above;
     for (const double value : nees) above.push_back(value > run_bound_);
     const auto exit = first_lasting(above, kLastingScans);
-    run_exits_.push_back(exit ? sticks_->times[*exit] : std::numeric_limits<double>::infinity());
+    run_exits_.push_back(exit ? criteria_->times[*exit] : std::numeric_limits<double>::infinity());
     exits_.add(nees);
   }
   void put(CellAnalysis& cell) override {
     if (run_exits_.empty()) return;
     std::vector<double> ends = run_exits_;
     for (const FailedRun& failure : cell.failures) ends.push_back(failure.time);
-    cell.findings.put(survival_of(ends, sticks_->times, sticks_->level));
+    cell.findings.put(survival_of(ends, criteria_->times, criteria_->level));
     const auto pose = std::ranges::find_if(cell.nees, [&](const NeesResult& nees) {
       return nees.block == ErrorBlock::pose && nees.moments == cell.leading;
     });
     expect(pose != cell.nees.end(), "NEES is put before survival");
     const auto exits =
-        exits_.lasting_exits(sticks_->times, dimension_of(ErrorBlock::pose), sticks_->level);
-    pose->consistency.exit_interval = middle_of(exits, sticks_->level);
+        exits_.lasting_exits(criteria_->times, dimension_of(ErrorBlock::pose), criteria_->level);
+    pose->consistency.exit_interval = middle_of(exits, criteria_->level);
   }
 
  private:
-  const Yardsticks* sticks_;
+  const RunCriteria* criteria_;
   double run_bound_;               ///< upper end of the band of a single run's NEES
   std::vector<double> run_exits_;  ///< [s] {run}
   ExitBootstrap exits_;
@@ -65,9 +65,9 @@ void survival_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
 void survival_series(const CellAnalysis& cell, std::vector<NamedSeries>& all) {
   const Survival& survival = cell.get<Survival>();
   if (survival.share.empty()) return;
-  all.push_back({"runs_right", "1", survival.share});
-  all.push_back({"runs_right_lower", "1", ends_of(survival.interval, &Interval::lower)});
-  all.push_back({"runs_right_upper", "1", ends_of(survival.interval, &Interval::upper)});
+  all.push_back({"runs_consistent", "1", survival.share});
+  all.push_back({"runs_consistent_lower", "1", ends_of(survival.interval, &Interval::lower)});
+  all.push_back({"runs_consistent_upper", "1", ends_of(survival.interval, &Interval::upper)});
 }
 
 Figure survival_figure(const StudyAnalysis& study) {
@@ -75,13 +75,13 @@ Figure survival_figure(const StudyAnalysis& study) {
   figure.sentence =
       "Share of the runs that still know how wrong they are, each judged by its own NEES: a run is "
       "lost where that stays above the band of a single run for 5 s at 5 Hz, or where it fails. A "
-      "right filter loses a few runs by chance.";
+      "consistent filter loses a few runs by chance.";
   const CellValues share = [](const CellAnalysis& cell) {
     return scaled(cell.get<Survival>().share, 100.0);
   };
-  add_panels(
-      cell_panels(study, {"runs_right", "runs still right [%]", {}, {}, Scale::percent}, share),
-      study.times, figure);
+  add_panels(cell_panels(study, {"runs_consistent", "runs still right [%]", {}, {}, Scale::percent},
+                         share),
+             study.times, figure);
   return figure;
 }
 
@@ -98,4 +98,4 @@ Metric survival_metric() {
           .figures = survival_figures};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr double kDegrees = 180.0 / kPi;
@@ -79,8 +79,8 @@ std::vector<std::string> consistency_row(const CellAnalysis& cell, const NeesRes
           name_of(nees.moments),
           in_words(found),
           compact(found.mean),
-          readable(found.median / right_median(nees.series.dimension)),
-          readable(found.trimmed / right_trimmed(nees.series.dimension)),
+          readable(found.median / expected_median(nees.series.dimension)),
+          readable(found.trimmed / expected_trimmed(nees.series.dimension)),
           readable(ideal_nees(cell, nees)),
           band_text(cell, nees.series.dimension, level),
           percent(found.share_inside),
@@ -116,12 +116,12 @@ std::vector<NamedNumber> numbers_of(const CellAnalysis& cell, const NeesResult& 
       {"anees_mean", "1", found.mean},
       {"anees_mean_lower", "1", found.average_interval.lower},
       {"anees_mean_upper", "1", found.average_interval.upper},
-      {"right_anees_lower", "1", found.average_bounds.lower},
-      {"right_anees_upper", "1", found.average_bounds.upper},
+      {"expected_anees_lower", "1", found.average_bounds.lower},
+      {"expected_anees_upper", "1", found.average_bounds.upper},
       {"nees_median", "1", found.median},
-      {"right_median", "1", right_median(dimension)},
+      {"expected_median", "1", expected_median(dimension)},
       {"nees_trimmed", "1", found.trimmed},
-      {"right_trimmed", "1", right_trimmed(dimension)},
+      {"expected_trimmed", "1", expected_trimmed(dimension)},
       {"lower", "1", band.lower},
       {"upper", "1", band.upper},
       {"share_inside", "1", found.share_inside},
@@ -154,7 +154,7 @@ TextTable verdict_table(const StudyAnalysis& study) {
   TextTable table;
   table.headings = {{"cell", Align::left},    {"runs", Align::left},
                     {"verdict", Align::left}, {"ANEES [" + level_text(study.level) + "]"},
-                    {"right within"},         {"scans inside"},
+                    {"expected within"},      {"scans inside"},
                     {"leaves for good at"},   {"half the runs lost at"}};
   for (const CellAnalysis& cell : study.cells) table.rows.push_back(verdict_row(cell));
   return table;
@@ -214,10 +214,11 @@ std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
   return {
       "ANEES compares the errors that happened with the errors the filter expected (its "
       "covariance), averaged over runs and scans: 3 means it knows how wrong it is (three "
-      "components: x, y, heading), more means it is too sure of itself, less that it is too "
-      "cautious. The brackets hold what infinitely many runs would give (" +
-          level + ", bootstrap over runs); 'right within' is where chance leaves a right filter.",
-      "The verdict is one test: a right filter is called consistent in " + level +
+      "components: x, y, heading), more means it is overconfident, less that it is "
+      "conservative. The brackets hold what infinitely many runs would give (" +
+          level +
+          ", bootstrap over runs); 'expected within' is where chance leaves a consistent filter.",
+      "The verdict is one test: a consistent filter is called consistent in " + level +
           " of studies, however long they are. It fails where the average over runs leaves, at any "
           "scan, a band that is wide enough for all scans together, or where the average over the "
           "whole run is too far from 3: 'optimistic' when too large, 'conservative' when too "
@@ -229,7 +230,7 @@ std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
           readable(study.duration, 4) +
           " s of this study. A single run is lost when its own NEES does so, or when it fails.",
       "'scans inside' counts the scans whose average lies in the pointwise band: " + level +
-          " of them are expected of a right filter, and neighbouring scans go together.",
+          " of them are expected of a consistent filter, and neighbouring scans go together.",
       "RMSE is the mean over runs, with the interval that holds it for infinitely many; ESS is the "
       "effective number of particles, roots how many of the first particles still have descendants "
       "at the end, CPU the filter's own time in a run; all of complete runs only."};
@@ -249,10 +250,11 @@ std::vector<std::string> consistency_notes() {
       "M draws to the chi-square), so that M alone makes no filter inconsistent.",
       "'median' is the middle run instead of the average one, 'trimmed' the mean without the "
       "tenth "
-      "of the runs at either end, each divided by what a right filter has: near 1 while ANEES is "
+      "of the runs at either end, each divided by what a consistent filter has: near 1 while ANEES "
+      "is "
       "far too large they say that few bad runs make the average. 'floored' counts covariances "
       "that were singular (0.1 mm and "
       "0.00001 rad were added), 'undefined' those that were not a number and left out."};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

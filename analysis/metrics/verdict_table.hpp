@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// One row a cell: what became of its runs, the verdict, and the numbers behind it.
 TextTable verdict_table(const StudyAnalysis& study);
@@ -34,4 +34,4 @@ std::string runs_in_words(const CellAnalysis& cell);
 std::string name_of(ErrorBlock block);
 std::string name_of(Moments moments);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

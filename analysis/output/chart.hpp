@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// In place of the number of a curve: of what is no cell, such as a bound; dashed, in the colour of
 /// the text.
-inline constexpr std::size_t kYardstickStyle = static_cast<std::size_t>(-1);
+inline constexpr std::size_t kReferenceStyle = static_cast<std::size_t>(-1);
 /// Of the truth, below what filters think of it.
 inline constexpr std::size_t kTruthStyle = static_cast<std::size_t>(-2);
 
@@ -19,9 +19,9 @@ std::string line_colour(std::size_t i);
 /// How curve `i` is dashed, from 1, a full line: from the seventh on curves differ by that.
 std::size_t line_dashes(std::size_t i);
 
-/// A horizontal band, e.g. where a right filter stays. It keeps the vertical axis near: from 0.3
-/// times its lower end to 1000 times its upper one at most, so that it is seen beside a filter that
-/// is off by many powers of ten.
+/// A horizontal band, e.g. where a consistent filter stays. It keeps the vertical axis near: from
+/// 0.3 times its lower end to 1000 times its upper one at most, so that it is seen beside a filter
+/// that is off by many powers of ten.
 struct Band {
   std::string legend;
   double lower = 0.0;
@@ -92,4 +92,4 @@ struct Chart {
   bool is_map = false;      ///< one scale in both directions, whatever is zoomed
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -9,7 +9,7 @@
 #include <system_error>
 #include <unistd.h>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 std::string quoted(const std::string& field) {
@@ -84,4 +84,4 @@ void write_text(const std::filesystem::path& path, const std::string& text) {
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Writes a file of comma-separated values (RFC 4180: fields with commas or quotes are quoted), row
 /// by row. Every member throws RunError naming the file where it cannot be written.
@@ -33,4 +33,4 @@ void make_directory(const std::filesystem::path& directory);
 /// Throws RunError naming it.
 void write_text(const std::filesystem::path& path, const std::string& text);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -6,7 +6,7 @@
 #include "analysis/output/gnuplot_chart.hpp"
 #include "analysis/output/number_text.hpp"
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Common to all figures. What is black here takes the colour of the text where the page is dark.
@@ -64,4 +64,4 @@ FigureData data_of(const std::string& name, const std::string& heading,
   return data;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

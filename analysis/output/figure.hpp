@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A file of the numbers behind a figure: headings with units, and rows.
 struct FigureData {
@@ -35,4 +35,4 @@ void draw(const Figure& figure, const std::filesystem::path& directory);
 FigureData data_of(const std::string& name, const std::string& heading,
                    const ThinnedSeries& thinned);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -12,7 +12,7 @@
 #include <unistd.h>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Where a process begins: its folder, and where its words go.
@@ -36,7 +36,7 @@ class SpawnActions {
 };
 
 /// The last line that says something.
-std::string last_words(const std::filesystem::path& log) {
+std::string last_lines(const std::filesystem::path& log) {
   std::ifstream file(log);
   std::string last;
   for (std::string line; std::getline(file, line);) {
@@ -71,7 +71,7 @@ void run_gnuplot(const std::filesystem::path& directory, const std::string& name
   if (error != 0) throw RunError(program + ": cannot be started (" + std::strerror(error) + ")");
   const int status = wait_for(process);
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    throw RunError((directory / name).string() + ": gnuplot failed (" + last_words(log) +
+    throw RunError((directory / name).string() + ": gnuplot failed (" + last_lines(log) +
                    "): look at " + log.string());
   }
   std::filesystem::remove(log);
@@ -86,4 +86,4 @@ std::string gnuplot_quoted(const std::string& text) {
   return quoted + "'";
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Runs gnuplot on the script `name` in `directory`, which is its working directory. Throws
 /// StudyError where gnuplot is not installed and RunError, with what it says, where it fails.
@@ -15,4 +15,4 @@ void run_gnuplot(const std::filesystem::path& directory, const std::string& name
 /// A text constant of gnuplot: quoted, printed as it stands.
 std::string gnuplot_quoted(const std::string& text);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using Shape = ChartMarks::Shape;
@@ -225,4 +225,4 @@ GnuplotChart gnuplot_chart(const Chart& chart, std::size_t width) {
   return drawn;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

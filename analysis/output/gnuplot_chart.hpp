@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A chart as gnuplot draws it.
 struct GnuplotChart {
@@ -18,4 +18,4 @@ struct GnuplotChart {
 /// `width` [px].
 GnuplotChart gnuplot_chart(const Chart& chart, std::size_t width);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

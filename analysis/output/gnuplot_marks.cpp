@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using Shape = ChartMarks::Shape;
@@ -35,7 +35,7 @@ std::string colour_of(std::size_t style) { return " linecolor rgb '" + line_colo
 
 std::string line_style(std::size_t style) {
   return "linewidth 1.4" + colour_of(style) + " dashtype " +
-         (style == kYardstickStyle ? "(6,4)" : std::to_string(line_dashes(style)));
+         (style == kReferenceStyle ? "(6,4)" : std::to_string(line_dashes(style)));
 }
 
 /// Adds plots one above the other, each with a data block of its own.
@@ -131,7 +131,7 @@ std::string mark_style(const ChartMarks& marks) {
   };
   switch (marks.shape) {
     case Shape::line:
-      if (marks.style == kYardstickStyle) return curve_style(marks.style);
+      if (marks.style == kReferenceStyle) return curve_style(marks.style);
       return "lines linewidth " + exact_text(marks.thickness > 0.0 ? marks.thickness : 1.4) +
              colour_of(marks.style);
     case Shape::points:
@@ -155,4 +155,4 @@ PanelPlots panel_plots(const Chart& chart, std::size_t panel) {
   return writer.result();
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

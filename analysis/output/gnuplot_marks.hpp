@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// How a panel's bands, curves and marks are plotted.
 struct PanelPlots {
@@ -21,4 +21,4 @@ std::string band_style();
 std::string curve_style(std::size_t style);
 std::string mark_style(const ChartMarks& marks);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

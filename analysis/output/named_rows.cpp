@@ -3,7 +3,7 @@
 
 #include "analysis/output/number_text.hpp"
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 std::string heading(const std::string& name, const std::string& units) {
   return units == "1" ? name : name + " [" + units + "]";
@@ -25,4 +25,4 @@ void NamedRows::row(const std::vector<std::pair<std::string, std::string>>& text
   file_.row(fields);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// One number under the name it has in files.
 struct NamedNumber {
@@ -43,4 +43,4 @@ class NamedRows {
   bool is_headed_ = false;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

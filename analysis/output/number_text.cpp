@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 std::string printed(const char* format, int precision, double value) {
@@ -88,4 +88,4 @@ std::string level_text(double level) {
   return printed("%.*g", 6, 100.0 * level) + " %";
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A number for reading: `digits` significant, "-" where it is not a number. No exponent up to a
 /// million.
@@ -40,4 +40,4 @@ std::string percent(double share);
 /// For instance "95 %" or "99.9 %".
 std::string level_text(double level);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kBuckets = 300;
@@ -97,4 +97,4 @@ void add_panels(const std::vector<Panel>& panels, const std::vector<double>& pla
   figure.chart.x_to = places.back();
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A curve of a panel.
 struct Curve {
@@ -39,4 +39,4 @@ struct Panel {
 void add_panels(const std::vector<Panel>& panels, const std::vector<double>& places,
                 Figure& figure);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 // [px]
@@ -53,4 +53,4 @@ PrintLayout print_layout(const Chart& chart, double width, double legend_height)
   return layout;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Where a panel lies in a printed chart [px], from the upper left corner.
 struct PanelBox {
@@ -27,4 +27,4 @@ struct PrintLayout {
 
 PrintLayout print_layout(const Chart& chart, double width, double legend_height);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

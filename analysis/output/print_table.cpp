@@ -5,7 +5,7 @@
 #include <ostream>
 #include <sstream>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kTextWidth = 100;
@@ -54,4 +54,4 @@ void print_wrapped(std::ostream& out, const std::string& sentence) {
   out << line << '\n';
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -6,7 +6,7 @@
 #include <iosfwd>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A table for a terminal: columns below each other.
 void print_table(std::ostream& out, const TextTable& table);
@@ -14,4 +14,4 @@ void print_table(std::ostream& out, const TextTable& table);
 /// A sentence broken into lines that a terminal holds.
 void print_wrapped(std::ostream& out, const std::string& sentence);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

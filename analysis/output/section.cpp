@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/output/section.hpp"
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 void Section::add(const std::string& table_name, const TextTable& table) {
   if (!table.rows.empty()) blocks.emplace_back(Table{table_name, table});
@@ -13,4 +13,4 @@ void Section::add(const std::vector<std::string>& notes) {
 
 void Section::add_html(const std::string& html) { blocks.emplace_back(Html{html}); }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A part of a report: tables and sentences, then figures. One that has none of them is left out.
 struct Section {
@@ -40,4 +40,4 @@ struct Section {
   void add_html(const std::string& html);
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

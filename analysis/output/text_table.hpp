@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 enum class Align { left, right };
 
@@ -18,4 +18,4 @@ struct TextTable {
   std::vector<std::vector<std::string>> rows;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Least and greatest number of a stretch, the earlier one first; NaN where there is none.
@@ -44,4 +44,4 @@ ThinnedSeries thin(std::span<const double> times, const std::vector<NamedSeries>
   return thinned;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

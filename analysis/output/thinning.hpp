@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Series over one common time, short enough to draw.
 struct ThinnedSeries {
@@ -21,4 +21,4 @@ struct ThinnedSeries {
 ThinnedSeries thin(std::span<const double> times, const std::vector<NamedSeries>& series,
                    std::size_t buckets);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

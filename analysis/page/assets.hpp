@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// The style sheet of the page: analysis/page/page.css, put into the program when it is built.
 std::string_view page_style();
@@ -11,4 +11,4 @@ std::string_view page_style();
 /// as the body of one function.
 std::string_view page_script();
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

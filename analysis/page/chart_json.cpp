@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Nothing is written of what is empty: a page has many panels.
@@ -111,4 +111,4 @@ std::string chart_json(const Chart& chart) {
   return json.end_array().end_object().text();
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -5,9 +5,9 @@
 
 #include <string>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A chart as the page's script reads it (page/script/chart.js).
 std::string chart_json(const Chart& chart);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

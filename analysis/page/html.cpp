@@ -3,7 +3,7 @@
 
 #include "analysis/page/assets.hpp"
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// A browser that reads this asks nobody for anything, not even for an icon.
@@ -117,4 +117,4 @@ std::string html_page(const std::string& title, const std::string& body) {
          "})();\n</script>\n</body>\n</html>\n";
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

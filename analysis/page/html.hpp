@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Plain text as a page shows it.
 std::string html_escape(const std::string& text);
@@ -29,4 +29,4 @@ std::string html_data(const std::string& name, const std::string& json);
 /// A whole self-contained page, for light and dark screens of any width.
 std::string html_page(const std::string& title, const std::string& body);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

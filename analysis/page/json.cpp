@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// A character within quotes. "<" may not stand in a script: it could end it.
@@ -77,4 +77,4 @@ JsonWriter& JsonWriter::exact(double number) {
   return *this;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Writes compact JSON that may stand in a page's <script>. The caller nests: begin and end in
 /// pairs, and within an object a key() before every value.
@@ -55,4 +55,4 @@ class JsonWriter {
   bool first_ = true;  ///< nothing stands before the next value that a comma must part it from
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

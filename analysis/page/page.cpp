@@ -10,7 +10,7 @@
 #include <fstream>
 #include <iterator>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 namespace fs = std::filesystem;
@@ -104,4 +104,4 @@ void write_page(const StudyAnalysis& study, const std::vector<Section>& sections
   write_text(directory / "index.html", html_page(study.study_name + ": report", body));
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 // The parts of a report that belong to no metric.
 
@@ -26,4 +26,4 @@ Section origin_section(const ResultFile& file, const StudyAnalysis& study);
 /// What a paper printed beside what was measured.
 Section printed_section(const StudyAnalysis& study);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

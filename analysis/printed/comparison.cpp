@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Without runs to tell chance from difference, this near is near.
@@ -160,4 +160,4 @@ std::vector<std::string> printed_notes(const StudyAnalysis& study) {
           "no interval."};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

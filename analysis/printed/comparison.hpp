@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Farther off than this factor, a printed number is not reproduced.
 inline constexpr double kReproducedWithin = 2.0;
@@ -42,4 +42,4 @@ TextTable printed_claim_table(const StudyAnalysis& study);
 /// How to read them.
 std::vector<std::string> printed_notes(const StudyAnalysis& study);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// A number that only all runs of a cell together have: of an average NEES.
@@ -135,4 +135,4 @@ std::vector<std::string> printed_metrics() {
   return names;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

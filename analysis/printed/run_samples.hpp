@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// What is measured of a metric: over runs, or one number of all runs together (n = 1, no spread).
 struct Sample {
@@ -36,4 +36,4 @@ bool is_run_metric(const std::string& metric);
 /// A metric as tables call it, with its unit.
 std::string metric_in_words(const std::string& metric);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

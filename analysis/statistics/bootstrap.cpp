@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kMostReplicates = 2000, kFewestReplicates = 400;
@@ -129,4 +129,4 @@ Interval bootstrap_mean(std::span<const double> values, double level) {
   return bootstrap_means(std::span(&column, 1), level).front();
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Replicates of a bootstrap over `runs`: 2000, and fewer where there are so many runs that
 /// replicates hardly differ.
@@ -27,4 +27,4 @@ Interval bootstrap_mean(std::span<const double> values, double level);
 /// The same for several columns {run} of equal length, which share their draws.
 std::vector<Interval> bootstrap_means(std::span<const std::vector<double>> columns, double level);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

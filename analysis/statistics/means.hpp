@@ -5,7 +5,7 @@
 #include <limits>
 #include <span>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Where there is no number.
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -34,4 +34,4 @@ inline double mean_of_finite(std::span<const double> values) {
   return sum / n;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

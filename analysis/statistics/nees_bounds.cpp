@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::array kQuotedLevels = {0.80, 0.90, 0.95, 0.98, 0.99, 0.999};
@@ -118,4 +118,4 @@ std::vector<IntervalMatch> match_interval(double lower, double upper, std::size_
   return matches;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Closed interval of a NEES average [1].
 struct Interval {
@@ -38,4 +38,4 @@ struct IntervalMatch {
 /// 0 <= lower < upper.
 std::vector<IntervalMatch> match_interval(double lower, double upper, std::size_t most = 5);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

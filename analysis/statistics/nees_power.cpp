@@ -9,7 +9,7 @@
 #include <cmath>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 void expect_meaning(const NeesTest& test) {
@@ -23,7 +23,8 @@ void expect_meaning(const NeesTest& test) {
   }
 }
 
-/// At one scan. The far side is left out: to call a filter modest that is too sure is no find.
+/// At one scan. The far side is left out: to call an overconfident filter conservative is no
+/// detection.
 double power_at_one_scan(const NeesTest& test, std::uint64_t runs) {
   const Interval band =
       nees_bounds(runs, test.dimension, level_of_one_scan(test.level, test.scans));
@@ -68,4 +69,4 @@ std::uint64_t runs_needed(const NeesTest& test, double power) {
   return enough;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kLeastHalfWindow = 25;
@@ -59,4 +59,4 @@ std::vector<double> NeighbourCorrelation::result() const {
   return correlations;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// How a number of every scan goes together with that of the next scan, over runs: what a band over
 /// a whole run depends on. Memory depends on the scans alone.
@@ -27,4 +27,4 @@ class NeighbourCorrelation {
   std::vector<Pair> pairs_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Indices of `values` such that key(values[i]) does not decrease; equal ones in their order.
@@ -88,4 +88,4 @@ std::vector<double> holm(std::span<const double> p) {
   return adjusted;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

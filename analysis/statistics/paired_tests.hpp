@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Two-sided p of the exact sign test: how probable it is that a fair coin falls as unevenly as
 /// `won` to `lost`, or more so. Ties belong to neither. 1 where there is nothing to count.
@@ -28,4 +28,4 @@ inline constexpr std::size_t kMostExactRanks = 50;
 /// 1 - level are called significant, the probability of one false call or more is at most that.
 std::vector<double> holm(std::span<const double> p);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <span>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 // Exponent and first four bits of the fraction of a double number the bins of all positive doubles
@@ -77,4 +77,4 @@ double QuantileTable::trimmed_mean(std::size_t scan, double trim) const {
   return sum / (last - first);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

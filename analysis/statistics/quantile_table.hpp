@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Medians and trimmed means over runs of a positive number at every scan, to 3 %, in memory that
 /// does not grow with the number of runs: one histogram a scan, sixteen bins an octave from 2^-12
@@ -28,4 +28,4 @@ class QuantileTable {
   std::vector<std::uint32_t> counts_;  ///< {scan, bin}
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 // NEES outside 2^-16 and 2^48 are as far off as those at the ends.
@@ -44,4 +44,4 @@ double SamplerScale::operator()(double nees) const {
   return std::exp2(octave + std::lerp(log_ratios_[low], log_ratios_[low + 1], part));
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Puts the NEES by the spread of particles on the scale of the chi-square. If the particles are
 /// independent draws from the distribution that the truth was drawn from, that NEES is
@@ -26,4 +26,4 @@ class SamplerScale {
   std::vector<double> log_ratios_;  ///< [log2] of result to argument, at equal steps of log2(nees)
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

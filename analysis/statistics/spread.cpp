@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 bool is_nan(double value) { return std::isnan(value); }
@@ -31,4 +31,4 @@ Spread spread_of(std::span<const double> values) {
   return spread;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

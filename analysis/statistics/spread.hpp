@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A number of every run, over runs, where few runs may lie far from the others: of a recorded
 /// drive runs differ by the filter's randomness alone, and one that loses the map spoils the mean.
@@ -24,4 +24,4 @@ double median_of(std::vector<double> values);
 /// `values` in the order of the runs. NaN, all but their number, where one of them is NaN.
 Spread spread_of(std::span<const double> values);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

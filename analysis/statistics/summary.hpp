@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A number that every run has one of, over runs.
 struct Summary {
@@ -40,4 +40,4 @@ class SummaryOf {
   double squares_ = 0.0;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Where a probability lies of which `hits` of `n` were seen.
@@ -55,4 +55,4 @@ Survival survival_of(std::span<const double> ends, std::span<const double> times
   return survival;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

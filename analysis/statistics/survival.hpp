@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// How many runs are still right, each judged by itself: until its own NEES stays above the band of
 /// one run for kLastingScans, or until it fails.
@@ -23,4 +23,4 @@ struct Survival {
 /// `ends` [s] of the runs, infinity where a run lasts; `times` [s] of the scans.
 Survival survival_of(std::span<const double> ends, std::span<const double> times, double level);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -3,9 +3,9 @@
 
 #include <cstddef>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Two-sided quantile of Student's t with n - 1 degrees of freedom, n > 1.
 double t_quantile(std::size_t n, double level);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

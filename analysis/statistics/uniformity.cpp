@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Logarithm of the Poisson probability of `count` where `mean` is expected.
@@ -115,4 +115,4 @@ std::string in_words(Calibration verdict) {
   return "too few runs";
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

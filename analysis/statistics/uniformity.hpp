@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Fewer values than this say nothing of a distribution.
 inline constexpr std::size_t kLeastValues = 40;
@@ -56,4 +56,4 @@ Uniformity judge_uniformity(std::span<const double> values, const CountBand& ban
 
 std::string in_words(Calibration verdict);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kMostWalks = 4000, kFewestWalks = 500;
@@ -101,4 +101,4 @@ WholeRunTest BandWalks::test(std::span<const double> correlation, std::size_t ru
           lower_quantile(std::move(averages), 1.0 - each)};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

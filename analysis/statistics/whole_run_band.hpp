@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
-/// A test in two parts that together accuse a right filter with the probability that the level
+/// A test in two parts that together accuse a consistent filter with the probability that the level
 /// leaves, each part as often as the other.
 struct WholeRunTest {
   double deviate = 0.0;          ///< of the band: the process stays within so many deviations
@@ -39,4 +39,4 @@ class BandWalks {
   std::vector<double> of_variance_;  ///< {walk} standard normal
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -7,7 +7,7 @@
 #include "analysis/tables/tables.hpp"
 #include "engine/records/h5.hpp"
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 void write_number(const h5::Handle& group, const NamedNumber& number) {
@@ -107,4 +107,4 @@ void write_analysis_file(const StudyAnalysis& study, const std::filesystem::path
   write_text(path, h5::image_of(file));
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -7,7 +7,7 @@
 #include "analysis/printed/comparison.hpp"
 #include "analysis/tables/tables.hpp"
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr const char* kFailures = "failures.csv";
@@ -93,4 +93,4 @@ void write_csv(const StudyAnalysis& study, const std::filesystem::path& director
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

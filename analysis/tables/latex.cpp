@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 std::string latex_escaped(char c) {
@@ -75,4 +75,4 @@ std::string latex_table(const StudyAnalysis& study) {
   return latex_table(study, verdict_table(study));
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Plain text as LaTeX prints it: special characters escaped, +- set as a symbol.
 std::string latex_escape(const std::string& text);
@@ -16,4 +16,4 @@ std::string latex_tabular(const TextTable& table);
 /// The same below a comment that says which study it is of.
 std::string latex_table(const StudyAnalysis& study, const TextTable& table);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Whether sentences say how tables are read.
 enum class Explanations { hidden, shown };
@@ -35,4 +35,4 @@ std::string latex_table(const StudyAnalysis& study);
 /// `path` when all is written. Throws RunError where it cannot, and leaves what was there.
 void write_analysis_file(const StudyAnalysis& study, const std::filesystem::path& path);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -11,7 +11,7 @@
 #include <ostream>
 #include <variant>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Failures of a study that fails a thousand times are not worth a thousand lines.
@@ -101,4 +101,4 @@ void print_tables(std::ostream& out, const StudyAnalysis& study, Explanations ex
   print_printed(out, study);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

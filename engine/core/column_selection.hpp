@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
+
 #include <cstddef>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// What a study may ask to be stored (study file: record.columns). The per-scan diagnostics
 /// (ess, resampled, log_likelihood, nis, nis_dof, numerical_faults, map_size) and pose_mean are
@@ -21,4 +23,4 @@ struct ColumnSelection {
   bool scans_only = false;       ///< record.rate = scan: rows of `time` only where a scan was taken
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// What the filter is told about the motion of one step.
 struct Control {
@@ -85,4 +85,4 @@ class DriveSource {
   virtual void generate(std::uint64_t run, Drive& drive) const = 0;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

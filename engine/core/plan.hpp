@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// One filter in one setting, repeated in runs: one curve of a figure.
 struct Cell {
@@ -58,4 +58,4 @@ struct StudyPlan {
   std::uint64_t runs_here() const { return last_run - first_run; }
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

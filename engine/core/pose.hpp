@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Vehicle pose in the map frame; `Real` is double or Lanes.
 template <class Real>
@@ -21,4 +21,4 @@ inline Eigen::Vector3d boxminus(const Pose& a, const Pose& b) {
   return {a.x - b.x, a.y - b.y, wrap(a.heading - b.heading)};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -12,7 +12,7 @@
 #include <optional>
 #include <span>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// First two moments of a belief about the pose; covariance over (x, y, heading) [m, m, rad].
 struct PoseMoments {
@@ -63,7 +63,7 @@ struct ParticleColumns {
 };
 
 /// One landmark as the filter reports it: identity of the world with known association, else order
-/// of birth.
+/// of initialisation.
 struct LandmarkEstimate {
   Eigen::Vector2d mean;        ///< [m]
   Eigen::Matrix2d covariance;  ///< [m^2]
@@ -107,4 +107,4 @@ class SlamFilter {
   }
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

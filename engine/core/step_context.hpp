@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// What the engine lends a filter for one step: its place in the study, random streams, and
 /// threads.
@@ -45,4 +45,4 @@ class StepContext {
   const StopSign* stop_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-namespace montecarta {
+#include "engine/namespaces.hpp"
+
+namespace montecarta::engine {
 
 /// Whether somebody has asked the workers to stop. For a filter that waits for something outside of
 /// the process; any other ends its step soon enough.
@@ -11,4 +13,4 @@ class StopSign {
   virtual bool made() const = 0;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

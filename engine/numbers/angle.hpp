@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
+
 #include <cmath>
 #include <numbers>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kTwoPi = 2.0 * std::numbers::pi;
@@ -17,4 +19,4 @@ inline double wrap(double angle) {
   return wrapped <= -kPi ? kPi : (wrapped > kPi ? kPi : wrapped);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

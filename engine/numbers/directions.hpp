@@ -6,7 +6,7 @@
 #include <array>
 #include <cstddef>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// The unit vectors at a few angles [rad], computed together: not much dearer than one.
 template <std::size_t N>
@@ -25,4 +25,4 @@ template <std::size_t N>
   return directions;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

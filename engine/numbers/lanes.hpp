@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Which lanes a condition holds for.
 struct LaneMask;
@@ -146,4 +146,4 @@ inline bool any(const LaneMask& mask) {
   return found;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

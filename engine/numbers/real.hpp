@@ -14,7 +14,7 @@
 /// The functions that per-particle arithmetic is written in, for `Real` = double and `Real` = Lanes
 /// alike. Every lane is a function of that lane alone, so a result never depends on which particles
 /// share a register.
-namespace montecarta {
+namespace montecarta::engine {
 
 template <class Real>
 inline constexpr std::size_t kLanesOf = 1;
@@ -144,4 +144,4 @@ inline Lanes wrap(const Lanes& angle) {
       angle);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

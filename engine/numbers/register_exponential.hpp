@@ -8,7 +8,7 @@
 
 /// Exponential and logarithm of one register. Those of xsimd 8 convert whole numbers through memory
 /// on AVX2, which has no instruction for it, and look at all lanes to choose their way.
-namespace montecarta::register_math {
+namespace montecarta::engine::register_math {
 
 /// ln 2 in two parts: a whole number below 2^20 times the first is exact.
 inline constexpr double kLn2High = 6.93147180369123816490e-01;
@@ -60,4 +60,4 @@ template <class R>
   return xsimd::select(x < R(0.0), R(std::numeric_limits<double>::quiet_NaN()), signless);
 }
 
-}  // namespace montecarta::register_math
+}  // namespace montecarta::engine::register_math

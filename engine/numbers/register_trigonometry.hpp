@@ -9,7 +9,7 @@
 /// Branch-free sine, cosine and arc tangent of one register. Those of xsimd choose their polynomial
 /// by what the neighbouring lanes hold, so that a particle's bits would depend on who shares its
 /// register, and its arc tangent divides four times where once is enough.
-namespace montecarta::register_math {
+namespace montecarta::engine::register_math {
 
 /// Sine and cosine for |angle| < 1e5, to one unit in the last place (polynomials of FreeBSD's
 /// msun).
@@ -67,4 +67,4 @@ template <class R>
   return angle ^ (y & R(-0.0));
 }
 
-}  // namespace montecarta::register_math
+}  // namespace montecarta::engine::register_math

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
+
 #include <xsimd/xsimd.hpp>
 
 #include <array>
@@ -9,7 +11,7 @@
 
 /// Arithmetic of one register of doubles of any width: what xsimd has, and where it differs from
 /// one instruction set to another, in a form that does not.
-namespace montecarta::register_math {
+namespace montecarta::engine::register_math {
 
 // The tests also build for registers of two doubles, whose bits must be those of wider ones.
 #ifdef MONTECARTA_NARROW_REGISTERS
@@ -97,4 +99,4 @@ template <class R, class... Coefficients>
   return polynomial(z, std::array<R, 1 + sizeof...(rest)>{R(first), R(rest)...});
 }
 
-}  // namespace montecarta::register_math
+}  // namespace montecarta::engine::register_math

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// The blocks of a population shared out to tasks that may run at once.
 template <class Real>
@@ -32,4 +32,4 @@ class BlockTasks {
   std::size_t blocks_, per_task_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// How many blocks of kLanesOf<Real> hold `particles`; the last block may have dead lanes.
 template <class Real>
@@ -73,4 +73,4 @@ void gather(const std::vector<Block>& from, std::span<const std::uint32_t> sourc
   for (std::size_t b = 0; b < to.size(); ++b) to[b] = gather_block<Real, Block>(from, source, b);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Who descends from whom since an earlier resampling, so that what a particle owns need not be
 /// copied at every resampling but only when it is looked at again ("lazy" copying).
@@ -64,4 +66,4 @@ class Genealogy {
   std::uint32_t forgotten_ = 0;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using Parents = std::span<std::uint32_t>;
@@ -89,4 +89,4 @@ void draw_parents(Resampling scheme, Weights weights, const StepContext& context
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

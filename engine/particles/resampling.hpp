@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// How parents are drawn (EQUATIONS 18). All are unbiased: particle j has N w_j children on
 /// average.
@@ -17,4 +17,4 @@ enum class Resampling { systematic, stratified, residual, multinomial };
 void draw_parents(Resampling scheme, std::span<const double> weights, const StepContext& context,
                   std::span<std::uint32_t> parents);
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Weights of a particle population, kept as logarithms; dead lanes weigh nothing and reach no sum.
 template <class Real>
@@ -34,7 +34,7 @@ class Weights {
     const double share = 1.0 / static_cast<double>(particles_);
     std::fill(log_.begin(), log_.end(), Real(std::log(share)));
     std::fill(linear_.begin(), linear_.end(), Real(share));
-    bury_dead_lanes();
+    clear_padding();
   }
 
   /// Multiplies a block of weights by exp(increment); normalise() must follow.
@@ -60,7 +60,7 @@ class Weights {
       linear_[b] = linear_[b] * Real(1.0 / sum);
       log_[b] -= Real(log_sum);
     }
-    bury_dead_lanes();
+    clear_padding();
     return log_sum;
   }
 
@@ -72,7 +72,7 @@ class Weights {
   }
 
  private:
-  void bury_dead_lanes() {
+  void clear_padding() {
     for (std::size_t i = particles_; i < scalars(log_).size(); ++i) {
       scalars(log_)[i] = -std::numeric_limits<double>::infinity();
       scalars(linear_)[i] = 0.0;
@@ -85,4 +85,4 @@ class Weights {
   std::vector<Real> linear_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

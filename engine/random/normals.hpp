@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// One 32-bit word in each 64-bit lane of a register.
 struct WordRegister {
@@ -87,4 +87,4 @@ Pair<Real> normal_pairs(const StreamIdentity& identity, std::uint32_t block) {
   return box_muller(uniform_pairs(identity, block, Real()));
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// The two halves of a product of 32-bit numbers.
 template <class Word>
@@ -38,4 +40,4 @@ std::array<Word, 4> philox(std::array<Word, 4> counter, std::array<std::uint32_t
 inline constexpr int kPurposeShift = 24;
 inline constexpr std::uint32_t kBlockMask = 0xffffffU;
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -7,7 +7,7 @@
 
 #include <bit>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 RngStream::RngStream(const StreamIdentity& identity, std::uint32_t block)
     : key_{static_cast<std::uint32_t>(identity.seed),
@@ -56,4 +56,4 @@ double RngStream::normal() {
   return normal;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
+
 #include <array>
 #include <cstdint>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// What a draw is for. Two places never share a purpose; the world's purposes never depend on the
 /// filter. The numbers are part of every result: append, never renumber. 25 and 26 are spent.
@@ -60,4 +62,4 @@ class RngStream {
   bool has_spare_ = false;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

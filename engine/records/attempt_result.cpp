@@ -14,7 +14,7 @@
 #include <system_error>
 #include <unistd.h>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 namespace fs = std::filesystem;
@@ -81,7 +81,7 @@ OpenResult new_attempt(const fs::path& path, const fs::path& own,
 
 /// Copies what is whole in another attempt's file and missing here; tells how many runs of cells
 /// that were.
-std::size_t salvage(const PosixFile& from, const ResultSlabs& slabs, OpenResult& to) {
+std::size_t copy_complete_runs(const PosixFile& from, const ResultSlabs& slabs, OpenResult& to) {
   std::vector<std::byte> buffer;
   std::size_t copied = 0;
   for (std::size_t cell = 0; cell < to.status.size(); ++cell) {
@@ -102,13 +102,13 @@ std::size_t salvage(const PosixFile& from, const ResultSlabs& slabs, OpenResult&
 }
 
 /// Takes over what another attempt stored and may still be writing.
-void salvage(const fs::path& other, const ResultDescription& planned, OpenResult& to) {
+void copy_complete_runs(const fs::path& other, const ResultDescription& planned, OpenResult& to) {
   const auto stored = description_of(other, planned);
   if (!stored) return;
   const std::string name = other.filename().string();
   try {
     const PosixFile from(other, PosixFile::Mode::read);
-    const std::size_t copied = salvage(from, find_slabs(other, *stored), to);
+    const std::size_t copied = copy_complete_runs(from, find_slabs(other, *stored), to);
     if (copied > 0)
       to.notes.push_back(std::to_string(copied) + " runs were taken over from " + name);
   } catch (const std::runtime_error& error) {
@@ -127,12 +127,12 @@ OpenResult attempt_result(const fs::path& path, const StudyPlan& plan,
                                                           : new_attempt(path, own, planned);
   result.claim = Claim::attempt;
   for (const fs::path& other : attempts_at(path)) {
-    if (other != own && other.extension() != ".new") salvage(other, planned, result);
+    if (other != own && other.extension() != ".new") copy_complete_runs(other, planned, result);
   }
   return result;
 }
 
-void hand_over(OpenResult& attempt, const fs::path& path) {
+void rename_finished(OpenResult& attempt, const fs::path& path) {
   std::error_code ignored;
   if (is_there(path)) {  // another attempt was first
     fs::remove(attempt.file.path(), ignored);
@@ -156,4 +156,4 @@ void complete_attempt(OpenResult& attempt, const fs::path& path) {
   fs::remove(part_of(path), ignored);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

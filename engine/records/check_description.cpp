@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 constexpr std::size_t kLongestLabel = 1000;
@@ -144,4 +144,4 @@ void check_description(const ResultDescription& description, const std::filesyst
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

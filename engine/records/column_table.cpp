@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 constexpr ColumnGroup kGroups[] = {{"pose", nullptr},
@@ -151,4 +151,4 @@ std::optional<std::size_t> length_of(Axis axis, const AxisLengths& lengths) {
   return std::nullopt;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

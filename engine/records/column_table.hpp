@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// A group of columns that a study chooses together (record.columns).
 struct ColumnGroup {
@@ -46,4 +46,4 @@ struct AxisLengths {
 /// nullopt where that of the landmarks decides, which is not known.
 std::optional<std::size_t> length_of(Axis axis, const AxisLengths& lengths);
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -8,7 +8,7 @@
 #include <functional>
 #include <numeric>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 /// In the order of Axis.
@@ -59,4 +59,4 @@ std::size_t Column::elements() const {
   return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -8,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 enum class Element : std::uint8_t { f64, u8, u16, u32, u64 };
 std::size_t size_of(Element element);
@@ -48,4 +50,4 @@ struct Column {
   std::size_t bytes() const { return elements() * size_of(element); }
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

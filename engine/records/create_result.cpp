@@ -9,7 +9,7 @@
 #include <sstream>
 #include <system_error>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 namespace fs = std::filesystem;
@@ -84,4 +84,4 @@ OpenResult create_result(const fs::path& path, const StudyPlan& plan, const Text
   return result;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -8,7 +8,7 @@
 
 #include <memory>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 XXH3_state_t* state_in(std::byte* memory) { return reinterpret_cast<XXH3_state_t*>(memory); }
@@ -31,4 +31,4 @@ std::uint64_t Fingerprint::value() const {
   return digest == 0 ? 1 : digest;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

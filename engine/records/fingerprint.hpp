@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// 64-bit XXH3 over bytes handed in piece by piece: tells torn data from whole, not a signature.
 class Fingerprint {
@@ -23,4 +25,4 @@ class Fingerprint {
   alignas(64) std::byte state_[640];
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace montecarta::h5 {
+namespace montecarta::engine::h5 {
 namespace {
 
 constexpr hsize_t kPage = 4096;          // large datasets begin on a page, for pwrite's sake
@@ -17,7 +17,7 @@ static_assert(sizeof(hid_t) == sizeof(std::int64_t));
 
 /// Errors become exceptions here; HDF5's own printed stacks would only frighten. Its tidying up at
 /// exit goes, too: nothing is left open for it, and it crashes on a file it could not write out.
-void silence() {
+void disable_error_printing() {
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
@@ -106,7 +106,7 @@ Handle::~Handle() {
 }
 
 std::string library_version() {
-  silence();
+  disable_error_printing();
   unsigned major = 0;
   unsigned minor = 0;
   unsigned release = 0;
@@ -115,7 +115,7 @@ std::string library_version() {
 }
 
 Handle create_file(const std::filesystem::path& path) {
-  silence();
+  disable_error_printing();
   Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, file_creation().id(), file_access().id()));
   if (file.id() < 0)
     throw RunError(path.string() +
@@ -124,7 +124,7 @@ Handle create_file(const std::filesystem::path& path) {
 }
 
 Handle create_image(const std::string& name) {
-  silence();
+  disable_error_printing();
   const Handle access = file_access();
   H5Pset_fapl_core(access.id(), kLarge, false);
   // H5Fget_file_image spoils the checksum that newer superblocks have.
@@ -144,7 +144,7 @@ std::string image_of(const Handle& file) {
 }
 
 Handle open_file(const std::filesystem::path& path) {
-  silence();
+  disable_error_printing();
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, file_access().id()));
   if (file.id() < 0)
     throw StudyError(path.string() +
@@ -201,4 +201,4 @@ std::vector<std::string> members(const Handle& group) {
   return names;
 }
 
-}  // namespace montecarta::h5
+}  // namespace montecarta::engine::h5

@@ -16,7 +16,7 @@
 /// The little of HDF5 that montecarta uses, with owned identifiers and exceptions. Every function
 /// throws RunError naming the object. hdf5.h itself stays in h5.cpp, h5_attributes.cpp and
 /// h5_datasets.cpp.
-namespace montecarta::h5 {
+namespace montecarta::engine::h5 {
 
 /// Owns an HDF5 identifier of any kind.
 class Handle {
@@ -111,4 +111,4 @@ void expect_in_file(std::span<const unsigned long long> elements, std::size_t wi
 std::int64_t native_type(Element element);
 }  // namespace detail
 
-}  // namespace montecarta::h5
+}  // namespace montecarta::engine::h5

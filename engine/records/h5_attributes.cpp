@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace montecarta::h5 {
+namespace montecarta::engine::h5 {
 namespace {
 
 using detail::check;
@@ -124,4 +124,4 @@ std::uint64_t number(const Handle& object, const std::string& name) {
   return values.front();
 }
 
-}  // namespace montecarta::h5
+}  // namespace montecarta::engine::h5

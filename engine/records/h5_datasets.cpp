@@ -8,7 +8,7 @@
 #include <numeric>
 #include <type_traits>
 
-namespace montecarta::h5 {
+namespace montecarta::engine::h5 {
 namespace {
 
 using detail::check;
@@ -153,4 +153,4 @@ void attach_scale(const Handle& dataset, const Handle& scale, unsigned axis) {
         "");
 }
 
-}  // namespace montecarta::h5
+}  // namespace montecarta::engine::h5

@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 void put_label(const h5::Handle& dataset, const Label& label) {
@@ -71,4 +71,4 @@ void add_index_scale(const h5::Handle& parent, const std::string& name, std::siz
   add_numeric_scale(parent, name, Element::u32, length, values.data(), label, scales);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// What a reader wants to know of a dataset besides its numbers.
 struct Label {
@@ -34,4 +34,4 @@ void add_scale(const h5::Handle& parent, const std::string& name,
 void add_index_scale(const h5::Handle& parent, const std::string& name, std::size_t length,
                      const Label& label, Scales& scales);
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -10,7 +10,7 @@
 #include <numeric>
 #include <set>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 namespace fs = std::filesystem;
@@ -165,4 +165,4 @@ MergeSummary merge_results(const fs::path& out, const std::vector<fs::path>& pat
   return summary;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

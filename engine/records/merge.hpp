@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// What a merge did.
 struct MergeSummary {
@@ -29,4 +29,4 @@ struct MergeSummary {
 MergeSummary merge_results(const std::filesystem::path& out,
                            const std::vector<std::filesystem::path>& shards, Existing existing);
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

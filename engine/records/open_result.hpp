@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Whether one process at a time works at a result, under OUT.h5.part, or several attempts may,
 /// each under a name of its own.
@@ -60,9 +60,9 @@ OpenResult attempt_result(const std::filesystem::path& path, const StudyPlan& pl
                           const TextPairs& provenance);
 /// Leaves an attempt that is not complete to the next one: under the name OUT.h5.part, if no other
 /// left one there.
-void hand_over(OpenResult& attempt, const std::filesystem::path& path);
+void rename_finished(OpenResult& attempt, const std::filesystem::path& path);
 /// Gives a complete attempt the final name, unless another one was first, and removes what all
 /// attempts left.
 void complete_attempt(OpenResult& attempt, const std::filesystem::path& path);
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -5,7 +5,7 @@
 
 #include <system_error>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 std::filesystem::path part_of(std::filesystem::path path) { return path += ".part"; }
 
@@ -21,4 +21,4 @@ void expect_free(const std::filesystem::path& path) {
                    "choose another path");
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
+
 #include <filesystem>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Name of the work in progress of the result `path`.
 std::filesystem::path part_of(std::filesystem::path path);
@@ -15,4 +17,4 @@ bool is_there(const std::filesystem::path& path);
 /// Throws StudyError where something has that name already.
 void expect_free(const std::filesystem::path& path);
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 std::string reason(int error) { return " (" + std::string(std::strerror(error)) + ")"; }
@@ -210,4 +210,4 @@ void PosixFile::rename(const std::filesystem::path& name, Target target) {
   sync_folder_of(path_);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// A file read and written at offsets, from any thread, with errors that say what to do.
 /// Interrupted and partial transfers are carried on. Throws RunError where the disk fails.
@@ -51,4 +53,4 @@ class PosixFile {
   int descriptor_ = -1;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -12,7 +12,7 @@
 #endif
 #include <sys/utsname.h>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 /// The widest registers the program was compiled for; no result depends on it.
@@ -86,4 +86,4 @@ TextPairs collect_provenance() {
   };
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Of this program, e.g. "0.1.0".
 std::string program_version();
@@ -19,4 +19,4 @@ std::string toolchain();
 /// caller adds its own (command line).
 TextPairs collect_provenance();
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -10,12 +10,12 @@
 #include <numeric>
 #include <span>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 constexpr std::array kBookkeeping = {"status", "failure_reason", "failure_step", "fingerprint"};
 
-void expect_ours(const h5::Handle& file, const std::filesystem::path& path) {
+void expect_result_file(const h5::Handle& file, const std::filesystem::path& path) {
   if (h5::find_text(file, "filetype") != std::string(format::kFiletype)) {
     throw StudyError(
         path.string() + ": not a montecarta result (its attribute 'filetype' is not '" +
@@ -143,7 +143,7 @@ void read_provenance(const h5::Handle& file, ResultDescription& result) {
 }  // namespace
 
 ResultDescription read_description(const h5::Handle& file, const std::filesystem::path& path) {
-  expect_ours(file, path);
+  expect_result_file(file, path);
   ResultDescription result;
   result.study_name = h5::text(file, "study");
   result.title = h5::text(file, "title");
@@ -161,4 +161,4 @@ ResultDescription read_description(const h5::Handle& file, const std::filesystem
   return result;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

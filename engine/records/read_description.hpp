@@ -6,11 +6,11 @@
 
 #include <filesystem>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// What an open result file says of itself. Throws StudyError where it is no montecarta result of a
 /// known major version, RunError where something that must be there cannot be read, or contradicts
 /// what else is there (check_description()).
 ResultDescription read_description(const h5::Handle& file, const std::filesystem::path& path);
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 constexpr std::size_t kAlignment = 64;  // a cache line, so that no two columns share one
@@ -52,4 +52,4 @@ std::optional<std::size_t> RecordLayout::find(std::string_view name) const {
   return static_cast<std::size_t>(found - columns_.begin());
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// The columns a cell stores and where they lie in the memory of one run. Columns nobody asked for
 /// are absent.
@@ -46,4 +46,4 @@ class RecordLayout {
   std::vector<std::uint32_t> joint_scans_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

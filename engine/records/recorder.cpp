@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 template <class T>
@@ -168,4 +168,4 @@ void Recorder::write_map(const MapColumns& columns, std::size_t row) const {
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

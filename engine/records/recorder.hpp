@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Watches a filter and copies what the layout asks for into a record: predict(), then update() and
 /// after_scan() where the step ends with a scan, then after_step(). A column nobody asked for is
@@ -67,4 +67,4 @@ class Recorder {
   std::vector<std::optional<LandmarkEstimate>> landmarks_;  ///< of one scan
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

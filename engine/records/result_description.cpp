@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 constexpr std::uint64_t kMostRuns = 10'000'000;  // keeps the bookkeeping of a file in memory
@@ -86,4 +86,4 @@ ResultDescription describe(const StudyPlan& plan, const TextPairs& provenance) {
   return result;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

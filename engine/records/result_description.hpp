@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// (name, value), in order.
 using TextPairs = std::vector<std::pair<std::string, std::string>>;
@@ -60,4 +60,4 @@ struct ResultDescription {
 /// What the file of a plan will say.
 ResultDescription describe(const StudyPlan& plan, const TextPairs& provenance);
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <map>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 struct ResultFile::Contents {
   std::filesystem::path path;
@@ -156,4 +156,4 @@ std::vector<Eigen::Vector2d> ResultFile::landmarks_of(std::size_t i) const {
   return points;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// A result file opened for reading: all that analysis knows of a study. Reads stream run by run.
 /// Reading needs no more memory than the caller's buffer. Two threads may read from one file object
@@ -78,4 +78,4 @@ class ResultFile {
   std::unique_ptr<Contents> contents_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

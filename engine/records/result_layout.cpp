@@ -9,7 +9,7 @@
 #include <array>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using Points = std::vector<std::pair<double, double>>;
@@ -158,7 +158,8 @@ void add_cell(const h5::Handle& cells, const StoredCell& cell, std::size_t runs,
   const h5::Handle settings = h5::create_group(group, "settings");
   for (const auto& [name, value] : cell.settings) h5::put_text(settings, name, value);
   add_own_scale(group, cell, Axis::particle, "index of the particle", scales);
-  add_own_scale(group, cell, Axis::landmark, "landmark: its identity, or order of birth", scales);
+  add_own_scale(group, cell, Axis::landmark, "landmark: its identity, or order of initialisation",
+                scales);
   for (const Axis axis : {Axis::state, Axis::state_column}) {
     add_own_scale(group, cell, axis, "0 x, 1 y, 2 heading, then x and y of each landmark", scales);
   }
@@ -210,4 +211,4 @@ void lay_out(const std::filesystem::path& path, const ResultDescription& result)
   h5::close_file(std::move(file));
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

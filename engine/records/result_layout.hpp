@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string_view>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Names and widths on which the writer of a result file and its reader agree (analysis/FORMAT.md).
 namespace format {
@@ -26,4 +26,4 @@ inline constexpr const char* kReferences = "references";
 /// fails.
 void lay_out(const std::filesystem::path& path, const ResultDescription& description);
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

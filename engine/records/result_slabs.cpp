@@ -9,7 +9,7 @@
 
 #include <span>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 class SlabFinder {
@@ -115,4 +115,4 @@ bool truth_is_whole(const PosixFile& file, const ResultSlabs& slabs, std::size_t
   return fingerprint.value() == stored_fingerprint(file, slabs.truth->fingerprint, run_index);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

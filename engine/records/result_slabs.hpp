@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Where the runs of one dataset lie in a file: one behind the other.
 struct Slab {
@@ -56,4 +56,4 @@ bool run_is_whole(const PosixFile& file, const CellSlabs& cell, std::size_t run_
 bool truth_is_whole(const PosixFile& file, const ResultSlabs& slabs, std::size_t run_index,
                     std::vector<std::byte>& buffer);
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -11,7 +11,7 @@
 #include <functional>
 #include <span>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 template <class T>
@@ -154,7 +154,7 @@ void ResultWriter::note_wall_seconds(double seconds) {
 void ResultWriter::suspend() {
   if (work_->finished()) return;
   work_->result.file.sync();
-  if (work_->result.claim == Claim::attempt) hand_over(work_->result, work_->path);
+  if (work_->result.claim == Claim::attempt) rename_finished(work_->result, work_->path);
 }
 
 void ResultWriter::finish() {
@@ -168,4 +168,4 @@ void ResultWriter::finish() {
   work_->result.file.rename(work_->path, work_->result.target);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

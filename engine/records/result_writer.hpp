@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// What to do where a result of that name is already there.
 enum class Existing { refuse, replace };
@@ -75,4 +75,4 @@ class ResultWriter {
   std::unique_ptr<Work> work_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 namespace fs = std::filesystem;
@@ -64,7 +64,7 @@ void forget(OpenResult& result, std::size_t cell, std::size_t run_index) {
 }
 
 /// Marks what is torn as missing; tells how many runs of cells that were.
-std::size_t forget_torn_runs(OpenResult& result) {
+std::size_t reset_torn_runs(OpenResult& result) {
   std::vector<std::byte> buffer;
   std::size_t torn = 0;
   for (std::size_t run = 0; run < result.truth_stored.size(); ++run) {
@@ -92,7 +92,7 @@ std::string differences(const TextPairs& begun, const TextPairs& now) {
 }
 
 /// Adds a line to the log of resumptions; once it is full, no more.
-void log_sitting(const OpenResult& result, const std::string& line) {
+void log_session(const OpenResult& result, const std::string& line) {
   std::string log(format::kSittingsBytes, '\0');
   result.file.read_at(result.slabs.sittings.offset, std::as_writable_bytes(std::span(log)));
   const std::size_t length = std::min(log.find('\0'), log.size());
@@ -145,14 +145,14 @@ OpenResult continued_work(const fs::path& work, const fs::path& path,
   OpenResult result = open_existing(work, PosixFile::Mode::write, planned, stored);
   expect_replaceable(path, planned, stored);
   if (is_there(path)) result.target = PosixFile::Target::replace;
-  const std::size_t torn = forget_torn_runs(result);
+  const std::size_t torn = reset_torn_runs(result);
   if (torn > 0) {
     result.notes.push_back(std::to_string(torn) +
                            " stored runs were damaged (a power cut?) and are computed again");
   }
   for (std::string& note : build_differences(stored.provenance, planned.provenance))
     result.notes.push_back(std::move(note));
-  log_sitting(result, differences(stored.provenance, planned.provenance));
+  log_session(result, differences(stored.provenance, planned.provenance));
   return result;
 }
 
@@ -163,4 +163,4 @@ OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const Text
   return begun ? continued_work(part_of(path), path, planned) : finished_result(path, planned);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

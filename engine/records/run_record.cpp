@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 RunRecord::RunRecord(const RecordLayout& layout)
     : layout_(&layout), own_memory_(layout.bytes()), memory_(own_memory_) {
@@ -74,4 +74,4 @@ void RunRecord::expect_element(const Column& column, std::size_t size) {
   expect(size_of(column.element) == size, "a column was asked for as another element type");
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

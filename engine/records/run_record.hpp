@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Width of failure_reason in the file: fixed, so that a run's reason has its own place.
 inline constexpr std::size_t kFailureReasonBytes = 128;
@@ -73,4 +73,4 @@ class RunRecord {
   double cpu_seconds_ = std::numeric_limits<double>::quiet_NaN();
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
+
 #include <cstdint>
 #include <span>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// State of one run of one cell; the numbers are those of the file's `status`. Spared: not made,
 /// since the runs before it were enough.
@@ -19,4 +21,4 @@ inline bool is_stored(RunStatus status) {
 /// Throws RunError, beginning with `place`, where a number read from a file is none of these.
 void expect_known(std::span<const RunStatus> statuses, const std::string& place);
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <sstream>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 bool same_columns(const StoredCell& a, const StoredCell& b) {
@@ -56,4 +56,4 @@ std::vector<std::string> build_differences(const TextPairs& a, const TextPairs& 
   return found;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <system_error>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using Words = std::vector<std::uint64_t>;
@@ -202,4 +202,4 @@ h5::Handle open_checked(const std::filesystem::path& path) {
   return h5::open_file(path);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -13,7 +13,7 @@
 /// The seal of a result file: a block behind the end of what is HDF5's, with a fingerprint of every
 /// byte that is not written again once the file is laid out (analysis/FORMAT.md, "The seal"). It is
 /// looked at before the HDF5 library sees the file, which damaged metadata can crash.
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Bytes [offset, offset + length) of a file.
 struct ByteRange {
@@ -37,4 +37,4 @@ Seal check_seal(const std::filesystem::path& path);
 /// Opens a result file for reading once its seal is checked; throws as check_seal() does.
 h5::Handle open_checked(const std::filesystem::path& path);
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

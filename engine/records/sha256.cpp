@@ -7,7 +7,7 @@
 
 #include <array>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 std::string sha256(std::string_view text) {
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
@@ -24,4 +24,4 @@ std::string sha256(std::string_view text) {
   return hexadecimal;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <span>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 /// What is stored of a true path.
@@ -158,4 +158,4 @@ void copy_truth(const PosixFile& from, const ResultSlabs& source, const PosixFil
   copy_slabs({from, slabs_of_truth(source), run_index}, {to, slabs_of_truth(sink), run_index}, 1);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// What a merge keeps in mind of one shard: nothing that grows with the size of its runs.
 struct Shard {
@@ -48,4 +48,4 @@ void copy_cell(const PosixFile& from, const CellSlabs& source, const PosixFile& 
 void copy_truth(const PosixFile& from, const ResultSlabs& source, const PosixFile& to,
                 const ResultSlabs& sink, std::size_t run_index);
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

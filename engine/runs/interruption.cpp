@@ -6,7 +6,7 @@
 #include <atomic>
 #include <unistd.h>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 // A signal handler can reach nothing but globals.
@@ -44,4 +44,4 @@ Interruption::~Interruption() {
 
 int Interruption::signal() const { return received; }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

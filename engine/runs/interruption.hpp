@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
+
 #include <csignal>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// While one lives, the first SIGINT or SIGTERM is only noted, so that the program can close its
 /// file; the second ends the program at once with exit code 128 + signal. A scheduler, unlike a
@@ -25,4 +27,4 @@ class Interruption {
   struct sigaction before_term_ {};
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -11,7 +11,7 @@
 #include <chrono>
 #include <cstdio>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 ResultWriter open_output(const StudyPlan& plan, const RunOptions& options) {
@@ -40,7 +40,7 @@ CellOutcome outcome_of(const StudyPlan& plan, std::size_t cell, const ResultWrit
   return outcome;
 }
 
-RunOutcome take_stock(const StudyPlan& plan, const ResultWriter& writer) {
+RunOutcome stored_outcome(const StudyPlan& plan, const ResultWriter& writer) {
   RunOutcome outcome;
   for (std::size_t c = 0; c < plan.cells.size(); ++c)
     outcome.cells.push_back(outcome_of(plan, c, writer));
@@ -68,15 +68,15 @@ std::size_t workers_for(const StudyPlan& plan, const Parallel& parallel, std::ui
   return std::max<std::uint64_t>(1, std::min(threads, missing));
 }
 
-/// One worker's whole life. An exception ends the others too, before it goes to the caller.
-void man(Sitting& sitting) {
+/// Runs one worker to its end. An exception ends the others too, before it goes to the caller.
+void run_worker(Session& session) {
   try {
-    Worker(sitting).work();
+    Worker(session).work();
   } catch (...) {
-    sitting.stop.make(StopReason::error);
+    session.stop.make(StopReason::error);
     throw;
   }
-  sitting.spare_threads.gain_one();
+  session.spare_threads.gain_one();
 }
 
 class Stopwatch {
@@ -90,8 +90,8 @@ class Stopwatch {
 };
 
 /// Works until nothing is missing or somebody asks to stop.
-void sit(const StudyPlan& plan, const RunOptions& options, const RunOutcome& before,
-         ResultWriter& writer, StopRequest& stop, const Watch::Orders& orders) {
+void run_missing(const StudyPlan& plan, const RunOptions& options, const RunOutcome& before,
+                 ResultWriter& writer, StopRequest& stop, const Watch::Orders& orders) {
   const std::vector<RecordLayout> layouts = layouts_of(plan);
   const std::size_t n_workers = workers_for(plan, options.parallel, before.missing());
   Progress progress(options.quiet ? ProgressStyle::none : options.progress, counts_of(before));
@@ -99,8 +99,8 @@ void sit(const StudyPlan& plan, const RunOptions& options, const RunOutcome& bef
   for (const std::uint64_t runs : rounds_of(plan)) {
     TaskList tasks(plan, runs, writer);
     SpareThreads spare(options.parallel, n_workers);
-    Sitting sitting{plan, layouts, writer, tasks, spare, stop, progress};
-    options.parallel.for_each(n_workers, [&](std::size_t) { man(sitting); });
+    Session session{plan, layouts, writer, tasks, spare, stop, progress};
+    options.parallel.for_each(n_workers, [&](std::size_t) { run_worker(session); });
     if (stop.made()) return;
     if (runs == plan.runs_here()) return;
     progress.runs_spared(spare_what_is_enough(plan, runs, options.parallel, writer));
@@ -126,14 +126,14 @@ RunOutcome run_study(const StudyPlan& plan, const RunOptions& options) {
                                                          : Interruption::From::person);
   ResultWriter writer = open_output(plan, options);
   if (!options.quiet) tell(writer.notes());
-  const RunOutcome before = take_stock(plan, writer);
+  const RunOutcome before = stored_outcome(plan, writer);
   StopRequest stop;
   if (before.missing() > 0) {
     std::optional<double> left = options.time_budget;
     if (left) *left -= stopwatch.seconds();
-    sit(plan, options, before, writer, stop, {interruption, left});
+    run_missing(plan, options, before, writer, stop, {interruption, left});
   }
-  RunOutcome outcome = take_stock(plan, writer);
+  RunOutcome outcome = stored_outcome(plan, writer);
   if (outcome.missing() > 0) outcome.stopped = stop.reason();
   outcome.runs_here = outcome.ended() - before.ended();
   outcome.seconds = stopwatch.seconds();
@@ -141,4 +141,4 @@ RunOutcome run_study(const StudyPlan& plan, const RunOptions& options) {
   return outcome;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <optional>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// How a study is to be run; nothing here changes a bit of its results.
 struct RunOptions {
@@ -30,4 +30,4 @@ struct RunOptions {
 /// first, RunError where the machine fails; what is stored by then can be resumed too.
 RunOutcome run_study(const StudyPlan& plan, const RunOptions& options);
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -7,7 +7,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 constexpr double kBarInterval = 0.1;    // [s]
@@ -97,4 +97,4 @@ void Progress::show_plain(double now) {
   std::fflush(out_);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 enum class ProgressStyle { automatic, plain, none };
 
@@ -52,4 +52,4 @@ class Progress {
   std::atomic<std::uint64_t> spared_{0};
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 constexpr std::size_t kWidestBar = 40;
@@ -69,4 +69,4 @@ std::string progress_bar(const RunCounts& counts, double seconds, std::size_t wi
   return line.substr(0, width);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -10,7 +10,7 @@
 #include <charconv>
 #include <cstring>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using Bytes = std::span<const std::byte>;
@@ -99,7 +99,7 @@ ResultDescription comparable(const StudyPlan& plan, const ResultDescription& sto
 Recomputation::Recomputation(const std::filesystem::path& path, const ResultDescription& stored,
                              const StudyPlan& plan)
     : stored_(stored), plan_(plan), file_(path, PosixFile::Mode::read) {
-  if (const auto differs = montecarta::difference(comparable(plan, stored), stored, path))
+  if (const auto differs = engine::difference(comparable(plan, stored), stored, path))
     throw StudyError(*differs);
   slabs_ = find_slabs(path, stored);
   for (const Cell& cell : plan.cells)
@@ -169,4 +169,4 @@ std::optional<std::string> Recomputation::difference(const RunRecord& record,
   return std::nullopt;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// One run of one cell as a file holds it.
 struct StoredRun {
@@ -44,4 +44,4 @@ class Recomputation {
   std::vector<RecordLayout> layouts_;  ///< one per cell
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/runs/rounds.hpp"
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 /// Tells how many runs of the cell from `first` on were missing and are not any more.
@@ -31,7 +31,7 @@ std::uint64_t spare_what_is_enough(const StudyPlan& plan, std::uint64_t runs,
                                    const Parallel& parallel, ResultWriter& writer) {
   std::uint64_t spared = 0;
   for (std::size_t cell = 0; cell < plan.cells.size(); ++cell) {
-    // An earlier sitting may have asked already, and have been stopped before it was through.
+    // An earlier session may have asked already, and have been stopped before it was through.
     const bool known = writer.status(cell, runs) == RunStatus::spared;
     if (known || plan.is_enough(writer.unfinished(), cell, runs, parallel)) {
       spared += spare_rest(cell, runs, plan.runs_here(), writer);
@@ -40,4 +40,4 @@ std::uint64_t spare_what_is_enough(const StudyPlan& plan, std::uint64_t runs,
   return spared;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

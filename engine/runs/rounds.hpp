@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// A study whose cells may stop early is run in rounds. After which numbers of runs: kFirstRound,
 /// then twice as many each time, and at last all of them. All of them alone where no cell may stop.
@@ -21,4 +21,4 @@ inline constexpr std::uint64_t kFirstRound = 32;
 std::uint64_t spare_what_is_enough(const StudyPlan& plan, std::uint64_t runs,
                                    const Parallel& parallel, ResultWriter& writer);
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -9,7 +9,7 @@
 #include <new>
 #include <string_view>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 bool is_finite(const Pose& pose) {
@@ -17,7 +17,7 @@ bool is_finite(const Pose& pose) {
 }
 
 /// What of an estimate is not finite, in words; empty where all is well or nothing was estimated.
-std::string_view flaw_of(const PoseEstimate* estimate) {
+std::string_view defect_of(const PoseEstimate* estimate) {
   if (estimate == nullptr) return {};
   if (!is_finite(estimate->spread.mean)) return "estimated pose is not finite";
   if (!estimate->spread.covariance.allFinite()) return "pose covariance is not finite";
@@ -48,10 +48,10 @@ class Walk {
     if (!control.stands()) filter_.predict(context, control, itinerary.duration(step_));
     while (scan_ < itinerary.scans() && itinerary.scan_step[scan_] == step_) {
       filter_.update(context, conditions_.drive.scan(scan_));
-      const std::string_view flaw = flaw_of(recorder_.after_scan(filter_, scan_++));
+      const std::string_view flaw = defect_of(recorder_.after_scan(filter_, scan_++));
       if (!flaw.empty()) return flaw;
     }
-    return flaw_of(recorder_.after_step(filter_, step_));
+    return defect_of(recorder_.after_step(filter_, step_));
   }
 
  private:
@@ -92,4 +92,4 @@ RunEnd run_one(const RunConditions& conditions, SlamFilter& filter, Recorder& re
   return RunEnd::recorded;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

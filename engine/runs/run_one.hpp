@@ -10,7 +10,7 @@
 
 #include <cstdint>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// All that a run depends on besides its filter, and what it may use meanwhile.
 struct RunConditions {
@@ -31,4 +31,4 @@ enum class RunEnd { recorded, dropped };
 [[nodiscard]] RunEnd run_one(const RunConditions& conditions, SlamFilter& filter,
                              Recorder& recorder, RunRecord& record);
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

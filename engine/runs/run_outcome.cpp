@@ -6,7 +6,7 @@
 #include <csignal>
 #include <cstdlib>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 constexpr int kSomeRunsFailed = 3;
@@ -44,4 +44,4 @@ int exit_code(const RunOutcome& outcome, bool under_scheduler) {
 
 bool runs_under_scheduler() { return std::getenv("SLURM_JOB_ID") != nullptr; }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

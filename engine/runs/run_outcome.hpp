@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// What has become of the runs of one cell.
 struct CellOutcome {
@@ -18,12 +18,12 @@ struct CellOutcome {
   std::uint64_t spared = 0;  ///< not needed
 };
 
-/// What a sitting of a study left behind.
+/// What a session of a study left behind.
 struct RunOutcome {
   StopReason stopped = StopReason::complete;
   std::vector<CellOutcome> cells;  ///< in the order of the plan, earlier sittings included
-  std::uint64_t runs_here = 0;  ///< complete or failed in this sitting; counts once for every cell
-  double seconds = 0.0;         ///< wall time of this sitting
+  std::uint64_t runs_here = 0;  ///< complete or failed in this session; counts once for every cell
+  double seconds = 0.0;         ///< wall time of this session
 
   std::uint64_t failed() const;
   std::uint64_t missing() const;
@@ -37,4 +37,4 @@ int exit_code(const RunOutcome& outcome, bool under_scheduler);
 /// interrupted.
 bool runs_under_scheduler();
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -6,9 +6,9 @@
 #include <atomic>
 #include <cstdint>
 
-namespace montecarta {
+namespace montecarta::engine {
 
-/// Why a sitting of a study ended.
+/// Why a session of a study ended.
 enum class StopReason : std::uint8_t {
   complete,     ///< nothing is missing
   time_budget,  ///< --time-budget is used up
@@ -35,4 +35,4 @@ class StopRequest final : public StopSign {
   std::atomic<StopReason> reason_{StopReason::complete};
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// One run of one cell: the unit of work.
 struct Task {
@@ -42,4 +42,4 @@ class TaskList {
   std::atomic<std::uint64_t> next_{0};
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -7,7 +7,7 @@
 #include <csignal>
 #include <cstdio>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -62,4 +62,4 @@ void Watch::look() {
   progress_.show();
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

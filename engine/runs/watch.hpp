@@ -11,7 +11,7 @@
 #include <optional>
 #include <thread>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// A thread of its own that looks twenty times a second whether a signal has come or the time
 /// budget is used up, asks the workers to stop then, and shows progress, so that the workers need
@@ -45,4 +45,4 @@ class Watch {
   std::thread thread_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 std::size_t largest_record(std::span<const RecordLayout> layouts) {
@@ -14,17 +14,18 @@ std::size_t largest_record(std::span<const RecordLayout> layouts) {
 
 }  // namespace
 
-Worker::Station::Station(const Cell& cell, const RecordLayout& layout, std::span<std::byte> memory)
+Worker::CellState::CellState(const Cell& cell, const RecordLayout& layout,
+                             std::span<std::byte> memory)
     : filter(cell.make_filter()), record(layout, memory), recorder(record) {}
 
-Worker::Worker(const Sitting& sitting)
-    : sitting_(sitting),
-      memory_(largest_record(sitting.layouts)),
-      stations_(sitting.plan.cells.size()) {}
+Worker::Worker(const Session& session)
+    : session_(session),
+      memory_(largest_record(session.layouts)),
+      cell_states_(session.plan.cells.size()) {}
 
 void Worker::work() {
-  while (!sitting_.stop.made()) {
-    const std::optional<Task> task = sitting_.tasks.take();
+  while (!session_.stop.made()) {
+    const std::optional<Task> task = session_.tasks.take();
     if (!task) return;
     execute(*task);
   }
@@ -32,29 +33,29 @@ void Worker::work() {
 
 void Worker::execute(const Task& task) {
   fetch_drive(task.run_index);
-  Station& here = station(task.cell);
-  const StudyPlan& plan = sitting_.plan;
+  CellState& here = cell_state(task.cell);
+  const StudyPlan& plan = session_.plan;
   const RunConditions conditions{
       plan.seed, plan.first_run + task.run_index, plan.drives->itinerary(),
-      drive_,    sitting_.spare_threads,          sitting_.stop};
+      drive_,    session_.spare_threads,          session_.stop};
   if (run_one(conditions, *here.filter, here.recorder, here.record) == RunEnd::dropped) return;
-  sitting_.writer.write(task.cell, task.run_index, here.record);
-  sitting_.progress.run_ended(here.record.status());
+  session_.writer.write(task.cell, task.run_index, here.record);
+  session_.progress.run_ended(here.record.status());
 }
 
 void Worker::fetch_drive(std::size_t run_index) {
   if (drive_run_index_ == run_index) return;
   drive_run_index_.reset();  // while it is half made it is nobody's
-  sitting_.plan.drives->generate(sitting_.plan.first_run + run_index, drive_);
-  sitting_.writer.write_truth(run_index, drive_);
+  session_.plan.drives->generate(session_.plan.first_run + run_index, drive_);
+  session_.writer.write_truth(run_index, drive_);
   drive_run_index_ = run_index;
 }
 
-Worker::Station& Worker::station(std::size_t cell) {
-  std::unique_ptr<Station>& place = stations_[cell];
+Worker::CellState& Worker::cell_state(std::size_t cell) {
+  std::unique_ptr<CellState>& place = cell_states_[cell];
   if (!place)
-    place = std::make_unique<Station>(sitting_.plan.cells[cell], sitting_.layouts[cell], memory_);
+    place = std::make_unique<CellState>(session_.plan.cells[cell], session_.layouts[cell], memory_);
   return *place;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

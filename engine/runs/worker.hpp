@@ -14,10 +14,10 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
-/// What the workers of a sitting have in common.
-struct Sitting {
+/// What the workers of a session have in common.
+struct Session {
   const StudyPlan& plan;
   std::span<const RecordLayout> layouts;  ///< one per cell
   ResultWriter& writer;
@@ -32,27 +32,27 @@ struct Sitting {
 /// thread.
 class Worker {
  public:
-  explicit Worker(const Sitting& sitting);
+  explicit Worker(const Session& session);
   void work();
 
  private:
   /// What a cell needs on this worker.
-  struct Station {
-    Station(const Cell& cell, const RecordLayout& layout, std::span<std::byte> memory);
+  struct CellState {
+    CellState(const Cell& cell, const RecordLayout& layout, std::span<std::byte> memory);
     std::unique_ptr<SlamFilter> filter;
     RunRecord record;
     Recorder recorder;
   };
 
   void fetch_drive(std::size_t run_index);
-  Station& station(std::size_t cell);
+  CellState& cell_state(std::size_t cell);
   void execute(const Task& task);
 
-  const Sitting& sitting_;
+  const Session& session_;
   Drive drive_;
   std::optional<std::size_t> drive_run_index_;  ///< whose drive it is
   std::vector<std::byte> memory_;               ///< of one record, whichever cell's
-  std::vector<std::unique_ptr<Station>> stations_;
+  std::vector<std::unique_ptr<CellState>> cell_states_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

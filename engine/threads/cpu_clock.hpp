@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
+
 #include <ctime>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Processor time of the calling thread since construction. A system call (0.7 us where measured),
 /// so it is read once a run, not once a step.
@@ -22,4 +24,4 @@ class CpuClock {
   double begin_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

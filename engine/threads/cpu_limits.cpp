@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 namespace fs = std::filesystem;
@@ -98,4 +98,4 @@ CpuLimits cpu_limits() {
   return limits;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
+
 #include <filesystem>
 #include <optional>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// What the operating system lets this process use.
 struct CpuLimits {
@@ -19,4 +21,4 @@ CpuLimits cpu_limits();
 /// processors. `root` is "/" but for tests. Groups that cannot be read do not limit.
 std::optional<double> cgroup_quota(const std::filesystem::path& root);
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
+
 #ifdef MONTECARTA_THREAD_SANITIZER
 #include <sanitizer/tsan_interface.h>
 #endif
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Tells the thread sanitizer what libtbb and libgomp, which are built without it, keep from it: a
 /// loop's bodies begin after the loop does and end before it ends. Bodies stay unordered among each
@@ -52,4 +54,4 @@ struct LoopSeam {
 
 #endif
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

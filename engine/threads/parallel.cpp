@@ -13,7 +13,7 @@
 #include <atomic>
 #include <exception>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using Call = void (*)(const void*, std::size_t);
@@ -90,4 +90,4 @@ void Parallel::spread(std::size_t count, void (*call)(const void*, std::size_t),
   });
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

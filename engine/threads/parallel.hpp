@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <memory>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 enum class Backend { tbb, openmp, serial };
 
@@ -55,4 +55,4 @@ class Parallel {
   std::shared_ptr<Pool> pool_;  ///< of TBB; null where the calling thread or OpenMP does the work
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

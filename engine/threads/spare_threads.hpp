@@ -6,7 +6,7 @@
 #include <atomic>
 #include <cstddef>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Lends the threads that have no run of their own to the loops inside the runs still at work:
 /// where runs are fewer than threads, and at the end of every study.
@@ -32,4 +32,4 @@ class SpareThreads {
   std::atomic<std::size_t> at_work_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

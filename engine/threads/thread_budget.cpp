@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 constexpr int kMostThreads = 4096;
@@ -59,4 +59,4 @@ ThreadBudget thread_budget(const std::optional<std::string>& threads_option,
   return tightest(limits);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

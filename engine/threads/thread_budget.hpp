@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// How many threads a program may use, and who says so.
 struct ThreadBudget {
@@ -27,4 +27,4 @@ ThreadBudget thread_budget(const std::optional<std::string>& threads_option,
                            const Environment& environment = environment_variable,
                            const CpuLimits& limits = cpu_limits());
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

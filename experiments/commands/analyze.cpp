@@ -9,7 +9,7 @@
 
 #include <iostream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// Finds out before the work, not after it, that the results have no place to go.
@@ -66,7 +66,7 @@ int analyze_files(const Arguments& arguments) {
 Command analyze_command() {
   return {
       {.name = "analyze",
-       .summary = "says how wrong and how honest each filter was: tables, HDF5 and CSV",
+       .summary = "says how accurate and how consistent each filter was: tables, HDF5 and CSV",
        .operands = {{"FILE.h5", 1, SIZE_MAX}},
        .options = {{"output", "o", {"OUT.h5"}, "write every metric over time as HDF5"},
                    {"csv", "", {"DIR"}, "write tables and series as CSV"},
@@ -79,4 +79,4 @@ Command analyze_command() {
       analyze_files};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace po = boost::program_options;
@@ -147,4 +147,4 @@ std::string Arguments::choice(const std::string& option,
                    "): " + nearest_spelling(given, known));
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

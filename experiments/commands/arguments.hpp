@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// One option of a command.
 struct OptionSpec {
@@ -71,4 +71,4 @@ std::string help_text(const CommandSpec& spec);
 /// One word as a POSIX shell reads it back.
 std::string shell_quoted(const std::string& word);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

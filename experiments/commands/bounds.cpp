@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <iostream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 std::string fixed(double value, int digits) {
@@ -80,4 +80,4 @@ Command bounds_command() {
       bounds};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <iostream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 struct Estimate {
@@ -89,4 +89,4 @@ Command check_command() {
   return {spec, check};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

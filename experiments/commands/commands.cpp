@@ -10,7 +10,7 @@
 #include <iostream>
 #include <new>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 std::string general_help(const std::vector<Command>& commands) {
@@ -61,7 +61,7 @@ int dispatch(const std::vector<std::string>& words) {
   return command.run(Arguments(command.spec, {words.begin() + 1, words.end()}));
 }
 
-int complain(const std::string& message, int code) {
+int print_error(const std::string& message, int code) {
   std::cout.flush();
   std::cerr << "montecarta: " << message << "\n";
   return code;
@@ -82,18 +82,18 @@ int run_program(const std::vector<std::string>& words) {
     std::cout.flush();
     return std::cout.good()
                ? code
-               : complain("standard output cannot be written (closed or full): redirect it",
-                          kFailed);
+               : print_error("standard output cannot be written (closed or full): redirect it",
+                             kFailed);
   } catch (const StudyError& error) {
-    return complain(error.what(), kWrongInput);
+    return print_error(error.what(), kWrongInput);
   } catch (const std::bad_alloc&) {
-    return complain(
+    return print_error(
         "out of memory (the study is too large for this machine): use fewer particles or "
         "record.rate = scan",
         kFailed);
   } catch (const std::exception& error) {
-    return complain(error.what(), kFailed);
+    return print_error(error.what(), kFailed);
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

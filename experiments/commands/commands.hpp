@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// Exit codes that users and scripts rely on; those of an interrupted study come from exit_code().
 inline constexpr int kDone = 0, kFailed = 1, kWrongInput = 2, kDifferent = 4;
@@ -42,4 +42,4 @@ std::vector<Command> all_commands();
 /// on standard error and exit codes.
 int run_program(const std::vector<std::string>& words);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <iostream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 const Score* score_called(const std::string& name) {
@@ -104,4 +104,4 @@ Command compare_command() {
       compare};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

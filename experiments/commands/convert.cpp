@@ -8,7 +8,7 @@
 
 #include <iostream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -50,4 +50,4 @@ Command convert_command() {
           convert};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

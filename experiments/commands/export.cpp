@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <iostream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -94,4 +94,4 @@ Command export_command() {
       export_drives};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -3,7 +3,7 @@
 #include "experiments/text/table.hpp"
 #include "experiments/text/words.hpp"
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 std::string help_text(const CommandSpec& spec) {
   std::string text = "usage: montecarta " + spec.name;
@@ -29,4 +29,4 @@ std::string shell_quoted(const std::string& word) {
   return quoted + "'";
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

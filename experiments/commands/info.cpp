@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <iostream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// How many of the runs held are neither missing nor unfinished in any cell.
@@ -104,4 +104,4 @@ Command info_command() {
       info};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -17,7 +17,7 @@
 #include <iostream>
 #include <sstream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 void list_options(std::span<const Option> options) {
@@ -34,7 +34,7 @@ void list_filters() {
     std::cout << filter.name << "  " << filter.long_name << "  " << filter.source << "\n";
     list_options(filter.options);
   }
-  std::cout << "every filter  told wrong noise, to see what it makes of it\n";
+  std::cout << "every filter  given wrong noise, to see what it makes of it\n";
   list_options(mismatch_options());
 }
 
@@ -139,4 +139,4 @@ Command list_command() {
           list};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -6,7 +6,7 @@
 
 #include <iostream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 int merge(const Arguments& arguments) {
@@ -33,4 +33,4 @@ Command merge_command() {
           merge};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <system_error>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -57,4 +57,4 @@ void refuse_existing(const fs::path& folder, const std::vector<std::string>& nam
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

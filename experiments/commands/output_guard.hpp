@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// Throws StudyError where writing `output` would destroy one of `inputs`, or the unfinished work
 /// (.part) beside it, under whatever name, symbolic or hard link. --force does not help.
@@ -19,4 +19,4 @@ void refuse_to_replace_other_kinds(const std::filesystem::path& output);
 /// Throws StudyError naming the first of `names` that is in `folder` already.
 void refuse_existing(const std::filesystem::path& folder, const std::vector<std::string>& names);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <iostream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 constexpr double kLeastProbability = 1e-9;
@@ -43,15 +43,16 @@ std::string meaning_of(const NeesTest& test, double power) {
                               ? readable(off) + " times larger than the filter says"
                               : readable(1.0 / off) + " times smaller than the filter says";
   return "NEES is the squared error in units of what the filter expected of it: " + readable(d) +
-         " on the average of an honest filter, here\n" + readable(d * test.ratio) +
+         " on the average of a consistent filter, here\n" + readable(d * test.ratio) +
          ", which means errors " + way + ". With so many runs the average NEES of such a\n" +
          "filter leaves the band in " + percent(power) +
-         " of studies; an honest filter stays in it in " + level_text(test.level) + " of them.\n";
+         " of studies; a consistent filter stays in it in " + level_text(test.level) +
+         " of them.\n";
 }
 
 std::string about_scans(std::uint64_t scans) {
   return "'any of " + std::to_string(scans) +
-         " scans' widens the band so that an honest filter stays "
+         " scans' widens the band so that a consistent filter stays "
          "inside at all of them (Sidak), and counts a\nfilter as found that leaves it at one or "
          "more, if it is that far off at all. It holds for independent scans;\nneighbouring "
          "scans are correlated, so that they count for fewer: the truth lies between 1 and the "
@@ -82,11 +83,11 @@ Command plan_command() {
                {{"dim", "", {"D"}, "components of the error: 3 for a pose, 2 for a position"},
                 {"ratio", "", {"R"}, "how many times the NEES is too large, or too small below 1"},
                 {"power", "", {"P"}, "probability of finding it; default 0.9"},
-                {"level", "", {"L"}, "probability that an honest filter passes; default 0.95"},
+                {"level", "", {"L"}, "probability that a consistent filter passes; default 0.95"},
                 {"scans", "", {"K"}, "also: one band over K independent scans"}},
            .details = "examples:\n  montecarta plan --dim 3 --ratio 1.5\n  montecarta plan --dim 3 "
                       "--ratio 1.2 --power 0.8 --scans 100\n"},
           plan};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -6,7 +6,7 @@
 #include "engine/threads/thread_budget.hpp"
 #include "experiments/study/make_plan.hpp"
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 std::optional<RunRange> range_of(const Arguments& arguments, std::uint64_t runs) {
@@ -76,4 +76,4 @@ TextPairs provenance_of(const std::string& command, const Arguments& arguments) 
   return provenance;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// Options that choose what part of a study runs and on how many threads: --set, --runs, --shard,
 /// --threads, --backend.
@@ -29,4 +29,4 @@ Parallel parallel_of(const Arguments& arguments);
 /// How `command` makes a file, for the file: this build and machine, the command line, threads.
 TextPairs provenance_of(const std::string& command, const Arguments& arguments);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -17,7 +17,7 @@
 #include <filesystem>
 #include <iostream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 std::string needed(const Arguments& arguments, const std::string& option, const char* remedy) {
@@ -124,4 +124,4 @@ Command replay_command() {
       replay};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

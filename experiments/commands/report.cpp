@@ -13,7 +13,7 @@
 #include <iostream>
 #include <memory>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// A report takes minutes: what it needs at the end is tried at the beginning.
@@ -61,4 +61,4 @@ Command report_command() {
       report};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

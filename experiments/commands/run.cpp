@@ -15,7 +15,7 @@
 #include <filesystem>
 #include <iostream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// Beyond this a verdict would take longer to read than to wait for: the command that gives it is
@@ -71,7 +71,7 @@ void tell_how_to_resume(const RunOutcome& outcome, const Arguments& arguments) {
             << resuming_command(arguments) << "\n";
 }
 
-void tell_verdict(const RunOptions& options) {
+void print_first_verdict(const RunOptions& options) {
   if (std::filesystem::file_size(options.output) > kLargestVerdict) {
     std::cout << "The verdict: montecarta analyze " << shell_quoted(options.output.string())
               << "\n";
@@ -93,7 +93,7 @@ int run(const Arguments& arguments) {
     return exit_code(outcome, runs_under_scheduler());
   }
   if (!options.quiet) {
-    tell_verdict(options);
+    print_first_verdict(options);
     std::cerr << "montecarta: " << outcome.runs_here << " runs in "
               << duration_text(outcome.seconds) << ", stored in " << options.output.string()
               << "\n";
@@ -135,4 +135,4 @@ Command run_command() {
   return {spec, run};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -8,7 +8,7 @@
 #include <iostream>
 #include <optional>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// The state of every run of a study, cell by cell, over many files.
@@ -85,4 +85,4 @@ Command status_command() {
       status};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

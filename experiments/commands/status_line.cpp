@@ -8,12 +8,12 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// "run 7 is damaged", of the first stored run that does not fit its fingerprint; empty where all
 /// do.
-std::string flaw_of(const ResultFile& file) {
+std::string defect_of(const ResultFile& file) {
   const ResultSlabs slabs = find_slabs(file.path(), file.description());
   const PosixFile bytes(file.path(), PosixFile::Mode::read);
   std::vector<std::byte> buffer;
@@ -37,7 +37,7 @@ std::string line_of(const ResultFile& file, Depth depth) {
     all.failed += counts.failed;
     all.missing += counts.missing;
   }
-  const std::string flaw = depth == Depth::every_byte ? flaw_of(file) : "";
+  const std::string flaw = depth == Depth::every_byte ? defect_of(file) : "";
   const char* state = !flaw.empty() ? "damaged" : all.missing > 0 ? "unfinished" : "complete";
   return joined(std::vector<std::string>{state, file.study_sha256(), std::to_string(all.complete),
                                          std::to_string(all.failed), std::to_string(all.missing),
@@ -58,4 +58,4 @@ std::string status_line(const std::string& name, Depth depth) {
   return name + "\t" + line + "\n";
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

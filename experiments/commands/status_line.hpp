@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// How far to look into a file.
 enum class Depth { statuses, every_byte };
@@ -13,4 +13,4 @@ enum class Depth { statuses, every_byte };
 /// Never throws: a file that cannot be read is damaged.
 std::string status_line(const std::string& name, Depth depth);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <iostream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 ResultFile open_stored(const std::string& name) {
   const std::filesystem::path part = part_of(name);
@@ -40,4 +40,4 @@ std::vector<TableRow> without_idle_spared(std::vector<TableRow> rows) {
   return rows;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// Opens FILE.h5, or FILE.h5.part where only unfinished work is there (and says so on standard
 /// error).
@@ -28,4 +28,4 @@ StatusCounts count_status(const std::vector<RunStatus>& status);
 /// make all.
 std::vector<TableRow> without_idle_spared(std::vector<TableRow> rows);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

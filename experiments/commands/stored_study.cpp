@@ -7,7 +7,7 @@
 
 #include <iostream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 OptionSpec data_option() {
   return {"data", "", {"FOLDER"}, "where the recorded drive of the study lies"};
@@ -27,4 +27,4 @@ Study study_in(const ResultFile& file, const Arguments& arguments) {
   return study;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -5,7 +5,7 @@
 #include "experiments/commands/arguments.hpp"
 #include "experiments/study/study.hpp"
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// --data FOLDER, where the drive of a study lies: a result file holds all of a study but what was
 /// recorded.
@@ -16,4 +16,4 @@ OptionSpec data_option();
 /// that made the file. Throws StudyError where the drive is missing or another one.
 Study study_in(const ResultFile& file, const Arguments& arguments);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

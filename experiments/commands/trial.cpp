@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 constexpr double kTrialSeconds = 0.25;
@@ -43,4 +43,4 @@ std::optional<double> trial_seconds(const Cell& cell, const StudyPlan& plan, con
   return seconds * static_cast<double>(steps) / static_cast<double>(k);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

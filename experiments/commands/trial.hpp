@@ -5,11 +5,11 @@
 
 #include <optional>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// How long [s] one run of `cell` takes on one thread, from the first part of `drive`: a quarter of
 /// a second of it, or all. Nothing where the filter throws at once (the run itself will say why) or
 /// is a program that nobody allowed to start.
 std::optional<double> trial_seconds(const Cell& cell, const StudyPlan& plan, const Drive& drive);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -12,7 +12,7 @@
 #include <chrono>
 #include <iostream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 constexpr std::uint64_t kSample = 10;
@@ -29,17 +29,17 @@ std::vector<StoredRun> runs_stored(const ResultFile& file) {
 }
 
 /// Where a run stands in the shuffle that `seed` names.
-std::uint64_t lot(std::uint64_t seed, const StoredRun& run) {
-  Fingerprint lot;
-  lot.add(std::as_bytes(std::span(&seed, 1)));
-  lot.add(std::as_bytes(std::span(&run, 1)));
-  return lot.value();
+std::uint64_t draw_order(std::uint64_t seed, const StoredRun& run) {
+  Fingerprint draw_order;
+  draw_order.add(std::as_bytes(std::span(&seed, 1)));
+  draw_order.add(std::as_bytes(std::span(&run, 1)));
+  return draw_order.value();
 }
 
 /// `count` of the runs, or all, chosen by `seed`.
 std::vector<StoredRun> sample(std::vector<StoredRun> runs, std::uint64_t count,
                               std::uint64_t seed) {
-  std::ranges::sort(runs, {}, [&](const StoredRun& run) { return lot(seed, run); });
+  std::ranges::sort(runs, {}, [&](const StoredRun& run) { return draw_order(seed, run); });
   if (runs.size() > count) runs.resize(count);
   return runs;
 }
@@ -99,4 +99,4 @@ Command verify_command() {
       verify};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

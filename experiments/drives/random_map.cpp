@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 std::vector<Eigen::Vector2d> RandomMap::operator()(std::uint64_t run) const {
   std::vector<Eigen::Vector2d> landmarks;
@@ -23,4 +23,4 @@ std::vector<Eigen::Vector2d> RandomMap::operator()(std::uint64_t run) const {
   return landmarks;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// Draws the map of a run: every landmark displaced from where the world has it, uniformly within a
 /// distance. A pure function of (study seed, run).
@@ -25,4 +25,4 @@ class RandomMap {
   std::uint64_t seed_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// Where the noise of the control goes (EQUATIONS 1).
 enum class NoiseMode {
@@ -45,4 +45,4 @@ struct Scenario {
   Pose start{};                                  ///< before the first step
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

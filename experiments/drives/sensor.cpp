@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 StreamIdentity with(StreamIdentity place, Draw purpose, std::int32_t index) {
@@ -32,16 +32,16 @@ Sensor::Sensor(const Scenario& scenario)
       miss_probability_(scenario.miss_probability),
       clutter_rate_(scenario.clutter_rate) {}
 
-void Sensor::detect(const Sight& sight, const StreamIdentity& place,
+void Sensor::detect(const VisibleLandmark& observation, const StreamIdentity& place,
                     std::vector<Detection>& detections) const {
   const bool missed =
       miss_probability_ > 0.0 &&
-      RngStream(with(place, Draw::world_miss, sight.identity)).uniform() < miss_probability_;
+      RngStream(with(place, Draw::world_miss, observation.identity)).uniform() < miss_probability_;
   if (missed) return;
-  RngStream draw(with(place, Draw::world_detection, sight.identity));
-  const double range = sight.range + sigma_range_ * draw.normal();
-  const double bearing = sight.bearing + sigma_bearing_ * draw.normal();
-  detections.push_back({std::max(range, kLeastRange), wrap(bearing), sight.identity});
+  RngStream draw(with(place, Draw::world_detection, observation.identity));
+  const double range = observation.range + sigma_range_ * draw.normal();
+  const double bearing = observation.bearing + sigma_bearing_ * draw.normal();
+  detections.push_back({std::max(range, kLeastRange), wrap(bearing), observation.identity});
 }
 
 void Sensor::add_clutter(const StreamIdentity& place, std::vector<Detection>& detections) const {
@@ -54,4 +54,4 @@ void Sensor::add_clutter(const StreamIdentity& place, std::vector<Detection>& de
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -14,10 +14,10 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// A landmark in view, as a perfect sensor would see it.
-struct Sight {
+struct VisibleLandmark {
   std::int32_t identity = 0;
   double range = 0.0;    ///< [m]
   double bearing = 0.0;  ///< [rad]
@@ -31,18 +31,18 @@ class Sensor {
  public:
   explicit Sensor(const Scenario& scenario);
 
-  /// Calls visit(sight) for everything in view from `pose`, in increasing identity.
+  /// Calls visit(observation) for everything in view from `pose`, in increasing identity.
   template <class Visit>
   void see(const Pose& pose, std::span<const Eigen::Vector2d> landmarks, const Visit& visit) const {
     view_.look(pose, landmarks, [&](const InView& seen) {
-      visit(Sight{static_cast<std::int32_t>(seen.landmark), seen.range,
-                  wrap(std::atan2(seen.dy, seen.dx) - pose.heading)});
+      visit(VisibleLandmark{static_cast<std::int32_t>(seen.landmark), seen.range,
+                            wrap(std::atan2(seen.dy, seen.dx) - pose.heading)});
     });
   }
 
-  /// Appends the detection of `sight`, with noise, unless it is missed. `place` names study seed,
-  /// run and step; every landmark has its own numbers, so that what one sees shifts no other.
-  void detect(const Sight& sight, const StreamIdentity& place,
+  /// Appends the detection of `observation`, with noise, unless it is missed. `place` names study
+  /// seed, run and step; every landmark has its own numbers, so that what one sees shifts no other.
+  void detect(const VisibleLandmark& observation, const StreamIdentity& place,
               std::vector<Detection>& detections) const;
   /// Appends the false alarms of one scan, uniform over the area in view.
   void add_clutter(const StreamIdentity& place, std::vector<Detection>& detections) const;
@@ -57,4 +57,4 @@ class Sensor {
   double clutter_rate_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -8,12 +8,12 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// How far [m] a vehicle may drive towards one way-point before it is clear that it circles around
 /// it.
-double patience(const Pose& pose, const Eigen::Vector2d& waypoint, const Scenario& scenario) {
+double time_limit(const Pose& pose, const Eigen::Vector2d& waypoint, const Scenario& scenario) {
   const double distance = std::hypot(waypoint.x() - pose.x, waypoint.y() - pose.y);
   const double turning_circle =
       kTwoPi * scenario.vehicle.wheelbase / std::sin(scenario.steer_limit);
@@ -44,7 +44,7 @@ SimulatedDrive::SimulatedDrive(World world, const Scenario& scenario, std::uint6
   }
   drive_without_noise();
   fill_itinerary();
-  see_along_the_way();
+  find_visible_landmarks();
 }
 
 void SimulatedDrive::generate(std::uint64_t run, Drive& drive) const {
@@ -73,11 +73,11 @@ void SimulatedDrive::drive_without_noise() {
   const double step_length = scenario_.speed / scenario_.control_rate;
   std::size_t target = pilot.next_waypoint();
   Pose pose = scenario_.start;
-  double left = patience(pose, world_.waypoints[target], scenario_);
+  double left = time_limit(pose, world_.waypoints[target], scenario_);
   for (pilot.look_ahead(pose); pilot.loops_done() < scenario_.loops; pilot.look_ahead(pose)) {
     if (pilot.next_waypoint() != target) {
       target = pilot.next_waypoint();
-      left = patience(pose, world_.waypoints[target], scenario_);
+      left = time_limit(pose, world_.waypoints[target], scenario_);
     }
     if ((left -= step_length) < 0.0) throw_unreachable(world_, target, scenario_);
     if (nominal_.size() == kMostSteps) throw_too_long(world_);
@@ -102,12 +102,12 @@ void SimulatedDrive::fill_itinerary() {
   itinerary_.start = scenario_.start;
 }
 
-void SimulatedDrive::see_along_the_way() {
-  sight_begin_.assign(1, 0);
+void SimulatedDrive::find_visible_landmarks() {
+  visible_begin_.assign(1, 0);
   for (const std::uint32_t step : itinerary_.scan_step) {
     sensor_.see(path_[step], world_.landmarks,
-                [this](const Sight& sight) { sights_.push_back(sight); });
-    sight_begin_.push_back(static_cast<std::uint32_t>(sights_.size()));
+                [this](const VisibleLandmark& observation) { visible_.push_back(observation); });
+    visible_begin_.push_back(static_cast<std::uint32_t>(visible_.size()));
   }
 }
 
@@ -124,8 +124,8 @@ void SimulatedDrive::generate_measured(std::uint64_t run, Drive& drive) const {
   move_measured(run, drive);
   for (std::size_t s = 0; s < itinerary_.scans(); ++s) {
     const StreamIdentity here = place(run, itinerary_.scan_step[s]);
-    for (std::size_t i = sight_begin_[s]; i < sight_begin_[s + 1]; ++i) {
-      sensor_.detect(sights_[i], here, drive.detections);
+    for (std::size_t i = visible_begin_[s]; i < visible_begin_[s + 1]; ++i) {
+      sensor_.detect(visible_[i], here, drive.detections);
     }
     end_scan(here, drive);
   }
@@ -147,8 +147,9 @@ void SimulatedDrive::generate_matched(std::uint64_t run, Landmarks landmarks, Dr
 
 void SimulatedDrive::scan(const StreamIdentity& here, const Pose& pose, Landmarks landmarks,
                           Drive& drive) const {
-  sensor_.see(pose, landmarks,
-              [&](const Sight& sight) { sensor_.detect(sight, here, drive.detections); });
+  sensor_.see(pose, landmarks, [&](const VisibleLandmark& observation) {
+    sensor_.detect(observation, here, drive.detections);
+  });
   end_scan(here, drive);
 }
 
@@ -161,7 +162,7 @@ void SimulatedDrive::end_scan(const StreamIdentity& here, Drive& drive) const {
 /// one.
 std::size_t SimulatedDrive::expected_detections() const {
   const double clutter = scenario_.clutter_rate * static_cast<double>(itinerary_.scans());
-  return 2 * (sights_.size() + static_cast<std::size_t>(clutter)) + 1000;
+  return 2 * (visible_.size() + static_cast<std::size_t>(clutter)) + 1000;
 }
 
 Control SimulatedDrive::noise(std::uint64_t run, std::size_t step) const {
@@ -180,4 +181,4 @@ StreamIdentity SimulatedDrive::place(std::uint64_t run, std::size_t step) const 
           .purpose = Draw::world_control};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// More steps than this in one run would not fit a result file; a study of so many is a slip of the
 /// pen.
@@ -34,7 +34,7 @@ class SimulatedDrive final : public DriveSource {
  private:
   void drive_without_noise();
   void fill_itinerary();
-  void see_along_the_way();
+  void find_visible_landmarks();
   using Landmarks = std::span<const Eigen::Vector2d>;
   void generate_measured(std::uint64_t run, Drive& drive) const;
   void generate_matched(std::uint64_t run, Landmarks landmarks, Drive& drive) const;
@@ -51,10 +51,10 @@ class SimulatedDrive final : public DriveSource {
   Sensor sensor_;
   std::optional<RandomMap> random_map_;  ///< nullopt: every run has the world's landmarks
   Itinerary itinerary_;
-  std::vector<Control> nominal_;            ///< controls of the noise-free drive
-  std::vector<Pose> path_;                  ///< its poses after each step
-  std::vector<Sight> sights_;               ///< of all its scans
-  std::vector<std::uint32_t> sight_begin_;  ///< scans + 1 offsets into sights_
+  std::vector<Control> nominal_;              ///< controls of the noise-free drive
+  std::vector<Pose> path_;                    ///< its poses after each step
+  std::vector<VisibleLandmark> visible_;      ///< of all its scans
+  std::vector<std::uint32_t> visible_begin_;  ///< scans + 1 offsets into visible_
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

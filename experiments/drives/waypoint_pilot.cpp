@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 void WaypointPilot::look_ahead(const Pose& pose) {
   const Eigen::Vector2d& ahead = (*waypoints_)[next_];
@@ -24,4 +24,4 @@ double WaypointPilot::steer(const Pose& pose) {
   return steer_;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// Steers from way-point to way-point, loop after loop (EQUATIONS 1). `waypoints` and `scenario`
 /// must outlive it.
@@ -35,4 +35,4 @@ class WaypointPilot {
   double steer_ = 0.0;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -13,7 +13,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using nlohmann::json;
@@ -191,4 +191,4 @@ void read_map(std::string_view line, std::uint64_t id, Association association,
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

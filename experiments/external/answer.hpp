@@ -9,7 +9,7 @@
 #include <span>
 #include <string_view>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 // What a program may answer, checked: whatever bytes it says, the result is as promised here or a
 // ProgramError with the reason. EXTERNAL_FILTERS.md describes the lines.
@@ -31,4 +31,4 @@ ProgramEstimate read_estimate(std::string_view line, std::uint64_t id);
 void read_map(std::string_view line, std::uint64_t id, Association association,
               std::span<std::optional<LandmarkEstimate>> landmarks);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

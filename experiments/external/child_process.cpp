@@ -15,7 +15,7 @@
 
 // Talking to a child; it is started in start_child.cpp.
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 constexpr int kFarewell = 1000;           // [ms] for a program to end when nobody asks it any more
@@ -68,9 +68,9 @@ ChildProcess::~ChildProcess() {
   while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) continue;
 }
 
-std::string_view ChildProcess::exchange(std::string_view line, const Patience& patience) {
+std::string_view ChildProcess::exchange(std::string_view line, const Patience& time_limit) {
   using Clock = std::chrono::steady_clock;
-  const auto deadline = Clock::now() + std::chrono::duration<double>(patience.seconds);
+  const auto deadline = Clock::now() + std::chrono::duration<double>(time_limit.seconds);
   incoming_.erase(0, answered_);
   answered_ = 0;
   outgoing_.assign(line).append("\n");
@@ -78,7 +78,7 @@ std::string_view ChildProcess::exchange(std::string_view line, const Patience& p
   send();
   while (sent_ < outgoing_.size() || !has_line()) {
     if (at_end_ && !has_line()) tell_end();
-    if (patience.stop != nullptr && patience.stop->made()) give_up("stopped");
+    if (time_limit.stop != nullptr && time_limit.stop->made()) give_up("stopped");
     const std::chrono::duration<double, std::milli> left = deadline - Clock::now();
     if (left.count() <= 0.0) give_up("program gave no answer within the limit");
     wait_for_events(static_cast<int>(std::clamp(left.count(), 1.0, double{kLookUp})));
@@ -164,4 +164,4 @@ bool ChildProcess::ends_within(int milliseconds) const {
   return ::poll(&event, 1, milliseconds) > 0;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <sys/types.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// What went wrong with a program outside of ours, worded as the reason of a failed run.
 class ProgramError : public std::runtime_error {
@@ -63,7 +63,7 @@ class ChildProcess {
   /// Says `line`, which holds no new line, and returns the next line that the program says, valid
   /// until the next exchange. Throws ProgramError where it ends, says nothing in time or too much,
   /// or where the wait is stopped; no exchange is possible afterwards.
-  std::string_view exchange(std::string_view line, const Patience& patience);
+  std::string_view exchange(std::string_view line, const Patience& time_limit);
 
  private:
   void start(std::span<const std::string> words, int input, int output, int error);
@@ -89,4 +89,4 @@ class ChildProcess {
   std::string last_words_;  ///< the end of its standard error
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

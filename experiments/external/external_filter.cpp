@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 ExternalFilter::ExternalFilter(FilterSetup setup, ExternalCommand command)
     : setup_(std::move(setup)),
@@ -100,4 +100,4 @@ void ExternalFilter::converse(const Talk& talk) const {
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// How a cell asks for a program outside of ours.
 struct ExternalCommand {
@@ -64,4 +64,4 @@ class ExternalFilter final : public SlamFilter {
   std::unique_ptr<Conversation> conversation_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

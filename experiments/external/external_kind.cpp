@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 constexpr const char* kExternal = "external";
@@ -58,4 +58,4 @@ std::span<const FilterKind> known_filters() {
   return kinds;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -5,7 +5,7 @@
 
 #include <span>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// Whether a cell may start the program that it names. Who runs a study says so; the study does
 /// not.
@@ -23,4 +23,4 @@ bool starts_program(const FilterKind& filter);
 /// What a study may name: the filters of the table, then `external`.
 std::span<const FilterKind> known_filters();
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

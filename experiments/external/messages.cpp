@@ -3,7 +3,7 @@
 
 #include "analysis/page/json.hpp"
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 JsonWriter json_message(std::uint64_t id, const char* type) {
@@ -76,4 +76,4 @@ std::string scan_message(std::uint64_t id, std::span<const ControlRow> controls,
 
 std::string map_message(std::uint64_t id) { return json_message(id, "map").end_object().text(); }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

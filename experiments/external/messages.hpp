@@ -9,7 +9,7 @@
 #include <span>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 // What a program is told, one line of JSON a message; EXTERNAL_FILTERS.md describes them. Numbers
 // are the shortest text that reads back as the same bits.
@@ -31,4 +31,4 @@ std::string scan_message(std::uint64_t id, std::span<const ControlRow> controls,
                          Association association);
 std::string map_message(std::uint64_t id);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -14,7 +14,7 @@
 #include <unistd.h>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -148,4 +148,4 @@ void ChildProcess::start(std::span<const std::string> words, int input, int outp
                  "fewer threads");
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// Spreadsheets mark UTF-8 by three bytes in front.
@@ -89,4 +89,4 @@ double CsvRows::number(std::size_t i, const char* noun) const {
                    " (a finite number is needed): write e.g. 12.5");
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// The rows of a comma-separated text file: `#` begins a comment, empty lines do not count, the
 /// first row names the columns. Errors (StudyError) name file and line.
@@ -48,4 +48,4 @@ class CsvRows {
   std::vector<std::string_view> fields_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

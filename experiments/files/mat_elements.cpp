@@ -7,7 +7,7 @@
 #include <memory>
 #include <zlib.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 template <class Number>
@@ -107,4 +107,4 @@ void inflate_onto(std::string& all, std::string_view packed, std::size_t most) {
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

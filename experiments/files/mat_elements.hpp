@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// A MATLAB file of level 5 contradicts itself; says how, for the reader of the file to say where.
 class DamagedMat : public std::runtime_error {
@@ -49,4 +49,4 @@ bool is_real_array(const MatElement& flags);
 /// would grow beyond `most` bytes.
 void inflate_onto(std::string& all, std::string_view packed, std::size_t most);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

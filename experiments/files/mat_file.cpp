@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <string_view>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 128;
@@ -104,4 +104,4 @@ std::vector<double> MatFile::series(const std::string& name) const {
   return {values.data(), values.data() + values.size()};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// The variables of a MATLAB file of level 5 (MATLAB 5 to 7, `save -v6` or `-v7`), compressed or
 /// not, as MATLAB, Octave and SciPy write it on today's machines (little-endian). Read here and not
@@ -33,4 +33,4 @@ class MatFile {
   std::map<std::string, Eigen::MatrixXd> matrices_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 bool is_white(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
@@ -83,4 +83,4 @@ void NumberRecords::refuse_count(std::size_t found, const char* why) const {
                    "): take the whole file as published");
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

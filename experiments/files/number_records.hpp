@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// Where a record of numbers ends.
 enum class RecordEnd {
@@ -45,4 +45,4 @@ class NumberRecords {
   std::size_t read_ = 0;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

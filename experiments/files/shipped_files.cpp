@@ -5,7 +5,7 @@
 #include <set>
 #include <system_error>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -37,4 +37,4 @@ std::vector<std::string> shipped_names(const std::string& folder, const std::str
   return {names.begin(), names.end()};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// A file that comes with montecarta, e.g. ("worlds", "web_loop.csv"): beside the installed
 /// executable
@@ -17,4 +17,4 @@ std::optional<std::filesystem::path> shipped_file(const std::string& folder,
 /// Names without ending of the files of a shipped folder that end so, in alphabetical order.
 std::vector<std::string> shipped_names(const std::string& folder, const std::string& ending);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

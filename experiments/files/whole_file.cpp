@@ -6,7 +6,7 @@
 #include <fstream>
 #include <system_error>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 std::string whole_file(const std::filesystem::path& path) {
   std::error_code failure;
@@ -30,4 +30,4 @@ std::string whole_file(const std::filesystem::path& path) {
   return bytes;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

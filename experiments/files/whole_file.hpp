@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// A file of more bytes than this is no study, world or log, and would not fit into memory either.
 inline constexpr std::uintmax_t kLargestFile = std::uintmax_t{512} << 20U;
@@ -14,4 +14,4 @@ inline constexpr std::uintmax_t kLargestFile = std::uintmax_t{512} << 20U;
 /// file (a folder, a device), cannot be read or is larger than kLargestFile.
 std::string whole_file(const std::filesystem::path& path);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -10,7 +10,7 @@
 
 #include <numbers>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -67,4 +67,4 @@ DriveLog read_car_park(const fs::path& folder) {
   return log;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

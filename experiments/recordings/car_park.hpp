@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// The drive around a car park with reflecting poles (E. Nebot and J. Guivant, ACFR) from
 /// data_set.mat as published, poles detected: 125 s. x points East, y North [m]; times as published
@@ -13,4 +13,4 @@ namespace montecarta {
 /// Throws StudyError naming file and record where one is missing or damaged.
 DriveLog read_car_park(const std::filesystem::path& folder);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <set>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 constexpr double kLatestTime = 1e10;  ///< [s] beyond are nanoseconds
@@ -200,4 +200,4 @@ void check_log(const DriveLog& log, const std::string& place) {
   check_end(log, place);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

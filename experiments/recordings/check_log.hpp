@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// An identity from here on is a mistake: no map has as many landmarks.
 inline constexpr std::int32_t kMostIdentities = 1'000'000;
@@ -24,4 +24,4 @@ void check_landmarks(std::span<const Eigen::Vector2d> landmarks, const std::stri
 /// to none and belong to a landmark where landmarks are known. `place` is the folder.
 void check_log(const DriveLog& log, const std::string& place);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

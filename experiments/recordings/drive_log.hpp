@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// What wheel and steering measured; holds from its time to that of the next.
 struct Odometry {
@@ -35,4 +35,4 @@ struct DriveLog {
   std::vector<Eigen::Vector2d> landmarks;  ///< [m] surveyed positions; empty where unknown
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <system_error>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -70,4 +70,4 @@ std::string fingerprint_of(const DriveLog& log) {
   return sha256(bytes.text());
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

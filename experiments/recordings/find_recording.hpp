@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// The folder that a study means by `path`: below one of `folders`, or as it is, or below a folder
 /// of the environment variable MONTECARTA_DATA (separated by colons). Throws StudyError where there
@@ -19,4 +19,4 @@ std::filesystem::path find_recording(const std::string& path,
 /// same one.
 std::string fingerprint_of(const DriveLog& log);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -4,7 +4,7 @@
 #include "engine/errors.hpp"
 #include "experiments/text/numbers.hpp"
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 void check_sweep(LaserSweep ranges, const std::string& place) {
   for (std::size_t beam = 0; beam < ranges.size(); ++beam) {
@@ -15,4 +15,4 @@ void check_sweep(LaserSweep ranges, const std::string& place) {
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// Beams of one sweep of the laser of both recorded drives, half a degree apart: beam 0 points
 /// right, 180 ahead, 360 left.
@@ -36,4 +36,4 @@ inline double bearing_of(double angle) { return angle - std::numbers::pi / 2; }
 /// negative.
 void check_sweep(LaserSweep ranges, const std::string& place);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// Reads a drive from a folder of comma-separated files, described in
 /// experiments/RECORDED_DRIVES.md: start.csv, odometry.csv, detections.csv, reference.csv or
@@ -23,4 +23,4 @@ void write_log_csv(const DriveLog& log, const std::filesystem::path& folder);
 void write_log_csv(const DriveLog& log, const std::filesystem::path& folder,
                    const std::filesystem::path& truth_folder);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

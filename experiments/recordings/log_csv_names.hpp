@@ -5,7 +5,7 @@
 #include <array>
 #include <string>
 
-namespace montecarta::log_csv {
+namespace montecarta::experiments::log_csv {
 
 /// Headers of each file of a log: without and with its optional last column.
 using Headers = std::array<std::string, 2>;
@@ -29,4 +29,4 @@ inline bool is_before(const std::string& a, const std::string& b) {
   return a != b && (a == kLeading || (b != kLeading && a < b));
 }
 
-}  // namespace montecarta::log_csv
+}  // namespace montecarta::experiments::log_csv

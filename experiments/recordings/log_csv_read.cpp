@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <system_error>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -58,7 +58,7 @@ Detection detection_in(const CsvRows& rows, bool identified) {
   return detection;
 }
 
-bool saw_nothing(const CsvRows& rows, bool identified) {
+bool is_empty_scan(const CsvRows& rows, bool identified) {
   return rows.field(1).empty() && rows.field(2).empty() && (!identified || rows.field(3).empty());
 }
 
@@ -69,7 +69,7 @@ std::vector<LoggedScan> read_scans(const fs::path& path) {
   std::vector<LoggedScan> scans;
   while (rows.next()) {
     const double time = rows.number(0, "time");
-    const bool nothing = saw_nothing(rows, identified);
+    const bool nothing = is_empty_scan(rows, identified);
     const bool again = !scans.empty() && scans.back().time == time;
     if (again && (nothing || scans.back().detections.empty())) {
       throw StudyError(rows.place() + ": a scan at " + to_text(time) +
@@ -159,4 +159,4 @@ DriveLog read_log_csv(const fs::path& folder) {
   return log;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

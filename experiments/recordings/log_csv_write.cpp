@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <initializer_list>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -117,4 +117,4 @@ void write_log_csv(const DriveLog& log, const fs::path& folder, const fs::path& 
   if (!log.landmarks.empty()) landmark_table(log.landmarks).save(truth_folder / "landmarks.csv");
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// A control holds from its time to that of the next one; the last record ends the last step.
@@ -56,4 +56,4 @@ DriveLog log_of(const Itinerary& itinerary, const Drive& drive,
   return log;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -4,7 +4,7 @@
 #include "engine/core/drive.hpp"
 #include "experiments/recordings/drive_log.hpp"
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// Whether a log tells which landmark each detection is of.
 enum class Identities { told, withheld };
@@ -15,4 +15,4 @@ enum class Identities { told, withheld };
 DriveLog log_of(const Itinerary& itinerary, const Drive& drive,
                 std::vector<Eigen::Vector2d> landmarks, Identities identities);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

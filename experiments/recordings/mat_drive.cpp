@@ -6,7 +6,7 @@
 
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 void check_count(const MatFile& file, const std::string& name, std::size_t found,
@@ -76,4 +76,4 @@ std::string scan_place(const MatFile& file, std::size_t scan) {
   return file.place() + ": scan " + std::to_string(scan + 1);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

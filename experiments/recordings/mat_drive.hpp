@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 // Parts of a DriveLog from the variables of a MATLAB file, each checked. Throw StudyError naming
 // file, variable and record.
@@ -43,4 +43,4 @@ std::vector<LoggedScan> scans_of(const MatFile& file, const std::vector<double>&
 /// "FILE: scan N", from 1.
 std::string scan_place(const MatFile& file, std::size_t scan);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

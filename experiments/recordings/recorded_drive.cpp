@@ -5,7 +5,7 @@
 #include <iterator>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::experiments {
 RecordedDrive::RecordedDrive(const DriveLog& log, double max_range, double scan_delay) {
   itinerary_.start = {log.start.x, log.start.y, wrap(log.start.heading)};
   itinerary_.has_truth = false;
@@ -58,4 +58,4 @@ void RecordedDrive::take_scan(const LoggedScan& scan, double max_range) {
 
 void RecordedDrive::generate(std::uint64_t /*run*/, Drive& drive) const { drive = drive_; }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

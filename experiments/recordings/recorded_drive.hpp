@@ -3,7 +3,7 @@
 
 #include "experiments/recordings/drive_log.hpp"
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// A recorded drive as the engine takes it: odometry, scans and fixes merged by their times, which
 /// are counted from the start. A step ends wherever odometry or a scan comes in, so that no
@@ -28,4 +28,4 @@ class RecordedDrive final : public DriveSource {
   Drive drive_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 // [reflectors]
@@ -53,4 +53,4 @@ std::vector<Detection> detect_reflectors(LaserSweep ranges, LaserSweep intensiti
   return detections;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -6,10 +6,10 @@
 
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// The reflecting poles in one sweep of ranges [m] and intensities: centre of the pole, by
 /// increasing bearing, none identified. See [reflectors] of experiments/RECORDED_DRIVES.md.
 std::vector<Detection> detect_reflectors(LaserSweep ranges, LaserSweep intensities);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

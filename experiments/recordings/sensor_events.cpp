@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 constexpr double kRounding = 0.0006;  ///< [s] times are published in whole milliseconds
@@ -58,4 +58,4 @@ void check_events(const SensorEvents& events, const SensorTimes& times, const st
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

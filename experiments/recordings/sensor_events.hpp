@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// The order in which a published drive says that its sensors spoke: one entry for each record of
 /// the three sensor files.
@@ -24,4 +24,4 @@ using SensorTimes = std::array<std::span<const double>, 3>;
 /// missing, left over or out of order where a sensor's file alone still looks whole.
 void check_events(const SensorEvents& events, const SensorTimes& times, const std::string& place);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 // [trees] Lengths [m] and angles [rad]. Echoes lie at whole beams, so many differences of angles
@@ -127,4 +127,4 @@ std::vector<Detection> detect_trees(LaserSweep ranges) {
   return detections;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

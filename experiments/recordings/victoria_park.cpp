@@ -13,7 +13,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -157,4 +157,4 @@ DriveLog read_victoria_park(const fs::path& folder, Steering steering) {
   return log;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

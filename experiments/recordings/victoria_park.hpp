@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// Which record of the steering angle a Victoria Park drive follows.
 enum class Steering {
@@ -23,4 +23,4 @@ enum class Steering {
 /// StudyError naming file and record where one is missing or damaged.
 DriveLog read_victoria_park(const std::filesystem::path& folder, Steering steering);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

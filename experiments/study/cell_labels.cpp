@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// Whether nothing but its label can tell a cell from others of its filter.
@@ -59,4 +59,4 @@ void label_cells(std::vector<CellSpec>& cells) {
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

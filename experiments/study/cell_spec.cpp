@@ -10,7 +10,7 @@
 #include <cctype>
 #include <map>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// The values that a line lists for each option, checked.
@@ -187,4 +187,4 @@ std::string cell_line(const CellSpec& cell) {
   return line;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

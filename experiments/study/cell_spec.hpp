@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// One filter in one setting, as a study file asks for it.
 struct CellSpec {
@@ -26,7 +26,7 @@ struct CellSpec {
 };
 
 /// What every filter takes besides its own options: factors on the standard deviations that it
-/// believes, so that a study can ask what becomes of a filter that is told wrong noise.
+/// believes, so that a study can ask what becomes of a filter that is given wrong noise.
 std::span<const Option> mismatch_options();
 /// The factor of that name; 1 where it is not in the list.
 double mismatch_of(const CellSpec& cell, std::string_view name);
@@ -43,4 +43,4 @@ void label_cells(std::vector<CellSpec>& cells);
 /// The line that reads back as this cell: "fastslam2 label=fastslam2_m100 particles=100 ...".
 std::string cell_line(const CellSpec& cell);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -8,7 +8,7 @@
 
 #include <sstream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace po = boost::program_options;
@@ -55,4 +55,4 @@ IniText read_ini(const std::string& text, const std::string& name) {
   return ini;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// One `key = value` of an INI text, and where it stands.
 struct IniEntry {
@@ -30,4 +30,4 @@ struct IniText {
 /// numbers. Throws StudyError at stray text and at entries before the first section.
 IniText read_ini(const std::string& text, const std::string& name);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

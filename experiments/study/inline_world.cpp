@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <array>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 const std::array<std::string, 2> kPointKeys = {"waypoint", "landmark"};
@@ -57,4 +57,4 @@ std::string inline_world_text(const World& world) {
   return lines_of(kPointKeys[0], world.waypoints) + lines_of(kPointKeys[1], world.landmarks);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

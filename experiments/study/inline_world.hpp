@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// A world written out in a study: [world] with `waypoint = x, y` and `landmark = x, y` lines [m].
 bool has_inline_world(const IniText& ini);
@@ -14,4 +14,4 @@ World read_inline_world(const IniText& ini, const std::string& name, const std::
 /// The lines below [world] that read back as exactly this world.
 std::string inline_world_text(const World& world);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// Scans happen at every so-many-th control step: a whole number, for an integer counter never
@@ -142,4 +142,4 @@ std::shared_ptr<const DriveSource> drives_of(const Study& study, std::uint64_t s
                                          s.number("scenario", "scan_delay"));
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

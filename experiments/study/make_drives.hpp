@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// The vehicle of a section: [scenario] or [belief].
 Vehicle vehicle_of(const Settings& settings, const char* section);
@@ -21,4 +21,4 @@ std::shared_ptr<const DriveSource> drives_of(const Study& study, std::uint64_t s
 std::function<std::vector<Eigen::Vector2d>(std::uint64_t run)> own_landmarks_of(const Study& study,
                                                                                 std::uint64_t seed);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// What the study says that filters believe, times what the cell says of its own.
@@ -54,8 +54,8 @@ ColumnSelection columns_of(const Settings& s) {
   return columns;
 }
 
-/// Rows of the map columns: with unknown association landmarks are numbered by birth, and there may
-/// be more than the world has, of which a recorded drive knows nothing.
+/// Rows of the map columns: with unknown association landmarks are numbered by initialisation, and
+/// there may be more than the world has, of which a recorded drive knows nothing.
 std::size_t map_rows_of(const FilterSetup& setup, const Settings& s) {
   const std::uint64_t asked = s.count("record", "map_rows");
   if (setup.association.kind == Association::known) return setup.landmarks;
@@ -175,4 +175,4 @@ StudyPlan make_plan(const Study& study, std::optional<RunRange> range, ExternalP
   return plan;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

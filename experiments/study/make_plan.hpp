@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// Why the study cannot store joint estimates, as the end of a StudyError: "(why): remedy"; empty
 /// where it can.
@@ -21,4 +21,4 @@ std::string objection_to_joint(const Study& study);
 StudyPlan make_plan(const Study& study, std::optional<RunRange> range = std::nullopt,
                     ExternalPrograms programs = ExternalPrograms::refused);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

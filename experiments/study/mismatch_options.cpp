@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 std::span<const Option> mismatch_options() {
   static const std::vector<Option> options = {
@@ -21,4 +21,4 @@ double mismatch_of(const CellSpec& cell, std::string_view name) {
   return found == cell.mismatch.end() ? 1.0 : to_number(found->second).value();
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 void refuse_unknown(const std::string& what, const std::string& name,
@@ -54,4 +54,4 @@ Printed read_printed(std::span<const IniEntry> entries, std::span<const CellSpec
   return printed;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -7,10 +7,10 @@
 
 #include <span>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// What a study says that a paper printed: its lines below [printed]. Throws StudyError with line
 /// and remedy where one is not understood, or names a cell or a metric that there is not.
 Printed read_printed(std::span<const IniEntry> entries, std::span<const CellSpec> cells);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

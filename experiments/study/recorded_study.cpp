@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -67,4 +67,4 @@ std::shared_ptr<const DriveLog> read_drive_of(Settings& settings, const fs::path
   return std::make_shared<const DriveLog>(std::move(log));
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

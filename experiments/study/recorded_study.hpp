@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <memory>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// The recorded drive that the settings of a study name; `folder` is where relative paths may
 /// begin. Fills in scenario.data_sha256, and scenario.path by the kind of the drive: what a study
@@ -16,4 +16,4 @@ namespace montecarta {
 std::shared_ptr<const DriveLog> read_drive_of(Settings& settings,
                                               const std::filesystem::path& folder);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -2,12 +2,12 @@
 #include "experiments/study/inline_world.hpp"
 #include "experiments/study/study.hpp"
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// The text of studies that make all runs, or store no joint estimates, is what it was before a
 /// study could do otherwise.
-bool is_said(const Study& study, const std::string& key, const std::string& value) {
+bool is_default_noted(const Study& study, const std::string& key, const std::string& value) {
   if (key == "joint_scans") return study.settings.lists("record", "columns", "joint");
   return key != "until" || !value.empty();
 }
@@ -21,7 +21,7 @@ std::string resolved_text(const Study& study) {
     if (section == "world" && study.log != nullptr) continue;
     text += "[" + section + "]\n";
     for (const auto& [key, value] : study.settings.section(section)) {
-      if (is_said(study, key, value)) text += key + " = " + value + "\n";
+      if (is_default_noted(study, key, value)) text += key + " = " + value + "\n";
     }
     if (section == "cells") {
       for (const CellSpec& cell : study.cells) text += "cell = " + cell_line(cell) + "\n";
@@ -32,4 +32,4 @@ std::string resolved_text(const Study& study) {
   return text;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

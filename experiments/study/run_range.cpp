@@ -5,7 +5,7 @@
 #include "experiments/text/numbers.hpp"
 #include "experiments/text/words.hpp"
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 RunRange parse_run_range(const std::string& text, std::uint64_t runs) {
   const auto parts = split(text, ':');
@@ -30,4 +30,4 @@ RunRange parse_shard(const std::string& text, std::uint64_t runs) {
                    std::to_string(runs < 4 ? runs : 4));
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

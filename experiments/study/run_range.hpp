@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// Runs [first, last) of a study.
 struct RunRange {
@@ -18,4 +18,4 @@ RunRange parse_run_range(const std::string& text, std::uint64_t runs);
 /// unless I < N <= runs.
 RunRange parse_shard(const std::string& text, std::uint64_t runs);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

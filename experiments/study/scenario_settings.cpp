@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/study/setting_builders.hpp"
 
-namespace montecarta::setting_builders {
+namespace montecarta::experiments::setting_builders {
 namespace {
 
 const std::vector<std::string> kVehicles = {"front_axle", "rear_wheel"};
@@ -114,4 +114,4 @@ void add_belief(std::vector<Setting>& table) {
   noise("1.5", "1", number(s, "sigma_bearing_deg", "deg", "1", kTiny, 180, meaning));
 }
 
-}  // namespace montecarta::setting_builders
+}  // namespace montecarta::experiments::setting_builders

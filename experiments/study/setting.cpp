@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using Kind = Option::Kind;
@@ -118,4 +118,4 @@ std::string checked_value(const Option& option, std::string_view text, const std
   return {};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

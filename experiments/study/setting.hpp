@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 inline constexpr const char* kFromScenario = "scenario";
 inline constexpr const char* kRequired = "(required)";
@@ -41,4 +41,4 @@ std::string checked_value(const Option& option, std::string_view text, const std
 /// What a value must be: "a number from 0 to 1000 m".
 std::string demand_of(const Option& option);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -8,7 +8,7 @@
 #include <vector>
 
 /// How the rows of the table of settings are written.
-namespace montecarta::setting_builders {
+namespace montecarta::experiments::setting_builders {
 
 inline constexpr double kTiny = 1e-6;  // least of what must be positive
 inline constexpr double kMostSeed = 18446744073709551615.0;
@@ -65,4 +65,4 @@ inline Setting for_recorded(Setting setting, const char* fallback) {
 void add_scenario(std::vector<Setting>& table);
 void add_belief(std::vector<Setting>& table);
 
-}  // namespace montecarta::setting_builders
+}  // namespace montecarta::experiments::setting_builders

@@ -2,7 +2,7 @@
 #include "engine/records/column_table.hpp"
 #include "experiments/study/setting_builders.hpp"
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using namespace setting_builders;
@@ -68,4 +68,4 @@ std::span<const Setting> study_settings() {
   return table;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

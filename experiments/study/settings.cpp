@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 const Setting& known_setting(const IniEntry& entry) {
@@ -142,4 +142,4 @@ std::vector<std::string> study_sections() {
   return {"study", "scenario", "belief", "association", "cells", "record", "printed", "world"};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

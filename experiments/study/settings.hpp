@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 struct Setting;
 
@@ -58,4 +58,4 @@ class Settings {
 /// Section names that a study file may have, in the order of the resolved text.
 std::vector<std::string> study_sections();
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

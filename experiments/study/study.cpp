@@ -13,7 +13,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 void refuse_unknown_sections(const IniText& ini) {
@@ -121,4 +121,4 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
   return parse_study(text.str(), path.string(), path.parent_path(), overrides);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

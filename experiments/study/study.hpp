@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// A study file understood: everything filled in and checked, nothing built yet.
 struct Study {
@@ -40,4 +40,4 @@ Study parse_study(const std::string& text, const std::string& name,
 /// gives the same study and the same text, so that its SHA-256 names the study.
 std::string resolved_text(const Study& study);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <sstream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// Whether "key = value" is a setting that a scenario of kind log does not have.
@@ -36,4 +36,4 @@ std::string study_of_log(const Study& study) {
   return text;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

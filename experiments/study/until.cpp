@@ -9,7 +9,7 @@
 #include "experiments/text/numbers.hpp"
 #include "experiments/text/words.hpp"
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 constexpr const char* kProcessorTime = "cpu_seconds";
@@ -70,4 +70,4 @@ std::string in_words(const Until& until, std::uint64_t runs) {
          " runs in any case; failed runs are in no mean";
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// study.until = METRIC < HALF-WIDTH: a cell stops when so precise.
 struct Until {
@@ -31,4 +31,4 @@ EnoughRuns rule_of(const Until& until);
 /// For `montecarta check`: when a cell stops, in words.
 std::string in_words(const Until& until, std::uint64_t runs);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <system_error>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 template <class Number>
@@ -36,4 +36,4 @@ std::string to_text(double value) {
   return std::string(buffer.data(), error == std::errc() ? end : buffer.data());
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

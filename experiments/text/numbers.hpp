@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// The number that all of `text` spells, in the C locale; nullopt where it is not one or not
 /// finite.
@@ -16,4 +16,4 @@ std::optional<std::uint64_t> to_count(std::string_view text);
 /// The shortest text that reads back as exactly `value`.
 std::string to_text(double value);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

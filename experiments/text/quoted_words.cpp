@@ -3,7 +3,7 @@
 
 #include "engine/errors.hpp"
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 constexpr std::string_view kBlank = " \t\r\n\f\v";
@@ -49,4 +49,4 @@ std::string in_quotes(std::string_view word) {
   return quoted + '"';
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// The parts of `text` between runs of white space, where quotes, '...' or "...", hold a part or
 /// some of it together and are dropped. Within "..." a backslash takes the character behind it as
@@ -16,4 +16,4 @@ std::vector<std::string> quoted_words(std::string_view text);
 /// `word` in double quotes, so that quoted_words() reads it back.
 std::string in_quotes(std::string_view word);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 std::string printed(const char* format, double value) {
@@ -59,4 +59,4 @@ std::string duration_text(double seconds) {
          printed("%02.0f min", std::fmod(minutes, 60.0));
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

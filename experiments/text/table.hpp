@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 using TableRow = std::vector<std::string>;
 
@@ -17,4 +17,4 @@ std::string bytes_text(double bytes);
 /// "1 h 05 min", "3 min 20 s", "4.2 s".
 std::string duration_text(double seconds);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

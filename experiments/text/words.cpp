@@ -5,7 +5,7 @@
 #include <cctype>
 #include <sstream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 constexpr std::string_view kWhite = " \t\r\n\f\v";
@@ -89,4 +89,4 @@ std::string nearest_spelling(std::string_view word, std::span<const std::string>
   return "known: " + joined(known);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// `text` without white space at either end.
 std::string_view trimmed(std::string_view text);
@@ -27,4 +27,4 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// "did you mean X?" for the known spelling nearest to `word`, else "known: a, b, c".
 std::string nearest_spelling(std::string_view word, std::span<const std::string> known);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

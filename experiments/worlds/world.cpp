@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 void check_points(const std::vector<Eigen::Vector2d>& points, const std::string& place,
@@ -31,4 +31,4 @@ void check_world(const World& world, const std::string& place) {
   check_points(world.landmarks, place, "landmark");
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

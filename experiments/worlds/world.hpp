@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// What there is to map and where to drive, in the map frame.
 struct World {
@@ -22,4 +22,4 @@ inline constexpr double kFarthestCoordinate = 1e6;
 /// way-points, and only places.
 void check_world(const World& world, const std::string& place);
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

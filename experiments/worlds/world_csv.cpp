@@ -7,7 +7,7 @@
 #include <array>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 const std::array<std::string, 2> kKinds = {"landmark", "waypoint"};
@@ -32,4 +32,4 @@ World read_world_csv(const std::filesystem::path& path) {
   return world;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

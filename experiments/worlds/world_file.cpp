@@ -5,7 +5,7 @@
 #include "experiments/files/shipped_files.hpp"
 #include "experiments/text/words.hpp"
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -46,4 +46,4 @@ World find_world(const std::string& name, const std::vector<fs::path>& folders) 
 
 std::vector<std::string> shipped_worlds() { return shipped_names("worlds", ".csv"); }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

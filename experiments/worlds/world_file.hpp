@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// Reads a world from .csv (header `kind,x,y`, kind landmark or waypoint, # begins a comment) or
 /// from a MATLAB .mat with `lm` and `wp`. Throws StudyError naming file and line where it is
@@ -23,4 +23,4 @@ World find_world(const std::string& name, const std::vector<std::filesystem::pat
 /// Names of the worlds that come with montecarta, in alphabetical order.
 std::vector<std::string> shipped_worlds();
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -3,7 +3,7 @@
 #include "experiments/files/mat_file.hpp"
 #include "experiments/worlds/world_file.hpp"
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// Rows (2 x N) are preferred where both sides are 2, as the published maps are stored.
@@ -33,4 +33,4 @@ World read_world_mat(const std::filesystem::path& path) {
   return world;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

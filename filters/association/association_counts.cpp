@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 /// The count that one detection belongs to; nullptr where clutter was rightly left out, or where
@@ -41,4 +41,4 @@ void add(const AssociationCounts& counts, double share, AssociationCounts& sum) 
   sum.clutter += share * counts.clutter;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

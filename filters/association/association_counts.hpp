@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// What one map's pairings of a scan are, seen with the simulator's eyes. `made_of` {slot}: the
 /// identity of the detection that each landmark of the map was made of, before this scan's new
@@ -25,9 +25,10 @@ void add(const AssociationCounts& counts, double share, AssociationCounts& sum);
 
 /// For every particle and landmark of its map the simulator's identity of the detection that the
 /// landmark was made of, to count association errors by. Keeps its memory from run to run.
-class BirthIdentities {
+class InitialisationIdentities {
  public:
-  explicit BirthIdentities(std::size_t particles) : counts_(particles), spare_counts_(particles) {}
+  explicit InitialisationIdentities(std::size_t particles)
+      : counts_(particles), spare_counts_(particles) {}
 
   void clear() { std::ranges::fill(counts_, 0U); }
   /// By slot.
@@ -65,4 +66,4 @@ class BirthIdentities {
   std::vector<std::uint32_t> counts_, spare_counts_;  ///< {particle} landmarks
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

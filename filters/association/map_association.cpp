@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 MapAssociation::MapAssociation(const FilterSetup& setup)
     : settings_(setup.association),
@@ -56,4 +56,4 @@ std::size_t MapAssociation::slot_of(std::size_t k) const {
   return k < slot_of_identity_.size() ? slot_of_identity_[k] : kUnseen;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

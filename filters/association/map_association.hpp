@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Which landmark of one map a detection is, by identity or the nearest (EQUATIONS 17), for filters
 /// whose map is the same for all particles, or that have a map for each belief. Landmarks are
@@ -47,9 +47,9 @@ class MapAssociation {
   AssociationSettings settings_;
   double log_new_density_;
   std::vector<std::uint32_t> slot_of_identity_;  ///< where they are known
-  std::vector<std::int32_t> made_of_;            ///< {slot} identity at birth, to count errors
-  std::vector<Pairing> pairings_;                ///< of the last scan
+  std::vector<std::int32_t> made_of_;  ///< {slot} identity at initialisation, to count errors
+  std::vector<Pairing> pairings_;      ///< of the last scan
   AssociationCounts counts_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 Pairing judge(const NearestSearch& search, const AssociationSettings& settings) {
   if (search.least_cost < std::numeric_limits<double>::infinity()) {
@@ -35,4 +35,4 @@ double log_new_density(const AssociationSettings& settings, const Belief& belief
   return -0.5 * settings.gate - std::log(kTwoPi) - log_sqrt_det_s + settings.log_new_density_offset;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -7,7 +7,7 @@
 #include <limits>
 #include <span>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// What becomes of a detection.
 enum class PairingKind : std::uint8_t {
@@ -53,4 +53,4 @@ void exclude_rivals(std::span<Pairing> pairings);
 /// with S = diag(2 R), plus the offset.
 double log_new_density(const AssociationSettings& settings, const Belief& belief);
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Which member a trial starts from: DE/best/1 (Ankishan), DE/rand/1 (Havangi eq. 6) or
 /// DE/current/1 (Havangi eq. 30: nothing pulls towards the best but selection).
@@ -59,11 +59,11 @@ using Population = std::span<std::array<Real, D>>;
 
 /// Who leads, and how far behind the last one is.
 template <class Real, std::size_t D>
-struct Standing {
+struct Ranking {
   Evolved<Real, D> leader;
   Real worst;
 
-  Standing(Population<Real, D> population, const std::vector<Real>& fitness)
+  Ranking(Population<Real, D> population, const std::vector<Real>& fitness)
       : leader{population[0], fitness[0]}, worst(fitness[0]) {
     for (std::size_t i = 1; i < population.size(); ++i) {
       const auto better = fitness[i] > leader.fitness;
@@ -124,16 +124,16 @@ template <class Real, std::size_t D>
 
 /// One synchronous generation: all trials are built from the old one, then the good ones move in.
 template <class Real, std::size_t D, class Judge>
-void live_on(Population<Real, D> population, std::size_t generation,
-             const Standing<Real, D>& standing, const SearchBox<Real, D>& box,
-             const EvolutionSettings& settings, const EvolutionDraws& draws,
-             EvolutionScratch<Real, D>& scratch, const Judge& judge) {
+void next_generation(Population<Real, D> population, std::size_t generation,
+                     const Ranking<Real, D>& ranking, const SearchBox<Real, D>& box,
+                     const EvolutionSettings& settings, const EvolutionDraws& draws,
+                     EvolutionScratch<Real, D>& scratch, const Judge& judge) {
   const std::size_t size = population.size();
-  const auto goes_on = standing.goes_on(settings);
+  const auto goes_on = ranking.goes_on(settings);
   for (std::size_t i = 0; i < size; ++i) {
     const std::size_t block = (generation * size + i) * TrialDraws<Real, D>::kBlocks;
     const TrialDraws<Real, D> chance(draws, static_cast<std::uint32_t>(block), size, i);
-    scratch.trials[i] = trial(population, i, standing.leader.best, box, settings, chance);
+    scratch.trials[i] = trial(population, i, ranking.leader.best, box, settings, chance);
   }
   judge(std::span(std::as_const(scratch.trials)), std::span(scratch.trial_fitness));
   for (std::size_t i = 0; i < size; ++i) {
@@ -172,13 +172,13 @@ Evolved<Real, D> evolve(std::span<std::array<Real, D>> population, const SearchB
                         EvolutionScratch<Real, D>& scratch, const Judge& judge) {
   scratch.start(population.size());
   judge(std::span<const std::array<Real, D>>(population), std::span(scratch.fitness));
-  evolution::Standing<Real, D> standing(population, scratch.fitness);
-  if (population.size() < least_population(settings.base)) return standing.leader;
-  for (std::size_t g = 0; g < settings.generations && any(standing.goes_on(settings)); ++g) {
-    evolution::live_on(population, g, standing, box, settings, draws, scratch, judge);
-    standing = evolution::Standing<Real, D>(population, scratch.fitness);
+  evolution::Ranking<Real, D> ranking(population, scratch.fitness);
+  if (population.size() < least_population(settings.base)) return ranking.leader;
+  for (std::size_t g = 0; g < settings.generations && any(ranking.goes_on(settings)); ++g) {
+    evolution::next_generation(population, g, ranking, box, settings, draws, scratch, judge);
+    ranking = evolution::Ranking<Real, D>(population, scratch.fitness);
   }
-  return standing.leader;
+  return ranking.leader;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

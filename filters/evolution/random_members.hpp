@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Where evolve() takes its random numbers from: lane l uses the stream of index identity.index +
 /// l, from block `first_block` on; whoever asks may have used the blocks before it.
@@ -73,4 +73,4 @@ struct TrialDraws {
 };
 
 }  // namespace evolution
-}  // namespace montecarta
+}  // namespace montecarta::filters

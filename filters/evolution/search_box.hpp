@@ -6,7 +6,7 @@
 #include <array>
 #include <cstddef>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Where the members of an evolving population may be: centre +- half in every component, and which
 /// components are angles [rad].
@@ -31,4 +31,4 @@ struct SearchBox {
   }
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Evolves the cloud of predicted poses as one population (Ankishan 3.2, Fig. 1): member i is
 /// particle i, and what moves there is judged by particle i's own map. Components are those along,
@@ -27,10 +27,10 @@ class CloudEvolution {
     moments_ = mixture_of(weights, predicted);
     frame_ = direction_of(moments_.mean.heading);
     population_.resize(weights.particles());
-    fitness_.clear(), sightings_.clear();
+    fitness_.clear(), matched_.clear();
     for (std::size_t b = 0; b < predicted.size(); ++b) {
       association.fetch(b);
-      append_sightings(association, b, sightings_);
+      append_matched(association, b, matched_);
       fitness_.emplace_back(predicted[b], noise);
       const std::array<Real, 3> members = block_of_members(predicted[b].mean);
       for (std::size_t i = b * kLanes; i < end_of(b); ++i)
@@ -47,8 +47,8 @@ class CloudEvolution {
         for (std::size_t i = b * kLanes; i < end_of(b); ++i) fitness[i] = get(fit, i % kLanes);
       }
     };
-    montecarta::evolve<double, 3>(population_, box(bounds), settings, EvolutionDraws{identity},
-                                  scratch_, judge);
+    filters::evolve<double, 3>(population_, box(bounds), settings, EvolutionDraws{identity},
+                               scratch_, judge);
     for (std::size_t b = 0; b < poses.size(); ++b) poses[b] = block_of_poses(population_, b);
   }
 
@@ -60,8 +60,8 @@ class CloudEvolution {
   std::size_t end_of(std::size_t b) const { return std::min((b + 1) * kLanes, population_.size()); }
 
   Real fitness_of_block(Aim aim, std::size_t b, const BasicPose<Real>& pose) const {
-    const std::size_t scan_size = sightings_.size() / fitness_.size();
-    const auto scan = std::span(sightings_).subspan(b * scan_size, scan_size);
+    const std::size_t scan_size = matched_.size() / fitness_.size();
+    const auto scan = std::span(matched_).subspan(b * scan_size, scan_size);
     return aim == Aim::likelihood ? fitness_[b].likelihood(pose, scan)
                                   : fitness_[b].posterior(pose, scan);
   }
@@ -99,10 +99,10 @@ class CloudEvolution {
 
   PoseMoments moments_;
   Direction<double> frame_{1.0, 0.0};
-  std::vector<Sighting<Real>> sightings_;   ///< {block, detection}
-  std::vector<PoseFitness<Real>> fitness_;  ///< of each block's particles
+  std::vector<MatchedDetection<Real>> matched_;  ///< {block, detection}
+  std::vector<PoseFitness<Real>> fitness_;       ///< of each block's particles
   std::vector<std::array<double, 3>> population_;
   EvolutionScratch<double, 3> scratch_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

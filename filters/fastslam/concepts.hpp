@@ -13,12 +13,12 @@
 
 // What the arguments of the FastSLAM templates must offer, and what passes between them.
 
-namespace montecarta {
+namespace montecarta::filters {
 
 template <class T, class U>
 concept Is = std::same_as<T, U>;
 
-/// Carries the Gaussians of poses and landmarks through motion and sight: `Linearised` and
+/// Carries the Gaussians of poses and landmarks through motion and observation: `Linearised` and
 /// `SigmaPoints` of moments/moment_transforms.hpp.
 template <class T, class Real>
 concept MomentTransform = requires(const T t, MotionIncrement& motion, PoseGaussian<Real>& pose,
@@ -70,7 +70,7 @@ concept Associator = requires(A a, const A decided, const StepContext& context, 
   // a scan: decides for all particles, by their `predicted` poses {block}; `joint` as a
   // PoseProposal has it
   a.associate(context, scan, maps, predicted, joint);
-  { decided.found_nothing() } -> Is<bool>;
+  { decided.matched_nothing() } -> Is<bool>;
   // detections that some particle may have matched, and the weight of those that did
   { decided.matches() } -> Is<std::size_t>;
   { decided.matched_weight(k, weights) } -> Is<double>;
@@ -126,4 +126,4 @@ concept PoseProposal = requires(P p, const P now, const StepContext& context, st
   { now.estimate(weights, poses) } -> Is<PoseEstimate>;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -6,24 +6,25 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 /// In the order of the enumerators.
-const std::vector<std::string> kEvolutionModes{"honest", "as_printed", "prior", "shared"};
+const std::vector<std::string> kEvolutionModes{"unbiased", "as_printed", "prior", "shared"};
 
 std::vector<Option> options_of_evolution() {
-  return {choice_option("mode", "honest", kEvolutionModes,
-                        "what is evolved, and whether the draw is paid for (EQUATIONS 10)"),
-          number_option("scale", "0.4", 0, 2, "F, of the difference vectors (EQUATIONS 9)"),
-          number_option("crossover", "0.8", 0, 1, "Cr, share of components that cross"),
-          count_option("generations", "10", 0, 1000, "at most; the paper does not say"),
-          count_option(
-              "population", "10", 7, 1000,
-              "of each particle's own evolution (mode honest); the particles themselves otherwise"),
-          number_option("bounds", "3", 0, 100, "of the search, in standard deviations"),
-          number_option("inflation", "1", 1, 10,
-                        "of the covariance that is drawn from (modes honest and shared)")};
+  return {
+      choice_option("mode", "unbiased", kEvolutionModes,
+                    "what is evolved, and whether the draw is paid for (EQUATIONS 10)"),
+      number_option("scale", "0.4", 0, 2, "F, of the difference vectors (EQUATIONS 9)"),
+      number_option("crossover", "0.8", 0, 1, "Cr, share of components that cross"),
+      count_option("generations", "10", 0, 1000, "at most; the paper does not say"),
+      count_option(
+          "population", "10", 7, 1000,
+          "of each particle's own evolution (mode unbiased); the particles themselves otherwise"),
+      number_option("bounds", "3", 0, 100, "of the search, in standard deviations"),
+      number_option("inflation", "1", 1, 10,
+                    "of the covariance that is drawn from (modes unbiased and shared)")};
 }
 
 }  // namespace
@@ -52,4 +53,4 @@ FilterKind de_srcd_kind() {
           .make = make_de_srcd<Lanes>};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

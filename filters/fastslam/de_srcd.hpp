@@ -4,7 +4,7 @@
 #include "filters/fastslam/evolved_proposal.hpp"
 #include "filters/fastslam/fast_slam_filters.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// What evolution was told to be.
 EvolvedSettings evolved_settings(const FilterOptions& options);
@@ -20,4 +20,4 @@ std::unique_ptr<SlamFilter> make_de_srcd(const FilterSetup& setup) {
                             central_difference_points(setup, map_uncertainty(setup.options))));
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

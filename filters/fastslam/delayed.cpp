@@ -3,7 +3,7 @@
 
 #include "engine/numbers/angle.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 
 std::vector<Option> delayed_options() {
   std::vector<Option> options = population_options();
@@ -32,4 +32,4 @@ FilterKind delayed_kind() {
           .make = make_delayed<Lanes>};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

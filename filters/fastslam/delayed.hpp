@@ -4,7 +4,7 @@
 #include "filters/fastslam/delayed_proposal.hpp"
 #include "filters/fastslam/fast_slam_filters.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 
 DrawTimes draw_times(const FilterOptions& options);
 
@@ -17,4 +17,4 @@ std::unique_ptr<SlamFilter> make_delayed(const FilterSetup& setup) {
       DelayedProposal<Real>(settings.particles, setup.belief, draw_times(setup.options)));
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

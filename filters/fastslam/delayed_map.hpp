@@ -2,14 +2,14 @@
 #pragma once
 
 #include "filters/fastslam/particle_maps.hpp"
-#include "filters/moments/correlated_sight.hpp"
+#include "filters/moments/correlated_observation.hpp"
 
 #include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// The joint Gaussian of poses and those slots of the particles' maps that were seen since poses
 /// were drawn. What it believes of each landmark alone is written back to the maps at every scan,
@@ -34,10 +34,11 @@ class DelayedMap {
   }
   /// Of the innovation of a landmark, of a slot that it holds, seen from the pose of block b.
   Symmetric2<Real> covariance(std::uint32_t slot, std::size_t b, const PoseGaussian<Real>& pose,
-                              const Landmark& landmark, const Sightline<Real>& s,
+                              const Landmark& landmark, const LineOfSight<Real>& s,
                               const SensorNoise& noise) const {
     return correlated_innovation(pose.covariance, landmark.covariance,
-                                 map_.pose_cross(index_of_[slot], b), SightRows<Real>(s), {}, noise)
+                                 map_.pose_cross(index_of_[slot], b), ObservationRows<Real>(s), {},
+                                 noise)
         .S;
   }
 
@@ -107,4 +108,4 @@ class DelayedMap {
   std::vector<std::span<Landmark>> written_;  ///< {landmark} its slot's blocks
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// When a delayed filter draws its poses.
 struct DrawTimes {
@@ -126,8 +126,8 @@ class DelayedProposal {
     if (!is_open_) return immediate_.initialise(fresh, pose, maps);
     CorrelatedMap<Real>& map = joint_.map();
     const std::size_t b = fresh.block;
-    const NewLandmark<Real> added =
-        new_correlated_landmark(map.pose(b), sight_of<Real>(fresh.detection), immediate_.noise());
+    const NewLandmark<Real> added = new_correlated_landmark(
+        map.pose(b), observation_of<Real>(fresh.detection), immediate_.noise());
     fresh.put(added.landmark, maps.blocks_of(fresh.slot)[b]);
     place(map, b, joint_.index_of_added(fresh.slot, maps), added,
           [&](const auto& from, auto& to) { fresh.put(from, to); });
@@ -168,7 +168,7 @@ class DelayedProposal {
   /// Takes the motion since the last scan into the joint Gaussian.
   void drive(const StepContext& context) {
     BlockTasks<Real>(joint_.map().blocks()).run(context, [&](std::size_t /*task*/, std::size_t b) {
-      montecarta::drive(joint_.map(), b, immediate_.motion());
+      filters::drive(joint_.map(), b, immediate_.motion());
     });
     immediate_.motion().restart();
     is_driven_ = true;
@@ -185,4 +185,4 @@ class DelayedProposal {
   bool draws_ = false;      ///< this scan
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

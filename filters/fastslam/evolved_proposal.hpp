@@ -9,20 +9,20 @@
 #include <cmath>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// What differential evolution is used for in DE-SRCD-FastSLAM (EQUATIONS 10).
 enum class EvolutionMode {
-  honest,      ///< each particle seeks its most probable pose, draws about it and pays for the draw
+  unbiased,    ///< each particle seeks its most probable pose, draws about it and pays for the draw
   as_printed,  ///< the cloud climbs the likelihood and is then refined by the same scan once more
   prior,       ///< the same with the motion and the map's covariance in the fitness
   shared,      ///< the cloud seeks the centres, and every particle pays for its draw
 };
 
 struct EvolvedSettings {
-  EvolutionMode mode = EvolutionMode::honest;
+  EvolutionMode mode = EvolutionMode::unbiased;
   EvolutionSettings evolution = {.scale = 0.4, .base = EvolutionBase::best};
-  std::size_t population = 10;  ///< of each particle in mode honest, at least 7
+  std::size_t population = 10;  ///< of each particle in mode unbiased, at least 7
   double bounds = 3.0;          ///< of the search, in standard deviations
   double inflation = 1.0;       ///< of the covariance that is drawn from where the draw is paid for
 };
@@ -39,7 +39,7 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
       : Cloud(particles, belief, points, points),
         settings_(settings),
         centres_(blocks_for<Real>(particles)) {
-    if (settings.mode != EvolutionMode::honest) return;
+    if (settings.mode != EvolutionMode::unbiased) return;
     for (std::size_t i = 0; i < particles; i += kLanesOf<Real>)
       own_.emplace_back(std::min(particles - i, kLanesOf<Real>), settings.population);
   }
@@ -57,7 +57,7 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
   void prepare(const StepContext& context, const Associating& association,
                const Weights<Real>& weights, const std::vector<BasicPose<Real>>& /*poses*/,
                const std::vector<PoseGaussian<Real>>& predicted, ParticleMaps<Real>& /*maps*/) {
-    if (settings_.mode == EvolutionMode::honest) return;
+    if (settings_.mode == EvolutionMode::unbiased) return;
     for (std::size_t b = 0; b < predicted.size(); ++b) centres_[b] = predicted[b].mean;
     if (association.matches() == 0) return;
     const auto aim = settings_.mode == EvolutionMode::as_printed
@@ -68,7 +68,7 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
                   centres_);
   }
 
-  /// Refines the pose, and in mode honest seeks the most probable one about it.
+  /// Refines the pose, and in mode unbiased seeks the most probable one about it.
   template <class Associating, class Innovations>
   Refined refine(const StepContext& context, std::size_t b, const PoseGaussian<Real>& predicted,
                  const Associating& association, const Innovations& innovations) {
@@ -79,7 +79,7 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
     this->keep(b, posterior);
     Refined refined{predicted, posterior, posterior.mean, evidence, PoseFactor<Real>(posterior)};
     if (settings_.mode == EvolutionMode::shared) refined.centre = centres_[b];
-    if (settings_.mode == EvolutionMode::honest) {
+    if (settings_.mode == EvolutionMode::unbiased) {
       const auto [e0, e1, e2] = own_[b].most_probable(
           association, b, predicted, posterior, this->noise(), settings_.bounds,
           settings_.evolution, Cloud::identity(context, Draw::evolution, b));
@@ -113,7 +113,7 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
 
  private:
   bool pays_for_draw() const {
-    return settings_.mode == EvolutionMode::honest || settings_.mode == EvolutionMode::shared;
+    return settings_.mode == EvolutionMode::unbiased || settings_.mode == EvolutionMode::shared;
   }
 
   EvolvedSettings settings_;
@@ -122,4 +122,4 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
   CloudEvolution<Real> cloud_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Rao-Blackwellised particle filter with one map per particle (EQUATIONS 4). `Real`: double or
 /// Lanes. Between update() and the next predict() the particles are weighed and drawn but not yet
@@ -45,7 +45,7 @@ class FastSlam final : public SlamFilter {
     population_.begin_scan();
     predict_poses(context);
     association_.associate(context, scan, maps_, predicted_, proposal_.joint());
-    const bool found = !association_.found_nothing();
+    const bool found = !association_.matched_nothing();
     if (found) weigh_and_draw(context);
     population_.report().association = association_.counts(weights());
     if (found) initialise_landmarks();
@@ -126,4 +126,4 @@ class FastSlam final : public SlamFilter {
   MixtureInnovations<Real> innovations_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 const std::vector<std::string> kWeightForms{"closed", "ratio", "batch"};
@@ -134,4 +134,4 @@ FilterKind srcd_pf_kind() {
           .make = make_srcd_pf<Lanes>};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -10,7 +10,7 @@
 #include <memory>
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// FastSLAM with a proposal of the caller's making; the association is the setup's.
 template <class Real, class Proposal>
@@ -50,7 +50,7 @@ MapUncertainty map_uncertainty(const FilterOptions& options);
 std::vector<Option> central_difference_options();
 SigmaPoints central_difference_points(const FilterSetup& setup, MapUncertainty map_uncertainty);
 /// The scaled unscented transform of every stage (EQUATIONS 7): dimension 5 for motion (pose,
-/// control) and for a sight (pose, landmark), 2 for a landmark.
+/// control) and for an observation (pose, landmark), 2 for a landmark.
 SigmaPoints unscented_points(const FilterSetup& setup);
 
 /// `Real` = double is the same filter one particle at a time, for tests.
@@ -111,4 +111,4 @@ FilterKind srcd_pf_kind();
 FilterKind de_srcd_kind();
 FilterKind delayed_kind();
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -3,7 +3,7 @@
 
 #include "filters/fastslam/refined_cloud.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// The three ways to weigh a particle of FastSLAM II (EQUATIONS 6).
 enum class WeightForm {
@@ -89,4 +89,4 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
   WeightForm form_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

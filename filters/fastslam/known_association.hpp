@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Detections carry the identity of their landmark, the same for all particles (EQUATIONS 17);
 /// clutter is known to be clutter. Slots are given out in the order in which landmarks are first
@@ -32,13 +32,13 @@ class KnownAssociation {
         new_.push_back(detection);
       } else {
         slots_.push_back(static_cast<std::uint32_t>(slot));
-        seen_.push_back(sight_of<Real>(detection));
+        seen_.push_back(observation_of<Real>(detection));
       }
     }
     maps.open(slots_, opened_);
   }
 
-  bool found_nothing() const { return slots_.empty() && new_.empty(); }
+  bool matched_nothing() const { return slots_.empty() && new_.empty(); }
   std::size_t matches() const { return slots_.size(); }
   /// The weight of the particles that matched detection k: all.
   double matched_weight(std::size_t /*k*/, const Weights<Real>& /*weights*/) const { return 1.0; }
@@ -103,4 +103,4 @@ class KnownAssociation {
   mutable std::vector<LandmarkGaussian<Real>> copied_;  ///< likewise
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// FastSLAM I (EQUATIONS 5): every particle moves with control noise of its own at every step; the
 /// scan only weighs it, by the likelihood at its pose.
@@ -68,7 +68,7 @@ class MotionSampling {
   void end_scan() {}
   void initialise(const FreshLandmark<Real>& fresh, const BasicPose<Real>& pose,
                   ParticleMaps<Real>& maps) const {
-    fresh.put(new_landmark(pose, sight_of<Real>(fresh.detection), noise_),
+    fresh.put(new_landmark(pose, observation_of<Real>(fresh.detection), noise_),
               maps.blocks_of(fresh.slot)[fresh.block]);
   }
   void begin_step(std::span<const std::uint32_t> /*parents*/) {}
@@ -91,4 +91,4 @@ class MotionSampling {
   SensorNoise noise_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -11,7 +11,7 @@
 #include <numeric>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Every particle decides for itself which landmark of its own map a detection is (EQUATIONS 17),
 /// with the covariance of its predicted pose in the innovation. Particle i owns slots 0 to count(i)
@@ -39,7 +39,7 @@ class NearestAssociation {
                  const std::vector<PoseGaussian<Real>>& predicted, const DelayedMap<Real>* joint) {
     scan_ = scan;
     seen_.clear();
-    for (const Detection& detection : scan) seen_.push_back(sight_of<Real>(detection));
+    for (const Detection& detection : scan) seen_.push_back(observation_of<Real>(detection));
     slots_.resize(maps.slots());
     std::iota(slots_.begin(), slots_.end(), 0U);
     maps.open(slots_, opened_);
@@ -53,7 +53,7 @@ class NearestAssociation {
     }
   }
 
-  bool found_nothing() const {
+  bool matched_nothing() const {
     for (std::size_t i = 0; i < particles_; ++i) {
       for (const Pairing& pairing : pairings_of(i)) {
         if (pairing.kind != PairingKind::ignored) return false;
@@ -138,7 +138,7 @@ class NearestAssociation {
     std::swap(counts_, resampled_counts_);
     made_of_.resample(parents);
   }
-  /// In order of birth, of the heaviest particle: particles do not share slots.
+  /// In order of initialisation, of the heaviest particle: particles do not share slots.
   std::optional<LandmarkEstimate> landmark(std::size_t j, const ParticleMaps<Real>& maps,
                                            const Weights<Real>& weights) const {
     const std::size_t heaviest = weights.heaviest();
@@ -175,7 +175,7 @@ class NearestAssociation {
   void offer(std::size_t b, std::uint32_t j, const LandmarkGaussian<Real>& landmark,
              const PoseGaussian<Real>& pose, const DelayedMap<Real>* joint,
              std::span<NearestSearch> searches) const {
-    const Sightline<Real> s = sightline(pose.mean, landmark.mean);
+    const LineOfSight<Real> s = line_of_sight(pose.mean, landmark.mean);
     const auto owned = Real(static_cast<double>(j)) < counts_[b];
     const Real never(std::numeric_limits<double>::infinity());
     // Only the innovation itself differs from detection to detection; most lie far away.
@@ -236,7 +236,7 @@ class NearestAssociation {
   SensorNoise noise_;
   double log_new_density_;
   std::vector<Real> counts_, resampled_counts_;
-  BirthIdentities made_of_;
+  InitialisationIdentities made_of_;
   Scan scan_;  ///< the caller's, for the time of an update
   std::vector<RangeBearing<Real>> seen_;
   std::vector<std::uint32_t> slots_, matched_slots_;
@@ -246,4 +246,4 @@ class NearestAssociation {
   std::vector<FreshLandmark<Real>> fresh_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Evolves a population for every particle of one block apart from all others, in standard
 /// deviations of the particle's refined Gaussian (EQUATIONS 10).
@@ -49,11 +49,12 @@ class OwnEvolution {
   void look(const Associating& association, std::size_t b, const PoseGaussian<Real>& predicted,
             const PoseGaussian<Real>& refined, const SensorNoise& noise) {
     fitness_.clear(), factors_.clear(), scan_.clear(), packed_scan_.clear();
-    append_sightings(association, b, scan_);
+    append_matched(association, b, scan_);
     for (std::size_t p = 0; p < packed_.patterns(); ++p) {
-      fitness_.emplace_back(packed_.said_of(predicted, p), noise);
-      factors_.emplace_back(packed_.said_of(refined, p));
-      for (const Sighting<Real>& one : scan_) packed_scan_.push_back(packed_.said_of(one, p));
+      fitness_.emplace_back(packed_.pattern_of(predicted, p), noise);
+      factors_.emplace_back(packed_.pattern_of(refined, p));
+      for (const MatchedDetection<Real>& one : scan_)
+        packed_scan_.push_back(packed_.pattern_of(one, p));
     }
   }
 
@@ -92,11 +93,11 @@ class OwnEvolution {
 
   std::vector<std::array<Real, 3>> population_;
   PackedCandidates<Real> packed_;
-  std::vector<PoseFitness<Real>> fitness_;   ///< of every pattern of packed lanes
-  std::vector<PoseFactor<Real>> factors_;    ///< the same
-  std::vector<Sighting<Real>> scan_;         ///< of every detection
-  std::vector<Sighting<Real>> packed_scan_;  ///< {pattern, detection}
+  std::vector<PoseFitness<Real>> fitness_;           ///< of every pattern of packed lanes
+  std::vector<PoseFactor<Real>> factors_;            ///< the same
+  std::vector<MatchedDetection<Real>> scan_;         ///< of every detection
+  std::vector<MatchedDetection<Real>> packed_scan_;  ///< {pattern, detection}
   EvolutionScratch<Real, 3> scratch_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

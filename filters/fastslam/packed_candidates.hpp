@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// How the candidates of the living particles of one block share registers, so that none is spent
 /// on lanes without a particle: candidate `member` of living lane `lane` is number member * living
@@ -40,7 +40,7 @@ class PackedCandidates {
   /// What is said of the particles of a block, as the lanes of packed block `pattern`, `pattern` +
   /// patterns(), ... need it. `Block`: a struct of Reals.
   template <class Block>
-  Block said_of(const Block& particles, std::size_t pattern) const {
+  Block pattern_of(const Block& particles, std::size_t pattern) const {
     if (living_ == kLanes) return particles;
     return gather_block<Real, Block>(std::span(&particles, 1), lanes_of_, pattern);
   }
@@ -69,4 +69,4 @@ class PackedCandidates {
   std::vector<std::uint32_t> place_of_;  ///< member and lane of every packed candidate
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

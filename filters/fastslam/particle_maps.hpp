@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Every particle's own map. Landmarks are kept in slots: slot j of all particles lies together, in
 /// blocks. After a resampling a slot is rearranged only when it is next opened.
@@ -141,4 +141,4 @@ class ParticleMaps {
   std::vector<std::vector<std::uint32_t>> sources_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

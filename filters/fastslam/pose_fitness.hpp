@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// A detection and the landmark that a particle takes it for.
 template <class Real>
-struct Sighting {
+struct MatchedDetection {
   LandmarkGaussian<Real> landmark;
   RangeBearing<Real> seen;
   Real matched;  ///< 1, or 0 where the particle takes it for nothing it knows
@@ -19,8 +19,8 @@ struct Sighting {
 
 /// Appends what the particles of block b, once fetched, take every match of a scan for.
 template <class Real, class Associating>
-void append_sightings(const Associating& association, std::size_t b,
-                      std::vector<Sighting<Real>>& scan) {
+void append_matched(const Associating& association, std::size_t b,
+                    std::vector<MatchedDetection<Real>>& scan) {
   for (std::size_t k = 0; k < association.matches(); ++k) {
     const auto& [landmark, seen, mask] = association.match(b, k);
     scan.push_back({landmark, seen, as_number<Real>(mask)});
@@ -36,10 +36,10 @@ class PoseFitness {
 
   /// Log of Ankishan eq. (32) read for range and bearing: sum of -1/2 nu' R^-1 nu (EQUATIONS 10).
   /// Neither the motion nor the map's covariance counts.
-  Real likelihood(const BasicPose<Real>& pose, std::span<const Sighting<Real>> scan) const {
+  Real likelihood(const BasicPose<Real>& pose, std::span<const MatchedDetection<Real>> scan) const {
     Real sum(0.0);
-    for (const Sighting<Real>& one : scan) {
-      const RangeBearing<Real> nu = residual(one.seen, sightline(pose, one.landmark.mean));
+    for (const MatchedDetection<Real>& one : scan) {
+      const RangeBearing<Real> nu = residual(one.seen, line_of_sight(pose, one.landmark.mean));
       sum += one.matched *
              (nu.range * nu.range / noise_.range + nu.bearing * nu.bearing / noise_.bearing);
     }
@@ -48,10 +48,10 @@ class PoseFitness {
 
   /// Log of the pose's posterior density up to a constant: the map's covariance in the innovation,
   /// and the prediction as prior (EQUATIONS 10).
-  Real posterior(const BasicPose<Real>& pose, std::span<const Sighting<Real>> scan) const {
+  Real posterior(const BasicPose<Real>& pose, std::span<const MatchedDetection<Real>> scan) const {
     Evidence<Real> evidence;
-    for (const Sighting<Real>& one : scan) {
-      const Sightline<Real> s = sightline(pose, one.landmark.mean);
+    for (const MatchedDetection<Real>& one : scan) {
+      const LineOfSight<Real> s = line_of_sight(pose, one.landmark.mean);
       const auto use = one.matched > Real(0.5) && is_usable(s);
       const Turned<Real> map = turned(one.landmark.covariance, s);
       const auto [r, b] = residual(one.seen, s);
@@ -69,4 +69,4 @@ class PoseFitness {
   SensorNoise noise_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

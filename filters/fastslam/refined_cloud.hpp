@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// What filters have in common whose poses are drawn from Gaussians that the scan refined
 /// (EQUATIONS 4): prediction, refinement, maps, and the estimate between scans. The transforms
@@ -47,7 +47,7 @@ class RefinedCloud {
   }
   void initialise(const FreshLandmark<Real>& fresh, const BasicPose<Real>& pose,
                   ParticleMaps<Real>& maps) const {
-    fresh.put(map_transform_.initialise(pose, sight_of<Real>(fresh.detection), noise_),
+    fresh.put(map_transform_.initialise(pose, observation_of<Real>(fresh.detection), noise_),
               maps.blocks_of(fresh.slot)[fresh.block]);
   }
   void begin_step(std::span<const std::uint32_t> /*parents*/) {
@@ -110,4 +110,4 @@ class RefinedCloud {
   bool is_drawn_ = false;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/fast_slam_filters.hpp"
 
-template std::unique_ptr<montecarta::SlamFilter> montecarta::make_refined<montecarta::Lanes>(
-    const FilterSetup&, const SigmaPoints&, const SigmaPoints&);
+template std::unique_ptr<montecarta::engine::SlamFilter>
+montecarta::filters::make_refined<montecarta::engine::Lanes>(const FilterSetup&, const SigmaPoints&,
+                                                             const SigmaPoints&);

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 /// What no vector stands for, as a share of the longest column: rounding, not approximation.
@@ -72,4 +72,4 @@ void Basis::make_room(const Eigen::MatrixXd& columns, Eigen::Index most) {
   coefficients_.resize(most, columns.cols());
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

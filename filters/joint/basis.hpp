@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Columns over the points of a map as combinations of a few orthonormal vectors: columns = vectors
 /// coefficients, to rounding.
@@ -29,4 +29,4 @@ class Basis {
   Eigen::Index size_ = 0;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 /// Up to so many landmarks a map has no far ones: below, expanding costs more than is saved.
@@ -138,19 +138,19 @@ bool CompressedGaussian::is_out_of_reach(std::size_t slot, const Drift& drift, d
 }
 
 JointGaussian::Trouble CompressedGaussian::look_at(std::size_t slot,
-                                                   ExpectedSight& expected) const {
+                                                   ExpectedObservation& expected) const {
   if (is_near(slot)) return near_.look_at(point_of_[slot], expected);
   return near_.look_at(far_point(slot), expected);
 }
 
-void CompressedGaussian::append(const RangeBearing<double>& sight) {
+void CompressedGaussian::append(const RangeBearing<double>& observation) {
   point_of_.push_back(static_cast<std::uint32_t>(near_.landmarks()));
-  near_.append(sight);
+  near_.append(observation);
 }
 
-void CompressedGaussian::attend(std::span<const std::uint32_t> slots) {
+void CompressedGaussian::make_near(std::span<const std::uint32_t> slots) {
   const bool all_near = std::ranges::all_of(slots, [&](std::uint32_t k) { return is_near(k); });
   if (!all_near || is_time_to_choose()) choose(slots);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

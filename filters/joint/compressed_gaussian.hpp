@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// A JointGaussian whose detections cost what the vehicle's neighbourhood costs, however large the
 /// map: the compressed filter of Guivant and Nebot, exact for both errors. A small map is one
@@ -56,19 +56,19 @@ class CompressedGaussian {
   /// Whether no detection up to `range` [m] can come within so many standard deviations of a
   /// landmark, of which it is far. Quicker than looking at it.
   bool is_out_of_reach(std::size_t slot, const Drift& drift, double range, double sigmas) const;
-  [[nodiscard]] Trouble look_at(std::size_t slot, ExpectedSight& expected) const;
+  [[nodiscard]] Trouble look_at(std::size_t slot, ExpectedObservation& expected) const;
 
   /// Makes landmarks near, and others around the vehicle with them; does nothing where they are.
-  void attend(std::span<const std::uint32_t> slots);
+  void make_near(std::span<const std::uint32_t> slots);
   /// JointGaussian::absorb() of a landmark that is near.
   Trouble absorb(std::size_t slot, const RangeBearing<double>& detected, int iterations,
-                 ExpectedSight& expected) {
+                 ExpectedObservation& expected) {
     assert(is_near(slot));
     ++absorbed_;
     return near_.absorb(point_of_[slot], detected, iterations, expected);
   }
   void draw_heading(double keep, double normal) { near_.draw_heading(keep, normal); }
-  void append(const RangeBearing<double>& sight);
+  void append(const RangeBearing<double>& observation);
 
  private:
   using Columns2 = Eigen::Matrix<double, Eigen::Dynamic, 2>;
@@ -103,10 +103,10 @@ class CompressedGaussian {
   void write_cross_with_far(Eigen::Index at, Columns2& column) const;
   void gather_near();
   void span_far();
-  void stand_in();
+  void use_landmark_stand_ins();
   void note_far();
 
-  JointGaussian near_;  ///< pose; near landmarks, stand-ins, landmarks born since
+  JointGaussian near_;  ///< pose; near landmarks, stand-ins, landmarks initialised since
   Retraction retraction_;
   std::vector<std::uint32_t> point_of_;  ///< {slot} in near_, or kFar
   std::size_t most_near_;                ///< beyond so many points it is time to choose anew
@@ -124,4 +124,4 @@ class CompressedGaussian {
   std::vector<std::uint32_t> chosen_;                          ///< scratch: slots
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -8,7 +8,7 @@
 
 // How a CompressedGaussian is expanded, and compressed around other landmarks.
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 /// So many landmarks around the vehicle are near: a detection costs their square, and with more of
@@ -95,7 +95,7 @@ void CompressedGaussian::choose(std::span<const std::uint32_t> wanted) {
   }
   gather_near();
   span_far();
-  stand_in();
+  use_landmark_stand_ins();
   note_far();
   absorbed_ = 0;
 }
@@ -159,7 +159,7 @@ void CompressedGaussian::span_far() {
 }
 
 /// Puts the near landmarks and the stand-ins in the place of the map.
-void CompressedGaussian::stand_in() {
+void CompressedGaussian::use_landmark_stand_ins() {
   const Eigen::Index n = row_of(chosen_.size()), k = basis_.size();
   const Eigen::MatrixXd X = basis_.coefficients() * sigma_.asDiagonal();
   MapMoments& local = near_.replace_map(chosen_.size() + static_cast<std::size_t>(k / 2));
@@ -182,4 +182,4 @@ void CompressedGaussian::note_far() {
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -6,7 +6,7 @@
 
 // How a detection or a draw changes a JointGaussian.
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 /// An iterated detection is settled when the innovation changes by less than this, in its own
@@ -24,7 +24,7 @@ Eigen::Matrix2d inverse_transposed(const InnovationFactor& L) {
 
 /// The step that the detection makes the pose and its landmark take, before any retraction: P H'
 /// S^-1 v.
-JointGaussian::Step JointGaussian::step_of(std::size_t slot, const ExpectedSight& expected,
+JointGaussian::Step JointGaussian::step_of(std::size_t slot, const ExpectedObservation& expected,
                                            const Eigen::Vector2d& innovation) const {
   const Eigen::Index row = row_of(slot);
   const Eigen::Vector2d weighed =
@@ -38,7 +38,7 @@ JointGaussian::Step JointGaussian::step_of(std::size_t slot, const ExpectedSight
 
 /// Linearises anew where `step` leads; the Gaussian still belongs to the present estimate.
 JointGaussian::Trouble JointGaussian::linearise_after(const Step& step, std::size_t slot,
-                                                      ExpectedSight& expected) const {
+                                                      ExpectedObservation& expected) const {
   const Eigen::Index row = row_of(slot);
   Eigen::Vector2d pose_way = step.pose.head<2>(), landmark_way = step.landmark;
   if (retraction_ == Retraction::invariant) {
@@ -47,15 +47,15 @@ JointGaussian::Trouble JointGaussian::linearise_after(const Step& step, std::siz
     landmark_way = V * landmark_way;
   }
   const Pose& from = pose_.mean;
-  const auto at = linearised_sight(
+  const auto at = linearised_observation(
       Pose{from.x + pose_way(0), from.y + pose_way(1), from.heading + step.pose(2)},
       Point{map_.mean(row) + landmark_way(0), map_.mean(row + 1) + landmark_way(1)});
-  if (too_near(at.sight)) return Trouble::too_near;
-  ExpectedSight next{.pose_jacobian = pose_jacobian(at),
-                     .landmark_jacobian = landmark_jacobian(at),
-                     .sight = at.sight,
-                     .factor = {},
-                     .ahead = {}};
+  if (too_near(at.observation)) return Trouble::too_near;
+  ExpectedObservation next{.pose_jacobian = pose_jacobian(at),
+                           .landmark_jacobian = landmark_jacobian(at),
+                           .observation = at.observation,
+                           .factor = {},
+                           .ahead = {}};
   if (retraction_ == Retraction::invariant) {  // the error at the estimate before
     next.pose_jacobian.col(2) += next.pose_jacobian.leftCols<2>() * (quarter_turn() * pose_way) +
                                  next.landmark_jacobian * (quarter_turn() * landmark_way);
@@ -69,7 +69,7 @@ JointGaussian::Trouble JointGaussian::linearise_after(const Step& step, std::siz
 }
 
 JointGaussian::Trouble JointGaussian::absorb(std::size_t slot, const RangeBearing<double>& detected,
-                                             int iterations, ExpectedSight& expected) {
+                                             int iterations, ExpectedObservation& expected) {
   Eigen::Vector2d innovation = expected.innovation(detected);
   Trouble trouble = Trouble::none;
   for (int i = 0; i < iterations; ++i) {
@@ -96,7 +96,7 @@ void JointGaussian::draw_heading(double keep, double normal) {
 }
 
 /// W = P H' L^-T.
-void JointGaussian::whiten_gain(std::size_t slot, const ExpectedSight& expected) {
+void JointGaussian::whiten_gain(std::size_t slot, const ExpectedObservation& expected) {
   const Eigen::Matrix2d inverse = inverse_transposed(expected.factor);
   const Matrix32 pose_white = expected.pose_jacobian.transpose() * inverse;
   const Eigen::Matrix2d landmark_white = expected.landmark_jacobian.transpose() * inverse;
@@ -182,4 +182,4 @@ void JointGaussian::change_map(bool carries_error) {
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

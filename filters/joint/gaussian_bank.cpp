@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 GaussianBank::GaussianBank(const FilterSetup& setup, const BankSettings& settings)
     : belief_(setup.belief),
@@ -54,7 +54,7 @@ void GaussianBank::update(const StepContext& context, Scan scan) {
   estimate_of_scan_ = mixture();
   split(context);
   context.parallel_for(active_.size(),
-                       [&](std::size_t a) { beliefs_[active_[a]].give_birth(scan); });
+                       [&](std::size_t a) { beliefs_[active_[a]].initialise_landmarks(scan); });
   for (std::size_t i = 0; i < slot_of_.size(); ++i) {
     population_.report().map_size +=
         weight_of(i) * static_cast<double>(belief_of(i).gaussian().landmarks());
@@ -81,7 +81,7 @@ void GaussianBank::gather_innovations(Scan scan) {
   innovations_.start(1, scan.size(), 0.0);
   for (std::size_t i = 0; i < slot_of_.size(); ++i) {
     const auto innovations = innovations_.of_block(0, weight_of(i));
-    for (const auto& [k, v, S] : belief_of(i).sightings()) {
+    for (const auto& [k, v, S] : belief_of(i).absorbed_detections()) {
       innovations.add(k, {{v(0), v(1)}, {S(0, 0), S(1, 0), S(1, 1)}}, Everywhere());
       innovations_.matched_weight(k) += weight_of(i);
     }
@@ -223,4 +223,4 @@ std::optional<JointEstimate> GaussianBank::joint(std::size_t landmarks) const {
   return mixture.result();
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

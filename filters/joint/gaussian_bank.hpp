@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// How the noise of a control reaches the pose.
 enum class Motion {
@@ -88,4 +88,4 @@ class GaussianBank final : public SlamFilter {
   PoseEstimate estimate_of_scan_;  ///< before headings were drawn
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <optional>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Lower Cholesky factor L of an innovation covariance S = L L' over (range, bearing).
 struct InnovationFactor {
@@ -40,4 +40,4 @@ inline double log_normal_density(double squared_distance, const InnovationFactor
   return -0.5 * (squared_distance + L.log_det()) - std::log(kTwoPi);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 /// Landmarks that are reserved before any is seen; identities may be sparse.
@@ -23,23 +23,23 @@ JointBelief::JointBelief(const FilterSetup& setup, Retraction retraction, int it
 void JointBelief::start(const Pose& start) {
   gaussian_.start(start);
   association_.clear();
-  sightings_.clear();
+  absorbed_detections_.clear();
   outcome_ = {};
 }
 
 void JointBelief::become(const JointBelief& other) {
   gaussian_.become(other.gaussian_);
   association_ = other.association_;
-  sightings_ = other.sightings_;
+  absorbed_detections_ = other.absorbed_detections_;
   outcome_ = other.outcome_;
 }
 
 void JointBelief::absorb(const MotionIncrement& motion, Scan scan) {
   outcome_ = {};
-  sightings_.clear();
+  absorbed_detections_.clear();
   gaussian_.move(motion);
   association_.known() ? association_.pair_by_identity(scan) : pair_nearest(scan);
-  attend();
+  select_matched();
   for (std::size_t k = 0; k < scan.size(); ++k) {
     if (association_.pairings()[k].kind == PairingKind::matched) {
       absorb(k, scan[k]);
@@ -50,19 +50,19 @@ void JointBelief::absorb(const MotionIncrement& motion, Scan scan) {
 }
 
 /// Readies the Gaussian for the landmarks that the scan shows.
-void JointBelief::attend() {
+void JointBelief::select_matched() {
   matched_.clear();
   for (const Pairing& pairing : association_.pairings()) {
     if (pairing.kind == PairingKind::matched) matched_.push_back(pairing.landmark);
   }
-  gaussian_.attend(matched_);
+  gaussian_.make_near(matched_);
 }
 
-void JointBelief::give_birth(Scan scan) {
+void JointBelief::initialise_landmarks(Scan scan) {
   for (std::size_t k = 0; k < scan.size(); ++k) {
     if (association_.pairings()[k].kind != PairingKind::fresh) continue;
     association_.add(scan[k]);
-    gaussian_.append(sight_of(scan[k]));
+    gaussian_.append(observation_of(scan[k]));
   }
 }
 
@@ -83,15 +83,15 @@ JointEstimate JointBelief::joint(std::size_t landmarks) const {
       places.push_back(3 + row_of(k) + coordinate);
     }
   }
-  const JointEstimate by_birth = gaussian_.joint();
+  const JointEstimate by_order = gaussian_.joint();
   const Eigen::Index size = 3 + row_of(landmarks);
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   JointEstimate joint{Eigen::VectorXd::Constant(size, unknown),
                       Eigen::MatrixXd::Constant(size, size, unknown)};
   for (std::size_t a = 0; a < rows.size(); ++a) {
-    joint.mean(places[a]) = by_birth.mean(rows[a]);
+    joint.mean(places[a]) = by_order.mean(rows[a]);
     for (std::size_t b = 0; b < rows.size(); ++b) {
-      joint.covariance(places[a], places[b]) = by_birth.covariance(rows[a], rows[b]);
+      joint.covariance(places[a], places[b]) = by_order.covariance(rows[a], rows[b]);
     }
   }
   return joint;
@@ -106,14 +106,14 @@ void JointBelief::pair_nearest(Scan scan) {
   const AssociationSettings& settings = association_.settings();
   const double sigmas = std::sqrt(std::max(settings.gate, settings.new_gate));
   const auto drift = gaussian_.drift();
-  ExpectedSight expected;
+  ExpectedObservation expected;
   for (std::uint32_t slot = 0; slot < gaussian_.landmarks(); ++slot) {
     if (gaussian_.is_out_of_reach(slot, drift, range, sigmas)) continue;
     if (!look_at(slot, expected)) continue;
     const double log_det = expected.factor.log_det();
     for (std::size_t k = 0; k < scan.size(); ++k) {
       const double distance =
-          expected.factor.whiten(expected.innovation(sight_of(scan[k]))).squaredNorm();
+          expected.factor.whiten(expected.innovation(observation_of(scan[k]))).squaredNorm();
       searches_[k].offer(slot, distance, distance + log_det, settings.gate);
     }
   }
@@ -121,7 +121,7 @@ void JointBelief::pair_nearest(Scan scan) {
 }
 
 /// False where the landmark gives nothing to weigh by; a fault is counted.
-bool JointBelief::look_at(std::size_t slot, ExpectedSight& expected) {
+bool JointBelief::look_at(std::size_t slot, ExpectedObservation& expected) {
   const auto trouble = gaussian_.look_at(slot, expected);
   if (trouble == CompressedGaussian::Trouble::faulty) ++outcome_.faults;
   return trouble == CompressedGaussian::Trouble::none;
@@ -131,13 +131,13 @@ bool JointBelief::look_at(std::size_t slot, ExpectedSight& expected) {
 /// last linearisation, with which the density of the detection is that of Laplace.
 void JointBelief::absorb(std::size_t k, const Detection& detection) {
   const std::size_t slot = association_.pairings()[k].landmark;
-  const RangeBearing<double> detected = sight_of(detection);
-  ExpectedSight expected;
+  const RangeBearing<double> detected = observation_of(detection);
+  ExpectedObservation expected;
   if (!look_at(slot, expected)) {
     outcome_.log_likelihood += association_.unmatched_log_density();
     return;
   }
-  sightings_.push_back({k, expected.innovation(detected), expected.factor.covariance()});
+  absorbed_detections_.push_back({k, expected.innovation(detected), expected.factor.covariance()});
   const auto trouble = gaussian_.absorb(slot, detected, iterations_, expected);
   if (trouble == CompressedGaussian::Trouble::faulty) ++outcome_.faults;
   const InnovationFactor& L = expected.factor;
@@ -145,4 +145,4 @@ void JointBelief::absorb(std::size_t k, const Detection& detection) {
   outcome_.log_likelihood += log_normal_density(distance, L);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

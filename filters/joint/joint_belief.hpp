@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// One belief about the whole world: a joint Gaussian over pose and map, and what its detections
 /// are taken for. Detections are absorbed one by one in the order of the scan.
@@ -24,13 +24,13 @@ class JointBelief {
   void absorb(const MotionIncrement& motion, Scan scan);
   /// Adds the landmarks that this scan, just absorbed, shows for the first time. Throws RunError
   /// where the map has run away.
-  void give_birth(Scan scan);
+  void initialise_landmarks(Scan scan);
   void draw_heading(double keep, double normal) { gaussian_.draw_heading(keep, normal); }
   /// Becomes a copy of `other`, which was made of the same setup.
   void become(const JointBelief& other);
 
   const CompressedGaussian& gaussian() const { return gaussian_; }
-  /// The k-th landmark: of identity k with known association, else of the k-th birth.
+  /// The k-th landmark: of identity k with known association, else the k-th initialised.
   std::optional<LandmarkEstimate> landmark(std::size_t k) const;
   /// Of the pose and the first `landmarks` of these; NaN where the map has none.
   JointEstimate joint(std::size_t landmarks) const;
@@ -43,17 +43,17 @@ class JointBelief {
   const Outcome& outcome() const { return outcome_; }
   const MapAssociation& association() const { return association_; }
   /// A detection that was absorbed.
-  struct Sighting {
+  struct AbsorbedDetection {
     std::size_t detection;  ///< its place in the scan
     Eigen::Vector2d innovation;
     Eigen::Matrix2d covariance;  ///< S = H P H' + R
   };
-  std::span<const Sighting> sightings() const { return sightings_; }
+  std::span<const AbsorbedDetection> absorbed_detections() const { return absorbed_detections_; }
 
  private:
   void pair_nearest(Scan scan);
-  void attend();
-  bool look_at(std::size_t slot, ExpectedSight& expected);
+  void select_matched();
+  bool look_at(std::size_t slot, ExpectedObservation& expected);
   void absorb(std::size_t k, const Detection& detection);
 
   MapAssociation association_;
@@ -61,8 +61,8 @@ class JointBelief {
   int iterations_;
   std::vector<NearestSearch> searches_;  ///< scratch
   std::vector<std::uint32_t> matched_;   ///< scratch: slots that the current scan shows
-  std::vector<Sighting> sightings_;
+  std::vector<AbsorbedDetection> absorbed_detections_;
   Outcome outcome_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -4,7 +4,7 @@
 #include "filters/joint/gaussian_bank.hpp"
 #include "filters/setup/filter_options.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 // In the order of the enumerators.
@@ -108,4 +108,4 @@ FilterKind hrb_kind() {
           .make = make_hrb};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

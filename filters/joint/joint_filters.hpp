@@ -6,7 +6,7 @@
 
 #include <memory>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// EKF-SLAM: one Gaussian over the pose and all landmarks (EQUATIONS 15), detections
 /// absorbed one by one in the order of the scan.
@@ -25,4 +25,4 @@ FilterKind ekf_slam_kind();
 FilterKind riekf_slam_kind();
 FilterKind hrb_kind();
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
-Eigen::Matrix2d sight_noise(const Belief& belief) {
+Eigen::Matrix2d observation_noise(const Belief& belief) {
   return Eigen::Vector2d(belief.sigma_range * belief.sigma_range,
                          belief.sigma_bearing * belief.sigma_bearing)
       .asDiagonal();
@@ -87,22 +87,22 @@ PointMoments JointGaussian::point(std::size_t slot) const {
           map_.covariance.block<2, 2>(at, at)};
 }
 
-std::optional<InnovationFactor> JointGaussian::innovation_factor(const PointMoments& landmark,
-                                                                 const ExpectedSight& at) const {
+std::optional<InnovationFactor> JointGaussian::innovation_factor(
+    const PointMoments& landmark, const ExpectedObservation& at) const {
   const Matrix23& Hx = at.pose_jacobian;
   const Eigen::Matrix2d& Hf = at.landmark_jacobian;
   const Eigen::Matrix2d mixed = Hf * landmark.cross * Hx.transpose();
   return factor(Hx * pose_.covariance * Hx.transpose() + mixed + mixed.transpose() +
-                Hf * landmark.covariance * Hf.transpose() + sight_noise(belief_));
+                Hf * landmark.covariance * Hf.transpose() + observation_noise(belief_));
 }
 
 JointGaussian::Trouble JointGaussian::look_at(const PointMoments& landmark,
-                                              ExpectedSight& expected) const {
-  const auto at = linearised_sight(pose_.mean, Point{landmark.mean.x(), landmark.mean.y()});
-  if (too_near(at.sight)) return Trouble::too_near;
+                                              ExpectedObservation& expected) const {
+  const auto at = linearised_observation(pose_.mean, Point{landmark.mean.x(), landmark.mean.y()});
+  if (too_near(at.observation)) return Trouble::too_near;
   expected = {.pose_jacobian = pose_jacobian(at),
               .landmark_jacobian = landmark_jacobian(at),
-              .sight = at.sight,
+              .observation = at.observation,
               .factor = {},
               .ahead = Eigen::Vector2d::Zero()};
   const auto L = innovation_factor(landmark, expected);
@@ -111,22 +111,22 @@ JointGaussian::Trouble JointGaussian::look_at(const PointMoments& landmark,
   return Trouble::none;
 }
 
-void JointGaussian::append(const RangeBearing<double>& sight) {
+void JointGaussian::append(const RangeBearing<double>& observation) {
   if (packed(n_landmarks_ + 1) > map_.room()) grow(std::max<std::size_t>(8, 2 * n_landmarks_));
-  const auto placed = linearised_place(pose_.mean, sight);
+  const auto placed = linearised_place(pose_.mean, observation);
   const Matrix23 Gx = pose_jacobian(placed);
-  const Eigen::Matrix2d Gz = sight_jacobian(placed);
+  const Eigen::Matrix2d Gz = observation_jacobian(placed);
   const Eigen::Index row = row_of(n_landmarks_);
   map_.mean.segment<2>(row) = to_vector(placed.point);
   map_.covariance.block(row, 0, 2, row).noalias() =
       Gx.lazyProduct(map_.cross.topRows(row).transpose());
   mirror_pack(map_.covariance, row);
   map_.cross.middleRows<2>(row) = Gx * pose_.covariance;
-  Eigen::Matrix2d birth =
-      Gx * pose_.covariance * Gx.transpose() + Gz * sight_noise(belief_) * Gz.transpose();
-  birth(0, 1) = birth(1, 0);
-  map_.covariance.block<2, 2>(row, row) = birth;
+  Eigen::Matrix2d covariance =
+      Gx * pose_.covariance * Gx.transpose() + Gz * observation_noise(belief_) * Gz.transpose();
+  covariance(0, 1) = covariance(1, 0);
+  map_.covariance.block<2, 2>(row, row) = covariance;
   ++n_landmarks_;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -14,21 +14,21 @@
 #include <cstddef>
 #include <optional>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// A detection that is expected of a landmark, linearised: innovation v and its covariance S = H P
 /// H' + R.
-struct ExpectedSight {
+struct ExpectedObservation {
   Matrix23 pose_jacobian;
   Eigen::Matrix2d landmark_jacobian;
-  RangeBearing<double> sight;  ///< at the point of linearisation
-  InnovationFactor factor;     ///< of S
+  RangeBearing<double> observation;  ///< at the point of linearisation
+  InnovationFactor factor;           ///< of S
   /// H times the step from the estimate to the point of linearisation; not wrapped
   Eigen::Vector2d ahead = Eigen::Vector2d::Zero();
 
   /// v, with the bearing by the shorter way at the point of linearisation.
   Eigen::Vector2d innovation(const RangeBearing<double>& detected) const {
-    return to_vector(residual(detected, sight)) + ahead;
+    return to_vector(residual(detected, observation)) + ahead;
   }
 };
 
@@ -69,8 +69,8 @@ class JointGaussian {
 
   /// What a detection of landmark `slot` is weighed by; `faulty` where S is not positive definite.
   enum class Trouble { none, too_near, faulty };
-  [[nodiscard]] Trouble look_at(const PointMoments& landmark, ExpectedSight& expected) const;
-  [[nodiscard]] Trouble look_at(std::size_t slot, ExpectedSight& expected) const {
+  [[nodiscard]] Trouble look_at(const PointMoments& landmark, ExpectedObservation& expected) const;
+  [[nodiscard]] Trouble look_at(std::size_t slot, ExpectedObservation& expected) const {
     return look_at(point(slot), expected);
   }
   /// Conditions the Gaussian on `detected`, expected as `expected`. The model is linearised
@@ -79,7 +79,7 @@ class JointGaussian {
   /// exponential taken for one); `expected` becomes the last linearisation.
   /// Tells what ended the iterations too early, if anything: then the one before stands.
   Trouble absorb(std::size_t slot, const RangeBearing<double>& detected, int iterations,
-                 ExpectedSight& expected);
+                 ExpectedObservation& expected);
   /// Draws the heading's part of all that is uncertain (EQUATIONS 16): N(m, P) is the mean over
   /// standard normal z of N(m + g z, P - g g'), exactly for the additive error and to first order
   /// in the turn for the invariant one, with g = P e sqrt(1 - keep^2) / sqrt(h), e the heading's
@@ -87,7 +87,7 @@ class JointGaussian {
   /// that remains; 0 keeps nothing.
   void draw_heading(double keep, double normal);
   /// Adds a landmark seen so, correlated with everything the pose is correlated with.
-  void append(const RangeBearing<double>& sight);
+  void append(const RangeBearing<double>& observation);
 
  private:
   using Columns2 = Eigen::Matrix<double, Eigen::Dynamic, 2>;
@@ -102,12 +102,12 @@ class JointGaussian {
   Eigen::Index rows() const;
   void grow(std::size_t room);
   std::optional<InnovationFactor> innovation_factor(const PointMoments& landmark,
-                                                    const ExpectedSight& at) const;
-  Step step_of(std::size_t slot, const ExpectedSight& expected,
+                                                    const ExpectedObservation& at) const;
+  Step step_of(std::size_t slot, const ExpectedObservation& expected,
                const Eigen::Vector2d& innovation) const;
   [[nodiscard]] Trouble linearise_after(const Step& step, std::size_t slot,
-                                        ExpectedSight& expected) const;
-  void whiten_gain(std::size_t slot, const ExpectedSight& expected);
+                                        ExpectedObservation& expected) const;
+  void whiten_gain(std::size_t slot, const ExpectedObservation& expected);
   void condition(const Eigen::Vector2d& white);
   Eigen::Vector2d step(const Eigen::Vector2d& white);
   bool carry_error(const Eigen::Vector2d& pose_step);
@@ -124,4 +124,4 @@ class JointGaussian {
   Eigen::Matrix2Xd map_step_;  ///< [m] how one detection moves the landmarks
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 // Rows of a map's covariance are stored in packs of eight, and those behind the last landmark are
 // zero. Of the symmetric matrix are kept, column by column, the pack on the diagonal and all below.
@@ -109,4 +109,4 @@ struct PointMoments {
   Eigen::Matrix2d covariance;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

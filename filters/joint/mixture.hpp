@@ -8,7 +8,7 @@
 
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// From one component's mean to another's.
 inline Eigen::VectorXd way_to(const JointEstimate& to, const JointEstimate& from) {
@@ -70,4 +70,4 @@ class Mixture {
   Matrix change_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -14,7 +14,7 @@
 /// Products of matrices with many rows. Eigen is built without its own vectorisation, since the
 /// order of its sums and what it fuses depend on the width of a register; these have one order on
 /// every processor and use all of it.
-namespace montecarta {
+namespace montecarta::filters {
 
 using ConstMatrix = Eigen::Ref<const Eigen::MatrixXd>;
 using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
@@ -112,4 +112,4 @@ inline void add_product(const ConstMatrix& A, const ConstMatrix& B, Part part,
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

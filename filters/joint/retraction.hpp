@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// How a Kalman step moves the estimate, and so what its covariance is the covariance of.
 enum class Retraction {
@@ -35,4 +35,4 @@ inline void apply(const Eigen::Matrix2d& A, Eigen::Ref<Eigen::Matrix2Xd> vectors
   for (auto vector : vectors.colwise()) vector = (A * vector).eval();
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -8,7 +8,7 @@
 #include <limits>
 #include <span>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Whether headings are so near each other that their differences cannot wrap.
 enum class Headings { near, anywhere };
@@ -104,4 +104,4 @@ std::array<Real, N> direct_log_sums(const BasicPose<Real>& target, const PoseKer
   return logs_of(sums, relative, mixture);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

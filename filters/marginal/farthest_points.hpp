@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Clusters by farthest points (Gonzalez 1985), at most twice as wide as the narrowest there are:
 /// every new centre is the point farthest from those before it.
@@ -69,4 +69,4 @@ class FarthestPoints {
   std::vector<double> distances_;  ///< squared, to the nearest centre
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Calls visit(dimension, parent) for every monomial of degree 1 to `order` - 1 in D variables:
 /// monomial number t (from 1, in the order of the calls) is monomial `parent` times one of the
@@ -175,4 +175,4 @@ class GaussTransform {
   std::vector<Charges> coefficients_;   ///< {centre, monomial}
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

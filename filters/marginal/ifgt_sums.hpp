@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Mixtures summed by the improved fast Gauss transform (Havangi, appendix; EQUATIONS 13). It takes
 /// one covariance for all kernels, that of the kernel at the mean heading: exact only if all
@@ -83,4 +83,4 @@ class IfgtSums {
   GaussTransform<3, N> transform_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

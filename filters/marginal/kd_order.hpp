@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 using Point3 = std::array<double, 3>;
 
@@ -53,4 +53,4 @@ inline void kd_order(std::span<const Point3> points, std::size_t leaf,
   split_in_kd_order(points, order, leaf);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

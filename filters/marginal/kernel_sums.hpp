@@ -17,7 +17,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// log Sum_j weights_n[j] N(target; gaussian_j) for blocks of targets and every n (EQUATIONS 13),
 /// by the method asked for.
@@ -162,4 +162,4 @@ class KernelRatios {
   std::vector<std::array<Real, 1>> log_numerators_, log_denominators_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

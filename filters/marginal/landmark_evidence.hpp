@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Gauss-Newton's equations for the place of a landmark: information times step = gradient.
 struct NormalEquations {
@@ -63,14 +63,14 @@ class LandmarkEvidence {
     Direction<Real> along;  ///< where the detection points
   };
   /// A place seen from a pose: the innovation, and the way to the place.
-  struct Sight {
+  struct VisibleLandmark {
     Real dx, dy, squared_range, range;
     Real range_error, bearing_error;  ///< detected minus predicted
   };
 
-  [[gnu::always_inline]] Sight sight(std::size_t b, const Point& place) const {
+  [[gnu::always_inline]] VisibleLandmark observation(std::size_t b, const Point& place) const {
     const Ray& ray = rays_[b];
-    Sight s;
+    VisibleLandmark s;
     s.dx = Real(place.x) - ray.from.x;
     s.dy = Real(place.y) - ray.from.y;
     s.squared_range = fma(s.dx, s.dx, s.dy * s.dy);
@@ -82,7 +82,7 @@ class LandmarkEvidence {
     s.bearing_error = atan2(across, along);
     return s;
   }
-  [[gnu::always_inline]] Real squared(const Sight& s) const {
+  [[gnu::always_inline]] Real squared(const VisibleLandmark& s) const {
     return fma(s.range_error * s.range_error, Real(per_range_noise_),
                s.bearing_error * s.bearing_error * Real(per_bearing_noise_));
   }
@@ -99,7 +99,7 @@ class LandmarkEvidence {
   double mean_square(const Point& place) const {
     Real sum(0.0);
     for (std::size_t b = 0; b < rays_.size(); ++b)
-      sum = fma(share(b), squared(sight(b, place)), sum);
+      sum = fma(share(b), squared(observation(b, place)), sum);
     return sum_of_lanes(sum);
   }
 
@@ -107,7 +107,7 @@ class LandmarkEvidence {
   double minus_two_log_likelihood(const Point& place) {
     Real peaks(-std::numeric_limits<double>::max());
     for (std::size_t b = 0; b < rays_.size(); ++b) {
-      terms_[b] = weights_->log(b) - Real(0.5) * squared(sight(b, place));
+      terms_[b] = weights_->log(b) - Real(0.5) * squared(observation(b, place));
       peaks = max(peaks, terms_[b]);
     }
     double peak = get(peaks, 0);
@@ -124,7 +124,7 @@ class LandmarkEvidence {
     std::array<Real, 5> S;
     S.fill(Real(0.0));
     for (std::size_t b = 0; b < rays_.size(); ++b) {
-      const Sight s = sight(b, place);
+      const VisibleLandmark s = observation(b, place);
       const auto near = s.range < Real(kLeastDistance);  // no bearing has a derivative there
       const Real per_square = select(near, Real(0.0), Real(1.0) / s.squared_range);
       const Real per_range = s.range * per_square;
@@ -151,4 +151,4 @@ class LandmarkEvidence {
   double log_sum_ = 0.0;     ///< of the terms
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

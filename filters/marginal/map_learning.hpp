@@ -13,9 +13,9 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
-/// How landmarks of the shared map are born, and how they learn from a scan (EQUATIONS 14).
+/// How landmarks of the shared map are initialised, and how they learn from a scan (EQUATIONS 14).
 template <class Real>
 class MapLearning {
  public:
@@ -24,8 +24,8 @@ class MapLearning {
 
   /// A landmark seen for the first time: the mean of where the particles place it, as sure as one
   /// detection is.
-  SharedLandmark born(const std::vector<BasicPose<Real>>& poses, const Weights<Real>& weights,
-                      const RangeBearing<double>& seen) const {
+  SharedLandmark initialised(const std::vector<BasicPose<Real>>& poses,
+                             const Weights<Real>& weights, const RangeBearing<double>& seen) const {
     const auto mean = weighted_sums<Real, 2>(weights, [&](std::size_t b) {
       const BasicPoint<Real> place =
           linearised_place(poses[b], {Real(seen.range), Real(seen.bearing)}).point;
@@ -132,4 +132,4 @@ class MapLearning {
   EvolutionScratch<double, 2> scratch_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/marginal/marginal_filter.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 
 FilterKind marginal_kind() {
   return {.name = "marginal",
@@ -21,4 +21,4 @@ FilterKind ampf_de_kind() {
           .make = make_marginal<Lanes, Choice::by_likelihood>};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

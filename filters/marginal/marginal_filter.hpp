@@ -16,7 +16,7 @@
 #include <optional>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Marginal and auxiliary marginal particle filter with one map for all particles (EQUATIONS 12,
 /// 14; Havangi). `Real`: double or Lanes.
@@ -56,7 +56,7 @@ class MarginalFilter final : public SlamFilter {
     associate(scan);
     population_.begin_scan();
     population_.report().association = association_.counts();
-    if (!association_.found_nothing()) learn(context);  // else the kernels go on growing
+    if (!association_.matched_nothing()) learn(context);  // else the kernels go on growing
     population_.report().map_size = static_cast<double>(map_.size());
   }
 
@@ -143,7 +143,7 @@ class MarginalFilter final : public SlamFilter {
                       map_[match.landmark]);
     for (const Detection& fresh : association_.fresh()) {
       association_.add(fresh);
-      map_.push_back(learning_.born(poses_, weights(), sight_of(fresh)));
+      map_.push_back(learning_.initialised(poses_, weights(), observation_of(fresh)));
     }
   }
 
@@ -219,4 +219,4 @@ std::unique_ptr<SlamFilter> make_marginal(const FilterSetup& setup) {
 FilterKind marginal_kind();
 FilterKind ampf_de_kind();
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

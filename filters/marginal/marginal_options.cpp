@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -75,4 +75,4 @@ MarginalSettings marginal_settings(const FilterOptions& options, Choice choice) 
           .map = map_settings(options)};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// From what the kernels are chosen that are drawn from (EQUATIONS (12.2)).
 enum class Choice {
@@ -58,4 +58,4 @@ struct MarginalSettings {
 std::vector<Option> marginal_options(MapSolver solver);
 MarginalSettings marginal_settings(const FilterOptions& options, Choice choice);
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

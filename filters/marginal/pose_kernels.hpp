@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// One Gaussian of a mixture over poses, ready to be evaluated anywhere: its mean, and the factor W
 /// with W' W = C^-1 / 2, so that N(s; m, C) is proportional to exp(-|W (s - m)|^2). Every kernel
@@ -93,4 +93,4 @@ class PoseKernels {
   double half_range_ = 0.0;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

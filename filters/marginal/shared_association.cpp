@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 void SharedAssociation::associate(Scan scan) {
   association_.pair_by_identity(scan);
@@ -18,10 +18,10 @@ void SharedAssociation::associate(Scan scan, const SharedMap& map, bool map_is_e
   searches_.assign(scan.size(), {});
   for (std::size_t k = 0; k < scan.size(); ++k) {
     for (std::uint32_t slot = 0; slot < map.size(); ++slot) {
-      const auto s = sightline(predicted.mean, map[slot].mean);
+      const auto s = line_of_sight(predicted.mean, map[slot].mean);
       if (!is_usable(s)) continue;
       const auto covariance = map_is_exact ? Symmetric2<double>{} : map[slot].covariance();
-      const auto v = innovation_of(P, s, residual(sight_of(scan[k]), s), covariance, noise_);
+      const auto v = innovation_of(P, s, residual(observation_of(scan[k]), s), covariance, noise_);
       const double distance = v.squared();
       searches_[k].offer(slot, distance, distance + std::log(v.S.determinant()),
                          association_.settings().gate);
@@ -40,8 +40,8 @@ void SharedAssociation::sort_out(Scan scan) {
     unmatched_ += pairing.kind != PairingKind::matched;
     if (pairing.kind == PairingKind::fresh) fresh_.push_back(scan[k]);
     if (pairing.kind == PairingKind::matched)
-      matches_.push_back({pairing.landmark, sight_of(scan[k])});
+      matches_.push_back({pairing.landmark, observation_of(scan[k])});
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

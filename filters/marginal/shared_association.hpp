@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// A detection and the landmark that it is.
 struct SharedMatch {
@@ -31,7 +31,7 @@ class SharedAssociation {
   /// By nearness. `map_is_exact`: the innovation knows no covariance of the map.
   void associate(Scan scan, const SharedMap& map, bool map_is_exact, const PoseMoments& predicted);
 
-  bool found_nothing() const { return matches_.empty() && fresh_.empty(); }
+  bool matched_nothing() const { return matches_.empty() && fresh_.empty(); }
   const std::vector<SharedMatch>& matches() const { return matches_; }
   /// Detections of landmarks not seen before.
   const std::vector<Detection>& fresh() const { return fresh_; }
@@ -56,4 +56,4 @@ class SharedAssociation {
   std::vector<NearestSearch> searches_;  ///< scratch
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// How well poses explain the matched detections of a scan, the map being the same for all.
 template <class Real>
@@ -38,7 +38,7 @@ class SharedLikelihood {
     Evidence<Real> evidence;
     for (const Seen& seen : seen_) {
       LandmarkGaussian<Real> landmark = seen.landmark;
-      update_landmark(landmark, pose, seen.sight, noise_, Everywhere(), evidence);
+      update_landmark(landmark, pose, seen.observation, noise_, Everywhere(), evidence);
     }
     return {evidence.log_density(), evidence.left_out()};
   }
@@ -47,9 +47,9 @@ class SharedLikelihood {
   /// log p(z | mean of the kernel) (Havangi eq. 16).
   Weighing<Real> at_mean(const PoseGaussian<Real>& kernel, const Innovations& innovations) const {
     for (std::size_t k = 0; k < seen_.size(); ++k) {
-      const Sightline<Real> s = sightline(kernel.mean, seen_[k].landmark.mean);
+      const LineOfSight<Real> s = line_of_sight(kernel.mean, seen_[k].landmark.mean);
       innovations.add(k,
-                      innovation_of(kernel.covariance, s, residual(seen_[k].sight, s),
+                      innovation_of(kernel.covariance, s, residual(seen_[k].observation, s),
                                     seen_[k].landmark.covariance, noise_),
                       Everywhere());
     }
@@ -60,9 +60,10 @@ class SharedLikelihood {
   Weighing<Real> refine(PoseGaussian<Real>& kernel, const Innovations& innovations) const {
     Evidence<Real> evidence;
     for (std::size_t k = 0; k < seen_.size(); ++k) {
-      innovations.add(
-          k, refine_pose(kernel, seen_[k].landmark, seen_[k].sight, noise_, Everywhere(), evidence),
-          Everywhere());
+      innovations.add(k,
+                      refine_pose(kernel, seen_[k].landmark, seen_[k].observation, noise_,
+                                  Everywhere(), evidence),
+                      Everywhere());
     }
     return {evidence.log_density(), evidence.left_out()};
   }
@@ -70,11 +71,11 @@ class SharedLikelihood {
  private:
   struct Seen {
     LandmarkGaussian<Real> landmark;
-    RangeBearing<Real> sight;
+    RangeBearing<Real> observation;
   };
   SensorNoise noise_;
   MapMode mode_;
   std::vector<Seen> seen_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Solves A v = b for a symmetric positive definite A.
 inline Point solve(const Symmetric2<double>& A, const Point& b) {
@@ -29,7 +29,7 @@ struct SharedLandmark {
   }
 };
 
-/// All landmarks, in the order of birth.
+/// All landmarks, in the order of initialisation.
 using SharedMap = std::vector<SharedLandmark>;
 
 /// As the engine stores it.
@@ -38,4 +38,4 @@ inline LandmarkEstimate estimate_of(const SharedLandmark& landmark) {
   return {{landmark.mean.x, landmark.mean.y}, Eigen::Matrix2d{{P.xx, P.xy}, {P.xy, P.yy}}};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Kernels in kd order, cut into leaves, and for each leaf what it can contribute at most: sums
 /// over near leaves only, with a relative error that is guaranteed for every target and sum.
@@ -161,4 +161,4 @@ class KernelTree {
   std::vector<Leaf> leaves_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

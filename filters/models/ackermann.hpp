@@ -7,7 +7,7 @@
 #include "filters/models/point.hpp"
 #include "filters/models/vehicle.hpp"
 
-namespace montecarta {
+namespace montecarta::models {
 
 /// Derivatives of one step (EQUATIONS 1): only the elements that are not 0 or 1.
 /// Fx = [1 0 x_heading; 0 1 y_heading; 0 0 1], Fu = [x_speed x_steer; y_speed y_steer;
@@ -89,4 +89,4 @@ LinearisedMove<Real> linearised_move(const BasicPose<Real>& pose, const Control&
                          direction_of(control.steer), duration, vehicle);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::models

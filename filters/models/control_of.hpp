@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::models {
 
 /// The control that takes a vehicle through `step` in `duration` [s]: body_step() turned round. A
 /// vehicle that did not move has an unknown steering angle: 0.
@@ -23,4 +23,4 @@ inline Control control_of(const BodyStep<double>& step, double duration, const V
   return {of_axle * slower / duration, std::atan(tangent)};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::models

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-namespace montecarta {
+namespace montecarta::models {
 
 /// The models' derivatives as the matrices of EQUATIONS 1 and 2, for code that is not per particle.
 using Matrix32 = Eigen::Matrix<double, 3, 2>;
@@ -27,14 +27,14 @@ inline Matrix32 control_jacobian(const MotionJacobians<double>& j) {
 }
 
 /// Hx: (range, bearing) by pose.
-inline Matrix23 pose_jacobian(const LinearisedSight<double>& s) {
+inline Matrix23 pose_jacobian(const LinearisedObservation<double>& s) {
   Matrix23 H;
   H << -s.range_x, -s.range_y, 0.0, -s.bearing_x, -s.bearing_y, -1.0;
   return H;
 }
 
 /// Hf: (range, bearing) by landmark.
-inline Eigen::Matrix2d landmark_jacobian(const LinearisedSight<double>& s) {
+inline Eigen::Matrix2d landmark_jacobian(const LinearisedObservation<double>& s) {
   Eigen::Matrix2d H;
   H << s.range_x, s.range_y, s.bearing_x, s.bearing_y;
   return H;
@@ -48,15 +48,15 @@ inline Matrix23 pose_jacobian(const LinearisedPlace<double>& p) {
 }
 
 /// Gz: landmark by (range, bearing).
-inline Eigen::Matrix2d sight_jacobian(const LinearisedPlace<double>& p) {
+inline Eigen::Matrix2d observation_jacobian(const LinearisedPlace<double>& p) {
   Eigen::Matrix2d G;
   G << p.x_range, p.x_bearing, p.y_range, p.y_bearing;
   return G;
 }
 
-inline Eigen::Vector2d to_vector(const RangeBearing<double>& sight) {
-  return {sight.range, sight.bearing};
+inline Eigen::Vector2d to_vector(const RangeBearing<double>& observation) {
+  return {observation.range, observation.bearing};
 }
 inline Eigen::Vector2d to_vector(const Point& point) { return {point.x, point.y}; }
 
-}  // namespace montecarta
+}  // namespace montecarta::models

@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <span>
 
-namespace montecarta {
+namespace montecarta::models {
 
 /// A landmark in view and where it stands from the sensor.
 struct InView {
@@ -55,4 +55,4 @@ class FieldOfView {
   double cos_half_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::models

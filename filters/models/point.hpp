@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-namespace montecarta {
+#include "engine/namespaces.hpp"
+
+namespace montecarta::models {
 
 /// A place in the map frame; `Real` is double or Lanes.
 template <class Real>
@@ -18,4 +20,4 @@ struct BasicPoint {
 };
 using Point = BasicPoint<double>;
 
-}  // namespace montecarta
+}  // namespace montecarta::models

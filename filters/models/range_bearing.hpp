@@ -8,9 +8,9 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::models {
 
-/// A landmark seen from a pose, or the difference of two such sights.
+/// A landmark seen from a pose, or the difference of two such observations.
 template <class Real>
 struct RangeBearing {
   Real range{};    ///< [m]
@@ -20,8 +20,8 @@ struct RangeBearing {
 /// What the sensor should see, with derivatives (EQUATIONS 2). Hf = [range_x range_y; bearing_x
 /// bearing_y] by the landmark; Hx = [-Hf, (0, -1)'] by the pose.
 template <class Real>
-struct LinearisedSight {
-  RangeBearing<Real> sight;
+struct LinearisedObservation {
+  RangeBearing<Real> observation;
   Real range_x;    ///< [1]
   Real range_y;    ///< [1]
   Real bearing_x;  ///< [rad/m]
@@ -43,9 +43,10 @@ struct LinearisedPlace {
 /// (EQUATIONS 2).
 inline constexpr double kLeastDistance = 1e-6;
 
-/// h(x, f): the sight of `landmark` from `pose`.
+/// h(x, f): the observation of `landmark` from `pose`.
 template <class Real>
-RangeBearing<Real> predicted_sight(const BasicPose<Real>& pose, const BasicPoint<Real>& landmark) {
+RangeBearing<Real> predicted_observation(const BasicPose<Real>& pose,
+                                         const BasicPoint<Real>& landmark) {
   using std::atan2;
   using std::sqrt;
   const Real dx = landmark.x - pose.x;
@@ -55,13 +56,13 @@ RangeBearing<Real> predicted_sight(const BasicPose<Real>& pose, const BasicPoint
 
 /// h(x, f) with its derivatives; they mean nothing where too_near().
 template <class Real>
-LinearisedSight<Real> linearised_sight(const BasicPose<Real>& pose,
-                                       const BasicPoint<Real>& landmark) {
-  const RangeBearing<Real> sight = predicted_sight(pose, landmark);
-  const Real per_range = Real(1.0) / sight.range;
+LinearisedObservation<Real> linearised_observation(const BasicPose<Real>& pose,
+                                                   const BasicPoint<Real>& landmark) {
+  const RangeBearing<Real> observation = predicted_observation(pose, landmark);
+  const Real per_range = Real(1.0) / observation.range;
   const Real ux = (landmark.x - pose.x) * per_range;
   const Real uy = (landmark.y - pose.y) * per_range;
-  return {sight, ux, uy, -(uy * per_range), ux * per_range};
+  return {observation, ux, uy, -(uy * per_range), ux * per_range};
 }
 
 /// Whether (per lane) a landmark is too near for the derivatives.
@@ -79,18 +80,18 @@ RangeBearing<Real> residual(const RangeBearing<Real>& detected,
 
 /// The measured part of a detection, the same in all lanes.
 template <class Real = double>
-RangeBearing<Real> sight_of(const Detection& detection) {
+RangeBearing<Real> observation_of(const Detection& detection) {
   return {Real(detection.range), Real(detection.bearing)};
 }
 
 /// g(x, z): where a landmark stands that is seen so from `pose`, with derivatives.
 template <class Real>
 LinearisedPlace<Real> linearised_place(const BasicPose<Real>& pose,
-                                       const RangeBearing<Real>& sight) {
-  const Direction<Real> ray = direction_of(Real(pose.heading + sight.bearing));
-  const Real along_x = sight.range * ray.cosine;
-  const Real along_y = sight.range * ray.sine;
+                                       const RangeBearing<Real>& observation) {
+  const Direction<Real> ray = direction_of(Real(pose.heading + observation.bearing));
+  const Real along_x = observation.range * ray.cosine;
+  const Real along_y = observation.range * ray.sine;
   return {{pose.x + along_x, pose.y + along_y}, ray.cosine, -along_y, ray.sine, along_x};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::models

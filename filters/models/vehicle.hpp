@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::models {
 
 /// A car steered at the front: which of its points the pose is of, and what its controls mean.
 struct Vehicle {
@@ -82,4 +82,4 @@ inline BodyStep<double> steer_derivative(const Vehicle& vehicle, double speed,
   return {of_axle - vehicle.sensor_left * turn, vehicle.sensor_ahead * turn, turn};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::models

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Covariance of a landmark's coordinates with the pose.
 template <class Real>
@@ -189,4 +189,4 @@ class CorrelatedMap {
   std::vector<MapGain<Real>> gains_;                                ///< {landmark, block}
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

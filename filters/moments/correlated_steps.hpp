@@ -7,7 +7,7 @@
 
 // How a CorrelatedMap moves, meets a new landmark, and is given the pose that was drawn.
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// A pose that is itself uncertain, driven on, and what its heading did to its place: x and y
 /// change by `lever` times an error of the heading.
@@ -80,19 +80,19 @@ NewLandmark<Real> new_correlated_landmark(const PoseGaussian<Real>& pose,
 
 /// Makes landmark i of block b the new one; `put(from, to)` writes the lanes that are meant.
 template <class Real, class Put>
-void place(CorrelatedMap<Real>& maps, std::size_t b, std::size_t i, const NewLandmark<Real>& born,
-           const Put& put) {
+void place(CorrelatedMap<Real>& maps, std::size_t b, std::size_t i,
+           const NewLandmark<Real>& initialised, const Put& put) {
   for (std::size_t j = 0; j < maps.size(); ++j) {
     if (j == i) continue;
-    const MapCross<Real> c = born.with(maps.pose_cross(j, b));
+    const MapCross<Real> c = initialised.with(maps.pose_cross(j, b));
     if (j < i) {
       put(c, maps.map_cross(i, j, b));
     } else {
       put(MapCross<Real>{c.xx, c.yx, c.xy, c.yy}, maps.map_cross(j, i, b));
     }
   }
-  put(born.landmark, maps.landmark(i, b));
-  put(born.pose_cross, maps.pose_cross(i, b));
+  put(initialised.landmark, maps.landmark(i, b));
+  put(initialised.pose_cross, maps.pose_cross(i, b));
 }
 
 /// What it means for a landmark that the pose it is correlated with turns out to be `drawn`:
@@ -138,4 +138,4 @@ class KnownPose {
   Column3<Real> value_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

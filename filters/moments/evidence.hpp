@@ -3,7 +3,7 @@
 
 #include "engine/numbers/real.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// What a scan does to the weights of one block.
 template <class Real>
@@ -55,4 +55,4 @@ struct Unweighed {
   [[gnu::always_inline]] void add(const Real&, const Real&, const Real&, const Real&) const {}
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -4,7 +4,7 @@
 #include "engine/random/normals.hpp"
 #include "filters/moments/gaussians.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// A pose Gaussian as the image of a standard normal. The factor is that in the frame of the
 /// vehicle, so that a turned world gives a turned draw.
@@ -64,4 +64,4 @@ class PoseDensity {
   Real log_determinant_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

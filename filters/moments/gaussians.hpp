@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Column over (x, y, heading).
 template <class Real>
@@ -119,6 +119,8 @@ template <class Real>
   return {a.x * b.x, a.x * b.y, a.y * b.y, a.x * b.h, a.y * b.h, a.h * b.h};
 }
 
+using engine::select;
+
 /// A in the lanes of `use`, else B.
 template <class Real, class Mask>
 [[gnu::always_inline]] inline Symmetric2<Real> select(const Mask& use, const Symmetric2<Real>& A,
@@ -186,4 +188,4 @@ struct Cholesky3 {
   }
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -5,19 +5,19 @@
 #include "filters/moments/gaussians.hpp"
 #include "filters/moments/sensor_noise.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// A landmark seen from a pose, in the frame of the line of sight: along it and across it.
 template <class Real>
-struct Sightline {
+struct LineOfSight {
   RangeBearing<Real> predicted;  ///< bearing not wrapped: for residual() only
   Real ux, uy;                   ///< unit vector towards the landmark
   Real per_range;                ///< 1 / range [1/m]
 };
 
 template <class Real>
-[[gnu::always_inline]] inline Sightline<Real> sightline(const BasicPose<Real>& pose,
-                                                        const BasicPoint<Real>& landmark) {
+[[gnu::always_inline]] inline LineOfSight<Real> line_of_sight(const BasicPose<Real>& pose,
+                                                              const BasicPoint<Real>& landmark) {
   const Real dx = landmark.x - pose.x;
   const Real dy = landmark.y - pose.y;
   const Real range = max(sqrt(dx * dx + dy * dy), Real(kLeastDistance));
@@ -28,7 +28,7 @@ template <class Real>
 /// detected boxminus predicted: the innovation, bearing by the shorter way.
 template <class Real>
 [[gnu::always_inline]] inline RangeBearing<Real> residual(const RangeBearing<Real>& detected,
-                                                          const Sightline<Real>& s) {
+                                                          const LineOfSight<Real>& s) {
   return {detected.range - s.predicted.range,
           shorter_way(Real(detected.bearing - s.predicted.bearing))};
 }
@@ -41,7 +41,7 @@ struct Turned {
 
 template <class Real>
 [[gnu::always_inline]] inline Turned<Real> turned(const Symmetric2<Real>& P,
-                                                  const Sightline<Real>& s) {
+                                                  const LineOfSight<Real>& s) {
   const Real along_x = P.xx * s.ux + P.xy * s.uy;
   const Real along_y = P.xy * s.ux + P.yy * s.uy;
   const Real across_x = P.xy * s.ux - P.xx * s.uy;
@@ -68,7 +68,7 @@ Real as_number(const Mask& mask) {
 
 /// Nearer than kLeastDistance a bearing has no derivative: the detection is left out (EQUATIONS 2).
 template <class Real>
-[[gnu::always_inline]] inline auto is_usable(const Sightline<Real>& s) {
+[[gnu::always_inline]] inline auto is_usable(const LineOfSight<Real>& s) {
   return s.predicted.range > Real(kLeastDistance);
 }
 
@@ -90,7 +90,7 @@ struct Innovation {
 
 template <class Real>
 [[gnu::always_inline]] inline Innovation<Real> innovation_of(const Symmetric3<Real>& P,
-                                                             const Sightline<Real>& s,
+                                                             const LineOfSight<Real>& s,
                                                              const RangeBearing<Real>& value,
                                                              const Symmetric2<Real>& map_covariance,
                                                              const SensorNoise& noise) {
@@ -153,10 +153,10 @@ template <class Real, class Mask>
 }
 
 /// Absorbs one detection into a pose Gaussian by the extended Kalman filter (EQUATIONS 6), with the
-/// model linearised on the sightline `s`. `matched`: which lanes saw it.
+/// model linearised on the line_of_sight `s`. `matched`: which lanes saw it.
 template <class Real, class Mask>
 [[gnu::always_inline]] inline Innovation<Real> absorb(PoseGaussian<Real>& pose,
-                                                      const Sightline<Real>& s,
+                                                      const LineOfSight<Real>& s,
                                                       const RangeBearing<Real>& value,
                                                       const Symmetric2<Real>& map_covariance,
                                                       const SensorNoise& noise, const Mask& matched,
@@ -177,7 +177,7 @@ template <class Real, class Mask>
                                                            const SensorNoise& noise,
                                                            const Mask& matched,
                                                            Evidence<Real>& evidence) {
-  const Sightline<Real> s = sightline(pose.mean, landmark.mean);
+  const LineOfSight<Real> s = line_of_sight(pose.mean, landmark.mean);
   return absorb(pose, s, residual(seen, s), landmark.covariance, noise, matched, evidence);
 }
 
@@ -189,7 +189,7 @@ template <class Real, class Mask>
     PoseGaussian<Real>& pose, const BasicPose<Real>& predicted,
     const LandmarkGaussian<Real>& landmark, const RangeBearing<Real>& seen,
     const SensorNoise& noise, const Mask& matched, Evidence<Real>& evidence) {
-  const Sightline<Real> s = sightline(predicted, landmark.mean);
+  const LineOfSight<Real> s = line_of_sight(predicted, landmark.mean);
   RangeBearing<Real> innovation = residual(seen, s);
   const Column3<Real> moved{pose.mean.x - predicted.x, pose.mean.y - predicted.y,
                             pose.mean.heading - predicted.heading};
@@ -201,14 +201,14 @@ template <class Real, class Mask>
 /// A way along and across the line of sight, in the map.
 template <class Real>
 [[gnu::always_inline]] inline BasicPoint<Real> in_map(const Real& along, const Real& across,
-                                                      const Sightline<Real>& s) {
+                                                      const LineOfSight<Real>& s) {
   return {s.ux * along - s.uy * across, s.uy * along + s.ux * across};
 }
 
 /// turned() back into the frame of the map.
 template <class Real>
 [[gnu::always_inline]] inline Symmetric2<Real> turned_back(const Turned<Real>& P,
-                                                           const Sightline<Real>& s) {
+                                                           const LineOfSight<Real>& s) {
   const Real along_x = s.ux * P.along - s.uy * P.cross, along_y = s.uy * P.along + s.ux * P.cross;
   const Real across_x = s.ux * P.cross - s.uy * P.across;
   const Real across_y = s.uy * P.cross + s.ux * P.across;
@@ -223,7 +223,7 @@ template <class Real, class Mask, class Weighed>
 [[gnu::always_inline]] inline Innovation<Real> update_landmark(
     LandmarkGaussian<Real>& landmark, const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
     const SensorNoise& noise, const Mask& matched, Weighed& evidence) {
-  const Sightline<Real> s = sightline(pose, landmark.mean);
+  const LineOfSight<Real> s = line_of_sight(pose, landmark.mean);
   const auto use = matched && is_usable(s);
   const Turned<Real> P = turned(landmark.covariance, s);
   const RangeBearing<Real> innovation = residual(seen, s);
@@ -262,4 +262,4 @@ LandmarkGaussian<Real> new_landmark(const BasicPose<Real>& pose, const RangeBear
            place.y_range * place.y_range * range + place.y_bearing * place.y_bearing * bearing}};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -6,9 +6,9 @@
 #include "filters/moments/sigma_landmark.hpp"
 #include "filters/moments/sigma_pose.hpp"
 
-/// The ways to carry a Gaussian through motion and sight. Filters of the family differ in which of
-/// them moves the pose and which keeps the map.
-namespace montecarta {
+/// The ways to carry a Gaussian through motion and observation. Filters of the family differ in
+/// which of them moves the pose and which keeps the map.
+namespace montecarta::filters {
 
 /// The extended Kalman filter (EQUATIONS 3).
 struct Linearised {
@@ -95,4 +95,4 @@ class SigmaPoints {
   Direction<double> ray_;  ///< of a new landmark's outer points, from the line of sight
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

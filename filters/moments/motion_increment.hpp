@@ -7,7 +7,7 @@
 #include "filters/moments/sigma_rule.hpp"
 #include "filters/setup/filter_setup.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// The motion since poses were last drawn, in the frame of the drawn pose. The vehicle does not
 /// know where in the world it is, so this Gaussian is the same for every particle: it is predicted
@@ -68,4 +68,4 @@ MotionIncrement moved_by_sigma_points(const MotionIncrement& before, const Contr
 MotionIncrement moved_by_quadrature(const MotionIncrement& before, const Control& control,
                                     double duration, const Belief& belief);
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

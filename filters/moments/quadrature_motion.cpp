@@ -5,7 +5,7 @@
 #include <cmath>
 #include <span>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 /// Of a standard normal: exact for polynomials of degree 5.
@@ -50,4 +50,4 @@ MotionIncrement moved_by_quadrature(const MotionIncrement& before, const Control
           sheared(before.covariance(), -moved.y, moved.x) + turned(noise, course)};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -3,7 +3,7 @@
 
 #include "filters/setup/filter_setup.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// What a sensor's noise is believed to be: variances of range [m^2] and bearing [rad^2].
 struct SensorNoise {
@@ -15,4 +15,4 @@ struct SensorNoise {
   }
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/moments/sigma_sight.hpp"
+#include "filters/moments/sigma_observation.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// What one pair of points contributes to the covariance by its bend: E E' times this, e e' of the
 /// single pair included.
@@ -20,21 +20,22 @@ struct LandmarkGain {
 /// A landmark seen from an exactly known pose, by the sigma points of its Gaussian, in the frame of
 /// the line of sight.
 template <class Real>
-struct LandmarkSight {
+struct LandmarkObservation {
   AcrossColumn<Real> column;  ///< first column of the square root
   RangeBearing<Real> slope;   ///< its image
   Real rest;                  ///< square of the second column, which lies along the line
   Symmetric2<Real> N;         ///< covariance of what no column of the landmark explains
   Innovation<Real> innovation;
 
-  [[gnu::always_inline]] LandmarkSight(const Symmetric2<Real>& covariance, const Sightline<Real>& s,
-                                       const RangeBearing<Real>& seen, const SensorNoise& noise,
-                                       const SigmaRule& rule) {
+  [[gnu::always_inline]] LandmarkObservation(const Symmetric2<Real>& covariance,
+                                             const LineOfSight<Real>& s,
+                                             const RangeBearing<Real>& seen,
+                                             const SensorNoise& noise, const SigmaRule& rule) {
     const Turned<Real> P = turned(covariance, s);
     column = across_column(P);
     rest = P.along - column.along * column.along;
-    const auto [odd, even] =
-        sight_pair(s.predicted.range, rule.spread * column.along, rule.spread * column.across);
+    const auto [odd, even] = observation_pair(s.predicted.range, rule.spread * column.along,
+                                              rule.spread * column.across);
     const double per_spread = rule.antisymmetric * rule.spread, bend = bend_weight(rule);
     slope = {per_spread * odd.range, per_spread * odd.bearing};
     N = outer(bend, even);
@@ -74,17 +75,17 @@ template <class Real, class Mask, class Weighed>
 [[gnu::always_inline]] inline Innovation<Real> update_landmark_by_sigma_points(
     LandmarkGaussian<Real>& landmark, const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
     const SensorNoise& noise, const Mask& matched, Weighed& evidence, const SigmaRule& rule) {
-  const Sightline<Real> s = sightline(pose, landmark.mean);
+  const LineOfSight<Real> s = line_of_sight(pose, landmark.mean);
   const auto use = matched && is_usable(s);
-  const LandmarkSight<Real> sight(landmark.covariance, s, seen, noise, rule);
-  const Innovation<Real>& v = sight.innovation;
+  const LandmarkObservation<Real> observation(landmark.covariance, s, seen, noise, rule);
+  const Innovation<Real>& v = observation.innovation;
   const Real determinant = v.S.determinant();
   const Real inverse = select(use, 1.0 / determinant, Real(0.0));
-  const LandmarkGain<Real> K = sight.gain(inverse);
+  const LandmarkGain<Real> K = observation.gain(inverse);
   const Real along = K.along_range * v.value.range + K.along_bearing * v.value.bearing;
   const Real across = K.across_range * v.value.range + K.across_bearing * v.value.bearing;
   landmark.mean = landmark.mean + in_map(along, across, s);
-  landmark.covariance = select(use, turned_back(sight.after(K), s), landmark.covariance);
+  landmark.covariance = select(use, turned_back(observation.after(K), s), landmark.covariance);
   evidence.add(v.S.adjugate_form(v.value.range, v.value.bearing) * inverse,
                select(use, determinant, Real(1.0)), as_number<Real>(use), as_number<Real>(matched));
   return v;
@@ -109,4 +110,4 @@ LandmarkGaussian<Real> new_landmark_by_sigma_points(const BasicPose<Real>& pose,
        along * d.sine * d.sine + across * d.cosine * d.cosine}};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 /// Half the difference of two points' images, and how far their middle lies from the centre's.
@@ -77,4 +77,4 @@ MotionIncrement moved_by_sigma_points(const MotionIncrement& before, const Contr
   return {{from.x + step.x + e.x, from.y + step.y + e.y, wrap(from.heading + step.h + e.h)}, P};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/moments/sigma_sight.hpp"
+#include "filters/moments/sigma_observation.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Whether a landmark's own covariance is part of the innovation that moves the pose. Kim 2008 and
 /// Ankishan eq. (16)-(18) print it without; it always is part of the weight (EQUATIONS 7).
@@ -12,22 +12,23 @@ enum class MapUncertainty { on, off };
 /// Column of three given along and across the line of sight, turned into the map.
 template <class Real>
 [[gnu::always_inline]] inline Column3<Real> in_map(const Real& along, const Real& across,
-                                                   const Real& heading, const Sightline<Real>& s) {
+                                                   const Real& heading,
+                                                   const LineOfSight<Real>& s) {
   const BasicPoint<Real> place = in_map(along, across, s);
   return {place.x, place.y, heading};
 }
 
-/// A sight predicted by the sigma points of (pose, landmark).
+/// An observation predicted by the sigma points of (pose, landmark).
 template <class Real>
-struct SigmaSight {
+struct SigmaObservation {
   Innovation<Real> whole;     ///< with the landmark's covariance: what weighs
   Innovation<Real> proposal;  ///< what moves the pose, with the cross-covariances
 };
 
 template <class Real>
-[[gnu::always_inline]] inline SigmaSight<Real> sigma_sight_of(
+[[gnu::always_inline]] inline SigmaObservation<Real> sigma_observation_of(
     const Symmetric3<Real>& covariance, const Symmetric2<Real>& map_covariance,
-    const Sightline<Real>& s, const RangeBearing<Real>& seen, const SensorNoise& noise,
+    const LineOfSight<Real>& s, const RangeBearing<Real>& seen, const SensorNoise& noise,
     const SigmaRule& rule, MapUncertainty map_uncertainty) {
   const Symmetric3<Real> P = turned(covariance, Direction<Real>{s.ux, -s.uy});
   const Turned<Real> map = turned(map_covariance, s);
@@ -35,25 +36,26 @@ template <class Real>
   const Real& range = s.predicted.range;
 
   // The pose moves against the landmark, and its heading against the bearing.
-  SightPair<Real> pair = sight_pair(range, rule.spread * q.along, rule.spread * q.across);
+  ObservationPair<Real> pair =
+      observation_pair(range, rule.spread * q.along, rule.spread * q.across);
   pair.odd = {-pair.odd.range, -pair.odd.bearing - rule.spread * q.heading};
   const Real aa = P.xx - q.along * q.along;  // of the columns after the first
   const Real ah = P.xh - q.along * q.heading, hh = P.hh - q.heading * q.heading;
-  SightMoments<Real> own{.covariance = {noise.range + aa, ah, noise.bearing + hh}};
+  ObservationMoments<Real> own{.covariance = {noise.range + aa, ah, noise.bearing + hh}};
   own.add(pair, rule);
-  SightMoments<Real> whole = own;
-  whole.add(sight_pair(range, rule.spread * m.along, rule.spread * m.across), rule);
+  ObservationMoments<Real> whole = own;
+  whole.add(observation_pair(range, rule.spread * m.along, rule.spread * m.across), rule);
   whole.covariance.xx += map.along - m.along * m.along;
 
-  SigmaSight<Real> sight;
-  sight.whole = whole.innovation(seen, s, rule);
-  sight.proposal =
-      map_uncertainty == MapUncertainty::on ? sight.whole : own.innovation(seen, s, rule);
+  SigmaObservation<Real> observation;
+  observation.whole = whole.innovation(seen, s, rule);
+  observation.proposal =
+      map_uncertainty == MapUncertainty::on ? observation.whole : own.innovation(seen, s, rule);
   const Real r = rule.antisymmetric * rule.spread * pair.odd.range;
   const Real b = rule.antisymmetric * rule.spread * pair.odd.bearing;
-  sight.proposal.range = in_map(q.along * r - aa, q.across * r, q.heading * r - ah, s);
-  sight.proposal.bearing = in_map(q.along * b - ah, q.across * b, q.heading * b - hh, s);
-  return sight;
+  observation.proposal.range = in_map(q.along * r - aa, q.across * r, q.heading * r - ah, s);
+  observation.proposal.bearing = in_map(q.along * b - ah, q.across * b, q.heading * b - hh, s);
+  return observation;
 }
 
 /// Absorbs one detection into a pose Gaussian by sigma points, drawn anew from what the detection
@@ -63,18 +65,18 @@ template <class Real, class Mask>
     PoseGaussian<Real>& pose, const LandmarkGaussian<Real>& landmark,
     const RangeBearing<Real>& seen, const SensorNoise& noise, const Mask& matched,
     Evidence<Real>& evidence, const SigmaRule& rule, MapUncertainty map_uncertainty) {
-  const Sightline<Real> s = sightline(pose.mean, landmark.mean);
+  const LineOfSight<Real> s = line_of_sight(pose.mean, landmark.mean);
   const auto use = matched && is_usable(s);
-  const SigmaSight<Real> sight =
-      sigma_sight_of(pose.covariance, landmark.covariance, s, seen, noise, rule, map_uncertainty);
-  Density<Real> density = condition(pose, sight.proposal, use);
+  const SigmaObservation<Real> observation = sigma_observation_of(
+      pose.covariance, landmark.covariance, s, seen, noise, rule, map_uncertainty);
+  Density<Real> density = condition(pose, observation.proposal, use);
   if (map_uncertainty == MapUncertainty::off) {
-    density = {select(use, sight.whole.squared(), Real(0.0)),
-               select(use, sight.whole.S.determinant(), Real(1.0))};
+    density = {select(use, observation.whole.squared(), Real(0.0)),
+               select(use, observation.whole.S.determinant(), Real(1.0))};
   }
   evidence.add(density.squared, density.determinant, as_number<Real>(use),
                as_number<Real>(matched));
-  return sight.whole;
+  return observation.whole;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 SigmaRule unscented_rule(double n, double alpha, double beta, double kappa) {
   const double square = alpha * alpha * (n + kappa);
@@ -30,4 +30,4 @@ SigmaRule central_difference_rule_as_printed(double h) {
   return rule;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

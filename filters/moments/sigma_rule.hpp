@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-namespace montecarta {
+#include "engine/namespaces.hpp"
+
+namespace montecarta::filters {
 
 /// A sigma-point transform as numbers (EQUATIONS 3). Points lie in pairs at centre +- spread times
 /// a column of the square root. With Y0 the image of the centre, D = (Y+ - Y-)/2 and E = (Y+ +
@@ -33,4 +35,4 @@ SigmaRule central_difference_rule(double h);
 /// distance from the origin would be multiplied by sqrt(3) at every step (EQUATIONS 3).
 SigmaRule central_difference_rule_as_printed(double h);
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

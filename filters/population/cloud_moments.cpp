@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/population/cloud_moments.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 
 PoseEstimate CloudMoments::moved_by(const MotionIncrement& increment) const {
   const Pose& step = increment.pose();
@@ -36,4 +36,4 @@ PoseEstimate CloudMoments::moved_by(const MotionIncrement& increment) const {
   return {{mean, symmetric(spread)}, PoseMoments{mean, symmetric(spread + own)}};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -11,7 +11,7 @@
 #include <array>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Sum over the particles of weight times term(block), lane by lane and then in lane order.
 template <class Real, std::size_t N, class Terms>
@@ -131,4 +131,4 @@ class CloudMoments {
   Point x_, y_, h_, c_, s_;          ///< of each element of v with (cos h, sin h)
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

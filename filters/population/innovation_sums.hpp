@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Moments of the predicted detection over all particles, for the normalised innovation squared of
 /// the whole filter: the mixture's innovation is the weighted mean, its covariance the mean of S
@@ -80,4 +80,4 @@ class MixtureInnovations {
   std::vector<Sums> sums_;       ///< {task, detection}
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

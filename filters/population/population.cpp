@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/population/population.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 // In the order of the enumerators.
@@ -23,4 +23,4 @@ PopulationSettings population_settings(const FilterOptions& options) {
           .resample_below = options.number("resample_below")};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

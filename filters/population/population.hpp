@@ -2,8 +2,8 @@
 #pragma once
 
 #include "engine/particles/resampling.hpp"
-#include "engine/particles/tell_particles.hpp"
 #include "engine/particles/weights.hpp"
+#include "engine/particles/write_particle_columns.hpp"
 #include "filters/moments/evidence.hpp"
 #include "filters/population/innovation_sums.hpp"
 #include "filters/setup/filter_setup.hpp"
@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// How many particles there are, and how and when they are resampled (EQUATIONS 18).
 struct PopulationSettings {
@@ -107,7 +107,7 @@ class Population {
 
   template <class PoseOf>
   void tell(const ParticleColumns& columns, const PoseOf& pose_of) const {
-    tell_particles(columns, pose_of, weights_.log_scalars(), ancestors_);
+    write_particle_columns(columns, pose_of, weights_.log_scalars(), ancestors_);
   }
 
  private:
@@ -120,4 +120,4 @@ class Population {
   bool is_after_scan_ = false;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

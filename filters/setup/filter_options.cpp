@@ -6,7 +6,7 @@
 #include <charconv>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 const std::string& FilterOptions::choice(std::string_view name) const {
   const auto found = values_.find(name);
@@ -25,4 +25,4 @@ std::size_t FilterOptions::integer(std::string_view name) const {
   return static_cast<std::size_t>(std::stoull(choice(name)));
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

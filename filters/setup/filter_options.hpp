@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
+
 #include <algorithm>
 #include <cstddef>
 #include <functional>
@@ -11,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// One thing that a user may set: of a filter behind its name in a cell line, of a study in a
 /// section of its file.
@@ -82,4 +84,4 @@ Enumerator chosen(const std::string& choice, const std::vector<std::string>& cho
                                  choices.begin());
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

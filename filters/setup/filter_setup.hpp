@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// What the filter believes about vehicle and sensor (study file: [belief], default [scenario]).
 struct Belief {
@@ -53,4 +53,4 @@ struct FilterKind {
   std::function<std::unique_ptr<SlamFilter>(const FilterSetup&)> make;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

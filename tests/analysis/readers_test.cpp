@@ -10,7 +10,7 @@
 #include <map>
 #include <sstream>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 const std::string kReaders = std::string(MONTECARTA_SOURCE_DIR) + "/analysis/readers";
@@ -77,4 +77,4 @@ TEST_F(SlowReaders, Octave) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Both cells meet the same noise, so that their differences would all be ties but for rounding:
@@ -94,4 +94,4 @@ TEST_F(SlowRecompute, PoseAndMapTogether) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

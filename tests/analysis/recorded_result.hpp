@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A cell of the recorded study: its estimates run in small circles around the true path, so that
 /// every error is `radius` [m] long and alignment takes away no part of it but `shift` [m].
@@ -112,4 +112,4 @@ inline void write_recorded_result(const std::filesystem::path& path, std::uint64
   writer.finish();
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

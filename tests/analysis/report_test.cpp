@@ -12,7 +12,7 @@
 
 #include <fstream>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::HasSubstr;
@@ -129,4 +129,4 @@ TEST(Report, RefusesARunThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// The section of this name in a report; empty where there is none.
 inline Section reported_section(const StudyAnalysis& study, const std::string& name) {
@@ -43,4 +43,4 @@ inline std::vector<std::string> reported_notes(const StudyAnalysis& study,
   return notes;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -16,7 +16,7 @@
 #include <iterator>
 #include <sstream>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// All that can be stored, and all that is judged.
@@ -113,4 +113,4 @@ TEST_F(ResultFuzz, NumbersOfRuns) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

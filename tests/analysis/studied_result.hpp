@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A vehicle in a loop of 40 m with five landmarks: enough for a real filter, and quickly run.
 inline const std::string kTinyLoop = R"([study]
@@ -45,4 +45,4 @@ inline void write_studied_result(const std::filesystem::path& path, const std::s
   run_study(make_plan(study, {}), {.output = path, .force = true, .quiet = true});
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

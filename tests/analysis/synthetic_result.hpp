@@ -15,7 +15,7 @@
 #include <limits>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Overwrites the estimates of a record by the truth plus errors drawn from SyntheticStudy's
 /// covariance, made `inflation` times larger than the covariance says.
@@ -93,4 +93,4 @@ inline void write_synthetic_result(
   writer.finish();
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Runs whose errors are drawn, independently at each scan, from a known Gaussian.
 struct SyntheticStudy {
@@ -57,4 +57,4 @@ struct SyntheticStudy {
   }
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,21 +8,21 @@
 #include <cstdlib>
 #include <new>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// How often this program has allocated; tests look at differences.
 inline std::atomic<std::size_t> n_allocations{0};
 
-}  // namespace montecarta
+}  // namespace montecarta::engine
 
 // Not inlined: seen from inside, g++ takes malloc and free for a mismatch.
 [[gnu::noinline]] void* operator new(std::size_t size) {
-  ++montecarta::n_allocations;
+  ++montecarta::engine::n_allocations;
   if (void* memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
 [[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
-  ++montecarta::n_allocations;
+  ++montecarta::engine::n_allocations;
   const auto unit = static_cast<std::size_t>(alignment);
   if (void* memory = std::aligned_alloc(unit, (size + unit - 1) / unit * unit)) return memory;
   throw std::bad_alloc();

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// What the user is told when `act` is tried; "nothing" where it succeeds.
 std::string complaint_of(const auto& act) {
@@ -17,4 +17,4 @@ std::string complaint_of(const auto& act) {
   return "nothing";
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Fields of one line of comma-separated values; quotes keep commas, and are taken off.
 inline std::vector<std::string> csv_fields(const std::string& line) {
@@ -40,4 +40,4 @@ inline std::vector<std::map<std::string, std::string>> read_csv(const std::files
   return rows;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

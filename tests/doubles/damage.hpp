@@ -13,7 +13,7 @@
 #include <utility>
 
 // Random damage to files, the same from every seed.
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Whole numbers below a bound from a counter of its own.
 class Dice {
@@ -148,4 +148,4 @@ inline std::string damaged_text(std::string text, std::uint64_t seed) {
   return text;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// A file or folder of the published data, e.g. "victoria_park"; empty where it is not at hand. The
 /// data is never committed: it lies in MONTECARTA_DATA, or in shared/data beside the project.
@@ -16,4 +16,4 @@ inline std::filesystem::path published_data(const std::string& name) {
   return std::filesystem::exists(folder / name) ? folder / name : std::filesystem::path();
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// What a program said, standard error included, and how it ended (0: well).
 struct ProgramOutcome {
@@ -36,4 +36,4 @@ inline bool python_has(const std::string& module) {
   return run_program("/usr/bin/python3 -c 'import " + module + "'").status == 0;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// A drive as if it were recorded: nobody knows the truth, two references measured it, beacons are
 /// surveyed and detections have no identity. The vehicle goes through an eight; the same for all
@@ -72,4 +72,4 @@ class RecordedDrives : public DriveSource {
   Itinerary itinerary_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

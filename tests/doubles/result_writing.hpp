@@ -12,7 +12,7 @@
 #include <iterator>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// A folder of its own for each test, in which the result of a small study is written.
 class ResultWriting : public ::testing::Test {
@@ -49,4 +49,4 @@ std::string message(const Action& action) {
   return {};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -9,7 +9,7 @@
 #include <string>
 
 int main(int n_arguments, char** arguments) {
-  using namespace montecarta;
+  using namespace montecarta::engine;
   try {
     const StudyPlan plan = scripted_cells(std::stoull(arguments[2]),
                                           std::chrono::microseconds(std::stol(arguments[3])));

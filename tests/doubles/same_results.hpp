@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Values of one run of one column, empty where the column has no values.
 inline std::vector<double> values_of(const ResultFile& file, const StoredCell& cell,
@@ -66,4 +66,4 @@ inline std::string difference(const ResultFile& a, const ResultFile& b) {
   return "";
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -9,7 +9,7 @@
 #include <string>
 #include <unistd.h>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// A new folder for one test's files, removed with it.
 class ScratchFolder {
@@ -41,4 +41,4 @@ inline std::string text_in(const std::filesystem::path& path) {
   return text.str();
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

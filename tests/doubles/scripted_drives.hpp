@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Drives that never leave a straight line: `steps` of 25 ms, a scan after every fourth, with as
 /// many detections as the run number and the scan allow, so that drives of different runs differ in
@@ -51,4 +51,4 @@ class ScriptedDrives : public DriveSource {
   Itinerary itinerary_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// What goes wrong with a scripted filter, in one run or in every run, at one step.
 struct Mishap {
@@ -136,4 +136,4 @@ class ScriptedFilter : public SlamFilter {
   bool broken_ = false;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -7,7 +7,7 @@
 
 #include <filesystem>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Two cells (4 and 3 particles) of a small scripted study with every column.
 inline StudyPlan small_result_plan(std::uint64_t runs = 3, std::size_t steps = 24) {
@@ -65,4 +65,4 @@ inline void write_result(const std::filesystem::path& path, const StudyPlan& pla
   writer.finish();
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// A cell whose filter follows a script.
 inline Cell scripted_cell(std::string label, const ScriptedFilter::Script& script) {
@@ -48,4 +48,4 @@ inline StudyPlan scripted_cells(std::uint64_t runs, std::chrono::microseconds pa
   return plan;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

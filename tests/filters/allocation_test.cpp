@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 std::unique_ptr<SlamFilter> make(const FilterKind& kind, Association association,
@@ -77,4 +77,4 @@ TEST(Allocation, EvolutionOfAPopulationOfParticlesAllocatesNothingInASecondRun) 
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

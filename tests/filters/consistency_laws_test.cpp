@@ -14,7 +14,7 @@
 
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 double nees(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
@@ -144,8 +144,9 @@ TEST(FastSlam2Weights, InALinearCaseTheRatioIsTheClosedFormWhateverWasDrawn) {
 }
 
 TEST(FastSlam2, SeeingAgainFromAKnownPoseIsTheKalmanFiltersUpdate) {
-  // Landmarks born at an exactly known pose are independent of it and of each other, so the first
-  // scan that sees them again is the same Bayesian update for both filters, likelihood included.
+  // Landmarks initialised at an exactly known pose are independent of it and of each other, so the
+  // first scan that sees them again is the same Bayesian update for both filters, likelihood
+  // included.
   const SmallWorld world = drive_of_two_scans();
   const auto kalman = make_ekf_slam({.belief = {},
                                      .association = {},
@@ -168,7 +169,7 @@ TEST(FastSlam2, SeeingAgainFromAKnownPoseIsTheKalmanFiltersUpdate) {
   }
 }
 
-TEST(FastSlam2, WeighsAllDrawsAlikeByTheRatioWhereTheModelsAreStraight) {
+TEST(FastSlam2, WeighsAllDrawsAlikeByTheRatioOnLinearModels) {
   // The same of the filter itself: before the second scan the particles are equal, so their
   // weights stay equal, wherever each was drawn, and sum to the closed form.
   SmallWorldSettings settings = settings_of_two_scans();
@@ -190,4 +191,4 @@ TEST(FastSlam2, WeighsAllDrawsAlikeByTheRatioWhereTheModelsAreStraight) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// A filter's options as a newcomer gets them, but for those of `others`.
 inline FilterOptions default_options(
@@ -17,4 +17,4 @@ inline FilterOptions default_options(
   return FilterOptions(values);
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -3,7 +3,7 @@
 
 #include "filters/factory.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Noise so small that the models are linear within it: there EKF-SLAM is the Kalman filter of its
 /// world.
@@ -15,4 +15,4 @@ inline Belief fine() {
           .sigma_bearing = 2e-4};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

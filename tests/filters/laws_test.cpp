@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// So that a test is listed by the filter's name.
 void PrintTo(const FilterKind& kind, std::ostream* out) { *out << kind.name; }
@@ -238,11 +238,11 @@ TEST_P(EveryFilter, TurningTheWorldTurnsTheEstimate) {
   const Pose start{-30.0, 50.0, 2.0};
   const SmallWorld other = turned(world, start);
   const auto filter = make_default(GetParam(), 30, settings);
-  std::vector<PoseEstimate> straight;
+  std::vector<PoseEstimate> unturned;
   drive_through(*filter, world, Pose(),
-                [&](std::size_t) { straight.push_back(filter->estimate()); });
+                [&](std::size_t) { unturned.push_back(filter->estimate()); });
   drive_through(*filter, other, start, [&](std::size_t scan) {
-    const PoseEstimate now = filter->estimate(), &was = straight[scan];
+    const PoseEstimate now = filter->estimate(), &was = unturned[scan];
     expect_turned(now.spread, was.spread, start);
     ASSERT_EQ(now.mixture.has_value(), was.mixture.has_value());
     if (now.mixture) expect_turned(*now.mixture, *was.mixture, start);
@@ -266,4 +266,4 @@ TEST(OwnFilterPage, QuotesTheExampleThatIsCompiled) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -8,7 +8,7 @@
 #include <vector>
 
 /// What it means that two makes of one filter are equal.
-namespace montecarta {
+namespace montecarta::filters {
 
 inline void expect_near(const PoseMoments& a, const PoseMoments& b, double tolerance) {
   EXPECT_LT(boxminus(a.mean, b.mean).norm(), tolerance);
@@ -56,4 +56,4 @@ inline void expect_same_steps(SlamFilter& one, SlamFilter& other, const SmallWor
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

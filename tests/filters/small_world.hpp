@@ -11,7 +11,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// A world for tests of filters: a vehicle on a circle of 27 m among landmarks, with noise on its
 /// motion.
@@ -44,11 +44,12 @@ inline void look_around(const SmallWorldSettings& settings, std::uint32_t step, 
                         SmallWorld& world) {
   for (std::uint32_t k = 0; k < settings.landmarks; ++k) {
     const Eigen::Vector2d& f = world.itinerary.landmarks[k];
-    const auto sight = predicted_sight(truth, Point{f.x(), f.y()});
-    if (sight.range >= settings.max_range || std::abs(sight.bearing) >= kPi / 2.0) continue;
+    const auto observation = predicted_observation(truth, Point{f.x(), f.y()});
+    if (observation.range >= settings.max_range || std::abs(observation.bearing) >= kPi / 2.0)
+      continue;
     RngStream draw({settings.seed, 0, step, k, Draw::world_detection});
-    const double range = sight.range + settings.noise.sigma_range * draw.normal();
-    const double bearing = wrap(sight.bearing + settings.noise.sigma_bearing * draw.normal());
+    const double range = observation.range + settings.noise.sigma_range * draw.normal();
+    const double bearing = wrap(observation.bearing + settings.noise.sigma_bearing * draw.normal());
     world.drive.detections.push_back({range, bearing, static_cast<std::int32_t>(k)});
   }
   world.drive.scan_begin.push_back(static_cast<std::uint32_t>(world.drive.detections.size()));
@@ -111,4 +112,4 @@ void drive_through(Filter& filter, const SmallWorld& world, const Pose& start,
   }
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

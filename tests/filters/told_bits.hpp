@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Gathers numbers bit by bit, so that NaN equals NaN and nothing is near enough.
 class ToldBits {
@@ -17,7 +17,7 @@ class ToldBits {
   ToldBits(const SlamFilter& filter, std::size_t particles, std::size_t landmarks) {
     tell(filter.estimate());
     tell(filter.report());
-    tell_particles(filter, particles);
+    write_particle_columns(filter, particles);
     std::vector<std::optional<LandmarkEstimate>> map(landmarks);
     filter.map(map);
     for (const auto& landmark : map) {
@@ -50,7 +50,7 @@ class ToldBits {
       tell(number);
     }
   }
-  void tell_particles(const SlamFilter& filter, std::size_t particles) {
+  void write_particle_columns(const SlamFilter& filter, std::size_t particles) {
     std::vector<double> poses(3 * particles), log_weights(particles);
     std::vector<std::uint32_t> ancestors(particles);
     filter.particles({poses, log_weights, ancestors});
@@ -61,4 +61,4 @@ class ToldBits {
   std::vector<std::uint64_t> bits_;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -5,7 +5,7 @@
 
 /// The first scan that sees landmarks again: a case in which FastSLAM II and the Kalman filter are
 /// one.
-namespace montecarta {
+namespace montecarta::filters {
 
 inline SmallWorldSettings settings_of_two_scans() { return {.seed = 77, .landmarks = 40}; }
 
@@ -34,4 +34,4 @@ inline PoseEstimate after_two_scans(SlamFilter& filter, const SmallWorld& world)
   return filter.estimate();
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 std::vector<ReplayMap> read_maps(const ResultFile& file, const StoredCell& cell, std::size_t run,
                                  std::span<const std::size_t> frame_scans, std::size_t ellipses) {
@@ -22,4 +22,4 @@ std::vector<ReplayMap> read_maps(const ResultFile& file, const StoredCell& cell,
   return maps;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

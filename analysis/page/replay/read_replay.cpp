@@ -10,7 +10,7 @@
 #include <limits>
 #include <optional>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using Scans = std::vector<std::size_t>;
@@ -123,4 +123,4 @@ Replay read_replay(const ResultFile& file, std::size_t run, const ReplaySize& si
   return replay;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -6,7 +6,7 @@
 
 #include <cstddef>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// How much of a run a page can carry: some megabytes over all cells.
 struct ReplaySize {
@@ -20,4 +20,4 @@ struct ReplaySize {
 /// steps from scan to scan.
 Replay read_replay(const ResultFile& file, std::size_t run, const ReplaySize& size = {});
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

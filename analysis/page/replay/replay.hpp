@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// Some of a cell's particles at every frame, such that the ancestors of all that are shown are
 /// shown too.
@@ -52,4 +52,4 @@ struct Replay {
   std::vector<ReplayCell> cells = {};
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr int kPlaceDigits = 6;  // a millimetre in 300 m
@@ -119,4 +119,4 @@ std::string replay_json(const Replay& replay) {
   return json.end_array().end_object().text();
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

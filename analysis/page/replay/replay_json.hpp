@@ -5,9 +5,9 @@
 
 #include <string>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A run as the page's player reads it (page/script/replay.js).
 std::string replay_json(const Replay& replay);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

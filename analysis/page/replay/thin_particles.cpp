@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using Indices = std::vector<std::uint32_t>;
@@ -70,4 +70,4 @@ ReplayParticles thin_particles(const StoredParticles& stored, std::span<const st
   return particles;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

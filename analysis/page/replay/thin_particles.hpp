@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// What is stored of a cell's particles in one run.
 struct StoredParticles {
@@ -23,4 +23,4 @@ struct StoredParticles {
 ReplayParticles thin_particles(const StoredParticles& stored, std::span<const std::size_t> scans,
                                std::size_t most);
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

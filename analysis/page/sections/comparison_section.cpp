@@ -2,7 +2,7 @@
 #include "analysis/comparison/comparison_tables.hpp"
 #include "analysis/page/sections.hpp"
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 Section comparison_section(const StudyAnalysis& study, const StudyComparison& comparison) {
   const Comparisons& all = comparison.comparisons;
@@ -19,4 +19,4 @@ Section comparison_section(const StudyAnalysis& study, const StudyComparison& co
   return section;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

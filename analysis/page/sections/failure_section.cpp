@@ -2,7 +2,7 @@
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/page/sections.hpp"
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 Section failure_section(const StudyAnalysis& study) {
   if (!study.has_failures()) return {};
@@ -15,4 +15,4 @@ Section failure_section(const StudyAnalysis& study) {
   return section;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

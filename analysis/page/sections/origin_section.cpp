@@ -2,7 +2,7 @@
 #include "analysis/page/html.hpp"
 #include "analysis/page/sections.hpp"
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 std::string details(const std::string& summary, const std::string& content) {
@@ -22,4 +22,4 @@ Section origin_section(const ResultFile& file, const StudyAnalysis& study) {
   return section;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -3,7 +3,7 @@
 #include "analysis/page/sections.hpp"
 #include "analysis/printed/comparison.hpp"
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 std::string assumptions(const Printed& printed) {
@@ -30,4 +30,4 @@ Section printed_section(const StudyAnalysis& study) {
   return section;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

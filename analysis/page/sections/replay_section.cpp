@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Whether any of these cells has what `has` looks for.
@@ -33,7 +33,7 @@ std::string shown(const Replay& replay) {
         ", and the threads behind them the ways their ancestors came: where all threads run "
         "together, the particles share one past and cannot doubt it";
   }
-  return words + ". Where the filter is honest, the vehicle is seldom outside of the ellipse.";
+  return words + ". Where the filter is consistent, the vehicle is seldom outside of the ellipse.";
 }
 
 /// What to record to see more; empty where all is there.
@@ -72,4 +72,4 @@ Section replay_section(const ResultFile& file, std::optional<std::uint64_t> run)
   return section;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

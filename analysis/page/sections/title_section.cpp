@@ -2,7 +2,7 @@
 #include "analysis/page/html.hpp"
 #include "analysis/page/sections.hpp"
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 Section title_section(const StudyAnalysis& study) {
   Section section{"title", ""};
@@ -15,4 +15,4 @@ Section title_section(const StudyAnalysis& study) {
   return section;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -17,7 +17,7 @@ class EkfSlam(montecarta_filter.Filter):
         self.wheelbase = settings["wheelbase"]
         self.Q = np.diag([settings["sigma_speed"], settings["sigma_steer"]]) ** 2
         self.R = np.diag([settings["sigma_range"], settings["sigma_bearing"]]) ** 2
-        self.m = np.array(pose)  # pose, then x and y of each landmark in order of birth
+        self.m = np.array(pose)  # pose, then x and y of each landmark in order of initialisation
         self.P = np.zeros((3, 3))
         self.row_of = {}  # of m and P, by identity
         self.said = {}

@@ -43,7 +43,7 @@ class Filter:
         return {}
 
     def map(self):
-        """Landmarks as rows (identity, x, y, xx, xy, yy) with the covariance; else by birth."""
+        """Landmarks as rows (identity, x, y, xx, xy, yy) with the covariance; else by initialisation."""
         return []
 
 

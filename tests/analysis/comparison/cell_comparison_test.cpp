@@ -11,7 +11,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 std::vector<const Score*> scores(const std::vector<std::string>& names) {
@@ -124,4 +124,4 @@ TEST(NeesDistance, CountsDoublings) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 /// A cell whose runs 0, 1, ... have these position RMSEs and as many seconds of CPU time; a
 /// negative one is a run that failed.
@@ -36,4 +36,4 @@ inline StudyAnalysis compared_study(std::vector<CellAnalysis> cells) {
   return study;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

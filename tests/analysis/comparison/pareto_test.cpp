@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::ElementsAre;
@@ -36,14 +36,14 @@ StudyAnalysis priced_study() {
   return study;
 }
 
-TEST(CellValues, SayWhatIsWorthItsTime) {
+TEST(CellValues, NameTheCellsOnTheFronts) {
   const std::vector<CellValue> values = cell_values(priced_study());
   ASSERT_EQ(values.size(), 3u);  // no complete run, no value
-  EXPECT_TRUE(values[0].accurate_for_it && values[0].honest_for_it);
-  EXPECT_TRUE(values[1].accurate_for_it);
-  EXPECT_FALSE(values[1].honest_for_it);  // as honest as "fast", and dearer
-  EXPECT_FALSE(values[2].accurate_for_it);
-  EXPECT_TRUE(values[2].honest_for_it);
+  EXPECT_TRUE(values[0].accurate_for_cost && values[0].consistent_for_cost);
+  EXPECT_TRUE(values[1].accurate_for_cost);
+  EXPECT_FALSE(values[1].consistent_for_cost);  // as consistent as "fast", and dearer
+  EXPECT_FALSE(values[2].accurate_for_cost);
+  EXPECT_TRUE(values[2].consistent_for_cost);
   EXPECT_DOUBLE_EQ(values[0].nees_distance, 2.0);
   StudyAnalysis without = priced_study();
   without.has_truth = false;
@@ -75,4 +75,4 @@ TEST(ParetoFigure, HasAnAxisWhateverRunsCost) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

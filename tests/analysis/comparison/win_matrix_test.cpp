@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::ElementsAre;
@@ -43,4 +43,4 @@ TEST(WinMatrix, HasNoCellThatIsNotJudged) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

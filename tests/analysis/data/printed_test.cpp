@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::HasSubstr;
@@ -72,4 +72,4 @@ TEST(Printed, BadLinesAreAnsweredWithARemedy) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

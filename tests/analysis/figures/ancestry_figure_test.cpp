@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::HasSubstr;
@@ -40,4 +40,4 @@ TEST(AncestryFigure, IsNotWhereNoAncestryIsStored) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

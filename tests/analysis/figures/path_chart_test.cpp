@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::ElementsAre;
@@ -54,7 +54,7 @@ TEST(PathChart, TellsTimeAndErrorOfTheEstimateAndHidesItWithItsCell) {
   EXPECT_THAT(find(panel, "true path")->y, ElementsAre(0.0, 5.0));
   EXPECT_THAT(find(panel, "landmark of the map")->angle, ElementsAre(30.0));
   EXPECT_EQ(find(panel, "2 sigma of the pose"), nullptr);
-  EXPECT_EQ(find(panel, "true landmark")->style, kYardstickStyle);
+  EXPECT_EQ(find(panel, "true landmark")->style, kReferenceStyle);
 }
 
 TEST(PathChart, OfARecordedDriveHasFixesAndNoTruth) {
@@ -71,4 +71,4 @@ TEST(PathChart, OfARecordedDriveHasFixesAndNoTruth) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

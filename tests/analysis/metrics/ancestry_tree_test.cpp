@@ -12,7 +12,7 @@
 #include <set>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using Branch = AncestryTree::Branch;
@@ -126,4 +126,4 @@ TEST(AncestryTree, RefusesParentsThatAreNot) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <set>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 double cost_of(const Eigen::MatrixXd& cost, const std::vector<std::size_t>& columns) {
@@ -48,4 +48,4 @@ TEST(Assignment, OfNothingIsNothing) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

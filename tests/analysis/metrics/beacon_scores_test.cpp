@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
@@ -45,4 +45,4 @@ TEST(BeaconScores, FindsNothingInAnEmptyMap) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// A cell of which the Gaussian was asked at the end of the run, and no particles are stored.
@@ -29,4 +29,4 @@ TEST(CalibrationFigures, DrawNothingOfParticlesThatAreNotStored) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::ElementsAre;
@@ -147,4 +147,4 @@ TEST(CalibrationFigures, DrawEmptyBinsWhereThereIsNoValue) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

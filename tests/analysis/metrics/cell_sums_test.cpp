@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Adds up runs that are given as plain rows.
@@ -21,7 +21,7 @@ class Sums {
 
   void add(const RunRows& rows, std::size_t particles = 0) {
     run_.rows = rows;
-    run_.measure(sticks_, particles);
+    run_.measure(criteria_, particles);
     sums_.add(run_);
   }
   CellAnalysis result() {
@@ -32,14 +32,14 @@ class Sums {
 
  private:
   std::vector<double> times_;
-  Yardsticks sticks_{.times = times_,
-                     .level = 0.95,
-                     .references = {},
-                     .beacons = {},
-                     .map = {},
-                     .joint_scans = {},
-                     .walks = BandWalks(times_.size())};
-  CellSums sums_{sticks_};
+  RunCriteria criteria_{.times = times_,
+                        .level = 0.95,
+                        .references = {},
+                        .beacons = {},
+                        .map = {},
+                        .joint_scans = {},
+                        .walks = BandWalks(times_.size())};
+  CellSums sums_{criteria_};
   MeasuredRun run_;
 };
 
@@ -226,4 +226,4 @@ TEST(CellSums, SumsAssociationsOverARunAndAveragesOverRuns) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

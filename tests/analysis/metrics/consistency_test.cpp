@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 std::vector<double> every_fifth_of_a_second(std::size_t scans) {
@@ -86,7 +86,7 @@ TEST(Judge, TellsOptimisticFromConservative) {
   EXPECT_EQ(judge(averages).verdict, Verdict::conservative);
 }
 
-TEST(Judge, HearsTheAverageOverTheRunWhereNoScanIsFarOff) {
+TEST(Judge, UsesTheAverageOverTheRunWhereNoScanIsFarOff) {
   NeesSeries series = series_of(std::vector<double>(100, 3.4));
   for (int run = 0; run < 30; ++run) series.run_averages.push_back(3.4 + 0.02 * (run % 2));
   EXPECT_EQ(judge(series, every_fifth_of_a_second(100)).verdict, Verdict::optimistic);
@@ -128,11 +128,11 @@ TEST(RunAverageBounds, DoNotDependOnTheScaleOfTheRuns) {
   EXPECT_NEAR(run_average_bounds(twice, 3, 1.96).upper, bounds.upper, 1e-12);
 }
 
-TEST(RightValues, AreThoseOfTheChiSquare) {
-  EXPECT_NEAR(right_median(3), 2.36597, 1e-5);
-  EXPECT_NEAR(right_median(1), 0.45494, 1e-5);
+TEST(ExpectedValues, AreThoseOfTheChiSquare) {
+  EXPECT_NEAR(expected_median(3), 2.36597, 1e-5);
+  EXPECT_NEAR(expected_median(1), 0.45494, 1e-5);
   // By adding up quantiles: scipy.stats.chi2.ppf of (k + 0.5) / n between 0.1 and 0.9.
-  EXPECT_NEAR(right_trimmed(3), 2.64820, 1e-4);
+  EXPECT_NEAR(expected_trimmed(3), 2.64820, 1e-4);
 }
 
 TEST(Judge, LeavesOutScansWithoutARunAndBreaksStretchesThere) {
@@ -150,4 +150,4 @@ TEST(Judge, DoesNotJudgeNothing) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

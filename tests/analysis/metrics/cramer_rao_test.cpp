@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr double kStep = 0.1;  // [s]
@@ -19,7 +19,7 @@ using Landmarks = std::vector<Eigen::Vector2d>;
 SimulatedWorld open_world() {
   return {.vehicle = {.wheelbase = 2.0},
           .sigma_control = {0.3, 0.05},
-          .sigma_sight = {0.1, 0.02},
+          .sigma_observation = {0.1, 0.02},
           .detected = 1.0,
           .view = FieldOfView(50.0, kPi),
           .same_path = true};
@@ -50,26 +50,27 @@ std::vector<Control> bends(std::size_t n, double phase = 0.4) {
 }
 
 /// All that a run says, as a function of all that is unknown: the errors of the controls, the
-/// sights of each scan, and the pose at the end, for controls and landmarks moved by `unknown`.
+/// observations of each scan, and the pose at the end, for controls and landmarks moved by
+/// `unknown`.
 struct Trajectory {
   const SimulatedWorld* world;
   const Landmarks* landmarks;
   const std::vector<Control>* controls;
   std::size_t every;
-  Pose end(const Eigen::VectorXd& unknown, std::vector<double>* sights) const {
+  Pose end(const Eigen::VectorXd& unknown, std::vector<double>* observations) const {
     Pose pose;
     const auto n = static_cast<Eigen::Index>(controls->size());
     for (Eigen::Index k = 0; k < n; ++k) {
       const Control& control = (*controls)[static_cast<std::size_t>(k)];
       pose = move(pose, {control.speed + unknown(2 * k), control.steer + unknown(2 * k + 1)}, kStep,
                   world->vehicle);
-      if (static_cast<std::size_t>(k + 1) % every != 0 || sights == nullptr) continue;
+      if (static_cast<std::size_t>(k + 1) % every != 0 || observations == nullptr) continue;
       for (Eigen::Index l = 0; l < static_cast<Eigen::Index>(landmarks->size()); ++l) {
         const Eigen::Vector2d at =
             (*landmarks)[static_cast<std::size_t>(l)] + unknown.segment<2>(2 * (n + l));
-        const auto sight = predicted_sight(pose, Point{at.x(), at.y()});
-        sights->push_back(sight.range / world->sigma_sight(0));
-        sights->push_back(sight.bearing / world->sigma_sight(1));
+        const auto observation = predicted_observation(pose, Point{at.x(), at.y()});
+        observations->push_back(observation.range / world->sigma_observation(0));
+        observations->push_back(observation.bearing / world->sigma_observation(1));
       }
     }
     return pose;
@@ -130,7 +131,8 @@ TEST(CramerRaoBound, IsTheKalmanFiltersCovarianceWhereTheProblemIsLinear) {
   const std::vector<Control> controls(20, Control{3.0, 0.0});
   const CramerRaoBound bound = squared_bound(world, path_of(controls, 2, {{100.0, 0.0}}));
   const double q = 2.0 * 0.3 * 0.3 * kStep * kStep, r = 0.1 * 0.1;
-  double x = q, xl = q, l = q + r;  // covariance after the first scan, where the landmark is born
+  double x = q, xl = q,
+         l = q + r;  // covariance after the first scan, where the landmark is initialised
   for (std::size_t s = 0; s < bound.position.size(); ++s) {
     if (s > 0) {
       x += q;
@@ -167,7 +169,7 @@ TEST(CramerRaoBound, NeedsTheScansAloneOnASmoothPath) {
 TEST(CramerRaoBound, LosesTheInformationOfWhatIsMissed) {
   SimulatedWorld half = open_world(), worse = half, none = half;
   half.detected = 0.5;
-  worse.sigma_sight *= std::sqrt(2.0);
+  worse.sigma_observation *= std::sqrt(2.0);
   none.detected = 0.0;
   const TruePath path = path_of(bends(24), 4, kAhead);
   const CramerRaoBound full = squared_bound(open_world(), path);
@@ -192,4 +194,4 @@ TEST(CramerRaoBound, OfTheMapIsThatOfTheLandmarksSeen) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// Standard normal errors of a filter that believes deviations of `believed`.
@@ -46,7 +46,7 @@ TEST(Credibility, KeepsEveryThScanOfALongRun) {
 }
 
 // Two million samples are too many to keep: then it is every second scan, here those of which the
-// filter is too sure.
+// filter is overconfident.
 TEST(Credibility, KeepsEverySecondScanOfVeryManyRuns) {
   constexpr std::size_t kScans = 100, kRuns = 20'200;
   CredibilitySamples samples(kScans);
@@ -90,4 +90,4 @@ TEST(Credibility, LeavesOutWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

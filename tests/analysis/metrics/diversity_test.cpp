@@ -10,7 +10,7 @@
 #include <numeric>
 #include <set>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::ElementsAre;
@@ -107,4 +107,4 @@ TEST(Diversity, RefusesAParentThatDoesNotExist) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

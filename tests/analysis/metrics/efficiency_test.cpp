@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 class BoundOfAFile : public ::testing::Test {
@@ -81,9 +81,9 @@ TEST_F(BoundOfAFile, IsTheSameWithTheTruthAtScansAlone) {
 }
 
 TEST_F(BoundOfAFile, IsThatOfTheTruthWhateverFiltersBelieve) {
-  const StudyAnalysis honest = analyzed({"study.runs=1"});
+  const StudyAnalysis matched = analyzed({"study.runs=1"});
   const StudyAnalysis wrong = analyzed({"study.runs=1", "belief.sigma_range=3"});
-  EXPECT_EQ(honest.bound, wrong.bound);
+  EXPECT_EQ(matched.bound, wrong.bound);
 }
 
 TEST_F(BoundOfAFile, IsMissingWithItsReason) {
@@ -97,4 +97,4 @@ TEST_F(BoundOfAFile, IsMissingWithItsReason) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

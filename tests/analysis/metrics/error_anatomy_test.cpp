@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kAnatomyScans = 50;
@@ -30,10 +30,10 @@ ErrorAnatomy anatomy_of(const Eigen::Vector3d& deviations, const Eigen::Vector3d
   return moments.result();
 }
 
-TEST(ErrorAnatomy, FindsNothingWrongWithARightFilter) {
+TEST(ErrorAnatomy, FindsNothingWrongWithAConsistentFilter) {
   const ErrorAnatomy found = anatomy_of({1, 1, 1}, {0, 0, 0});
   EXPECT_LT(found.mean_bias_share, 0.01);
-  EXPECT_LT(found.mean_worst_ratio, right_worst_ratio(200, 0.95));
+  EXPECT_LT(found.mean_worst_ratio, expected_worst_ratio(200, 0.95));
   EXPECT_NEAR(found.happened[0][10], 1.0, 5.0 / std::sqrt(400.0));
   EXPECT_DOUBLE_EQ(found.believed[2][10], 1.0);
 }
@@ -100,11 +100,11 @@ TEST(ErrorAnatomy, LeavesOutWhatIsNotFiniteAndSaysNothingOfNothing) {
 }
 
 // Largest eigenvalue of W(I, 30) / 30, 95 %: 1.841 by numpy with 100,000 draws.
-TEST(RightWorstRatio, IsThatOfAWishartMatrix) {
-  EXPECT_NEAR(right_worst_ratio(30, 0.95), 1.841, 0.04);
-  EXPECT_LT(right_worst_ratio(1000, 0.95), 1.15);
-  EXPECT_TRUE(std::isinf(right_worst_ratio(2, 0.95)));
+TEST(ExpectedWorstRatio, IsThatOfAWishartMatrix) {
+  EXPECT_NEAR(expected_worst_ratio(30, 0.95), 1.841, 0.04);
+  EXPECT_LT(expected_worst_ratio(1000, 0.95), 1.15);
+  EXPECT_TRUE(std::isinf(expected_worst_ratio(2, 0.95)));
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

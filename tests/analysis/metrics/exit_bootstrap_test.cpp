@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kExitScans = 200;
@@ -51,7 +51,7 @@ TEST(ExitBootstrap, HoldsTheTimeAtWhichTheAverageBeginsToStayAbove) {
   EXPECT_LT(many.lower, 62.0);  // 400 runs detect a NEES 1.2 times too large
 }
 
-TEST(ExitBootstrap, SaysNeverOfARightFilter) { EXPECT_EQ(exits_of(0.0, 30).lower, kNoExit); }
+TEST(ExitBootstrap, SaysNeverOfAConsistentFilter) { EXPECT_EQ(exits_of(0.0, 30).lower, kNoExit); }
 
 TEST(ExitBootstrap, LeavesOutWhatIsNotANumberAndSurvivesTheHuge) {
   ExitBootstrap bootstrap(kExitScans);
@@ -73,4 +73,4 @@ TEST(MiddleOf, CutsBothTails) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 TEST(FirstValues, AreThoseOfTheAnalysis) {
@@ -40,4 +40,4 @@ TEST(HalfWidth, IsStudents) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

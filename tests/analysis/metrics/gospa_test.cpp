@@ -11,7 +11,7 @@
 #include <numeric>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
@@ -79,4 +79,4 @@ TEST(Gospa, LooksAtTheWholeAndNotAtTheNearestPair) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kInnovationScans = 300;
@@ -34,7 +34,7 @@ Innovations innovations_of(double scale, double memory, std::uint64_t seed = 23)
   return sums.result(0.95);
 }
 
-TEST(Innovations, OfARightFilterAreWhiteAndOfTheRightSize) {
+TEST(Innovations, OfAConsistentFilterAreWhiteAndOfTheRightSize) {
   const Innovations found = innovations_of(1.0, 0.0);
   EXPECT_NEAR(found.mean, 1.0, 5.0 * std::sqrt(2.0 / (4.0 * 40.0 * kInnovationScans)));
   EXPECT_LT(found.interval.lower, 1.0);
@@ -145,4 +145,4 @@ TEST(Innovations, ScansWithoutDetectionsAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

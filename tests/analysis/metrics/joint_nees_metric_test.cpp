@@ -11,7 +11,7 @@
 
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::ElementsAre;
@@ -86,4 +86,4 @@ TEST(JointFigure, ShowsTheCellAndItsBand) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

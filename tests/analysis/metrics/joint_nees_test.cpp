@@ -14,7 +14,7 @@
 #include <limits>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::Each;
@@ -108,7 +108,7 @@ JointConsistency study_of(std::size_t runs, const Eigen::MatrixXd& drawn,
   return sums.result(0.95, true);
 }
 
-TEST(JointConsistency, AccusesARightFilterSeldom) {
+TEST(JointConsistency, AccusesAConsistentFilterSeldom) {
   int accused = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     accused +=
@@ -167,4 +167,4 @@ TEST(JointConsistency, SaysWhyItIsNotTested) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

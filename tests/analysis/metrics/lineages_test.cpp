@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 std::vector<double> seconds(std::size_t scans) {
@@ -124,4 +124,4 @@ TEST(LineageSums, AverageWhatRunsHave) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::HasSubstr;
@@ -20,7 +20,7 @@ using testing::IsEmpty;
 
 const std::vector<Eigen::Vector2d> kWorld = {{0, 0}, {10, 0}, {20, 0}};
 const std::vector<double> kPath = {0, 0, 0};
-const MapYardstick kSticks{true, {}, true};
+const MapCriteria kCriteria{true, {}, true};
 
 FinalMap map_of(std::vector<std::uint32_t> seen, std::vector<Eigen::Vector2d> mean) {
   const std::vector<Eigen::Matrix2d> covariance(seen.size(), 0.25 * Eigen::Matrix2d::Identity());
@@ -29,7 +29,7 @@ FinalMap map_of(std::vector<std::uint32_t> seen, std::vector<Eigen::Vector2d> me
 
 TEST(MapScores, JudgeTheLandmarksInTheMapByIdentity) {
   const MapScores scores =
-      map_scores(map_of({1, 1, 0}, {{0.3, 0.4}, {10, 1}, {99, 99}}), kSticks, kWorld, kPath);
+      map_scores(map_of({1, 1, 0}, {{0.3, 0.4}, {10, 1}, {99, 99}}), kCriteria, kWorld, kPath);
   EXPECT_DOUBLE_EQ(scores.rms, std::sqrt((0.25 + 1.0) / 2.0));
   EXPECT_DOUBLE_EQ(scores.nees, (1.0 + 4.0) / 2.0);
   EXPECT_EQ(scores.gospa.missed, 1.0);
@@ -38,16 +38,16 @@ TEST(MapScores, JudgeTheLandmarksInTheMapByIdentity) {
 }
 
 TEST(MapScores, LeaveIdentityOutWhereItIsUnknown) {
-  const MapYardstick sticks{true, {}, false};
-  const MapScores scores = map_scores(map_of({1}, {{10, 1}}), sticks, kWorld, kPath);
+  const MapCriteria criteria{true, {}, false};
+  const MapScores scores = map_scores(map_of({1}, {{10, 1}}), criteria, kWorld, kPath);
   EXPECT_TRUE(std::isnan(scores.rms));
   EXPECT_THAT(scores.landmarks, IsEmpty());
   EXPECT_DOUBLE_EQ(scores.gospa.localisation, 1.0);
 }
 
 TEST(MapScores, MissOnlyWhatCameIntoView) {
-  const MapYardstick sticks{true, FieldOfView(12.0, kPi), true};
-  EXPECT_EQ(map_scores(map_of({0, 0, 0}, kWorld), sticks, kWorld, kPath).gospa.missed, 1.0)
+  const MapCriteria criteria{true, FieldOfView(12.0, kPi), true};
+  EXPECT_EQ(map_scores(map_of({0, 0, 0}, kWorld), criteria, kWorld, kPath).gospa.missed, 1.0)
       << "the first is not strictly ahead, the last is out of range";
 }
 
@@ -55,7 +55,7 @@ TEST(MapScores, CountACovarianceThatIsNoNumber) {
   FinalMap map = map_of({1, 1, 1}, kWorld);
   map.covariance[1].setConstant(std::numeric_limits<double>::quiet_NaN());
   map.covariance[2].setZero();
-  const MapScores scores = map_scores(map, kSticks, kWorld, kPath);
+  const MapScores scores = map_scores(map, kCriteria, kWorld, kPath);
   EXPECT_EQ(scores.undefined, 2u);
   EXPECT_EQ(scores.nees, 0.0);
   EXPECT_EQ(scores.rms, 0.0);
@@ -73,7 +73,7 @@ struct WrongMaps {
       for (Eigen::Vector2d& at : mean) {
         at += 0.5 * inflation * Eigen::Vector2d(draw.normal(), draw.normal());
       }
-      const MapScores scores = map_scores(map_of({1, 1, 1}, mean), kSticks, kWorld, kPath);
+      const MapScores scores = map_scores(map_of({1, 1, 1}, mean), kCriteria, kWorld, kPath);
       sums.add(scores);
       nees.add(scores.nees);
       rms.add(scores.rms);
@@ -99,7 +99,7 @@ TEST(MapErrors, SayWhyThereAreNone) {
   sums.add(std::nullopt);
   EXPECT_THAT(sums.result(0.95, true).missing, HasSubstr("add final_map to record.columns"));
   EXPECT_THAT(sums.result(0.95, false).missing, HasSubstr("nobody knows"));
-  sums.add(map_scores(map_of({1, 0, 0}, kWorld), kSticks, kWorld, kPath));
+  sums.add(map_scores(map_of({1, 0, 0}, kWorld), kCriteria, kWorld, kPath));
   EXPECT_THAT(sums.result(0.95, true).missing, HasSubstr("the maps of 1 runs are not whole"));
 }
 
@@ -107,7 +107,7 @@ TEST(MapErrors, GiveEveryRunItsScores) {
   ScoreTable scores;
   MeasuredRun run;
   scores.add(run);
-  run.map = map_scores(map_of({1, 0, 0}, kWorld), kSticks, kWorld, kPath);
+  run.map = map_scores(map_of({1, 0, 0}, kWorld), kCriteria, kWorld, kPath);
   scores.add(run);
   EXPECT_TRUE(std::isnan(scores.column("gospa")[0]));
   EXPECT_DOUBLE_EQ(scores.column("gospa")[1], 5.0);
@@ -116,4 +116,4 @@ TEST(MapErrors, GiveEveryRunItsScores) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

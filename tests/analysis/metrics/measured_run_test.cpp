@@ -13,7 +13,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 class ARecordedDrive : public ::testing::Test {
@@ -142,4 +142,4 @@ TEST(ADriveWithTruth, IsJudgedByPoseAndMapTogetherWhereThatIsStored) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -11,7 +11,7 @@
 
 #include <memory>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::ElementsAre;
@@ -92,4 +92,4 @@ TEST(MetricTables, HaveNoRowsWhereNothingIsKnown) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -11,7 +11,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::ElementsAre;
@@ -99,4 +99,4 @@ TEST_F(MismatchOfAFile, IsFoundInTheFileAndTheLabels) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

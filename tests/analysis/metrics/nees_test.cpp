@@ -13,7 +13,7 @@
 #include <cmath>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 TEST(Nees, EqualsTheQuadraticFormOfEachBlock) {
@@ -33,7 +33,7 @@ TEST(Nees, EqualsTheQuadraticFormOfEachBlock) {
 }
 
 // After eight noisy steps the deviations along the axes are 14 mm, 8 mm and 0.07 mm (EQUATIONS 1).
-TEST(Nees, BelievesAThinCovariance) {
+TEST(Nees, AcceptsAThinCovariance) {
   const Eigen::Vector3d axes(0.0141, 0.0081, 7.3e-5);
   const Eigen::Matrix3d turn = Eigen::Quaterniond(0.9, 0.1, 0.3, 0.2).normalized().matrix();
   const Eigen::Matrix3d P = turn * axes.cwiseAbs2().asDiagonal() * turn.transpose();
@@ -101,4 +101,4 @@ TEST(Nees, OfAParticleCloudHasHotellingsMean) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

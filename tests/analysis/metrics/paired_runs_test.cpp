@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::ElementsAre;
@@ -54,4 +54,4 @@ TEST(PairedRuns, KnowWhatACellIsJudgedBy) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

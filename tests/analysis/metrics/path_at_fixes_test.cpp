@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::ElementsAre;
@@ -60,4 +60,4 @@ TEST(PathAtFixes, TakesTheFirstRowWhereItLiesAtTheStartsTime) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

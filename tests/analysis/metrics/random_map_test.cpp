@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 class RandomMaps : public ::testing::Test {
@@ -78,4 +78,4 @@ TEST_F(RandomMaps, AreAbsentWhereTheMapIsFixed) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::ElementsAre;
@@ -74,4 +74,4 @@ TEST(Spread, IsUnknownOfNoneAndOfNaN) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::ElementsAre;
@@ -118,4 +118,4 @@ TEST(ReferenceFigures, AreNotDrawnWithoutReferences) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

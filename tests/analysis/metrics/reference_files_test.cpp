@@ -13,7 +13,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::HasSubstr;
@@ -80,4 +80,4 @@ TEST_F(ReferenceFiles, AreGroupsOfTheAnalysisFile) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

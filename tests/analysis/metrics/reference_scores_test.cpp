@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// An arc of 100 rows, one a second.
@@ -115,4 +115,4 @@ TEST(ReferenceScores, AreUnknownWithoutFixesOrHeadings) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -11,7 +11,7 @@
 
 #include <sstream>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::Contains;
@@ -116,4 +116,4 @@ TEST(PrintTables, OfADriveWithTruthKnowNothingOfReferences) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
@@ -75,4 +75,4 @@ TEST(RigidAlignment, ShiftsOnePointAndLeavesNone) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

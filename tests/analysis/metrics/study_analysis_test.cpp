@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 class StudyAnalysisOfAFile : public ::testing::Test {
@@ -71,4 +71,4 @@ TEST_F(StudyAnalysisOfAFile, RefusesAWrongLevel) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <functional>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::uint64_t kStudies = 1000;
@@ -111,7 +111,7 @@ Accused accused_clouds(Moments moments, std::size_t particles, std::uint64_t stu
 }
 
 // One standard error of 5 % in 1000 studies is 0.7 %: 1 % is what the studies are to show.
-TEST(SlowVerdictLevel, AccusesARightFilterInFivePercentOfStudies) {
+TEST(SlowVerdictLevel, AccusesAConsistentFilterInFivePercentOfStudies) {
   EXPECT_NEAR(accused({}, 30, 60, kStudies).either(), 0.05, 0.01);
 }
 
@@ -162,7 +162,7 @@ TEST(SlowVerdictLevel, KeepsItForFewRunsThatForgetDuringTheRun) {
 }
 
 // Without the correction all of them would be called inconsistent.
-TEST(SlowVerdictLevel, DoesNotHoldFewParticlesAgainstARightFilter) {
+TEST(SlowVerdictLevel, DoesNotHoldFewParticlesAgainstAConsistentFilter) {
   EXPECT_NEAR(accused_clouds(Moments::corrected, 10, 3 * kStudies).either(), 0.05, 0.01);
   EXPECT_EQ(accused_clouds(Moments::spread, 10, 20).either(), 1.0);
 }
@@ -179,4 +179,4 @@ TEST(VerdictPower, FindsABiasOfHalfADeviation) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

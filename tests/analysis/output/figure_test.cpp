@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::AllOf;
@@ -54,4 +54,4 @@ TEST(TwoSigmaEllipse, LiesAlongTheAxesOfTheCovariance) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::ContainsRegex;
@@ -129,4 +129,4 @@ TEST(PrintLayout, ShowsAChartThatBeginsZoomedWholeAndZoomed) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 Figure drawn(const Panel& panel) {
@@ -21,7 +21,7 @@ void expect_axis(const Figure& figure, bool logarithmic, double low, double high
   EXPECT_DOUBLE_EQ(axis.high, high);
 }
 
-TEST(Panels, KeepTheBandInSightOfACollapsedFilterAndEveryValueInTheNumbers) {
+TEST(Panels, KeepTheBandVisibleForACollapsedFilterAndEveryValueInTheNumbers) {
   const Figure figure =
       drawn({"anees", "ANEES", {{"bad", 0, {3.0, 1e30}}}, {{"band", 2.0, 4.0}}, Scale::automatic});
   expect_axis(figure, true, 1.0, 4000.0);
@@ -70,4 +70,4 @@ TEST(Panels, CallTheirCommonAxisAsTheFigureWants) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

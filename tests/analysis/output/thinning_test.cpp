@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 std::vector<double> counting(std::size_t n) {
@@ -53,4 +53,4 @@ TEST(Thin, KeepsGapsAndNumbersBesideThem) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

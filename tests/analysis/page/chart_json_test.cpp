@@ -8,7 +8,7 @@
 
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::HasSubstr;
@@ -68,4 +68,4 @@ TEST(ChartJson, KeepsTheAxisNearABand) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

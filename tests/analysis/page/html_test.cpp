@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 TEST(Html, EscapesText) {
@@ -36,4 +36,4 @@ TEST(Html, ForbidsTheBrowserToAskTheNetwork) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 TEST(Json, NestsAndPartsByCommas) {
@@ -31,4 +31,4 @@ TEST(Json, TextCannotEndTheScriptItStandsIn) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

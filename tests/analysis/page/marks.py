@@ -38,7 +38,7 @@ class Maps(OnPage):
         }})()""")
         self.page.drag(begin, end)
         near = self.scales()
-        # All that was in the box is in sight, and no more of its longer side.
+        # All that was in the box is in view, and no more of its longer side.
         share = max((end[0] - begin[0]) / width, (end[1] - begin[1]) / height)
         self.assertAlmostEqual(near[0] / whole[0] * share, 1, delta=0.03)
         self.assertAlmostEqual(near[0] / near[1], 1, delta=0.02)

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <sstream>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::HasSubstr;
@@ -170,4 +170,4 @@ TEST(Comparison, EveryMetricCanBeSaidInWords) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -13,7 +13,7 @@
 #include <limits>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 RngStream stream(std::uint64_t run) { return RngStream({7, run, 0, 0, Draw::test}); }
@@ -149,4 +149,4 @@ TEST(Bootstrap, OfEqualValuesIsThatValue) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-namespace montecarta {
+namespace montecarta::analysis {
 
 struct GoldenBounds {
   std::uint64_t runs;
@@ -72,4 +72,4 @@ inline constexpr std::array<GoldenBounds, 108> kGoldenBounds = {{
     {10000, 3, 0.95, 2.9521805937, 3.0481982656}, {10000, 3, 0.99, 2.9372810252, 3.0634702890},
 }};
 
-}  // namespace montecarta
+}  // namespace montecarta::analysis

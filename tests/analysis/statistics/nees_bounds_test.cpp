@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 TEST(NeesBounds, EqualTheGoldenValues) {
@@ -69,4 +69,4 @@ TEST(MatchInterval, RefusesWhatIsNoInterval) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 // By SciPy's chi2.ppf and chi2.sf (SciPy 1.10).
@@ -87,4 +87,4 @@ TEST(NeesPower, RefusesWhatIsNoQuestion) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kCorrelatedScans = 400;
@@ -68,4 +68,4 @@ TEST(NeighbourCorrelation, LeavesOutWhatIsNotANumberAndKnowsNothingOfNothing) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::DoubleNear;
@@ -84,4 +84,4 @@ TEST(PairedTests, KeepTheirLevel) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

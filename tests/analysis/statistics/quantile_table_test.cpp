@@ -10,7 +10,7 @@
 #include <numeric>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 TEST(QuantileTable, EqualsWhatSortingGivesToThreePercent) {
@@ -48,4 +48,4 @@ TEST(QuantileTable, DoesNotDependOnTheOrder) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

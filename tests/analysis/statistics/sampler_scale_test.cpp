@@ -12,7 +12,7 @@
 #include <cmath>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// NEES by the spread, with 1 / M, of M draws, of a truth drawn from the same normal.
@@ -85,4 +85,4 @@ TEST(SamplerScale, GrowsWithTheNeesAndStaysFinite) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -52,4 +52,4 @@ TEST(Survival, SaysNeverWhereMostRunsLast) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 /// PIT values of a filter whose errors are `inflation` times what it says, and `bias` deviations
@@ -68,4 +68,4 @@ TEST(Uniformity, SaysNothingOfAFew) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kBandScans = 200;
@@ -73,4 +73,4 @@ TEST(WholeRunTest, OfARunOfOneScanIsPointwise) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -16,7 +16,7 @@
 #include <limits>
 #include <sstream>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::ElementsAre;
@@ -64,7 +64,7 @@ StudyAnalysis small_study() {
   return study;
 }
 
-TEST(NumberText, IsShortAndHonest) {
+TEST(NumberText, IsShortAndSaysWhatItMeasured) {
   EXPECT_EQ(readable(3.14159), "3.14");
   EXPECT_EQ(readable(152.37), "152");
   EXPECT_EQ(readable(15237.0), "15237");
@@ -164,4 +164,4 @@ TEST(WriteAnalysisFile, HoldsSeriesAndVerdicts) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

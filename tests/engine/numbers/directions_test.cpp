@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 template <std::size_t N>
@@ -35,4 +35,4 @@ TEST(Directions, AreThoseOfEachAngleWhateverTheOthersAre) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

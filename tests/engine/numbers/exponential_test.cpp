@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -61,4 +61,4 @@ TEST(Logarithm, OfZeroInfinityAndNegativeNumbers) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 constexpr double kUlp = 2.3e-16;
@@ -154,4 +154,4 @@ TEST(Wrap, KeepsItsContract) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

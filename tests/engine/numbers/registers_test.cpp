@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
@@ -121,4 +121,4 @@ TYPED_TEST(Registers, MultiplyTheLowHalvesExactly) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

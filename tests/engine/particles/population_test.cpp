@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 TEST(Genealogy, TracesLikeStepByStepCopying) {
@@ -83,4 +83,4 @@ TEST(Weights, SayWhenNoParticleIsLeft) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 StepContext step(std::uint32_t k) { return {11, 0, k, Parallel::serial()}; }
@@ -93,4 +93,4 @@ TEST(Resampling, ResidualKeepsAtLeastTheFloor) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

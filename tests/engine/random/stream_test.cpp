@@ -11,7 +11,7 @@
 #include <set>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 TEST(Philox, EqualsPublishedTestVectors) {  // kat_vectors of Random123
@@ -109,4 +109,4 @@ TEST(RngStream, BelowIsFlat) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -12,7 +12,7 @@
 
 #include <fstream>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using ::testing::ElementsAre;
@@ -120,4 +120,4 @@ TEST_F(Attempt, OtherStudiesAndOtherRunsAreRefusedAndKept) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

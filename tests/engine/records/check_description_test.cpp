@@ -18,7 +18,7 @@
 #include <functional>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using ::testing::HasSubstr;
@@ -150,4 +150,4 @@ TEST_F(CheckDescription, FindsEveryOddNumber) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using testing::HasSubstr;
@@ -54,4 +54,4 @@ TEST(AxisNames, AreReadBack) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

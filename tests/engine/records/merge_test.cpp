@@ -14,7 +14,7 @@
 #include <fstream>
 #include <iterator>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using ::testing::AllOf;
@@ -109,4 +109,4 @@ TEST_F(Merge, RefusesMissingShardsAndItsOwnOutput) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

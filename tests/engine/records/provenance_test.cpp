@@ -6,7 +6,7 @@
 
 #include <map>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 TEST(Provenance, KnowsBuildAndMachine) {
@@ -20,4 +20,4 @@ TEST(Provenance, KnowsBuildAndMachine) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

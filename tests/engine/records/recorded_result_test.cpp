@@ -10,7 +10,7 @@
 
 #include <gmock/gmock.h>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using ::testing::ElementsAre;
@@ -98,4 +98,4 @@ TEST_F(RecordedResult, DamageIsFoundWithoutATruthToo) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using ::testing::Each;
@@ -227,4 +227,4 @@ TEST(RunRecord, FingerprintTellsEveryBitApart) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

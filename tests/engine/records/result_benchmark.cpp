@@ -8,7 +8,7 @@
 
 #include <benchmark/benchmark.h>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 /// One cell with the default columns; steps : scans = 8 : 1 nearly as on the benchmark world
@@ -83,4 +83,4 @@ BENCHMARK(read_run)->Unit(benchmark::kMillisecond);
 BENCHMARK(clear_and_fingerprint)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

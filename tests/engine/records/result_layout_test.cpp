@@ -13,7 +13,7 @@
 #include <iterator>
 #include <sstream>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 std::string type_name(const h5::Handle& dataset) {
@@ -92,4 +92,4 @@ TEST(ResultLayout, EveryNumberHasUnitNameAndAxes) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

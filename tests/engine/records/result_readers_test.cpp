@@ -11,7 +11,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using ::testing::AllOf;
@@ -116,4 +116,4 @@ TEST_F(ResultReaders, H5dump) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -8,7 +8,7 @@
 
 #include <cstring>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using ::testing::Each;
@@ -132,4 +132,4 @@ TEST(ResultWithoutScansBetween, HoldsRowsAtScansOnly) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -13,7 +13,7 @@
 #include <thread>
 #include <unistd.h>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 /// Runs `work` in a child process, which then leaves without cleaning up; returns its process id.
@@ -100,4 +100,4 @@ TEST(ResultSurvival, AFullDiskWhileLayingOutLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -12,7 +12,7 @@
 #include <cstdlib>
 #include <fstream>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using ::testing::AllOf;
@@ -229,4 +229,4 @@ TEST_F(ResultWriterTest, LogsAResumptionByAnotherBuild) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -8,7 +8,7 @@
 
 #include <fstream>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using ::testing::AllOf;
@@ -58,4 +58,4 @@ TEST_F(ResumeResult, TellsUnfinishedWorkUnderAFinalNameFromAResult) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

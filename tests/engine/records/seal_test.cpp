@@ -17,7 +17,7 @@
 #include <algorithm>
 #include <fstream>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using ::testing::HasSubstr;
@@ -164,4 +164,4 @@ TEST_F(SealOfResult, IsNotLostByDamage) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 TEST(Sha256, KnownAnswers) {  // FIPS 180-2, appendix B.1, and the empty text
@@ -12,4 +12,4 @@ TEST(Sha256, KnownAnswers) {  // FIPS 180-2, appendix B.1, and the empty text
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

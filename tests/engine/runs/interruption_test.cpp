@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 TEST(Interruption, NotesTheFirstSignal) {
@@ -60,4 +60,4 @@ TEST(InterruptionDeathTest, EndsAtOnceAtTheSecondSignal) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -118,4 +118,4 @@ TEST_F(KilledStudy, StopsAtACheckpointWhenAskedByAScheduler) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

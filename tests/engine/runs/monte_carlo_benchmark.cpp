@@ -7,7 +7,7 @@
 
 #include <benchmark/benchmark.h>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 StudyPlan study(std::uint64_t runs, std::size_t steps, std::size_t particles) {
@@ -59,4 +59,4 @@ BENCHMARK(price_of_a_task)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

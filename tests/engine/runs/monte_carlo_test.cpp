@@ -13,7 +13,7 @@
 #include <atomic>
 #include <csignal>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using testing::Each;
@@ -178,4 +178,4 @@ TEST_F(MonteCarlo, EndsAllWorkersWhenOneMeetsAnError) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

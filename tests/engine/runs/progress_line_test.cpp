@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 TEST(ProgressLine, PutsDurationsInWords) {
@@ -50,4 +50,4 @@ TEST(ProgressLine, ReachesAHundredPercentOnlyAtTheEnd) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -16,7 +16,7 @@
 #include <thread>
 #include <unistd.h>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using testing::EndsWith;
@@ -124,4 +124,4 @@ TEST(Progress, RedrawsOneLineOnATerminalWithinItsWidth) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -16,7 +16,7 @@
 #include <csignal>
 #include <thread>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using testing::Each;
@@ -138,4 +138,4 @@ TEST_F(Rounds, AreMergedLikeAnyOther) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using testing::Each;
@@ -138,4 +138,4 @@ TEST(RunOne, AllocatesNothingAfterTheFirstRun) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 RunOutcome stopped_by(StopReason reason) {
@@ -30,4 +30,4 @@ TEST(RunOutcome, HasTheExitCodesOfTheCommandLine) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -43,4 +43,4 @@ TEST_F(WatchTest, TakesABudgetLongerThanTheClockCanCount) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -7,7 +7,7 @@
 #include <string>
 #include <unistd.h>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 /// A file system root of our own making.
@@ -59,4 +59,4 @@ TEST_F(CgroupQuota, FallsBackToTheMountInAContainer) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

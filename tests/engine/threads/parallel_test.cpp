@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 struct Choice {
@@ -118,4 +118,4 @@ TEST(Parallel, SerialHasOneThread) {
 TEST(Parallel, RefusesNoThreadsAtAll) { EXPECT_THROW(Parallel(Backend::tbb, 0), std::logic_error); }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 TEST(SpareThreads, AreLentOnceAWorkerHasNothingToDo) {
@@ -27,4 +27,4 @@ TEST(SpareThreads, DoNotPayForFewParticles) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

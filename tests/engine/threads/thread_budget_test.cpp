@@ -8,7 +8,7 @@
 
 #include <map>
 
-namespace montecarta {
+namespace montecarta::engine {
 namespace {
 
 using testing::AllOf;
@@ -77,4 +77,4 @@ TEST(ThreadBudget, OfThisProcessIsPositive) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::ElementsAre;
@@ -75,4 +75,4 @@ TEST(ShellQuoted, ReadsBackAsOneWord) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::AllOf;
@@ -60,4 +60,4 @@ TEST_F(AttemptCommand, EachFileHasALineWhateverItIs) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::HasSubstr;
@@ -256,4 +256,4 @@ TEST_F(Commands, FullStandardOutputIsAFailure) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::ContainsRegex;
@@ -58,4 +58,4 @@ TEST_F(Compare, NamesTheNearestSpelling) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -10,7 +10,7 @@
 
 #include <bit>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::HasSubstr;
@@ -99,4 +99,4 @@ TEST_F(Export, WrongInputIsNamed) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::AllOf;
@@ -84,4 +84,4 @@ TEST_F(ExternalCommands, FailedRunsAreAResult) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

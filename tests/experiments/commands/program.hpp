@@ -16,7 +16,7 @@
 #include <unistd.h>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// What a call of the real executable left behind.
 struct Called {
@@ -73,7 +73,7 @@ class Program : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// A study that takes a blink: one short straight and back.
+/// A study that takes a blink: one short line and back.
 inline const std::string kBlink = R"([study]
 name = blink
 runs = 3
@@ -86,4 +86,4 @@ cell = fastslam2 particles=10
 inline const std::string kBlinkWorld =
     "kind,x,y\nwaypoint,10,0\nwaypoint,20,1\nlandmark,15,5\nlandmark,25,-4\n";
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using ::testing::HasSubstr;
@@ -38,4 +38,4 @@ TEST_F(SpecialFiles, AreNoResults) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::ContainsRegex;
@@ -83,4 +83,4 @@ TEST_F(UntilPrecise, IsExplainedByCheck) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -8,7 +8,7 @@
 
 #include <gmock/gmock.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::AllOf;
@@ -130,4 +130,4 @@ TEST_F(Verify, ARecordedDriveIsFoundByDataOrMissedByName) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

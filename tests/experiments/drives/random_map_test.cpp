@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 // Uniform over a disc: the mean of the squared distance is half of its greatest, here to 5 standard
@@ -35,4 +35,4 @@ TEST(RandomMap, DiffersFromRunToRunAndFromSeedToSeed) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

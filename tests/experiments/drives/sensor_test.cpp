@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::ElementsAre;
@@ -13,16 +13,18 @@ using testing::IsEmpty;
 std::vector<int> seen_from(const Pose& pose, const Scenario& scenario,
                            const std::vector<Eigen::Vector2d>& landmarks) {
   std::vector<int> identities;
-  Sensor(scenario).see(pose, landmarks,
-                       [&](const Sight& sight) { identities.push_back(sight.identity); });
+  Sensor(scenario).see(pose, landmarks, [&](const VisibleLandmark& observation) {
+    identities.push_back(observation.identity);
+  });
   return identities;
 }
 
 std::vector<Detection> scan_of(const Scenario& scenario, std::uint32_t step,
-                               const std::vector<Sight>& sights) {
+                               const std::vector<VisibleLandmark>& observations) {
   std::vector<Detection> detections;
   const StreamIdentity place{.seed = 3, .run = 1, .step = step};
-  for (const Sight& sight : sights) Sensor(scenario).detect(sight, place, detections);
+  for (const VisibleLandmark& observation : observations)
+    Sensor(scenario).detect(observation, place, detections);
   Sensor(scenario).add_clutter(place, detections);
   return detections;
 }
@@ -90,4 +92,4 @@ TEST(Sensor, PutsClutterLast) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

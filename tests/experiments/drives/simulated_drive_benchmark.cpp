@@ -4,7 +4,7 @@
 
 #include <benchmark/benchmark.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// One lap of the dense world: about 8500 steps, 1070 scans, 5 landmarks a scan.
@@ -21,4 +21,4 @@ void generate_lap(benchmark::State& state) {
 BENCHMARK(generate_lap)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

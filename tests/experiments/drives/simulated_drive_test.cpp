@@ -15,7 +15,7 @@
 #include <filesystem>
 #include <set>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::HasSubstr;
@@ -236,4 +236,4 @@ TEST(SimulatedDrive, SeesTheLandmarksOfTheRunsOwnMap) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

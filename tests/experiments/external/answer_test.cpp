@@ -12,7 +12,7 @@
 #include <array>
 #include <bit>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::HasSubstr;
@@ -205,4 +205,4 @@ TEST(Answer, NumbersRoundTrip) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

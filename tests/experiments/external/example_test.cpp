@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 const std::string kExamples = MONTECARTA_SOURCE_DIR "/experiments/external";
@@ -54,4 +54,4 @@ TEST_F(SlowExternalExample, Octave) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -14,7 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::AllOf;
@@ -175,4 +175,4 @@ TEST_F(External, TheResolvedTextReadsBack) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// Studies of the tiny loop whose cell is a program.
 class ExternalStudy : public testing::Test {
@@ -61,4 +61,4 @@ class ExternalStudy : public testing::Test {
   mutable int files_ = 0;
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

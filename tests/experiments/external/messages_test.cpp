@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 const std::vector<ControlRow> kDriven = {{3.0, -0.25, 0.025}};
@@ -41,4 +41,4 @@ TEST(ExternalMessages, PredictionsAndMaps) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -13,7 +13,7 @@
 #include <functional>
 #include <iterator>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -72,4 +72,4 @@ TEST(InputsFuzz, Study) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -10,7 +10,7 @@
 
 #include <iterator>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::ElementsAre;
@@ -68,4 +68,4 @@ TEST(MatFile, RefusesWhatContradictsItself) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -124,4 +124,4 @@ TEST_F(SameBits, OfEveryFilterOnEveryProcessor) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -81,4 +81,4 @@ TEST(PublishedCarPark, HoldsItsCheckValues) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

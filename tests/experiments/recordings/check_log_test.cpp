@@ -10,7 +10,7 @@
 #include <functional>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::AllOf;
@@ -112,4 +112,4 @@ TEST(CheckLog, WantsIdentitiesForAllOrNone) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -11,7 +11,7 @@
 
 #include <filesystem>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::AllOf;
@@ -140,4 +140,4 @@ TEST_F(LogCsv, NamesMistakesOfOtherFiles) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// One filter driven once along a published drive: its path, its map, and what they are judged by.
@@ -98,4 +98,4 @@ TEST(SlowPublishedDrives, EkfSlamKeepsItsMapOfVictoriaPark) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -17,7 +17,7 @@
 #include <iterator>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,4 +80,4 @@ TEST(ReadersFuzz, CarPark) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using ::testing::ElementsAre;
@@ -108,4 +108,4 @@ TEST(FingerprintOfALog, ChangesWithEveryNumberOfIt) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -8,7 +8,7 @@
 #include <array>
 #include <map>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 /// The poles in a sweep of walls at 5 m with bright echoes of these ranges [m] at these beams.
@@ -44,4 +44,4 @@ TEST(ReflectorDetector, SeesNothingInWallsAndWhereNothingComesBack) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -7,7 +7,7 @@
 
 #include <array>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using Ranges = std::array<double, kLaserBeams>;
@@ -113,4 +113,4 @@ TEST(TreeDetector, Step7RefusesSurfacesThatLeadAway) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <map>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -185,4 +185,4 @@ TEST(PublishedVictoriaPark, HasOneClockAndOneOrigin) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

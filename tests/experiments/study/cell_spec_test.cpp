@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::ElementsAre;
@@ -102,4 +102,4 @@ TEST(Cells, AreToldWrongNoiseWhereTheLineSaysSo) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

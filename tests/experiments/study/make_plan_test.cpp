@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::HasSubstr;
@@ -91,4 +91,4 @@ TEST(Plan, CanScanAsThePublicSimulatorDoes) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

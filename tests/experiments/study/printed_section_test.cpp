@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::HasSubstr;
@@ -47,4 +47,4 @@ TEST(PrintedSection, ErrorsNameLineReasonAndRemedy) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -13,7 +13,7 @@
 
 #include <fstream>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using ::testing::AllOf;
@@ -165,4 +165,4 @@ TEST_F(RecordedStudy, TakesKnownIdentitiesWhereTheLogHasThem) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

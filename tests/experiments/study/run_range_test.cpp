@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 TEST(RunRange, IsHalfOpen) {
@@ -35,4 +35,4 @@ TEST(Shards, FollowEachOtherWithoutGaps) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::AllOf;
@@ -168,4 +168,4 @@ TEST(ResolvedText, NamesTheWorldByItsContents) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

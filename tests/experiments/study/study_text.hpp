@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 
 /// A small study that is right, for tests to change.
 inline const std::string kGoodStudy = R"([study]
@@ -39,4 +39,4 @@ inline std::string complaint(const std::string& text,
   return "nothing";
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::AllOf;
@@ -54,4 +54,4 @@ TEST(Until, NeedsAllRuns) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

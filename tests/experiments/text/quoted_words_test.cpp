@@ -6,7 +6,7 @@
 
 #include <gmock/gmock.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 using testing::ElementsAre;
@@ -41,4 +41,4 @@ TEST(QuotedWords, WhateverIsQuotedReadsBack) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 TEST(Table, AlignsColumnsAndLeavesNoTrailingSpace) {
@@ -23,4 +23,4 @@ TEST(Table, WritesSizesAndTimesAsPeopleDo) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

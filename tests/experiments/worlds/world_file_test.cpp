@@ -12,7 +12,7 @@
 #include <unistd.h>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::experiments {
 namespace {
 
 namespace fs = std::filesystem;
@@ -138,4 +138,4 @@ TEST(ShippedWorlds, AreWhatTheyPromise) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::experiments

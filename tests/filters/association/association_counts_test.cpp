@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 double total(const AssociationCounts& c) {
@@ -48,7 +48,7 @@ TEST(AssociationCounts, EveryDecisionHasItsPlace) {
   }
 }
 
-LandmarkGaussian<double> born_at(double x, double y) {
+LandmarkGaussian<double> initialised_at(double x, double y) {
   return {.mean = {x, y}, .covariance = {0.01, 0.0, 0.01}};
 }
 
@@ -62,9 +62,9 @@ AssociationCounts look(NearestAssociation<double>& association, ParticleMaps<dou
   const AssociationCounts counts = association.counts(weights);
   for (const auto& fresh : association.new_landmarks(maps)) {
     const auto& [range, bearing, identity] = fresh.detection;
-    fresh.put(
-        born_at(poses[fresh.block].mean.x + range * std::cos(bearing), range * std::sin(bearing)),
-        maps.blocks_of(fresh.slot)[fresh.block]);
+    fresh.put(initialised_at(poses[fresh.block].mean.x + range * std::cos(bearing),
+                             range * std::sin(bearing)),
+              maps.blocks_of(fresh.slot)[fresh.block]);
   }
   return counts;
 }
@@ -125,4 +125,4 @@ TEST(AssociationCounts, AddUpToTheDetectionsInEveryFilter) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

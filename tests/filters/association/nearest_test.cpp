@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 const AssociationSettings kNearest{.kind = Association::nearest, .gate = 6.0, .new_gate = 25.0};
@@ -106,4 +106,4 @@ TEST(NewDensity, IsTheGaussianAtTheGateWithTwiceTheSensorNoise) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 constexpr std::array kBases{EvolutionBase::best, EvolutionBase::random, EvolutionBase::target};
@@ -269,4 +269,4 @@ TEST(DifferentialEvolution, EveryMemberIsJudgedAsItself) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 Variant de_srcd(const std::string& mode, std::size_t particles,
@@ -74,20 +74,20 @@ TEST_P(DeSrcd, EstimatesBetweenScansAsTheReferenceDoes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DeSrcd,
-                         testing::Values(de_srcd("honest", 10), de_srcd("as_printed", 11),
+                         testing::Values(de_srcd("unbiased", 10), de_srcd("as_printed", 11),
                                          de_srcd("prior", 3), de_srcd("shared", 9),
-                                         with(de_srcd("honest", 4), "inflation", "1.2"),
-                                         with(de_srcd("honest", 9), "bounds", "1"),
+                                         with(de_srcd("unbiased", 4), "inflation", "1.2"),
+                                         with(de_srcd("unbiased", 9), "bounds", "1"),
                                          with(de_srcd("prior", 12), "crossover", "0.3"),
                                          with(de_srcd("shared", 8), "scale", "0.9"),
-                                         de_srcd("honest", 3, Association::nearest),
+                                         de_srcd("unbiased", 3, Association::nearest),
                                          de_srcd("as_printed", 5, Association::nearest)),
                          testing::PrintToStringParamName());
 
 TEST(DeSrcd, FollowsTheTruthWithOneTwoAndThreeParticles) {
   const SmallWorldSettings settings;
   const SmallWorld world = small_world(settings);
-  for (const char* mode : {"honest", "as_printed", "prior", "shared"}) {
+  for (const char* mode : {"unbiased", "as_printed", "prior", "shared"}) {
     for (const std::size_t particles : {1, 2, 3}) {
       const auto filter = make_production(de_srcd(mode, particles), settings);
       drive_through(*filter, world, Pose(), [&](std::size_t scan) {
@@ -103,14 +103,14 @@ TEST(DeSrcd, TurnsWithTheWorldInEveryMode) {
   const SmallWorldSettings settings;
   const SmallWorld world = small_world(settings);
   const Pose start{-30.0, 50.0, 2.0};
-  for (const char* mode : {"honest", "as_printed", "prior", "shared"}) {
+  for (const char* mode : {"unbiased", "as_printed", "prior", "shared"}) {
     const auto filter = make_production(de_srcd(mode, 9), settings);
-    std::vector<Pose> straight;
+    std::vector<Pose> unturned;
     drive_through(*filter, world, Pose(),
-                  [&](std::size_t) { straight.push_back(filter->estimate().spread.mean); });
+                  [&](std::size_t) { unturned.push_back(filter->estimate().spread.mean); });
     drive_through(*filter, turned(world, start), start, [&](std::size_t scan) {
       const Pose now = filter->estimate().spread.mean;
-      EXPECT_LT(boxminus(now, turned(straight[scan], start)).norm(), 1e-6) << mode << ' ' << scan;
+      EXPECT_LT(boxminus(now, turned(unturned[scan], start)).norm(), 1e-6) << mode << ' ' << scan;
     });
   }
 }
@@ -128,7 +128,7 @@ TEST(DeSrcd, WeighsItsDrawsSoThatTheyAreThePosteriorWhereverItDrawsAbout) {
                                      .landmarks = 40});
   const PoseMoments expected = after_two_scans(*kalman, world).spread;
 
-  for (const char* mode : {"honest", "shared"}) {
+  for (const char* mode : {"unbiased", "shared"}) {
     Variant variant = de_srcd(mode, 20000);
     variant.options["inflation"] = "2";
     variant.options["resample_below"] = "0";
@@ -183,13 +183,13 @@ Weighed average(const Draw& draw) {
   return {w / kDraws, wx / kDraws, error(w, ww), error(wx, wxwx)};
 }
 
-TEST(DeSrcd, HonestWeightsAreUnbiasedForAMisplacedCentreAndPrintedOnesAreNot) {
+TEST(DeSrcd, ImportanceWeightsAreUnbiasedForAMisplacedCentreAndPrintedOnesAreNot) {
   const LinearCase c;
   const PoseGaussian<double> posterior = c.refined(c.prior.mean.x);
   const double evidence = std::exp(c.log_evidence(c.prior.mean.x));
   const double misplaced = posterior.mean.x + 1.5 * std::sqrt(posterior.covariance.xx);
 
-  const Weighed honest = average([&](const StreamIdentity& identity) {
+  const Weighed unbiased = average([&](const StreamIdentity& identity) {
     PoseGaussian<double> proposal = posterior;
     proposal.mean.x = misplaced;
     const Pose pose = draw_from(PoseFactor<double>(proposal), identity);
@@ -199,15 +199,16 @@ TEST(DeSrcd, HonestWeightsAreUnbiasedForAMisplacedCentreAndPrintedOnesAreNot) {
                               PoseDensity<double>(proposal)(pose);
     return std::pair(std::exp(log_weight), pose.x);
   });
-  EXPECT_NEAR(honest.w, evidence, 5.0 * honest.error_w);
-  EXPECT_NEAR(honest.wx, evidence * posterior.mean.x, 5.0 * honest.error_wx);
+  EXPECT_NEAR(unbiased.w, evidence, 5.0 * unbiased.error_w);
+  EXPECT_NEAR(unbiased.wx, evidence * posterior.mean.x, 5.0 * unbiased.error_wx);
 
   const Weighed printed = average([&](const StreamIdentity& identity) {
     const Pose pose = draw_from(PoseFactor<double>(c.refined(misplaced)), identity);
     return std::pair(std::exp(c.log_evidence(misplaced)), pose.x);
   });
-  EXPECT_GT(std::abs(printed.w - evidence), 5.0 * honest.error_w);
-  EXPECT_GT(std::abs(printed.wx / printed.w - posterior.mean.x), 5.0 * honest.error_wx / evidence);
+  EXPECT_GT(std::abs(printed.w - evidence), 5.0 * unbiased.error_w);
+  EXPECT_GT(std::abs(printed.wx / printed.w - posterior.mean.x),
+            5.0 * unbiased.error_wx / evidence);
 }
 
 TEST(PoseFitness, IsEquation32OrTheDensityOfThePose) {
@@ -218,7 +219,7 @@ TEST(PoseFitness, IsEquation32OrTheDensityOfThePose) {
   for (int n = 0; n < 100; ++n) {
     const Pose pose{1.0 + 0.2 * draw.normal(), 2.0 + 0.2 * draw.normal(),
                     0.5 + 0.1 * draw.normal()};
-    const std::vector<Sighting<double>> scan{
+    const std::vector<MatchedDetection<double>> scan{
         {{{20.0, 5.0}, {0.3, 0.1, 0.2}}, {19.0, -0.3}, 1.0},
         {{{-10.0, 7.0}, {0.1, 0.0, 0.4}}, {12.0, 2.0}, 1.0},
         {{{0.0, 0.0}, {}}, {1.0, 1.0}, 0.0}};  // matched nothing
@@ -241,4 +242,4 @@ TEST(PoseFitness, IsEquation32OrTheDensityOfThePose) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -2,7 +2,7 @@
 #include "filters/fastslam/delayed.hpp"
 #include "tests/filters/fastslam/delayed_variants.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 class DelayedFilters : public testing::TestWithParam<Variant> {};
@@ -26,4 +26,4 @@ INSTANTIATE_TEST_SUITE_P(
     testing::PrintToStringParamName());
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

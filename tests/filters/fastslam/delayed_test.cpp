@@ -4,7 +4,7 @@
 #include "tests/filters/fastslam/delayed_variants.hpp"
 #include "tests/filters/told_bits.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 std::vector<ToldBits> told(const Variant& variant, const SmallWorldSettings& settings) {
@@ -119,4 +119,4 @@ TEST(Delayed, WalkingBackThroughAncestorsNeverJumpsFartherThanThreeScansOfNoise)
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

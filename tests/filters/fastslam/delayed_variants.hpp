@@ -3,7 +3,7 @@
 
 #include "tests/filters/fastslam/filter_comparison.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// `delayed`, drawing at every so many scans.
 inline Variant delayed(const char* every, std::size_t particles = 13,
@@ -14,4 +14,4 @@ inline Variant delayed(const char* every, std::size_t particles = 13,
           .options = {{"draw_every", every}}};
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

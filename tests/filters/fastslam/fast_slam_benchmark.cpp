@@ -17,7 +17,7 @@
 // seven dimensions and fifteen points where the filter has points) in the same run: the ratio is
 // the figure to quote. All particles share one prediction, whose cost a step does not grow with
 // them. build/benchmarks --benchmark_filter='FastSlam2|UFastSlam|Srcd|Delayed'
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 constexpr std::size_t kSeen = 5;
@@ -34,8 +34,8 @@ std::vector<Detection> look(const Pose& truth) {
   for (std::size_t k = 0; k < kSeen; ++k) {
     const double angle = kTwoPi * static_cast<double>(k) / kSeen;
     const Point landmark{100.0 * std::cos(angle), 80.0 + 100.0 * std::sin(angle)};
-    const auto sight = predicted_sight(truth, landmark);
-    scan.push_back({sight.range, sight.bearing, static_cast<std::int32_t>(k)});
+    const auto observation = predicted_observation(truth, landmark);
+    scan.push_back({observation.range, observation.bearing, static_cast<std::int32_t>(k)});
   }
   return scan;
 }
@@ -171,11 +171,11 @@ BENCHMARK_CAPTURE(Srcd, observation_eigen, Make::eigen, Part::scan)->Apply(scans
 BENCHMARK_CAPTURE(Srcd, prediction, Make::lanes, Part::prediction)->Apply(steps);
 BENCHMARK_CAPTURE(Srcd, prediction_eigen, Make::eigen, Part::prediction)->Apply(steps);
 
-BENCHMARK_CAPTURE(DeSrcd, observation, "honest", Part::scan)->Apply(few_scans);
+BENCHMARK_CAPTURE(DeSrcd, observation, "unbiased", Part::scan)->Apply(few_scans);
 BENCHMARK_CAPTURE(DeSrcd, observation_as_printed, "as_printed", Part::scan)->Apply(few_scans);
-BENCHMARK_CAPTURE(DeSrcd, prediction, "honest", Part::prediction)->Apply(steps);
+BENCHMARK_CAPTURE(DeSrcd, prediction, "unbiased", Part::prediction)->Apply(steps);
 
 BENCHMARK_CAPTURE(Delayed, observation, Make::lanes, Part::scan)->Apply(scans);
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -2,7 +2,7 @@
 #include "filters/fastslam/fast_slam_filters.hpp"
 #include "tests/filters/fastslam/filter_comparison.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 std::unique_ptr<SlamFilter> make_single(const Variant& v, const SmallWorldSettings& world) {
@@ -51,4 +51,4 @@ INSTANTIATE_TEST_SUITE_P(All, FastSlams,
                          testing::PrintToStringParamName());
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -16,7 +16,7 @@
 #include <vector>
 
 /// A filter of the family in one setting, and how it is made.
-namespace montecarta {
+namespace montecarta::filters {
 
 struct Variant {
   std::string filter;
@@ -73,4 +73,4 @@ inline reference::Weight reference_weight(const Variant& v) {
   return v.weights == "batch" ? reference::Weight::batch : reference::Weight::closed;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

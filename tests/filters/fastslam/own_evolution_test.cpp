@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 /// What the particles of one block take a scan for: a landmark and a detection of their own each,
@@ -55,4 +55,4 @@ TEST(OwnEvolution, DoesNotDependOnHowManyParticlesShareABlock) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

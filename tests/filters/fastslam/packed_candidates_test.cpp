@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 constexpr std::size_t kMembers = 10;
@@ -35,7 +35,7 @@ TEST(PackedCandidates, JudgeEveryLivingOneOnceByItsOwnParticle) {
     std::vector<Lanes> back(kMembers, Lanes(-1.0));
     for (std::size_t q = 0; q < packed.blocks(); ++q) {
       const auto [number, next] = packed.pack(std::span(all), q);
-      const Lanes own = packed.said_of(particles, q % packed.patterns());
+      const Lanes own = packed.pattern_of(particles, q % packed.patterns());
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         EXPECT_EQ(static_cast<int>(number.get(lane)) % 100, own.get(lane)) << living << ' ' << q;
         EXPECT_EQ(next.get(lane), number.get(lane) + 1.0);
@@ -56,4 +56,4 @@ TEST(PackedCandidates, TakeAsFewRegistersAsTheyFill) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

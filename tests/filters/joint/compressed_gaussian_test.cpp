@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 /// What the two forms are compared in.
@@ -48,13 +48,13 @@ class Driven {
     }
     gaussian.move(motion);
     const Scan detections = world.drive.scan(scan);
-    if constexpr (requires { gaussian.attend({}); }) gaussian.attend(slots_in(detections));
+    if constexpr (requires { gaussian.make_near({}); }) gaussian.make_near(slots_in(detections));
     for (const Detection& detection : detections) absorb(detection);
     if (setting_.keep < 1.0) {
       RngStream draw({world.seed, 0, static_cast<std::uint32_t>(scan), 0, Draw::test});
       gaussian.draw_heading(setting_.keep, draw.normal());
     }
-    for (const Detection& detection : detections) give_birth(detection);
+    for (const Detection& detection : detections) initialise_landmarks(detection);
   }
 
   Gaussian gaussian;
@@ -73,17 +73,17 @@ class Driven {
 
   void absorb(const Detection& detection) {
     const std::uint32_t slot = slot_of_[static_cast<std::size_t>(detection.identity)];
-    ExpectedSight expected;
+    ExpectedObservation expected;
     if (slot == kUnseen) return;
     if (gaussian.look_at(slot, expected) != JointGaussian::Trouble::none) return;
-    gaussian.absorb(slot, sight_of(detection), setting_.iterations, expected);
+    gaussian.absorb(slot, observation_of(detection), setting_.iterations, expected);
   }
 
-  void give_birth(const Detection& detection) {
+  void initialise_landmarks(const Detection& detection) {
     std::uint32_t& slot = slot_of_[static_cast<std::size_t>(detection.identity)];
     if (slot != kUnseen) return;
     slot = static_cast<std::uint32_t>(gaussian.landmarks());
-    gaussian.append(sight_of(detection));
+    gaussian.append(observation_of(detection));
   }
 
   Setting setting_;
@@ -106,7 +106,7 @@ void expect_equal_maps(const JointGaussian& plain, const CompressedGaussian& com
     EXPECT_LT((a.mean - b.mean).norm(), kRounding) << "landmark " << slot;
     EXPECT_LT((a.covariance - b.covariance).norm(), kRounding * a.covariance.norm());
     EXPECT_EQ(b.covariance, b.covariance.transpose());
-    ExpectedSight one, other;
+    ExpectedObservation one, other;
     ASSERT_EQ(plain.look_at(slot, one), compressed.look_at(slot, other));
     EXPECT_NEAR(one.factor.log_det(), other.factor.log_det(), kRounding) << "landmark " << slot;
     const Pose& pose = plain.pose().mean;
@@ -209,18 +209,18 @@ TEST(CompressedGaussian, RestsWhereItSavesNothing) {
   const MapMoments before = gaussian.map();
   for (int look = 0; look < 20 && first_far(gaussian) < gaussian.landmarks(); ++look) {
     const auto slot = static_cast<std::uint32_t>(first_far(gaussian));
-    gaussian.attend(std::span(&slot, 1));  // one after the other, and nothing is learnt
+    gaussian.make_near(std::span(&slot, 1));  // one after the other, and nothing is learnt
   }
   ASSERT_EQ(first_far(gaussian), gaussian.landmarks());
   const MapMoments after = gaussian.map();
   EXPECT_LT((after.mean - before.mean).norm(), kRounding);
   EXPECT_LT((after.covariance - before.covariance).norm(), kRounding);
-  ExpectedSight expected;
+  ExpectedObservation expected;
   for (int look = 0; look < 6000; ++look) {
     ASSERT_EQ(gaussian.look_at(0, expected), JointGaussian::Trouble::none);
-    gaussian.absorb(0, expected.sight, 0, expected);
+    gaussian.absorb(0, expected.observation, 0, expected);
   }
-  gaussian.attend({});
+  gaussian.make_near({});
   EXPECT_LT(first_far(gaussian), gaussian.landmarks());
 }
 
@@ -240,9 +240,9 @@ TEST(CompressedGaussian, WhatIsOutOfReachIsBeyondTheGate) {
         ++looked_at;
         if (!gaussian.is_out_of_reach(slot, drift, kRange, kSigmas)) continue;
         ++out;
-        ExpectedSight expected;
+        ExpectedObservation expected;
         ASSERT_EQ(gaussian.look_at(slot, expected), JointGaussian::Trouble::none);
-        const RangeBearing<double> nearest{kRange, expected.sight.bearing};
+        const RangeBearing<double> nearest{kRange, expected.observation.bearing};
         EXPECT_GT(expected.factor.whiten(expected.innovation(nearest)).norm(), kSigmas);
       }
     }
@@ -281,7 +281,7 @@ TEST(CompressedGaussian, CopiesFarLandmarksThatAreAlone) {
     alone.append({5.0 + static_cast<double>(k), 0.01 * static_cast<double>(k)});
   }
   const std::vector<std::uint32_t> first{0};
-  alone.attend(first);
+  alone.make_near(first);
   ASSERT_FALSE(alone.is_near(kLandmarks - 1));
   CompressedGaussian copy(Belief{}, Retraction::invariant, 10);
   copy.start({});
@@ -293,4 +293,4 @@ TEST(CompressedGaussian, CopiesFarLandmarksThatAreAlone) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 const Belief kRough{.vehicle = {},
@@ -15,7 +15,7 @@ const Belief kRough{.vehicle = {},
                     .sigma_steer = 0.2,
                     .sigma_range = 0.3,
                     .sigma_bearing = 0.05};
-const std::vector<Detection> kFirstSight{{8.0, 0.9, 0}, {12.0, -0.7, 1}, {6.0, -1.2, 2}};
+const std::vector<Detection> kFirstScan{{8.0, 0.9, 0}, {12.0, -0.7, 1}, {6.0, -1.2, 2}};
 
 /// The same drive for both: out, three landmarks, and on.
 JointGaussian driven(Retraction retraction) {
@@ -24,7 +24,7 @@ JointGaussian driven(Retraction retraction) {
   MotionIncrement motion;
   for (int step = 0; step < 40; ++step) motion.advance({3.0, 0.2}, 0.025, kRough);
   gaussian.move(motion);
-  for (const Detection& detection : kFirstSight) gaussian.append(sight_of(detection));
+  for (const Detection& detection : kFirstScan) gaussian.append(observation_of(detection));
   gaussian.move(motion);
   return gaussian;
 }
@@ -33,7 +33,7 @@ reference::TextbookEkfSlam textbook_driven() {
   reference::TextbookEkfSlam textbook(kRough);
   textbook.start({1.0, 2.0, 0.5});
   for (int step = 0; step < 40; ++step) textbook.predict({3.0, 0.2}, 0.025);
-  textbook.update(kFirstSight);
+  textbook.update(kFirstScan);
   for (int step = 0; step < 40; ++step) textbook.predict({3.0, 0.2}, 0.025);
   return textbook;
 }
@@ -59,17 +59,17 @@ TEST(JointGaussian, AnIteratedDetectionEndsAtTheTopOfThePosterior) {
   const auto textbook = textbook_driven();
   JointGaussian gaussian = driven(Retraction::additive);
   const RangeBearing<double> detected{7.0, -1.6};
-  ExpectedSight expected;
+  ExpectedObservation expected;
   ASSERT_EQ(gaussian.look_at(1, expected), JointGaussian::Trouble::none);
   gaussian.absorb(1, detected, 60, expected);
   const Eigen::VectorXd x = mean_of(gaussian);
-  const auto at = linearised_sight(Pose{x(0), x(1), x(2)}, Point{x(5), x(6)});
+  const auto at = linearised_observation(Pose{x(0), x(1), x(2)}, Point{x(5), x(6)});
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(2, x.size());
   H.leftCols<3>() = pose_jacobian(at);
   H.middleCols<2>(5) = landmark_jacobian(at);
   const Eigen::Vector2d R(kRough.sigma_range * kRough.sigma_range,
                           kRough.sigma_bearing * kRough.sigma_bearing);
-  const Eigen::Vector2d miss = to_vector(residual(detected, at.sight));
+  const Eigen::Vector2d miss = to_vector(residual(detected, at.observation));
   // The gradient of the log posterior, times the prior's covariance, which is singular.
   const Eigen::VectorXd slope =
       textbook.covariance * H.transpose() * R.cwiseInverse().asDiagonal() * miss -
@@ -94,7 +94,7 @@ TEST(JointGaussian, AnIteratedDetectionPassesTheBackwardDirection) {
   gaussian.start({});
   gaussian.append({3.0, 0.0});
   gaussian.move(MotionIncrement(Pose{}, {.xx = 4.0, .yy = 4.0, .hh = 0.01}));
-  ExpectedSight expected;
+  ExpectedObservation expected;
   ASSERT_EQ(gaussian.look_at(0, expected), JointGaussian::Trouble::none);
   gaussian.absorb(0, {0.559, 1.107}, 20, expected);
   EXPECT_NEAR(gaussian.pose().mean.x, 2.75, 0.2);
@@ -145,7 +145,7 @@ TEST(JointGaussian, BecomingAnotherLeavesNothingOfWhatItWas) {
   JointGaussian copy = small;
   for (JointGaussian* gaussian : {&large, &copy}) {
     for (int k = 0; k < 9; ++k) gaussian->append({4.0 + k, 0.3});
-    ExpectedSight expected;
+    ExpectedObservation expected;
     ASSERT_EQ(gaussian->look_at(7, expected), JointGaussian::Trouble::none);
     gaussian->absorb(7, {7.5, 0.28}, 1, expected);
   }
@@ -155,4 +155,4 @@ TEST(JointGaussian, BecomingAnotherLeavesNothingOfWhatItWas) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

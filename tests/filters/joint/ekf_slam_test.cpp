@@ -9,7 +9,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 FilterSetup setup_for(std::size_t landmarks, Association kind = Association::known) {
@@ -195,7 +195,7 @@ TEST(EkfSlam, LeavesOutClutterAndLandmarksTooNearForABearing) {
   const StepContext context(1, 0, 0, Parallel::serial());
   const std::vector<Detection> scan{{0.0, 0.0, 0}, {5.0, 0.1, Detection::kClutter}};
   filter->start({});
-  filter->update(context, scan);  // gives birth to a landmark where the vehicle stands
+  filter->update(context, scan);  // initialises a landmark where the vehicle stands
   filter->update(context, scan);
   EXPECT_EQ(filter->report().nis_dof, 0u);
   EXPECT_EQ(boxminus(filter->estimate().spread.mean, Pose{}).norm(), 0.0);
@@ -225,13 +225,13 @@ TEST(JointBelief, CountsAnInnovationThatIsNotPositiveDefiniteInAnIteration) {
   const Detection first{10.0, 0.3, 0}, absurd{1e200, 0.3, 0};  // its square is no number
   belief.start({});
   belief.absorb({}, Scan(&first, 1));
-  belief.give_birth(Scan(&first, 1));
+  belief.initialise_landmarks(Scan(&first, 1));
   MotionIncrement motion;
   motion.advance({3.0, 0.1}, 0.2, setup.belief);
   belief.absorb(motion, Scan(&absurd, 1));
   EXPECT_EQ(belief.outcome().faults, 1u);
-  EXPECT_EQ(belief.sightings().size(), 1u);  // absorbed as it was linearised last
+  EXPECT_EQ(belief.absorbed_detections().size(), 1u);  // absorbed as it was linearised last
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 using Options = std::map<std::string, std::string, std::less<>>;
@@ -188,4 +188,4 @@ TEST(NormalQuantile, IsWhereTheNormalDistributionHasItsShare) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

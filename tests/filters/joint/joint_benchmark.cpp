@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 constexpr std::size_t kSeenPerScan = 5;
@@ -93,10 +93,11 @@ struct RingRoad {
   std::vector<Detection> scan(const Pose& pose, std::uint32_t step) const {
     std::vector<Detection> all;
     for (std::uint32_t k = 0; k < landmarks.size(); ++k) {
-      const auto sight = predicted_sight(pose, landmarks[k]);
-      if (sight.range > 30.0 || std::abs(sight.bearing) > kPi / 2.0) continue;
+      const auto observation = predicted_observation(pose, landmarks[k]);
+      if (observation.range > 30.0 || std::abs(observation.bearing) > kPi / 2.0) continue;
       RngStream draw({.step = step, .index = k, .purpose = Draw::world_detection});
-      all.push_back({sight.range + 0.1 * draw.normal(), wrap(sight.bearing + 0.02 * draw.normal()),
+      all.push_back({observation.range + 0.1 * draw.normal(),
+                     wrap(observation.bearing + 0.02 * draw.normal()),
                      static_cast<std::int32_t>(k)});
     }
     return all;
@@ -166,4 +167,4 @@ BENCHMARK_CAPTURE(ekf_slam_scan, known, Association::known)->Arg(35)->Arg(135);
 BENCHMARK_CAPTURE(ekf_slam_scan, nearest, Association::nearest)->Arg(35)->Arg(135);
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

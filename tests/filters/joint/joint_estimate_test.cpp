@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 constexpr std::size_t kLandmarks = 20;
@@ -80,4 +80,4 @@ TEST(JointEstimate, OfABankThatSplitsHasItsParts) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 constexpr std::size_t kLandmarks = 300;
@@ -52,15 +52,15 @@ struct Plain {
     const std::size_t known = identities.size();
     for (const Detection& detection : scan) {
       const std::size_t slot = slot_of(detection.identity);
-      ExpectedSight expected;
+      ExpectedObservation expected;
       if (slot == known) continue;
       ASSERT_EQ(gaussian.look_at(slot, expected), JointGaussian::Trouble::none);
-      EXPECT_EQ(gaussian.absorb(slot, sight_of(detection), 0, expected),
+      EXPECT_EQ(gaussian.absorb(slot, observation_of(detection), 0, expected),
                 JointGaussian::Trouble::none);
     }
     for (const Detection& detection : scan) {
       if (std::ranges::find(identities, detection.identity) != identities.end()) continue;
-      gaussian.append(sight_of(detection));
+      gaussian.append(observation_of(detection));
       identities.push_back(detection.identity);
     }
   }
@@ -134,4 +134,4 @@ TEST(LargeMap, OfABankThatSplitsIsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 JointEstimate gaussian(double x, double heading, double variance) {
@@ -89,4 +89,4 @@ TEST(MixtureOfLandmarks, HasTheMomentsOfItsComponents) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

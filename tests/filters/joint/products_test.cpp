@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, std::uint32_t seed) {
@@ -69,4 +69,4 @@ TEST(Products, AProductMayHaveFewColumns) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

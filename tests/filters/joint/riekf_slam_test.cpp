@@ -9,7 +9,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 using Make = std::unique_ptr<SlamFilter> (*)(const FilterSetup&);
@@ -154,4 +154,4 @@ TEST(RiekfSlam, StaysConsistentWhereEkfSlamDoesNot) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

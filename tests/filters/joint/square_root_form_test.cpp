@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 /// Of Ankishan et al., Simulation I.
@@ -63,7 +63,7 @@ struct Comparison {
 class SquareRootForm : public testing::TestWithParam<std::pair<Retraction, double>> {
  protected:
   void absorb(std::size_t slot, const RangeBearing<double>& detected) {
-    ExpectedSight expected;
+    ExpectedObservation expected;
     const auto trouble = gaussian.look_at(slot, expected);
     if (trouble == JointGaussian::Trouble::faulty) ++comparison.faults;
     if (trouble != JointGaussian::Trouble::none) return;
@@ -84,7 +84,7 @@ class SquareRootForm : public testing::TestWithParam<std::pair<Retraction, doubl
       if (found == identities.end()) {
         fresh.push_back(detection);
       } else {
-        absorb(static_cast<std::size_t>(found - identities.begin()), sight_of(detection));
+        absorb(static_cast<std::size_t>(found - identities.begin()), observation_of(detection));
       }
     }
     if (const double keep = GetParam().second; keep < 1.0) {
@@ -95,8 +95,8 @@ class SquareRootForm : public testing::TestWithParam<std::pair<Retraction, doubl
     }
     for (const Detection& detection : fresh) {
       identities.push_back(detection.identity);
-      gaussian.append(sight_of(detection));
-      root.append(sight_of(detection));
+      gaussian.append(observation_of(detection));
+      root.append(observation_of(detection));
     }
   }
 
@@ -107,7 +107,7 @@ class SquareRootForm : public testing::TestWithParam<std::pair<Retraction, doubl
 };
 
 /// Two rounds in the largest noise of the papers: there the covariance loses most to rounding.
-TEST_P(SquareRootForm, TellsProductionNothingNew) {
+TEST_P(SquareRootForm, EqualsTheProductionFilter) {
   const SmallWorld world =
       small_world({.seed = 41, .landmarks = 20, .scans = 570, .noise = kLargeNoise});
   gaussian.start({});
@@ -130,4 +130,4 @@ INSTANTIATE_TEST_SUITE_P(BothErrors, SquareRootForm,
                                          std::pair{Retraction::invariant, 0.95}));
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

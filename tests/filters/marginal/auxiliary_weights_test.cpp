@@ -11,7 +11,7 @@
 #include <vector>
 
 // EQUATIONS (12.4): the weights of the auxiliary marginal filter.
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 const StepContext kContext(1, 0, 0, Parallel::serial());
@@ -155,4 +155,4 @@ TEST(SharedLikelihood, KnowsTheMapsCovarianceOnlyWhereTheMapRemembers) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

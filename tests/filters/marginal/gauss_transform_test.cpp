@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 template <std::size_t D>
@@ -137,4 +137,4 @@ TEST(FarthestPoints, CoverEveryPointAndShrinkBack) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

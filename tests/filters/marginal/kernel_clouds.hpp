@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Prior kernels of a cloud of poses after eight steps, and targets drawn near them.
 template <class Real>
@@ -55,4 +55,4 @@ struct KernelCloud {
   }
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -12,7 +12,7 @@
 // method and number of particles, for thin clouds (as wide as a kernel) and wide ones (30 times);
 // the plain Eigen loop in the same run is what the ratio is quoted against.
 // build/benchmarks --benchmark_filter=KernelSums
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 constexpr double kFloor = 0.01;  // [m]
@@ -75,4 +75,4 @@ BENCHMARK_CAPTURE(KernelSumsBy, tree, KernelSums::tree)->Apply(sizes);
 BENCHMARK_CAPTURE(KernelSumsBy, ifgt, KernelSums::ifgt)->Apply(sizes);
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -10,7 +10,7 @@
 #include <numeric>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 const StepContext kContext(1, 0, 0, Parallel::serial());
@@ -176,4 +176,4 @@ TEST(KernelRatios, AreOneWherePriorKernelsAreChosenByWeight) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -9,7 +9,7 @@
 
 // What a landmark's candidate costs for each particle, and the plain Eigen loop in the same run.
 // build/benchmarks --benchmark_filter=MapFitness
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 constexpr SensorNoise kNoise{0.01, 0.0004};
@@ -57,7 +57,7 @@ void MapFitnessPlain(benchmark::State& state) {
     for (std::size_t k = 0; k < kCandidates; ++k) {
       double sum = 0.0;
       for (const Pose& pose : column) {
-        const auto v = residual(kSeen, predicted_sight(pose, candidate(k)));
+        const auto v = residual(kSeen, predicted_observation(pose, candidate(k)));
         const Eigen::Vector2d nu(v.range, v.bearing);
         sum += std::exp(-0.5 * nu.dot(factor.solve(nu))) / static_cast<double>(n);
       }
@@ -80,4 +80,4 @@ BENCHMARK_CAPTURE(MapFitness, squares, MapObjective::squares)
     ->MinTime(0.05);
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 constexpr SensorNoise kNoise{0.01, 0.0004};
@@ -23,8 +23,8 @@ struct Cloud {
   explicit Cloud(double width, std::size_t n = 13, std::uint32_t seed = 0)
       : poses(blocks_for<Real>(n)), weights(n) {
     RngStream draw({3, 0, 0, seed, Draw::test});
-    const auto sight = predicted_sight(Pose{}, kTruth);
-    seen = {sight.range + 0.1 * draw.normal(), sight.bearing + 0.02 * draw.normal()};
+    const auto observation = predicted_observation(Pose{}, kTruth);
+    seen = {observation.range + 0.1 * draw.normal(), observation.bearing + 0.02 * draw.normal()};
     for (std::size_t i = 0; i < poses.size() * kLanesOf<Real>; ++i) {
       BasicPose<Real>& pose = poses[i / kLanesOf<Real>];
       set(pose.x, i % kLanesOf<Real>, width * draw.normal());
@@ -87,7 +87,7 @@ TEST(MapLearning, RecursiveMapsAverageWhatTheySaw) {
     EXPECT_LT(landmark.covariance().xx, before);
     before = landmark.covariance().xx;
   }
-  // sigma of one sight is about 0.1 m and 0.2 m; of 400, a twentieth: five of those
+  // sigma of one observation is about 0.1 m and 0.2 m; of 400, a twentieth: five of those
   EXPECT_LT(distance(landmark.mean, kTruth), 5.0 * 0.22 / 20.0);
   EXPECT_LT(landmark.covariance().xx, 0.04 / 400.0 * 1.5);
 }
@@ -129,10 +129,10 @@ TEST(MapLearning, AsPrintedTheWeightsMakeNoDifference) {
   EXPECT_NEAR(distance(cloud.learnt(settings, kBefore).mean, of_heavy), 0.5, 0.1);
 }
 
-TEST(MapLearning, ALandmarkIsBornWhereTheWeightedParticlesSeeIt) {
+TEST(MapLearning, ALandmarkIsInitialisedWhereTheWeightedParticlesSeeIt) {
   const Cloud<Lanes> cloud(0.05);
   MapLearning<Lanes> learning({}, kNoise);
-  const SharedLandmark born = learning.born(cloud.poses, cloud.weights, cloud.seen);
+  const SharedLandmark initialised = learning.initialised(cloud.poses, cloud.weights, cloud.seen);
   Point mean;
   for (std::size_t i = 0; i < 13; ++i) {
     const Pose pose = pose_of_particle<Lanes>([&](std::size_t b) { return cloud.poses[b]; }, i);
@@ -140,11 +140,11 @@ TEST(MapLearning, ALandmarkIsBornWhereTheWeightedParticlesSeeIt) {
     mean.x += cloud.weights.linear_scalars()[i] * place.x;
     mean.y += cloud.weights.linear_scalars()[i] * place.y;
   }
-  EXPECT_LT(distance(born.mean, mean), 1e-12);
-  const Symmetric2<double> P = born.covariance();
+  EXPECT_LT(distance(initialised.mean, mean), 1e-12);
+  const Symmetric2<double> P = initialised.covariance();
   const double range = cloud.seen.range;
   EXPECT_NEAR(P.xx * P.yy - P.xy * P.xy, 0.01 * 0.0004 * range * range, 1e-9);
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

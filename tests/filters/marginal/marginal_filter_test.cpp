@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 using Texts = std::map<std::string, std::string, std::less<>>;
@@ -283,4 +283,4 @@ INSTANTIATE_TEST_SUITE_P(
     index_of);
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -7,7 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::models {
 namespace {
 
 constexpr double kDuration = 0.025;
@@ -160,4 +160,4 @@ TEST(Ackermann, NoiseOfEightStepsIsAsThinAsMeasured) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::models

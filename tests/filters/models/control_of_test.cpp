@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::models {
 namespace {
 
 // Whatever a control does, the same is done by the control that is found from it.
@@ -28,10 +28,10 @@ TEST(ControlOf, TurnsAStepRound) {
 }
 
 TEST(ControlOf, FindsNoSteeringInAVehicleThatStands) {
-  const Control standing = control_of({0.0, 0.0, 0.0}, 0.1, Vehicle{});
-  EXPECT_EQ(standing.speed, 0.0);
-  EXPECT_EQ(standing.steer, 0.0);
+  const Control at_rest = control_of({0.0, 0.0, 0.0}, 0.1, Vehicle{});
+  EXPECT_EQ(at_rest.speed, 0.0);
+  EXPECT_EQ(at_rest.steer, 0.0);
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::models

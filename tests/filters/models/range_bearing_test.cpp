@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::models {
 namespace {
 
 struct Case {
@@ -20,26 +20,26 @@ Case random_case(RngStream& draw) {
 }
 
 /// Central difference of h() by the value `at` points to.
-Eigen::Vector2d sight_slope(Case c, double& (*at)(Case&)) {
+Eigen::Vector2d observation_slope(Case c, double& (*at)(Case&)) {
   const double middle = at(c);
   const double h = 1e-5;
   at(c) = middle + h;
-  const auto ahead = predicted_sight(c.pose, c.landmark);
+  const auto ahead = predicted_observation(c.pose, c.landmark);
   at(c) = middle - h;
-  return to_vector(residual(ahead, predicted_sight(c.pose, c.landmark))) / (2.0 * h);
+  return to_vector(residual(ahead, predicted_observation(c.pose, c.landmark))) / (2.0 * h);
 }
 
 TEST(RangeBearing, JacobiansEqualCentralDifferences) {
   RngStream draw({.seed = 31, .purpose = Draw::test});
   for (int n = 0; n < 200; ++n) {
     const Case c = random_case(draw);
-    const auto s = linearised_sight(c.pose, c.landmark);
+    const auto s = linearised_observation(c.pose, c.landmark);
     Eigen::Matrix<double, 2, 5> expected;
-    expected << sight_slope(c, [](Case& v) -> double& { return v.pose.x; }),
-        sight_slope(c, [](Case& v) -> double& { return v.pose.y; }),
-        sight_slope(c, [](Case& v) -> double& { return v.pose.heading; }),
-        sight_slope(c, [](Case& v) -> double& { return v.landmark.x; }),
-        sight_slope(c, [](Case& v) -> double& { return v.landmark.y; });
+    expected << observation_slope(c, [](Case& v) -> double& { return v.pose.x; }),
+        observation_slope(c, [](Case& v) -> double& { return v.pose.y; }),
+        observation_slope(c, [](Case& v) -> double& { return v.pose.heading; }),
+        observation_slope(c, [](Case& v) -> double& { return v.landmark.x; }),
+        observation_slope(c, [](Case& v) -> double& { return v.landmark.y; });
     EXPECT_LT((pose_jacobian(s) - expected.leftCols<3>()).norm(), 1e-6) << "case " << n;
     EXPECT_LT((landmark_jacobian(s) - expected.rightCols<2>()).norm(), 1e-6) << "case " << n;
   }
@@ -49,7 +49,7 @@ TEST(RangeBearing, PlacingALandmarkInvertsSeeingIt) {
   RngStream draw({.seed = 32, .purpose = Draw::test});
   for (int n = 0; n < 200; ++n) {
     const Case c = random_case(draw);
-    const Point there = linearised_place(c.pose, predicted_sight(c.pose, c.landmark)).point;
+    const Point there = linearised_place(c.pose, predicted_observation(c.pose, c.landmark)).point;
     EXPECT_NEAR(there.x, c.landmark.x, 1e-12) << "case " << n;
     EXPECT_NEAR(there.y, c.landmark.y, 1e-12) << "case " << n;
   }
@@ -60,9 +60,9 @@ TEST(RangeBearing, DerivativesOfPlacingInvertThoseOfSeeing) {
   RngStream draw({.seed = 33, .purpose = Draw::test});
   for (int n = 0; n < 200; ++n) {
     const Case c = random_case(draw);
-    const auto seen = linearised_sight(c.pose, c.landmark);
-    const auto placed = linearised_place(c.pose, seen.sight);
-    const Eigen::Matrix2d Gz = sight_jacobian(placed);
+    const auto seen = linearised_observation(c.pose, c.landmark);
+    const auto placed = linearised_place(c.pose, seen.observation);
+    const Eigen::Matrix2d Gz = observation_jacobian(placed);
     EXPECT_LT((Gz * landmark_jacobian(seen) - Eigen::Matrix2d::Identity()).norm(), 1e-11);
     EXPECT_LT((pose_jacobian(placed) + Gz * pose_jacobian(seen)).norm(), 1e-11);
   }
@@ -85,15 +85,15 @@ TEST(RangeBearing, TurningAndShiftingTheWorldChangesNothing) {
     const Pose pose{x(c.pose.x, c.pose.y), y(c.pose.x, c.pose.y), wrap(c.pose.heading + 1.0 + n)};
     const Point landmark{x(c.landmark.x, c.landmark.y), y(c.landmark.x, c.landmark.y)};
     const auto change =
-        residual(predicted_sight(pose, landmark), predicted_sight(c.pose, c.landmark));
+        residual(predicted_observation(pose, landmark), predicted_observation(c.pose, c.landmark));
     EXPECT_LT(to_vector(change).norm(), 1e-11) << "case " << n;
   }
 }
 
 TEST(RangeBearing, KnowsWhenALandmarkIsTooNear) {
-  EXPECT_TRUE(too_near(predicted_sight(Pose{1.0, 1.0, 0.0}, Point{1.0 + 1e-7, 1.0})));
-  EXPECT_FALSE(too_near(predicted_sight(Pose{1.0, 1.0, 0.0}, Point{1.001, 1.0})));
+  EXPECT_TRUE(too_near(predicted_observation(Pose{1.0, 1.0, 0.0}, Point{1.0 + 1e-7, 1.0})));
+  EXPECT_FALSE(too_near(predicted_observation(Pose{1.0, 1.0, 0.0}, Point{1.001, 1.0})));
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::models

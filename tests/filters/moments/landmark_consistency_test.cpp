@@ -10,7 +10,7 @@
 #include <cmath>
 #include <map>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 constexpr int kRuns = 2000;
@@ -96,4 +96,4 @@ TEST(LandmarkAlone, TheLinearisedOneIsOverconfidentInThatNoise) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 TEST(QuadratureMotion, HasTheMomentsOfATremblingFrontAxle) {
@@ -47,4 +47,4 @@ TEST(QuadratureMotion, IsTheLinearisedOneWhereNoiseIsSmall) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

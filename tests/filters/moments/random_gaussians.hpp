@@ -10,7 +10,7 @@
 #include <cmath>
 
 /// Random beliefs for tests of the moment transforms.
-namespace montecarta {
+namespace montecarta::filters {
 
 /// Covariance over (x, y, heading) of up to `place` [m] and `heading` [rad], correlated.
 inline Symmetric3<double> random_pose_covariance(RngStream& draw, double place, double heading) {
@@ -32,14 +32,14 @@ inline Eigen::Matrix2d symmetric(const Symmetric2<double>& P) {
 }
 
 /// A pose, a landmark 15 to 35 m away, and a detection of it.
-struct RandomSight {
+struct RandomObservation {
   PoseGaussian<double> pose;
   LandmarkGaussian<double> landmark;
   RangeBearing<double> seen;
   SensorNoise noise;
 
   /// `scale` = 1: uncertain enough to be bent; small: as good as linear.
-  explicit RandomSight(RngStream& draw, double scale = 1.0) {
+  explicit RandomObservation(RngStream& draw, double scale = 1.0) {
     pose.mean = {10.0 * draw.normal(), 10.0 * draw.normal(), wrap(7.0 * draw.normal())};
     pose.covariance = random_pose_covariance(draw, 0.5 * scale, 0.05 * scale);
     const double angle = 7.0 * draw.normal(), range = 15.0 + 20.0 * draw.uniform();
@@ -47,10 +47,10 @@ struct RandomSight {
     landmark.covariance = random_landmark_covariance(draw, 0.8 * scale);
     noise = {std::pow(scale * (0.05 + draw.uniform()), 2),
              std::pow(0.1 * scale * (0.05 + draw.uniform()), 2)};
-    const RangeBearing<double> sight = predicted_sight(pose.mean, landmark.mean);
-    seen = {sight.range + scale * draw.normal(),
-            wrap(sight.bearing + 0.05 * scale * draw.normal())};
+    const RangeBearing<double> observation = predicted_observation(pose.mean, landmark.mean);
+    seen = {observation.range + scale * draw.normal(),
+            wrap(observation.bearing + 0.05 * scale * draw.normal())};
   }
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

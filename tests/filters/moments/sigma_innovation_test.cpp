@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 using reference::Vector;
@@ -26,7 +26,7 @@ Matrix32 cross_of(const Innovation<double>& v) {
 Eigen::Matrix2d root_of(const SensorNoise& noise) {
   return Vector<2>(std::sqrt(noise.range), std::sqrt(noise.bearing)).asDiagonal();
 }
-Eigen::Matrix2d root_of(const RandomSight& c) {
+Eigen::Matrix2d root_of(const RandomObservation& c) {
   const Vector<3> pose = reference::to_vector(c.pose.mean);
   return reference::chol_in<2>(reference::across_first(pose, to_vector(c.landmark.mean)),
                                symmetric(c.landmark.covariance));
@@ -34,7 +34,7 @@ Eigen::Matrix2d root_of(const RandomSight& c) {
 
 /// `v` has the moments of `image`, of ranges up to 35 m but for their rounding.
 template <int N>
-void expect_moments(const Innovation<double>& v, const RandomSight& c,
+void expect_moments(const Innovation<double>& v, const RandomObservation& c,
                     const reference::Differences<N, 2>& image) {
   const Eigen::Matrix2d S = image.A * image.A.transpose() + image.B * image.B.transpose();
   const Vector<2> nu = reference::difference<1, 2>(to_vector(c.seen), image.mean);
@@ -45,15 +45,15 @@ void expect_moments(const Innovation<double>& v, const RandomSight& c,
 TEST(SigmaInnovation, OfALandmarkAddsTheNoiseThatPointsWouldCarry) {
   RngStream draw({.seed = 233, .purpose = Draw::test});
   for (int n = 0; n < 500; ++n) {
-    const RandomSight c(draw);
+    const RandomObservation c(draw);
     Vector<4> both = Vector<4>::Zero();
     both.head<2>() = to_vector(c.landmark.mean);
     Eigen::Matrix4d root = Eigen::Matrix4d::Zero();
     root.topLeftCorner<2, 2>() = root_of(c), root.bottomRightCorner<2, 2>() = root_of(c.noise);
-    const reference::LandmarkModel sight{c.pose.mean};
+    const reference::LandmarkModel observation{c.pose.mean};
     const auto augmented = reference::central_differences<2, 1>(
         both, root, kInterval,
-        [&](const Vector<4>& v) -> Vector<2> { return sight(v.head<2>()) + v.tail<2>(); });
+        [&](const Vector<4>& v) -> Vector<2> { return observation(v.head<2>()) + v.tail<2>(); });
 
     LandmarkGaussian<double> landmark = c.landmark;
     Evidence<double> evidence;
@@ -67,7 +67,7 @@ TEST(SigmaInnovation, OfALandmarkAddsTheNoiseThatPointsWouldCarry) {
 TEST(SigmaInnovation, OfAPoseAddsTheNoiseThatPointsWouldCarry) {
   RngStream draw({.seed = 234, .purpose = Draw::test});
   for (int n = 0; n < 500; ++n) {
-    const RandomSight c(draw);
+    const RandomObservation c(draw);
     Vector<7> all = Vector<7>::Zero();
     all.head<3>() = reference::to_vector(c.pose.mean);
     all.segment<2>(3) = to_vector(c.landmark.mean);
@@ -76,25 +76,26 @@ TEST(SigmaInnovation, OfAPoseAddsTheNoiseThatPointsWouldCarry) {
     const auto root = reference::blocks<3, 2, 2>(
         reference::chol_in<3>(T, symmetric(c.pose.covariance)), root_of(c), root_of(c.noise));
     const auto augmented =
-        reference::central_differences<2, 1>(all, root, kInterval, reference::SightModel{});
+        reference::central_differences<2, 1>(all, root, kInterval, reference::ObservationModel{});
 
-    const Sightline<double> s = sightline(c.pose.mean, c.landmark.mean);
-    const auto sight = sigma_sight_of(c.pose.covariance, c.landmark.covariance, s, c.seen, c.noise,
-                                      central_difference_rule(kInterval), MapUncertainty::on);
-    expect_moments<7>(sight.whole, c, augmented);
+    const LineOfSight<double> s = line_of_sight(c.pose.mean, c.landmark.mean);
+    const auto observation =
+        sigma_observation_of(c.pose.covariance, c.landmark.covariance, s, c.seen, c.noise,
+                             central_difference_rule(kInterval), MapUncertainty::on);
+    expect_moments<7>(observation.whole, c, augmented);
     const Matrix32 C = (root * augmented.A.transpose()).topRows<3>();
-    EXPECT_LT((cross_of(sight.proposal) - C).norm(), 1e-13 * (1 + C.norm()));
+    EXPECT_LT((cross_of(observation.proposal) - C).norm(), 1e-13 * (1 + C.norm()));
   }
 }
 
 /// Hx P Hx' + Hf Sigma Hf' + R and its parts, with the models' derivatives.
-struct LinearSight {
+struct LinearObservation {
   Eigen::Matrix2d of_pose, of_map, of_sensor;
   Matrix32 cross;
-  explicit LinearSight(const RandomSight& c) {
-    const auto sight = linearised_sight(c.pose.mean, c.landmark.mean);
-    const Matrix23 Hx = pose_jacobian(sight);
-    const Eigen::Matrix2d Hf = landmark_jacobian(sight);
+  explicit LinearObservation(const RandomObservation& c) {
+    const auto observation = linearised_observation(c.pose.mean, c.landmark.mean);
+    const Matrix23 Hx = pose_jacobian(observation);
+    const Eigen::Matrix2d Hf = landmark_jacobian(observation);
     const Eigen::Matrix3d P = symmetric(c.pose.covariance);
     of_pose = Hx * P * Hx.transpose();
     of_map = Hf * symmetric(c.landmark.covariance) * Hf.transpose();
@@ -104,22 +105,23 @@ struct LinearSight {
   Eigen::Matrix2d whole() const { return of_pose + of_map + of_sensor; }
 };
 
-TEST(SigmaInnovation, IsThatOfPoseMapAndSensorWhereTheModelsAreStraight) {
+TEST(SigmaInnovation, IsThatOfPoseMapAndSensorOnLinearModels) {
   RngStream draw({.seed = 236, .purpose = Draw::test});
   for (int n = 0; n < 500; ++n) {
-    const RandomSight c(draw, 1e-4);
-    const LinearSight truth(c);
-    const Sightline<double> s = sightline(c.pose.mean, c.landmark.mean);
+    const RandomObservation c(draw, 1e-4);
+    const LinearObservation truth(c);
+    const LineOfSight<double> s = line_of_sight(c.pose.mean, c.landmark.mean);
     for (const SigmaRule& rule :
          {unscented_rule(5, 0.9, 2, 0), central_difference_rule(kInterval)}) {
       for (const auto map : {MapUncertainty::on, MapUncertainty::off}) {
-        const auto sight =
-            sigma_sight_of(c.pose.covariance, c.landmark.covariance, s, c.seen, c.noise, rule, map);
+        const auto observation = sigma_observation_of(c.pose.covariance, c.landmark.covariance, s,
+                                                      c.seen, c.noise, rule, map);
         const Eigen::Matrix2d moving =
             map == MapUncertainty::on ? truth.whole() : truth.of_pose + truth.of_sensor;
-        EXPECT_LT((covariance_of(sight.whole) - truth.whole()).norm(), 1e-7 * truth.whole().norm());
-        EXPECT_LT((covariance_of(sight.proposal) - moving).norm(), 1e-7 * moving.norm());
-        EXPECT_LT((cross_of(sight.proposal) - truth.cross).norm(), 1e-7 * truth.cross.norm());
+        EXPECT_LT((covariance_of(observation.whole) - truth.whole()).norm(),
+                  1e-7 * truth.whole().norm());
+        EXPECT_LT((covariance_of(observation.proposal) - moving).norm(), 1e-7 * moving.norm());
+        EXPECT_LT((cross_of(observation.proposal) - truth.cross).norm(), 1e-7 * truth.cross.norm());
       }
     }
   }
@@ -128,8 +130,8 @@ TEST(SigmaInnovation, IsThatOfPoseMapAndSensorWhereTheModelsAreStraight) {
 TEST(LinearisedInnovation, IsThatOfPoseMapAndSensor) {
   RngStream draw({.seed = 237, .purpose = Draw::test});
   for (int n = 0; n < 500; ++n) {
-    const RandomSight c(draw);
-    const LinearSight truth(c);
+    const RandomObservation c(draw);
+    const LinearObservation truth(c);
     PoseGaussian<double> pose = c.pose;
     Evidence<double> evidence;
     const auto v = refine_pose(pose, c.landmark, c.seen, c.noise, Everywhere(), evidence);
@@ -144,4 +146,4 @@ TEST(LinearisedInnovation, IsThatOfPoseMapAndSensor) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 using reference::blocks;
@@ -79,4 +79,4 @@ TEST(SigmaMotion, WithoutNoiseIsTheVehicleItself) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 using reference::Image;
@@ -132,4 +132,4 @@ TEST(SigmaRule, ThePrintedWeightsAreThoseOfEquation14) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -13,9 +13,9 @@
 #include <optional>
 #include <vector>
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
-/// A map: by identity where association is known, else by birth.
+/// A map: by identity where association is known, else by initialisation.
 using Landmarks = std::vector<std::optional<Landmark>>;
 
 /// What each detection is, where the simulator tells; a fresh one with the place it will have.
@@ -88,4 +88,4 @@ inline double log_unmatched(const AssociationSettings& settings, const Belief& b
          settings.log_new_density_offset;
 }
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

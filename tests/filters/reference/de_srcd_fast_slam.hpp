@@ -4,7 +4,7 @@
 #include "tests/filters/reference/evolution.hpp"
 #include "tests/filters/reference/srcd_fast_slam.hpp"
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 /// DE-SRCD-FastSLAM (EQUATIONS 10): SrcdFastSlam between its own evolution and its own weights.
 class DeSrcdFastSlam : public SrcdFastSlam {
@@ -23,7 +23,7 @@ class DeSrcdFastSlam : public SrcdFastSlam {
 
   void weigh_and_draw(const StepContext& context, std::uint32_t i, Particle& p,
                       Scan scan) override {
-    if (i == 0 && de_.mode != DeMode::honest) move_cloud(context, scan);
+    if (i == 0 && de_.mode != DeMode::unbiased) move_cloud(context, scan);
     const Eigen::Vector3d predicted = p.pose;
     const Eigen::Matrix3d P_predicted = p.covariance;
     if (!pays()) p.pose = centres_[i];
@@ -36,7 +36,7 @@ class DeSrcdFastSlam : public SrcdFastSlam {
     const Eigen::Matrix3d root = ahead * psd_chol<3>(ahead.transpose() * p.covariance * ahead);
     Eigen::Vector3d centre = p.pose;
     if (de_.mode == DeMode::shared) centre = centres_[i];
-    if (de_.mode == DeMode::honest) {
+    if (de_.mode == DeMode::unbiased) {
       centre = most_probable(context.identity(Draw::evolution, i), p, root, predicted, P_predicted,
                              scan);
     }
@@ -61,9 +61,9 @@ class DeSrcdFastSlam : public SrcdFastSlam {
                     log_density(p.pose, centre, inflation * p.refined_covariance);
   }
 
-  bool pays() const { return de_.mode == DeMode::honest || de_.mode == DeMode::shared; }
+  bool pays() const { return de_.mode == DeMode::unbiased || de_.mode == DeMode::shared; }
 
-  /// Mode honest: a population of its own, in standard deviations of its refined Gaussian.
+  /// Mode unbiased: a population of its own, in standard deviations of its refined Gaussian.
   Eigen::Vector3d most_probable(const StreamIdentity& chance, const Particle& p,
                                 const Eigen::Matrix3d& root, const Eigen::Vector3d& predicted,
                                 const Eigen::Matrix3d& P_predicted, Scan scan) {
@@ -135,8 +135,8 @@ class DeSrcdFastSlam : public SrcdFastSlam {
     for (std::size_t k = 0; k < scan.size(); ++k) {
       if (p.pairings[k].kind != PairingKind::matched) continue;
       const Eigen::Vector2d& f = p.map[p.pairings[k].landmark]->mean;
-      const Eigen::Vector2d nu = montecarta::to_vector(
-          residual(sight_of(scan[k]), predicted_sight(as_pose(pose), Point{f(0), f(1)})));
+      const Eigen::Vector2d nu = filters::to_vector(residual(
+          observation_of(scan[k]), predicted_observation(as_pose(pose), Point{f(0), f(1)})));
       sum -= 0.5 * nu.dot(R_.inverse() * nu);
     }
     return sum;
@@ -171,4 +171,4 @@ class DeSrcdFastSlam : public SrcdFastSlam {
   std::vector<Eigen::Vector3d> centres_;  ///< where the cloud moved to
 };
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 /// FastSLAM II that draws poses at every `every`-th scan (EQUATIONS 11), each particle a
 /// full EKF-SLAM in between; known association, no clutter.
@@ -83,9 +83,9 @@ class DelayedFastSlam final : public SlamFilter {
     return Eigen::Vector2d(std::pow(b.sigma_range, 2), std::pow(b.sigma_bearing, 2)).asDiagonal();
   }
   double log_density(const TextbookEkfSlam& joint, const Detection& detection) const {
-    const auto [sight, H] = joint.look(joint.row_of(detection.identity));
+    const auto [observation, H] = joint.look(joint.row_of(detection.identity));
     const Eigen::Matrix2d S = sandwich(H, joint.covariance) + R();
-    return log_gaussian<2>(to_vector(residual(sight_of(detection), sight)), S);
+    return log_gaussian<2>(to_vector(residual(observation_of(detection), observation)), S);
   }
 
   void weigh(const StepContext& context, std::uint32_t i, Particle& p, Scan scan) const {
@@ -169,4 +169,4 @@ class DelayedFastSlam final : public SlamFilter {
   bool after_update_ = false;
 };
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

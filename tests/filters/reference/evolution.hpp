@@ -13,7 +13,7 @@
 #include <limits>
 #include <vector>
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 /// What a trial starts from (EQUATIONS 9): DE/best/1, DE/rand/1, DE/current/1.
 enum class Base { best, random, target };
@@ -124,4 +124,4 @@ class Evolution : public EvolutionRecord {
   }
 };
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

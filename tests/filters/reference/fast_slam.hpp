@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 /// The skeleton of EQUATIONS 4, particle by particle and step by step: what production is held to
 /// and compared with in speed. Filters differ in predict() and in how they refine(), weigh and
@@ -92,7 +92,7 @@ class FastSlam : public SlamFilter {
       update_landmark(landmark, *seen, R_);
     }
   }
-  virtual Landmark born(const Eigen::Vector3d& pose, const Detection& detection) const {
+  virtual Landmark initialised(const Eigen::Vector3d& pose, const Detection& detection) const {
     return new_landmark(pose, detection, R_);
   }
 
@@ -162,7 +162,7 @@ class FastSlam : public SlamFilter {
   void add_new_landmarks(Particle& p, Scan scan) const {
     for (std::size_t k = 0; k < scan.size(); ++k) {
       if (p.pairings[k].kind != PairingKind::fresh) continue;
-      const Landmark landmark = born(p.pose, scan[k]);
+      const Landmark landmark = initialised(p.pose, scan[k]);
       if (known()) {
         p.map[p.pairings[k].landmark] = landmark;
       } else {
@@ -191,4 +191,4 @@ class FastSlam : public SlamFilter {
   bool after_update_ = false;
 };
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

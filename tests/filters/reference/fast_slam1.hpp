@@ -3,7 +3,7 @@
 
 #include "tests/filters/reference/fast_slam.hpp"
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 /// FastSLAM I (EQUATIONS 5): poses are drawn from the motion model at every step, and weighed by
 /// the scan.
@@ -32,4 +32,4 @@ class FastSlam1 : public FastSlam {
   }
 };
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

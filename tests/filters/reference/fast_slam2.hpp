@@ -7,7 +7,7 @@
 
 #include <optional>
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 /// FastSLAM II (EQUATIONS 6): the pose Gaussian is refined by the scan, weighed, and a pose drawn
 /// from it. Filters with other Gaussians differ in move_gaussian(), absorb() and log_likelihood().
@@ -153,4 +153,4 @@ class FastSlam2 : public FastSlam {
   Weight weight_;
 };
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 namespace {
 
 /// So much noise on the motion that the controls alone soon lead astray.
@@ -87,4 +87,4 @@ TEST(ReferenceFastSlam, ParticlesNeverJumpFartherThanTheVehicleCanMove) {
 }
 
 }  // namespace
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

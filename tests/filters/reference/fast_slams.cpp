@@ -8,7 +8,7 @@
 
 #include <utility>
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 std::unique_ptr<SlamFilter> make_fast_slam1(const FastSlamSettings& settings) {
   return std::make_unique<FastSlam1>(settings);
@@ -34,4 +34,4 @@ EvolvedFilter make_de_srcd_fast_slam(const FastSlamSettings& settings, const DeS
   return {std::move(filter), record};
 }
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

@@ -9,7 +9,7 @@
 
 /// The plain FastSLAM filters, made of their settings. fast_slams.cpp alone includes the filters
 /// themselves: their Eigen expressions take the compiler longer than the tests that use them.
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 enum class Scheme { systematic, stratified };
 
@@ -42,14 +42,14 @@ struct SrcdParts {
 };
 
 /// What evolution moves in DE-SRCD-FastSLAM (EQUATIONS 10).
-enum class DeMode { honest, as_printed, prior, shared };
+enum class DeMode { unbiased, as_printed, prior, shared };
 
 struct DeSettings {
-  DeMode mode = DeMode::honest;
+  DeMode mode = DeMode::unbiased;
   double scale = 0.4;
   double crossover = 0.8;
   std::size_t generations = 10;  ///< at most
-  std::size_t population = 10;   ///< of each particle, mode honest
+  std::size_t population = 10;   ///< of each particle, mode unbiased
   double bounds = 3.0;           ///< standard deviations
   double inflation = 1.0;        ///< of the covariance that is drawn from and paid for
 };
@@ -78,4 +78,4 @@ struct EvolvedFilter {
 };
 EvolvedFilter make_de_srcd_fast_slam(const FastSlamSettings& settings, const DeSettings& de);
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

@@ -9,7 +9,7 @@
 
 /// What every reference is made of. References are to be read beside the papers, so they divide by
 /// two-by-two matrices as those write it, K = P H' S^-1; nowhere else does anything invert.
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 /// log N(v; S), the density (0.1) of EQUATIONS, by the Cholesky factor of S, which takes its place
 /// column by column. Eigen's own takes the compiler seconds a size.
@@ -52,4 +52,4 @@ Eigen::Matrix<double, N, N> chol_in(const Eigen::Matrix<double, N, N>& T,
   return T.transpose() * psd_chol<N>(T * P * T.transpose());
 }
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

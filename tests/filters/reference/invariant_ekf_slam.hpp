@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 /// Right-invariant EKF-SLAM as Barrau has it: the state is an element of SE_{1+n}(2), its error
 /// xi = (x, y, heading, landmarks) with truth = exp(xi) estimate, full matrices, known association.
@@ -72,7 +72,7 @@ class InvariantEkfSlam {
   }
 
   double heading = 0.0;
-  std::vector<Eigen::Vector2d> points;  ///< vehicle, then landmarks in order of birth
+  std::vector<Eigen::Vector2d> points;  ///< vehicle, then landmarks in order of initialisation
   Eigen::MatrixXd P;                    ///< of the invariant error
   std::vector<std::int32_t> identities;
 
@@ -87,7 +87,7 @@ class InvariantEkfSlam {
   }
 
   /// Range and bearing by a place in the frame of the vehicle.
-  static Eigen::Matrix2d sight_by_place(const Eigen::Vector2d& b) {
+  static Eigen::Matrix2d observation_by_place(const Eigen::Vector2d& b) {
     const double r = b.norm();
     return Eigen::Matrix2d{{b.x() / r, b.y() / r}, {-b.y() / (r * r), b.x() / (r * r)}};
   }
@@ -96,7 +96,7 @@ class InvariantEkfSlam {
     const Eigen::Matrix2d to_body = rotation(-heading);
     const Eigen::Vector2d b = to_body * (points[k] - points[0]);
     Eigen::MatrixXd H = Eigen::MatrixXd::Zero(2, P.rows());
-    H.middleCols<2>(row(k)) = sight_by_place(b) * to_body;
+    H.middleCols<2>(row(k)) = observation_by_place(b) * to_body;
     H.leftCols<2>() = -H.middleCols<2>(row(k)).eval();
     const Eigen::Matrix2d S = H * P * H.transpose() + R();
     const Eigen::MatrixXd K = S.ldlt().solve(H * P).transpose();
@@ -128,10 +128,10 @@ class InvariantEkfSlam {
     Eigen::MatrixXd grow = Eigen::MatrixXd::Zero(n + 2, n);
     grow.topRows(n).setIdentity();
     grow.bottomLeftCorner<2, 2>().setIdentity();
-    Eigen::Matrix2d by_sight;
-    by_sight << u, detection.range * J() * u;
+    Eigen::Matrix2d by_observation;
+    by_observation << u, detection.range * J() * u;
     P = (grow * P * grow.transpose()).eval();
-    P.bottomRightCorner<2, 2>() += by_sight * R() * by_sight.transpose();
+    P.bottomRightCorner<2, 2>() += by_observation * R() * by_observation.transpose();
     points.push_back(points[0] + detection.range * u);
     identities.push_back(detection.identity);
   }
@@ -139,4 +139,4 @@ class InvariantEkfSlam {
   Belief belief_;
 };
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

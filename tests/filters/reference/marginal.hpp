@@ -15,7 +15,7 @@
 #include <optional>
 #include <vector>
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 /// Marginal and auxiliary marginal particle filter as EQUATIONS 12 writes them, in plain Eigen:
 /// what production is held to.
@@ -37,8 +37,8 @@ class Marginal : public SlamFilter {
     const Gaussian first{to_vector(start), Eigen::Matrix3d::Zero(), -std::log(M)};
     kernels_.assign(settings_.particles, first);
     map_.assign(known() ? setup_.landmarks : 0, std::nullopt);
-    births_.assign(map_.size(), 0);
-    born_ = 0;
+    numbers_.assign(map_.size(), 0);
+    initialised_ = 0;
     report_ = {};
   }
 
@@ -66,7 +66,7 @@ class Marginal : public SlamFilter {
       }
       learn(context, scan);
     }
-    report_.map_size = born_;
+    report_.map_size = initialised_;
   }
 
   PoseEstimate estimate() const override {
@@ -235,16 +235,16 @@ class Marginal : public SlamFilter {
     for (std::size_t k = 0; k < scan.size(); ++k) {
       if (pairings_[k].kind != PairingKind::matched) continue;
       const std::uint32_t row = pairings_[k].landmark;
-      learning_.learn(context.identity(Draw::evolution, births_[row]), mean.heading, cloud, scan[k],
-                      *map_[row]);
+      learning_.learn(context.identity(Draw::evolution, numbers_[row]), mean.heading, cloud,
+                      scan[k], *map_[row]);
     }
     for (std::size_t k = 0; k < scan.size(); ++k) {
       if (pairings_[k].kind != PairingKind::fresh) continue;
       const std::size_t row = known() ? pairings_[k].landmark : map_.size();
       map_.resize(std::max(map_.size(), row + 1));
-      births_.resize(map_.size());
-      map_[row] = learning_.born(cloud, mean, scan[k]);
-      births_[row] = born_++;
+      numbers_.resize(map_.size());
+      map_[row] = learning_.initialised(cloud, mean, scan[k]);
+      numbers_[row] = initialised_++;
     }
   }
 
@@ -263,9 +263,9 @@ class Marginal : public SlamFilter {
   std::vector<Pairing> pairings_;
   std::vector<Moments> predicted_;  ///< of each innovation
   Landmarks map_, believed_;
-  std::vector<std::uint32_t> births_;  ///< {row} which birth it was
-  std::uint32_t born_ = 0;             ///< so far
+  std::vector<std::uint32_t> numbers_;  ///< {row} number of the initialisation
+  std::uint32_t initialised_ = 0;       ///< so far
   ScanReport report_;
 };
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 struct Landmark {
   Eigen::Vector2d mean;
@@ -29,7 +29,7 @@ struct Particle {
   Eigen::Matrix3d refined_covariance = Eigen::Matrix3d::Zero();
   double log_weight = 0.0;
   std::uint32_t ancestor = 0;                ///< index one scan ago
-  std::vector<std::optional<Landmark>> map;  ///< by identity where known, else by birth
+  std::vector<std::optional<Landmark>> map;  ///< by identity where known, else by initialisation
   std::vector<Pairing> pairings;             ///< one per detection
 };
 
@@ -47,11 +47,11 @@ struct Seen {
 /// Nothing where the landmark is too near (EQUATIONS 2).
 inline std::optional<Seen> seen_from(const Eigen::Vector3d& pose, const Landmark& landmark,
                                      const Detection& detection, const Eigen::Matrix2d& R) {
-  const auto at = linearised_sight(as_pose(pose), Point{landmark.mean(0), landmark.mean(1)});
-  if (too_near(at.sight)) return std::nullopt;
+  const auto at = linearised_observation(as_pose(pose), Point{landmark.mean(0), landmark.mean(1)});
+  if (too_near(at.observation)) return std::nullopt;
   const Eigen::Matrix2d Hf = landmark_jacobian(at);
   return Seen{pose_jacobian(at), Hf, Hf * landmark.covariance * Hf.transpose() + R,
-              to_vector(residual(sight_of(detection), at.sight))};
+              to_vector(residual(observation_of(detection), at.observation))};
 }
 
 /// Feature EKF at an exactly known pose, Joseph form (EQUATIONS 4).
@@ -66,9 +66,9 @@ inline void update_landmark(Landmark& landmark, const Seen& seen, const Eigen::M
 /// mu = g(x, z), Sigma = Gz R Gz' (EQUATIONS 4).
 inline Landmark new_landmark(const Eigen::Vector3d& pose, const Detection& detection,
                              const Eigen::Matrix2d& R) {
-  const auto placed = linearised_place(as_pose(pose), sight_of(detection));
-  const Eigen::Matrix2d Gz = sight_jacobian(placed);
+  const auto placed = linearised_place(as_pose(pose), observation_of(detection));
+  const Eigen::Matrix2d Gz = observation_jacobian(placed);
   return {.mean = to_vector(placed.point), .covariance = Gz * R * Gz.transpose()};
 }
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

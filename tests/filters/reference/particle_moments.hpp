@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 /// Moments of sum_i w_i N(mean(i), covariance(i)), headings as differences from the heaviest
 /// particle (EQUATIONS 19). `Weighed`: whatever has a log_weight.
@@ -33,4 +33,4 @@ PoseMoments mixture_moments(const std::vector<Weighed>& particles, const Mean& m
   return moments;
 }
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 /// Parents of the next generation: particle m descends from the first whose cumulated weight
 /// exceeds u_m = (m + U) / M, one U for all (systematic) or one each (stratified) (EQUATIONS 18).
@@ -26,4 +26,4 @@ inline std::vector<std::uint32_t> draw_parents(Scheme scheme, const std::vector<
   return parents;
 }
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

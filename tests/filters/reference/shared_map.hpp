@@ -13,7 +13,7 @@
 #include <functional>
 #include <vector>
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 /// Poses and their weights, which sum to one.
 struct WeighedPoses {
@@ -37,7 +37,8 @@ class SharedMapLearning {
   }
 
   /// theta = Sum w g(s, z), Lambda as seen from the mean pose.
-  Landmark born(const WeighedPoses& cloud, const Pose& mean, const Detection& detection) const {
+  Landmark initialised(const WeighedPoses& cloud, const Pose& mean,
+                       const Detection& detection) const {
     Landmark landmark = new_landmark({mean.x, mean.y, mean.heading}, detection, R_);
     landmark.mean.setZero();
     for (std::size_t i = 0; i < cloud.pose.size(); ++i)
@@ -80,8 +81,9 @@ class SharedMapLearning {
   /// nu' R^-1 nu.
   double squared(const Eigen::Vector3d& pose, const Eigen::Vector2d& place,
                  const Detection& detection) const {
-    const Eigen::Vector2d nu = to_vector(
-        residual(sight_of(detection), predicted_sight(as_pose(pose), Point{place(0), place(1)})));
+    const Eigen::Vector2d nu =
+        to_vector(residual(observation_of(detection),
+                           predicted_observation(as_pose(pose), Point{place(0), place(1)})));
     return nu.dot(R_.inverse() * nu);
   }
 
@@ -165,4 +167,4 @@ class SharedMapLearning {
   std::size_t left_alone_ = 0;
 };
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

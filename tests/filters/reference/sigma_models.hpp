@@ -8,7 +8,7 @@
 
 /// The models as functions of stacked vectors, and the coordinates in which the filters' square
 /// roots are triangular.
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 /// f of (pose, control noise, sensor noise); the last has no effect.
 struct MotionModel {
@@ -22,10 +22,10 @@ struct MotionModel {
 };
 
 /// h of (pose, landmark, sensor noise).
-struct SightModel {
+struct ObservationModel {
   Vector<2> operator()(const Vector<7>& x) const {
-    const auto sight = predicted_sight(Pose{x(0), x(1), x(2)}, Point{x(3), x(4)});
-    return {sight.range + x(5), wrap(sight.bearing + x(6))};
+    const auto observation = predicted_observation(Pose{x(0), x(1), x(2)}, Point{x(3), x(4)});
+    return {observation.range + x(5), wrap(observation.bearing + x(6))};
   }
 };
 
@@ -33,7 +33,7 @@ struct SightModel {
 struct LandmarkModel {
   Pose pose;
   Vector<2> operator()(const Vector<2>& f) const {
-    return montecarta::to_vector(predicted_sight(pose, Point{f(0), f(1)}));
+    return filters::to_vector(predicted_observation(pose, Point{f(0), f(1)}));
   }
 };
 
@@ -80,4 +80,4 @@ inline bool is_far_enough(const Vector<3>& pose, const Landmark& landmark) {
   return (landmark.mean - pose.head<2>()).norm() >= kLeastDistance;
 }
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

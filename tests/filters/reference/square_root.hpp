@@ -8,7 +8,7 @@
 #include <cmath>
 
 /// The square-root form and the central differences of EQUATIONS 3, literally.
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 /// The lower triangular L, diagonal not negative, with L L' = A A' (the papers' "qr"): each row of
 /// A is mirrored onto its axis. Eigen's own takes the compiler seconds for each size.
@@ -94,4 +94,4 @@ Eigen::Matrix<double, N, N> tria_in(const Eigen::Matrix<double, N, N>& T,
   return T.transpose() * tria<N, N>(turned);
 }
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 /// EKF-SLAM, or its right-invariant form, in a square root: the covariance is F F' with as many
 /// columns as there were noises, made square again by QR at every detection. It is never formed,
@@ -40,17 +40,17 @@ class SquareRootEkfSlam {
 
   /// [sqrt(R) H F; 0 F] = [L 0; W F+] Q: the step is W L^-1 v.
   void absorb(Eigen::Index row, const RangeBearing<double>& detected) {
-    const auto at = linearised_sight(pose(), Point{mean(row), mean(row + 1)});
+    const auto at = linearised_observation(pose(), Point{mean(row), mean(row + 1)});
     const Eigen::Index n = F.rows(), m = F.cols();
     Eigen::MatrixXd array = Eigen::MatrixXd::Zero(2 + n, 2 + m);
-    array.topLeftCorner<2, 2>() = sight_noise();
+    array.topLeftCorner<2, 2>() = observation_noise();
     array.topRightCorner(2, m) =
         pose_jacobian(at) * F.topRows<3>() + landmark_jacobian(at) * F.middleRows<2>(row);
     array.bottomRightCorner(n, m) = F;
     const Eigen::MatrixXd lower = triangular(array);
     F = lower.bottomRightCorner(n, lower.cols() - 2);
     const Eigen::Vector2d white = lower.topLeftCorner<2, 2>().triangularView<Eigen::Lower>().solve(
-        to_vector(residual(detected, at.sight)));
+        to_vector(residual(detected, at.observation)));
     move_by(lower.bottomLeftCorner(n, 2) * white);
   }
 
@@ -68,23 +68,23 @@ class SquareRootEkfSlam {
     move_by(std::sqrt(1.0 - keep * keep) * normal * drawn);
   }
 
-  void append(const RangeBearing<double>& sight) {
-    const auto placed = linearised_place(pose(), sight);
+  void append(const RangeBearing<double>& observation) {
+    const auto placed = linearised_place(pose(), observation);
     const Eigen::Index n = F.rows(), m = F.cols();
     F.conservativeResizeLike(Eigen::MatrixXd::Zero(n + 2, m));
     F.bottomRows<2>() = pose_jacobian(placed) * F.topRows<3>();
     Eigen::MatrixXd noise = Eigen::MatrixXd::Zero(n + 2, 2);
-    noise.bottomRows<2>() = sight_jacobian(placed) * sight_noise();
+    noise.bottomRows<2>() = observation_jacobian(placed) * observation_noise();
     append_columns(noise);
     mean.conservativeResize(n + 2);
     mean.tail<2>() = to_vector(placed.point);
   }
 
-  Eigen::VectorXd mean;  ///< pose, then landmarks in order of birth
+  Eigen::VectorXd mean;  ///< pose, then landmarks in order of initialisation
   Eigen::MatrixXd F;     ///< the covariance is F F'
 
  private:
-  Eigen::Matrix2d sight_noise() const {
+  Eigen::Matrix2d observation_noise() const {
     return Eigen::Vector2d(belief_.sigma_range, belief_.sigma_bearing).asDiagonal();
   }
 
@@ -120,4 +120,4 @@ class SquareRootEkfSlam {
   Retraction retraction_;
 };
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

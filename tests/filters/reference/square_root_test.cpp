@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 namespace {
 
 const double kInterval = std::sqrt(3.0);
@@ -54,9 +54,9 @@ struct SquareRootFilter {
   void update(const LinearSystem& system, const Vector<2>& z) {
     const auto image = central_differences<2, -1>(
         x, S, kInterval, [&](const Vector<3>& v) -> Vector<2> { return system.H * v; });
-    Eigen::Matrix<double, 2, 8> sight;
-    sight << image.A, image.B, system.R;
-    const Eigen::Matrix2d S_y = tria<2, 8>(sight);
+    Eigen::Matrix<double, 2, 8> observation;
+    observation << image.A, image.B, system.R;
+    const Eigen::Matrix2d S_y = tria<2, 8>(observation);
     const Eigen::Matrix<double, 3, 2> K = gain<3, 2>(S * image.A.transpose(), S_y);
     Eigen::Matrix<double, 3, 8> columns;
     columns << S - K * image.A, K * image.B, K * system.R;
@@ -150,9 +150,9 @@ TEST(SquareRootUpdate, ThreeFormsAgree) {
     const Eigen::Matrix2d R = 0.1 * random_matrix<2, 2>(draw);
     const Vector<3> x = random_matrix<3, 1>(draw);
     const auto image = central_differences<2, -1>(x, S, kInterval, bent);
-    Eigen::Matrix<double, 2, 8> sight;
-    sight << image.A, image.B, R;
-    const Eigen::Matrix2d S_y = tria<2, 8>(sight);
+    Eigen::Matrix<double, 2, 8> observation;
+    observation << image.A, image.B, R;
+    const Eigen::Matrix2d S_y = tria<2, 8>(observation);
     const Eigen::Matrix<double, 3, 2> K = gain<3, 2>(S * image.A.transpose(), S_y);
     Eigen::Matrix<double, 3, 8> columns;
     columns << S - K * image.A, K * image.B, K * R;
@@ -202,4 +202,4 @@ TEST(InnovationOfEquation26, IsThatOfPoseMapAndSensorOnALinearModel) {
 }
 
 }  // namespace
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

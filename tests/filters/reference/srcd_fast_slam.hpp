@@ -5,7 +5,7 @@
 #include "tests/filters/reference/sigma_models.hpp"
 #include "tests/filters/reference/square_root.hpp"
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 /// SRCD-FastSLAM (EQUATIONS 8) as printed and corrected: seven dimensions, fifteen points, and
 /// square roots alone from scan to scan. Covariances are formed for those who only look.
@@ -34,9 +34,9 @@ class SrcdFastSlam : public FastSlam2 {
     if (!parts_.pose) return FastSlam2::absorb(p, landmark, detection);
     if (!is_far_enough(p.pose, landmark)) return std::nullopt;
     const Eigen::Matrix2d map = factor_of(landmark);
-    const Differences<7, 2> whole = sight(p, landmark, map);
+    const Differences<7, 2> whole = observation(p, landmark, map);
     const Differences<7, 2> image =
-        parts_.map_uncertainty ? whole : sight(p, landmark, Eigen::Matrix2d::Zero());
+        parts_.map_uncertainty ? whole : observation(p, landmark, Eigen::Matrix2d::Zero());
     const Eigen::Matrix3d S =
         tria_in<3>(across_first_with_heading(p.pose, landmark.mean), p.factor);
     const Matrix32 K = gain<3, 2>(S * image.A.leftCols<3>().transpose(), innovation_factor(image));
@@ -53,7 +53,7 @@ class SrcdFastSlam : public FastSlam2 {
                                        const Detection& detection) const override {
     if (!parts_.map) return FastSlam2::log_likelihood(pose, landmark, detection);
     if (!is_far_enough(pose, landmark)) return std::nullopt;
-    const Sighting seen = sight_from(pose, landmark);
+    const PredictedDetection seen = predicted_from(pose, landmark);
     return log_gaussian<2>(innovation(detection, seen.image.mean), seen.S_y * seen.S_y.transpose());
   }
 
@@ -61,7 +61,7 @@ class SrcdFastSlam : public FastSlam2 {
                   const Detection& detection) const override {
     if (!parts_.map) return FastSlam2::update_map(pose, landmark, detection);
     if (!is_far_enough(pose, landmark)) return;
-    const Sighting seen = sight_from(pose, landmark);
+    const PredictedDetection seen = predicted_from(pose, landmark);
     const Eigen::Matrix2d K = gain<2, 2>(seen.S * seen.image.A.transpose(), seen.S_y);
     Eigen::Matrix<double, 2, 6> columns;
     columns << seen.S - K * seen.image.A, K * R_.cwiseSqrt(), K * seen.image.B;
@@ -69,8 +69,8 @@ class SrcdFastSlam : public FastSlam2 {
     keep(landmark, tria<2, 6>(columns));
   }
 
-  Landmark born(const Eigen::Vector3d& pose, const Detection& detection) const override {
-    if (!parts_.map) return FastSlam2::born(pose, detection);
+  Landmark initialised(const Eigen::Vector3d& pose, const Detection& detection) const override {
+    if (!parts_.map) return FastSlam2::initialised(pose, detection);
     const Eigen::Matrix2d root = R_.cwiseSqrt();
     const Vector<2> z(detection.range, detection.bearing);
     const auto image = central_differences<2, -1>(z, root, parts_.h, PlaceModel{as_pose(pose)});
@@ -83,25 +83,25 @@ class SrcdFastSlam : public FastSlam2 {
 
  private:
   /// What a landmark looks like from a pose that is taken for exact.
-  struct Sighting {
+  struct PredictedDetection {
     Eigen::Matrix2d S;
     Differences<2, 2> image;
     Eigen::Matrix2d S_y;
   };
 
-  Differences<7, 2> sight(const Particle& p, const Landmark& landmark,
-                          const Eigen::Matrix2d& map) const {
+  Differences<7, 2> observation(const Particle& p, const Landmark& landmark,
+                                const Eigen::Matrix2d& map) const {
     Vector<7> x = Vector<7>::Zero();
     x.head<3>() = p.pose;
     x.segment<2>(3) = landmark.mean;
     const auto S =
         blocks<3, 2, 2>(tria_in<3>(across_first_with_heading(p.pose, landmark.mean), p.factor),
                         tria_in<2>(across_first(p.pose, landmark.mean), map), R_.cwiseSqrt());
-    return central_differences<2, 1>(x, S, parts_.h, SightModel{});
+    return central_differences<2, 1>(x, S, parts_.h, ObservationModel{});
   }
 
-  Sighting sight_from(const Eigen::Vector3d& pose, const Landmark& landmark) const {
-    Sighting seen;
+  PredictedDetection predicted_from(const Eigen::Vector3d& pose, const Landmark& landmark) const {
+    PredictedDetection seen;
     seen.S = tria_in<2>(across_first(pose, landmark.mean), factor_of(landmark));
     seen.image =
         central_differences<2, 1>(landmark.mean, seen.S, parts_.h, LandmarkModel{as_pose(pose)});
@@ -132,4 +132,4 @@ class SrcdFastSlam : public FastSlam2 {
   SrcdParts parts_;
 };
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 /// A B and A P A' of full matrices; every size alike, which spares the compiler most of its work.
 inline Eigen::MatrixXd product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) { return A * B; }
@@ -55,12 +55,12 @@ class TextbookEkfSlam {
 
   /// What a landmark should look like, and its derivative by pose and map.
   struct Look {
-    RangeBearing<double> sight;
+    RangeBearing<double> observation;
     Eigen::MatrixXd H;
   };
   Look look(Eigen::Index row) const {
-    const auto at = linearised_sight(pose(), Point{mean(row), mean(row + 1)});
-    Look look{at.sight, Eigen::MatrixXd::Zero(2, mean.size())};
+    const auto at = linearised_observation(pose(), Point{mean(row), mean(row + 1)});
+    Look look{at.observation, Eigen::MatrixXd::Zero(2, mean.size())};
     look.H.leftCols<3>() = pose_jacobian(at);
     look.H.middleCols<2>(row) = landmark_jacobian(at);
     return look;
@@ -75,7 +75,7 @@ class TextbookEkfSlam {
     return -1;
   }
 
-  Eigen::VectorXd mean;  ///< pose, then landmarks in order of birth
+  Eigen::VectorXd mean;  ///< pose, then landmarks in order of initialisation
   Eigen::MatrixXd covariance;
   std::vector<std::int32_t> identities;
 
@@ -85,11 +85,11 @@ class TextbookEkfSlam {
         .asDiagonal();
   }
   void absorb(const Detection& detection, Eigen::Index row) {
-    const auto [sight, H] = look(row);
+    const auto [observation, H] = look(row);
     const Eigen::Matrix2d S = sandwich(H, covariance) + R();
     const Eigen::Matrix2d per_S = S.ldlt().solve(Eigen::Matrix2d::Identity());
     const Eigen::MatrixXd K = product(product(covariance, H.transpose()), per_S);
-    mean += product(K, to_vector(residual(sight_of(detection), sight)));
+    mean += product(K, to_vector(residual(observation_of(detection), observation)));
     mean(2) = wrap(mean(2));
     const Eigen::MatrixXd I_KH =
         Eigen::MatrixXd::Identity(mean.size(), mean.size()) - product(K, H);
@@ -97,8 +97,8 @@ class TextbookEkfSlam {
   }
 
   void append(const Detection& detection) {
-    const auto placed = linearised_place(pose(), sight_of(detection));
-    const Eigen::Matrix2d Gz = sight_jacobian(placed);
+    const auto placed = linearised_place(pose(), observation_of(detection));
+    const Eigen::Matrix2d Gz = observation_jacobian(placed);
     const Eigen::Index n = mean.size();
     Eigen::MatrixXd G = Eigen::MatrixXd::Zero(n + 2, n);
     G.topRows(n).setIdentity();
@@ -114,4 +114,4 @@ class TextbookEkfSlam {
   Belief belief_;
 };
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

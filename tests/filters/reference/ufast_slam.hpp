@@ -4,7 +4,7 @@
 #include "tests/filters/reference/fast_slam2.hpp"
 #include "tests/filters/reference/sigma_models.hpp"
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 /// U-FastSLAM (EQUATIONS 7) as printed: seven dimensions and fifteen points for motion and pose,
 /// two and five for landmarks. The points' distance is that of five dimensions (EQUATIONS 7), which
@@ -35,9 +35,9 @@ class UFastSlam : public FastSlam2 {
   std::optional<double> absorb(Particle& p, const Landmark& landmark,
                                const Detection& detection) const override {
     if (!is_far_enough(p.pose, landmark)) return std::nullopt;
-    const Image<7, 2> whole = sight(p, landmark, landmark.covariance);
+    const Image<7, 2> whole = observation(p, landmark, landmark.covariance);
     const Image<7, 2> image =
-        map_uncertainty_ ? whole : sight(p, landmark, Eigen::Matrix2d::Zero());
+        map_uncertainty_ ? whole : observation(p, landmark, Eigen::Matrix2d::Zero());
     const Matrix32 C = image.cross.topRows<3>();
     const Matrix32 K = C * image.covariance.inverse();
     p.pose += K * innovation(detection, image.mean);
@@ -49,20 +49,20 @@ class UFastSlam : public FastSlam2 {
   std::optional<double> log_likelihood(const Eigen::Vector3d& pose, const Landmark& landmark,
                                        const Detection& detection) const override {
     if (!is_far_enough(pose, landmark)) return std::nullopt;
-    const Image<2, 2> image = sight_from(pose, landmark);
+    const Image<2, 2> image = predicted_from(pose, landmark);
     return log_gaussian<2>(innovation(detection, image.mean), image.covariance);
   }
 
   void update_map(const Eigen::Vector3d& pose, Landmark& landmark,
                   const Detection& detection) const override {
     if (!is_far_enough(pose, landmark)) return;
-    const Image<2, 2> image = sight_from(pose, landmark);
+    const Image<2, 2> image = predicted_from(pose, landmark);
     const Eigen::Matrix2d K = image.cross * image.covariance.inverse();
     landmark.mean += K * innovation(detection, image.mean);
     landmark.covariance -= (K * image.covariance * K.transpose()).eval();
   }
 
-  Landmark born(const Eigen::Vector3d& pose, const Detection& detection) const override {
+  Landmark initialised(const Eigen::Vector3d& pose, const Detection& detection) const override {
     const Eigen::Matrix2d root = R_.cwiseSqrt();
     const Vector<2> z(detection.range, detection.bearing);
     const auto image = unscented<2, -1>(z, root, two_, PlaceModel{as_pose(pose)});
@@ -70,18 +70,18 @@ class UFastSlam : public FastSlam2 {
   }
 
  private:
-  Image<7, 2> sight(const Particle& p, const Landmark& landmark,
-                    const Eigen::Matrix2d& map_covariance) const {
+  Image<7, 2> observation(const Particle& p, const Landmark& landmark,
+                          const Eigen::Matrix2d& map_covariance) const {
     Vector<7> x = Vector<7>::Zero();
     x.head<3>() = p.pose;
     x.segment<2>(3) = landmark.mean;
     const auto S = blocks<3, 2, 2>(
         chol_in<3>(across_first_with_heading(p.pose, landmark.mean), p.covariance),
         chol_in<2>(across_first(p.pose, landmark.mean), map_covariance), R_.cwiseSqrt());
-    return unscented<2, 1>(x, S, seven_, SightModel{});
+    return unscented<2, 1>(x, S, seven_, ObservationModel{});
   }
 
-  Image<2, 2> sight_from(const Eigen::Vector3d& pose, const Landmark& landmark) const {
+  Image<2, 2> predicted_from(const Eigen::Vector3d& pose, const Landmark& landmark) const {
     const Eigen::Matrix2d S = chol_in<2>(across_first(pose, landmark.mean), landmark.covariance);
     auto image = unscented<2, 1>(landmark.mean, S, two_, LandmarkModel{as_pose(pose)});
     image.covariance += R_;
@@ -96,4 +96,4 @@ class UFastSlam : public FastSlam2 {
   bool map_uncertainty_;
 };
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace montecarta::reference {
+namespace montecarta::filters::reference {
 
 template <int N>
 using Vector = Eigen::Matrix<double, N, 1>;
@@ -61,4 +61,4 @@ Image<N, M> unscented(const Vector<N>& x, const Eigen::Matrix<double, N, N>& S, 
   return image;
 }
 
-}  // namespace montecarta::reference
+}  // namespace montecarta::filters::reference

@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::HasSubstr;
@@ -76,4 +76,4 @@ TEST(ReadReplayOfARecordedDrive, HasFixesAndNoTruth) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

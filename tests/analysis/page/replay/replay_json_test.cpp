@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 TEST(ReplayJson, IsShortAndComplete) {
@@ -35,4 +35,4 @@ TEST(ReplayJson, IsShortAndComplete) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-namespace montecarta {
+namespace montecarta::analysis {
 namespace {
 
 using testing::ElementsAre;
@@ -76,4 +76,4 @@ TEST(ThinParticles, RefuseAnAncestorThatIsNoParticle) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::analysis

@@ -4,12 +4,12 @@
 #include "filters/moments/linearised.hpp"
 #include "filters/moments/sigma_rule.hpp"
 
-/// Sigma points of a sight (EQUATIONS 3), in the frame of the line of sight. The square roots there
-/// have the component across the line first, because range and bearing are curved in that one
-/// alone: every other column leaves the relative position on the line, where the range
-/// is minus `along` and the bearing minus `heading` exactly, so that its two points need not be
-/// looked at. What is left of a covariance without its first column enters as it stands.
-namespace montecarta {
+/// Sigma points of an observation (EQUATIONS 3), in the frame of the line of sight. The square
+/// roots there have the component across the line first, because range and bearing are curved in
+/// that one alone: every other column leaves the relative position on the line, where the range is
+/// minus `along` and the bearing minus `heading` exactly, so that its two points need not be looked
+/// at. What is left of a covariance without its first column enters as it stands.
+namespace montecarta::filters {
 
 /// The column of a lower triangular square root that carries the component across.
 template <class Real>
@@ -33,18 +33,19 @@ template <class Real>
   return {P.cross * inverse, P.across * inverse, Real(0.0)};
 }
 
-/// Of two points' sights: D, half their difference, and E, how far their middle lies from the
+/// Of two points' observations: D, half their difference, and E, how far their middle lies from the
 /// centre's.
 template <class Real>
-struct SightPair {
+struct ObservationPair {
   RangeBearing<Real> odd, even;
 };
 
 /// Sights of (range + along, across) and (range - along, -across), bearings from the line of sight:
 /// small, so nothing wraps.
 template <class Real>
-[[gnu::always_inline]] inline SightPair<Real> sight_pair(const Real& range, const Real& along,
-                                                         const Real& across) {
+[[gnu::always_inline]] inline ObservationPair<Real> observation_pair(const Real& range,
+                                                                     const Real& along,
+                                                                     const Real& across) {
   const Real far = range + along, near = range - along;
   const Real square = across * across;
   const Real far_range = sqrt(far * far + square), near_range = sqrt(near * near + square);
@@ -53,23 +54,23 @@ template <class Real>
           {0.5 * (far_range + near_range) - range, 0.5 * (far_bearing - near_bearing)}};
 }
 
-/// detected boxminus predicted, where the mean of the predicted sights lies `shift` from the
+/// detected boxminus predicted, where the mean of the predicted observations lies `shift` from the
 /// centre's.
 template <class Real>
 [[gnu::always_inline]] inline RangeBearing<Real> residual(const RangeBearing<Real>& detected,
-                                                          const Sightline<Real>& s,
+                                                          const LineOfSight<Real>& s,
                                                           const RangeBearing<Real>& shift) {
   return {detected.range - s.predicted.range - shift.range,
           shorter_way(Real(detected.bearing - s.predicted.bearing - shift.bearing))};
 }
 
-/// Moments of a predicted sight, gathered column by column.
+/// Moments of a predicted observation, gathered column by column.
 template <class Real>
-struct SightMoments {
+struct ObservationMoments {
   Symmetric2<Real> covariance;                     ///< as yet without the term in e e'
-  RangeBearing<Real> shift{Real(0.0), Real(0.0)};  ///< e: of the mean from the centre's sight
+  RangeBearing<Real> shift{Real(0.0), Real(0.0)};  ///< e: of the mean from the centre's observation
 
-  [[gnu::always_inline]] void add(const SightPair<Real>& pair, const SigmaRule& rule) {
+  [[gnu::always_inline]] void add(const ObservationPair<Real>& pair, const SigmaRule& rule) {
     shift.range += rule.mean_weight * pair.even.range;
     shift.bearing += rule.mean_weight * pair.even.bearing;
     covariance =
@@ -77,10 +78,10 @@ struct SightMoments {
   }
   /// The innovation of `seen`, with cross-covariances for the caller to fill in.
   [[gnu::always_inline]] Innovation<Real> innovation(const RangeBearing<Real>& seen,
-                                                     const Sightline<Real>& s,
+                                                     const LineOfSight<Real>& s,
                                                      const SigmaRule& rule) const {
     return {residual(seen, s, shift), covariance + outer(rule.shift, shift)};
   }
 };
 
-}  // namespace montecarta
+}  // namespace montecarta::filters

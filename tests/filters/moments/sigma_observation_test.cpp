@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace montecarta {
+namespace montecarta::filters {
 namespace {
 
 using reference::across_first;
@@ -20,7 +20,7 @@ const double kInterval = std::sqrt(3.0);
 
 /// The literal image of (pose, landmark, sensor noise), seven dimensions and fifteen points.
 template <class Transform>
-Image<7, 2> literal_sight(const RandomSight& c, const Transform& transform) {
+Image<7, 2> literal_observation(const RandomObservation& c, const Transform& transform) {
   Vector<7> x = Vector<7>::Zero();
   x.head<3>() = reference::to_vector(c.pose.mean);
   x.segment<2>(3) = to_vector(c.landmark.mean);
@@ -31,7 +31,7 @@ Image<7, 2> literal_sight(const RandomSight& c, const Transform& transform) {
   const auto S = blocks<3, 2, 2>(
       chol_in<3>(across_first_with_heading(pose, landmark), symmetric(c.pose.covariance)),
       chol_in<2>(across_first(pose, landmark), symmetric(c.landmark.covariance)), root);
-  return transform(x, S, reference::SightModel{});
+  return transform(x, S, reference::ObservationModel{});
 }
 const auto kUnscented = [](const auto& x, const auto& S, const auto& model) {
   return reference::unscented<2, 1>(x, S, {.alpha = 0.9, .beta = 2.0, .kappa = -2.0}, model);
@@ -42,7 +42,8 @@ const auto kCentral = [](const auto& x, const auto& S, const auto& model) {
                      S * image.A.transpose()};
 };
 
-void expect_refined_as(const RandomSight& c, const Image<7, 2>& image, const SigmaRule& rule) {
+void expect_refined_as(const RandomObservation& c, const Image<7, 2>& image,
+                       const SigmaRule& rule) {
   const Eigen::Matrix<double, 3, 2> C = image.cross.topRows<3>();
   const Eigen::Matrix<double, 3, 2> K = image.covariance.llt().solve(C.transpose()).transpose();
   const Vector<2> nu = reference::difference<1, 2>(to_vector(c.seen), image.mean);
@@ -58,20 +59,20 @@ void expect_refined_as(const RandomSight& c, const Image<7, 2>& image, const Sig
   EXPECT_NEAR(evidence.log_density(), reference::log_gaussian<2>(nu, image.covariance), 1e-9);
 }
 
-TEST(SigmaSight, RefinesAPoseAsFifteenPointsOfSevenDimensionsDo) {
+TEST(SigmaObservation, RefinesAPoseAsFifteenPointsOfSevenDimensionsDo) {
   RngStream draw({.seed = 83, .purpose = Draw::test});
   for (int n = 0; n < 500; ++n) {
-    const RandomSight c(draw);
-    expect_refined_as(c, literal_sight(c, kUnscented), unscented_rule(5, 0.9, 2, 0));
-    expect_refined_as(c, literal_sight(c, kCentral), central_difference_rule(kInterval));
+    const RandomObservation c(draw);
+    expect_refined_as(c, literal_observation(c, kUnscented), unscented_rule(5, 0.9, 2, 0));
+    expect_refined_as(c, literal_observation(c, kCentral), central_difference_rule(kInterval));
   }
 }
 
 /// Updates by the square-root recursion of EQUATIONS 8, which never forms a covariance.
-TEST(SigmaSight, UpdatesALandmarkAsTheSquareRootRecursionDoes) {
+TEST(SigmaObservation, UpdatesALandmarkAsTheSquareRootRecursionDoes) {
   RngStream draw({.seed = 93, .purpose = Draw::test});
   for (int n = 0; n < 500; ++n) {
-    const RandomSight c(draw);
+    const RandomObservation c(draw);
     const Vector<3> pose = reference::to_vector(c.pose.mean);
     const Vector<2> mu = to_vector(c.landmark.mean);
     const Eigen::Matrix2d S = chol_in<2>(across_first(pose, mu), symmetric(c.landmark.covariance));
@@ -98,49 +99,49 @@ TEST(SigmaSight, UpdatesALandmarkAsTheSquareRootRecursionDoes) {
   }
 }
 
-TEST(SigmaSight, BearsALandmarkAsFivePointsDo) {
+TEST(SigmaObservation, InitialisesALandmarkAsFivePointsDo) {
   RngStream draw({.seed = 94, .purpose = Draw::test});
   for (int n = 0; n < 500; ++n) {
-    const RandomSight c(draw);
+    const RandomObservation c(draw);
     const Vector<2> R(std::sqrt(c.noise.range), std::sqrt(c.noise.bearing));
     const Eigen::Matrix2d root = R.asDiagonal();
     const auto image = reference::unscented<2, -1>(to_vector(c.seen), root, {},
                                                    reference::PlaceModel{c.pose.mean});
     const SigmaRule rule = unscented_rule(2, 0.9, 2, 0);
-    const auto born = new_landmark_by_sigma_points(c.pose.mean, c.seen, c.noise, rule,
-                                                   direction_of(rule.spread * R(1)));
-    EXPECT_LT((to_vector(born.mean) - image.mean).norm(), 1e-12);
-    EXPECT_LT((symmetric(born.covariance) - image.covariance).norm(), 1e-12);
+    const auto initialised = new_landmark_by_sigma_points(c.pose.mean, c.seen, c.noise, rule,
+                                                          direction_of(rule.spread * R(1)));
+    EXPECT_LT((to_vector(initialised.mean) - image.mean).norm(), 1e-12);
+    EXPECT_LT((symmetric(initialised.covariance) - image.covariance).norm(), 1e-12);
   }
 }
 
-/// Noise so small that the models are straight within it.
-TEST(SigmaSight, WhereTheModelsAreStraightEveryTransformIsTheKalmanFilter) {
+/// Noise so small that the models are linear within it.
+TEST(SigmaObservation, OnLinearModelsEveryTransformIsTheKalmanFilter) {
   RngStream draw({.seed = 84, .purpose = Draw::test});
   for (int n = 0; n < 200; ++n) {
     const double scale = 1e-5;
-    const RandomSight c(draw, scale);
+    const RandomObservation c(draw, scale);
     for (const SigmaRule& rule :
          {unscented_rule(5, 0.9, 2, 0), central_difference_rule(kInterval)}) {
-      PoseGaussian<double> bent = c.pose, straight = c.pose;
-      Evidence<double> of_bent, of_straight;
-      refine_pose_by_sigma_points(bent, c.landmark, c.seen, c.noise, Everywhere(), of_bent, rule,
+      PoseGaussian<double> sigma = c.pose, linear = c.pose;
+      Evidence<double> of_bent, of_linear;
+      refine_pose_by_sigma_points(sigma, c.landmark, c.seen, c.noise, Everywhere(), of_bent, rule,
                                   MapUncertainty::on);
-      refine_pose(straight, c.landmark, c.seen, c.noise, Everywhere(), of_straight);
-      EXPECT_LT(boxminus(bent.mean, straight.mean).norm(), 1e-3 * scale);
-      EXPECT_LT((symmetric(bent.covariance) - symmetric(straight.covariance)).norm(),
+      refine_pose(linear, c.landmark, c.seen, c.noise, Everywhere(), of_linear);
+      EXPECT_LT(boxminus(sigma.mean, linear.mean).norm(), 1e-3 * scale);
+      EXPECT_LT((symmetric(sigma.covariance) - symmetric(linear.covariance)).norm(),
                 1e-3 * scale * scale);
-      EXPECT_NEAR(of_bent.log_density(), of_straight.log_density(), 1e-2);
+      EXPECT_NEAR(of_bent.log_density(), of_linear.log_density(), 1e-2);
     }
   }
 }
 
-TEST(SigmaSight, ALandmarkLeftOutOfTheProposalStaysInTheWeight) {
+TEST(SigmaObservation, ALandmarkLeftOutOfTheProposalStaysInTheWeight) {
   RngStream draw({.seed = 85, .purpose = Draw::test});
   const SigmaRule rule = central_difference_rule(kInterval);
   for (int n = 0; n < 200; ++n) {
-    const RandomSight c(draw);
-    RandomSight sure = c;
+    const RandomObservation c(draw);
+    RandomObservation sure = c;
     sure.landmark.covariance = {};
     PoseGaussian<double> on = c.pose, off = c.pose, known = c.pose;
     Evidence<double> of_on, of_off, of_known;
@@ -158,4 +159,4 @@ TEST(SigmaSight, ALandmarkLeftOutOfTheProposalStaysInTheWeight) {
 }
 
 }  // namespace
-}  // namespace montecarta
+}  // namespace montecarta::filters

@@ -8,13 +8,14 @@
 #include <cstdint>
 #include <span>
 
-namespace montecarta {
+namespace montecarta::engine {
 
 /// Writes what was asked for of a filter's particles: `pose_of(i)`, normalised log weights, and
 /// ancestors one scan ago.
 template <class PoseOf>
-void tell_particles(const ParticleColumns& columns, const PoseOf& pose_of,
-                    std::span<const double> log_weights, std::span<const std::uint32_t> ancestors) {
+void write_particle_columns(const ParticleColumns& columns, const PoseOf& pose_of,
+                            std::span<const double> log_weights,
+                            std::span<const std::uint32_t> ancestors) {
   for (std::size_t i = 0; i < columns.pose.size() / 3; ++i) {
     const Pose pose = pose_of(i);
     columns.pose[3 * i] = pose.x;
@@ -25,4 +26,4 @@ void tell_particles(const ParticleColumns& columns, const PoseOf& pose_of,
   std::copy_n(ancestors.begin(), columns.ancestor.size(), columns.ancestor.begin());
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::engine

@@ -1,93 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The laws of the house that a compiler does not enforce: who may include whom, sizes, licence
+// Rules of the source tree that a compiler does not enforce: who may include whom, sizes, licence
 // lines.
+#include "tests/source_tree.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <functional>
-#include <map>
 #include <regex>
 #include <set>
 #include <string>
 #include <vector>
 
+namespace montecarta::sources {
 namespace {
 
-namespace fs = std::filesystem;
-using Lines = std::vector<std::string>;
-using Tree = std::map<std::string, Lines>;  // path from the top, with '/', and what stands there
 using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-const std::vector<std::string> kRooms = {"analysis",    "cluster", "engine",
-                                         "experiments", "filters", "tests"};
-
-Lines read_lines(const fs::path& path) {
-  std::ifstream file(path);
-  Lines lines;
-  for (std::string line; std::getline(file, line);) lines.push_back(line);
-  return lines;
-}
-
-std::string room_of(const std::string& path) { return path.substr(0, path.find('/')); }
-
-/// The library that a file belongs to: its room, but the models of vehicle and sensor, which are no
-/// filter, are one of their own.
-std::string library_of(const std::string& path) {
-  return path.starts_with("filters/models/") ? "models" : room_of(path);
-}
-
-bool is_cpp(const std::string& path) { return path.ends_with(".cpp") || path.ends_with(".hpp"); }
-
-bool is_script(const Lines& lines) { return !lines.empty() && lines[0].starts_with("#!"); }
-
-bool is_source(const std::string& path, const Lines& lines) {
-  return is_cpp(path) || path.ends_with("CMakeLists.txt") || path.ends_with(".py") ||
-         path.ends_with(".js") || path.ends_with(".css") || is_script(lines);
-}
-
-/// Every source file below the rooms of the house.
-Tree read_house(const fs::path& top) {
-  Tree tree;
-  for (const std::string& room : kRooms) {
-    for (const auto& entry : fs::recursive_directory_iterator(top / room)) {
-      if (!entry.is_regular_file()) continue;
-      const std::string path = fs::relative(entry.path(), top).generic_string();
-      Lines lines = read_lines(entry.path());
-      if (is_source(path, lines)) tree.emplace(path, std::move(lines));
-    }
-  }
-  return tree;
-}
-
-const Tree& house() {
-  static const Tree tree = read_house(MONTECARTA_SOURCE_DIR);
-  return tree;
-}
-
-/// What a file includes, as written between the quotes or angle brackets.
-std::vector<std::string> includes_of(const Lines& lines) {
-  static const std::regex include(R"rx(^\s*#\s*include\s*[<"]([^>"]+)[>"])rx");
-  std::vector<std::string> names;
-  std::smatch match;
-  for (const std::string& line : lines) {
-    if (std::regex_search(line, match, include)) names.push_back(match[1]);
-  }
-  return names;
-}
-
 /// "path:line: what" for every line of C++ outside tests that `broken` finds fault with.
 std::vector<std::string> faults(const Tree& tree, const std::string& what,
                                 const std::function<bool(const std::string&)>& broken) {
   std::vector<std::string> found;
   for (const auto& [path, lines] : tree) {
-    if (!is_cpp(path) || room_of(path) == "tests") continue;
+    if (!is_cpp(path) || top_folder_of(path) == "tests") continue;
     for (std::size_t i = 0; i < lines.size(); ++i) {
       if (broken(lines[i])) found.push_back(path + ":" + std::to_string(i + 1) + ": " + what);
     }
@@ -107,7 +48,7 @@ std::vector<std::string> forbidden_includes(const Tree& tree) {
   for (const auto& [path, lines] : tree) {
     if (!is_cpp(path)) continue;
     for (const std::string& name : includes_of(lines)) {
-      const bool ours = std::ranges::count(kRooms, room_of(name)) > 0;
+      const bool ours = std::ranges::count(kFolders, top_folder_of(name)) > 0;
       if (name.starts_with(".") ||
           (ours && !allowed.at(library_of(path)).contains(library_of(name)))) {
         found.push_back(path + " includes " + name);
@@ -125,7 +66,7 @@ std::set<std::string> include_cycles(const Tree& tree) {
   std::set<std::pair<std::string, std::string>> uses;
   std::set<std::string> left;
   for (const auto& [path, lines] : tree) {
-    if (!is_cpp(path) || room_of(path) == "tests") continue;
+    if (!is_cpp(path) || top_folder_of(path) == "tests") continue;
     for (const std::string& name : includes_of(lines)) {
       if (folder_of(path) != folder_of(name)) uses.emplace(folder_of(path), folder_of(name));
     }
@@ -148,12 +89,28 @@ std::set<std::string> include_cycles(const Tree& tree) {
 std::vector<std::string> users_of(const Tree& tree, const std::string& prefix) {
   std::vector<std::string> users;
   for (const auto& [path, lines] : tree) {
-    if (!is_cpp(path) || room_of(path) == "tests") continue;
+    if (!is_cpp(path) || top_folder_of(path) == "tests") continue;
     const auto names = includes_of(lines);
     const auto starts = [&](const std::string& name) { return name.starts_with(prefix); };
     if (std::ranges::any_of(names, starts)) users.push_back(path);
   }
   return users;
+}
+
+/// Files outside tests that open a namespace of another library than their own.
+std::vector<std::string> in_other_namespaces(const Tree& tree) {
+  static const std::regex opening(R"(^namespace montecarta(::(\w+))?.*\{$)");
+  std::vector<std::string> found;
+  std::smatch match;
+  for (const auto& [path, lines] : tree) {
+    if (!is_cpp(path) || top_folder_of(path) == "tests" || path == "engine/namespaces.hpp")
+      continue;
+    for (const std::string& line : lines) {
+      if (std::regex_match(line, match, opening) && match[2] != library_of(path))
+        found.push_back(path);
+    }
+  }
+  return found;
 }
 
 std::vector<std::string> too_long(const Tree& tree, std::size_t limit) {
@@ -183,20 +140,26 @@ std::vector<std::string> strays(const std::vector<std::string>& names) {
       R"(|build.*|.*\.h5|.*\.h5\.part(\.new)?|first_study_report|reproduction)");
   std::vector<std::string> found;
   for (const std::string& name : names) {
-    const bool is_room = std::ranges::count(kRooms, name) > 0;
-    if (!is_room && !std::regex_match(name, belongs)) found.push_back(name);
+    const bool is_folder = std::ranges::count(kFolders, name) > 0;
+    if (!is_folder && !std::regex_match(name, belongs)) found.push_back(name);
   }
   return found;
 }
 
-TEST(House, ARoomIncludesOnlyWhatStandsBelowIt) {
-  EXPECT_THAT(forbidden_includes(house()), IsEmpty());
+TEST(SourceTree, FoldersIncludeOnlyThoseBelow) {
+  EXPECT_THAT(forbidden_includes(sources()), IsEmpty());
 }
 
-TEST(House, FoldersIncludeEachOtherInNoCycle) { EXPECT_THAT(include_cycles(house()), IsEmpty()); }
+TEST(SourceTree, NamespacesAreThoseOfTheFolders) {
+  EXPECT_THAT(in_other_namespaces(sources()), IsEmpty());
+}
 
-TEST(House, StatisticsKnowNumbersOnly) {
-  for (const auto& [path, lines] : house()) {
+TEST(SourceTree, FoldersIncludeEachOtherInNoCycle) {
+  EXPECT_THAT(include_cycles(sources()), IsEmpty());
+}
+
+TEST(SourceTree, StatisticsKnowNumbersOnly) {
+  for (const auto& [path, lines] : sources()) {
     if (!path.starts_with("analysis/statistics/")) continue;
     for (const std::string& name : includes_of(lines)) {
       const bool is_ours = name.starts_with("analysis/statistics/");
@@ -205,22 +168,22 @@ TEST(House, StatisticsKnowNumbersOnly) {
   }
 }
 
-TEST(House, LibrariesAreMetInOneOrTwoFiles) {
+TEST(SourceTree, LibrariesAreUsedInOneOrTwoFiles) {
   for (const char* header : {"tbb/", "oneapi/", "omp.h", "boost/program_options", "matio"}) {
-    const auto users = users_of(house(), header);
+    const auto users = users_of(sources(), header);
     EXPECT_LE(users.size(), 2u) << header << ": " << testing::PrintToString(users);
   }
 }
 
-TEST(House, Hdf5IsMetInItsWrapperOnly) {
-  EXPECT_THAT(users_of(house(), "hdf5"), Each(StartsWith("engine/records/h5")));
+TEST(SourceTree, Hdf5IsUsedInItsWrapperOnly) {
+  EXPECT_THAT(users_of(sources(), "hdf5"), Each(StartsWith("engine/records/h5")));
 }
 
-TEST(House, NoFileIsLongerThan300Lines) { EXPECT_THAT(too_long(house(), 300), IsEmpty()); }
+TEST(SourceTree, NoFileIsLongerThan300Lines) { EXPECT_THAT(too_long(sources(), 300), IsEmpty()); }
 
-TEST(House, EverySourceNamesItsLicence) { EXPECT_THAT(without_licence(house()), IsEmpty()); }
+TEST(SourceTree, EverySourceNamesItsLicence) { EXPECT_THAT(without_licence(sources()), IsEmpty()); }
 
-TEST(House, NothingElseLiesAtTheTop) {
+TEST(SourceTree, NothingElseLiesAtTheTop) {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(MONTECARTA_SOURCE_DIR)) {
     names.push_back(entry.path().filename().string());
@@ -228,36 +191,36 @@ TEST(House, NothingElseLiesAtTheTop) {
   EXPECT_THAT(strays(names), IsEmpty());
 }
 
-TEST(House, RandomNumbersComeFromStreamsOnly) {
+TEST(SourceTree, RandomNumbersComeFromStreamsOnly) {
   static const std::regex other(
       R"(std::(normal_distribution|uniform_\w+_distribution|random_device|mt19937)|\brand\()");
   const auto broken = [](const std::string& line) { return std::regex_search(line, other); };
-  EXPECT_THAT(faults(house(), "not an RngStream", broken), IsEmpty());
+  EXPECT_THAT(faults(sources(), "not an RngStream", broken), IsEmpty());
 }
 
 // xsimd 8 rounds them differently on AVX-512, or lets one lane choose the way of another.
-TEST(House, FunctionsThatDifferBetweenProcessorsAreNotTakenFromXsimd) {
+TEST(SourceTree, FunctionsThatDifferBetweenProcessorsAreNotTakenFromXsimd) {
   static const std::regex other(
       R"(xsimd::(f[n]?m[as]|exp\w*|log\w*|sin\w*|cos\w*|a?tan\w*|pow)\()");
   const auto broken = [](const std::string& line) { return std::regex_search(line, other); };
-  EXPECT_THAT(faults(house(), "not of register_math", broken),
+  EXPECT_THAT(faults(sources(), "not of register_math", broken),
               Each(StartsWith("engine/numbers/registers.hpp")));
 }
 
-TEST(House, NothingIsInvertedAndNothingIsLeftToDo) {
+TEST(SourceTree, NothingIsInvertedAndNothingIsLeftToDo) {
   static const std::regex other(R"(\.inverse\(\)|\b(TODO|FIXME|XXX)\b)");
   const auto broken = [](const std::string& line) { return std::regex_search(line, other); };
-  EXPECT_THAT(faults(house(), "inverse() or left to do", broken), IsEmpty());
+  EXPECT_THAT(faults(sources(), "inverse() or left to do", broken), IsEmpty());
 }
 
-TEST(House, TheTreeThatIsReadIsWhole) {
+TEST(SourceTree, TheTreeThatIsReadIsWhole) {
   for (const char* path : {"engine/errors.hpp", "tests/run", "filters/CMakeLists.txt",
                            "analysis/page/script/player.js"}) {
-    EXPECT_TRUE(house().contains(path)) << path;
+    EXPECT_TRUE(sources().contains(path)) << path;
   }
 }
 
-TEST(House, IncludeCyclesAreSeen) {
+TEST(SourceTree, IncludeCyclesAreFound) {
   const Tree tree = {{"engine/a/one.cpp", {"#include \"engine/b/two.hpp\""}},
                      {"engine/b/three.hpp", {"#include \"engine/a/four.hpp\""}},
                      {"engine/b/two.hpp", {"#include \"engine/c/five.hpp\""}},
@@ -268,15 +231,17 @@ TEST(House, IncludeCyclesAreSeen) {
               ElementsAre("engine/a", "engine/b", "engine/d", "engine/e", "engine/f"));
 }
 
-// The laws above can fail: a house where each is broken once.
-TEST(House, BrokenLawsAreSeen) {
+// The rules above can fail: a tree where each is broken once.
+TEST(SourceTree, BrokenRulesAreFound) {
   const Tree broken = {
       {"engine/a.cpp", {"#include \"filters/factory.hpp\"", "#include <hdf5.h>", "rand();"}},
+      {"engine/c.cpp", {"// SPDX-License-Identifier: BSD-3-Clause", "namespace montecarta {"}},
       {"analysis/b.hpp", Lines(301, "#include <experiments/study.hpp>")},
       {"tests/run", {"#!/bin/bash", "true"}}};
   EXPECT_THAT(forbidden_includes(broken), testing::Contains(HasSubstr("engine/a.cpp")));
   EXPECT_THAT(forbidden_includes(broken), testing::Contains(HasSubstr("analysis/b.hpp")));
   EXPECT_THAT(users_of(broken, "hdf5"), ElementsAre("engine/a.cpp"));
+  EXPECT_THAT(in_other_namespaces(broken), ElementsAre("engine/c.cpp"));
   EXPECT_THAT(too_long(broken, 300), ElementsAre("analysis/b.hpp"));
   EXPECT_THAT(without_licence(broken), ElementsAre("analysis/b.hpp", "engine/a.cpp", "tests/run"));
   EXPECT_THAT(strays({"engine", "notes.txt", "build-dev"}), ElementsAre("notes.txt"));
@@ -285,7 +250,7 @@ TEST(House, BrokenLawsAreSeen) {
 }
 
 // Analysis may know how a vehicle moves and what a sensor sees, but no filter.
-TEST(House, TheModelsAreALibraryOfTheirOwn) {
+TEST(SourceTree, TheModelsAreALibraryOfTheirOwn) {
   const Lines model = {"#include \"filters/models/vehicle.hpp\""};
   const Lines filter = {"#include \"filters/factory.hpp\""};
   const Tree tree = {{"analysis/fine.cpp", model},
@@ -297,3 +262,4 @@ TEST(House, TheModelsAreALibraryOfTheirOwn) {
 }
 
 }  // namespace
+}  // namespace montecarta::sources

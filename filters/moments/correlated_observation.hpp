@@ -4,15 +4,15 @@
 #include "filters/moments/correlated_map.hpp"
 #include "filters/moments/linearised.hpp"
 
-namespace montecarta {
+namespace montecarta::filters {
 
-/// Rows of a sight's derivative by the landmark's place; by the pose's place they are the
+/// Rows of an observation's derivative by the landmark's place; by the pose's place they are the
 /// negatives, by the heading 0 and -1.
 template <class Real>
-struct SightRows {
+struct ObservationRows {
   Real range_x, range_y, bearing_x, bearing_y;
 
-  [[gnu::always_inline]] explicit SightRows(const Sightline<Real>& s)
+  [[gnu::always_inline]] explicit ObservationRows(const LineOfSight<Real>& s)
       : range_x(s.ux),
         range_y(s.uy),
         bearing_x(-(s.per_range * s.uy)),
@@ -26,11 +26,11 @@ struct SightRows {
   }
 };
 
-/// What a sight says of a pose Gaussian that is correlated with the landmark by C.
+/// What an observation says of a pose Gaussian that is correlated with the landmark by C.
 template <class Real>
 [[gnu::always_inline]] inline Innovation<Real> correlated_innovation(
     const Symmetric3<Real>& P, const Symmetric2<Real>& F, const PoseCross<Real>& C,
-    const SightRows<Real>& rows, const RangeBearing<Real>& value, const SensorNoise& noise) {
+    const ObservationRows<Real>& rows, const RangeBearing<Real>& value, const SensorNoise& noise) {
   const RangeBearing<Real> x = rows.of(C.x.x - P.xx, C.y.x - P.xy, P.xh);
   const RangeBearing<Real> y = rows.of(C.x.y - P.xy, C.y.y - P.yy, P.yh);
   const RangeBearing<Real> h = rows.of(C.x.h - P.xh, C.y.h - P.yh, P.hh);
@@ -90,9 +90,9 @@ Innovation<Real> absorb(CorrelatedMap<Real>& maps, std::size_t b, const Where& a
                         const Mask& matched, Evidence<Real>& evidence) {
   PoseGaussian<Real>& pose = maps.pose(b);
   const LandmarkGaussian<Real> f = maps.landmark(at, b);
-  const Sightline<Real> s = sightline(pose.mean, f.mean);
+  const LineOfSight<Real> s = line_of_sight(pose.mean, f.mean);
   const auto use = matched && is_usable(s);
-  const SightRows<Real> rows(s);
+  const ObservationRows<Real> rows(s);
   Innovation<Real> v =
       correlated_innovation(pose.covariance, f.covariance, PoseCross<Real>(maps.pose_cross(at, b)),
                             rows, residual(seen, s), noise);
@@ -115,4 +115,4 @@ Innovation<Real> absorb(CorrelatedMap<Real>& maps, std::size_t b, const Where& a
   return v;
 }
 
-}  // namespace montecarta
+}  // namespace montecarta::filters
