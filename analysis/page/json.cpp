@@ -67,4 +67,14 @@ JsonWriter& JsonWriter::value(double number, int digits) {
   return literal({buffer.data(), written.ptr});
 }
 
+JsonWriter& JsonWriter::exact(double number) {
+  if (!std::isfinite(number)) return value(number);
+  std::array<char, 32> buffer{};
+  const auto written = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number);
+  const std::string_view text(buffer.data(), written.ptr);
+  literal(text);
+  if (text.find_first_of(".e") == std::string_view::npos) text_ += ".0";
+  return *this;
+}
+
 }  // namespace montecarta::analysis

@@ -25,6 +25,8 @@ class JsonWriter {
   JsonWriter& value(bool truth) { return literal(truth ? "true" : "false"); }
   /// NaN becomes null; what is infinite becomes 1e999, which a page reads as infinite.
   JsonWriter& value(double number, int digits = kDigits);
+  /// The shortest text that reads back as the same bits, as a number with a fraction: 3.0.
+  JsonWriter& exact(double number);
   JsonWriter& value(std::integral auto number) { return literal(std::to_string(number)); }
 
   /// An array of numbers or texts.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/stop_sign.hpp"
 #include "engine/random/stream.hpp"
 #include "engine/threads/parallel.hpp"
 
@@ -13,8 +14,9 @@ namespace montecarta::engine {
 /// threads.
 class StepContext {
  public:
-  StepContext(std::uint64_t seed, std::uint64_t run, std::uint32_t step, const Parallel& parallel)
-      : seed_(seed), run_(run), step_(step), parallel_(&parallel) {}
+  StepContext(std::uint64_t seed, std::uint64_t run, std::uint32_t step, const Parallel& parallel,
+              const StopSign* stop = nullptr)
+      : seed_(seed), run_(run), step_(step), parallel_(&parallel), stop_(stop) {}
 
   std::uint64_t run() const { return run_; }
   std::uint32_t step() const { return step_; }
@@ -26,6 +28,9 @@ class StepContext {
   StreamIdentity identity(Draw purpose, std::uint32_t index) const {
     return {seed_, run_, step_, index, purpose};
   }
+  /// Valid for the whole run; nullptr where nobody stops it. What a filter throws after it was made
+  /// is no result: the run is dropped.
+  const StopSign* stop() const { return stop_; }
   /// Calls body(i) for i in [0, count), perhaps at once; body i may write only what belongs to i.
   template <class Body>
   void parallel_for(std::size_t count, const Body& body) const {
@@ -37,6 +42,7 @@ class StepContext {
   std::uint64_t run_;
   std::uint32_t step_;
   const Parallel* parallel_;
+  const StopSign* stop_;
 };
 
 }  // namespace montecarta::engine

@@ -11,18 +11,19 @@ namespace montecarta::engine {
 /// What a draw is for. Two places never share a purpose; the world's purposes never depend on the
 /// filter. The numbers are part of every result: append, never renumber. 25 and 26 are spent.
 enum class Draw : std::uint8_t {
-  world_control = 0,    ///< noise on the control (measured-control) or on the motion (matched)
-  world_detection = 1,  ///< noise on range and bearing, index = landmark
-  world_miss = 2,       ///< whether a landmark is missed, index = landmark
-  world_clutter = 3,    ///< number and place of false alarms
-  world_landmark = 4,   ///< random maps
-  motion_sample = 16,   ///< FastSLAM 1 motion noise, index = particle
-  pose_proposal = 17,   ///< FastSLAM 2 draw from the proposal, index = particle
-  resampling = 18,      ///< index = 0 (systematic) or particle
-  evolution = 19,       ///< differential evolution
-  kernel_sample = 23,   ///< marginal filters: pose drawn from the chosen kernel, index = particle
-  heading_split = 24,   ///< bank of joint Gaussians: heading drawn, index = particle
-  split_stratum = 27,   ///< as heading_split: which stratum it is drawn from
+  world_control = 0,     ///< noise on the control (measured-control) or on the motion (matched)
+  world_detection = 1,   ///< noise on range and bearing, index = landmark
+  world_miss = 2,        ///< whether a landmark is missed, index = landmark
+  world_clutter = 3,     ///< number and place of false alarms
+  world_landmark = 4,    ///< random maps
+  motion_sample = 16,    ///< FastSLAM 1 motion noise, index = particle
+  pose_proposal = 17,    ///< FastSLAM 2 draw from the proposal, index = particle
+  resampling = 18,       ///< index = 0 (systematic) or particle
+  evolution = 19,        ///< differential evolution
+  kernel_sample = 23,    ///< marginal filters: pose drawn from the chosen kernel, index = particle
+  heading_split = 24,    ///< bank of joint Gaussians: heading drawn, index = particle
+  split_stratum = 27,    ///< as heading_split: which stratum it is drawn from
+  external_filter = 28,  ///< what a program outside of the process may seed its generator with
   analysis_bootstrap = 32,
   test = 255,
 };

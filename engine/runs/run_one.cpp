@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/runs/run_one.hpp"
 
+#include "engine/errors.hpp"
 #include "engine/threads/cpu_clock.hpp"
 
 #include <cmath>
@@ -42,7 +43,7 @@ class Walk {
   std::string_view take_step() {
     const Itinerary& itinerary = conditions_.itinerary;
     const StepContext context(conditions_.seed, conditions_.run, step_,
-                              conditions_.spare_threads.lend(particles_));
+                              conditions_.spare_threads.lend(particles_), &conditions_.stop);
     const Control& control = conditions_.drive.controls[step_];
     if (!control.stands()) filter_.predict(context, control, itinerary.duration(step_));
     while (scan_ < itinerary.scans() && itinerary.scan_step[scan_] == step_) {
@@ -80,7 +81,10 @@ RunEnd run_one(const RunConditions& conditions, SlamFilter& filter, Recorder& re
     record.mark_complete(clock.seconds());
   } catch (const std::bad_alloc&) {
     throw;  // says something of the machine, not of the filter: no result of the study
+  } catch (const RunError&) {
+    throw;  // likewise
   } catch (const std::exception& error) {
+    if (conditions.stop.made()) return RunEnd::dropped;  // it may be why the filter gave up
     record.mark_failed(walk.step(), error.what(), clock.seconds());
   } catch (...) {
     record.mark_failed(walk.step(), "an exception that is no std::exception", clock.seconds());

@@ -30,12 +30,12 @@ Estimate print_cells(const StudyPlan& plan) {
   total.per_thread = 2.0 * truth;
   std::vector<TableRow> rows{{"cell", "filter", "ms a run", "a run", "all runs"}};
   for (const Cell& cell : plan.cells) {
-    const double seconds = trial_seconds(cell, plan, drive);
+    const std::optional<double> seconds = trial_seconds(cell, plan, drive);
     const double bytes = static_cast<double>(RecordLayout(cell, plan.columns, itinerary).bytes());
     rows.push_back({cell.label, cell.long_name,
-                    std::to_string(std::max(1L, std::lround(seconds * 1e3))), bytes_text(bytes),
-                    bytes_text(bytes * runs)});
-    total.cpu_seconds += seconds * runs;
+                    seconds ? std::to_string(std::max(1L, std::lround(*seconds * 1e3))) : "?",
+                    bytes_text(bytes), bytes_text(bytes * runs)});
+    total.cpu_seconds += seconds.value_or(0.0) * runs;
     total.disk += bytes * runs;
     total.per_thread += bytes;
   }

@@ -32,6 +32,7 @@ Command compare_command();
 Command bounds_command();
 Command plan_command();
 Command convert_command();
+Command export_command();
 Command list_command();
 
 /// All commands, in the order of the help.

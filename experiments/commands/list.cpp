@@ -2,6 +2,7 @@
 #include "engine/errors.hpp"
 #include "engine/records/column_table.hpp"
 #include "experiments/commands/commands.hpp"
+#include "experiments/external/external_kind.hpp"
 #include "experiments/files/shipped_files.hpp"
 #include "experiments/study/cell_spec.hpp"
 #include "experiments/study/ini_text.hpp"
@@ -10,7 +11,6 @@
 #include "experiments/text/table.hpp"
 #include "experiments/text/words.hpp"
 #include "experiments/worlds/world_file.hpp"
-#include "filters/factory.hpp"
 
 #include <algorithm>
 #include <fstream>
@@ -23,13 +23,14 @@ namespace {
 void list_options(std::span<const Option> options) {
   std::vector<TableRow> rows;
   for (const Option& option : options) {
-    rows.push_back({option.key + "=" + *option.fallback, option.meaning, demand_of(option)});
+    rows.push_back({option.key + "=" + option.fallback.value_or("(required)"), option.meaning,
+                    demand_of(option)});
   }
   std::cout << aligned(rows, 4);
 }
 
 void list_filters() {
-  for (const FilterKind& filter : filter_kinds()) {
+  for (const FilterKind& filter : known_filters()) {
     std::cout << filter.name << "  " << filter.long_name << "  " << filter.source << "\n";
     list_options(filter.options);
   }

@@ -26,8 +26,27 @@ std::vector<OptionSpec> plan_options() {
   return {{"set", "", {"SECTION.KEY=VALUE"}, "override a setting of the study; repeatable", true},
           {"runs", "", {"A:B"}, "only runs A to B-1"},
           {"shard", "", {"I/N"}, "only part I (from 0) of N"},
+          external_option(),
           {"threads", "", {"N"}, "default: what this process may use"},
           {"backend", "", {"tbb|openmp|serial"}, "how runs are spread over threads; same results"}};
+}
+
+OptionSpec external_option() {
+  return {kAllowExternal,
+          "",
+          {},
+          "start the programs that cells of the study name: read them first, if it is not yours"};
+}
+
+ExternalPrograms programs_of(const Study& study, const Arguments& arguments) {
+  if (arguments.has(kAllowExternal)) return ExternalPrograms::allowed;
+  for (const CellSpec& cell : study.cells) {
+    if (!starts_program(*cell.filter)) continue;
+    throw StudyError(cell.place + ": cell " + cell.label +
+                     " is a program, which runs with all that you may do: " + cell_line(cell) +
+                     " (nothing is started unasked): if you trust it, add --" + kAllowExternal);
+  }
+  return ExternalPrograms::refused;
 }
 
 Study study_of(const Arguments& arguments) {
@@ -35,7 +54,9 @@ Study study_of(const Arguments& arguments) {
 }
 
 StudyPlan plan_of(const Study& study, const Arguments& arguments) {
-  return make_plan(study, range_of(arguments, study.settings.count("study", "runs")));
+  return make_plan(
+      study, range_of(arguments, study.settings.count("study", "runs")),
+      arguments.has(kAllowExternal) ? ExternalPrograms::allowed : ExternalPrograms::refused);
 }
 
 Parallel parallel_of(const Arguments& arguments) {

@@ -5,6 +5,7 @@
 #include "engine/records/result_description.hpp"
 #include "engine/threads/parallel.hpp"
 #include "experiments/commands/arguments.hpp"
+#include "experiments/external/external_kind.hpp"
 #include "experiments/study/study.hpp"
 
 #include <string>
@@ -15,9 +16,13 @@ namespace montecarta::experiments {
 /// Options that choose what part of a study runs and on how many threads: --set, --runs, --shard,
 /// --threads, --backend.
 std::vector<OptionSpec> plan_options();
+/// --allow-external, without which no command starts a program that a study names.
+OptionSpec external_option();
+/// Whether that was given. Throws StudyError where it was not and a cell of the study is a program.
+ExternalPrograms programs_of(const Study& study, const Arguments& arguments);
 /// The study file that is the first operand, changed by --set.
 Study study_of(const Arguments& arguments);
-/// Its plan, cut by --runs or --shard.
+/// Its plan, cut by --runs or --shard, with programs if --allow-external is given.
 StudyPlan plan_of(const Study& study, const Arguments& arguments);
 /// As --threads, --backend and the environment have it.
 Parallel parallel_of(const Arguments& arguments);

@@ -59,14 +59,14 @@ Study recording_everything(Study study, std::size_t cell) {
 
 /// What differs from the run as it is stored; nullopt where nothing does or it is not stored.
 std::optional<std::string> departure(const ResultFile& file, const Study& study, std::size_t cell,
-                                     std::uint64_t run) {
+                                     std::uint64_t run, ExternalPrograms programs) {
   const auto held = std::ranges::find(file.runs(), run);
   const auto index = static_cast<std::size_t>(held - file.runs().begin());
   if (held == file.runs().end() || !is_stored(file.status(file.cells().at(cell))[index])) {
     std::cerr << "montecarta: " << file.path().string() << " does not hold this run yet\n";
     return std::nullopt;
   }
-  const StudyPlan plan = make_plan(study);
+  const StudyPlan plan = make_plan(study, std::nullopt, programs);
   return Recomputation(file.path(), file.description(), plan).difference({cell, index});
 }
 
@@ -90,8 +90,10 @@ int replay(const Arguments& arguments) {
   refuse_to_replace_other_kinds(output);
   const Study study = study_in(file, arguments);
   const std::size_t cell = cell_of(study, label);
-  const auto departs = departure(file, study, cell, run);
-  const StudyPlan plan = make_plan(recording_everything(study, cell), RunRange{run, run + 1});
+  const Study whole = recording_everything(study, cell);
+  const ExternalPrograms programs = programs_of(whole, arguments);
+  const auto departs = departure(file, study, cell, run, programs);
+  const StudyPlan plan = make_plan(whole, RunRange{run, run + 1}, programs);
   const RunOutcome outcome = run_study(plan, options_of(arguments, output));
   if (outcome.missing() > 0) return exit_code(outcome, runs_under_scheduler());
   std::cerr << "montecarta: run " << run << " of " << label << " with everything recorded, "
@@ -113,6 +115,7 @@ Command replay_command() {
                    {"cell", "", {"C"}, "label of the cell"},
                    {"run", "", {"R"}, "number of the run, from 0"},
                    data_option(),
+                   external_option(),
                    {"force", "", {}, "replace ONE.h5"},
                    {"threads", "", {"N"}, "default: what this process may use"},
                    {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},

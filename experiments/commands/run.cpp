@@ -84,7 +84,9 @@ void print_first_verdict(const RunOptions& options) {
 
 int run(const Arguments& arguments) {
   const RunOptions options = options_of(arguments);
-  const StudyPlan plan = plan_of(study_of(arguments), arguments);
+  const Study study = study_of(arguments);
+  programs_of(study, arguments);
+  const StudyPlan plan = plan_of(study, arguments);
   const RunOutcome outcome = run_study(plan, options);
   if (outcome.missing() > 0) {
     tell_how_to_resume(outcome, arguments);

@@ -23,7 +23,7 @@ void step_through(SlamFilter& filter, const StudyPlan& plan, const Drive& drive,
 
 }  // namespace
 
-double trial_seconds(const Cell& cell, const StudyPlan& plan, const Drive& drive) {
+std::optional<double> trial_seconds(const Cell& cell, const StudyPlan& plan, const Drive& drive) {
   using Clock = std::chrono::steady_clock;
   const std::size_t steps = plan.drives->itinerary().steps();
   const auto begin = Clock::now();
@@ -38,7 +38,7 @@ double trial_seconds(const Cell& cell, const StudyPlan& plan, const Drive& drive
         seconds = std::chrono::duration<double>(Clock::now() - begin).count();
     }
   } catch (const std::exception&) {
-    return 0.0;
+    return std::nullopt;
   }
   return seconds * static_cast<double>(steps) / static_cast<double>(k);
 }

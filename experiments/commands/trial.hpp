@@ -3,10 +3,13 @@
 
 #include "engine/core/plan.hpp"
 
+#include <optional>
+
 namespace montecarta::experiments {
 
 /// How long [s] one run of `cell` takes on one thread, from the first part of `drive`: a quarter of
-/// a second of it, or all. Zero where the filter throws at once; the run itself will say why.
-double trial_seconds(const Cell& cell, const StudyPlan& plan, const Drive& drive);
+/// a second of it, or all. Nothing where the filter throws at once (the run itself will say why) or
+/// is a program that nobody allowed to start.
+std::optional<double> trial_seconds(const Cell& cell, const StudyPlan& plan, const Drive& drive);
 
 }  // namespace montecarta::experiments

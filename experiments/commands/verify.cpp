@@ -60,7 +60,8 @@ int verify(const Arguments& arguments) {
     throw StudyError(file.path().string() +
                      ": holds no run yet (nothing to compute again): run the study first");
   const std::vector<StoredRun> chosen = sample(stored, count, seed);
-  const StudyPlan plan = make_plan(study_in(file, arguments));
+  const Study study = study_in(file, arguments);
+  const StudyPlan plan = make_plan(study, std::nullopt, programs_of(study, arguments));
   const Recomputation again(file.path(), file.description(), plan);
   std::vector<std::optional<std::string>> differences(chosen.size());
   parallel_of(arguments).for_each(
@@ -86,12 +87,15 @@ Command verify_command() {
        .options = {{"sample", "", {"K"}, "how many runs of cells, chosen at random; default 10"},
                    {"seed", "", {"S"}, "take the sample that an earlier call named"},
                    data_option(),
+                   external_option(),
                    {"threads", "", {"N"}, "default: what this process may use"},
                    {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},
        .details = "The study is taken from the file. The same bytes are promised to the same "
                   "version, compiler\n"
                   "and C library on any x86-64-v3 processor or newer; where they differ from the\n"
-                  "file's own (montecarta info FILE.h5), that is said first.\n"},
+                  "file's own (montecarta info FILE.h5), that is said first. A program that is a "
+                  "cell is\n"
+                  "started anew for each run, so that what it keeps from run to run is found.\n"},
       verify};
 }
 

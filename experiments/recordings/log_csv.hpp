@@ -18,4 +18,9 @@ DriveLog read_log_csv(const std::filesystem::path& folder);
 /// (references out of the order in which they are read), RunError where writing fails.
 void write_log_csv(const DriveLog& log, const std::filesystem::path& folder);
 
+/// Likewise, with what an estimator must not see, references and landmarks, in a folder apart,
+/// which is new or empty too.
+void write_log_csv(const DriveLog& log, const std::filesystem::path& folder,
+                   const std::filesystem::path& truth_folder);
+
 }  // namespace montecarta::experiments

@@ -100,16 +100,21 @@ void make_folder(const fs::path& folder) {
 }  // namespace
 
 void write_log_csv(const DriveLog& log, const fs::path& folder) {
+  write_log_csv(log, folder, folder);
+}
+
+void write_log_csv(const DriveLog& log, const fs::path& folder, const fs::path& truth_folder) {
   check_log(log, folder.string());
   check_order(log, folder.string());
   make_folder(folder);
+  make_folder(truth_folder);
   start_table(log.start_time, log.start).save(folder / "start.csv");
   odometry_table(log.odometry).save(folder / "odometry.csv");
   detection_table(log).save(folder / "detections.csv");
   for (const ReferencePath& reference : log.references) {
-    reference_table(reference).save(folder / log_csv::file_of_reference(reference.name));
+    reference_table(reference).save(truth_folder / log_csv::file_of_reference(reference.name));
   }
-  if (!log.landmarks.empty()) landmark_table(log.landmarks).save(folder / "landmarks.csv");
+  if (!log.landmarks.empty()) landmark_table(log.landmarks).save(truth_folder / "landmarks.csv");
 }
 
 }  // namespace montecarta::experiments

@@ -7,6 +7,12 @@
 namespace montecarta::experiments {
 namespace {
 
+/// Whether nothing but its label can tell a cell from others of its filter.
+bool is_known_by_label(const CellSpec& cell) {
+  return std::ranges::any_of(
+      cell.filter->options, [](const Option& option) { return option.kind == Option::Kind::text; });
+}
+
 /// A value as part of a label: 0.75 -> 0p75, -1 -> m1.
 std::string label_part(std::string text) {
   for (char& c : text) {
@@ -16,8 +22,10 @@ std::string label_part(std::string text) {
   return text;
 }
 
-/// Whether cells of the same filter differ in their option number `i`.
+/// Whether cells of the same filter differ in their option number `i`, other than by a text, which
+/// makes no label.
 bool distinguishes(const std::vector<CellSpec>& cells, const CellSpec& cell, std::size_t i) {
+  if (cell.filter->options[i].kind == Option::Kind::text) return false;
   return std::ranges::any_of(cells, [&](const CellSpec& other) {
     return other.filter == cell.filter && other.options[i].second != cell.options[i].second;
   });
@@ -47,6 +55,7 @@ void label_cells(std::vector<CellSpec>& cells) {
     std::string label;
     describe(cells, cell, label, cell.distinction);
     if (cell.label.empty()) cell.label = label;
+    if (cell.distinction.empty() && is_known_by_label(cell)) cell.distinction = cell.label;
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "experiments/study/setting.hpp"
+#include "experiments/text/quoted_words.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -67,7 +68,9 @@ void take_word(const std::string& word, const FilterKind& filter, CellSpec& cell
     return;
   }
   const Option& option = known_option(filter, key, cell.place);
-  for (const std::string& value : split(word.substr(equals + 1), ',')) {
+  const std::string given = word.substr(equals + 1);
+  const bool is_list = option.kind != Option::Kind::text;  // a text may hold commas
+  for (const std::string& value : is_list ? split(given, ',') : std::vector{given}) {
     lists[key].push_back(checked_value(option, value, cell.place));
   }
 }
@@ -77,11 +80,15 @@ template <class Take>
 void multiply(const Option& option, const Lists& lists, const Take& take,
               std::vector<CellSpec>& cells) {
   const auto given = lists.find(option.key);
-  const std::vector<std::string> fallback{
-      checked_value(option, *option.fallback, cells.front().place)};
+  std::vector<std::string> values;
+  if (given == lists.end()) {
+    values = {checked_value(option, option.fallback.value_or(""), cells.front().place)};
+  } else {
+    values = given->second;
+  }
   std::vector<CellSpec> longer;
   for (const CellSpec& cell : cells) {
-    for (const std::string& value : given == lists.end() ? fallback : given->second) {
+    for (const std::string& value : values) {
       longer.push_back(cell);
       take(longer.back(), value);
     }
@@ -107,8 +114,17 @@ std::vector<CellSpec> combinations(const CellSpec& line, const Lists& lists) {
   return cells;
 }
 
+/// The words of a cell line, each with what it holds in quotes.
+std::vector<std::string> words_in(const IniEntry& entry) {
+  try {
+    return quoted_words(entry.value);
+  } catch (const StudyError& error) {
+    throw StudyError(entry.place + ": " + error.what());
+  }
+}
+
 std::vector<CellSpec> read_line(const IniEntry& entry, std::span<const FilterKind> filters) {
-  const std::vector<std::string> words = words_of(entry.value);
+  const std::vector<std::string> words = words_in(entry);
   if (words.empty()) {
     throw StudyError(entry.place +
                      ": cell names no filter (see montecarta list filters): write e.g. cell = " +
@@ -162,7 +178,11 @@ std::vector<CellSpec> read_cells(std::span<const IniEntry> entries, const std::s
 
 std::string cell_line(const CellSpec& cell) {
   std::string line = cell.filter->name + " label=" + cell.label;
-  for (const auto& [key, value] : cell.options) line += " " + key + "=" + value;
+  for (std::size_t i = 0; i < cell.options.size(); ++i) {
+    const auto& [key, value] = cell.options[i];
+    const bool is_text = cell.filter->options[i].kind == Option::Kind::text;
+    line += " " + key + "=" + (is_text ? in_quotes(value) : value);
+  }
   for (const auto& [key, value] : cell.mismatch) line += " " + key + "=" + value;
   return line;
 }

@@ -32,8 +32,8 @@ std::span<const Option> mismatch_options();
 double mismatch_of(const CellSpec& cell, std::string_view name);
 
 /// The cells of all `cell = FILTER key=value,... label=NAME` lines: one for every combination of
-/// listed values. Throws StudyError at unknown filters, options and values, and where two cells are
-/// the same.
+/// listed values; a value that is a text is no list and stands in quotes where it holds blanks.
+/// Throws StudyError at unknown filters, options and values, and where two cells are the same.
 std::vector<CellSpec> read_cells(std::span<const IniEntry> entries, const std::string& name,
                                  std::span<const FilterKind> filters);
 

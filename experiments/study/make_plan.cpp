@@ -75,7 +75,27 @@ std::vector<std::pair<std::string, std::string>> settings_of(const CellSpec& spe
   return settings;
 }
 
-Cell cell_of(const CellSpec& spec, const Study& study) {
+/// What makes the cell's filter, tried once where it is a program that may be started: making it
+/// does not start it, but finds out whether it is there.
+std::function<std::unique_ptr<SlamFilter>()> maker_of(const CellSpec& spec,
+                                                      const FilterSetup& setup,
+                                                      ExternalPrograms programs) {
+  const auto make = [make = spec.filter->make, setup] { return make(setup); };
+  if (!starts_program(*spec.filter)) return make;
+  if (programs == ExternalPrograms::refused) {
+    return [label = spec.label]() -> std::unique_ptr<SlamFilter> {
+      throw StudyError("cell " + label + " is a program that nobody allowed to start");
+    };
+  }
+  try {
+    make();
+  } catch (const StudyError& error) {
+    throw StudyError(spec.place + ": " + error.what());
+  }
+  return make;
+}
+
+Cell cell_of(const CellSpec& spec, const Study& study, ExternalPrograms programs) {
   std::map<std::string, std::string, std::less<>> values(spec.options.begin(), spec.options.end());
   const FilterSetup setup{.belief = belief_of(study.settings, spec),
                           .association = association_of(study.settings),
@@ -90,7 +110,7 @@ Cell cell_of(const CellSpec& spec, const Study& study) {
           .joint = filter.has_joint,
           .landmarks = map_rows_of(setup, study.settings),
           .settings = settings_of(spec),
-          .make_filter = [make = filter.make, setup] { return make(setup); }};
+          .make_filter = maker_of(spec, setup, programs)};
 }
 
 /// The settings of the scenario as they are, those of other sections with the section's name before
@@ -134,7 +154,7 @@ std::string objection_to_joint(const Study& study) {
          "large): take joint out, or set association.kind = known in a simulation";
 }
 
-StudyPlan make_plan(const Study& study, std::optional<RunRange> range) {
+StudyPlan make_plan(const Study& study, std::optional<RunRange> range, ExternalPrograms programs) {
   if (range && study.until) refuse_part(study);
   const Settings& settings = study.settings;
   StudyPlan plan;
@@ -144,7 +164,7 @@ StudyPlan make_plan(const Study& study, std::optional<RunRange> range) {
   plan.runs = settings.count("study", "runs");
   plan.first_run = range ? range->first : 0;
   plan.last_run = range ? range->last : plan.runs;
-  for (const CellSpec& spec : study.cells) plan.cells.push_back(cell_of(spec, study));
+  for (const CellSpec& spec : study.cells) plan.cells.push_back(cell_of(spec, study, programs));
   plan.columns = columns_of(settings);
   if (plan.columns.joint) expect_joint_estimates(study);
   plan.drives = drives_of(study, plan.seed);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/core/plan.hpp"
+#include "experiments/external/external_kind.hpp"
 #include "experiments/study/run_range.hpp"
 #include "experiments/study/study.hpp"
 
@@ -15,7 +16,9 @@ namespace montecarta::experiments {
 std::string objection_to_joint(const Study& study);
 
 /// The study made ready to run: drives simulated, filters at hand. Without `range` all its runs.
-/// Throws StudyError where settings that are right alone do not fit together.
-StudyPlan make_plan(const Study& study, std::optional<RunRange> range = std::nullopt);
+/// Filters that are programs cannot be made unless those are allowed. Throws StudyError where
+/// settings that are right alone do not fit together, or there is no such program.
+StudyPlan make_plan(const Study& study, std::optional<RunRange> range = std::nullopt,
+                    ExternalPrograms programs = ExternalPrograms::refused);
 
 }  // namespace montecarta::experiments

@@ -2,6 +2,7 @@
 #include "experiments/study/study.hpp"
 
 #include "engine/errors.hpp"
+#include "experiments/external/external_kind.hpp"
 #include "experiments/study/inline_world.hpp"
 #include "experiments/study/printed_section.hpp"
 #include "experiments/study/recorded_study.hpp"
@@ -91,7 +92,7 @@ Study parse_study(const std::string& text, const std::string& name,
   apply(overrides, ini);
   refuse_unknown_sections(ini);
   Study study{
-      Settings(ini.entries, name), read_cells(ini.entries, name, filter_kinds()), {}, {}, {}, {}};
+      Settings(ini.entries, name), read_cells(ini.entries, name, known_filters()), {}, {}, {}, {}};
   study.printed = read_printed(ini.entries, study.cells);
   if (study.settings.scenario_kind() == "simulated") {
     study.world = world_of(ini, study.settings, folder);

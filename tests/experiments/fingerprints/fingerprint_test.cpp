@@ -27,12 +27,12 @@ const std::string kAllColumns =
     "pose, covariance, ancestry, particles, association, map, final_map, joint";
 
 /// One setting in which all cells of every_filter.ini run.
-struct Setting {
+struct FingerprintedWorld {
   std::string name;
   std::vector<std::string> overrides;
 };
 
-const std::vector<Setting> kSettings = {
+const std::vector<FingerprintedWorld> kSettings = {
     {"known", {}},
     {"nearest", {"association.kind=nearest"}},
     {"large_map", {"association.kind=nearest", "scenario.world=dense_loop"}},

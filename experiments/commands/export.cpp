@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/output/csv_file.hpp"
+#include "engine/errors.hpp"
+#include "experiments/commands/commands.hpp"
+#include "experiments/commands/plan_arguments.hpp"
+#include "experiments/recordings/log_csv.hpp"
+#include "experiments/recordings/log_of_drive.hpp"
+
+#include <algorithm>
+#include <iostream>
+
+namespace montecarta::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path output_of(const Arguments& arguments) {
+  const auto directory = arguments.text("output");
+  if (!directory) throw StudyError("export: no folder (-o DIR is where the drives go): add -o DIR");
+  if (!fs::exists(*directory) || (fs::is_directory(*directory) && fs::is_empty(*directory)))
+    return *directory;
+  throw StudyError(*directory +
+                   ": not a new folder (what lies there would be taken for a drive of this study): "
+                   "name another");
+}
+
+/// "run_0012", so that names sort like numbers.
+std::string name_of_run(std::uint64_t run, std::uint64_t runs) {
+  const std::size_t digits = std::max<std::size_t>(4, std::to_string(runs - 1).size());
+  std::string number = std::to_string(run);
+  number.insert(0, digits - number.size(), '0');
+  return "run_" + number;
+}
+
+/// What the study has a filter believe, as the lines of its file.
+std::string belief_text(const Study& study) {
+  std::string text;
+  for (const char* section : {"belief", "association"}) {
+    text += std::string("[") + section + "]\n";
+    for (const auto& [key, value] : study.settings.section(section))
+      text += key + " = " + value + "\n";
+  }
+  return text;
+}
+
+int export_drives(const Arguments& arguments) {
+  const Study study = study_of(arguments);
+  if (study.log != nullptr) {
+    throw StudyError(arguments.operands().front() +
+                     ": the drive of this study was recorded (it is the same in all runs): "
+                     "montecarta convert writes it as CSV");
+  }
+  arguments.choice("format", {"csv"});
+  const fs::path folder = output_of(arguments);
+  const StudyPlan plan = plan_of(study, arguments);
+  const bool known = study.settings.text("association", "kind") == "known";
+  const Itinerary& itinerary = plan.drives->itinerary();
+  Drive drive;
+  for (std::uint64_t run = plan.first_run; run < plan.last_run; ++run) {
+    plan.drives->generate(run, drive);
+    const DriveLog log =
+        log_of(itinerary, drive, plan.own_landmarks ? plan.own_landmarks(run) : itinerary.landmarks,
+               known ? Identities::told : Identities::withheld);
+    const std::string name = name_of_run(run, plan.runs);
+    write_log_csv(log, folder / "runs" / name, folder / "truth" / name);
+  }
+  write_text(folder / "belief.ini", belief_text(study));
+  write_text(folder / "truth" / "study.ini", plan.resolved_text);
+  std::cerr << "montecarta: " << plan.runs_here() << " drives, stored in "
+            << (folder / "runs").string() << ", their truth in " << (folder / "truth").string()
+            << "\n";
+  return kDone;
+}
+
+}  // namespace
+
+Command export_command() {
+  return {
+      {.name = "export",
+       .summary = "writes the simulated drives of a study as plain CSV, for any estimator",
+       .operands = {{"STUDY.ini"}},
+       .options =
+           {{"output", "o", {"DIR"}, "where to; new or empty"},
+            {"format", "", {"csv"}, "how they are written"},
+            {"set", "", {"SECTION.KEY=VALUE"}, "override a setting of the study; repeatable", true},
+            {"runs", "", {"A:B"}, "only runs A to B-1"},
+            {"shard", "", {"I/N"}, "only part I (from 0) of N"}},
+       .details =
+           "DIR/runs/run_0000 holds what an estimator is told: start.csv, odometry.csv and\n"
+           "detections.csv, described in experiments/RECORDED_DRIVES.md; DIR/belief.ini the\n"
+           "vehicle and noise that it may believe. The true path (reference.csv), the true\n"
+           "landmarks and the study lie apart, in DIR/truth. Drives follow from study and run\n"
+           "alone: the filters of a study meet the same ones in montecarta run.\n"},
+      export_drives};
+}
+
+}  // namespace montecarta::experiments

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/core/drive.hpp"
+#include "filters/setup/filter_setup.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace montecarta::experiments {
+
+// What a program is told, one line of JSON a message; EXTERNAL_FILTERS.md describes them. Numbers
+// are the shortest text that reads back as the same bits.
+
+/// One control step: speed [m/s], steering [rad], duration [s].
+using ControlRow = std::array<double, 3>;
+
+/// A run that begins.
+struct RunStart {
+  std::uint64_t run;
+  std::uint32_t seed;  ///< for the program's generator: a pure function of study and run
+  Pose pose;
+};
+
+std::string start_message(std::uint64_t id, const RunStart& start, const FilterSetup& setup);
+std::string predict_message(std::uint64_t id, std::span<const ControlRow> controls);
+/// Identities are told with known association only; -1 is a false alarm, or unknown.
+std::string scan_message(std::uint64_t id, std::span<const ControlRow> controls, Scan scan,
+                         Association association);
+std::string map_message(std::uint64_t id);
+
+}  // namespace montecarta::experiments

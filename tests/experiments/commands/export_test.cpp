@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Drives for anyone's estimator.
+#include "experiments/drives/simulated_drive.hpp"
+#include "experiments/recordings/log_csv.hpp"
+#include "experiments/recordings/recorded_drive.hpp"
+#include "experiments/study/make_drives.hpp"
+#include "tests/experiments/commands/program.hpp"
+
+#include <gmock/gmock.h>
+
+#include <bit>
+
+namespace montecarta::experiments {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+std::vector<std::uint64_t> bits_of(const Itinerary& itinerary, const Drive& drive) {
+  std::vector<std::uint64_t> bits;
+  const auto add = [&](auto... numbers) {
+    (bits.push_back(std::bit_cast<std::uint64_t>(static_cast<double>(numbers))), ...);
+  };
+  add(itinerary.start.x, itinerary.start.y, itinerary.start.heading);
+  for (const double time : itinerary.step_time) add(time);
+  for (const std::uint32_t step : itinerary.scan_step) add(step);
+  for (const Control& control : drive.controls) add(control.speed, control.steer);
+  for (const std::uint32_t begin : drive.scan_begin) add(begin);
+  for (const Detection& d : drive.detections) add(d.range, d.bearing, d.identity);
+  return bits;
+}
+
+class Export : public Program {
+ protected:
+  Export() {
+    write("blink.csv", kBlinkWorld);
+    write("study.ini", kBlink);
+  }
+  Called run_export(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words{"export", "study.ini", "-o", "drives"};
+    words.insert(words.end(), more.begin(), more.end());
+    return call(words);
+  }
+  /// The drive of a run as its exported log has it, truth added to what an estimator sees.
+  RecordedDrive exported(const std::string& run) const {
+    for (const auto& file : std::filesystem::directory_iterator(folder_ / "drives/truth" / run))
+      std::filesystem::copy(file.path(), folder_ / "drives/runs" / run);
+    return {read_log_csv(folder_ / "drives/runs" / run), 1e6, 0.0};
+  }
+};
+
+// Law: an exported log is the drive, to the bit.
+TEST_F(Export, ALogReadBackIsTheSameDrive) {
+  for (const char* noise : {"matched", "measured-control"}) {
+    const std::vector<std::string> overrides = {std::string("scenario.noise=") + noise,
+                                                "scenario.clutter_rate=2", "scenario.map=random",
+                                                "scenario.start_heading_deg=-7"};
+    std::vector<std::string> words;
+    for (const std::string& text : overrides) words.insert(words.end(), {"--set", text});
+    const Called called = run_export(words);
+    ASSERT_EQ(called.code, 0) << called.err;
+    const Study study = read_study(folder_ / "study.ini", overrides);
+    const auto drives = drives_of(study, study.settings.count("study", "seed"));
+    Drive simulated, read;
+    for (const std::uint64_t run : {0, 2}) {
+      drives->generate(run, simulated);
+      const RecordedDrive log = exported("run_000" + std::to_string(run));
+      log.generate(0, read);
+      EXPECT_EQ(bits_of(drives->itinerary(), simulated), bits_of(log.itinerary(), read));
+      const ReferencePath& truth = log.itinerary().references.front();
+      ASSERT_EQ(truth.time, drives->itinerary().step_time);
+      for (std::size_t k = 0; k < simulated.truth.size(); ++k) {
+        EXPECT_EQ(truth.position[k].x(), simulated.truth[k].x);
+        EXPECT_EQ(truth.heading[k], simulated.truth[k].heading);
+      }
+      EXPECT_EQ(log.itinerary().landmarks, own_landmarks_of(study, 1)(run));
+    }
+    std::filesystem::remove_all(folder_ / "drives");
+  }
+}
+
+TEST_F(Export, AnEstimatorSeesNoTruth) {
+  ASSERT_EQ(run_export({"--set", "association.kind=nearest", "--runs", "1:2"}).code, 0);
+  EXPECT_FALSE(exists("drives/runs/run_0000"));
+  EXPECT_FALSE(exists("drives/runs/run_0001/reference.csv"));
+  EXPECT_FALSE(exists("drives/runs/run_0001/landmarks.csv"));
+  EXPECT_TRUE(exists("drives/truth/run_0001/reference.csv"));
+  EXPECT_TRUE(exists("drives/truth/study.ini"));
+  EXPECT_THAT(text_of("drives/runs/run_0001/detections.csv"), Not(HasSubstr("identity")));
+  EXPECT_THAT(text_of("drives/belief.ini"), HasSubstr("sigma_range = 0.1\n"));
+  EXPECT_THAT(text_of("drives/belief.ini"), Not(HasSubstr("landmark =")));
+}
+
+TEST_F(Export, WrongInputIsNamed) {
+  ASSERT_EQ(run_export().code, 0);
+  EXPECT_THAT(run_export().err, HasSubstr("drives: not a new folder"));
+  EXPECT_THAT(run_export({"--format", "rosbag"}).err, HasSubstr("rosbag"));
+  EXPECT_EQ(call({"export", "study.ini"}).code, 2);
+}
+
+}  // namespace
+}  // namespace montecarta::experiments

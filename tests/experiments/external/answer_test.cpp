@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a program may answer.
+#include "experiments/external/answer.hpp"
+
+#include "engine/random/stream.hpp"
+#include "experiments/external/child_process.hpp"
+#include "experiments/external/messages.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <gmock/gmock.h>
+
+#include <array>
+#include <bit>
+
+namespace montecarta::experiments {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kGood =
+    R"({"id":7,"mean":[1.5,-2,0.25],"covariance":[[4,1,0],[1,4,0],[0,0,0.01]])";
+
+std::string reason_of(const auto& act) {
+  try {
+    act();
+  } catch (const ProgramError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+std::string reason(const std::string& line) {
+  return reason_of([&] { read_estimate(line, 7); });
+}
+
+std::string with_covariance(const std::string& covariance) {
+  return R"({"id":7,"mean":[0,0,0],"covariance":)" + covariance + "}";
+}
+
+TEST(Answer, AnEstimateWithAllItMaySay) {
+  const ProgramEstimate estimate = read_estimate(
+      kGood + R"(,"log_likelihood":-3.5,"nis":2.5,"nis_dof":4,"ess":9.5,"map_size":12})", 7);
+  EXPECT_EQ(estimate.pose.mean.x, 1.5);
+  EXPECT_EQ(estimate.pose.mean.y, -2.0);
+  EXPECT_EQ(estimate.pose.mean.heading, 0.25);
+  EXPECT_EQ(estimate.pose.covariance(1, 0), 1.0);
+  EXPECT_EQ(estimate.pose.covariance(2, 2), 0.01);
+  EXPECT_EQ(estimate.report.log_likelihood, -3.5);
+  EXPECT_EQ(estimate.report.nis, 2.5);
+  EXPECT_EQ(estimate.report.nis_dof, 4U);
+  EXPECT_EQ(estimate.report.ess, 9.5);
+  EXPECT_EQ(estimate.report.map_size, 12.0);
+}
+
+TEST(Answer, HeadingsAreWrapped) {
+  const auto estimate =
+      read_estimate(R"({"id":7,"mean":[0,0,7],"covariance":[[1,0,0],[0,1,0],[0,0,1]]})", 7);
+  EXPECT_EQ(estimate.pose.mean.heading, wrap(7.0));
+}
+
+TEST(Answer, WhatIsWrongIsSaid) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"ans = 5", "answer is not JSON: ans = 5"},
+      {"", "answer is not JSON"},
+      {kGood, "answer is not JSON"},
+      {R"({"id":7,"mean":[NaN,0,0]})", "answer holds NaN or Infinity"},
+      {R"({"id":7,"mean":[0,0,-Infinity]})", "answer holds NaN or Infinity"},
+      {"[1,2]", "answer is no JSON object"},
+      {R"({"mean":[0,0,0]})", "answer has not the message's id 7"},
+      {R"({"id":6})", "answer has not the message's id 7"},
+      {R"({"id":"7"})", "answer has not the message's id 7"},
+      {R"({"id":7.0})", "answer has not the message's id 7"},
+      {R"({"id":7})", "answer has no mean"},
+      {R"({"id":7,"mean":[0,0,0]})", "answer has no covariance"},
+      {R"({"id":7,"mean":[0,0,0],"covarience":1})", "unknown member 'covarience'"},
+      {R"({"id":7,"mean":[0,0]})", "mean is no array of 3"},
+      {R"({"id":7,"mean":3})", "mean is no array of 3"},
+      {R"({"id":7,"mean":[0,null,0]})", "mean is not a number"},
+      {R"({"id":7,"mean":[0,"1",0]})", "mean is not a number"},
+      {R"({"id":7,"mean":[0,1e999,0]})", "answer is not JSON"},
+      {R"({"id":7,"mean":[[[[0]]]]})", "too many brackets"},
+      {with_covariance("[1,0,0,0,1,0,0,0,1]"), "covariance is no array of 3"},
+      {with_covariance("[[1,0],[0,1],[0,0]]"), "row of the covariance is no array of 3"},
+      {with_covariance("[[1,0,0],[0,null,0],[0,0,1]]"), "covariance is not a number"},
+      {with_covariance("[[1,0.5,0],[0.4,1,0],[0,0,1]]"), "covariance is not symmetric"},
+      {with_covariance("[[1,0,0],[0,-1,0],[0,0,1]]"), "not positive definite"},
+      {with_covariance("[[1,2,0],[2,1,0],[0,0,1]]"), "not positive definite"},
+      {with_covariance("[[1,1e-3,0],[1e-3,0,0],[0,0,1]]"), "correlation with a variance of zero"},
+      {with_covariance("[[1e300,1e300,0],[1e300,1e-300,0],[0,0,1]]"), "beyond all bounds"},
+      {kGood + R"(,"nis_dof":-1})", "nis_dof is no whole number from 0: -1"},
+      {kGood + R"(,"nis_dof":1e99})", "nis_dof is no whole number"},
+      {kGood + R"(,"nis":null})", "nis is not a number"}};
+  for (const auto& [line, expected] : cases) EXPECT_THAT(reason(line), HasSubstr(expected)) << line;
+}
+
+TEST(Answer, ASingularCovarianceIsOne) {
+  EXPECT_EQ(reason(with_covariance("[[0,0,0],[0,0,0],[0,0,0]]")), "none");
+  EXPECT_EQ(reason(with_covariance("[[1,1,0],[1,1,0],[0,0,1e-12]]")), "none");
+  EXPECT_EQ(reason(with_covariance("[[1e-300,0,0],[0,1e300,0],[0,0,1]]")), "none");
+}
+
+TEST(Answer, AMapByNumber) {
+  std::array<std::optional<LandmarkEstimate>, 3> map;
+  const auto read = [&](const std::string& rows, Association association) {
+    map.fill(std::nullopt);
+    return reason_of([&] { read_map(R"({"id":1,"map":)" + rows + "}", 1, association, map); });
+  };
+  EXPECT_EQ(read("[[2,1,2,4,1,9]]", Association::known), "none");
+  ASSERT_TRUE(map[2] && !map[0] && !map[1]);
+  EXPECT_EQ(map[2]->mean, Eigen::Vector2d(1, 2));
+  EXPECT_EQ(map[2]->covariance(1, 0), 1.0);
+  EXPECT_EQ(read("[]", Association::known), "none");
+  EXPECT_THAT(read("[[3,1,2,4,1,9]]", Association::known),
+              HasSubstr("landmark 3, the world has 3"));
+  EXPECT_EQ(read("[[3,1,2,4,1,9]]", Association::nearest), "none");
+  EXPECT_THAT(read("[[1,1,2,4,1,9],[1,1,2,4,1,9]]", Association::known), HasSubstr("1 twice"));
+  EXPECT_THAT(read("[[0,1,2,4,9,9]]", Association::known), HasSubstr("not positive definite"));
+  EXPECT_THAT(read("[[-1,1,2,4,1,9]]", Association::known), HasSubstr("no whole number"));
+  EXPECT_THAT(read("7", Association::known), HasSubstr("map is no array"));
+}
+
+/// What a program might say instead of `line`: some bytes changed, removed or repeated.
+std::string damaged_line(std::string line, RngStream& random) {
+  const std::string bytes = "0123456789eE.+-[]{},:\"nulltrefas \\\x01\xff\n";
+  for (std::uint32_t n = 1 + random.below(4); n > 0 && !line.empty(); --n) {
+    const std::size_t at = random.below(static_cast<std::uint32_t>(line.size()));
+    const std::size_t length = 1 + random.below(8);
+    switch (random.below(4)) {
+      case 0:
+        line[at] = bytes[random.below(static_cast<std::uint32_t>(bytes.size()))];
+        break;
+      case 1:
+        line.erase(at, length);
+        break;
+      case 2:
+        line.insert(at, line.substr(at, length));
+        break;
+      default:
+        line.insert(at, 1, bytes[random.below(static_cast<std::uint32_t>(bytes.size()))]);
+    }
+  }
+  return line;
+}
+
+// Law: whatever is said, an estimate is a pose and a covariance, or the run fails with a reason.
+TEST(Answer, FuzzOfEstimates) {
+  RngStream random(StreamIdentity{.seed = 21});
+  const std::string good =
+      R"({"id":7,"mean":[1.5,-2,0.25],"covariance":)"
+      R"([[4,-3.9,0],[-3.9,4,0],[0,0,1]],"nis":2.5,"nis_dof":4,"log_likelihood":-1e-3})";
+  int accepted = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    const std::string line = damaged_line(good, random);
+    try {
+      const ProgramEstimate estimate = read_estimate(line, 7);
+      ++accepted;
+      const Eigen::Matrix3d& P = estimate.pose.covariance;
+      ASSERT_TRUE(P.allFinite() && P == P.transpose()) << line;
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(P);
+      ASSERT_GE(solver.eigenvalues()(0), -1e-8 * solver.eigenvalues()(2)) << line;
+      ASSERT_TRUE(std::isfinite(estimate.pose.mean.x + estimate.pose.mean.y)) << line;
+      ASSERT_LE(std::abs(estimate.pose.mean.heading), kPi) << line;
+      ASSERT_TRUE(std::isfinite(estimate.report.nis)) << line;
+    } catch (const ProgramError& error) {
+      ASSERT_STRNE(error.what(), "") << line;
+    }
+  }
+  EXPECT_GT(accepted, 1000);  // the fuzz reaches what lies behind the parser
+}
+
+TEST(Answer, FuzzOfMaps) {
+  RngStream random(StreamIdentity{.seed = 22});
+  int accepted = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const std::string line =
+        damaged_line(R"({"id":1,"map":[[2,1,2,4,1,9],[0,-1,2.5,4e-3,1e-4,9]]})", random);
+    std::array<std::optional<LandmarkEstimate>, 3> map;
+    try {
+      read_map(line, 1, Association::known, map);
+      ++accepted;
+      for (const auto& landmark : map) {
+        if (landmark) ASSERT_TRUE(landmark->mean.allFinite()) << line;
+      }
+    } catch (const ProgramError&) {
+    }
+  }
+  EXPECT_GT(accepted, 200);
+}
+
+// Law: numbers keep their bits on the way to a program and back.
+TEST(Answer, NumbersRoundTrip) {
+  RngStream random(StreamIdentity{.seed = 23});
+  for (int i = 0; i < 10'000; ++i) {
+    const double x = std::bit_cast<double>(random.bits());
+    if (!std::isfinite(x)) continue;
+    const ControlRow controls[] = {{x, 3.0, 0.0}};
+    const std::string message = predict_message(0, controls);
+    const std::size_t begin = message.find("[[") + 2;
+    const std::string text = message.substr(begin, message.find(',', begin) - begin);
+    EXPECT_NE(text.find_first_of(".e"), std::string::npos) << text;
+    const auto back = read_estimate(
+        R"({"id":7,"mean":[)" + text + R"(,0,0],"covariance":[[1,0,0],[0,1,0],[0,0,1]]})", 7);
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(back.pose.mean.x), std::bit_cast<std::uint64_t>(x));
+  }
+}
+
+}  // namespace
+}  // namespace montecarta::experiments

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a program is told.
+#include "experiments/external/messages.hpp"
+
+#include <gtest/gtest.h>
+
+namespace montecarta::experiments {
+namespace {
+
+const std::vector<ControlRow> kDriven = {{3.0, -0.25, 0.025}};
+const std::vector<Detection> kSeen = {{10.5, 0.1, 4}, {2.0, -1.0, Detection::kClutter}};
+
+TEST(ExternalMessages, AScanWithIdentities) {
+  EXPECT_EQ(scan_message(7, kDriven, kSeen, Association::known),
+            R"({"id":7,"type":"scan","controls":[[3.0,-0.25,0.025]],)"
+            R"("detections":[[10.5,0.1,4],[2.0,-1.0,-1]]})");
+}
+
+// Law: who must associate is told no identity, nor which detection is a false alarm.
+TEST(ExternalMessages, IdentitiesAreWithheld) {
+  EXPECT_EQ(scan_message(7, {}, kSeen, Association::nearest),
+            R"({"id":7,"type":"scan","controls":[],"detections":[[10.5,0.1,-1],[2.0,-1.0,-1]]})");
+}
+
+TEST(ExternalMessages, AStartWithAllThatIsBelieved) {
+  FilterSetup setup{.belief = {}, .association = {}, .options = FilterOptions({}), .landmarks = 35};
+  setup.belief.vehicle = {.kind = Vehicle::Kind::rear_wheel, .wheelbase = 2.83};
+  setup.association.kind = Association::nearest;
+  EXPECT_EQ(start_message(0, {.run = 12, .seed = 4'000'000'000, .pose = {1.0, -2.5, 0.0}}, setup),
+            R"({"id":0,"type":"start","run":12,"seed":4000000000,"start":[1.0,-2.5,0.0],)"
+            R"("settings":{"vehicle":"rear_wheel","wheelbase":2.83,"wheel_left":0.0,)"
+            R"("sensor_ahead":0.0,"sensor_left":0.0,"sigma_speed":0.3,"sigma_steer":0.05,)"
+            R"("sigma_range":0.1,"sigma_bearing":0.02,"association":"nearest",)"
+            R"("gate":5.991464547107979,"new_gate":25.0,"landmarks":35}})");
+}
+
+TEST(ExternalMessages, PredictionsAndMaps) {
+  EXPECT_EQ(predict_message(2, kDriven),
+            R"({"id":2,"type":"predict","controls":[[3.0,-0.25,0.025]]})");
+  EXPECT_EQ(map_message(3), R"({"id":3,"type":"map"})");
+}
+
+}  // namespace
+}  // namespace montecarta::experiments
