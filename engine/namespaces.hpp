@@ -11,16 +11,16 @@ using namespace engine;
 namespace filters {
 using namespace engine;
 using namespace models;
-}
+}  // namespace filters
 namespace analysis {
 using namespace engine;
 using namespace models;
-}
+}  // namespace analysis
 namespace experiments {
 using namespace engine;
 using namespace models;
 using namespace filters;
 using namespace analysis;
-}
+}  // namespace experiments
 
 }  // namespace montecarta
