@@ -3,10 +3,12 @@
 
 #include "analysis/metrics/paired_runs.hpp"
 #include "analysis/statistics/bootstrap.hpp"
+#include "analysis/statistics/heavy_tail.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/errors.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace montecarta::analysis {
 namespace {
@@ -35,6 +37,7 @@ CellComparison compare_pair(const CellAnalysis& cell, const CellAnalysis& baseli
   row.baseline_mean = spread_of(pairs.right).summary.mean;
   row.difference = spread_of(differences).summary.mean;
   row.interval = bootstrap_mean(differences, level);
+  row.has_heavy_tail = is_heavy_tailed(differences);
   row.ratio = row.mean / row.baseline_mean;
   row.wins = wins_of(pairs, score);
   row.rank = signed_rank_test(differences);
@@ -75,8 +78,15 @@ std::string CellComparison::verdict(double level) const {
     ++(towards < 0.0 ? ahead : behind);
   }
   if ((ahead > 0) == (behind > 0)) return "undecided";
-  if (score->better == Better::neither) return ahead > 0 ? "lower" : "higher";
-  return ahead > 0 ? "better" : "worse";
+  const bool directed = score->better != Better::neither;
+  const std::string word =
+      directed ? (ahead > 0 ? "better" : "worse") : (ahead > 0 ? "lower" : "higher");
+  if (std::isnan(interval.lower)) return word;
+  const double side = ahead > 0 ? 1.0 : -1.0;
+  const double one = side * disadvantage(*score, interval.lower, 0.0);
+  const double other = side * disadvantage(*score, interval.upper, 0.0);
+  if (!has_heavy_tail && one > 0.0 && other > 0.0) return "mixed";
+  return !has_heavy_tail && one < 0.0 && other < 0.0 ? word : word + " in most runs";
 }
 
 double disadvantage(const Score& score, double left, double right) {

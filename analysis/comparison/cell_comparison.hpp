@@ -36,12 +36,15 @@ struct CellComparison {
   double mean = kNaN, baseline_mean = kNaN;  ///< over the pairs
   double difference = kNaN;                  ///< mean - baseline_mean
   Interval interval{};                       ///< of the difference
+  bool has_heavy_tail = false;               ///< which makes that interval worthless
   double ratio = kNaN;                       ///< mean / baseline_mean
   Wins wins{};
   SignedRank rank{};         ///< of the differences
   double rank_p_holm = 1.0;  ///< adjusted for all tests of the table
 
-  /// "better", "worse", "undecided"; "lower" and "higher" where neither is better.
+  /// "better", "worse", "undecided"; "lower" and "higher" where neither is better. What the tests
+  /// over runs say of most runs, and the interval of the mean difference does not, or is worthless:
+  /// "better in most runs", and "mixed" where that interval is on the other side.
   std::string verdict(double level) const;
 };
 

@@ -17,6 +17,7 @@ std::vector<NamedNumber> numbers_of(const CellComparison& row) {
   return {{"difference", "1", row.difference},
           {"interval_lower", "1", row.interval.lower},
           {"interval_upper", "1", row.interval.upper},
+          {"heavy_tail", "1", row.has_heavy_tail ? 1.0 : 0.0},
           {"mean", "1", row.mean},
           {"baseline_mean", "1", row.baseline_mean},
           {"ratio", "1", row.ratio},

@@ -27,7 +27,7 @@ std::vector<std::string> row_of(const CellComparison& row, double level) {
           row.cell,
           row.verdict(level),
           readable(row.difference),
-          interval_text(row.interval),
+          row.has_heavy_tail ? "heavy tail" : interval_text(row.interval),
           readable(row.ratio),
           percent(row.wins.share()),
           readable(row.wins.p_holm, 2),
@@ -117,12 +117,16 @@ std::vector<std::string> comparison_notes(const StudyAnalysis& study,
       "lean to one side ('p rank', Wilcoxon's signed-rank test). Both p are adjusted for all " +
           std::to_string(2 * comparisons.rows.size()) +
           " tests of the table (Holm): the probability of one false word in all of it is at most " +
-          level_text(1.0 - comparisons.level) + ".",
+          level_text(1.0 - comparisons.level) +
+          ". Both look at runs, not at the mean: where the interval of the mean difference holds 0 "
+          "the word is 'in most runs', and 'mixed' where it lies on the other side. 'heavy tail' "
+          "stands where a few runs decide the mean difference, so that no interval can be given.",
       "'nees_distance' is how many times the mean NEES of the pose of a run must be halved or "
       "doubled to be 3, what a consistent filter has: 0 is consistent, 1 is off by a factor of 2. "
       "It is "
       "of "
-      "the covariance that the verdict is of: of the mixture, or corrected for few particles."};
+      "the covariance that the verdict is of, all on one scale: of particle filters that of the "
+      "poses they drew, corrected for their number."};
   note_failures(study, notes);
   return notes;
 }

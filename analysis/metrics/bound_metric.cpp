@@ -17,7 +17,7 @@ void bound_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
 std::string paths_of(const CramerRaoBound& bound) {
   return bound.runs == 1 ? "of the path"
                          : "of " + std::to_string(bound.runs) +
-                               " paths (root of the mean of their squares, each given its path)";
+                               " worlds (root of the mean of their squares, each given its world)";
 }
 
 /// One row a scan: the Cramer-Rao bound of position and heading.
@@ -35,6 +35,14 @@ void write_bound(const StudyAnalysis& study, const std::filesystem::path& path) 
 std::vector<std::string> bound_notes(const CramerRaoBound& bound) {
   if (bound.empty()) {
     return {"There is no Cramer-Rao bound and no efficiency, since " + bound.missing + "."};
+  }
+  if (!bound.is_bound) {
+    return {
+        "There is no efficiency: noise moves the vehicle, so that every run has a path of its "
+        "own, and a filter that knows the law of the paths may have smaller errors than the "
+        "recursion along each of them. The linearised reference is that recursion (a Kalman "
+        "filter with all Jacobians at the truth), root of the mean of squares over " +
+        std::to_string(bound.runs) + " paths; it is no bound."};
   }
   return {"Efficiency is the Cramer-Rao bound " + paths_of(bound) +
           ", the least error that any filter without bias can have that knows which landmark is "

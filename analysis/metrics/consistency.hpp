@@ -34,6 +34,7 @@ struct NeesSeries {
   std::uint64_t samples = 0;               ///< scans x complete runs
   std::uint64_t floored = 0;               ///< of them: singular covariance, floor was added
   std::uint64_t undefined = 0;  ///< of them: not a number, left out of average and median
+  std::uint64_t too_few = 0;    ///< of them: too few effective draws to be judged, left out as well
 };
 
 enum class Verdict {

@@ -155,7 +155,9 @@ CramerRaoBound cramer_rao_bound(const ResultFile& file, const Parallel& parallel
   std::vector<CramerRaoBound> squares(paths.size());
   parallel.for_each(paths.size(),
                     [&](std::size_t i) { squares[i] = squared_bound(*world, paths[i]); });
-  return root_mean(squares);
+  CramerRaoBound bound = root_mean(squares);
+  bound.is_bound = world->same_path;
+  return bound;
 }
 
 }  // namespace montecarta::analysis

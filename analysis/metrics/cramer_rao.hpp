@@ -16,7 +16,9 @@ namespace montecarta::analysis {
 inline constexpr std::size_t kBoundRuns = 16;
 
 /// The least root mean square error that is possible, just after each scan, of an estimator without
-/// bias that knows which landmark is which. Empty where there is no bound.
+/// bias that knows which landmark is which. Empty where there is none. Where every run has a path
+/// of its own it is no bound but what the linearised filter with its Jacobians at the truth reports
+/// (STATISTICS 11): is_bound.
 struct CramerRaoBound {
   std::vector<double> position;  ///< [m] {scan}
   std::vector<double> heading;   ///< [rad] {scan}
@@ -24,6 +26,7 @@ struct CramerRaoBound {
       std::numeric_limits<double>::quiet_NaN();  ///< [m] at the end, RMS over the landmarks
                                                  ///< that came into view; NaN: none did
   std::size_t runs = 0;  ///< whose paths it is the average of; 1 where all runs share one path
+  bool is_bound = true;  ///< false: a linearised reference
   std::string missing;   ///< why there is none
 
   bool empty() const { return position.empty(); }
@@ -31,8 +34,8 @@ struct CramerRaoBound {
 };
 
 /// The bound of a result file. Where noise is on the controls that filters are given, the path is
-/// the same in all runs, and so is the bound. Where noise moves the vehicle, it is the average over
-/// the first kBoundRuns runs with a complete cell, each bound given its path.
+/// the same in all runs, and so is the bound. Where noise moves the vehicle, it is a linearised
+/// reference, the average over the paths of the first kBoundRuns runs with a complete cell.
 CramerRaoBound cramer_rao_bound(const ResultFile& file,
                                 const Parallel& parallel = Parallel::serial());
 

@@ -17,7 +17,7 @@ double mean_square(const std::vector<double>& values) {
 }  // namespace
 
 Efficiency efficiency_of(const CellAnalysis& cell, const CramerRaoBound& bound) {
-  if (bound.empty() || cell.complete == 0) return {};
+  if (bound.empty() || !bound.is_bound || cell.complete == 0) return {};
   return {.position = std::sqrt(mean_square(bound.position) / cell.over_runs("position_mse").mean),
           .heading = std::sqrt(mean_square(bound.heading) / cell.over_runs("heading_mse").mean),
           .map = bound.map / std::sqrt(mean_square(cell.scores.column("landmark_rms")))};

@@ -12,7 +12,7 @@ namespace montecarta::analysis {
 struct CellAnalysis;
 
 /// How near a cell comes to the Cramer-Rao bound: 1 is as good as any filter without bias can be.
-/// NaN where there is no bound or no error.
+/// NaN where there is no bound (a linearised reference is none) or no error.
 struct Efficiency {
   /// Bound by error, each the root of its mean square over scans, that of the error also over runs.
   double position = std::numeric_limits<double>::quiet_NaN();

@@ -48,12 +48,13 @@ constexpr ScanSeries kErrorsSeries[] = {
      true},
 };
 
-/// The cells' curves and, as the floor below them, the Cramer-Rao bound.
+/// The cells' curves and the Cramer-Rao bound or, where there is none, the linearised reference.
 Panel error_panel(const StudyAnalysis& study, const std::string& name, const std::string& label,
                   const CellValues& values_of, const std::vector<double>& bound) {
   Panel panel{name, label, cell_curves(study, values_of), {}, Scale::from_zero};
   if (!bound.empty() && !panel.curves.empty()) {
-    panel.curves.push_back({"Cramer-Rao bound", kReferenceStyle, bound});
+    panel.curves.push_back({study.bound.is_bound ? "Cramer-Rao bound" : "linearised reference",
+                            kReferenceStyle, bound});
   }
   return panel;
 }
@@ -71,8 +72,11 @@ Figure rmse_figure(const StudyAnalysis& study) {
   };
   if (!study.bound.empty()) {
     figure.sentence +=
-        " The dashed line is the Cramer-Rao bound: no filter without bias can stay below it, so "
-        "the gap is what a better filter could gain.";
+        study.bound.is_bound
+            ? " The dashed line is the Cramer-Rao bound: no filter without bias can stay below it, "
+              "so the gap is what a better filter could gain."
+            : " The dashed line is what a linearised filter with Jacobians at the truth reports, a "
+              "reference and no bound: a filter may stay below it.";
   }
   add_panels(
       {error_panel(study, "rmse_position", "position RMSE [m]", position, study.bound.position),

@@ -2,6 +2,7 @@
 #include "analysis/metrics/first_values.hpp"
 
 #include "analysis/metrics/cell_sums.hpp"
+#include "analysis/statistics/heavy_tail.hpp"
 #include "analysis/statistics/summary.hpp"
 #include "analysis/statistics/t_quantile.hpp"
 
@@ -28,6 +29,10 @@ double half_width(const std::vector<double>& values, double level) {
   SummaryOf sums;
   for (const double value : values) sums.add(value);
   return t_quantile(values.size(), level) * sums.result().standard_error();
+}
+
+bool is_precise(const std::vector<double>& values, double level, double wanted) {
+  return half_width(values, level) < wanted && !is_heavy_tailed(values);
 }
 
 }  // namespace montecarta::analysis

@@ -19,4 +19,9 @@ std::vector<double> first_values(const ResultFile& file, const StoredCell& cell,
 /// `level`, by Student's t; infinite of fewer than two values, NaN where one is.
 double half_width(const std::vector<double>& values, double level);
 
+/// Whether that is below `wanted`, and the values are such that it can be believed: values with a
+/// heavy tail look precise as long as none of the tail was drawn, and stopping then would make the
+/// mean too small.
+bool is_precise(const std::vector<double>& values, double level, double wanted);
+
 }  // namespace montecarta::analysis

@@ -62,7 +62,7 @@ void MeasuredRun::measure(const RunCriteria& criteria, std::size_t particles) {
     joint = joint_scores(rows.joint, criteria.joint_scans, rows.truth, rows.landmarks);
   }
   if (criteria.calibrates)
-    pits = pits_of(rows, rows.run,
+    pits = pits_of(rows, particles, rows.run,
                    criteria.map.identities_known ? std::span<const Eigen::Vector2d>(rows.landmarks)
                                                  : std::span<const Eigen::Vector2d>());
   beacons.reset();

@@ -8,13 +8,16 @@ namespace montecarta::analysis {
 
 /// Which mean and covariance of a filter are judged (STATISTICS 1).
 enum class Moments {
+  corrected,  ///< of a particle filter: spread of the poses that a scan drew, its NEES put on the
+              ///< chi-square's scale (SamplerScale); where it drew none, the mixture
   mixture,    ///< spread of the particles plus each particle's own covariance, before sampling
-  corrected,  ///< spread of the particles, its NEES put on the chi-square's scale (SamplerScale)
   spread      ///< of the weighted drawn particles; of the Gaussian for a Kalman filter
 };
 
-/// In the order in which they lead the verdict, where they are there.
-inline constexpr std::array kMoments = {Moments::mixture, Moments::corrected, Moments::spread};
+/// In the order in which they lead the verdict, where they are there: a consistent filter's NEES by
+/// the one that leads is chi-square, whatever the filter. Errors are those of the mixture's mean
+/// where there is one.
+inline constexpr std::array kMoments = {Moments::corrected, Moments::mixture, Moments::spread};
 
 /// Which components of the pose error are judged.
 enum class ErrorBlock {

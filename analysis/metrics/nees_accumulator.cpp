@@ -56,11 +56,12 @@ void NeesAccumulator::add(const RunMetrics& metrics) {
   const auto block = static_cast<std::size_t>(block_);
   const std::vector<double>& value = metrics.nees(moments_).value[block];
   const std::vector<std::uint8_t>& floored = metrics.nees(moments_).floored[block];
+  const std::vector<std::uint8_t>& too_few = metrics.nees(moments_).too_few[block];
   samples_ += value.size();
   for (std::size_t s = 0; s < value.size(); ++s) {
     floored_ += floored[s];
     if (!std::isfinite(value[s])) {
-      ++undefined_;
+      ++(!too_few.empty() && too_few[s] != 0 ? too_few_ : undefined_);
       continue;
     }
     sum_[s] += value[s];
@@ -77,6 +78,7 @@ NeesSeries NeesAccumulator::series(double level, const BandWalks& walks) const {
   series.samples = samples_;
   series.floored = floored_;
   series.undefined = undefined_;
+  series.too_few = too_few_;
   series.runs = runs_;
   series.run_averages = run_averages_;
   const WholeRunTest test = walks.test(neighbours_.result(), run_averages_.size(), level);

@@ -37,7 +37,7 @@ class NeesAccumulator {
   QuantileTable table_;
   NeighbourCorrelation neighbours_;
   std::vector<double> run_averages_;  ///< {run}
-  std::uint64_t samples_ = 0, floored_ = 0, undefined_ = 0;
+  std::uint64_t samples_ = 0, floored_ = 0, undefined_ = 0, too_few_ = 0;
 };
 
 }  // namespace montecarta::analysis

@@ -137,6 +137,7 @@ Section verdict_section(const StudyAnalysis& study) {
   Section section{"verdict", "Verdict"};
   section.add("verdict", verdict_table(study));
   section.add("accuracy", accuracy_table(study));
+  section.add(too_few_notes(study));
   section.add(verdict_notes(study));
   section.add(bound_notes(study.bound));
   return section;

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/pit.hpp"
 
+#include "analysis/metrics/drawn_poses.hpp"
 #include "analysis/statistics/means.hpp"
 #include "engine/numbers/angle.hpp"
 
+#include <boost/math/distributions/students_t.hpp>
+
+#include <algorithm>
 #include <cmath>
 
 namespace montecarta::analysis {
@@ -29,21 +33,39 @@ RunPits::Components gaussian_pits(const std::vector<double>& truth, const Moment
   return pits;
 }
 
-/// Rank of the truth among M particles, smoothed: of M + 1 gaps each is as probable, and where in
-/// its gap the truth lies is spread evenly over runs by `within`.
+/// The truth is one more draw (Hotelling's F of one component). NaN of three effective draws or
+/// fewer.
+RunPits::Components drawn_pits(const RunRows& rows, const EffectiveDraws& draws, std::size_t scan) {
+  RunPits::Components pits{kNaN, kNaN, kNaN};
+  const double E = draws.of_mean;
+  if (!(E > 3.0)) return pits;
+  const boost::math::students_t student(draws.of_variance - 1.0);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double error = wrapped(c, rows.truth[3 * scan + c] - rows.spread.mean[3 * scan + c]);
+    const double variance = rows.spread.covariance[9 * scan + 4 * c] * (E + 1.0) / (E - 1.0);
+    if (!(variance > 0.0) || !std::isfinite(variance) || !std::isfinite(error)) continue;
+    pits[c] = boost::math::cdf(student, error / std::sqrt(variance));
+  }
+  return pits;
+}
+
+/// Rank of the truth among the particles, smoothed: of E draws of equal weight there are E + 1
+/// gaps, each as probable, and where in its gap the truth lies is spread evenly over runs by
+/// `within`. Of uneven weights E is the effective sample size.
 RunPits::Components rank_pits(const std::vector<double>& truth, const CloudRows& cloud,
                               std::size_t scan, std::size_t moment, double within) {
   const std::size_t M = cloud.log_weight.size() / kQuarters;
   RunPits::Components pits;
   for (std::size_t c = 0; c < 3; ++c) {
-    double below = 0.0, all = 0.0;
+    double below = 0.0, all = 0.0, squares = 0.0;
     for (std::size_t i = moment * M; i < (moment + 1) * M; ++i) {
       const double weight = std::exp(cloud.log_weight[i]);
       all += weight;
+      squares += weight * weight;
       if (wrapped(c, cloud.pose[3 * i + c] - truth[3 * scan + c]) < 0.0) below += weight;
     }
-    const auto n = static_cast<double>(M);
-    pits[c] = (below / all * n + within) / (n + 1.0);
+    const double E = all * all / squares;
+    pits[c] = (below / all * E + within) / (E + 1.0);
   }
   return pits;
 }
@@ -70,7 +92,7 @@ double evenly(std::uint64_t run) {
 
 }  // namespace
 
-RunPits pits_of(const RunRows& rows, std::uint64_t run,
+RunPits pits_of(const RunRows& rows, std::size_t particles, std::uint64_t run,
                 std::span<const Eigen::Vector2d> landmarks) {
   RunPits pits;
   if (rows.truth.empty()) return pits;
@@ -80,7 +102,11 @@ RunPits pits_of(const RunRows& rows, std::uint64_t run,
   pits.has_rank = !rows.cloud.log_weight.empty();
   pits.has_landmark = rows.final_map && !landmarks.empty();
   for (std::size_t m = 0; m < kQuarters; ++m) {
-    if (pits.has_pose) pits.pose[m] = gaussian_pits(rows.truth, leading, scans[m]);
+    if (pits.has_pose) {
+      const bool drawn = particles > 0 && is_drawn(rows, scans[m]);
+      pits.pose[m] = drawn ? drawn_pits(rows, draws_at(rows, particles, scans[m]), scans[m])
+                           : gaussian_pits(rows.truth, leading, scans[m]);
+    }
     if (pits.has_rank) pits.rank[m] = rank_pits(rows.truth, rows.cloud, scans[m], m, evenly(run));
   }
   if (pits.has_landmark) pits.landmark = landmark_pits(*rows.final_map, run, landmarks);

@@ -17,14 +17,18 @@ namespace montecarta::analysis {
 /// below the truth. Uniform over runs if the filter is calibrated. NaN where not defined.
 struct RunPits {
   using Components = std::array<double, 3>;  ///< x, y, heading in the map frame
-  std::array<Components, kQuarters> pose{};  ///< by the Gaussian of the leading moments
+  /// By the Gaussian of the leading moments; of poses that the scan drew by Student's t of as many
+  /// effective draws about their mean.
+  std::array<Components, kQuarters> pose{};
   std::array<Components, kQuarters> rank{};  ///< by the weighted particles
   std::array<double, 2> landmark{};          ///< x, y of one landmark of the final map
   bool has_pose = false, has_rank = false, has_landmark = false;  ///< what is stored
 };
 
-/// Of run number `run`. `landmarks` [m]: where they really are, by identity; empty where unknown.
-/// Every run gives one landmark alone, another one from run to run: those of one map go together.
-RunPits pits_of(const RunRows& rows, std::uint64_t run, std::span<const Eigen::Vector2d> landmarks);
+/// Of run number `run` with `particles` (0: none). `landmarks` [m]: where they really are, by
+/// identity; empty where unknown. Every run gives one landmark alone, another one from run to run:
+/// those of one map go together.
+RunPits pits_of(const RunRows& rows, std::size_t particles, std::uint64_t run,
+                std::span<const Eigen::Vector2d> landmarks);
 
 }  // namespace montecarta::analysis

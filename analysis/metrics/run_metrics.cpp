@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/run_metrics.hpp"
 
+#include "analysis/metrics/drawn_poses.hpp"
 #include "analysis/metrics/nees.hpp"
+#include "analysis/statistics/means.hpp"
+#include "analysis/statistics/sampler_scale.hpp"
 #include "engine/core/pose.hpp"
 #include "engine/errors.hpp"
 
@@ -31,6 +34,13 @@ void measure_nees(const std::vector<double>& truth, const MomentRows& moments, N
       rows.floored[b][s] = blocks[b].floored ? 1 : 0;
     }
   }
+}
+
+/// Tables that all threads read.
+const SamplerScale& scale_of(ErrorBlock block) {
+  static const std::array<SamplerScale, 3> scales = {SamplerScale(3), SamplerScale(2),
+                                                     SamplerScale(1)};
+  return scales[static_cast<std::size_t>(block)];
 }
 
 const MomentRows& leading(const RunRows& rows) {
@@ -75,19 +85,26 @@ const NeesRows* RunMetrics::leading_nees() const {
   return found == nees_.end() ? nullptr : &*found;
 }
 
-void RunMetrics::correct_spread(std::size_t particles) {
+/// Poses that a scan drew are judged as so many draws. Where none were drawn the covariance has
+/// each particle's own in it, and is judged as it is.
+void RunMetrics::correct_spread(const RunRows& rows, std::size_t particles) {
   NeesRows& corrected = nees_[static_cast<std::size_t>(Moments::corrected)];
-  const bool possible = particles > dimension_of(ErrorBlock::pose);
-  corrected = possible ? nees(Moments::spread) : NeesRows{};
-  if (!possible) return;
-  if (scales_.empty() || scales_.front().particles() != particles) {
-    scales_.clear();
-    for (const ErrorBlock block : kErrorBlocks) {
-      scales_.emplace_back(dimension_of(block), particles);
+  corrected = particles > 0 ? nees(Moments::spread) : NeesRows{};
+  const NeesRows& mixture = nees(Moments::mixture);
+  for (std::size_t b = 0; b < kErrorBlocks.size(); ++b) {
+    const SamplerScale& scale = scale_of(kErrorBlocks[b]);
+    std::vector<double>& value = corrected.value[b];
+    corrected.too_few[b].assign(value.size(), 0);
+    for (std::size_t s = 0; s < value.size(); ++s) {
+      if (!is_drawn(rows, s)) {
+        value[s] = mixture.value[b][s];
+        corrected.floored[b][s] = mixture.floored[b][s];
+        continue;
+      }
+      const EffectiveDraws draws = draws_at(rows, particles, s);
+      corrected.too_few[b][s] = scale.can_judge(draws) ? 0 : 1;
+      value[s] = scale.can_judge(draws) ? scale(value[s], draws) : kNaN;
     }
-  }
-  for (std::size_t b = 0; b < scales_.size(); ++b) {
-    for (double& value : corrected.value[b]) value = scales_[b](value);
   }
 }
 
@@ -96,7 +113,7 @@ void RunMetrics::measure(const RunRows& rows, std::size_t particles,
   measure_errors(rows, times.size());
   measure_nees(rows.truth, rows.spread, nees_[static_cast<std::size_t>(Moments::spread)]);
   measure_nees(rows.truth, rows.mixture, nees_[static_cast<std::size_t>(Moments::mixture)]);
-  correct_spread(particles);
+  correct_spread(rows, particles);
   diversity_ = nullptr;
   lineages_.reset();
   if (rows.ancestor.empty()) return;

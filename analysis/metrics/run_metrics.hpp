@@ -5,7 +5,6 @@
 #include "analysis/metrics/diversity.hpp"
 #include "analysis/metrics/lineages.hpp"
 #include "analysis/metrics/moments.hpp"
-#include "analysis/statistics/sampler_scale.hpp"
 
 #include <Eigen/Core>
 
@@ -21,6 +20,9 @@ namespace montecarta::analysis {
 struct NeesRows {
   std::array<std::vector<double>, 3> value;          ///< {block}{scan}
   std::array<std::vector<std::uint8_t>, 3> floored;  ///< {block}{scan} the floor was added
+  /// {block}{scan} too few effective draws to be judged (SamplerScale), value NaN; empty where the
+  /// moments are not corrected.
+  std::array<std::vector<std::uint8_t>, 3> too_few;
 };
 
 /// What one run says, scan by scan. Keeps its memory from run to run; one per thread.
@@ -50,10 +52,9 @@ class RunMetrics {
   void measure_errors(const RunRows& rows, std::size_t scans);
   void turn_into_vehicle(const RunRows& rows);
 
-  void correct_spread(std::size_t particles);
+  void correct_spread(const RunRows& rows, std::size_t particles);
 
   std::array<NeesRows, kMoments.size()> nees_;  ///< {Moments}
-  std::vector<SamplerScale> scales_;            ///< {block} of the last number of particles
   std::vector<double> squared_position_, squared_heading_;
   std::vector<Eigen::Vector3d> errors_;
   std::vector<Eigen::Matrix3d> covariances_;

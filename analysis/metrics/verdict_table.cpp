@@ -3,6 +3,7 @@
 
 #include "analysis/metrics/efficiency.hpp"
 #include "analysis/metrics/nees.hpp"
+#include "analysis/metrics/text_of_mean.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/means.hpp"
 #include "analysis/statistics/survival.hpp"
@@ -35,30 +36,38 @@ std::string median_exit_text(const CellAnalysis& cell) {
   return time_with_interval(survival.median, survival.median_interval);
 }
 
-std::string score_text(const CellAnalysis& cell, std::string_view score, double factor = 1.0) {
-  const Interval interval = cell.interval_of(score);
-  return with_interval(factor * cell.over_runs(score).mean,
-                       {factor * interval.lower, factor * interval.upper});
+std::string score_text(const CellAnalysis& cell, std::string_view score, double level,
+                       double factor = 1.0) {
+  return text_of_mean(cell.scores.column(score), cell.over_runs(score).mean,
+                      cell.interval_of(score), factor, level);
 }
 
-std::vector<std::string> verdict_row(const CellAnalysis& cell) {
+std::string anees_text(const CellAnalysis& cell, double level) {
+  const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
+  if (pose == nullptr) return "-";
+  return text_of_mean(pose->series.run_averages, pose->consistency.mean,
+                      pose->consistency.average_interval, 1.0, level);
+}
+
+std::vector<std::string> verdict_row(const CellAnalysis& cell, double level) {
   const Consistency verdict = cell.consistency();
   const bool tested = verdict.verdict != Verdict::untested;
   const auto if_tested = [&](const std::string& text) { return tested ? text : "-"; };
   return {cell.label,
           runs_in_words(cell),
           in_words(verdict),
-          if_tested(with_interval(verdict.mean, verdict.average_interval)),
+          cell.leading == Moments::corrected ? "particles" : "Gaussian",
+          if_tested(anees_text(cell, level)),
           if_tested(interval_text(verdict.average_bounds)),
           if_tested(percent(verdict.share_inside)),
           exit_text(verdict),
           median_exit_text(cell)};
 }
 
-std::vector<std::string> accuracy_row(const CellAnalysis& cell) {
+std::vector<std::string> accuracy_row(const CellAnalysis& cell, double level) {
   return {cell.label,
-          score_text(cell, "position_rmse"),
-          score_text(cell, "heading_rmse", kDegrees),
+          score_text(cell, "position_rmse", level),
+          score_text(cell, "heading_rmse", level, kDegrees),
           percent(cell.get<Efficiency>().position),
           readable(cell.over_runs("ess").mean),
           readable(cell.over_runs("ancestors_at_start_at_the_end").mean),
@@ -88,7 +97,8 @@ std::vector<std::string> consistency_row(const CellAnalysis& cell, const NeesRes
           percent(found.share_above),
           percent(found.share_below),
           std::to_string(nees.series.floored),
-          std::to_string(nees.series.undefined)};
+          std::to_string(nees.series.undefined),
+          std::to_string(nees.series.too_few)};
 }
 
 }  // namespace
@@ -137,7 +147,8 @@ std::vector<NamedNumber> numbers_of(const CellAnalysis& cell, const NeesResult& 
       {"lasting_exit_upper_s", "s", exits.upper},
       {"samples", "1", static_cast<double>(nees.series.samples)},
       {"floored", "1", static_cast<double>(nees.series.floored)},
-      {"undefined", "1", static_cast<double>(nees.series.undefined)}};
+      {"undefined", "1", static_cast<double>(nees.series.undefined)},
+      {"too_few_draws", "1", static_cast<double>(nees.series.too_few)}};
 }
 
 std::string runs_in_words(const CellAnalysis& cell) {
@@ -153,11 +164,16 @@ std::string runs_in_words(const CellAnalysis& cell) {
 
 TextTable verdict_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {{"cell", Align::left},    {"runs", Align::left},
-                    {"verdict", Align::left}, {"ANEES [" + level_text(study.level) + "]"},
-                    {"expected within"},      {"scans inside"},
-                    {"leaves for good at"},   {"half the runs lost at"}};
-  for (const CellAnalysis& cell : study.cells) table.rows.push_back(verdict_row(cell));
+  table.headings = {{"cell", Align::left},
+                    {"runs", Align::left},
+                    {"verdict", Align::left},
+                    {"NEES of", Align::left},
+                    {"ANEES [" + level_text(study.level) + "]"},
+                    {"expected within"},
+                    {"scans inside"},
+                    {"leaves for good at"},
+                    {"half the runs lost at"}};
+  for (const CellAnalysis& cell : study.cells) table.rows.push_back(verdict_row(cell, study.level));
   return table;
 }
 
@@ -170,7 +186,8 @@ TextTable accuracy_table(const StudyAnalysis& study) {
                     {"ESS"},
                     {"roots"},
                     {"CPU [s]"}};
-  for (const CellAnalysis& cell : study.cells) table.rows.push_back(accuracy_row(cell));
+  for (const CellAnalysis& cell : study.cells)
+    table.rows.push_back(accuracy_row(cell, study.level));
   return table;
 }
 
@@ -189,7 +206,8 @@ TextTable consistency_table(const StudyAnalysis& study) {
                     {"above"},
                     {"below"},
                     {"floored"},
-                    {"undefined"}};
+                    {"undefined"},
+                    {"too few draws"}};
   for (const CellAnalysis& cell : study.cells) {
     for (const NeesResult& nees : cell.nees) {
       table.rows.push_back(consistency_row(cell, nees, study.level));
@@ -218,7 +236,12 @@ std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
       "components: x, y, heading), more means it is overconfident, less that it is "
       "conservative. The brackets hold what infinitely many runs would give (" +
           level +
-          ", bootstrap over runs); 'expected within' is where chance leaves a consistent filter.",
+          ", bootstrap over runs); where a few runs decide the mean no interval holds it: 'heavy "
+          "tail', and the median over runs follows with its interval. 'expected within' is where "
+          "chance leaves a consistent filter.",
+      "'NEES of particles' is by the spread of the poses that a scan drew, on the scale on which a "
+      "perfect filter of as many draws has 3, as a Gaussian filter has: all rows of this table are "
+      "on one scale.",
       "The verdict is one test: a consistent filter is called consistent in " + level +
           " of studies, however long they are. It fails where the average over runs leaves, at any "
           "scan, a band that is wide enough for all scans together, or where the average over the "
@@ -239,23 +262,26 @@ std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
 
 std::vector<std::string> consistency_notes() {
   return {
-      "Each row is one test: of the pose or of a part of it, with the covariance of the particle "
-      "mixture or of the particle spread. The first covariance of a cell decides its verdict.",
-      "The spread of few particles is too small by construction: 'ideal' is the ANEES of a "
-      "perfect "
-      "filter, the number of components or, by the spread of M particles that are independent "
-      "draws "
-      "from the truth's distribution, more. 'corrected' puts the NEES by the spread on a scale on "
-      "which such a perfect filter has the number of components again (Hotelling's distribution "
-      "of "
-      "M draws to the chi-square), so that M alone makes no filter inconsistent.",
+      "Each row is one test: of the pose or of a part of it. The first covariance of a cell "
+      "decides "
+      "its verdict: the only one of a Kalman filter, 'corrected' of a particle filter. Only these "
+      "are on one scale.",
+      "The spread of few particles is too small by construction, and so is the mixture: 'ideal' is "
+      "the ANEES of a perfect filter, the number of components or, by the spread of M particles "
+      "that are independent draws from the truth's distribution, more. 'corrected' puts the NEES "
+      "by the spread of the poses that a scan drew on a scale on which such a perfect filter has "
+      "the number of components again (Hotelling's distribution of the effective number of draws "
+      "to the chi-square), so that few draws alone make no filter inconsistent. Where a scan drew "
+      "none it is that of the mixture.",
       "'median' is the middle run instead of the average one, 'trimmed' the mean without the "
       "tenth "
       "of the runs at either end, each divided by what a consistent filter has: near 1 while ANEES "
       "is "
       "far too large they say that few bad runs make the average. 'floored' counts covariances "
       "that were singular (0.1 mm and "
-      "0.00001 rad were added), 'undefined' those that were not a number and left out."};
+      "0.00001 rad were added), 'undefined' those that were not a number and left out, 'too few "
+      "draws' those of fewer effective draws than the number of components and two, of which no "
+      "spread says anything."};
 }
 
 }  // namespace montecarta::analysis

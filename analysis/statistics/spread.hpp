@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/statistics/nees_bounds.hpp"
 #include "analysis/statistics/summary.hpp"
 
 #include <limits>
@@ -20,6 +21,10 @@ struct Spread {
 
 /// The middle value, the mean of the middle two of an even number; NaN of none or of any NaN.
 double median_of(std::vector<double> values);
+
+/// The two of `sorted`, one or more values, between which the median over infinitely many lies with
+/// probability `level` at least, by order statistics: no distribution is assumed.
+Interval median_interval(const std::vector<double>& sorted, double level);
 
 /// `values` in the order of the runs. NaN, all but their number, where one of them is NaN.
 Spread spread_of(std::span<const double> values);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/survival.hpp"
 
-#include <boost/math/distributions/binomial.hpp>
+#include "analysis/statistics/spread.hpp"
+
 #include <boost/math/distributions/normal.hpp>
 
 #include <algorithm>
@@ -18,20 +19,6 @@ Interval wilson(double hits, double n, double level) {
   const double middle = (share + 0.5 * z * z / n) / scale;
   const double half = z * std::sqrt(share * (1.0 - share) / n + 0.25 * z * z / (n * n)) / scale;
   return {std::max(0.0, middle - half), std::min(1.0, middle + half)};
-}
-
-/// The two of the sorted values between which the median lies.
-Interval median_between(const std::vector<double>& sorted, double level) {
-  const boost::math::binomial below(static_cast<double>(sorted.size()), 0.5);
-  double outside = 0.0;
-  std::size_t rank = 0;  // how many values are cut off at either end
-  while (rank < sorted.size() / 2) {
-    outside += 2.0 * boost::math::pdf(below, static_cast<double>(rank));
-    if (outside > 1.0 - level) break;
-    ++rank;
-  }
-  const std::size_t first = rank == 0 ? 0 : rank - 1;
-  return {sorted[first], sorted[sorted.size() - 1 - first]};
 }
 
 }  // namespace
@@ -51,7 +38,7 @@ Survival survival_of(std::span<const double> ends, std::span<const double> times
   survival.lost = static_cast<std::size_t>(
       std::ranges::count_if(sorted, [](double end) { return std::isfinite(end); }));
   survival.median = sorted[(sorted.size() - 1) / 2];
-  survival.median_interval = median_between(sorted, level);
+  survival.median_interval = median_interval(sorted, level);
   return survival;
 }
 

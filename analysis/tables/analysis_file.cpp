@@ -58,6 +58,7 @@ void write_bound(const h5::Handle& file, const CramerRaoBound& bound, const h5::
   write_series(group, {"heading", "rad", bound.heading}, time);
   write_number(group, {"map", "m", bound.map});
   write_number(group, {"runs", "1", static_cast<double>(bound.runs)});
+  write_number(group, {"is_bound", "1", bound.is_bound ? 1.0 : 0.0});
 }
 
 void write_cell(const h5::Handle& cells, const StudyAnalysis& study, const CellAnalysis& cell,

@@ -97,6 +97,8 @@ void print_tables(std::ostream& out, const StudyAnalysis& study, Explanations ex
   if (study.has_truth) print_warnings(out, study);
   if (explanations == Explanations::shown) {
     for (const Section& section : sections) print_section_notes(out, section);
+  } else {
+    for (const std::string& note : too_few_notes(study)) print_wrapped(out, note);
   }
   print_printed(out, study);
 }

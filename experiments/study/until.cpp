@@ -56,7 +56,7 @@ EnoughRuns rule_of(const Until& until) {
                  const Parallel& parallel) {
     const ResultFile file(unfinished);
     const auto values = first_values(file, file.cells().at(cell), *until.score, runs, parallel);
-    return half_width(values, Until::kLevel) < until.half_width;
+    return is_precise(values, Until::kLevel, until.half_width);
   };
 }
 
@@ -67,7 +67,8 @@ std::string in_words(const Until& until, std::uint64_t runs) {
          std::to_string(2 * kFirstRound) + ", " + std::to_string(4 * kFirstRound) +
          ", ... runs when the 95 % interval of its mean " + until.score->name + " is within +- " +
          to_text(until.half_width) + unit + ", after " + std::to_string(runs) +
-         " runs in any case; failed runs are in no mean";
+         " runs in any case; failed runs are in no mean, and values with a heavy tail are never "
+         "precise";
 }
 
 }  // namespace montecarta::experiments

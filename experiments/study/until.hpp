@@ -25,7 +25,7 @@ std::optional<Until> parse_until(const std::string& text, const std::string& pla
 std::string text_of(const Until& until);
 
 /// The question the engine asks between rounds. Failed runs are in no mean; a score that is not a
-/// number is never precise.
+/// number, or has a heavy tail, is never precise.
 EnoughRuns rule_of(const Until& until);
 
 /// For `montecarta check`: when a cell stops, in words.

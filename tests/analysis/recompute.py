@@ -51,28 +51,52 @@ def nees_by_navlie(errors, covariances):
     return np.einsum("...i,...i", errors, np.linalg.solve(covariances, errors[..., None])[..., 0])
 
 
-def on_chi_square(nees, dof, particles):
-    """What is as probable under the chi-square as `nees` is by Hotelling's F of an ideal sampler."""
-    f = nees * (particles - dof) / (dof * (particles + 1))
-    above = stats.f.sf(f, dof, particles - dof)
-    below = stats.chi2.ppf(stats.f.cdf(f, dof, particles - dof), dof)
-    return np.where(above > 0.5, below, stats.chi2.isf(np.maximum(above, 1e-300), dof))
+def effective_draws(particles, ess):
+    """(draws that the mean is worth, draws that the covariance is worth), STATISTICS 4."""
+    e = np.clip(ess, 1, particles)
+    cubes = np.minimum(particles / e**3, e**-1.5)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        freedom = (1 - 1 / e) ** 2 / (1 / e - 2 * cubes + 1 / e**2)
+    return e, np.where((e <= 1) | (e >= particles), e, np.minimum(freedom + 1, particles))
 
 
 class Corrected:
     """The NEES by the spread on the chi-square's scale: montecarta has it in a table, linear between
-    eighths of an octave, which this builds once more and compares with the formula itself."""
+    steps of 1 / freedom and eighths of an octave, which this builds once more and compares with the
+    formula itself."""
 
-    def __init__(self, dof, particles):
-        self.octaves = np.linspace(-16, 48, 513)
-        nees = 2**self.octaves
-        self.log_ratios = np.log2(on_chi_square(nees, dof, particles) / nees)
-        between = 2 ** np.linspace(-10, 20, 997)
-        check(f"table for {dof} of {particles}", self(between), on_chi_square(between, dof, particles), 2e-4)
+    def __init__(self, dof):
+        self.dof = dof
+        last = np.log2(stats.chi2.isf(1e-6, dof))
+        self.octaves = -16 + np.arange(int((last + 16) * 8) + 1) / 8
+        c, freedom = 2**self.octaves, 1 / (0.5 * np.arange(1, 129) / 128)
+        above, below = stats.chi2.sf(c, dof), stats.chi2.cdf(c, dof)
+        f = np.where(above < 0.5, stats.f.isf(above, dof, freedom[:, None]), stats.f.ppf(below, dof, freedom[:, None]))
+        self.log_ratios = np.vstack([np.zeros_like(c), np.log2(dof * f / c)])
+        for draws in (dof + 2.1, 10.0, 60.0):
+            f = stats.f.isf(np.array([0.9, 0.5, 0.1, 1e-3]), dof, draws - dof)
+            nees = f * dof * (draws + 1) / (draws - dof)
+            table = self(nees, np.full(4, draws), np.full(4, draws))
+            check(f"table for {dof} of {draws}", table, stats.chi2.isf([0.9, 0.5, 0.1, 1e-3], dof), 1e-3)
 
-    def __call__(self, nees):
-        octaves = np.clip(np.log2(nees), -16, 48)
-        return 2 ** (octaves + np.interp(octaves, self.octaves, self.log_ratios))
+    def __call__(self, nees, of_mean, of_variance):
+        """NaN where there are too few draws."""
+        result = np.full(nees.shape, np.nan)
+        for at in np.argwhere((of_mean > self.dof + 2) & np.isfinite(nees)):
+            at = tuple(at)
+            freedom = of_variance[at] - self.dof
+            f = nees[at] * (of_mean[at] - 1) / (of_mean[at] + 1) * freedom / (of_variance[at] - 1)
+            place = min(1 / (freedom * 0.5), 1) * 128
+            row = min(int(place), 127)
+            ratios = self.log_ratios[row] + (place - row) * (self.log_ratios[row + 1] - self.log_ratios[row])
+            octaves, log_f = self.octaves + ratios, np.log2(f)
+            if log_f <= octaves[0]:
+                result[at] = f / 2 ** ratios[0]
+            elif log_f >= octaves[-1]:
+                result[at] = f / 2 ** ratios[-1]
+            else:
+                result[at] = 2 ** np.interp(log_f, octaves, self.octaves)
+        return result
 
 
 class Cell:
@@ -86,15 +110,17 @@ class Cell:
         at_scans = lambda column: column[:][self.runs][:, rows]
         truth = at_scans(file["truth/pose"])
         self.of_moments = {}  # {name: (errors {run, scan, 3}, covariances {run, scan, 3, 3})}
-        for name, suffix in (("mixture", "_mixture"), ("corrected", ""), ("spread", "")):
-            if f"pose_mean{suffix}" not in cell or (name == "corrected" and self.particles <= 3):
+        for name, suffix in (("corrected", ""), ("mixture", "_mixture"), ("spread", "")):
+            if f"pose_mean{suffix}" not in cell or (name == "corrected" and self.particles == 0):
                 continue
             errors = truth - at_scans(cell["pose_mean" + suffix])
             errors[..., 2] = np.arctan2(np.sin(errors[..., 2]), np.cos(errors[..., 2]))
             self.of_moments[name] = errors, at_scans(cell["pose_covariance" + suffix])
         self.moments = list(self.of_moments)  # the first one leads
-        self.errors = self.of_moments[self.moments[0]][0]
-        self.tables = {d: Corrected(d, self.particles) for d in (1, 2, 3) if "corrected" in self.moments}
+        self.errors = self.of_moments["mixture" if "mixture" in self.moments else "spread"][0]
+        if "corrected" in self.moments:
+            self.tables = {d: Corrected(d) for d in (1, 2, 3)}
+            self.draws = effective_draws(self.particles, cell["ess"][:][self.runs])
         self.joint = self.make_joint(file, cell)
         self.cpu = file["timing"][label]["cpu_seconds"][:][self.runs]
         self.scores = self.make_scores()
@@ -118,12 +144,18 @@ class Cell:
     def nees(self, part, moments, by):
         errors, covariances = self.of_moments[moments]
         values = by(errors[..., part], covariances[..., part, part])
-        return self.tables[part.stop - part.start](values) if moments == "corrected" else values
+        if moments != "corrected":
+            return values
+        values = self.tables[part.stop - part.start](values, *self.draws)
+        if "mixture" not in self.moments:
+            return values
+        drawn = (covariances != self.of_moments["mixture"][1]).any(axis=(-2, -1))
+        return np.where(drawn, values, self.nees(part, "mixture", by))
 
     def make_scores(self):
         """{metric: value of each complete run}."""
         ees = self.errors**2
-        nees = self.nees(slice(0, 3), self.moments[0], nees_by_navlie).mean(axis=1)
+        nees = np.nanmean(self.nees(slice(0, 3), self.moments[0], nees_by_navlie), axis=1)
         return {
             "position_rmse": np.sqrt(ees[..., :2].sum(-1).mean(axis=1)),
             "heading_rmse": np.sqrt(ees[..., 2].mean(axis=1)),
@@ -143,16 +175,21 @@ def check_bounds(path):
 
 def check_cell(cell, folder):
     series = rows_of(f"{folder}/series_{cell.label}.csv")
-    n = len(cell.runs)
     for block, part in (("pose", slice(0, 3)), ("position", slice(0, 2)), ("heading", slice(2, 3))):
         dof = part.stop - part.start
         for moments in cell.moments:
             name = f"{block}_{moments}"
             for by in (ness_by_filterpy, nees_by_navlie):
-                average = cell.nees(part, moments, by).mean(axis=0)
-                check(f"{cell.label} anees_{name} {by.__name__}", column(series, "anees_" + name), average)
-            check(f"{cell.label} lower_{name}", column(series, "lower_" + name), stats.chi2.ppf(0.025, n * dof) / n)
-            check(f"{cell.label} upper_{name}", column(series, "upper_" + name), stats.chi2.isf(0.025, n * dof) / n)
+                values = cell.nees(part, moments, by)
+                n = np.count_nonzero(np.isfinite(values), axis=0)  # the others have too few draws
+                average = np.where(n > 0, np.nansum(values, axis=0) / np.maximum(n, 1), np.nan)
+                tolerance = 1e-9 if moments == "corrected" else TOLERANCE  # quantiles of F
+                check(f"{cell.label} anees_{name} {by.__name__}", column(series, "anees_" + name), average, tolerance)
+            judged = n > 0
+            n = n[judged]
+            for end, quantile in (("lower", stats.chi2.ppf), ("upper", stats.chi2.isf)):
+                ours = column(series, f"{end}_{name}")[judged]
+                check(f"{cell.label} {end}_{name}", ours, quantile(0.025, n * dof) / n)
     ees = cell.errors**2
     check(f"{cell.label} rmse", column(series, "position_rmse [m]"), np.sqrt(ees[..., :2].sum(-1).mean(axis=0)))
     check(f"{cell.label} rmse", column(series, "heading_rmse [rad]"), np.sqrt(ees[..., 2].mean(axis=0)))
@@ -203,7 +240,8 @@ def check_comparison(cells, folder, baseline):
         ties = len(np.unique(np.abs(moved))) < len(moved) or len(moved) < len(difference)
         exact = len(moved) <= 50 and not ties
         rank = stats.wilcoxon(difference, method="exact" if exact else "approx").pvalue if len(moved) else 1.0
-        check(name + ": difference", float(row["difference"]), difference.mean())
+        tolerance = 1e-9 if row["metric"] == "nees_distance" else TOLERANCE  # quantiles of F
+        check(name + ": difference", float(row["difference"]), difference.mean(), tolerance)
         check(name + ": won, lost", [float(row["won"]), float(row["lost"])], [won, lost])
         check(name + ": sign test", float(row["p_sign"]), sign_p(won, lost))
         check(name + ": signed-rank test", float(row["p_rank"]), rank)

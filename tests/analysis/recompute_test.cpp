@@ -25,7 +25,7 @@ void add_noise(std::size_t cell, std::uint64_t run, RunRecord& record) {
 
 /// Particle filters that have no mixture: their verdict is of the corrected spread.
 void leave_out_mixtures(StudyPlan& plan) {
-  plan.cells = {scripted_cell("scripted_m6", {.particles = 6}),
+  plan.cells = {scripted_cell("scripted_m60", {.particles = 60}),
                 scripted_cell("scripted_m20", {.particles = 20})};
   for (Cell& cell : plan.cells) cell.mixture = false;
 }
@@ -87,7 +87,7 @@ TEST_F(SlowRecompute, ManyRunsWithTheNormalApproximation) {
   expect_same_numbers(64, "scripted_m4");
 }
 TEST_F(SlowRecompute, TheSpreadOfFewParticlesCorrected) {
-  expect_same_numbers(12, "scripted_m6", leave_out_mixtures);
+  expect_same_numbers(12, "scripted_m60", leave_out_mixtures);
 }
 TEST_F(SlowRecompute, PoseAndMapTogether) {
   expect_same_numbers(12, "scripted_m4", store_joint_estimates);

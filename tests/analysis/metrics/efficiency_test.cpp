@@ -48,12 +48,15 @@ TEST(Efficiency, IsTheRatioOfRootsByHand) {
   EXPECT_DOUBLE_EQ(found.position, 0.5);
   EXPECT_DOUBLE_EQ(found.heading, 0.25);
   EXPECT_DOUBLE_EQ(found.map, 0.5);
+  bound.is_bound = false;
+  EXPECT_TRUE(std::isnan(efficiency_of(cell, bound).position)) << "a reference is no bound";
 }
 
 TEST_F(BoundOfAFile, IsAttainedByEkfSlamAtTinyNoise) {
   const StudyAnalysis study = analyzed(kTinyNoise);
   ASSERT_FALSE(study.bound.empty());
   EXPECT_EQ(study.bound.runs, 1u);
+  EXPECT_TRUE(study.bound.is_bound);
   const CellAnalysis& cell = study.cells.front();
   const double relative =
       2.5 * cell.over_runs("position_mse").standard_error() / cell.over_runs("position_mse").mean;
@@ -68,6 +71,8 @@ TEST_F(BoundOfAFile, IsTheAverageOverPathsThatDiffer) {
   const StudyAnalysis study = analyzed({"scenario.noise=matched", "study.runs=20"});
   EXPECT_EQ(study.bound.runs, kBoundRuns);
   EXPECT_GT(study.bound.map, 0.0);
+  EXPECT_FALSE(study.bound.is_bound);
+  EXPECT_TRUE(std::isnan(study.cells.front().get<Efficiency>().position));
   // An average: about what one path has.
   const StudyAnalysis one = analyzed({"scenario.noise=matched", "study.runs=1"});
   EXPECT_NEAR(study.bound.position.back() / one.bound.position.back(), 1.0, 0.5);

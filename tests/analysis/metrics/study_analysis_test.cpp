@@ -22,7 +22,7 @@ TEST_F(StudyAnalysisOfAFile, JudgesEveryCellAndNamesFailedRuns) {
   ASSERT_EQ(study.cells.size(), 2u);
   EXPECT_EQ(study.times.size(), 100u);
   EXPECT_EQ(study.cells[0].complete, 12u);
-  EXPECT_EQ(study.cells[0].leading, Moments::mixture);
+  EXPECT_EQ(study.cells[0].leading, Moments::corrected);
   EXPECT_EQ(study.cells[0].consistency().verdict, Verdict::consistent);
   EXPECT_EQ(study.cells[1].consistency().verdict, Verdict::inconsistent);
   ASSERT_EQ(study.cells[1].failures.size(), 1u);

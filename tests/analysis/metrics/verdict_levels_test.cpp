@@ -39,32 +39,6 @@ RunRows draw_run(const Law& law, std::uint64_t study, std::uint64_t run, std::si
   return rows;
 }
 
-/// A filter that is right, but reports the mean and the spread of few independent draws of what it
-/// knows.
-RunRows draw_clouds(std::size_t particles, std::uint64_t study, std::uint64_t run,
-                    std::size_t scans) {
-  RngStream draw({study, run, 0, 0, Draw::test});
-  const auto point = [&] {
-    return Eigen::Vector3d(0.01 * draw.normal(), 0.02 * draw.normal(), 0.01 * draw.normal());
-  };
-  RunRows rows;
-  for (std::size_t s = 0; s < scans; ++s) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-    for (std::size_t i = 0; i < particles; ++i) {
-      const Eigen::Vector3d particle = point();
-      sum += particle;
-      squares += particle * particle.transpose();
-    }
-    const Eigen::Vector3d truth = point(), mean = sum / static_cast<double>(particles);
-    const Eigen::Matrix3d P = squares / static_cast<double>(particles) - mean * mean.transpose();
-    rows.truth.insert(rows.truth.end(), truth.begin(), truth.end());
-    rows.spread.mean.insert(rows.spread.mean.end(), mean.begin(), mean.end());
-    rows.spread.covariance.insert(rows.spread.covariance.end(), P.data(), P.data() + 9);
-  }
-  return rows;
-}
-
 using DrawRun = std::function<RunRows(std::uint64_t study, std::uint64_t run, std::size_t scans)>;
 
 /// Shares of studies.
@@ -101,13 +75,6 @@ Accused accused(const Law& law, std::uint64_t runs, std::size_t scans, std::uint
     return draw_run(law, study, run, n);
   };
   return accused(draw, Moments::spread, 0, runs, scans, studies);
-}
-
-Accused accused_clouds(Moments moments, std::size_t particles, std::uint64_t studies) {
-  const DrawRun draw = [&](std::uint64_t study, std::uint64_t run, std::size_t n) {
-    return draw_clouds(particles, study, run, n);
-  };
-  return accused(draw, moments, particles, 30, 20, studies);
 }
 
 // One standard error of 5 % in 1000 studies is 0.7 %: 1 % is what the studies are to show.
@@ -159,12 +126,6 @@ TEST(SlowVerdictLevel, KeepsItForFewRunsThatForgetDuringTheRun) {
   EXPECT_NEAR(found.either(), 0.05, three_errors(0.05, kManyStudies));
   EXPECT_GT(found.above, 0.0125);
   EXPECT_LT(found.below, 0.04);
-}
-
-// Without the correction all of them would be called inconsistent.
-TEST(SlowVerdictLevel, DoesNotHoldFewParticlesAgainstAConsistentFilter) {
-  EXPECT_NEAR(accused_clouds(Moments::corrected, 10, 3 * kStudies).either(), 0.05, 0.01);
-  EXPECT_EQ(accused_clouds(Moments::spread, 10, 20).either(), 1.0);
 }
 
 // 30 runs of 60 independent scans: the average over the run has a deviation of 0.058, so that

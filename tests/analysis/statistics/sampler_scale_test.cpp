@@ -29,13 +29,17 @@ double ideal_nees(std::size_t particles, RngStream& draw) {
   return nees<3>(point() - mean, spread / static_cast<double>(particles)).value;
 }
 
+/// `particles` of equal weight.
+EffectiveDraws equal(double particles) { return {particles, particles}; }
+
 // 20,000 draws: a share has a standard error of at most 0.0036.
 TEST(SamplerScale, MakesTheNeesOfIdealSamplersChiSquare) {
+  const SamplerScale scale(3);
   for (const std::size_t particles : {6u, 10u, 100u}) {
-    const SamplerScale scale(3, particles);
+    const EffectiveDraws draws = equal(static_cast<double>(particles));
     RngStream draw({41, particles, 0, 0, Draw::test});
     std::vector<double> found;
-    for (int k = 0; k < 20'000; ++k) found.push_back(scale(ideal_nees(particles, draw)));
+    for (int k = 0; k < 20'000; ++k) found.push_back(scale(ideal_nees(particles, draw), draws));
     for (const double p : {0.025, 0.5, 0.975, 0.999}) {
       const double quantile = boost::math::quantile(boost::math::chi_squared(3), p);
       const auto below = std::ranges::count_if(found, [&](double v) { return v < quantile; });
@@ -54,34 +58,64 @@ double exactly(double nees, double d, double M) {
   return boost::math::quantile(boost::math::complement(boost::math::chi_squared(d), above));
 }
 
-TEST(SamplerScale, IsRightToTwoPartsInTenThousandBetweenItsEntries) {
+TEST(SamplerScale, IsRightToAThousandthBetweenItsEntries) {
   for (const std::size_t dimension : {1u, 2u, 3u}) {
-    for (const std::size_t particles : {5u, 30u}) {
-      const SamplerScale scale(dimension, particles);
-      for (double nees = 0.01; nees < 1e3; nees *= 1.037) {
-        const double exact =
-            exactly(nees, static_cast<double>(dimension), static_cast<double>(particles));
-        EXPECT_NEAR(scale(nees) / exact, 1.0, 2e-4) << nees << " of " << particles;
+    const SamplerScale scale(dimension);
+    const auto d = static_cast<double>(dimension);
+    for (const double M : {d + 2.013, d + 3.7, 10.0, 29.3, 71.0, 555.5}) {
+      for (double nees = 0.01; exactly(nees, d, M) < 20.0; nees *= 1.037) {
+        EXPECT_NEAR(scale(nees, equal(M)) / exactly(nees, d, M), 1.0, 1e-3) << nees << " of " << M;
       }
     }
   }
 }
 
+TEST(SamplerScale, GrowsInProportionWhereNoIdealSamplerIs) {
+  const SamplerScale scale(3);
+  for (const double M : {5.1, 10.0, 100.0}) {
+    const double far = scale(1e9, equal(M));
+    EXPECT_NEAR(scale(1e12, equal(M)) / far, 1e3, 1e-6) << M;
+    EXPECT_LT(far, 1e9);
+  }
+  EXPECT_GT(scale(1e5, equal(100.0)), 7e4);
+  EXPECT_GT(scale(1e5, equal(30.0)), 4e4);
+}
+
 TEST(SamplerScale, HardlyMovesTheNeesOfManyParticles) {
-  const SamplerScale scale(3, 1'000'000);
-  for (const double nees : {1e-3, 0.7, 3.0, 20.0}) EXPECT_NEAR(scale(nees), nees, 2e-4 * nees);
+  const SamplerScale scale(3);
+  for (const double nees : {1e-3, 0.7, 3.0, 20.0}) {
+    EXPECT_NEAR(scale(nees, equal(1e6)), nees, 2e-4 * nees);
+  }
 }
 
 TEST(SamplerScale, GrowsWithTheNeesAndStaysFinite) {
-  const SamplerScale scale(2, 5);
+  const SamplerScale scale(2);
   double before = 0.0;
-  for (double nees = 1e-5; nees < 1e14; nees *= 3.0) {
-    EXPECT_GT(scale(nees), before) << nees;
-    before = scale(nees);
+  for (double nees = 1e-7; nees < 1e14; nees *= 1.5) {
+    EXPECT_GT(scale(nees, equal(5.0)), before) << nees;
+    before = scale(nees, equal(5.0));
   }
-  EXPECT_EQ(scale(0.0), 0.0);
-  EXPECT_TRUE(std::isnan(scale(std::nan(""))));
-  EXPECT_TRUE(std::isfinite(scale(1e300)));
+  EXPECT_EQ(scale(0.0, equal(5.0)), 0.0);
+  EXPECT_TRUE(std::isnan(scale(std::nan(""), equal(5.0))));
+  EXPECT_TRUE(std::isfinite(scale(1e300, equal(5.0))));
+}
+
+TEST(SamplerScale, JudgesMoreThanTwoDrawsAboveTheComponents) {
+  EXPECT_FALSE(SamplerScale(3).can_judge(equal(5.0)));
+  EXPECT_TRUE(SamplerScale(3).can_judge(equal(5.01)));
+  EXPECT_TRUE(SamplerScale(1).can_judge(equal(4.0)));
+}
+
+TEST(EffectiveDraws, AreAllOfEqualWeightAndBetweenThatAndTheirEffectiveSizeElse) {
+  EXPECT_EQ(effective_draws(30, 30.0).of_variance, 30.0);
+  EXPECT_EQ(effective_draws(30, 31.0).of_mean, 30.0);
+  EXPECT_EQ(effective_draws(30, 1.0).of_variance, 1.0);
+  for (double ess = 1.01; ess < 100.0; ess *= 1.1) {
+    const EffectiveDraws draws = effective_draws(100, ess);
+    EXPECT_EQ(draws.of_mean, ess);
+    EXPECT_GE(draws.of_variance, ess * (1.0 - 1e-12));
+    EXPECT_LE(draws.of_variance, 100.0);
+  }
 }
 
 }  // namespace
