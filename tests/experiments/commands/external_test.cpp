@@ -34,7 +34,9 @@ TEST_F(ExternalCommands, NothingIsStartedUnasked) {
   EXPECT_THAT(refused.err, AllOf(HasSubstr("study.ini:"), HasSubstr("scripted_program orphan"),
                                  HasSubstr("add --allow-external")));
   EXPECT_FALSE(exists("out.h5.part"));
-  EXPECT_EQ(call({"check", "study.ini"}).code, 0);
+  const Called checked = call({"check", "study.ini"});
+  EXPECT_EQ(checked.code, 0);
+  EXPECT_THAT(checked.out, HasSubstr("external program, mine     ? "));  // nobody knows how long
   EXPECT_FALSE(exists("started"));
   ASSERT_EQ(run({"--allow-external"}).code, 0);
   ASSERT_TRUE(exists("started"));
