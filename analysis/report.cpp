@@ -99,7 +99,7 @@ std::vector<Section> all_sections(const ResultFile& file, const StudyAnalysis& s
 
 void write_report(const ResultFile& file, const fs::path& directory, const ReportOptions& options) {
   refuse_existing(directory, options.existing);
-  const StudyAnalysis study = analyze(file, options.level, *options.parallel);
+  const StudyAnalysis study = analyze(file, options.level, *options.parallel, options.within);
   const StudyComparison comparison =
       compare_study(study, study.cells.front().label, usual_scores(study.has_truth));
   const std::vector<Section> sections = all_sections(file, study, comparison, options);

@@ -15,6 +15,7 @@ enum class ExistingReport { refuse, replace };
 
 struct ReportOptions {
   double level = 0.95;               ///< of the NEES bounds
+  std::optional<double> within;      ///< what counts as consistent; default: as the study says
   std::optional<std::uint64_t> run;  ///< run that is drawn and replayed; default: first complete
   ExistingReport existing = ExistingReport::refuse;
   const Parallel* parallel = &Parallel::serial();

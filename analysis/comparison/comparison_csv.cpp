@@ -68,7 +68,7 @@ void write_wins(const WinMatrix& matrix, NamedRows& file) {
 void write_values(const std::vector<CellValue>& values, const std::filesystem::path& path) {
   NamedRows file(path);
   for (const CellValue& value : values) {
-    file.row({{"cell", value.cell}},
+    file.row({{"cell", value.cell}, {"verdict", value.verdict}},
              {{"cpu_seconds_mean", "s", value.cpu_seconds.mean},
               {"position_rmse_mean", "m", value.position_rmse.mean},
               {"nees_distance", "1", value.nees_distance},

@@ -88,12 +88,17 @@ TextTable win_table(const WinMatrix& matrix, double level) {
 
 TextTable pareto_table(std::span<const CellValue> values) {
   TextTable table;
-  table.headings = {{"cell", Align::left}, {"CPU [s]"}, {"position RMSE [m]"},
-                    {"NEES distance"},     {"failed"},  {"on the Pareto front", Align::left}};
+  table.headings = {{"cell", Align::left},
+                    {"CPU [s]"},
+                    {"position RMSE [m]"},
+                    {"verdict", Align::left},
+                    {"NEES distance"},
+                    {"failed"},
+                    {"on the Pareto front", Align::left}};
   for (const CellValue& value : values) {
     table.rows.push_back(
         {value.cell, with_error(value.cpu_seconds.mean, value.cpu_seconds.standard_error()),
-         with_error(value.position_rmse.mean, value.position_rmse.standard_error()),
+         with_error(value.position_rmse.mean, value.position_rmse.standard_error()), value.verdict,
          readable(value.nees_distance), std::to_string(value.failed), front_text(value)});
   }
   return table;

@@ -23,6 +23,7 @@ CellValue value_of(const CellAnalysis& cell, std::size_t place) {
           .failed = cell.failures.size(),
           .cpu_seconds = cell.over_runs("cpu_seconds"),
           .position_rmse = cell.over_runs("position_rmse"),
+          .verdict = in_words(cell.consistency()),
           .nees_distance = cell.consistency().verdict == Verdict::untested
                                ? kNaN
                                : nees_distance(cell.consistency().mean, 3)};

@@ -27,6 +27,7 @@ struct CellValue {
   std::size_t failed = 0;  ///< runs, which are in none of the numbers
   Summary cpu_seconds;
   Summary position_rmse;             ///< [m]
+  std::string verdict;               ///< on the pose, in words
   double nees_distance = 0.0;        ///< |log2(ANEES / components)| of the pose (nees_distance())
   bool accurate_for_cost = false;    ///< on the front of position RMSE against CPU time
   bool consistent_for_cost = false;  ///< on the front of NEES distance against CPU time

@@ -118,11 +118,10 @@ std::vector<std::string> calibration_notes(const StudyAnalysis& study) {
       "share should be anything from 0 to 1 equally often. 'too narrow': the truth lies at the "
       "ends "
       "too often; 'too wide': in the middle too often; 'shifted': on one side.",
-      "A histogram is calibrated where all of its bins are inside a band that chance keeps all at "
-      "once in " +
+      "A histogram is calibrated where all of its bins are inside a band that chance keeps all "
+      "histograms of a cell in at once, in " +
           level_text(study.level) +
-          " of studies, each histogram by itself; of many tests a few fail by chance. Every run "
-          "gives "
+          " of studies at least. Every run gives "
           "one landmark, another one from run to run, and less than " +
           std::to_string(kLeastValues) + " runs say nothing."};
   for (const CellAnalysis& cell : study.cells) {

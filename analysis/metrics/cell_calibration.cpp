@@ -11,10 +11,12 @@ namespace {
 
 constexpr std::array kComponents = {"x", "y", "heading"};
 
-/// Histograms with the bands of their numbers of values, which are nearly always the same.
+/// Histograms with the bands of their numbers of values, which are nearly always the same; all of
+/// the cell keep them together (Bonferroni).
 class Histograms {
  public:
-  Histograms(std::span<const RunPits> runs, double level) : runs_(runs), level_(level) {}
+  Histograms(std::span<const RunPits> runs, std::size_t tests, double level)
+      : runs_(runs), level_(1.0 - (1.0 - level) / static_cast<double>(tests)) {}
 
   void add(PitHistogram blank, const std::function<double(const RunPits&)>& value_of) {
     std::vector<double> values;
@@ -37,12 +39,18 @@ class Histograms {
   std::map<std::size_t, CountBand> bands_;
 };
 
+/// How many histograms a cell has whose runs are like `run`.
+std::size_t tests_of(const RunPits& run) {
+  const std::size_t of_pose = 3 * kQuarters;
+  return (run.has_pose ? of_pose : 0) + (run.has_rank ? of_pose : 0) + (run.has_landmark ? 2 : 0);
+}
+
 }  // namespace
 
 std::vector<PitHistogram> CalibrationSums::result(std::span<const double> times,
                                                   double level) const {
   if (runs_.empty()) return {};
-  Histograms histograms(runs_, level);
+  Histograms histograms(runs_, tests_of(runs_.front()), level);
   const auto scans = calibration_scans(times.size());
   const auto add_pose = [&](const char* by, auto RunPits::*pits) {
     for (std::size_t m = 0; m < kQuarters; ++m) {

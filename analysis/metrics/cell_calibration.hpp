@@ -27,8 +27,9 @@ using Calibrations = std::vector<PitHistogram>;
 class CalibrationSums {
  public:
   void add(const RunPits& run) { runs_.push_back(run); }
-  /// `times` [s] of all scans. Pose by moments, then ranks, then landmarks; what is not stored is
-  /// absent.
+  /// `times` [s] of all scans. A cell that is calibrated has no fault in any histogram with
+  /// probability `level` at least. Pose by moments, then ranks, then landmarks; what is not stored
+  /// is absent.
   Calibrations result(std::span<const double> times, double level) const;
 
  private:

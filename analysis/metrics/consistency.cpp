@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/consistency.hpp"
 
+#include "analysis/output/number_text.hpp"
+#include "analysis/statistics/bootstrap.hpp"
 #include "analysis/statistics/means.hpp"
+#include "analysis/statistics/run_average.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/gamma.hpp>
-#include <boost/math/distributions/normal.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <limits>
 
 namespace montecarta::analysis {
 namespace {
-
-constexpr double kLeastVariance = 1e-9;  // of run averages that are equal: times the dimension
 
 /// Mean of the values that are numbers, in index order; NaN where there is none.
 double mean_of_numbers(const std::vector<double>& values) {
@@ -38,20 +34,22 @@ std::vector<double> numbers_in(const std::vector<double>& values) {
   return numbers;
 }
 
-/// Scans against the two bands.
-void compare_scans(const NeesSeries& series, std::span<const double> times, Consistency& result) {
-  std::vector<bool> above(series.average.size());
+/// The ratio of a scan to what it should be, by the band for all scans: above 1 where the scan is
+/// above the band.
+Interval ratio_of_scan(const NeesSeries& series, std::size_t s) {
+  const Interval& band = series.whole_run_bounds[s];
+  return {series.average[s] / band.upper, series.average[s] / band.lower};
+}
+
+/// Shares of scans in the pointwise band.
+void count_shares(const NeesSeries& series, Consistency& result) {
   std::size_t tested = 0, n_above = 0, n_below = 0;
   for (std::size_t s = 0; s < series.average.size(); ++s) {
     const double average = series.average[s];
     if (std::isnan(average)) continue;
     ++tested;
-    above[s] = average > series.bounds[s].upper;
-    n_above += above[s] ? 1 : 0;
+    n_above += average > series.bounds[s].upper ? 1 : 0;
     n_below += average < series.bounds[s].lower ? 1 : 0;
-    const Interval& whole_run = series.whole_run_bounds[s];
-    if (!result.above_from && average > whole_run.upper) result.above_from = times[s];
-    if (!result.below_from && average < whole_run.lower) result.below_from = times[s];
   }
   const auto share = [&](std::size_t n) {
     return tested == 0 ? kNaN : static_cast<double>(n) / static_cast<double>(tested);
@@ -59,15 +57,82 @@ void compare_scans(const NeesSeries& series, std::span<const double> times, Cons
   result.share_above = share(n_above);
   result.share_below = share(n_below);
   result.share_inside = share(tested - n_above - n_below);
-  if (const auto exit = first_lasting(above, kLastingScans)) result.lasting_exit = times[*exit];
 }
 
-Verdict verdict(const Consistency& found) {
+/// Scans against the band for all of them.
+void compare_scans(const NeesSeries& series, std::span<const double> times, Consistency& result) {
+  for (std::size_t s = 0; s < series.average.size(); ++s) {
+    if (std::isnan(series.average[s])) continue;
+    const Interval ratio = ratio_of_scan(series, s);
+    const bool above = ratio.lower > 1.0, below = ratio.upper < 1.0;
+    if (above && !result.above_from) result.above_from = times[s];
+    if (below && !result.below_from) result.below_from = times[s];
+    if (above && !result.stays_above_from) result.stays_above_from = times[s];
+    if (below && !result.stays_below_from) result.stays_below_from = times[s];
+    if (!above) result.stays_above_from.reset();
+    if (!below) result.stays_below_from.reset();
+    if (above && (!result.highest || ratio.lower > result.highest->ratio.lower)) {
+      result.highest = {ratio, times[s]};
+    }
+    if (below && (!result.lowest || ratio.upper < result.lowest->ratio.upper)) {
+      result.lowest = {ratio, times[s]};
+    }
+  }
+}
+
+/// The average over the run: where it should be, and where its ratio to that lies.
+void compare_average(const NeesSeries& series, Consistency& result) {
+  const std::vector<double> averages = numbers_in(series.run_averages);
+  const auto d = static_cast<double>(series.dimension);
+  const AverageLaw law = average_law(averages, series.dimension, series.test.average_deviate,
+                                     series.test.average_skew);
+  const Interval right = law.bounds();
+  result.average_bounds = {d * right.lower, d * right.upper};
+  result.ratio = {result.mean / result.average_bounds.upper,
+                  result.mean / result.average_bounds.lower};
+  result.least_ratios = least_ratios(law, kPowerSaid);
+  result.is_overdispersed = is_overdispersed(averages, series.dimension);
+  if (result.is_overdispersed) {
+    const Interval mean = bootstrap_mean(averages, series.test.average_level);
+    result.ratio = {mean.lower / d, mean.upper / d};
+  } else if (law.runs >= 3.0) {
+    const std::uint64_t enough = runs_that_decide(law, result.within);
+    result.more_runs = enough - std::min<std::uint64_t>(enough, averages.size());
+  }
+}
+
+bool is_within(const Interval& ratio, double margin) {
+  return ratio.lower >= 1.0 / margin && ratio.upper <= margin;
+}
+
+Verdict verdict_of(const Consistency& found) {
   if (std::isnan(found.share_inside)) return Verdict::untested;
-  const bool above = found.above_from || found.mean > found.average_bounds.upper;
-  const bool below = found.below_from || found.mean < found.average_bounds.lower;
-  if (above) return found.lasting_exit ? Verdict::inconsistent : Verdict::optimistic;
-  return below ? Verdict::conservative : Verdict::consistent;
+  const bool is_off_somewhere = (found.highest && found.highest->ratio.lower > found.within) ||
+                                (found.lowest && found.lowest->ratio.upper < 1.0 / found.within);
+  if (is_within(found.ratio, found.within) && !is_off_somewhere) return Verdict::consistent;
+  if (found.above_from || found.mean > found.average_bounds.upper) return Verdict::optimistic;
+  if (found.below_from || found.mean < found.average_bounds.lower) return Verdict::conservative;
+  return Verdict::undecided;
+}
+
+/// " by 1.02 to 1.15", or of the scan that is farthest outside where the run as a whole is not.
+std::string how_far(const Consistency& found) {
+  const bool is_above = found.verdict == Verdict::optimistic;
+  const bool by_average =
+      is_above ? found.mean > found.average_bounds.upper : found.mean < found.average_bounds.lower;
+  const std::optional<ScanRatio>& scan = is_above ? found.highest : found.lowest;
+  if (by_average ? std::isnan(found.ratio.lower) : !scan) return "";
+  Interval ratio = by_average ? found.ratio : scan->ratio;
+  // A few lost runs leave the interval of the mean wide, but that it is off is shown.
+  (is_above ? ratio.lower : ratio.upper) =
+      is_above ? std::max(ratio.lower, 1.0) : std::min(ratio.upper, 1.0);
+  const std::string words = " by " + compact(ratio.lower) + " to " + compact(ratio.upper);
+  return by_average ? words : words + " at " + fixed_seconds(scan->time);
+}
+
+std::string what_decides(const Consistency& found) {
+  if (!found.more_runs) return "undecided: too few runs";
+  return "undecided: " + std::to_string(*found.more_runs) + " more runs decide";
 }
 
 }  // namespace
@@ -79,25 +144,6 @@ std::optional<std::size_t> first_lasting(const std::vector<bool>& above, std::si
     if (in_a_row == length) return s + 1 - length;
   }
   return std::nullopt;
-}
-
-Interval run_average_bounds(std::span<const double> run_averages, std::size_t dimension,
-                            double deviate) {
-  const auto n = static_cast<double>(run_averages.size());
-  double mean = 0.0, squares = 0.0;
-  for (const double average : run_averages) mean += average / n;
-  for (const double average : run_averages) squares += (average - mean) * (average - mean);
-  if (n < 3.0) return {0.0, std::numeric_limits<double>::infinity()};
-  const auto d = static_cast<double>(dimension);
-  // Of a consistent filter the average varies no more than a single scan does; runs that went
-  // astray do, also where they went too far for numbers. Of gamma samples the deviation divided by
-  // the mean, not the deviation itself, is independent of the mean (Lukacs).
-  const double most = 2.0 * d, estimate = squares / (n - 1.0) * (d / mean) * (d / mean);
-  const double variance = (estimate <= most ? std::max(estimate, kLeastVariance * d) : most) / n;
-  const double tail = boost::math::cdf(boost::math::normal(), -deviate);
-  const boost::math::gamma_distribution<> average(d * d / variance, variance / d);
-  return {boost::math::quantile(average, tail),
-          boost::math::quantile(boost::math::complement(average, tail))};
 }
 
 double expected_median(std::size_t dimension) {
@@ -114,15 +160,17 @@ double expected_trimmed(std::size_t dimension) {
   return d * part / (1.0 - 2.0 * kTrimmedShare);
 }
 
-Consistency judge(const NeesSeries& series, std::span<const double> times) {
+Consistency judge(const NeesSeries& series, std::span<const double> times, double within) {
   Consistency result;
+  result.within = within;
   result.mean = mean_of_numbers(series.average);
   result.median = mean_of_numbers(series.median);
   result.trimmed = mean_of_numbers(series.trimmed);
-  const std::vector<double> averages = numbers_in(series.run_averages);
-  result.average_bounds = run_average_bounds(averages, series.dimension, series.average_deviate);
+  count_shares(series, result);
   compare_scans(series, times, result);
-  result.verdict = verdict(result);
+  compare_average(series, result);
+  result.verdict = verdict_of(result);
+  if (result.verdict != Verdict::undecided) result.more_runs.reset();
   return result;
 }
 
@@ -131,17 +179,15 @@ std::string in_words(const Consistency& consistency) {
     case Verdict::untested:
       return "not tested";
     case Verdict::consistent:
-      return "consistent";
+      return "consistent within " + exact_text(consistency.within);
     case Verdict::optimistic:
-      return "optimistic";
+      return "optimistic" + how_far(consistency);
     case Verdict::conservative:
-      return "conservative";
-    case Verdict::inconsistent:
+      return "conservative" + how_far(consistency);
+    case Verdict::undecided:
       break;
   }
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "inconsistent from %.1f s", *consistency.lasting_exit);
-  return text.data();
+  return what_decides(consistency);
 }
 
 }  // namespace montecarta::analysis

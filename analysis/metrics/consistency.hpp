@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/data/margin.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/statistics/whole_run_band.hpp"
 
 #include <cstdint>
 #include <limits>
@@ -12,9 +14,12 @@
 
 namespace montecarta::analysis {
 
-/// The average NEES leaves its band for good when it stays above the upper bound for so many
-/// consecutive scans (5 s at 5 Hz); a single scan above it means nothing (STATISTICS 5).
+/// A single run is lost when its NEES stays above its upper bound for so many consecutive scans
+/// (5 s at 5 Hz); a single scan above it means nothing (STATISTICS 7).
 inline constexpr std::size_t kLastingScans = 25;
+
+/// Probability with which Consistency::least_ratios would have been found.
+inline constexpr double kPowerSaid = 0.9;
 
 /// The trimmed mean of NEES leaves out so large a share of the runs at either end.
 inline constexpr double kTrimmedShare = 0.1;
@@ -29,7 +34,7 @@ struct NeesSeries {
   std::vector<std::uint32_t> runs;         ///< {scan} valid: complete, with a finite NEES
   std::vector<Interval> bounds;            ///< {scan} of the average at that scan, from `runs`
   std::vector<Interval> whole_run_bounds;  ///< {scan} of the average at all scans together
-  double average_deviate = 0.0;            ///< WholeRunTest, of the average over the run
+  WholeRunTest test;                       ///< what the average over the run is tested by
   std::vector<double> run_averages;        ///< {run} over its scans; NaN where none is finite
   std::uint64_t samples = 0;               ///< scans x complete runs
   std::uint64_t floored = 0;               ///< of them: singular covariance, floor was added
@@ -39,43 +44,47 @@ struct NeesSeries {
 
 enum class Verdict {
   untested,      ///< no covariance stored, or no complete run
-  consistent,    ///< neither a scan nor the whole run is farther off than chance has it
-  inconsistent,  ///< too large, and leaves the pointwise band upwards for good
-  optimistic,    ///< too large at some scan or over the run: errors larger than the filter says
-  conservative,  ///< too small: errors smaller than the filter says
+  consistent,    ///< shown to be within the margin: over the run, and not shown beyond it anywhere
+  optimistic,    ///< shown too large at some scan or over the run: errors larger than it says
+  conservative,  ///< shown too small: errors smaller than the filter says
+  undecided,     ///< neither is shown: more runs are needed
 };
 
-/// What a NeesSeries says in a few numbers. The verdict is one test at the level of the study: a
-/// consistent filter is called consistent with that probability, however many scans a run has. It
-/// has two parts that share the probability of a false alarm (WholeRunTest): the average over runs
-/// at every scan against whole_run_bounds, and the average over runs and scans against
-/// average_bounds.
+/// The ratio of a scan's average to the right one, by the band for all scans.
+struct ScanRatio {
+  Interval ratio;
+  double time = 0.0;  ///< [s]
+};
+
+/// What a NeesSeries says in a few numbers. One test at the level of the study has two parts that
+/// share the probability of a false accusation (WholeRunTest): the average over runs at every scan
+/// against whole_run_bounds, and the average over runs and scans against average_bounds. A right
+/// filter leaves neither with that probability, however many scans a run has. Its interval,
+/// `ratio`, and the same bands in units of the margin show that a filter is consistent (STATISTICS
+/// 5).
 struct Consistency {
   Verdict verdict = Verdict::untested;
-  double mean = 0.0;                 ///< of the averages, over scans
-  double median = 0.0;               ///< of the medians, over scans
-  double trimmed = 0.0;              ///< of the trimmed means, over scans
-  double share_inside = 0.0;         ///< of scans with a valid run; the three add up to 1
-  double share_above = 0.0;          ///< pointwise band, as share_below
-  double share_below = 0.0;          ///< of scans
-  Interval average_bounds = {};      ///< where the mean of a consistent filter lies
+  double within = kUsualMargin;   ///< the margin: ratios in [1 / within, within] are consistent
+  Interval ratio = {};            ///< where the expected average over the run, divided by the right
+                                  ///< one, lies; 1 is in it where average_bounds hold the mean
+  bool is_overdispersed = false;  ///< some runs are lost and others not: `ratio` by bootstrap
+  Interval least_ratios = {};     ///< found with probability kPowerSaid, below and above 1
+  std::optional<ScanRatio> highest;  ///< of the scans outside the band for all that farthest above
+  std::optional<ScanRatio> lowest;   ///< and that farthest below
+  std::optional<std::uint64_t> more_runs;  ///< that decide what is undecided; none known: nullopt
+  double mean = 0.0;                       ///< of the averages, over scans
+  double median = 0.0;                     ///< of the medians, over scans
+  double trimmed = 0.0;                    ///< of the trimmed means, over scans
+  double share_inside = 0.0;               ///< of scans with a valid run; the three add up to 1
+  double share_above = 0.0;                ///< pointwise band, as share_below
+  double share_below = 0.0;                ///< of scans
+  Interval average_bounds = {};            ///< where the mean of a consistent filter lies
   Interval average_interval = {};    ///< where the mean over infinitely many runs lies (bootstrap)
   std::optional<double> above_from;  ///< [s] first scan above whole_run_bounds
   std::optional<double> below_from;  ///< [s] first scan below them
-  std::optional<double> lasting_exit;  ///< [s] first scan of the first kLastingScans above in a row
-  std::optional<Interval> exit_interval;  ///< [s] of lasting_exit, by bootstrap over runs;
-                                          ///< infinity: never; leading moments of the pose only
+  std::optional<double> stays_above_from;  ///< [s] from here to the end above whole_run_bounds
+  std::optional<double> stays_below_from;  ///< [s] from here to the end below them
 };
-
-/// Where the average over runs and scans of a consistent filter lies: its mean is `dimension`; its
-/// deviation that of `run_averages`, in proportion to their mean, but at most what a single scan
-/// has; its shape a gamma (of one scan: the chi-square of nees_bounds()), between the quantiles at
-/// which a normal distribution has `deviate` deviations. Everything where there are fewer than
-/// three runs. Of few runs of nearly constant NEES the estimated deviation is noisier than a
-/// chi-square says: of 20 or 30 the verdict accuses about 6 % of consistent filters at a level of
-/// 95 %.
-Interval run_average_bounds(std::span<const double> run_averages, std::size_t dimension,
-                            double deviate);
 
 /// What a consistent filter has for Consistency::median and ::trimmed.
 double expected_median(std::size_t dimension);
@@ -84,10 +93,14 @@ double expected_trimmed(std::size_t dimension);
 /// Index at which the first `length` consecutive true values begin; nullopt = never.
 std::optional<std::size_t> first_lasting(const std::vector<bool>& above, std::size_t length);
 
-/// Judges a series by its bounds and its average_deviate; `times` [s] of its scans.
-Consistency judge(const NeesSeries& series, std::span<const double> times);
+/// Judges a series by its bounds and its test; `times` [s] of its scans, `within` the margin, above
+/// 1.
+Consistency judge(const NeesSeries& series, std::span<const double> times,
+                  double within = kUsualMargin);
 
-/// The verdict as one reads it: "consistent", "inconsistent from 4.2 s", ...
+/// The verdict as one reads it: "consistent within 1.1", "optimistic by 1.2 to 1.4", "optimistic by
+/// 1.3 to 2.5 at 12.4 s" where no other scan nor the run shows it, "undecided: 130 more runs
+/// decide", ...
 std::string in_words(const Consistency& consistency);
 
 }  // namespace montecarta::analysis

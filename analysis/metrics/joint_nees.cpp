@@ -8,6 +8,7 @@
 
 #include <Eigen/Cholesky>
 
+#include <algorithm>
 #include <cmath>
 
 namespace montecarta::analysis {
@@ -40,7 +41,66 @@ Eigen::VectorXd error_of(std::span<const double> mean, std::span<const double> p
   return error;
 }
 
+Interval bounds_per_component(double dimensions, double level) {
+  const Interval sum = nees_bounds(1, static_cast<std::uint64_t>(dimensions), level);
+  return {sum.lower / dimensions, sum.upper / dimensions};
+}
+
+/// Consistent where every row is shown to be within the margin, else accused where one is shown to
+/// be off; too large goes before too small.
+void judge_rows(JointConsistency& found) {
+  bool is_within = true;
+  double highest = 1.0, lowest = 1.0;
+  for (std::size_t k = 0; k < found.average.size(); ++k) {
+    if (found.runs[k] == 0) continue;
+    const Interval ratio = ratio_of_row(found, k);
+    found.verdict = Verdict::undecided;
+    is_within = is_within && ratio.upper <= found.within && ratio.lower * found.within >= 1.0;
+    if (ratio.lower > highest) {
+      highest = ratio.lower;
+      found.highest_row = k;
+    }
+    if (ratio.upper < lowest) {
+      lowest = ratio.upper;
+      found.lowest_row = k;
+    }
+  }
+  if (found.verdict == Verdict::untested) return;
+  found.verdict = is_within           ? Verdict::consistent
+                  : found.highest_row ? Verdict::optimistic
+                  : found.lowest_row  ? Verdict::conservative
+                                      : Verdict::undecided;
+}
+
+/// Runs after which the interval of no row is longer, in logarithms, than the margin, so that it
+/// excludes 1 or is inside.
+std::uint64_t more_runs_that_decide(const JointConsistency& found, double row_level) {
+  std::uint64_t more = 1;
+  for (std::size_t k = 0; k < found.average.size(); ++k) {
+    const auto runs = static_cast<std::uint64_t>(found.runs[k]);
+    if (runs == 0) continue;
+    const auto decide = [&](std::uint64_t n) {
+      const Interval bounds =
+          bounds_per_component(static_cast<double>(n) * found.dimension[k], row_level);
+      return bounds.upper <= found.within * bounds.lower;
+    };
+    std::uint64_t enough = runs, too_few = runs;
+    while (!decide(enough)) enough *= 2;
+    while (enough - too_few > 1) {
+      const std::uint64_t middle = too_few + (enough - too_few) / 2;
+      (decide(middle) ? enough : too_few) = middle;
+    }
+    more = std::max(more, enough - runs);
+  }
+  return more;
+}
+
 }  // namespace
+
+Interval ratio_of_row(const JointConsistency& joint, std::size_t row) {
+  return {joint.average[row] / joint.bounds[row].upper,
+          joint.average[row] / joint.bounds[row].lower};
+}
 
 std::vector<JointScore> joint_scores(const JointRows& rows, std::span<const std::uint32_t> scans,
                                      std::span<const double> truth,
@@ -86,8 +146,9 @@ void JointNeesSums::add(std::span<const JointScore> run) {
 
 /// The sum over runs is chi-square with the sum of the dimensions; each of K rows is tested at
 /// 1 - (1 - level) / K, so that a consistent filter passes all with probability `level` at least.
-JointConsistency JointNeesSums::result(double level, bool identities_known) const {
+JointConsistency JointNeesSums::result(double level, bool identities_known, double within) const {
   JointConsistency found;
+  found.within = within;
   found.stored = n_runs_ > 0;
   if (!found.stored) return found;
   if (!identities_known) {
@@ -95,7 +156,6 @@ JointConsistency JointNeesSums::result(double level, bool identities_known) cons
     return found;
   }
   const double row_level = 1.0 - (1.0 - level) / static_cast<double>(rows_.size());
-  bool above = false, below = false;
   for (const Sums& row : rows_) {
     found.samples += n_runs_;
     found.undefined += n_runs_ - row.runs;
@@ -106,13 +166,11 @@ JointConsistency JointNeesSums::result(double level, bool identities_known) cons
       found.bounds.push_back({kNaN, kNaN});
       continue;
     }
-    const Interval sum = nees_bounds(1, static_cast<std::uint64_t>(row.dimensions), row_level);
-    found.bounds.push_back({sum.lower / row.dimensions, sum.upper / row.dimensions});
-    above = above || found.average.back() > found.bounds.back().upper;
-    below = below || found.average.back() < found.bounds.back().lower;
-    found.verdict = above   ? Verdict::optimistic
-                    : below ? Verdict::conservative
-                            : Verdict::consistent;
+    found.bounds.push_back(bounds_per_component(row.dimensions, row_level));
+  }
+  judge_rows(found);
+  if (found.verdict == Verdict::undecided) {
+    found.more_runs = more_runs_that_decide(found, row_level);
   }
   return found;
 }

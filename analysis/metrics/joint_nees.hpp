@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,9 +39,16 @@ struct JointConsistency {
   std::uint64_t samples = 0;        ///< rows x complete runs
   std::uint64_t undefined = 0;      ///< of them, without a NEES
   Verdict verdict = Verdict::untested;
-  bool stored = false;       ///< whether the cell has joint estimates
+  double within = kUsualMargin;            ///< what counts as consistent
+  std::optional<std::size_t> highest_row;  ///< of the rows outside their bounds that farthest above
+  std::optional<std::size_t> lowest_row;   ///< and that farthest below
+  std::optional<std::uint64_t> more_runs;  ///< that decide what is undecided
+  bool stored = false;                     ///< whether the cell has joint estimates
   std::string missing = {};  ///< why those that are stored were not judged; empty where they were
 };
+
+/// Where the expected average of a row lies, as far as it is off by a factor.
+Interval ratio_of_row(const JointConsistency& joint, std::size_t row);
 
 /// Adds up complete runs in the order of the calls.
 class JointNeesSums {
@@ -48,7 +56,8 @@ class JointNeesSums {
   /// Nothing: the run has no joint estimates.
   void add(std::span<const JointScore> run);
   /// `identities_known`: whether anybody knows which landmark is which.
-  JointConsistency result(double level, bool identities_known) const;
+  /// `within`: rows whose intervals are all inside [1 / within, within] are consistent.
+  JointConsistency result(double level, bool identities_known, double within = kUsualMargin) const;
 
  private:
   struct Sums {

@@ -32,7 +32,8 @@ class JointNeesOverRuns final : public MetricSums {
   explicit JointNeesOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
   void add(const MeasuredRun& run) override { joint_.add(run.joint); }
   void put(CellAnalysis& cell) override {
-    cell.findings.put(joint_.result(criteria_->level, criteria_->map.identities_known));
+    cell.findings.put(
+        joint_.result(criteria_->level, criteria_->map.identities_known, criteria_->within));
   }
 
  private:
@@ -56,9 +57,13 @@ bool is_judged(const CellAnalysis& cell) {
   return cell.get<JointConsistency>().verdict != Verdict::untested;
 }
 
-std::string words_of(Verdict verdict) {
+std::string words_of(const JointConsistency& joint, const std::vector<double>& times) {
   Consistency found;
-  found.verdict = verdict;
+  found.verdict = joint.verdict;
+  found.within = joint.within;
+  if (const auto row = joint.highest_row) found.highest = {ratio_of_row(joint, *row), times[*row]};
+  if (const auto row = joint.lowest_row) found.lowest = {ratio_of_row(joint, *row), times[*row]};
+  found.more_runs = joint.more_runs;
   return in_words(found);
 }
 
@@ -79,7 +84,7 @@ std::vector<std::string> row_of(const CellAnalysis& cell, const std::vector<doub
           readable(joint.average.back()),
           interval_text(joint.bounds.back()),
           readable(joint.average[worst]) + " at " + readable(times[worst]) + " s",
-          words_of(joint.verdict)};
+          words_of(joint, times)};
 }
 
 /// Whether any cell was judged by its joint estimates.
@@ -109,7 +114,8 @@ std::vector<std::string> joint_notes(const StudyAnalysis& study) {
         "Pose and map together: the squared error of the vehicle and of all landmarks at once, "
         "measured by the covariance that the filter has of them all, for each component (1 is "
         "right, more is overconfident). It also sees wrong correlations, which no part by "
-        "itself shows. 'Right' is where a consistent filter stays at all " +
+        "itself shows. It is consistent where the average of every stored scan is shown to be "
+        "within the margin. 'Right' is where a consistent filter stays at all " +
         std::to_string(study.joint_times.size()) + " stored scans with a probability of " +
         percent(study.level) + " at least.");
   }

@@ -3,6 +3,7 @@
 
 #include "analysis/data/run_reader.hpp"
 #include "analysis/metrics/beacon_scores.hpp"
+#include "analysis/metrics/consistency.hpp"
 #include "analysis/metrics/joint_nees.hpp"
 #include "analysis/metrics/map_scores.hpp"
 #include "analysis/metrics/path_at_fixes.hpp"
@@ -23,6 +24,7 @@ namespace montecarta::analysis {
 struct RunCriteria {
   std::span<const double> times;  ///< [s] of the scans
   double level = 0.95;            ///< of NEES bounds
+  double within = kUsualMargin;   ///< what counts as consistent (judge())
   std::vector<PathAtFixes> references;
   std::vector<Eigen::Vector2d> beacons;        ///< [m]
   MapCriteria map;                             ///< of a simulation
@@ -31,7 +33,7 @@ struct RunCriteria {
   bool calibrates = false;  ///< whether calibration is judged: where noise is matched
 };
 
-RunCriteria criteria_of(const ResultFile& file, double level);
+RunCriteria criteria_of(const ResultFile& file, double level, double within = kUsualMargin);
 
 /// One run being read and measured while others are. Keeps its memory from run to run.
 struct MeasuredRun {

@@ -54,12 +54,14 @@ NeesAccumulator::NeesAccumulator(ErrorBlock block, Moments moments, std::size_t 
 
 void NeesAccumulator::add(const RunMetrics& metrics) {
   const auto block = static_cast<std::size_t>(block_);
-  const std::vector<double>& value = metrics.nees(moments_).value[block];
-  const std::vector<std::uint8_t>& floored = metrics.nees(moments_).floored[block];
-  const std::vector<std::uint8_t>& too_few = metrics.nees(moments_).too_few[block];
+  const NeesRows& rows = metrics.nees(moments_);
+  for (const std::uint8_t floored : rows.floored[block]) floored_ += floored;
+  add(rows.value[block], rows.too_few[block]);
+}
+
+void NeesAccumulator::add(std::span<const double> value, std::span<const std::uint8_t> too_few) {
   samples_ += value.size();
   for (std::size_t s = 0; s < value.size(); ++s) {
-    floored_ += floored[s];
     if (!std::isfinite(value[s])) {
       ++(!too_few.empty() && too_few[s] != 0 ? too_few_ : undefined_);
       continue;
@@ -81,9 +83,8 @@ NeesSeries NeesAccumulator::series(double level, const BandWalks& walks) const {
   series.too_few = too_few_;
   series.runs = runs_;
   series.run_averages = run_averages_;
-  const WholeRunTest test = walks.test(neighbours_.result(), run_averages_.size(), level);
-  series.average_deviate = test.average_deviate;
-  BandsOf bands(series.dimension, level, std::erf(test.deviate / std::sqrt(2.0)));
+  series.test = walks.test(neighbours_.result(), run_averages_.size(), series.dimension, level);
+  BandsOf bands(series.dimension, level, std::erf(series.test.deviate / std::sqrt(2.0)));
   for (std::size_t s = 0; s < sum_.size(); ++s) {
     series.bounds.push_back(bands.of(runs_[s]).pointwise);
     series.whole_run_bounds.push_back(bands.of(runs_[s]).whole_run);
@@ -95,9 +96,9 @@ NeesSeries NeesAccumulator::series(double level, const BandWalks& walks) const {
 }
 
 NeesResult NeesAccumulator::result(std::span<const double> times, double level,
-                                   const BandWalks& walks) const {
+                                   const BandWalks& walks, double within) const {
   NeesResult result{block_, moments_, series(level, walks), {}};
-  result.consistency = judge(result.series, times);
+  result.consistency = judge(result.series, times, within);
   return result;
 }
 

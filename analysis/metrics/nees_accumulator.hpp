@@ -24,8 +24,12 @@ class NeesAccumulator {
   NeesAccumulator(ErrorBlock block, Moments moments, std::size_t scans);
   Moments moments() const { return moments_; }
   void add(const RunMetrics& metrics);
-  /// `times` [s] of the scans; `walks` of as many.
-  NeesResult result(std::span<const double> times, double level, const BandWalks& walks) const;
+  /// The NEES {scan} of a run whose covariances were all regular; `too_few` {scan}: 1 where too few
+  /// draws were left to judge (empty: nowhere).
+  void add(std::span<const double> value, std::span<const std::uint8_t> too_few = {});
+  /// `times` [s] of the scans; `walks` of as many; `within` the margin of judge().
+  NeesResult result(std::span<const double> times, double level, const BandWalks& walks,
+                    double within = kUsualMargin) const;
 
  private:
   NeesSeries series(double level, const BandWalks& walks) const;

@@ -41,7 +41,8 @@ class NeesOverRuns final : public MetricSums {
   void put(CellAnalysis& cell) override {
     if (!nees_.empty()) cell.leading = nees_.front().moments();
     for (const NeesAccumulator& nees : nees_) {
-      cell.nees.push_back(nees.result(criteria_->times, criteria_->level, criteria_->walks));
+      cell.nees.push_back(
+          nees.result(criteria_->times, criteria_->level, criteria_->walks, criteria_->within));
     }
   }
 
@@ -112,8 +113,8 @@ Panel anees_panel(const StudyAnalysis& study, ErrorBlock block, const std::strin
 Figure anees_figure(const StudyAnalysis& study) {
   Figure figure{"anees", "Is the filter right about its own errors?", ""};
   figure.sentence =
-      "Average normalised error squared (ANEES) of the pose over time. A curve inside the grey "
-      "band belongs to a filter whose stated uncertainty fits its real errors; a curve that climbs "
+      "Average normalised error squared (ANEES) of the pose over time. The grey band is where "
+      "chance leaves a filter whose stated uncertainty fits its real errors; a curve that climbs "
       "above the band and stays there belongs to a filter that is sure of a wrong answer. The axis "
       "ends at 1000 times the band; the numbers hold every value, also of curves beyond the top.";
   add_panels({anees_panel(study, ErrorBlock::pose, "anees_pose", "ANEES of the pose")}, study.times,

@@ -54,17 +54,18 @@ CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& stored,
   return cell;
 }
 
-/// What the study in the file repeats.
-Printed printed_of(const ResultFile& file) {
+/// What the study in the file says, by a function of its text.
+template <class Read>
+auto told_by(const ResultFile& file, Read read) {
   try {
-    return printed_in(file.study_text());
+    return read(file.study_text());
   } catch (const StudyError& error) {
     throw StudyError(file.path().string() + " (the study in it): " + error.what());
   }
 }
 
 /// All that the file says of itself.
-StudyAnalysis begin(const ResultFile& file, double level) {
+StudyAnalysis begin(const ResultFile& file, double level, std::optional<double> within) {
   StudyAnalysis study;
   study.file = file.path().filename().string();
   study.study_name = file.study_name();
@@ -74,7 +75,8 @@ StudyAnalysis begin(const ResultFile& file, double level) {
   study.study_runs = file.study_runs();
   study.runs_here = file.runs().size();
   study.level = level;
-  study.printed = printed_of(file);
+  study.within = within ? *within : told_by(file, margin_in);
+  study.printed = told_by(file, printed_in);
   study.times = file.scan_times();
   for (const std::uint32_t scan : file.description().joint_scans) {
     study.joint_times.push_back(study.times[scan]);
@@ -91,15 +93,16 @@ bool StudyAnalysis::has_failures() const {
   return std::ranges::any_of(cells, [](const CellAnalysis& c) { return !c.failures.empty(); });
 }
 
-StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& parallel) {
+StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& parallel,
+                      std::optional<double> within) {
   nees_bounds(1, 1, level);  // refuses a wrong level before the work
-  StudyAnalysis study = begin(file, level);
+  StudyAnalysis study = begin(file, level, within);
   if (study.times.empty()) {
     throw StudyError(file.path().string() +
                      ": no scans (metrics are taken at scans): choose "
                      "another file");
   }
-  const RunCriteria criteria = criteria_of(file, level);
+  const RunCriteria criteria = criteria_of(file, level, study.within);
   for (const PathAtFixes& fixes : criteria.references) {
     study.references.push_back({fixes.name(), fixes.times(), !fixes.headings().empty()});
   }

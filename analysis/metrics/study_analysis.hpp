@@ -8,6 +8,7 @@
 #include "engine/threads/parallel.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,7 @@ struct StudyAnalysis {
   std::uint64_t study_runs = 0;     ///< of the whole study
   std::uint64_t runs_here = 0;      ///< held by the file
   double level = 0.95;              ///< of all NEES bounds
+  double within = kUsualMargin;     ///< what counts as consistent (judge())
   double duration = 0.0;            ///< [s] time of the last scan
   std::vector<double> times;        ///< [s] of the scans
   std::vector<double> joint_times;  ///< [s] of the scans at which joint estimates are stored
@@ -44,8 +46,10 @@ struct StudyAnalysis {
 };
 
 /// Analyses a result file run by run: memory does not grow with the number of runs. The same
-/// numbers come out for any number of threads. Throws StudyError where level is not inside (0, 1).
+/// numbers come out for any number of threads. `within` is what counts as consistent (judge()); the
+/// study's own where it is not given. Throws StudyError where level is not inside (0, 1).
 StudyAnalysis analyze(const ResultFile& file, double level = 0.95,
-                      const Parallel& parallel = Parallel::serial());
+                      const Parallel& parallel = Parallel::serial(),
+                      std::optional<double> within = std::nullopt);
 
 }  // namespace montecarta::analysis

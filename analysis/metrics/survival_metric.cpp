@@ -1,28 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How many runs are still right, each judged by its own NEES.
 #include "analysis/metrics/cell_panels.hpp"
-#include "analysis/metrics/exit_bootstrap.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/statistics/means.hpp"
 #include "analysis/statistics/survival.hpp"
-#include "engine/errors.hpp"
 
-#include <algorithm>
 #include <limits>
 
 namespace montecarta::analysis {
 namespace {
 
-/// Also when the average over runs leaves its band for good, by bootstrap: it needs every run's
-/// NEES as well.
 class SurvivalOverRuns final : public MetricSums {
  public:
   explicit SurvivalOverRuns(const RunCriteria& criteria)
       : criteria_(&criteria),
-        run_bound_(nees_bounds(1, dimension_of(ErrorBlock::pose), criteria.level).upper),
-        exits_(criteria.times.size()) {}
+        run_bound_(nees_bounds(1, dimension_of(ErrorBlock::pose), criteria.level).upper) {}
   void add(const MeasuredRun& run) override {
     if (run.metrics.covariances().empty()) return;
     const std::vector<double>& nees = run.metrics.leading_nees()->value[0];
@@ -30,27 +24,18 @@ class SurvivalOverRuns final : public MetricSums {
     for (const double value : nees) above.push_back(value > run_bound_);
     const auto exit = first_lasting(above, kLastingScans);
     run_exits_.push_back(exit ? criteria_->times[*exit] : std::numeric_limits<double>::infinity());
-    exits_.add(nees);
   }
   void put(CellAnalysis& cell) override {
     if (run_exits_.empty()) return;
     std::vector<double> ends = run_exits_;
     for (const FailedRun& failure : cell.failures) ends.push_back(failure.time);
     cell.findings.put(survival_of(ends, criteria_->times, criteria_->level));
-    const auto pose = std::ranges::find_if(cell.nees, [&](const NeesResult& nees) {
-      return nees.block == ErrorBlock::pose && nees.moments == cell.leading;
-    });
-    expect(pose != cell.nees.end(), "NEES is put before survival");
-    const auto exits =
-        exits_.lasting_exits(criteria_->times, dimension_of(ErrorBlock::pose), criteria_->level);
-    pose->consistency.exit_interval = middle_of(exits, criteria_->level);
   }
 
  private:
   const RunCriteria* criteria_;
   double run_bound_;               ///< upper end of the band of a single run's NEES
   std::vector<double> run_exits_;  ///< [s] {run}
-  ExitBootstrap exits_;
 };
 
 void survival_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {

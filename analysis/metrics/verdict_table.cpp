@@ -23,11 +23,20 @@ std::string band_text(const CellAnalysis& cell, std::size_t dimension, double le
   return interval_text(nees_bounds(cell.complete, dimension, level));
 }
 
-std::string exit_text(const Consistency& consistency) {
-  if (!consistency.exit_interval) return "-";
-  return time_with_interval(
-      consistency.lasting_exit.value_or(std::numeric_limits<double>::infinity()),
-      *consistency.exit_interval);
+/// From when to the end the average is outside the band for all scans.
+std::string outside_text(const Consistency& found) {
+  if (found.stays_above_from) return fixed_seconds(*found.stays_above_from) + ", above";
+  if (found.stays_below_from) return fixed_seconds(*found.stays_below_from) + ", below";
+  return "never";
+}
+
+/// The average divided by the expected one, with its interval.
+std::string ratio_text(const NeesResult& nees, double level) {
+  const Consistency& found = nees.consistency;
+  const auto d = static_cast<double>(nees.series.dimension);
+  if (!found.is_overdispersed) return with_interval(found.mean / d, found.ratio);
+  return text_of_mean(nees.series.run_averages, found.mean,
+                      {d * found.ratio.lower, d * found.ratio.upper}, 1.0 / d, level);
 }
 
 std::string median_exit_text(const CellAnalysis& cell) {
@@ -42,26 +51,20 @@ std::string score_text(const CellAnalysis& cell, std::string_view score, double 
                       cell.interval_of(score), factor, level);
 }
 
-std::string anees_text(const CellAnalysis& cell, double level) {
-  const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
-  if (pose == nullptr) return "-";
-  return text_of_mean(pose->series.run_averages, pose->consistency.mean,
-                      pose->consistency.average_interval, 1.0, level);
-}
-
 std::vector<std::string> verdict_row(const CellAnalysis& cell, double level) {
-  const Consistency verdict = cell.consistency();
-  const bool tested = verdict.verdict != Verdict::untested;
-  const auto if_tested = [&](const std::string& text) { return tested ? text : "-"; };
-  return {cell.label,
-          runs_in_words(cell),
-          in_words(verdict),
-          cell.leading == Moments::corrected ? "particles" : "Gaussian",
-          if_tested(anees_text(cell, level)),
-          if_tested(interval_text(verdict.average_bounds)),
-          if_tested(percent(verdict.share_inside)),
-          exit_text(verdict),
-          median_exit_text(cell)};
+  const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
+  const Consistency found = cell.consistency();
+  std::vector<std::string> row = {cell.label, runs_in_words(cell), in_words(found),
+                                  cell.leading == Moments::corrected ? "particles" : "Gaussian"};
+  if (found.verdict == Verdict::untested) {
+    row.insert(row.end(), 5, "-");
+  } else {
+    row.insert(row.end(),
+               {compact(found.mean), ratio_text(*pose, level), readable(found.least_ratios.upper),
+                percent(found.share_inside), outside_text(found)});
+  }
+  row.push_back(median_exit_text(cell));
+  return row;
 }
 
 std::vector<std::string> accuracy_row(const CellAnalysis& cell, double level) {
@@ -89,6 +92,7 @@ std::vector<std::string> consistency_row(const CellAnalysis& cell, const NeesRes
           name_of(nees.moments),
           in_words(found),
           compact(found.mean),
+          ratio_text(nees),
           readable(found.median / expected_median(nees.series.dimension)),
           readable(found.trimmed / expected_trimmed(nees.series.dimension)),
           readable(ideal_nees(cell, nees)),
@@ -120,35 +124,38 @@ std::vector<NamedNumber> numbers_of(const CellAnalysis& cell, const NeesResult& 
   const Consistency& found = nees.consistency;
   const std::size_t dimension = nees.series.dimension;
   const Interval band = nees_bounds(cell.complete, dimension, level);
-  const Interval exits = found.exit_interval.value_or(Interval{kNaN, kNaN});
-  return {
-      {"level", "1", level},
-      {"dimension", "1", static_cast<double>(dimension)},
-      {"anees_mean", "1", found.mean},
-      {"anees_mean_lower", "1", found.average_interval.lower},
-      {"anees_mean_upper", "1", found.average_interval.upper},
-      {"expected_anees_lower", "1", found.average_bounds.lower},
-      {"expected_anees_upper", "1", found.average_bounds.upper},
-      {"nees_median", "1", found.median},
-      {"expected_median", "1", expected_median(dimension)},
-      {"nees_trimmed", "1", found.trimmed},
-      {"expected_trimmed", "1", expected_trimmed(dimension)},
-      {"lower", "1", band.lower},
-      {"upper", "1", band.upper},
-      {"share_inside", "1", found.share_inside},
-      {"share_above", "1", found.share_above},
-      {"share_below", "1", found.share_below},
-      {"above_whole_run_band_s", "s",
-       found.above_from.value_or(std::numeric_limits<double>::infinity())},
-      {"below_whole_run_band_s", "s",
-       found.below_from.value_or(std::numeric_limits<double>::infinity())},
-      {"lasting_exit_s", "s", found.lasting_exit.value_or(std::numeric_limits<double>::infinity())},
-      {"lasting_exit_lower_s", "s", exits.lower},
-      {"lasting_exit_upper_s", "s", exits.upper},
-      {"samples", "1", static_cast<double>(nees.series.samples)},
-      {"floored", "1", static_cast<double>(nees.series.floored)},
-      {"undefined", "1", static_cast<double>(nees.series.undefined)},
-      {"too_few_draws", "1", static_cast<double>(nees.series.too_few)}};
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  return {{"level", "1", level},
+          {"dimension", "1", static_cast<double>(dimension)},
+          {"anees_mean", "1", found.mean},
+          {"anees_mean_lower", "1", found.average_interval.lower},
+          {"anees_mean_upper", "1", found.average_interval.upper},
+          {"expected_anees_lower", "1", found.average_bounds.lower},
+          {"expected_anees_upper", "1", found.average_bounds.upper},
+          {"within", "1", found.within},
+          {"ratio_lower", "1", found.ratio.lower},
+          {"ratio_upper", "1", found.ratio.upper},
+          {"least_ratio_found_below", "1", found.least_ratios.lower},
+          {"least_ratio_found_above", "1", found.least_ratios.upper},
+          {"overdispersed", "1", found.is_overdispersed ? 1.0 : 0.0},
+          {"more_runs", "1", found.more_runs ? static_cast<double>(*found.more_runs) : kNaN},
+          {"nees_median", "1", found.median},
+          {"expected_median", "1", expected_median(dimension)},
+          {"nees_trimmed", "1", found.trimmed},
+          {"expected_trimmed", "1", expected_trimmed(dimension)},
+          {"lower", "1", band.lower},
+          {"upper", "1", band.upper},
+          {"share_inside", "1", found.share_inside},
+          {"share_above", "1", found.share_above},
+          {"share_below", "1", found.share_below},
+          {"above_whole_run_band_s", "s", found.above_from.value_or(kNever)},
+          {"below_whole_run_band_s", "s", found.below_from.value_or(kNever)},
+          {"stays_above_from_s", "s", found.stays_above_from.value_or(kNever)},
+          {"stays_below_from_s", "s", found.stays_below_from.value_or(kNever)},
+          {"samples", "1", static_cast<double>(nees.series.samples)},
+          {"floored", "1", static_cast<double>(nees.series.floored)},
+          {"undefined", "1", static_cast<double>(nees.series.undefined)},
+          {"too_few_draws", "1", static_cast<double>(nees.series.too_few)}};
 }
 
 std::string runs_in_words(const CellAnalysis& cell) {
@@ -168,10 +175,11 @@ TextTable verdict_table(const StudyAnalysis& study) {
                     {"runs", Align::left},
                     {"verdict", Align::left},
                     {"NEES of", Align::left},
-                    {"ANEES [" + level_text(study.level) + "]"},
-                    {"expected within"},
+                    {"ANEES"},
+                    {"/ expected [" + level_text(study.level) + "]"},
+                    {"would find"},
                     {"scans inside"},
-                    {"leaves for good at"},
+                    {"outside to the end from"},
                     {"half the runs lost at"}};
   for (const CellAnalysis& cell : study.cells) table.rows.push_back(verdict_row(cell, study.level));
   return table;
@@ -198,6 +206,7 @@ TextTable consistency_table(const StudyAnalysis& study) {
                     {"covariance", Align::left},
                     {"verdict", Align::left},
                     {"ANEES"},
+                    {"/ right [" + level_text(study.level) + "]"},
                     {"median / right"},
                     {"trimmed / right"},
                     {"ideal"},
@@ -229,30 +238,43 @@ TextTable failure_table(const StudyAnalysis& study) {
 }
 
 std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
-  const std::string level = level_text(study.level);
+  const std::string level = level_text(study.level), margin = exact_text(study.within);
   return {
       "ANEES compares the errors that happened with the errors the filter expected (its "
       "covariance), averaged over runs and scans: 3 means it knows how wrong it is (three "
       "components: x, y, heading), more means it is overconfident, less that it is "
-      "conservative. The brackets hold what infinitely many runs would give (" +
+      "conservative. '/ expected' divides it by that number; the brackets hold what infinitely "
+      "many "
+      "runs "
+      "would give in at least " +
           level +
-          ", bootstrap over runs); where a few runs decide the mean no interval holds it: 'heavy "
-          "tail', and the median over runs follows with its interval. 'expected within' is where "
-          "chance leaves a consistent filter.",
+          " of studies; where a few runs decide the mean no interval holds it: 'heavy tail', and "
+          "the "
+          "median over runs follows with its interval. 'Would find' is the least ratio that this "
+          "study finds with a "
+          "probability of " +
+          level_text(kPowerSaid) + ".",
       "'NEES of particles' is by the spread of the poses that a scan drew, on the scale on which a "
       "perfect filter of as many draws has 3, as a Gaussian filter has: all rows of this table are "
       "on one scale.",
-      "The verdict is one test: a consistent filter is called consistent in " + level +
-          " of studies, however long they are. It fails where the average over runs leaves, at any "
-          "scan, a band that is wide enough for all scans together, or where the average over the "
-          "whole run is too far from 3: 'optimistic' when too large, 'conservative' when too "
-          "small.",
-      "'inconsistent from t' is optimistic for good: " + std::to_string(kLastingScans) +
-          " scans in a row above the pointwise band, the first at t. The brackets behind 'leaves "
-          "for good' hold that time for " +
-          level + " of repeated studies; 'never' means not within the " +
+      "'Consistent within " + margin + "': the brackets lie between 1/" + margin + " and " +
+          margin +
+          ", and no scan is shown to be farther off. 'Optimistic' or 'conservative by a to b': 1 "
+          "is "
+          "outside the brackets or, 'at t', a scan is outside a band that is wide enough for all "
+          "scans together; a consistent filter is accused so in at most " +
+          level_text(1.0 - study.level) +
+          " of studies, however long they are. 'Undecided': neither is shown; after so many more "
+          "runs one of them will be, if runs go on to vary as they do.",
+      "'Outside to the end from': all scans from then on are outside the band for all scans, so "
+      "that, with a probability of " +
+          level +
+          ", the filter is off at every one of them; it may be so earlier. 'Never' means "
+          "not within the " +
           readable(study.duration, 4) +
-          " s of this study. A single run is lost when its own NEES does so, or when it fails.",
+          " s of this study. A single run is lost when its own NEES "
+          "is above its band for " +
+          std::to_string(kLastingScans) + " scans in a row, or when it fails.",
       "'scans inside' counts the scans whose average lies in the pointwise band: " + level +
           " of them are expected of a consistent filter, and neighbouring scans go together.",
       "RMSE is the mean over runs, with the interval that holds it for infinitely many; ESS is the "
@@ -271,7 +293,7 @@ std::vector<std::string> consistency_notes() {
       "that are independent draws from the truth's distribution, more. 'corrected' puts the NEES "
       "by the spread of the poses that a scan drew on a scale on which such a perfect filter has "
       "the number of components again (Hotelling's distribution of the effective number of draws "
-      "to the chi-square), so that few draws alone make no filter inconsistent. Where a scan drew "
+      "to the chi-square), so that few draws alone make no filter optimistic. Where a scan drew "
       "none it is that of the mixture.",
       "'median' is the middle run instead of the average one, 'trimmed' the mean without the "
       "tenth "

@@ -67,6 +67,8 @@ std::string with_interval(double mean, const Interval& interval) {
   return each(mean) + " [" + each(interval.lower) + ", " + each(interval.upper) + "]";
 }
 
+std::string fixed_seconds(double time) { return printed("%.*f", 1, time) + " s"; }
+
 std::string time_with_interval(double time, const Interval& interval) {
   const auto each = [](double t) { return std::isinf(t) ? "never" : printed("%.*f", 1, t); };
   const std::string seconds = std::isinf(time) ? "" : " s";

@@ -28,6 +28,9 @@ std::string interval_text(const Interval& interval);
 /// of the interval's half width. The mean alone where there is no interval.
 std::string with_interval(double mean, const Interval& interval);
 
+/// A time to a tenth of a second, "4.2 s".
+std::string fixed_seconds(double time);
+
 /// A time with its interval, "4.2 s [3.8, never]"; infinity is "never".
 std::string time_with_interval(double time, const Interval& interval);
 

@@ -26,7 +26,7 @@ struct JointName {
 double inside(const Consistency& found) { return found.share_inside; }
 double above(const Consistency& found) { return found.share_above; }
 double exit_time(const Consistency& found) {
-  return found.lasting_exit.value_or(std::numeric_limits<double>::infinity());
+  return found.stays_above_from.value_or(std::numeric_limits<double>::infinity());
 }
 
 constexpr JointName kJoint[] = {
@@ -36,9 +36,10 @@ constexpr JointName kJoint[] = {
     {"share_above_pose", "share of scans above the band, pose", ErrorBlock::pose, above},
     {"share_above_position", "share of scans above the band, position", ErrorBlock::position,
      above},
-    {"lasting_exit_pose", "leaves the band for good, pose [s]", ErrorBlock::pose, exit_time},
-    {"lasting_exit_position", "leaves the band for good, position [s]", ErrorBlock::position,
+    {"stays_above_from_pose", "above the band to the end from, pose [s]", ErrorBlock::pose,
      exit_time},
+    {"stays_above_from_position", "above the band to the end from, position [s]",
+     ErrorBlock::position, exit_time},
 };
 
 template <class Names>

@@ -8,10 +8,12 @@
 namespace montecarta::analysis {
 
 /// A test in two parts that together accuse a consistent filter with the probability that the level
-/// leaves, each part as often as the other.
+/// leaves, the average over the run four times as often as the band.
 struct WholeRunTest {
   double deviate = 0.0;          ///< of the band: the process stays within so many deviations
   double average_deviate = 0.0;  ///< of the average over the run, in estimated deviations
+  double average_level = 0.0;    ///< of the average over the run alone
+  double average_skew = 1.0;     ///< skewness of a run's average in that of a gamma of its variance
 };
 
 /// Walks of a Gaussian process, drawn once for all bands of a study: 4000 of them, fewer where runs
@@ -23,8 +25,10 @@ class BandWalks {
   /// For a process of variance 1 with `correlation` {scan - 1} in [0, 1) of each scan with the
   /// next, a Markov chain (first-order autoregression). What goes together for longer than that
   /// leaves a band less often, so the band errs to the wide side. The deviation of the average is
-  /// estimated from `runs` (taken as three where there are fewer), but at most that of one scan.
-  WholeRunTest test(std::span<const double> correlation, std::size_t runs, double level) const;
+  /// estimated from `runs` (taken as three where there are fewer), but at most that of one scan, a
+  /// chi-square of `dimension` degrees of freedom.
+  WholeRunTest test(std::span<const double> correlation, std::size_t runs, std::size_t dimension,
+                    double level) const;
 
  private:
   /// How far a walk gets from 0, and its average.

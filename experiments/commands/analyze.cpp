@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/data/margin.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
@@ -39,6 +40,7 @@ void expect_one_study(const std::vector<std::string>& names) {
 
 int analyze_files(const Arguments& arguments) {
   const double level = arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(0.95);
+  const auto within = arguments.number("within", kLeastMargin, kMostMargin);
   const std::vector<std::string>& names = arguments.operands();
   const bool writes = arguments.has("output") || arguments.has("csv");
   if (writes && names.size() > 1) {
@@ -50,7 +52,7 @@ int analyze_files(const Arguments& arguments) {
   for (const std::string& name : names) {
     const ResultFile file = open_stored(name);
     check_outputs(arguments, file);
-    const StudyAnalysis study = analyze(file, level, parallel_of(arguments));
+    const StudyAnalysis study = analyze(file, level, parallel_of(arguments), within);
     if (names.size() > 1) std::cout << (name == names.front() ? "" : "\n") << name << "\n";
     const bool explains = arguments.has("explain");
     print_tables(std::cout, study, explains ? Explanations::shown : Explanations::hidden);
@@ -72,6 +74,7 @@ Command analyze_command() {
                    {"csv", "", {"DIR"}, "write tables and series as CSV"},
                    {"explain", "", {}, "say what the columns mean"},
                    {"level", "", {"L"}, "probability inside the NEES bounds; default 0.95"},
+                   {"within", "", {"R"}, kWithinMeaning},
                    {"force", "", {}, "replace OUT.h5 and the tables in DIR"},
                    {"threads", "", {"N"}, "default: what this process may use"},
                    {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},

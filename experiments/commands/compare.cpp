@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/comparison_csv.hpp"
 #include "analysis/comparison/comparison_tables.hpp"
+#include "analysis/data/margin.hpp"
 #include "analysis/output/print_table.hpp"
 #include "engine/errors.hpp"
 #include "experiments/commands/commands.hpp"
@@ -74,7 +75,8 @@ int compare(const Arguments& arguments) {
   const std::vector<const Score*> scores = scores_of(arguments, file);
   const auto directory = arguments.text("csv");
   if (directory && !arguments.has("force")) refuse_existing(*directory, comparison_csv_names());
-  const StudyAnalysis study = analyze(file, level, parallel_of(arguments));
+  const StudyAnalysis study = analyze(file, level, parallel_of(arguments),
+                                      arguments.number("within", kLeastMargin, kMostMargin));
   const StudyComparison comparison = compare_study(study, baseline, scores);
   print(study, comparison);
   if (directory) write_comparison_csv(comparison, *directory);
@@ -95,6 +97,7 @@ Command compare_command() {
                     "numbers of a run; default: position_rmse, "
                     "heading_rmse, nees_distance, cpu_seconds"},
                    {"level", "", {"L"}, "probability inside the intervals; default 0.95"},
+                   {"within", "", {"R"}, kWithinMeaning},
                    {"csv", "", {"DIR"}, "write comparison.csv, wins.csv and pareto.csv"},
                    {"force", "", {}, "replace the tables in DIR"},
                    {"threads", "", {"N"}, "default: what this process may use"},

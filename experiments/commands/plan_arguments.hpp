@@ -13,6 +13,10 @@
 
 namespace montecarta::experiments {
 
+/// Of the option --within of commands that judge.
+inline constexpr const char* kWithinMeaning =
+    "consistent: ANEES so many times too large or small at most; default: as the study says, 1.1";
+
 /// Options that choose what part of a study runs and on how many threads: --set, --runs, --shard,
 /// --threads, --backend.
 std::vector<OptionSpec> plan_options();

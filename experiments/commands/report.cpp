@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/report.hpp"
 
+#include "analysis/data/margin.hpp"
 #include "analysis/output/gnuplot.hpp"
 #include "engine/errors.hpp"
 #include "experiments/commands/commands.hpp"
@@ -34,6 +35,7 @@ int report(const Arguments& arguments) {
   const Parallel parallel = parallel_of(arguments);
   ReportOptions options;
   options.level = arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(options.level);
+  options.within = arguments.number("within", kLeastMargin, kMostMargin);
   options.run = arguments.count("run", 0, UINT32_MAX);
   options.existing = arguments.has("force") ? ExistingReport::replace : ExistingReport::refuse;
   options.parallel = &parallel;
@@ -53,6 +55,7 @@ Command report_command() {
        .operands = {{"FILE.h5"}},
        .options = {{"output", "o", {"DIR"}, "where it goes"},
                    {"level", "", {"L"}, "probability inside the NEES bounds; default 0.95"},
+                   {"within", "", {"R"}, kWithinMeaning},
                    {"run", "", {"R"}, "whose paths are drawn; default the first complete run"},
                    {"force", "", {}, "replace a report that is there"},
                    {"threads", "", {"N"}, "default: what this process may use"},

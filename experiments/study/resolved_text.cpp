@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/study/inline_world.hpp"
+#include "experiments/study/setting.hpp"
 #include "experiments/study/study.hpp"
 
 namespace montecarta::experiments {
 namespace {
 
-/// The text of studies that make all runs, or store no joint estimates, is what it was before a
-/// study could do otherwise.
+/// The text of studies that make all runs, store no joint estimates, or have the usual margin, is
+/// what it was before a study could do otherwise.
 bool is_default_noted(const Study& study, const std::string& key, const std::string& value) {
   if (key == "joint_scans") return study.settings.lists("record", "columns", "joint");
+  if (key == "within") return value != kUsualWithin;
   return key != "until" || !value.empty();
 }
 

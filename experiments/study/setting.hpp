@@ -14,6 +14,7 @@ namespace montecarta::experiments {
 
 inline constexpr const char* kFromScenario = "scenario";
 inline constexpr const char* kRequired = "(required)";
+inline constexpr const char* kUsualWithin = "1.1";  ///< kUsualMargin of the analysis
 
 /// One thing that a study file may say. The table of them drives parsing, checking, the resolved
 /// text, and `montecarta list settings`.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/data/margin.hpp"
 #include "engine/records/column_table.hpp"
 #include "experiments/study/setting_builders.hpp"
 
@@ -15,6 +16,8 @@ void add_study(std::vector<Setting>& table) {
   table.push_back(required(count(s, "runs", "", 1, 1e7, "repetitions of every cell"), "100"));
   table.push_back(
       text(s, "until", "METRIC < HALF-WIDTH: a cell stops when so precise; else empty"));
+  table.push_back(number(s, "within", "1", kUsualWithin, kLeastMargin, kMostMargin,
+                         "consistent: ANEES so many times too large or small at most"));
 }
 
 /// The fallback gates are chi-square 5.991 (95 %) and 25 with two degrees of freedom.

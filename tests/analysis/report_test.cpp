@@ -97,7 +97,7 @@ TEST(Report, KnowsMixturesWithoutParticlesAndWithFew) {
   const ResultFile file(folder / "out.h5");
   const StudyAnalysis study = analyze(file);
   EXPECT_EQ(study.cells[0].leading, Moments::mixture);
-  EXPECT_EQ(study.cells[0].consistency().verdict, Verdict::consistent);
+  EXPECT_NE(study.cells[0].consistency().verdict, Verdict::untested);
   EXPECT_EQ(study.cells[0].find_nees(ErrorBlock::pose, Moments::corrected), nullptr);
   EXPECT_TRUE(study.cells[0].over_time("ess").empty());
   EXPECT_TRUE(study.cells[1].over_time("ancestors_at_start").empty());

@@ -78,8 +78,10 @@ TEST(CellSums, FindsInflatedErrorsAboveTheBand) {
   const CellAnalysis cell = analyze_runs(study, 30);
   const Consistency pose = cell.consistency();
   EXPECT_NEAR(pose.mean, 3.0 * 2.25, 5.0 * std::sqrt(6.0 / (30.0 * 400.0)) * 2.25);
-  EXPECT_EQ(pose.verdict, Verdict::inconsistent);
-  EXPECT_DOUBLE_EQ(*pose.lasting_exit, 0.2);
+  EXPECT_EQ(pose.verdict, Verdict::optimistic);
+  EXPECT_LT(pose.ratio.lower, 2.25);
+  EXPECT_GT(pose.ratio.upper, 2.25);
+  EXPECT_GT(pose.ratio.lower, 2.1);
 }
 
 TEST(CellSums, FindsTooLargeACovarianceBelowTheBand) {
@@ -98,7 +100,7 @@ TEST(CellSums, FindsABiasAndItsRmse) {
   EXPECT_NEAR(cell.over_runs("heading_mse").mean, 0.0025,
               5.0 * cell.over_runs("heading_mse").standard_error());
   EXPECT_GT(cell.over_runs("position_mse").standard_error(), 0.0);
-  EXPECT_EQ(cell.consistency().verdict, Verdict::inconsistent);
+  EXPECT_EQ(cell.consistency().verdict, Verdict::optimistic);
   EXPECT_NEAR(nees_of(cell, ErrorBlock::heading).consistency.mean, 1.0, 0.1);
 }
 
@@ -110,8 +112,6 @@ TEST(CellSums, SaysHowSureItIs) {
   EXPECT_LT(pose.average_bounds.upper, 3.2);
   EXPECT_LT(pose.average_interval.lower, 6.75);
   EXPECT_GT(pose.average_interval.upper, 6.75);
-  ASSERT_TRUE(pose.exit_interval);
-  EXPECT_DOUBLE_EQ(pose.exit_interval->lower, 0.2);
   EXPECT_LT(cell.interval_of("position_rmse").lower, cell.over_runs("position_rmse").mean);
   EXPECT_GT(cell.interval_of("position_rmse").upper, cell.over_runs("position_rmse").mean);
   EXPECT_TRUE(std::isnan(cell.interval_of("ess").lower));
@@ -164,7 +164,7 @@ TEST(CellSums, LetsTheMixtureLeadAndKeepsTheSpread) {
   const CellAnalysis cell = sums.result();
   EXPECT_EQ(cell.leading, Moments::mixture);
   EXPECT_EQ(cell.consistency().verdict, Verdict::consistent);
-  EXPECT_EQ(nees_of(cell, ErrorBlock::pose).consistency.verdict, Verdict::inconsistent);
+  EXPECT_EQ(nees_of(cell, ErrorBlock::pose).consistency.verdict, Verdict::optimistic);
   EXPECT_NEAR(nees_of(cell, ErrorBlock::pose).consistency.mean, 4.0 * cell.consistency().mean,
               1e-9);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/consistency.hpp"
 
+#include "analysis/output/number_text.hpp"
 #include "analysis/statistics/means.hpp"
-#include "engine/random/stream.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ NeesSeries series_of(const std::vector<double>& averages) {
   series.runs.assign(averages.size(), 30);
   series.trimmed = averages;
   series.bounds.assign(averages.size(), nees_bounds(30, 3, 0.95));
-  series.average_deviate = 2.364;  // Student's t of 30 runs, 97.5 %
+  series.test = {.average_deviate = 2.364, .average_level = 0.975};  // Student's t of 30 runs
   series.whole_run_bounds.assign(averages.size(), nees_bounds(30, 3, 0.9999));
   return series;
 }
@@ -62,20 +62,78 @@ TEST(Judge, IsNotMovedByScansOutsideThePointwiseBandAlone) {
   averages[3] = 4.2;
   for (std::size_t s = 50; s < 80; ++s) averages[s] = 4.0;  // goes together: one piece of chance
   const Consistency result = judge(averages);
-  EXPECT_EQ(result.verdict, Verdict::consistent);
-  EXPECT_EQ(in_words(result), "consistent");
-  EXPECT_TRUE(result.lasting_exit.has_value());
+  EXPECT_EQ(result.verdict, Verdict::undecided);
+  EXPECT_EQ(in_words(result), "undecided: too few runs");
+  EXPECT_FALSE(result.stays_above_from.has_value());
 }
 
-TEST(Judge, NamesTheTimeOfALastingExit) {
+TEST(Judge, SaysFromWhenToTheEndTheBandForAllScansIsLeft) {
   std::vector<double> averages(100, 3.0);
   for (std::size_t s = 20; s < 45; ++s) averages[s] = 5.2;
-  const Consistency result = judge(averages);
-  ASSERT_TRUE(result.lasting_exit.has_value());
-  EXPECT_DOUBLE_EQ(*result.lasting_exit, 4.2);
-  EXPECT_DOUBLE_EQ(*result.above_from, 4.2);
-  EXPECT_FALSE(result.below_from.has_value());
-  EXPECT_EQ(in_words(result), "inconsistent from 4.2 s");
+  const Consistency back = judge(averages);
+  EXPECT_EQ(back.above_from, 4.2);
+  EXPECT_FALSE(back.stays_above_from) << "it is inside again at the end";
+  for (std::size_t s = 70; s < 100; ++s) averages[s] = 5.2;
+  averages[80] = kNaN;  // no run has a value: says nothing
+  const Consistency found = judge(averages);
+  ASSERT_TRUE(found.stays_above_from);
+  EXPECT_DOUBLE_EQ(*found.stays_above_from, 14.2);
+  EXPECT_FALSE(found.stays_below_from || found.below_from);
+  averages.assign(100, 1.2);
+  EXPECT_EQ(judge(averages).stays_below_from, 0.2);
+}
+
+TEST(Judge, SaysHowFarOffTheFarthestScanIs) {
+  std::vector<double> averages(100, 3.0);
+  averages[19] = 5.2;
+  averages[20] = 5.4;
+  averages[40] = 0.5;  // farther off, but too large goes before too small
+  const Consistency found = judge(averages);
+  const Interval band = nees_bounds(30, 3, 0.9999);
+  ASSERT_TRUE(found.highest && found.lowest);
+  EXPECT_DOUBLE_EQ(found.highest->ratio.lower, 5.4 / band.upper);
+  EXPECT_DOUBLE_EQ(found.highest->ratio.upper, 5.4 / band.lower);
+  EXPECT_DOUBLE_EQ(found.lowest->time, 8.2);
+  EXPECT_EQ(in_words(found), "optimistic by " + compact(5.4 / band.upper) + " to " +
+                                 compact(5.4 / band.lower) + " at 4.2 s");
+}
+
+/// 30 runs whose averages are about `mean`, with this deviation.
+NeesSeries runs_about(double mean, double deviation) {
+  NeesSeries series = series_of(std::vector<double>(100, mean));
+  for (int run = 0; run < 30; ++run) {
+    series.run_averages.push_back(mean + (run % 2 == 0 ? deviation : -deviation));
+  }
+  return series;
+}
+
+TEST(Judge, CallsConsistentWhatIsShownToBeWithinTheMargin) {
+  const auto times = every_fifth_of_a_second(100);
+  const Consistency within = judge(runs_about(3.06, 0.02), times);
+  EXPECT_EQ(within.verdict, Verdict::consistent) << "although 1 is excluded";
+  EXPECT_GT(within.ratio.lower, 1.0);
+  EXPECT_EQ(in_words(within), "consistent within 1.1");
+  EXPECT_EQ(judge(runs_about(3.06, 0.02), times, 1.01).verdict, Verdict::optimistic);
+  NeesSeries one_scan_off = runs_about(3.06, 0.02);
+  one_scan_off.average[50] = 6.0;
+  EXPECT_EQ(judge(one_scan_off, times).verdict, Verdict::optimistic);
+  const Consistency wide = judge(runs_about(3.06, 1.2), times);
+  EXPECT_EQ(wide.verdict, Verdict::undecided);
+  ASSERT_TRUE(wide.more_runs);
+  EXPECT_EQ(in_words(wide), "undecided: " + std::to_string(*wide.more_runs) + " more runs decide");
+  EXPECT_GT(wide.least_ratios.upper, wide.ratio.upper / wide.ratio.lower / 1.5);
+}
+
+// Three of 30 runs are lost: the gamma's interval would be far too short.
+TEST(Judge, TakesTheBootstrapWhereSomeRunsAreLost) {
+  NeesSeries series = runs_about(3.0, 0.5);
+  for (int run = 0; run < 3; ++run) series.run_averages[static_cast<std::size_t>(run)] = 3000.0;
+  std::ranges::fill(series.average, 302.7);
+  const Consistency found = judge(series, every_fifth_of_a_second(100));
+  EXPECT_TRUE(found.is_overdispersed);
+  EXPECT_EQ(found.verdict, Verdict::optimistic);
+  EXPECT_LT(found.ratio.lower, 50.0);
+  EXPECT_GT(found.ratio.upper, 200.0);
 }
 
 TEST(Judge, TellsOptimisticFromConservative) {
@@ -94,40 +152,6 @@ TEST(Judge, UsesTheAverageOverTheRunWhereNoScanIsFarOff) {
   EXPECT_EQ(judge(series, every_fifth_of_a_second(100)).verdict, Verdict::conservative);
 }
 
-// The average over one scan is the average NEES.
-TEST(RunAverageBounds, AreThoseOfTheChiSquareWhereRunsAreOneScanLong) {
-  RngStream draw({5, 0, 0, 0, Draw::test});
-  std::vector<double> nees(2000);
-  for (double& value : nees) {
-    value = 0.0;
-    for (int i = 0; i < 3; ++i) {
-      const double normal = draw.normal();
-      value += normal * normal;
-    }
-  }
-  const Interval exact = nees_bounds(2000, 3, 0.95);
-  const Interval found = run_average_bounds(nees, 3, 1.96);
-  EXPECT_NEAR(found.lower, exact.lower, 0.01);
-  EXPECT_NEAR(found.upper, exact.upper, 0.01);
-}
-
-TEST(RunAverageBounds, AreNeverWiderThanThoseOfOneScan) {
-  const std::vector<double> astray = {1.0, 2.0, 1e20, 3.0, 4.0};
-  EXPECT_LT(run_average_bounds(astray, 3, 1.96).upper, 10.0);
-  const std::vector<double> beyond = {1.0, 2.0, std::numeric_limits<double>::infinity(), 3.0, 4.0};
-  EXPECT_EQ(run_average_bounds(beyond, 3, 1.96).upper, run_average_bounds(astray, 3, 1.96).upper);
-  EXPECT_TRUE(std::isinf(run_average_bounds(std::vector<double>{3.0, 3.0}, 3, 1.96).upper));
-}
-
-// The coefficient of variation of gamma samples is independent of their mean (Lukacs), so that runs
-// which lie low by chance do not narrow the bounds.
-TEST(RunAverageBounds, DoNotDependOnTheScaleOfTheRuns) {
-  const std::vector<double> runs = {2.0, 3.5, 2.5, 3.0}, twice = {4.0, 7.0, 5.0, 6.0};
-  const Interval bounds = run_average_bounds(runs, 3, 1.96);
-  EXPECT_NEAR(run_average_bounds(twice, 3, 1.96).lower, bounds.lower, 1e-12);
-  EXPECT_NEAR(run_average_bounds(twice, 3, 1.96).upper, bounds.upper, 1e-12);
-}
-
 TEST(ExpectedValues, AreThoseOfTheChiSquare) {
   EXPECT_NEAR(expected_median(3), 2.36597, 1e-5);
   EXPECT_NEAR(expected_median(1), 0.45494, 1e-5);
@@ -135,12 +159,12 @@ TEST(ExpectedValues, AreThoseOfTheChiSquare) {
   EXPECT_NEAR(expected_trimmed(3), 2.64820, 1e-4);
 }
 
-TEST(Judge, LeavesOutScansWithoutARunAndBreaksStretchesThere) {
+TEST(Judge, LeavesOutScansWithoutARun) {
   std::vector<double> averages(60, 9.0);
   averages[20] = averages[40] = kNaN;
   const Consistency result = judge(averages);
   EXPECT_DOUBLE_EQ(result.share_above, 1.0);
-  EXPECT_FALSE(result.lasting_exit.has_value());
+  EXPECT_EQ(result.stays_above_from, 0.2);
   EXPECT_DOUBLE_EQ(result.mean, 9.0);
 }
 

@@ -33,6 +33,8 @@ StudyAnalysis study_of_two() {
   joint.samples = 40;
   joint.undefined = 1;
   joint.verdict = Verdict::optimistic;
+  joint.highest_row = 1;
+  joint.lowest_row = 0;
   judged.findings.put(joint);
   without.label = "fastslam2_m100";
   study.cells = {judged, without};
@@ -42,8 +44,9 @@ StudyAnalysis study_of_two() {
 TEST(JointTable, HasARowForACellThatWasJudged) {
   const TextTable table = reported_table(study_of_two(), "joint_nees");
   ASSERT_EQ(table.rows.size(), 1u);
-  EXPECT_THAT(table.rows[0], ElementsAre("ekf_slam", "9.50", "1.20", "[0.950, 1.05]",
-                                         "0.500 at 5.00 s", "optimistic"));
+  EXPECT_THAT(table.rows[0],
+              ElementsAre("ekf_slam", "9.50", "1.20", "[0.950, 1.05]", "0.500 at 5.00 s",
+                          "optimistic by 1.14 to 1.26 at 10.0 s"));
 }
 
 TEST(JointTable, IsFarthestWhereThereIsANumber) {

@@ -13,6 +13,15 @@ TEST(Html, EscapesText) {
   EXPECT_EQ(html_escape("a < b & \"c\" 3 +- 1"), "a &lt; b &amp; &quot;c&quot; 3 &plusmn; 1");
 }
 
+TEST(Html, ColoursWhatIsShownAndNothingElse) {
+  const auto row = [](const std::string& verdict) {
+    return html_table({.headings = {{"verdict", Align::left}}, .rows = {{verdict}}});
+  };
+  EXPECT_THAT(row("consistent within 1.1"), testing::HasSubstr("good"));
+  EXPECT_THAT(row("optimistic by 1.2 to 1.4"), testing::HasSubstr("bad"));
+  EXPECT_THAT(row("undecided: 12 more runs decide"), testing::HasSubstr("<td>undecided"));
+}
+
 TEST(Html, GivesEveryDrawingItsOwnIdentifiersAndTheColourOfTheText) {
   const std::string svg =
       "<?xml?><svg><g id=\"a\" fill='rgb(  0,   0,   0)'/><use href='#a'/></svg>";

@@ -157,9 +157,10 @@ TEST_F(Commands, BoundsAreExact) {
 
 TEST_F(Commands, PlanSaysHowManyRuns) {
   const std::string out = call({"plan", "--dim", "3", "--ratio", "1.2", "--scans", "100"}).out;
-  EXPECT_THAT(out, testing::ContainsRegex("one scan +209 "));
-  EXPECT_THAT(out, testing::ContainsRegex("any of 100 scans +35 "));
-  EXPECT_THAT(out, HasSubstr("neighbouring scans are correlated"));
+  EXPECT_THAT(out, testing::ContainsRegex("constant +215 +966 +1152\n"));
+  EXPECT_THAT(out, testing::ContainsRegex("100 independent scans +5 +12 +16\n"));
+  EXPECT_THAT(out, HasSubstr("Neighbouring scans are correlated"));
+  expect_wrong({"plan", "--dim", "3", "--ratio", "1.2", "--within", "1"}, "--within");
 }
 
 TEST_F(Commands, ListsSayWhatThereIs) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/study/make_plan.hpp"
 
+#include "analysis/data/margin.hpp"
+#include "experiments/study/setting.hpp"
+#include "experiments/text/numbers.hpp"
 #include "tests/experiments/study/study_text.hpp"
 
 #include <gmock/gmock.h>
@@ -82,6 +85,13 @@ TEST(Plan, RefusesJointEstimatesThatNoCellHas) {
   EXPECT_THAT(
       plan_complaint(with("[cells]", "[association]\nkind = nearest\n" + record) + "cell = hrb\n"),
       HasSubstr("nobody knows which landmark of a map is which"));
+}
+
+TEST(Plan, KeepsTheMarginInTheTextWhereItIsNotTheUsualOne) {
+  const StudyPlan plan = make_plan(parsed(with("[scenario]", "within = 1.25\n[scenario]")));
+  EXPECT_EQ(margin_in(plan.resolved_text), 1.25);
+  EXPECT_THAT(make_plan(parsed(kGoodStudy)).resolved_text, Not(HasSubstr("within")));
+  EXPECT_EQ(kUsualWithin, to_text(kUsualMargin));
 }
 
 TEST(Plan, CanScanAsThePublicSimulatorDoes) {

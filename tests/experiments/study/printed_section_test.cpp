@@ -40,9 +40,10 @@ TEST(PrintedSection, ErrorsNameLineReasonAndRemedy) {
               HasSubstr("trial.ini:9: claim: there is no cell 'fastslam2'"));
   EXPECT_THAT(complaint_about_printed("value = cell=ekf_slam metric=ess"),
               HasSubstr("trial.ini:9: value: printed= is missing: write value = "));
-  EXPECT_THAT(complaint_about_printed("value = cell=ekf_slam metric=lasting_exit_pose printed=1 "
-                                      "relative_to=ekf_slam"),
-              HasSubstr("remove it"));
+  EXPECT_THAT(
+      complaint_about_printed("value = cell=ekf_slam metric=stays_above_from_pose printed=1 "
+                              "relative_to=ekf_slam"),
+      HasSubstr("remove it"));
   EXPECT_THAT(complaint_about_printed("quote = 3"), HasSubstr("unknown key printed.quote"));
 }
 
