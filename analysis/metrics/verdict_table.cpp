@@ -92,7 +92,7 @@ std::vector<std::string> consistency_row(const CellAnalysis& cell, const NeesRes
           name_of(nees.moments),
           in_words(found),
           compact(found.mean),
-          ratio_text(nees),
+          ratio_text(nees, level),
           readable(found.median / expected_median(nees.series.dimension)),
           readable(found.trimmed / expected_trimmed(nees.series.dimension)),
           readable(ideal_nees(cell, nees)),

@@ -41,8 +41,8 @@ landmark = 4, 6
 /// Runs a study and leaves its result at `path`.
 inline void write_studied_result(const std::filesystem::path& path, const std::string& text,
                                  const std::vector<std::string>& overrides = {}) {
-  const Study study = parse_study(text, "tiny.ini", ".", overrides);
-  run_study(make_plan(study, {}), {.output = path, .force = true, .quiet = true});
+  const experiments::Study study = experiments::parse_study(text, "tiny.ini", ".", overrides);
+  run_study(experiments::make_plan(study, {}), {.output = path, .force = true, .quiet = true});
 }
 
 }  // namespace montecarta::analysis

@@ -63,7 +63,7 @@ TEST(Consistency, AMatchedLinearWorldStaysInsideItsBand) {
   for (LinearRun& run : runs) {
     run.advance(), run.advance();  // two noises need two steps to fill three dimensions
   }
-  const Interval band = nees_bounds(kRuns, 3, 0.95);
+  const analysis::Interval band = analysis::nees_bounds(kRuns, 3, 0.95);
   int inside = 0;
   double total = 0.0;
   for (int step = 0; step < kSteps; ++step) {
@@ -93,7 +93,7 @@ TEST(Consistency, EkfSlamIsConsistentWhereNoiseIsSmall) {
     sum += nees(boxminus(world.drive.truth.back(), belief.mean), belief.covariance);
   }
   // Five standard errors, as a level of the exact interval.
-  const Interval band = nees_bounds(kRuns, 3, 1.0 - 5.7e-7);
+  const analysis::Interval band = analysis::nees_bounds(kRuns, 3, 1.0 - 5.7e-7);
   EXPECT_GT(sum / kRuns, band.lower);
   EXPECT_LT(sum / kRuns, band.upper);
 }

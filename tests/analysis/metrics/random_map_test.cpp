@@ -22,9 +22,10 @@ class RandomMaps : public ::testing::Test {
   }
   /// Some runs of the same study.
   void write_shard(const std::string& name, std::uint64_t first, std::uint64_t last) const {
-    const Study study =
-        parse_study(kTinyLoop, "tiny.ini", ".", std::vector<std::string>{"scenario.map=random"});
-    run_study(make_plan(study, RunRange{first, last}), {.output = folder_ / name, .quiet = true});
+    const experiments::Study study = experiments::parse_study(
+        kTinyLoop, "tiny.ini", ".", std::vector<std::string>{"scenario.map=random"});
+    run_study(experiments::make_plan(study, experiments::RunRange{first, last}),
+              {.output = folder_ / name, .quiet = true});
   }
   ScratchFolder folder_;
 };

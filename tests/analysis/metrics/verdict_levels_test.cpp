@@ -81,8 +81,6 @@ Accused accused(const Law& law, std::uint64_t runs, std::size_t scans, std::uint
   return accused(draw, Moments::spread, 0, runs, scans, studies);
 }
 
-}
-
 // 30 runs of 60 independent scans: the average over the run has a deviation of 0.058, so that
 // errors 1.1 times too large (NEES 1.21 times) lie 11 deviations off.
 TEST(VerdictPower, FindsAFilterThatIsATenthTooSure) {

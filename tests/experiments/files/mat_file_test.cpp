@@ -3,7 +3,7 @@
 
 #include "tests/doubles/complaint.hpp"
 #include "tests/doubles/scratch_folder.hpp"
-#include "tests/doubles/small_drives.hpp"
+#include "tests/experiments/recordings/small_drives.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #include "experiments/recordings/check_log.hpp"
 
 #include "tests/doubles/complaint.hpp"
-#include "tests/doubles/small_drives.hpp"
+#include "tests/experiments/recordings/small_drives.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

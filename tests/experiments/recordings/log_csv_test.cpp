@@ -2,9 +2,9 @@
 #include "experiments/recordings/log_csv.hpp"
 
 #include "tests/doubles/complaint.hpp"
-#include "tests/doubles/same_log.hpp"
 #include "tests/doubles/scratch_folder.hpp"
-#include "tests/doubles/small_drives.hpp"
+#include "tests/experiments/recordings/same_log.hpp"
+#include "tests/experiments/recordings/small_drives.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include "experiments/study/make_plan.hpp"
 #include "experiments/study/study_of_log.hpp"
 #include "tests/doubles/scratch_folder.hpp"
-#include "tests/doubles/small_drives.hpp"
+#include "tests/experiments/recordings/small_drives.hpp"
 #include "tests/experiments/study/study_text.hpp"
 
 #include <gmock/gmock.h>

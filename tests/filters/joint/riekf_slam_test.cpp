@@ -146,7 +146,7 @@ TEST(RiekfSlam, StaysConsistentWhereEkfSlamDoesNot) {
   constexpr std::uint64_t kRuns = 200;
   const SmallWorldSettings settings{.seed = 900, .scans = 150, .noise = rough()};
   // Five standard errors, as a level of the exact interval.
-  const Interval band = nees_bounds(kRuns, 3, 1.0 - 5.7e-7);
+  const analysis::Interval band = analysis::nees_bounds(kRuns, 3, 1.0 - 5.7e-7);
   const double invariant = mean_nees(make_riekf_slam, kRuns, settings);
   EXPECT_GT(invariant, band.lower);
   EXPECT_LT(invariant, band.upper);

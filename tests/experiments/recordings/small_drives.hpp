@@ -13,7 +13,7 @@
 #include <vector>
 
 // Small drives of our own making, in the formats of the published ones.
-namespace montecarta::engine {
+namespace montecarta::experiments {
 
 using Ranges = std::array<double, 361>;
 
@@ -136,4 +136,4 @@ inline DriveLog full_log() {
   return log;
 }
 
-}  // namespace montecarta::engine
+}  // namespace montecarta::experiments

@@ -6,7 +6,7 @@
 #include <bit>
 #include <vector>
 
-namespace montecarta::engine {
+namespace montecarta::experiments {
 
 /// Every number of a log by its bits, with the counts that tell where each part ends.
 inline std::vector<std::uint64_t> bits_of(const DriveLog& log) {
@@ -33,4 +33,4 @@ inline std::vector<std::uint64_t> bits_of(const DriveLog& log) {
 
 inline bool same_log(const DriveLog& a, const DriveLog& b) { return bits_of(a) == bits_of(b); }
 
-}  // namespace montecarta::engine
+}  // namespace montecarta::experiments
