@@ -7,10 +7,23 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <map>
+#include <string>
 #include <vector>
 
 namespace montecarta::analysis {
+
+/// Whether a whole table of rates is asked for, instead of a sample of its lines.
+inline bool is_table_wanted() { return std::getenv("MONTECARTA_STUDIES") != nullptr; }
+
+inline constexpr const char* kHowToGetTheTable = "of the whole table: set MONTECARTA_STUDIES=4000";
+
+/// How many studies a line is simulated from: `usual`, or what MONTECARTA_STUDIES says.
+inline std::uint64_t studies_of_a_line(std::uint64_t usual) {
+  const char* const text = std::getenv("MONTECARTA_STUDIES");
+  return text == nullptr ? usual : std::stoull(text);
+}
 
 /// Studies of a filter whose errors are Gaussian, of so many components, with `ratio` times the
 /// covariance that it reports; scans go together by `memory` (1: the same error at all scans).

@@ -61,9 +61,10 @@ int main(int argc, char** argv) {
   const std::string mode = argc > 1 ? argv[1] : "";
   const int at = argc > 2 ? std::atoi(argv[2]) : -1;
   const std::string text = argc > 3 ? argv[3] : "";
-  if (mode == "orphan" && ::fork() == 0) {  // a child of its own that would outlive it
-    std::ofstream(text) << ::getpid() << std::endl;
-    for (;;) ::pause();
+  if (mode == "orphan") {  // a child of its own that would outlive it
+    const pid_t child = ::fork();
+    while (child == 0) ::pause();
+    std::ofstream(text) << child << std::endl;
   }
   std::string line;
   int starts = 0;

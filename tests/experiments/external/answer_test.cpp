@@ -179,7 +179,7 @@ TEST(Answer, FuzzOfMaps) {
       read_map(line, 1, Association::known, map);
       ++accepted;
       for (const auto& landmark : map) {
-        if (landmark) ASSERT_TRUE(landmark->mean.allFinite()) << line;
+        ASSERT_TRUE(!landmark || landmark->mean.allFinite()) << line;
       }
     } catch (const ProgramError&) {
     }
