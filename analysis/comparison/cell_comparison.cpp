@@ -79,7 +79,7 @@ std::string CellComparison::verdict(double level) const {
   }
   if ((ahead > 0) == (behind > 0)) return "undecided";
   const bool directed = score->better != Better::neither;
-  const std::string word =
+  std::string word =
       directed ? (ahead > 0 ? "better" : "worse") : (ahead > 0 ? "lower" : "higher");
   if (std::isnan(interval.lower)) return word;
   const double side = ahead > 0 ? 1.0 : -1.0;

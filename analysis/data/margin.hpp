@@ -5,7 +5,7 @@
 
 namespace montecarta::analysis {
 
-/// A filter is consistent enough where the ratio of its NEES to the right one lies within
+/// A filter is consistent enough where the ratio of its NEES to the expected one lies within
 /// [1 / r, r], r this where neither the study nor the user says otherwise.
 inline constexpr double kUsualMargin = 1.1;
 inline constexpr double kLeastMargin = 1.001, kMostMargin = 100.0;

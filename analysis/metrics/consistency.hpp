@@ -50,7 +50,7 @@ enum class Verdict {
   undecided,     ///< neither is shown: more runs are needed
 };
 
-/// The ratio of a scan's average to the right one, by the band for all scans.
+/// The ratio of a scan's average to the expected one, by the band for all scans.
 struct ScanRatio {
   Interval ratio;
   double time = 0.0;  ///< [s]
@@ -58,10 +58,10 @@ struct ScanRatio {
 
 /// What a NeesSeries says in a few numbers. One test at the level of the study has two parts that
 /// share the probability of a false accusation (WholeRunTest): the average over runs at every scan
-/// against whole_run_bounds, and the average over runs and scans against average_bounds. A right
-/// filter leaves neither with that probability, however many scans a run has. Its interval,
-/// `ratio`, and the same bands in units of the margin show that a filter is consistent (STATISTICS
-/// 5).
+/// against whole_run_bounds, and the average over runs and scans against average_bounds. A
+/// consistent filter stays inside both with the probability `level`, however many scans a run has.
+/// Its interval, `ratio`, and the same bands in units of the margin show that a filter is
+/// consistent (STATISTICS 5).
 struct Consistency {
   Verdict verdict = Verdict::untested;
   double within = kUsualMargin;   ///< the margin: ratios in [1 / within, within] are consistent

@@ -14,7 +14,7 @@ namespace montecarta::analysis {
 /// e' P^-1 e to e' S^-1 e, where S is the mean squared error matrix over runs, in decibel. 3 dB is
 /// a factor of 2.
 struct Credibility {
-  /// [dB] Mean of the ratio's absolute logarithm; 0: right.
+  /// [dB] Mean of the ratio's absolute logarithm; 0: as reported.
   double noncredibility = std::numeric_limits<double>::quiet_NaN();
   /// [dB] Mean of its logarithm; above 0: overconfident, below: conservative.
   double inclination = std::numeric_limits<double>::quiet_NaN();

@@ -29,8 +29,8 @@ struct ErrorAnatomy {
                                             ///< believed deviation, over scans; adds up to 1
 };
 
-/// What mean_worst_ratio at one scan is below with probability `level` if a filter is right: the
-/// largest of three ratios is above 1 even then.
+/// What mean_worst_ratio at one scan is below with probability `level` if a filter is consistent:
+/// the largest of three ratios is above 1 even then.
 double expected_worst_ratio(std::size_t runs, double level);
 
 /// Adds up the moments of errors and the covariances over runs.

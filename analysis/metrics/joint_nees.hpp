@@ -30,7 +30,7 @@ std::vector<JointScore> joint_scores(const JointRows& rows, std::span<const std:
 /// The sum of the defined ones divided by the sum of their dimensions; NaN where there is none.
 double nees_per_component(std::span<const JointScore> scores);
 
-/// Pose and map together over the complete runs of a cell: 1 is right.
+/// Pose and map together over the complete runs of a cell: 1 is expected.
 struct JointConsistency {
   std::vector<double> average;      ///< [1] {joint} NEES per component over runs
   std::vector<Interval> bounds;     ///< {joint} of the average, for all rows together

@@ -92,14 +92,13 @@ bool has_joint_nees(const StudyAnalysis& study) {
   return std::ranges::any_of(study.cells, is_judged);
 }
 
-/// One row a cell that has joint estimates: is it right about pose and map together? Without rows
+/// One row a cell that has joint estimates: is it consistent in pose and map together? Without rows
 /// where none has.
 TextTable joint_table(const StudyAnalysis& study) {
   TextTable table;
   if (!has_joint_nees(study)) return table;
-  table.headings = {{"cell", Align::left}, {"components at the end"},
-                    {"NEES / component"},  {"right"},
-                    {"farthest from 1"},   {"pose and map"}};
+  table.headings = {{"cell", Align::left}, {"components at the end"}, {"NEES / component"},
+                    {"expected within"},   {"farthest from 1"},       {"pose and map"}};
   for (const CellAnalysis& cell : study.cells) {
     if (is_judged(cell)) table.rows.push_back(row_of(cell, study.joint_times));
   }

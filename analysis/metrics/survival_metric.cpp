@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How many runs are still right, each judged by its own NEES.
+// How many runs are not lost yet, each judged by its own NEES.
 #include "analysis/metrics/cell_panels.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
@@ -64,9 +64,9 @@ Figure survival_figure(const StudyAnalysis& study) {
   const CellValues share = [](const CellAnalysis& cell) {
     return scaled(cell.get<Survival>().share, 100.0);
   };
-  add_panels(cell_panels(study, {"runs_consistent", "runs still right [%]", {}, {}, Scale::percent},
-                         share),
-             study.times, figure);
+  add_panels(
+      cell_panels(study, {"runs_consistent", "runs not lost [%]", {}, {}, Scale::percent}, share),
+      study.times, figure);
   return figure;
 }
 

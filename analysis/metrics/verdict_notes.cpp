@@ -59,8 +59,8 @@ std::vector<std::string> consistency_notes() {
       "of the runs at either end, each divided by what a consistent filter has: near 1 while ANEES "
       "is far too large they say that few bad runs make the average. 'floored' counts covariances "
       "that were singular (0.1 mm and 0.00001 rad were added), 'undefined' those that were not a "
-      "number and left out, 'too few draws' those of fewer effective draws than the number of "
-      "components and two, of which no spread says anything."};
+      "number and left out, 'too few draws' those of no more effective draws than components "
+      "and two, of which no spread says anything."};
 }
 
 std::vector<std::string> too_few_notes(const StudyAnalysis& study) {

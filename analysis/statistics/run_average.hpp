@@ -31,7 +31,7 @@ AverageLaw average_law(std::span<const double> run_averages, std::size_t dimensi
 /// errors of the logarithm of their variation): some runs are lost, others are not.
 bool is_overdispersed(std::span<const double> run_averages, std::size_t dimension);
 
-/// Ratios of the expected to the right average at which a study finds out with probability `power`
+/// Ratios of the average to the expected one at which a study finds out with probability `power`
 /// that they differ: the greatest below 1 and the least above 1.
 Interval least_ratios(const AverageLaw& law, double power);
 

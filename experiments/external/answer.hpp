@@ -27,7 +27,8 @@ void read_started(std::string_view line, std::uint64_t id);
 ProgramEstimate read_estimate(std::string_view line, std::uint64_t id);
 
 /// The answer to `map`: into `landmarks`, by number; nullopt where it names none. With known
-/// association a number beyond them is an error; else it is a birth that the study has no row for.
+/// association a number beyond them is an error; else it is a new landmark that the study has no
+/// row for.
 void read_map(std::string_view line, std::uint64_t id, Association association,
               std::span<std::optional<LandmarkEstimate>> landmarks);
 

@@ -115,7 +115,7 @@ fs::path find_program(const std::string& program) {
   } else {
     const char* path = std::getenv("PATH");
     for (const std::string& folder : split(path == nullptr ? "/usr/bin:/bin" : path, ':')) {
-      const fs::path file = fs::path(folder.empty() ? "." : folder) / program;
+      fs::path file = fs::path(folder.empty() ? "." : folder) / program;
       if (may_be_run(file)) return file;
     }
   }

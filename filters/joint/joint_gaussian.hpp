@@ -34,7 +34,7 @@ struct ExpectedObservation {
 
 /// One Gaussian over the pose and all landmarks: the state of EKF-SLAM (EQUATIONS 15). Its
 /// covariance is kept in three parts, [pose cross'; cross map]. Landmarks are numbered in order of
-/// birth.
+/// initialisation.
 ///
 /// The invariant error of Barrau turns pose and map together: xi = e - J p e_heading for every
 /// point p, J = [0 -1; 1 0]. Held is the covariance of e, in the map frame; it is that of xi at the

@@ -40,8 +40,8 @@ struct ObservationPair {
   RangeBearing<Real> odd, even;
 };
 
-/// Sights of (range + along, across) and (range - along, -across), bearings from the line of sight:
-/// small, so nothing wraps.
+/// Observations of (range + along, across) and (range - along, -across), bearings from the line of
+/// sight: small, so nothing wraps.
 template <class Real>
 [[gnu::always_inline]] inline ObservationPair<Real> observation_pair(const Real& range,
                                                                      const Real& along,
