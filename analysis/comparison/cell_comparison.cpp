@@ -79,8 +79,7 @@ std::string CellComparison::verdict(double level) const {
   }
   if ((ahead > 0) == (behind > 0)) return "undecided";
   const bool directed = score->better != Better::neither;
-  std::string word =
-      directed ? (ahead > 0 ? "better" : "worse") : (ahead > 0 ? "lower" : "higher");
+  std::string word = directed ? (ahead > 0 ? "better" : "worse") : (ahead > 0 ? "lower" : "higher");
   if (std::isnan(interval.lower)) return word;
   const double side = ahead > 0 ? 1.0 : -1.0;
   const double one = side * disadvantage(*score, interval.lower, 0.0);
