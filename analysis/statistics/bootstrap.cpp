@@ -20,26 +20,6 @@ constexpr std::size_t kMostDraws = 20'000'000;
 
 double normal_share(double z) { return boost::math::cdf(boost::math::normal(), z); }
 
-/// Mean, and skewness divided by 6 sqrt(n): how fast the spread of a mean changes with the mean.
-struct SampleShape {
-  double mean = 0.0;
-  double acceleration = 0.0;
-};
-
-SampleShape shape_of(std::span<const double> values) {
-  const auto n = static_cast<double>(values.size());
-  SampleShape shape;
-  for (const double value : values) shape.mean += value / n;
-  double squares = 0.0, cubes = 0.0;
-  for (const double value : values) {
-    const double d = value - shape.mean;
-    squares += d * d;
-    cubes += d * d * d;
-  }
-  if (squares > 0.0) shape.acceleration = cubes / (6.0 * squares * std::sqrt(squares));
-  return shape;
-}
-
 /// How far out, in normal deviates, the tails of Student's t lie for so many runs.
 double widened_deviate(std::size_t runs, double level) {
   const auto n = static_cast<double>(runs);
@@ -81,6 +61,20 @@ bool all_finite(std::span<const double> values) {
 }
 
 }  // namespace
+
+SampleShape shape_of(std::span<const double> values) {
+  const auto n = static_cast<double>(values.size());
+  SampleShape shape;
+  for (const double value : values) shape.mean += value / n;
+  double squares = 0.0, cubes = 0.0;
+  for (const double value : values) {
+    const double d = value - shape.mean;
+    squares += d * d;
+    cubes += d * d * d;
+  }
+  if (squares > 0.0) shape.acceleration = cubes / (6.0 * squares * std::sqrt(squares));
+  return shape;
+}
 
 std::size_t bootstrap_replicates(std::size_t runs) {
   return std::clamp(kMostDraws / std::max<std::size_t>(runs, 1), kFewestReplicates,

@@ -10,6 +10,16 @@
 
 namespace montecarta::analysis {
 
+/// Mean of a sample, and skewness divided by 6 sqrt(n): how fast the spread of a mean changes with
+/// the mean.
+struct SampleShape {
+  double mean = 0.0;
+  double acceleration = 0.0;
+};
+
+/// Of finite values; the acceleration of BCa (STATISTICS 6), 0 where all are equal.
+SampleShape shape_of(std::span<const double> values);
+
 /// Replicates of a bootstrap over `runs`: 2000, and fewer where there are so many runs that
 /// replicates hardly differ.
 std::size_t bootstrap_replicates(std::size_t runs);

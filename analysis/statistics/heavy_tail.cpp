@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/heavy_tail.hpp"
 
+#include "analysis/statistics/bootstrap.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -30,24 +32,12 @@ double lopsidedness(std::vector<double> values) {
   return std::min(up, down) > 0.0 ? std::max(up, down) / std::min(up, down) : 0.0;
 }
 
-/// The acceleration of BCa: skewness / (6 sqrt(n)).
-double tail_acceleration(std::span<const double> values) {
-  double mean = 0.0, squares = 0.0, cubes = 0.0;
-  for (const double value : values) mean += value / static_cast<double>(values.size());
-  for (const double value : values) {
-    const double d = value - mean;
-    squares += d * d;
-    cubes += d * d * d;
-  }
-  return squares > 0.0 ? cubes / (6.0 * squares * std::sqrt(squares)) : 0.0;
-}
-
 }  // namespace
 
 bool is_heavy_tailed(std::span<const double> values) {
   const bool finite = std::ranges::all_of(values, [](double v) { return std::isfinite(v); });
   if (!finite || values.size() < 3) return false;
-  return std::abs(tail_acceleration(values)) > kMostAcceleration ||
+  return std::abs(shape_of(values).acceleration) > kMostAcceleration ||
          lopsidedness({values.begin(), values.end()}) > kMostLopsided;
 }
 

@@ -12,8 +12,8 @@ namespace montecarta::analysis {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kLeastVariation = 1e-9;  // of run averages that are equal
-constexpr double kHeavyErrors = 3.0;      // standard errors
+constexpr double kLeastVariation = 1e-9;      // of run averages that are equal
+constexpr double kOverdispersedErrors = 3.0;  // standard errors
 
 /// Squared deviation of the values in units of their mean; NaN where it is not a number.
 double variation_of(std::span<const double> values) {
@@ -65,7 +65,7 @@ bool is_overdispersed(std::span<const double> run_averages, std::size_t dimensio
   if (n < 3.0) return false;
   const double most = 2.0 / static_cast<double>(dimension);
   const double excess = std::log(variation_of(run_averages) / most);
-  return !(excess <= kHeavyErrors * std::sqrt((2.0 + 2.0 * most) / n));  // also NaN
+  return !(excess <= kOverdispersedErrors * std::sqrt((2.0 + 2.0 * most) / n));  // also NaN
 }
 
 Interval least_ratios(const AverageLaw& law, double power) {
