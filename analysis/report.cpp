@@ -7,6 +7,8 @@
 #include "analysis/figures/path_figure.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
+#include "analysis/output/csv_file.hpp"
+#include "analysis/page/markdown.hpp"
 #include "analysis/page/page.hpp"
 #include "analysis/page/sections.hpp"
 #include "analysis/tables/tables.hpp"
@@ -22,7 +24,7 @@ namespace fs = std::filesystem;
 
 void refuse_existing(const fs::path& directory, ExistingReport existing) {
   if (existing == ExistingReport::replace) return;
-  for (const char* name : {"index.html", "figures", "data", "tables"}) {
+  for (const char* name : {"index.html", "summary.md", "figures", "data", "tables"}) {
     if (!fs::exists(directory / name)) continue;
     throw StudyError((directory / name).string() +
                      ": is there already (nothing is overwritten unasked): add --force, or choose "
@@ -106,6 +108,7 @@ void write_report(const ResultFile& file, const fs::path& directory, const Repor
   write_csv(study, directory / "tables");
   write_comparison_csv(comparison, directory / "tables");
   write_page(study, sections, directory);
+  write_text(directory / "summary.md", markdown_page(study, sections, file.provenance()));
 }
 
 }  // namespace montecarta::analysis

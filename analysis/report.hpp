@@ -21,10 +21,10 @@ struct ReportOptions {
   const Parallel* parallel = &Parallel::serial();
 };
 
-/// Writes index.html (self-contained), figures/*.svg and *.pdf, data/*.csv (each figure's numbers)
-/// and tables/*.csv, *.tex into `directory`, which is made where it is missing. Figures are drawn
-/// by gnuplot. Throws StudyError where a report is there already or gnuplot is missing, RunError
-/// where a file cannot be written or gnuplot fails.
+/// Writes index.html (self-contained), summary.md (its tables and first figure), figures/*.svg and
+/// *.pdf, data/*.csv (each figure's numbers) and tables/*.csv, *.tex into `directory`, which is
+/// made where it is missing. Figures are drawn by gnuplot. Throws StudyError where a report is
+/// there already or gnuplot is missing, RunError where a file cannot be written or gnuplot fails.
 void write_report(const ResultFile& file, const std::filesystem::path& directory,
                   const ReportOptions& options = {});
 

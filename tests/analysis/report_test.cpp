@@ -2,6 +2,7 @@
 #include "analysis/report.hpp"
 
 #include "analysis/metrics/study_analysis.hpp"
+#include "analysis/page/markdown.hpp"
 #include "engine/errors.hpp"
 #include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/synthetic_result.hpp"
@@ -47,6 +48,28 @@ TEST(Report, HoldsEverySectionAndNeedsNothingElse) {
   }
   EXPECT_THAT(text_in(folder / "report/tables/verdict.tex"), HasSubstr("\\bottomrule"));
   EXPECT_TRUE(std::filesystem::exists(folder / "report/data/anees_pose.csv"));
+}
+
+TEST(Report, IsSummedUpInMarkdown) {
+  const ScratchFolder folder;
+  write_synthetic_result(folder / "out.h5", 6, 120);
+  write_report(ResultFile(folder / "out.h5"), folder / "report");
+  const std::string page = text_in(folder / "report/summary.md");
+  for (const char* part : {"# ", "runs, 30 scans each", ", commit ", "## Verdict\n\n| cell |",
+                           "\n|---|", "](figures/anees.svg)", "## Failed runs"}) {
+    EXPECT_THAT(page, HasSubstr(part));
+  }
+  EXPECT_THAT(page, HasSubstr("gain is \\<not\\> a number"));
+  EXPECT_THAT(page, Not(HasSubstr("Compared with")));
+  EXPECT_THAT(page, Not(HasSubstr("](figures/rmse.svg)")));
+}
+
+TEST(Markdown, ManyRowsAreCounted) {
+  TextTable table{{{"cell", Align::left}, {"a|b"}}, {}};
+  table.rows.assign(63, {"x", "1"});
+  const std::string markdown = markdown_table(table);
+  EXPECT_THAT(markdown, testing::StartsWith("| cell | a\\|b |\n|---|---:|\n| x | 1 |\n"));
+  EXPECT_THAT(markdown, testing::EndsWith("| x | 1 |\n\n... and 3 rows more\n"));
 }
 
 TEST(Report, JudgesARecordedDriveByItsReferences) {

@@ -8,6 +8,7 @@ Section comparison_section(const StudyAnalysis& study, const StudyComparison& co
   const Comparisons& all = comparison.comparisons;
   if (!study.has_truth || all.rows.empty()) return {};
   Section section{"comparison", "Compared with " + all.baseline};
+  section.is_for_terminal = false;
   section.add("comparison", comparison_table(all));
   section.add(comparison_notes(study, all));
   for (const WinMatrix& matrix : comparison.matrices) {
