@@ -42,8 +42,8 @@ Gospa gospa(PointSpan map, PointSpan truth, double cutoff) {
   Gospa result;
   result.localisation = std::sqrt(squares);
   result.missed = static_cast<double>(truth.size()) - pairs;
-  result.invented = static_cast<double>(map.size()) - pairs;
-  result.distance = std::sqrt(squares + 0.5 * far * (result.missed + result.invented));
+  result.spurious = static_cast<double>(map.size()) - pairs;
+  result.distance = std::sqrt(squares + 0.5 * far * (result.missed + result.spurious));
   return result;
 }
 

@@ -7,16 +7,16 @@
 
 namespace montecarta::analysis {
 
-/// A landmark farther than this [m] from where it is believed to be counts as missed and invented.
+/// A landmark farther than this [m] from where it is believed to be counts as missed and spurious.
 inline constexpr double kGospaCutoff = 5.0;
 
 /// How far a map is from the truth, whoever is who (Rahmathullah, Garcia-Fernandez, Svensson 2017;
-/// alpha = 2, p = 2): distance^2 = localisation^2 + cutoff^2 / 2 (missed + invented).
+/// alpha = 2, p = 2): distance^2 = localisation^2 + cutoff^2 / 2 (missed + spurious).
 struct Gospa {
   double distance = 0.0;      ///< [m]
   double localisation = 0.0;  ///< [m] root of the sum of squared errors of the pairs
   double missed = 0.0;        ///< [1] true landmarks without a partner
-  double invented = 0.0;      ///< [1] landmarks of the map without a partner
+  double spurious = 0.0;      ///< [1] landmarks of the map without a partner
 };
 
 /// Pairs `map` [m] and `truth` [m] at the least distance. A point that is not finite has no

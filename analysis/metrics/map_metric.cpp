@@ -34,7 +34,7 @@ constexpr Score kMapScores[] = {
     {"gospa", "m", "GOSPA of the final map", of_map<&Gospa::distance>},
     {"gospa_localisation", "m", "localisation part of GOSPA", of_map<&Gospa::localisation>},
     {"landmarks_missed", "1", "landmarks missed by the final map", of_map<&Gospa::missed>},
-    {"landmarks_invented", "1", "landmarks invented by the final map", of_map<&Gospa::invented>},
+    {"landmarks_spurious", "1", "spurious landmarks of the final map", of_map<&Gospa::spurious>},
 };
 
 class MapOverRuns final : public MetricSums {
@@ -68,7 +68,7 @@ std::vector<std::string> row_of(const CellAnalysis& cell) {
           text_of(cell, "gospa"),
           text_of(cell, "gospa_localisation"),
           text_of(cell, "landmarks_missed"),
-          text_of(cell, "landmarks_invented")};
+          text_of(cell, "landmarks_spurious")};
 }
 
 /// Reason, and the labels of the cells it is true of: "a, b".
@@ -96,7 +96,7 @@ TextTable map_error_table(const StudyAnalysis& study) {
   table.headings = {
       {"cell", Align::left}, {"landmark RMSE [m]"}, {"efficiency"},       {"landmark NEES"},
       {"landmarks inside"},  {"GOSPA [m]"},         {"of it errors [m]"}, {"missed"},
-      {"invented"}};
+      {"spurious"}};
   for (const CellAnalysis& cell : study.cells) table.rows.push_back(row_of(cell));
   return table;
 }
@@ -120,7 +120,7 @@ std::vector<std::string> map_error_notes(const StudyAnalysis& study) {
         "GOSPA pairs the map with the true landmarks that came into view, whoever is who: the root "
         "of the squared errors of the pairs plus " +
         readable(0.5 * kGospaCutoff * kGospaCutoff) +
-        " m2 for each landmark missed or invented (farther than " + readable(kGospaCutoff, 1) +
+        " m2 for each landmark missed or spurious (farther than " + readable(kGospaCutoff, 1) +
         " m from any partner).");
   }
   if (study.has_truth && study.beacons > 0) {

@@ -76,7 +76,7 @@ struct JointEstimate {
   Eigen::MatrixXd covariance;
 };
 
-/// The seam between engine and filters: estimation only, no threads, no files, no clock, no global
+/// The interface of engine and filters: estimation only, no threads, no files, no clock, no global
 /// generator. The engine calls start(); then for every step predict(), and update() where the step
 /// ends with a scan. A filter may throw; the run then is stored as failed with the step and the
 /// exception's text.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/stop_sign.hpp"
+#include "engine/core/stop_flag.hpp"
 #include "engine/random/stream.hpp"
 #include "engine/threads/parallel.hpp"
 
@@ -10,12 +10,12 @@
 
 namespace montecarta::engine {
 
-/// What the engine lends a filter for one step: its place in the study, random streams, and
+/// What the engine gives a filter for one step: its place in the study, random streams, and
 /// threads.
 class StepContext {
  public:
   StepContext(std::uint64_t seed, std::uint64_t run, std::uint32_t step, const Parallel& parallel,
-              const StopSign* stop = nullptr)
+              const StopFlag* stop = nullptr)
       : seed_(seed), run_(run), step_(step), parallel_(&parallel), stop_(stop) {}
 
   std::uint64_t run() const { return run_; }
@@ -30,7 +30,7 @@ class StepContext {
   }
   /// Valid for the whole run; nullptr where nobody stops it. What a filter throws after it was made
   /// is no result: the run is dropped.
-  const StopSign* stop() const { return stop_; }
+  const StopFlag* stop() const { return stop_; }
   /// Calls body(i) for i in [0, count), perhaps at once; body i may write only what belongs to i.
   template <class Body>
   void parallel_for(std::size_t count, const Body& body) const {
@@ -42,7 +42,7 @@ class StepContext {
   std::uint64_t run_;
   std::uint32_t step_;
   const Parallel* parallel_;
-  const StopSign* stop_;
+  const StopFlag* stop_;
 };
 
 }  // namespace montecarta::engine

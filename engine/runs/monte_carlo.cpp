@@ -101,7 +101,7 @@ void run_missing(const StudyPlan& plan, const RunOptions& options, const RunOutc
     SpareThreads spare(options.parallel, n_workers);
     Session session{plan, layouts, writer, tasks, spare, stop, progress};
     options.parallel.for_each(n_workers, [&](std::size_t) { run_worker(session); });
-    if (stop.made()) return;
+    if (stop.is_set()) return;
     if (runs == plan.runs_here()) return;
     progress.runs_spared(spare_what_is_enough(plan, runs, options.parallel, writer));
   }

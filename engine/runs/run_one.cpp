@@ -72,7 +72,7 @@ RunEnd run_one(const RunConditions& conditions, SlamFilter& filter, Recorder& re
   Walk walk(conditions, filter, recorder, record.layout().particles());
   try {
     for (walk.start(); !walk.arrived(); walk.next()) {
-      if (conditions.stop.made()) return RunEnd::dropped;
+      if (conditions.stop.is_set()) return RunEnd::dropped;
       const std::string_view flaw = walk.take_step();
       if (flaw.empty()) continue;
       record.mark_failed(walk.step(), flaw, clock.seconds());
@@ -84,7 +84,7 @@ RunEnd run_one(const RunConditions& conditions, SlamFilter& filter, Recorder& re
   } catch (const RunError&) {
     throw;  // likewise
   } catch (const std::exception& error) {
-    if (conditions.stop.made()) return RunEnd::dropped;  // it may be why the filter gave up
+    if (conditions.stop.is_set()) return RunEnd::dropped;  // it may be why the filter gave up
     record.mark_failed(walk.step(), error.what(), clock.seconds());
   } catch (...) {
     record.mark_failed(walk.step(), "an exception that is no std::exception", clock.seconds());

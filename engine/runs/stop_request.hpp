@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/stop_sign.hpp"
+#include "engine/core/stop_flag.hpp"
 
 #include <atomic>
 #include <cstdint>
@@ -19,9 +19,9 @@ enum class StopReason : std::uint8_t {
 
 /// Asks all workers to stop: they drop the run they are at and take no other. One relaxed load to
 /// look.
-class StopRequest final : public StopSign {
+class StopRequest final : public StopFlag {
  public:
-  bool made() const override {
+  bool is_set() const override {
     return reason_.load(std::memory_order_relaxed) != StopReason::complete;
   }
   StopReason reason() const { return reason_.load(); }

@@ -49,7 +49,7 @@ void Watch::keep_watch() {
 
 /// Closing the file may take seconds, in which a user would wonder whether Ctrl-C was heard.
 void Watch::acknowledge_signal() const {
-  if (interruption_.signal() == 0 || stop_.made()) return;
+  if (interruption_.signal() == 0 || stop_.is_set()) return;
   std::fputs("\nmontecarta: stopping, what is done is kept", stderr);
   std::fputs(runs_under_scheduler() ? "\n" : " (a second signal ends it at once)\n", stderr);
 }

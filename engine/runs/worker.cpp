@@ -24,7 +24,7 @@ Worker::Worker(const Session& session)
       cell_states_(session.plan.cells.size()) {}
 
 void Worker::work() {
-  while (!session_.stop.made()) {
+  while (!session_.stop.is_set()) {
     const std::optional<Task> task = session_.tasks.take();
     if (!task) return;
     execute(*task);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/threads/loop_seam.hpp"
+#include "engine/threads/loop_order.hpp"
 
 #include <cstddef>
 #include <memory>
@@ -32,9 +32,9 @@ class Parallel {
       for (std::size_t i = 0; i < count; ++i) call_body<Body>(&body, i);
       return;
     }
-    const LoopSeam seam(&body);
+    const LoopOrder order(&body);
     const auto call_inside = [](const void* erased, std::size_t i) {
-      const LoopSeam::Call inside(erased);
+      const LoopOrder::Call inside(erased);
       call_body<Body>(erased, i);
     };
     spread(count, call_inside, &body);

@@ -8,7 +8,7 @@
 
 namespace montecarta::engine {
 
-/// Lends the threads that have no run of their own to the loops inside the runs still at work:
+/// Gives the threads that have no run of their own to the loops inside the runs still at work:
 /// where runs are fewer than threads, and at the end of every study.
 class SpareThreads {
  public:

@@ -18,9 +18,9 @@
 namespace montecarta::experiments {
 namespace {
 
-constexpr int kFarewell = 1000;           // [ms] for a program to end when nobody asks it any more
-constexpr int kLookUp = 50;               // [ms] between two looks at the stop sign
-constexpr std::size_t kLastWords = 4096;  // [byte]
+constexpr int kFarewell = 1000;  // [ms] for a program to end when nobody asks it any more
+constexpr int kLookUp = 50;      // [ms] between two looks at the stop sign
+constexpr std::size_t kErrorOutput = 4096;  // [byte]
 
 /// While one lives, a pipe that nobody reads is an error of write(), no signal to this thread.
 class WithoutSigpipe {
@@ -68,7 +68,7 @@ ChildProcess::~ChildProcess() {
   while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) continue;
 }
 
-std::string_view ChildProcess::exchange(std::string_view line, const Patience& time_limit) {
+std::string_view ChildProcess::exchange(std::string_view line, const TimeLimit& time_limit) {
   using Clock = std::chrono::steady_clock;
   const auto deadline = Clock::now() + std::chrono::duration<double>(time_limit.seconds);
   incoming_.erase(0, answered_);
@@ -77,14 +77,14 @@ std::string_view ChildProcess::exchange(std::string_view line, const Patience& t
   sent_ = 0;
   send();
   while (sent_ < outgoing_.size() || !has_line()) {
-    if (at_end_ && !has_line()) tell_end();
-    if (time_limit.stop != nullptr && time_limit.stop->made()) give_up("stopped");
+    if (at_end_ && !has_line()) fail_ended();
+    if (time_limit.stop != nullptr && time_limit.stop->is_set()) fail("stopped");
     const std::chrono::duration<double, std::milli> left = deadline - Clock::now();
-    if (left.count() <= 0.0) give_up("program gave no answer within the limit");
+    if (left.count() <= 0.0) fail("program gave no answer within the limit");
     wait_for_events(static_cast<int>(std::clamp(left.count(), 1.0, double{kLookUp})));
     send();
     if (!has_line()) receive();
-    if (!has_line() && incoming_.size() > kLongestLine) give_up("program's answer is too long");
+    if (!has_line() && incoming_.size() > kLongestLine) fail("program's answer is too long");
   }
   answered_ = incoming_.find('\n') + 1;
   return std::string_view(incoming_).substr(0, answered_ - 1);
@@ -125,28 +125,29 @@ void ChildProcess::listen() {
   std::array<char, 4096> buffer;
   const ssize_t n = ::read(error_.number(), buffer.data(), buffer.size());
   if (n > 0) {
-    last_words_.append(buffer.data(), static_cast<std::size_t>(n));
-    if (last_words_.size() > kLastWords) last_words_.erase(0, last_words_.size() - kLastWords);
+    error_output_.append(buffer.data(), static_cast<std::size_t>(n));
+    if (error_output_.size() > kErrorOutput)
+      error_output_.erase(0, error_output_.size() - kErrorOutput);
   } else if (n == 0 || !is_for_later(errno)) {
     error_.close();
   }
 }
 
-void ChildProcess::give_up(const std::string& reason) {
+void ChildProcess::fail(const std::string& reason) {
   failed_ = true;
   throw ProgramError(reason);
 }
 
 /// It said its last line: how it ended, and why, if it told.
-void ChildProcess::tell_end() {
+void ChildProcess::fail_ended() {
   const std::string how = how_it_ended();
   while (error_.is_open()) {
     pollfd event{error_.number(), POLLIN, 0};
     if (::poll(&event, 1, kLookUp) <= 0) break;
     listen();
   }
-  const std::vector<std::string> lines = split(trimmed(last_words_), '\n');
-  give_up(how + (lines.back().empty() ? "" : ": " + lines.back()));
+  const std::vector<std::string> lines = split(trimmed(error_output_), '\n');
+  fail(how + (lines.back().empty() ? "" : ": " + lines.back()));
 }
 
 std::string ChildProcess::how_it_ended() {

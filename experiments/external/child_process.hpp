@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/stop_sign.hpp"
+#include "engine/core/stop_flag.hpp"
 
 #include <cstddef>
 #include <filesystem>
@@ -24,9 +24,9 @@ class ProgramError : public std::runtime_error {
 std::filesystem::path find_program(const std::string& program);
 
 /// How long to wait for an answer.
-struct Patience {
+struct TimeLimit {
   double seconds = 30.0;           ///< of wall time
-  const StopSign* stop = nullptr;  ///< ends the wait early
+  const StopFlag* stop = nullptr;  ///< ends the wait early
 };
 
 /// A file descriptor that is closed with its owner and inherited by nobody.
@@ -44,7 +44,7 @@ class Descriptor {
   int number_;
 };
 
-/// A program that runs beside ours and is talked to line by line over pipes: no shell, no inherited
+/// A program that runs beside ours and exchanges lines with it over pipes: no shell, no inherited
 /// descriptor, the signals' defaults, a process group of its own, so that Ctrl-C in a terminal is
 /// ours alone. What it says on standard error is read and the end of it kept. For one thread.
 class ChildProcess {
@@ -63,7 +63,7 @@ class ChildProcess {
   /// Says `line`, which holds no new line, and returns the next line that the program says, valid
   /// until the next exchange. Throws ProgramError where it ends, says nothing in time or too much,
   /// or where the wait is stopped; no exchange is possible afterwards.
-  std::string_view exchange(std::string_view line, const Patience& time_limit);
+  std::string_view exchange(std::string_view line, const TimeLimit& time_limit);
 
  private:
   void start(std::span<const std::string> words, int input, int output, int error);
@@ -72,8 +72,8 @@ class ChildProcess {
   void receive();
   void listen();
   void wait_for_events(int milliseconds);
-  [[noreturn]] void give_up(const std::string& reason);
-  [[noreturn]] void tell_end();
+  [[noreturn]] void fail(const std::string& reason);
+  [[noreturn]] void fail_ended();
   std::string how_it_ended();
   bool ends_within(int milliseconds) const;
 
@@ -86,7 +86,7 @@ class ChildProcess {
   std::size_t answered_ = 0;  ///< of incoming_: the answer that was returned last
   bool at_end_ = false;       ///< it has closed its standard output, or input
   bool failed_ = false;
-  std::string last_words_;  ///< the end of its standard error
+  std::string error_output_;  ///< the end of its standard error
 };
 
 }  // namespace montecarta::experiments

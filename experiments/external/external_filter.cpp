@@ -10,7 +10,7 @@ namespace montecarta::experiments {
 ExternalFilter::ExternalFilter(FilterSetup setup, ExternalCommand command)
     : setup_(std::move(setup)),
       command_(std::move(command)),
-      conversation_(std::make_unique<Conversation>()) {}
+      session_(std::make_unique<Session>()) {}
 
 /// The program hears of it with the first step, which knows the run's number and seed.
 void ExternalFilter::start(const Pose& start) {
@@ -18,41 +18,41 @@ void ExternalFilter::start(const Pose& start) {
   is_begun_ = false;
   stop_ = nullptr;
   report_ = {};
-  conversation_->controls.clear();
-  conversation_->pose = {start, Eigen::Matrix3d::Zero()};
+  session_->controls.clear();
+  session_->pose = {start, Eigen::Matrix3d::Zero()};
 }
 
 void ExternalFilter::predict(const StepContext& context, const Control& control, double duration) {
   begin(context);
-  conversation_->controls.push_back({control.speed, control.steer, duration});
+  session_->controls.push_back({control.speed, control.steer, duration});
 }
 
 void ExternalFilter::update(const StepContext& context, Scan scan) {
   begin(context);
-  converse([&](Conversation& with) {
-    const std::uint64_t id = with.next_id++;
+  use_process([&](Session& session) {
+    const std::uint64_t id = session.next_id++;
     const std::string_view line =
-        ask(scan_message(id, with.controls, scan, setup_.association.kind));
+        ask(scan_message(id, session.controls, scan, setup_.association.kind));
     const ProgramEstimate estimate = read_estimate(line, id);
-    with.pose = estimate.pose;
-    with.controls.clear();
+    session.pose = estimate.pose;
+    session.controls.clear();
     report_ = estimate.report;
   });
 }
 
 PoseEstimate ExternalFilter::estimate() const {
-  if (conversation_->controls.empty()) return {conversation_->pose, std::nullopt};
-  converse([&](Conversation& with) {
-    const std::uint64_t id = with.next_id++;
-    with.pose = read_estimate(ask(predict_message(id, with.controls)), id).pose;
-    with.controls.clear();
+  if (session_->controls.empty()) return {session_->pose, std::nullopt};
+  use_process([&](Session& session) {
+    const std::uint64_t id = session.next_id++;
+    session.pose = read_estimate(ask(predict_message(id, session.controls)), id).pose;
+    session.controls.clear();
   });
-  return {conversation_->pose, std::nullopt};
+  return {session_->pose, std::nullopt};
 }
 
 void ExternalFilter::map(std::span<std::optional<LandmarkEstimate>> landmarks) const {
-  converse([&](Conversation& with) {
-    const std::uint64_t id = with.next_id++;
+  use_process([&](Session& session) {
+    const std::uint64_t id = session.next_id++;
     read_map(ask(map_message(id)), id, setup_.association.kind, landmarks);
   });
 }
@@ -65,37 +65,38 @@ void ExternalFilter::begin(const StepContext& context) {
   identity.step = 0;  // whichever step is the first with something to say
   const auto seed = static_cast<std::uint32_t>(RngStream(identity).bits() >> 32U);
   const RunStart start{context.run(), seed, start_};
-  if (!command_.keeps_process) conversation_->process.reset();
-  if (conversation_->process != nullptr) {
+  if (!command_.keeps_process) session_->process.reset();
+  if (session_->process != nullptr) {
     try {
       tell_start(start);
       return;
     } catch (const ProgramError&) {
-      if (stop_ != nullptr && stop_->made()) throw;
+      if (stop_ != nullptr && stop_->is_set()) throw;
     }
   }
   tell_start(start);
 }
 
 void ExternalFilter::tell_start(const RunStart& start) const {
-  converse([&](Conversation& with) {
-    if (with.process == nullptr) with.process = std::make_unique<ChildProcess>(command_.words);
-    with.next_id = 1;
+  use_process([&](Session& session) {
+    if (session.process == nullptr)
+      session.process = std::make_unique<ChildProcess>(command_.words);
+    session.next_id = 1;
     read_started(ask(start_message(0, start, setup_)), 0);
   });
 }
 
 std::string_view ExternalFilter::ask(const std::string& message) const {
-  if (conversation_->process == nullptr) throw ProgramError("program is gone");
-  return conversation_->process->exchange(message, {command_.answer_limit, stop_});
+  if (session_->process == nullptr) throw ProgramError("program is gone");
+  return session_->process->exchange(message, {command_.answer_limit, stop_});
 }
 
-template <class Talk>
-void ExternalFilter::converse(const Talk& talk) const {
+template <class Use>
+void ExternalFilter::use_process(const Use& use) const {
   try {
-    talk(*conversation_);
+    use(*session_);
   } catch (...) {
-    conversation_->process.reset();
+    session_->process.reset();
     throw;
   }
 }

@@ -41,7 +41,7 @@ class ExternalFilter final : public SlamFilter {
 
  private:
   /// The process, and what has been said in this run. Asking changes it, not what is believed.
-  struct Conversation {
+  struct Session {
     std::unique_ptr<ChildProcess> process;
     std::uint64_t next_id = 0;         ///< of the messages of this run
     std::vector<ControlRow> controls;  ///< that the program has not been told
@@ -51,17 +51,17 @@ class ExternalFilter final : public SlamFilter {
   void begin(const StepContext& context);
   void tell_start(const RunStart& start) const;
   std::string_view ask(const std::string& message) const;
-  /// Calls `talk`; the process does not survive what goes wrong.
-  template <class Talk>
-  void converse(const Talk& talk) const;
+  /// Calls `use`; the process does not survive what goes wrong.
+  template <class Use>
+  void use_process(const Use& use) const;
 
   FilterSetup setup_;
   ExternalCommand command_;
   Pose start_;
   bool is_begun_ = false;
-  const StopSign* stop_ = nullptr;
+  const StopFlag* stop_ = nullptr;
   ScanReport report_;
-  std::unique_ptr<Conversation> conversation_;
+  std::unique_ptr<Session> session_;
 };
 
 }  // namespace montecarta::experiments

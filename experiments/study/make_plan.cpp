@@ -106,7 +106,8 @@ Cell cell_of(const CellSpec& spec, const Study& study, ExternalPrograms programs
           .filter = filter.name,
           .long_name = filter.long_name + (spec.distinction.empty() ? "" : ", " + spec.distinction),
           .particles = particles_of(spec),
-          .mixture = filter.has_mixture,
+          .mixture =
+              filter.has_mixture && !(filter.drops_mixture && filter.drops_mixture(setup.options)),
           .joint = filter.has_joint,
           .landmarks = map_rows_of(setup, study.settings),
           .settings = settings_of(spec),

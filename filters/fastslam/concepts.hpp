@@ -27,7 +27,7 @@ concept MomentTransform = requires(const T t, MotionIncrement& motion, PoseGauss
                                    const Belief& belief) {
   // one control step of `duration`
   t.advance(motion, Control(), /*duration*/ 0.1, belief);
-  // pose, or landmark seen from a known pose, absorbs one detection: its innovation before
+  // pose, or landmark seen from a known pose, is updated with one detection: its innovation before
   { t.refine(pose, landmark, seen, R, Everywhere(), evidence) } -> Is<Innovation<Real>>;
   { t.update(landmark, pose.mean, seen, R, Everywhere(), evidence) } -> Is<Innovation<Real>>;
   // whether it can refine a pose by a whole scan with fixed Jacobians, refine_in_batch()

@@ -52,6 +52,10 @@ FilterKind de_srcd_kind() {
           .source = "Ankishan et al. 2016; EQUATIONS 10",
           .has_mixture = true,
           .options = std::move(options),
+          .drops_mixture =
+              [](const FilterOptions& chosen) {
+                return weight_time(evolved_settings(chosen).mode) == WeightTime::after_draw;
+              },
           .make = make_de_srcd<Lanes>};
 }
 

@@ -37,24 +37,24 @@ class DelayedProposal {
 
   void start() {
     immediate_.start();
-    close();
+    end_joint();
   }
   void predict(const StepContext& context, const Control& control, double duration,
                std::vector<BasicPose<Real>>& poses) {
-    is_driven_ = false;
+    is_predicted_ = false;
     immediate_.predict(context, control, duration, poses);
   }
   PoseGaussian<Real> predicted(std::size_t b, const BasicPose<Real>& pose) const {
-    if (!is_open_) return immediate_.predicted(b, pose);
-    if (is_driven_) return joint_.map().pose(b);
-    return driven(joint_.map().pose(b), immediate_.motion()).pose;
+    if (!is_joint_) return immediate_.predicted(b, pose);
+    if (is_predicted_) return joint_.map().pose(b);
+    return predicted_pose(joint_.map().pose(b), immediate_.motion()).pose;
   }
   void begin_scan(const StepContext& context, std::vector<BasicPose<Real>>& poses) {
-    if (!is_open_) return;
-    drive(context);
+    if (!is_joint_) return;
+    predict_joint(context);
     for (std::size_t b = 0; b < poses.size(); ++b) poses[b] = joint_.map().pose(b).mean;
   }
-  const DelayedMap<Real>* joint() const { return is_open_ ? &joint_ : nullptr; }
+  const DelayedMap<Real>* joint() const { return is_joint_ ? &joint_ : nullptr; }
 
   /// Decides whether this scan draws, and takes what it sees into the joint Gaussian.
   template <class Associating>
@@ -63,8 +63,8 @@ class DelayedProposal {
                const std::vector<PoseGaussian<Real>>& predicted, ParticleMaps<Real>& maps) {
     ++scans_;
     draws_ = is_time(weights, predicted);
-    if (draws_ && !is_open_) return;
-    if (!is_open_) open(context, poses);
+    if (draws_ && !is_joint_) return;
+    if (!is_joint_) begin_joint(context, poses);
     joint_.enter(association.matched_slots(), maps);
     scanned_.clear();
     for (std::size_t k = 0; draws_ && k < association.matches(); ++k) scanned_.add();
@@ -75,24 +75,25 @@ class DelayedProposal {
   template <class Associating, class Innovations>
   Refined refine(const StepContext& context, std::size_t b, const PoseGaussian<Real>& predicted,
                  const Associating& association, const Innovations& innovations) {
-    if (!is_open_) return immediate_.refine(context, b, predicted, association, innovations);
+    if (!is_joint_) return immediate_.refine(context, b, predicted, association, innovations);
     joint_.fill(b);
     if (draws_) joint_.copy_matches(association, b, scanned_);
     CorrelatedMap<Real>& map = draws_ ? scanned_ : joint_.map();
     Evidence<Real> evidence;
     for (std::size_t k = 0; map.size() > 0 && k < association.matches(); ++k) {
       const auto match = association.match(b, k);
-      const auto absorb_at = [&](const auto& at) {
-        innovations.add(k, absorb(map, b, at, match.seen, immediate_.noise(), match.mask, evidence),
-                        match.mask);
+      const auto update_at = [&](const auto& at) {
+        innovations.add(
+            k, update_with(map, b, at, match.seen, immediate_.noise(), match.mask, evidence),
+            match.mask);
       };
-      draws_ ? absorb_at(ForAll{k}) : absorb_at(joint_.where(association, b, k));
+      draws_ ? update_at(ForAll{k}) : update_at(joint_.where(association, b, k));
     }
     return {predicted, map.pose(b), evidence, evidence.left_out()};
   }
 
   BasicPose<Real> draw(const StepContext& context, std::size_t b, Refined& refined) {
-    if (is_open_ && !draws_) return refined.posterior.mean;
+    if (is_joint_ && !draws_) return refined.posterior.mean;
     return immediate_.draw(context, b, refined);
   }
 
@@ -102,11 +103,11 @@ class DelayedProposal {
   Weighing<Real> update_map(std::size_t b, const BasicPose<Real>& pose,
                             const Associating& association, Refined& refined,
                             const Innovations& innovations) {
-    if (is_open_ && !draws_) {
+    if (is_joint_ && !draws_) {
       joint_.write_back(b, [](const auto& landmark, const auto&) { return landmark; });
       return {refined.evidence.log_density(), refined.faults};
     }
-    if (is_open_) {
+    if (is_joint_) {
       const KnownPose<Real> known(joint_.map().pose(b), pose);
       joint_.write_back(b, [&](const auto& landmark, const auto& cross) {
         return known.condition(landmark, cross);
@@ -119,11 +120,11 @@ class DelayedProposal {
   void end_scan() {
     if (!draws_) return;
     immediate_.end_scan();
-    close();
+    end_joint();
   }
   void initialise(const FreshLandmark<Real>& fresh, const BasicPose<Real>& pose,
                   ParticleMaps<Real>& maps) {
-    if (!is_open_) return immediate_.initialise(fresh, pose, maps);
+    if (!is_joint_) return immediate_.initialise(fresh, pose, maps);
     CorrelatedMap<Real>& map = joint_.map();
     const std::size_t b = fresh.block;
     const NewLandmark<Real> added = new_correlated_landmark(
@@ -133,13 +134,13 @@ class DelayedProposal {
           [&](const auto& from, auto& to) { fresh.put(from, to); });
   }
   void begin_step(std::span<const std::uint32_t> parents) {
-    if (is_open_ && !parents.empty()) joint_.map().resample(parents);
+    if (is_joint_ && !parents.empty()) joint_.map().resample(parents);
     immediate_.begin_step(parents);
   }
   /// Poses that were not drawn are as uncertain as the whole mixture.
   PoseEstimate estimate(const Weights<Real>& weights,
                         const std::vector<BasicPose<Real>>& poses) const {
-    if (!is_open_) return immediate_.estimate(weights, poses);
+    if (!is_joint_) return immediate_.estimate(weights, poses);
     for (std::size_t b = 0; b < poses.size(); ++b) predicted_[b] = predicted(b, poses[b]);
     const PoseMoments mixture = mixture_of(weights, predicted_);
     return {mixture, mixture};
@@ -155,23 +156,23 @@ class DelayedProposal {
     return std::sqrt(variance[0]) > times_.beyond;
   }
   /// From here on poses are uncertain within a particle.
-  void open(const StepContext& context, const std::vector<BasicPose<Real>>& poses) {
-    is_open_ = true;
+  void begin_joint(const StepContext& context, const std::vector<BasicPose<Real>>& poses) {
+    is_joint_ = true;
     for (std::size_t b = 0; b < poses.size(); ++b) joint_.map().pose(b) = {poses[b], {}};
-    drive(context);
+    predict_joint(context);
   }
-  void close() {
+  void end_joint() {
     joint_.clear();
-    is_open_ = false;
+    is_joint_ = false;
     scans_ = 0;
   }
   /// Takes the motion since the last scan into the joint Gaussian.
-  void drive(const StepContext& context) {
+  void predict_joint(const StepContext& context) {
     BlockTasks<Real>(joint_.map().blocks()).run(context, [&](std::size_t /*task*/, std::size_t b) {
-      filters::drive(joint_.map(), b, immediate_.motion());
+      predict_with_map(joint_.map(), b, immediate_.motion());
     });
     immediate_.motion().restart();
-    is_driven_ = true;
+    is_predicted_ = true;
   }
 
   Immediate immediate_;
@@ -180,9 +181,9 @@ class DelayedProposal {
   CorrelatedMap<Real> scanned_;  ///< scratch: pose and the landmarks of one scan that draws
   mutable std::vector<PoseGaussian<Real>> predicted_;  ///< scratch of estimate()
   std::size_t scans_ = 0;                              ///< since the draw
-  bool is_open_ = false;    ///< poses are uncertain within a particle, the joint Gaussian holds
-  bool is_driven_ = false;  ///< ... up to now, with no motion since
-  bool draws_ = false;      ///< this scan
+  bool is_joint_ = false;      ///< poses are uncertain within a particle, the joint Gaussian holds
+  bool is_predicted_ = false;  ///< ... up to now, with no motion since
+  bool draws_ = false;         ///< this scan
 };
 
 }  // namespace montecarta::filters

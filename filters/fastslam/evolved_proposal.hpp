@@ -19,6 +19,11 @@ enum class EvolutionMode {
   shared,      ///< the cloud seeks the centres, and every particle pays for its draw
 };
 
+inline WeightTime weight_time(EvolutionMode mode) {
+  return mode == EvolutionMode::unbiased || mode == EvolutionMode::shared ? WeightTime::after_draw
+                                                                          : WeightTime::before_draw;
+}
+
 struct EvolvedSettings {
   EvolutionMode mode = EvolutionMode::unbiased;
   EvolutionSettings evolution = {.scale = 0.4, .base = EvolutionBase::best};
@@ -36,7 +41,7 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
   using Cloud = RefinedCloud<Real, SigmaPoints, SigmaPoints>;
   EvolvedProposal(std::size_t particles, const Belief& belief, const EvolvedSettings& settings,
                   const SigmaPoints& points)
-      : Cloud(particles, belief, points, points),
+      : Cloud(particles, belief, weight_time(settings.mode), points, points),
         settings_(settings),
         centres_(blocks_for<Real>(particles)) {
     if (settings.mode != EvolutionMode::unbiased) return;
@@ -73,9 +78,9 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
   Refined refine(const StepContext& context, std::size_t b, const PoseGaussian<Real>& predicted,
                  const Associating& association, const Innovations& innovations) {
     PoseGaussian<Real> posterior = predicted;
-    if (!pays_for_draw()) posterior.mean = centres_[b];
+    if (!has_importance_ratio()) posterior.mean = centres_[b];
     Evidence<Real> evidence;
-    this->absorb_scan(association, b, posterior, innovations, evidence);
+    this->update_with_scan(association, b, posterior, innovations, evidence);
     this->keep(b, posterior);
     Refined refined{predicted, posterior, posterior.mean, evidence, PoseFactor<Real>(posterior)};
     if (settings_.mode == EvolutionMode::shared) refined.centre = centres_[b];
@@ -91,7 +96,7 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
   BasicPose<Real> draw(const StepContext& context, std::size_t b, Refined& refined) const {
     PoseFactor<Real> about = refined.factor;
     about.mean = refined.centre;
-    const double spread = pays_for_draw() ? std::sqrt(settings_.inflation) : 1.0;
+    const double spread = has_importance_ratio() ? std::sqrt(settings_.inflation) : 1.0;
     return draw_from(about, Cloud::identity(context, Draw::pose_proposal, b), Real(spread));
   }
 
@@ -103,7 +108,7 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
     Evidence<Real> drawn;
     this->update_landmarks(association, b, pose, drawn);
     const Real faults = refined.evidence.left_out() + refined.factor.L.faults;
-    if (!pays_for_draw()) return {refined.evidence.log_density(), faults};
+    if (!has_importance_ratio()) return {refined.evidence.log_density(), faults};
     const PoseGaussian<Real> proposal{refined.centre,
                                       settings_.inflation * refined.posterior.covariance};
     const Real ratio =
@@ -112,8 +117,8 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
   }
 
  private:
-  bool pays_for_draw() const {
-    return settings_.mode == EvolutionMode::unbiased || settings_.mode == EvolutionMode::shared;
+  bool has_importance_ratio() const {
+    return weight_time(settings_.mode) == WeightTime::after_draw;
   }
 
   EvolvedSettings settings_;

@@ -26,6 +26,10 @@ WeightForm weight_form(const FilterOptions& options) {
   return chosen<WeightForm>(options.choice("weights"), kWeightForms);
 }
 
+bool weighs_by_ratio(const FilterOptions& options) {
+  return weight_form(options) == WeightForm::ratio;
+}
+
 Option map_uncertainty_option() {
   return choice_option(
       "map_uncertainty", "on", {"on", "off"},
@@ -78,6 +82,7 @@ FilterKind fastslam2_kind() {
           .options = joined({population_options(),
                              {choice_option("weights", "closed", kWeightForms,
                                             "form of the importance weight (EQUATIONS 6)")}}),
+          .drops_mixture = weighs_by_ratio,
           .make = make_fastslam2<Lanes>};
 }
 
@@ -99,6 +104,7 @@ FilterKind ufastslam_kind() {
                           "second spread: alpha^2 (n + kappa) is the square of the points' "
                           "distance"),
             map_uncertainty_option()}}),
+      .drops_mixture = weighs_by_ratio,
       .make = make_ufastslam<Lanes>};
 }
 
@@ -111,6 +117,7 @@ FilterKind srcd_kind() {
                              {weights_of_sigma_points_option()},
                              central_difference_options(),
                              {map_uncertainty_option()}}),
+          .drops_mixture = weighs_by_ratio,
           .make = make_srcd<Lanes>};
 }
 
@@ -122,6 +129,7 @@ FilterKind srcd_aided_kind() {
       .has_mixture = true,
       .options = joined(
           {population_options(), {weights_of_sigma_points_option()}, central_difference_options()}),
+      .drops_mixture = weighs_by_ratio,
       .make = make_srcd_aided<Lanes>};
 }
 
@@ -131,6 +139,7 @@ FilterKind srcd_pf_kind() {
           .source = "Ankishan et al. 2016, Table 1; EQUATIONS 8",
           .has_mixture = true,
           .options = srcd_kind().options,
+          .drops_mixture = weighs_by_ratio,
           .make = make_srcd_pf<Lanes>};
 }
 

@@ -28,6 +28,8 @@ std::unique_ptr<SlamFilter> make_fast_slam(const FilterSetup& setup,
 
 /// Reads the option `weights`.
 WeightForm weight_form(const FilterOptions& options);
+/// Whether the option `weights` is `ratio`, which leaves no mixture (FilterKind::drops_mixture).
+bool weighs_by_ratio(const FilterOptions& options);
 
 /// FastSLAM whose poses are refined by the scan, each Gaussian carried by a transform of its own.
 template <class Real, class PoseTransform, class MapTransform>

@@ -7,7 +7,7 @@ namespace montecarta::filters {
 
 /// The three ways to weigh a particle of FastSLAM II (EQUATIONS 6).
 enum class WeightForm {
-  closed,  ///< product of N(innovation; S), each before absorbing the detection
+  closed,  ///< product of N(innovation; S), each before the update with the detection
   ratio,   ///< likelihood times prior over proposal at the drawn pose
   batch,   ///< N of the stacked innovation, linearised at the predicted pose: `Linearised` only
 };
@@ -27,7 +27,7 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
 
   GaussianProposal(std::size_t particles, const Belief& belief, WeightForm form,
                    const PoseTransform& pose_transform, const MapTransform& map_transform)
-      : Cloud(particles, belief, pose_transform, map_transform), form_(form) {}
+      : Cloud(particles, belief, time_of(form), pose_transform, map_transform), form_(form) {}
 
   /// Nothing is to be decided for all particles together.
   template <class Associating, class... State>
@@ -39,7 +39,7 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
                  const Associating& association, const Innovations& innovations) const {
     PoseGaussian<Real> posterior = predicted;
     Evidence<Real> evidence;
-    this->absorb_scan(association, b, posterior, innovations, evidence);
+    this->update_with_scan(association, b, posterior, innovations, evidence);
     const Real faults = evidence.left_out();
     if (form_ == WeightForm::batch) evidence = batch_evidence(association, b, predicted);
     return {predicted, posterior, evidence, faults};
@@ -70,6 +70,9 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
   }
 
  private:
+  static WeightTime time_of(WeightForm form) {
+    return form == WeightForm::ratio ? WeightTime::after_draw : WeightTime::before_draw;
+  }
   /// Only of a transform that offers it.
   template <class Associating>
   Evidence<Real> batch_evidence(const Associating& association, std::size_t b,

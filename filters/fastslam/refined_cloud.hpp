@@ -11,18 +11,24 @@
 
 namespace montecarta::filters {
 
+/// When the weights of a scan are found: by what a particle believed before the draw, or by the
+/// pose that was drawn. In the second case they do not belong to the Gaussians before the draw,
+/// whose mixture is then no estimate (EQUATIONS 19).
+enum class WeightTime { before_draw, after_draw };
+
 /// What filters have in common whose poses are drawn from Gaussians that the scan refined
 /// (EQUATIONS 4): prediction, refinement, maps, and the estimate between scans. The transforms
 /// carry the Gaussians: `PoseTransform` those of the pose, `MapTransform` those of the landmarks.
 template <class Real, MomentTransform<Real> PoseTransform, MomentTransform<Real> MapTransform>
 class RefinedCloud {
  public:
-  RefinedCloud(std::size_t particles, const Belief& belief, const PoseTransform& pose_transform,
-               const MapTransform& map_transform)
+  RefinedCloud(std::size_t particles, const Belief& belief, WeightTime weighed,
+               const PoseTransform& pose_transform, const MapTransform& map_transform)
       : belief_(belief),
         noise_(SensorNoise::of(belief)),
         pose_transform_(pose_transform),
         map_transform_(map_transform),
+        weighed_(weighed),
         posterior_(blocks_for<Real>(particles)) {}
 
   void start() {
@@ -56,9 +62,16 @@ class RefinedCloud {
   }
   PoseEstimate estimate(const Weights<Real>& weights,
                         const std::vector<BasicPose<Real>>& poses) const {
-    if (is_drawn_) return {spread_of(weights, poses), mixture_of(weights, posterior_)};
+    const bool has_mixture = weighed_ == WeightTime::before_draw;
+    if (is_drawn_) {
+      PoseEstimate estimate{spread_of(weights, poses), std::nullopt};
+      if (has_mixture) estimate.mixture = mixture_of(weights, posterior_);
+      return estimate;
+    }
     if (!moments_) moments_.emplace(weights, poses);
-    return moments_->moved_by(motion_);
+    PoseEstimate estimate = moments_->moved_by(motion_);
+    if (!has_mixture) estimate.mixture.reset();
+    return estimate;
   }
 
   /// The motion since poses were drawn; whoever takes it into account himself restarts it.
@@ -69,18 +82,18 @@ class RefinedCloud {
  protected:
   // Flattened, for out of line their arrays of registers pass through memory.
 
-  /// Absorbs the scan of block b into `pose`, one detection after the other.
+  /// Updates `pose` with the scan of block b, one detection after the other.
   template <class Associating, class Innovations>
-  [[gnu::flatten]] void absorb_scan(const Associating& association, std::size_t b,
-                                    PoseGaussian<Real>& pose, const Innovations& innovations,
-                                    Evidence<Real>& evidence) const {
+  [[gnu::flatten]] void update_with_scan(const Associating& association, std::size_t b,
+                                         PoseGaussian<Real>& pose, const Innovations& innovations,
+                                         Evidence<Real>& evidence) const {
     for (std::size_t k = 0; k < association.matches(); ++k) {
       const auto& [landmark, seen, mask] = association.match(b, k);
       innovations.add(k, pose_transform_.refine(pose, landmark, seen, noise_, mask, evidence),
                       mask);
     }
   }
-  /// Absorbs the scan into the landmarks of block b, seen from `pose`.
+  /// Updates the landmarks of block b with the scan, seen from `pose`.
   template <class Associating, class Weighed>
   [[gnu::flatten]] void update_landmarks(const Associating& association, std::size_t b,
                                          const BasicPose<Real>& pose, Weighed& evidence) const {
@@ -103,6 +116,7 @@ class RefinedCloud {
   SensorNoise noise_;
   PoseTransform pose_transform_;
   MapTransform map_transform_;
+  WeightTime weighed_;
   MotionIncrement motion_;
   std::vector<PoseGaussian<Real>> posterior_;  ///< of the last scan, before drawing
   mutable std::optional<CloudMoments>

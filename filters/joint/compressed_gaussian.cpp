@@ -31,7 +31,7 @@ void CompressedGaussian::start(const Pose& start) {
   stand_ins_ = 0;
   point_of_.clear();
   most_near_ = kSmallMap;
-  absorbed_ = 0;
+  updates_ = 0;
   balance_ = 0.0;
   rests_ = false;
 }
@@ -41,7 +41,7 @@ void CompressedGaussian::become(const CompressedGaussian& other) {
   whole_.clear(std::min(rows(), whole_.room()));
   point_of_ = other.point_of_;
   most_near_ = other.most_near_;
-  absorbed_ = other.absorbed_;
+  updates_ = other.updates_;
   balance_ = other.balance_;
   rests_ = other.rests_;
   stand_ins_ = other.stand_ins_;

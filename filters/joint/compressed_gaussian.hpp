@@ -60,12 +60,12 @@ class CompressedGaussian {
 
   /// Makes landmarks near, and others around the vehicle with them; does nothing where they are.
   void make_near(std::span<const std::uint32_t> slots);
-  /// JointGaussian::absorb() of a landmark that is near.
-  Trouble absorb(std::size_t slot, const RangeBearing<double>& detected, int iterations,
-                 ExpectedObservation& expected) {
+  /// JointGaussian::update_with() of a landmark that is near.
+  Trouble update_with(std::size_t slot, const RangeBearing<double>& detected, int iterations,
+                      ExpectedObservation& expected) {
     assert(is_near(slot));
-    ++absorbed_;
-    return near_.absorb(point_of_[slot], detected, iterations, expected);
+    ++updates_;
+    return near_.update_with(point_of_[slot], detected, iterations, expected);
   }
   void draw_heading(double keep, double normal) { near_.draw_heading(keep, normal); }
   void append(const RangeBearing<double>& observation);
@@ -110,7 +110,7 @@ class CompressedGaussian {
   Retraction retraction_;
   std::vector<std::uint32_t> point_of_;  ///< {slot} in near_, or kFar
   std::size_t most_near_;                ///< beyond so many points it is time to choose anew
-  std::size_t absorbed_ = 0;             ///< detections since the near ones were chosen
+  std::size_t updates_ = 0;              ///< detections used since the near ones were chosen
   double balance_ = 0.0;        ///< [detections of the whole map] what compressing has saved
   bool rests_ = false;          ///< it saves nothing here: all landmarks are near for a while
   Eigen::Index stand_ins_ = 0;  ///< their first row in near_

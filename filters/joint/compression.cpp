@@ -77,7 +77,7 @@ void CompressedGaussian::write_cross_with_far(Eigen::Index at, Columns2& column)
 
 /// Whether the near landmarks have become too many, or have rested for long enough.
 bool CompressedGaussian::is_time_to_choose() const {
-  return rests_ ? absorbed_ > kRest : near_.landmarks() > most_near_;
+  return rests_ ? updates_ > kRest : near_.landmarks() > most_near_;
 }
 
 /// Brings the map up to date and parts it anew.
@@ -97,14 +97,14 @@ void CompressedGaussian::choose(std::span<const std::uint32_t> wanted) {
   span_far();
   use_landmark_stand_ins();
   note_far();
-  absorbed_ = 0;
+  updates_ = 0;
 }
 
 /// Books what compressing saved since the near ones were chosen, and that to expand a map takes
 /// about as long as one detection for every row of stand-ins.
 void CompressedGaussian::book() {
   const double share = static_cast<double>(near_.landmarks()) / static_cast<double>(landmarks());
-  const double saved = static_cast<double>(absorbed_) * (1.0 - share * share);
+  const double saved = static_cast<double>(updates_) * (1.0 - share * share);
   balance_ += saved - static_cast<double>(basis_.size());
   balance_ = std::min(balance_, kPatience);
 }

@@ -68,8 +68,9 @@ JointGaussian::Trouble JointGaussian::linearise_after(const Step& step, std::siz
   return Trouble::none;
 }
 
-JointGaussian::Trouble JointGaussian::absorb(std::size_t slot, const RangeBearing<double>& detected,
-                                             int iterations, ExpectedObservation& expected) {
+JointGaussian::Trouble JointGaussian::update_with(std::size_t slot,
+                                                  const RangeBearing<double>& detected,
+                                                  int iterations, ExpectedObservation& expected) {
   Eigen::Vector2d innovation = expected.innovation(detected);
   Trouble trouble = Trouble::none;
   for (int i = 0; i < iterations; ++i) {

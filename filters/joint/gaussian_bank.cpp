@@ -47,7 +47,7 @@ void GaussianBank::update(const StepContext& context, Scan scan) {
   settle();
   population_.begin_scan();
   context.parallel_for(active_.size(),
-                       [&](std::size_t a) { beliefs_[active_[a]].absorb(motion_, scan); });
+                       [&](std::size_t a) { beliefs_[active_[a]].update_with(motion_, scan); });
   motion_.restart();
   gather_innovations(scan);
   weigh();
@@ -81,7 +81,7 @@ void GaussianBank::gather_innovations(Scan scan) {
   innovations_.start(1, scan.size(), 0.0);
   for (std::size_t i = 0; i < slot_of_.size(); ++i) {
     const auto innovations = innovations_.of_block(0, weight_of(i));
-    for (const auto& [k, v, S] : belief_of(i).absorbed_detections()) {
+    for (const auto& [k, v, S] : belief_of(i).used_detections()) {
       innovations.add(k, {{v(0), v(1)}, {S(0, 0), S(1, 0), S(1, 1)}}, Everywhere());
       innovations_.matched_weight(k) += weight_of(i);
     }

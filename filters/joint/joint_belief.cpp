@@ -23,26 +23,26 @@ JointBelief::JointBelief(const FilterSetup& setup, Retraction retraction, int it
 void JointBelief::start(const Pose& start) {
   gaussian_.start(start);
   association_.clear();
-  absorbed_detections_.clear();
+  used_detections_.clear();
   outcome_ = {};
 }
 
 void JointBelief::become(const JointBelief& other) {
   gaussian_.become(other.gaussian_);
   association_ = other.association_;
-  absorbed_detections_ = other.absorbed_detections_;
+  used_detections_ = other.used_detections_;
   outcome_ = other.outcome_;
 }
 
-void JointBelief::absorb(const MotionIncrement& motion, Scan scan) {
+void JointBelief::update_with(const MotionIncrement& motion, Scan scan) {
   outcome_ = {};
-  absorbed_detections_.clear();
+  used_detections_.clear();
   gaussian_.move(motion);
   association_.known() ? association_.pair_by_identity(scan) : pair_nearest(scan);
   select_matched();
   for (std::size_t k = 0; k < scan.size(); ++k) {
     if (association_.pairings()[k].kind == PairingKind::matched) {
-      absorb(k, scan[k]);
+      update_with(k, scan[k]);
     } else {
       outcome_.log_likelihood += association_.unmatched_log_density();  // as every belief does
     }
@@ -129,7 +129,7 @@ bool JointBelief::look_at(std::size_t slot, ExpectedObservation& expected) {
 
 /// Counted is the innovation against the belief before the detection; weighed by is that of the
 /// last linearisation, with which the density of the detection is that of Laplace.
-void JointBelief::absorb(std::size_t k, const Detection& detection) {
+void JointBelief::update_with(std::size_t k, const Detection& detection) {
   const std::size_t slot = association_.pairings()[k].landmark;
   const RangeBearing<double> detected = observation_of(detection);
   ExpectedObservation expected;
@@ -137,8 +137,8 @@ void JointBelief::absorb(std::size_t k, const Detection& detection) {
     outcome_.log_likelihood += association_.unmatched_log_density();
     return;
   }
-  absorbed_detections_.push_back({k, expected.innovation(detected), expected.factor.covariance()});
-  const auto trouble = gaussian_.absorb(slot, detected, iterations_, expected);
+  used_detections_.push_back({k, expected.innovation(detected), expected.factor.covariance()});
+  const auto trouble = gaussian_.update_with(slot, detected, iterations_, expected);
   if (trouble == CompressedGaussian::Trouble::faulty) ++outcome_.faults;
   const InnovationFactor& L = expected.factor;
   const double distance = L.whiten(expected.innovation(detected)).squaredNorm();

@@ -11,18 +11,18 @@
 namespace montecarta::filters {
 
 /// One belief about the whole world: a joint Gaussian over pose and map, and what its detections
-/// are taken for. Detections are absorbed one by one in the order of the scan.
+/// are taken for. Detections are used one by one in the order of the scan.
 class JointBelief {
  public:
-  /// `iterations`: of CompressedGaussian::absorb().
+  /// `iterations`: of CompressedGaussian::update_with().
   JointBelief(const FilterSetup& setup, Retraction retraction, int iterations);
 
   /// The vehicle stands at `start`, no landmarks.
   void start(const Pose& start);
   /// The vehicle moved by `motion`; decides which landmarks `scan` then shows, and conditions the
   /// Gaussian on them.
-  void absorb(const MotionIncrement& motion, Scan scan);
-  /// Adds the landmarks that this scan, just absorbed, shows for the first time. Throws RunError
+  void update_with(const MotionIncrement& motion, Scan scan);
+  /// Adds the landmarks that this scan, just used, shows for the first time. Throws RunError
   /// where the map has run away.
   void initialise_landmarks(Scan scan);
   void draw_heading(double keep, double normal) { gaussian_.draw_heading(keep, normal); }
@@ -42,26 +42,26 @@ class JointBelief {
   };
   const Outcome& outcome() const { return outcome_; }
   const MapAssociation& association() const { return association_; }
-  /// A detection that was absorbed.
-  struct AbsorbedDetection {
+  /// A detection that updated it.
+  struct UsedDetection {
     std::size_t detection;  ///< its place in the scan
     Eigen::Vector2d innovation;
     Eigen::Matrix2d covariance;  ///< S = H P H' + R
   };
-  std::span<const AbsorbedDetection> absorbed_detections() const { return absorbed_detections_; }
+  std::span<const UsedDetection> used_detections() const { return used_detections_; }
 
  private:
   void pair_nearest(Scan scan);
   void select_matched();
   bool look_at(std::size_t slot, ExpectedObservation& expected);
-  void absorb(std::size_t k, const Detection& detection);
+  void update_with(std::size_t k, const Detection& detection);
 
   MapAssociation association_;
   CompressedGaussian gaussian_;
   int iterations_;
   std::vector<NearestSearch> searches_;  ///< scratch
   std::vector<std::uint32_t> matched_;   ///< scratch: slots that the current scan shows
-  std::vector<AbsorbedDetection> absorbed_detections_;
+  std::vector<UsedDetection> used_detections_;
   Outcome outcome_;
 };
 

@@ -9,7 +9,7 @@
 namespace montecarta::filters {
 
 /// EKF-SLAM: one Gaussian over the pose and all landmarks (EQUATIONS 15), detections
-/// absorbed one by one in the order of the scan.
+/// used one by one in the order of the scan.
 std::unique_ptr<SlamFilter> make_ekf_slam(const FilterSetup& setup);
 
 /// The same with the error of Barrau, which pose and map share as one rigid motion: what nobody

@@ -78,8 +78,8 @@ class JointGaussian {
   /// (iterated EKF, Bell and Cathey 1993; of invariant errors with the derivative of the
   /// exponential taken for one); `expected` becomes the last linearisation.
   /// Tells what ended the iterations too early, if anything: then the one before stands.
-  Trouble absorb(std::size_t slot, const RangeBearing<double>& detected, int iterations,
-                 ExpectedObservation& expected);
+  Trouble update_with(std::size_t slot, const RangeBearing<double>& detected, int iterations,
+                      ExpectedObservation& expected);
   /// Draws the heading's part of all that is uncertain (EQUATIONS 16): N(m, P) is the mean over
   /// standard normal z of N(m + g z, P - g g'), exactly for the additive error and to first order
   /// in the turn for the invariant one, with g = P e sqrt(1 - keep^2) / sqrt(h), e the heading's

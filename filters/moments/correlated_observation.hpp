@@ -82,12 +82,12 @@ void apply_gains(CorrelatedMap<Real>& maps, std::size_t b, const WhiteGain<Real>
   }
 }
 
-/// Absorbs a detection of landmark `at` into pose and map of block b: the update of EKF-SLAM
+/// Updates pose and map of block b with a detection of landmark `at`: the update of EKF-SLAM
 /// (EQUATIONS 15). `matched`: which lanes saw it.
 template <class Real, class Where, class Mask>
-Innovation<Real> absorb(CorrelatedMap<Real>& maps, std::size_t b, const Where& at,
-                        const RangeBearing<Real>& seen, const SensorNoise& noise,
-                        const Mask& matched, Evidence<Real>& evidence) {
+Innovation<Real> update_with(CorrelatedMap<Real>& maps, std::size_t b, const Where& at,
+                             const RangeBearing<Real>& seen, const SensorNoise& noise,
+                             const Mask& matched, Evidence<Real>& evidence) {
   PoseGaussian<Real>& pose = maps.pose(b);
   const LandmarkGaussian<Real> f = maps.landmark(at, b);
   const LineOfSight<Real> s = line_of_sight(pose.mean, f.mean);

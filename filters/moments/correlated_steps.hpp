@@ -12,7 +12,7 @@ namespace montecarta::filters {
 /// A pose that is itself uncertain, driven on, and what its heading did to its place: x and y
 /// change by `lever` times an error of the heading.
 template <class Real>
-struct DrivenPose {
+struct PredictedPose {
   PoseGaussian<Real> pose;
   BasicPoint<Real> lever;  ///< [m/rad]
 };
@@ -20,7 +20,8 @@ struct DrivenPose {
 /// Fx P Fx' with the motion's own covariance turned into the map (EQUATIONS 1). Of several steps Fx
 /// is again [1 0 a; 0 1 b; 0 0 1], so one increment stands for all since the last scan.
 template <class Real>
-DrivenPose<Real> driven(const PoseGaussian<Real>& before, const MotionIncrement& motion) {
+PredictedPose<Real> predicted_pose(const PoseGaussian<Real>& before,
+                                   const MotionIncrement& motion) {
   const auto& [mean, P] = before;
   const Direction<Real> d = direction_of(mean.heading);
   const Pose& step = motion.pose();
@@ -33,8 +34,8 @@ DrivenPose<Real> driven(const PoseGaussian<Real>& before, const MotionIncrement&
 
 /// Drives block b on, map included.
 template <class Real>
-void drive(CorrelatedMap<Real>& maps, std::size_t b, const MotionIncrement& motion) {
-  const DrivenPose<Real> now = driven(maps.pose(b), motion);
+void predict_with_map(CorrelatedMap<Real>& maps, std::size_t b, const MotionIncrement& motion) {
+  const PredictedPose<Real> now = predicted_pose(maps.pose(b), motion);
   maps.pose(b) = now.pose;
   for (std::size_t i = 0; i < maps.size(); ++i) {
     auto& [x, y] = maps.pose_cross(i, b);

@@ -19,7 +19,7 @@ class Evidence {
  public:
   /// One detection: `squared` = innovation' S^-1 innovation, `determinant` = det S; (0, 1) =
   /// nothing seen.
-  /// `used` of the `matched` lanes (1 or 0) could be absorbed.
+  /// `used` of the `matched` lanes (1 or 0) could be used.
   [[gnu::always_inline]] void add(const Real& squared, const Real& determinant, const Real& used,
                                   const Real& matched) {
     squared_ += squared;

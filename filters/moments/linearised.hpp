@@ -109,7 +109,7 @@ template <class Real>
           bearing};
 }
 
-/// What N(innovation; S) needs; (0, 1) in the lanes that have nothing to absorb.
+/// What N(innovation; S) needs; (0, 1) in the lanes that have no update.
 template <class Real>
 struct Density {
   Real squared, determinant;
@@ -152,15 +152,13 @@ template <class Real, class Mask>
   return d.density;
 }
 
-/// Absorbs one detection into a pose Gaussian by the extended Kalman filter (EQUATIONS 6), with the
+/// Updates with one detection a pose Gaussian by the extended Kalman filter (EQUATIONS 6), with the
 /// model linearised on the line_of_sight `s`. `matched`: which lanes saw it.
 template <class Real, class Mask>
-[[gnu::always_inline]] inline Innovation<Real> absorb(PoseGaussian<Real>& pose,
-                                                      const LineOfSight<Real>& s,
-                                                      const RangeBearing<Real>& value,
-                                                      const Symmetric2<Real>& map_covariance,
-                                                      const SensorNoise& noise, const Mask& matched,
-                                                      Evidence<Real>& evidence) {
+[[gnu::always_inline]] inline Innovation<Real> update_with(
+    PoseGaussian<Real>& pose, const LineOfSight<Real>& s, const RangeBearing<Real>& value,
+    const Symmetric2<Real>& map_covariance, const SensorNoise& noise, const Mask& matched,
+    Evidence<Real>& evidence) {
   const auto use = matched && is_usable(s);
   Innovation<Real> v = innovation_of(pose.covariance, s, value, map_covariance, noise);
   const Density<Real> density = condition(pose, v, use);
@@ -169,7 +167,8 @@ template <class Real, class Mask>
   return v;
 }
 
-/// absorb() with the model linearised at the refined pose: sequential refinement (EQUATIONS 6).
+/// update_with() with the model linearised at the refined pose: sequential refinement (EQUATIONS
+/// 6).
 template <class Real, class Mask>
 [[gnu::always_inline]] inline Innovation<Real> refine_pose(PoseGaussian<Real>& pose,
                                                            const LandmarkGaussian<Real>& landmark,
@@ -178,12 +177,12 @@ template <class Real, class Mask>
                                                            const Mask& matched,
                                                            Evidence<Real>& evidence) {
   const LineOfSight<Real> s = line_of_sight(pose.mean, landmark.mean);
-  return absorb(pose, s, residual(seen, s), landmark.covariance, noise, matched, evidence);
+  return update_with(pose, s, residual(seen, s), landmark.covariance, noise, matched, evidence);
 }
 
-/// absorb() with the model linearised at the predicted pose for all detections alike: the sequence
-/// then is the batch update with the stacked innovation, and its evidence N(nu; S) (EQUATIONS
-/// (6.4)).
+/// update_with() with the model linearised at the predicted pose for all detections alike: the
+/// sequence then is the batch update with the stacked innovation, and its evidence N(nu; S)
+/// (EQUATIONS (6.4)).
 template <class Real, class Mask>
 [[gnu::always_inline]] inline void refine_pose_in_batch(
     PoseGaussian<Real>& pose, const BasicPose<Real>& predicted,
@@ -195,7 +194,7 @@ template <class Real, class Mask>
                             pose.mean.heading - predicted.heading};
   innovation.range += s.ux * moved.x + s.uy * moved.y;
   innovation.bearing += (s.ux * moved.y - s.uy * moved.x) * s.per_range + moved.h;
-  absorb(pose, s, innovation, landmark.covariance, noise, matched, evidence);
+  update_with(pose, s, innovation, landmark.covariance, noise, matched, evidence);
 }
 
 /// A way along and across the line of sight, in the map.
@@ -216,7 +215,7 @@ template <class Real>
           along_y * s.uy + across_y * s.ux};
 }
 
-/// Absorbs one detection into a landmark seen from an exactly known pose (EQUATIONS 4). In the
+/// Updates with one detection a landmark seen from an exactly known pose (EQUATIONS 4). In the
 /// frame of the line of sight the noise R is diagonal, and the new covariance P (P + R)^-1 R has no
 /// difference that could turn negative; the gain is that times R^-1.
 template <class Real, class Mask, class Weighed>

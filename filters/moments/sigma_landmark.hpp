@@ -45,7 +45,7 @@ struct LandmarkObservation {
         Symmetric2<Real>{N.xx + rest, N.xy, N.yy} + outer(1.0, slope)};
   }
 
-  /// K = P_xz S^-1; `inverse` = 1 / det S, or 0 where nothing is to be absorbed.
+  /// K = P_xz S^-1; `inverse` = 1 / det S, or 0 where there is no update.
   [[gnu::always_inline]] LandmarkGain<Real> gain(const Real& inverse) const {
     const Real a_r = column.along * slope.range + rest, a_b = column.along * slope.bearing;
     const Real c_r = column.across * slope.range, c_b = column.across * slope.bearing;
@@ -70,7 +70,7 @@ struct LandmarkObservation {
   }
 };
 
-/// Absorbs one detection into a landmark seen from an exactly known pose (EQUATIONS 7, 8).
+/// Updates with one detection a landmark seen from an exactly known pose (EQUATIONS 7, 8).
 template <class Real, class Mask, class Weighed>
 [[gnu::always_inline]] inline Innovation<Real> update_landmark_by_sigma_points(
     LandmarkGaussian<Real>& landmark, const BasicPose<Real>& pose, const RangeBearing<Real>& seen,

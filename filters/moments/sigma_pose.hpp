@@ -59,7 +59,7 @@ template <class Real>
   return observation;
 }
 
-/// Absorbs one detection into a pose Gaussian by (3.2) with the moments of (7.1) (EQUATIONS 7, 8),
+/// Updates with one detection a pose Gaussian by (3.2) with the moments of (7.1) (EQUATIONS 7, 8),
 /// sigma points drawn anew from what the detection before left. `matched`: which lanes saw it.
 template <class Real, class Mask>
 [[gnu::always_inline]] inline Innovation<Real> refine_pose_by_sigma_points(

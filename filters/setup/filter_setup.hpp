@@ -47,9 +47,10 @@ struct FilterKind {
   std::string long_name;        ///< for legends
   std::string source;           ///< paper and equation
   bool has_particles = true;    ///< whether it takes the option `particles` (always listed first)
-  bool has_mixture = false;     ///< whether estimate() carries a mixture
+  bool has_mixture = false;     ///< whether estimate() carries a mixture ...
   bool has_joint = false;       ///< whether joint() gives anything
   std::vector<Option> options;  ///< in the order in which they are documented
+  std::function<bool(const FilterOptions&)> drops_mixture = {};  ///< ... but with these options
   std::function<std::unique_ptr<SlamFilter>(const FilterSetup&)> make;
 };
 

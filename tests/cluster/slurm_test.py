@@ -211,6 +211,11 @@ class Slurm(unittest.TestCase):
         early = call([TOP / "cluster/submit", self.ground.folder / "many.ini", "-o", case.folder, "--shards", "4",
                       "--set", "study.until=position_rmse < 1"], 2)
         self.assertIn("--set study.until=", early)
+        named = self.ground.folder / "named.ini"
+        named.write_text(STUDY.format(particles=10).replace("ekf_slam", "external command=true label=mine"))
+        words = [TOP / "cluster/submit", named, "-o", case.folder, "--shards", "4", "--dry-run"]
+        self.assertIn("add --allow-external", call(words, 2))
+        self.assertRegex(call(words + ["--allow-external"], 0), r"task\.sh .* --allow-external\n")
         refused = Case(self.ground, "refused", partition="nowhere").submit(code=2)
         self.assertIn("sbatch refused", refused)
         other = Case(self.ground, "main", shards=4).submit(code=2)

@@ -35,7 +35,7 @@ function b = update(b, detections)
   detections = detections(detections(:, 3) >= 0, :);
   is_known = b.row_of(detections(:, 3) + 1) > 0;
   for z = detections(is_known, :)'
-    b = absorb(b, z(1), z(2), b.row_of(z(3) + 1));
+    b = update_with(b, z(1), z(2), b.row_of(z(3) + 1));
   end
   for z = detections(~is_known, :)'
     b = append(b, z(1), z(2), z(3));
@@ -43,7 +43,7 @@ function b = update(b, detections)
   b.said.map_size = nnz(b.row_of);
 end
 
-function b = absorb(b, r, bearing, row)
+function b = update_with(b, r, bearing, row)
   delta = b.m(row:row+1) - b.m(1:2);
   d = norm(delta);
   Hf = [delta'; -delta(2)/d delta(1)/d] / d;

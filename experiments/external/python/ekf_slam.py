@@ -42,13 +42,13 @@ class EkfSlam(montecarta_filter.Filter):
         seen_before = dict(self.row_of)
         for r, b, identity in detections:
             if identity in seen_before:
-                self.absorb(r, b, seen_before[identity])
+                self.update_with(r, b, seen_before[identity])
         for r, b, identity in detections:
             if identity >= 0 and identity not in seen_before:
                 self.append(r, b, identity)
         self.said["map_size"] = len(self.row_of)
 
-    def absorb(self, r, b, row):
+    def update_with(self, r, b, row):
         dx, dy = self.m[row:row + 2] - self.m[:2]
         d = math.hypot(dx, dy)
         Hf = np.array([[dx / d, dy / d], [-dy / d**2, dx / d**2]])

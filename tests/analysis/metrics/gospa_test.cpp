@@ -48,7 +48,7 @@ TEST(Gospa, EqualsTheBestOfAllAssignments) {
     const Gospa found = gospa(map, truth);
     EXPECT_NEAR(found.distance, by_trying_all(map, truth, kGospaCutoff), 1e-12) << trial;
     EXPECT_NEAR(found.distance * found.distance,
-                found.localisation * found.localisation + 12.5 * (found.missed + found.invented),
+                found.localisation * found.localisation + 12.5 * (found.missed + found.spurious),
                 1e-9);
   }
 }
@@ -58,18 +58,18 @@ TEST(Gospa, CountsWhatIsMissedAndWhatIsInvented) {
   const Gospa found = gospa(Points{{0.3, 0.4}, {10, 6}}, truth);
   EXPECT_DOUBLE_EQ(found.localisation, 0.5);
   EXPECT_EQ(found.missed, 2.0);
-  EXPECT_EQ(found.invented, 1.0);
+  EXPECT_EQ(found.spurious, 1.0);
   EXPECT_DOUBLE_EQ(found.distance, std::sqrt(0.25 + 3 * 12.5));
   EXPECT_EQ(gospa(truth, truth).distance, 0.0);
   EXPECT_EQ(gospa({}, truth).missed, 3.0);
-  EXPECT_EQ(gospa(truth, {}).invented, 3.0);
+  EXPECT_EQ(gospa(truth, {}).spurious, 3.0);
 }
 
 TEST(Gospa, GivesAPlaceThatIsNoNumberNoPartner) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Gospa found = gospa(Points{{nan, 0}}, Points{{0, 0}});
   EXPECT_EQ(found.missed, 1.0);
-  EXPECT_EQ(found.invented, 1.0);
+  EXPECT_EQ(found.spurious, 1.0);
 }
 
 // A greedy choice takes the pair of distance 0 first and pays 16 for the rest; the best pays 2 x 4.

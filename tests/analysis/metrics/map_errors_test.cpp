@@ -33,7 +33,7 @@ TEST(MapScores, JudgeTheLandmarksInTheMapByIdentity) {
   EXPECT_DOUBLE_EQ(scores.rms, std::sqrt((0.25 + 1.0) / 2.0));
   EXPECT_DOUBLE_EQ(scores.nees, (1.0 + 4.0) / 2.0);
   EXPECT_EQ(scores.gospa.missed, 1.0);
-  EXPECT_EQ(scores.gospa.invented, 0.0);
+  EXPECT_EQ(scores.gospa.spurious, 0.0);
   EXPECT_FALSE(scores.landmarks[2].in_map);
 }
 

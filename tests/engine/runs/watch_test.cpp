@@ -11,7 +11,7 @@ using Clock = std::chrono::steady_clock;
 /// Waits until somebody asks to stop; says why.
 StopReason wait_for(const StopRequest& stop) {
   const auto give_up = Clock::now() + std::chrono::minutes(1);
-  while (!stop.made() && Clock::now() < give_up) std::this_thread::yield();
+  while (!stop.is_set() && Clock::now() < give_up) std::this_thread::yield();
   return stop.reason();
 }
 
@@ -24,7 +24,7 @@ class WatchTest : public testing::Test {
 
 TEST_F(WatchTest, AsksToStopWhenASignalComes) {
   const Watch watch({interruption, std::nullopt}, stop, progress);
-  EXPECT_FALSE(stop.made());
+  EXPECT_FALSE(stop.is_set());
   raise(SIGTERM);
   EXPECT_EQ(wait_for(stop), StopReason::sigterm);
 }
@@ -39,7 +39,7 @@ TEST_F(WatchTest, AsksToStopWhenTheBudgetIsUsedUp) {
 TEST_F(WatchTest, TakesABudgetLongerThanTheClockCanCount) {
   const Watch watch({interruption, 1e300}, stop, progress);
   std::this_thread::sleep_for(std::chrono::milliseconds(60));
-  EXPECT_FALSE(stop.made());
+  EXPECT_FALSE(stop.is_set());
 }
 
 }  // namespace

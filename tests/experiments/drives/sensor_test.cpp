@@ -58,11 +58,11 @@ TEST(Sensor, GivesEveryLandmarkItsOwnNoise) {
 }
 
 // Rates within 5 standard errors.
-TEST(Sensor, MissesAndInventsAtTheNamedRates) {
+TEST(Sensor, MissesAndAddsClutterAtTheNamedRates) {
   const Scenario scenario{.max_range = 20.0, .clutter_rate = 1.5, .miss_probability = 0.25};
   const double n = 20'000;
   double missed = 0.0;
-  double invented = 0.0;
+  double clutter = 0.0;
   double mean_square_range = 0.0;
   for (std::uint32_t step = 0; step < 20'000; ++step) {
     missed += 1.0;
@@ -71,14 +71,14 @@ TEST(Sensor, MissesAndInventsAtTheNamedRates) {
         missed -= 1.0;
         continue;
       }
-      invented += 1.0;
+      clutter += 1.0;
       mean_square_range += detection.range * detection.range;
       EXPECT_LE(std::abs(detection.bearing), kPi / 2);
     }
   }
   EXPECT_NEAR(missed / n, 0.25, 5.0 * std::sqrt(0.25 * 0.75 / n));
-  EXPECT_NEAR(invented / n, 1.5, 5.0 * std::sqrt(1.5 / n));
-  EXPECT_NEAR(mean_square_range / invented, 200.0, 5.0 * 400.0 / std::sqrt(12.0 * invented))
+  EXPECT_NEAR(clutter / n, 1.5, 5.0 * std::sqrt(1.5 / n));
+  EXPECT_NEAR(mean_square_range / clutter, 200.0, 5.0 * 400.0 / std::sqrt(12.0 * clutter))
       << "uniform over the area";
 }
 

@@ -94,6 +94,32 @@ TEST(Plan, KeepsTheMarginInTheTextWhereItIsNotTheUsualOne) {
   EXPECT_EQ(kUsualWithin, to_text(kUsualMargin));
 }
 
+TEST(Plan, HasAMixtureWhereTheEstimatesHaveOne) {
+  std::string cells = "cell = fastslam1\ncell = hrb\ncell = delayed\ncell = marginal\n";
+  for (const char* filter : {"fastslam2", "ufastslam", "srcd", "srcd_aided", "srcd_pf"}) {
+    cells += "cell = " + std::string(filter) + "\ncell = " + filter + " weights=ratio\n";
+  }
+  for (const char* mode : {"unbiased", "as_printed", "prior", "shared"}) {
+    cells += "cell = de_srcd mode=" + std::string(mode) + "\n";
+  }
+  const StudyPlan plan = make_plan(parsed(kGoodStudy + cells));
+  const std::vector<Detection> scan{{5.0, 0.3, 0}, {7.0, -0.4, 1}};
+  std::size_t mixtures = 0;
+  for (const Cell& cell : plan.cells) {
+    const auto filter = cell.make_filter();
+    filter->start({});
+    for (std::uint32_t step = 0; step < 4; ++step) {
+      const StepContext context(1, 0, step, Parallel::serial());
+      filter->predict(context, {1.0, 0.1}, 0.1);
+      EXPECT_EQ(filter->estimate().mixture.has_value(), cell.mixture) << cell.long_name;
+      filter->update(context, scan);
+      EXPECT_EQ(filter->estimate().mixture.has_value(), cell.mixture) << cell.long_name;
+    }
+    mixtures += cell.mixture ? 1 : 0;
+  }
+  EXPECT_EQ(mixtures, 9U);
+}
+
 TEST(Plan, CanScanAsThePublicSimulatorDoes) {
   const StudyPlan plan =
       make_plan(parsed(with("[cells]", "scan_rate = 4.444444444444445\n[cells]")));

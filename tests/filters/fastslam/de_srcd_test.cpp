@@ -151,7 +151,7 @@ struct LinearCase {
   PoseGaussian<double> prior{{1.0, -2.0, 0.4}, {0.04, 0.0, 1e-6, 0.0, 0.0, 1e-6}};
   double z = 1.5, r = 0.09;  ///< of x, with its variance
   double s() const { return prior.covariance.xx + r; }
-  /// The Gaussian about `mean` after absorbing z.
+  /// The Gaussian about `mean` after the update with z.
   PoseGaussian<double> refined(double mean) const {
     PoseGaussian<double> posterior = prior;
     const double gain = prior.covariance.xx / s();

@@ -31,13 +31,13 @@ struct Matches {
   }
 };
 
-std::array<Lanes, 3> most_probable(std::size_t living) {
+std::array<Lanes, 3> most_probable(std::size_t particles) {
   const Symmetric3<Lanes> P{Lanes(0.3), Lanes(0.0),  Lanes(0.2),
                             Lanes(0.0), Lanes(0.01), Lanes(0.02)};
   PoseGaussian<Lanes> predicted{{Lanes(0.0), Lanes(0.0), Lanes(0.1)}, P};
   for (std::size_t lane = 0; lane < Lanes::kSize; ++lane)
     set(predicted.mean.y, lane, 0.05 * static_cast<double>(lane));
-  OwnEvolution<Lanes> own(living, 10);
+  OwnEvolution<Lanes> own(particles, 10);
   return own.most_probable(Matches(), 0, predicted, predicted, {.range = 0.01, .bearing = 0.001},
                            3.0, EvolutionSettings(), {7, 0, 3, 0, Draw::evolution});
 }
@@ -46,11 +46,11 @@ std::array<Lanes, 3> most_probable(std::size_t living) {
 TEST(OwnEvolution, DoesNotDependOnHowManyParticlesShareABlock) {
   const std::array<Lanes, 3> all = most_probable(Lanes::kSize);
   EXPECT_NE(get(all[0], 0), get(all[0], 1));
-  for (std::size_t living = 1; living < Lanes::kSize; ++living) {
-    const std::array<Lanes, 3> few = most_probable(living);
-    for (std::size_t lane = 0; lane < living; ++lane)
+  for (std::size_t particles = 1; particles < Lanes::kSize; ++particles) {
+    const std::array<Lanes, 3> few = most_probable(particles);
+    for (std::size_t lane = 0; lane < particles; ++lane)
       for (std::size_t j = 0; j < 3; ++j)
-        EXPECT_EQ(get(few[j], lane), get(all[j], lane)) << living << ' ' << lane;
+        EXPECT_EQ(get(few[j], lane), get(all[j], lane)) << particles << ' ' << lane;
   }
 }
 

@@ -30,21 +30,22 @@ TEST(PackedCandidates, JudgeEveryLivingOneOnceByItsOwnParticle) {
   const auto all = candidates();
   Lanes particles(0.0);
   for (std::size_t lane = 0; lane < kLanes; ++lane) set(particles, lane, 10.0 * double(lane));
-  for (std::size_t living = 1; living <= kLanes; ++living) {
-    const PackedCandidates<Lanes> packed(living, kMembers);
+  for (std::size_t used_lanes = 1; used_lanes <= kLanes; ++used_lanes) {
+    const PackedCandidates<Lanes> packed(used_lanes, kMembers);
     std::vector<Lanes> back(kMembers, Lanes(-1.0));
     for (std::size_t q = 0; q < packed.blocks(); ++q) {
       const auto [number, next] = packed.pack(std::span(all), q);
       const Lanes own = packed.pattern_of(particles, q % packed.patterns());
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        EXPECT_EQ(static_cast<int>(number.get(lane)) % 100, own.get(lane)) << living << ' ' << q;
+        EXPECT_EQ(static_cast<int>(number.get(lane)) % 100, own.get(lane))
+            << used_lanes << ' ' << q;
         EXPECT_EQ(next.get(lane), number.get(lane) + 1.0);
       }
       packed.unpack(number, q, back);
     }
     for (std::size_t member = 0; member < kMembers; ++member)
       for (std::size_t lane = 0; lane < kLanes; ++lane)
-        EXPECT_EQ(back[member].get(lane), lane < living ? name_of(member, lane, 0) : -1.0);
+        EXPECT_EQ(back[member].get(lane), lane < used_lanes ? name_of(member, lane, 0) : -1.0);
   }
 }
 

@@ -49,7 +49,7 @@ class Driven {
     gaussian.move(motion);
     const Scan detections = world.drive.scan(scan);
     if constexpr (requires { gaussian.make_near({}); }) gaussian.make_near(slots_in(detections));
-    for (const Detection& detection : detections) absorb(detection);
+    for (const Detection& detection : detections) update_with(detection);
     if (setting_.keep < 1.0) {
       RngStream draw({world.seed, 0, static_cast<std::uint32_t>(scan), 0, Draw::test});
       gaussian.draw_heading(setting_.keep, draw.normal());
@@ -71,12 +71,12 @@ class Driven {
     return slots;
   }
 
-  void absorb(const Detection& detection) {
+  void update_with(const Detection& detection) {
     const std::uint32_t slot = slot_of_[static_cast<std::size_t>(detection.identity)];
     ExpectedObservation expected;
     if (slot == kUnseen) return;
     if (gaussian.look_at(slot, expected) != JointGaussian::Trouble::none) return;
-    gaussian.absorb(slot, observation_of(detection), setting_.iterations, expected);
+    gaussian.update_with(slot, observation_of(detection), setting_.iterations, expected);
   }
 
   void initialise_landmarks(const Detection& detection) {
@@ -218,7 +218,7 @@ TEST(CompressedGaussian, RestsWhereItSavesNothing) {
   ExpectedObservation expected;
   for (int look = 0; look < 6000; ++look) {
     ASSERT_EQ(gaussian.look_at(0, expected), JointGaussian::Trouble::none);
-    gaussian.absorb(0, expected.observation, 0, expected);
+    gaussian.update_with(0, expected.observation, 0, expected);
   }
   gaussian.make_near({});
   EXPECT_LT(first_far(gaussian), gaussian.landmarks());

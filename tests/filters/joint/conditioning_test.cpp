@@ -61,7 +61,7 @@ TEST(JointGaussian, AnIteratedDetectionEndsAtTheTopOfThePosterior) {
   const RangeBearing<double> detected{7.0, -1.6};
   ExpectedObservation expected;
   ASSERT_EQ(gaussian.look_at(1, expected), JointGaussian::Trouble::none);
-  gaussian.absorb(1, detected, 60, expected);
+  gaussian.update_with(1, detected, 60, expected);
   const Eigen::VectorXd x = mean_of(gaussian);
   const auto at = linearised_observation(Pose{x(0), x(1), x(2)}, Point{x(5), x(6)});
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(2, x.size());
@@ -78,7 +78,7 @@ TEST(JointGaussian, AnIteratedDetectionEndsAtTheTopOfThePosterior) {
   EXPECT_GT((x - textbook.mean).norm(), 0.5) << "hardly moved: no test";
   JointGaussian once = driven(Retraction::additive);
   ASSERT_EQ(once.look_at(1, expected), JointGaussian::Trouble::none);
-  once.absorb(1, detected, 0, expected);
+  once.update_with(1, detected, 0, expected);
   EXPECT_GT((mean_of(once) - x).norm(), 0.05) << "linear enough for one step: no test";
 }
 
@@ -96,7 +96,7 @@ TEST(JointGaussian, AnIteratedDetectionPassesTheBackwardDirection) {
   gaussian.move(MotionIncrement(Pose{}, {.xx = 4.0, .yy = 4.0, .hh = 0.01}));
   ExpectedObservation expected;
   ASSERT_EQ(gaussian.look_at(0, expected), JointGaussian::Trouble::none);
-  gaussian.absorb(0, {0.559, 1.107}, 20, expected);
+  gaussian.update_with(0, {0.559, 1.107}, 20, expected);
   EXPECT_NEAR(gaussian.pose().mean.x, 2.75, 0.2);
   EXPECT_NEAR(gaussian.pose().mean.y, -0.5, 0.2);
 }
@@ -147,7 +147,7 @@ TEST(JointGaussian, BecomingAnotherLeavesNothingOfWhatItWas) {
     for (int k = 0; k < 9; ++k) gaussian->append({4.0 + k, 0.3});
     ExpectedObservation expected;
     ASSERT_EQ(gaussian->look_at(7, expected), JointGaussian::Trouble::none);
-    gaussian->absorb(7, {7.5, 0.28}, 1, expected);
+    gaussian->update_with(7, {7.5, 0.28}, 1, expected);
   }
   EXPECT_EQ(mean_of(large), mean_of(copy));
   EXPECT_EQ(large.pose().covariance, copy.pose().covariance);

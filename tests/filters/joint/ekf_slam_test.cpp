@@ -224,13 +224,13 @@ TEST(JointBelief, CountsAnInnovationThatIsNotPositiveDefiniteInAnIteration) {
   JointBelief belief(setup, Retraction::additive, 3);
   const Detection first{10.0, 0.3, 0}, absurd{1e200, 0.3, 0};  // its square is no number
   belief.start({});
-  belief.absorb({}, Scan(&first, 1));
+  belief.update_with({}, Scan(&first, 1));
   belief.initialise_landmarks(Scan(&first, 1));
   MotionIncrement motion;
   motion.advance({3.0, 0.1}, 0.2, setup.belief);
-  belief.absorb(motion, Scan(&absurd, 1));
+  belief.update_with(motion, Scan(&absurd, 1));
   EXPECT_EQ(belief.outcome().faults, 1u);
-  EXPECT_EQ(belief.absorbed_detections().size(), 1u);  // absorbed as it was linearised last
+  EXPECT_EQ(belief.used_detections().size(), 1u);  // used as it was linearised last
 }
 
 }  // namespace

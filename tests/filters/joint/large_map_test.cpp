@@ -55,7 +55,7 @@ struct Plain {
       ExpectedObservation expected;
       if (slot == known) continue;
       ASSERT_EQ(gaussian.look_at(slot, expected), JointGaussian::Trouble::none);
-      EXPECT_EQ(gaussian.absorb(slot, observation_of(detection), 0, expected),
+      EXPECT_EQ(gaussian.update_with(slot, observation_of(detection), 0, expected),
                 JointGaussian::Trouble::none);
     }
     for (const Detection& detection : scan) {

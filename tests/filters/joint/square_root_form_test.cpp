@@ -62,13 +62,13 @@ struct Comparison {
 
 class SquareRootForm : public testing::TestWithParam<std::pair<Retraction, double>> {
  protected:
-  void absorb(std::size_t slot, const RangeBearing<double>& detected) {
+  void update_with(std::size_t slot, const RangeBearing<double>& detected) {
     ExpectedObservation expected;
     const auto trouble = gaussian.look_at(slot, expected);
     if (trouble == JointGaussian::Trouble::faulty) ++comparison.faults;
     if (trouble != JointGaussian::Trouble::none) return;
-    gaussian.absorb(slot, detected, 0, expected);
-    root.absorb(3 + 2 * static_cast<Eigen::Index>(slot), detected);
+    gaussian.update_with(slot, detected, 0, expected);
+    root.update_with(3 + 2 * static_cast<Eigen::Index>(slot), detected);
   }
 
   void drive(const SmallWorld& world, std::size_t scan) {
@@ -84,7 +84,8 @@ class SquareRootForm : public testing::TestWithParam<std::pair<Retraction, doubl
       if (found == identities.end()) {
         fresh.push_back(detection);
       } else {
-        absorb(static_cast<std::size_t>(found - identities.begin()), observation_of(detection));
+        update_with(static_cast<std::size_t>(found - identities.begin()),
+                    observation_of(detection));
       }
     }
     if (const double keep = GetParam().second; keep < 1.0) {

@@ -10,7 +10,8 @@
 namespace montecarta::filters::reference {
 
 /// FastSLAM II (EQUATIONS 6): the pose Gaussian is refined by the scan, weighed, and a pose drawn
-/// from it. Filters with other Gaussians differ in move_gaussian(), absorb() and log_likelihood().
+/// from it. Filters with other Gaussians differ in move_gaussian(), update_with() and
+/// log_likelihood().
 class FastSlam2 : public FastSlam {
  public:
   FastSlam2(const FastSlamSettings& settings, Weight weight)
@@ -36,8 +37,8 @@ class FastSlam2 : public FastSlam {
 
   /// EQUATIONS 6: refines (p.pose, p.covariance) by one detection and returns log N(nu; S_z);
   /// nothing where the landmark is too near.
-  virtual std::optional<double> absorb(Particle& p, const Landmark& landmark,
-                                       const Detection& detection) const {
+  virtual std::optional<double> update_with(Particle& p, const Landmark& landmark,
+                                            const Detection& detection) const {
     const auto seen = seen_from(p.pose, landmark, detection, R_);
     if (!seen) return std::nullopt;
     const Eigen::Matrix2d S_z = seen->Hx * p.covariance * seen->Hx.transpose() + seen->S_f;
@@ -62,7 +63,7 @@ class FastSlam2 : public FastSlam {
     double log_evidence = 0.0;
     for (std::size_t k = 0; k < scan.size(); ++k) {
       if (p.pairings[k].kind != PairingKind::matched) continue;
-      log_evidence += absorb(p, *p.map[p.pairings[k].landmark], scan[k]).value_or(0.0);
+      log_evidence += update_with(p, *p.map[p.pairings[k].landmark], scan[k]).value_or(0.0);
     }
     return log_evidence;
   }

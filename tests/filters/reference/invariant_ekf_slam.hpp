@@ -48,7 +48,7 @@ class InvariantEkfSlam {
     std::vector<Detection> fresh;
     for (const Detection& detection : scan) {
       const std::size_t k = point_of(detection.identity);
-      k == 0 ? fresh.push_back(detection) : absorb(detection, k);
+      k == 0 ? fresh.push_back(detection) : update_with(detection, k);
     }
     for (const Detection& detection : fresh) append(detection);
   }
@@ -92,7 +92,7 @@ class InvariantEkfSlam {
     return Eigen::Matrix2d{{b.x() / r, b.y() / r}, {-b.y() / (r * r), b.x() / (r * r)}};
   }
 
-  void absorb(const Detection& detection, std::size_t k) {
+  void update_with(const Detection& detection, std::size_t k) {
     const Eigen::Matrix2d to_body = rotation(-heading);
     const Eigen::Vector2d b = to_body * (points[k] - points[0]);
     Eigen::MatrixXd H = Eigen::MatrixXd::Zero(2, P.rows());

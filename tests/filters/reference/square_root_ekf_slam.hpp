@@ -39,7 +39,7 @@ class SquareRootEkfSlam {
   }
 
   /// [sqrt(R) H F; 0 F] = [L 0; W F+] Q: the step is W L^-1 v.
-  void absorb(Eigen::Index row, const RangeBearing<double>& detected) {
+  void update_with(Eigen::Index row, const RangeBearing<double>& detected) {
     const auto at = linearised_observation(pose(), Point{mean(row), mean(row + 1)});
     const Eigen::Index n = F.rows(), m = F.cols();
     Eigen::MatrixXd array = Eigen::MatrixXd::Zero(2 + n, 2 + m);

@@ -29,9 +29,9 @@ class SrcdFastSlam : public FastSlam2 {
     keep(p, tria<3, 14>(columns));
   }
 
-  std::optional<double> absorb(Particle& p, const Landmark& landmark,
-                               const Detection& detection) const override {
-    if (!parts_.pose) return FastSlam2::absorb(p, landmark, detection);
+  std::optional<double> update_with(Particle& p, const Landmark& landmark,
+                                    const Detection& detection) const override {
+    if (!parts_.pose) return FastSlam2::update_with(p, landmark, detection);
     if (!is_far_enough(p.pose, landmark)) return std::nullopt;
     const Eigen::Matrix2d map = factor_of(landmark);
     const Differences<7, 2> whole = observation(p, landmark, map);

@@ -47,7 +47,7 @@ class TextbookEkfSlam {
       if (row < 0) {
         fresh.push_back(detection);
       } else {
-        absorb(detection, row);
+        update_with(detection, row);
       }
     }
     for (const Detection& detection : fresh) append(detection);
@@ -84,7 +84,7 @@ class TextbookEkfSlam {
     return Eigen::Vector2d(std::pow(belief_.sigma_range, 2), std::pow(belief_.sigma_bearing, 2))
         .asDiagonal();
   }
-  void absorb(const Detection& detection, Eigen::Index row) {
+  void update_with(const Detection& detection, Eigen::Index row) {
     const auto [observation, H] = look(row);
     const Eigen::Matrix2d S = sandwich(H, covariance) + R();
     const Eigen::Matrix2d per_S = S.ldlt().solve(Eigen::Matrix2d::Identity());

@@ -32,8 +32,8 @@ class UFastSlam : public FastSlam2 {
     p.covariance = image.covariance;
   }
 
-  std::optional<double> absorb(Particle& p, const Landmark& landmark,
-                               const Detection& detection) const override {
+  std::optional<double> update_with(Particle& p, const Landmark& landmark,
+                                    const Detection& detection) const override {
     if (!is_far_enough(p.pose, landmark)) return std::nullopt;
     const Image<7, 2> whole = observation(p, landmark, landmark.covariance);
     const Image<7, 2> image =

@@ -7,10 +7,10 @@ namespace montecarta::engine {
 
 /// Whether somebody has asked the workers to stop. For a filter that waits for something outside of
 /// the process; any other ends its step soon enough.
-class StopSign {
+class StopFlag {
  public:
-  virtual ~StopSign() = default;
-  virtual bool made() const = 0;
+  virtual ~StopFlag() = default;
+  virtual bool is_set() const = 0;
 };
 
 }  // namespace montecarta::engine

@@ -15,18 +15,18 @@ namespace montecarta::engine {
 /// `body` is the loop's body, whose address tells one loop from another.
 #ifdef MONTECARTA_THREAD_SANITIZER
 
-class LoopSeam {
+class LoopOrder {
  public:
-  explicit LoopSeam(const void* body) : body_(body) { __tsan_release(begin()); }
-  ~LoopSeam() { __tsan_acquire(end()); }
-  LoopSeam(const LoopSeam&) = delete;
-  LoopSeam& operator=(const LoopSeam&) = delete;
+  explicit LoopOrder(const void* body) : body_(body) { __tsan_release(begin()); }
+  ~LoopOrder() { __tsan_acquire(end()); }
+  LoopOrder(const LoopOrder&) = delete;
+  LoopOrder& operator=(const LoopOrder&) = delete;
 
   /// Around one call of the body.
   class Call {
    public:
-    explicit Call(const void* body) : body_(body) { __tsan_acquire(LoopSeam::begin(body_)); }
-    ~Call() { __tsan_release(LoopSeam::end(body_)); }
+    explicit Call(const void* body) : body_(body) { __tsan_acquire(LoopOrder::begin(body_)); }
+    ~Call() { __tsan_release(LoopOrder::end(body_)); }
     Call(const Call&) = delete;
     Call& operator=(const Call&) = delete;
 
@@ -45,8 +45,8 @@ class LoopSeam {
 
 #else
 
-struct LoopSeam {
-  explicit LoopSeam(const void* /*body*/) {}
+struct LoopOrder {
+  explicit LoopOrder(const void* /*body*/) {}
   struct Call {
     explicit Call(const void* /*body*/) {}
   };
