@@ -148,6 +148,8 @@ void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
   read_cloud(i, rows.cloud, scratch);
   read_whole("joint_mean", i, rows.joint.mean);
   read_whole("joint_covariance", i, rows.joint.covariance);
+  read_whole("error", i, rows.error.value);
+  read_whole("error_covariance", i, rows.error.covariance);
   rows.run = file_->runs()[i];
   {
     const std::lock_guard lock(reading_);

@@ -49,11 +49,30 @@ struct JointRows {
   std::size_t states() const { return mean.empty() ? 0 : covariance.size() / mean.size(); }
 };
 
+/// Errors of an imported estimate at every scan, in the convention that its file states; empty
+/// where not stored.
+struct ErrorRows {
+  std::vector<double> value;       ///< {scan, component}
+  std::vector<double> covariance;  ///< {scan, component, component} as the other program gave it
+
+  std::size_t components() const { return value.empty() ? 0 : covariance.size() / value.size(); }
+  std::size_t scans() const { return value.empty() ? 0 : value.size() / components(); }
+  Eigen::VectorXd error(std::size_t scan) const {
+    const auto d = static_cast<Eigen::Index>(components());
+    return Eigen::Map<const Eigen::VectorXd>(value.data() + scan * components(), d);
+  }
+  Eigen::MatrixXd covariance_of(std::size_t scan) const {
+    const auto d = static_cast<Eigen::Index>(components());
+    const double* rows = covariance.data() + scan * components() * components();
+    return Eigen::Map<const Eigen::MatrixXd>(rows, d, d).transpose();
+  }
+};
+
 /// What analysis needs of one run, as plain arrays: where they come from does not matter. Columns
 /// that are not stored are empty.
 struct RunRows {
   std::vector<double> truth;  ///< {scan, 3} [m, m, rad]; empty where nobody knows it
-  MomentRows spread;          ///< its mean is always there
+  MomentRows spread;          ///< its mean is always there but in files of other states than poses
   MomentRows mixture;
   std::vector<double> ess;                      ///< {scan}
   std::vector<std::uint32_t> resampled;         ///< {scan} 0 or 1
@@ -70,6 +89,7 @@ struct RunRows {
   std::optional<FinalMap> final_map;  ///< at the last scan, if stored and whole
   CloudRows cloud;
   JointRows joint;
+  ErrorRows error;                         ///< of imported estimates: what NEES is made of
   std::uint64_t run = 0;                   ///< its number in the study
   std::vector<Eigen::Vector2d> landmarks;  ///< [m] true positions in this run, by identity; empty
                                            ///< where unknown

@@ -30,6 +30,7 @@ std::vector<DrawnPath> drawn_cells(const ResultFile& file, std::size_t run_index
   std::vector<DrawnPath> cells;
   for (std::size_t c = 0; c < file.cells().size() && cells.size() < most; ++c) {
     if (file.status(file.cells()[c])[run_index] != RunStatus::complete) continue;
+    if (!file.cells()[c].has("pose_mean")) continue;
     cells.push_back(drawn_path(file, c, run_index));
   }
   return cells;

@@ -30,7 +30,7 @@ MapCriteria map_criteria_of(const ResultFile& file) {
 }  // namespace
 
 RunCriteria criteria_of(const ResultFile& file, double level, double within) {
-  const std::size_t scans = file.has_truth() ? file.scan_times().size() : 0;
+  const std::size_t scans = file.has_errors() ? file.scan_times().size() : 0;
   RunCriteria criteria{.times = file.scan_times(),
                        .level = level,
                        .within = within,

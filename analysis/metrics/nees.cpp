@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kLeastVarianceShare = 1e-10;
 constexpr double kLeastPivot = 1e-12;
+constexpr double kLargestAsymmetry = 1e-6;  // of the deviations: as six printed digits leave it
 
 template <int D>
 using Vec = Eigen::Matrix<double, D, 1>;
@@ -23,10 +24,10 @@ std::optional<double> quadratic_form(const Vec<D>& error, const Mat<D>& covarian
                                      const Vec<D>& least_variance) {
   if (!(covariance.diagonal().array() > least_variance.array()).all()) return std::nullopt;
   const Vec<D> scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
-  Mat<D> L = Mat<D>::Zero();
+  Mat<D> L = Mat<D>::Zero(error.size(), error.size());
   double sum = 0.0;
-  Vec<D> y;
-  for (int i = 0; i < D; ++i) {
+  Vec<D> y(error.size());
+  for (int i = 0; i < error.size(); ++i) {
     double rest = error(i) * scale(i);
     double pivot = 1.0;
     for (int j = 0; j < i; ++j) {
@@ -57,6 +58,16 @@ Nees nees(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, int f
   P.diagonal() += floor;
   const auto value = quadratic_form<Dimension>(e, P, least);
   return {value.value_or(std::numeric_limits<double>::quiet_NaN()), true};
+}
+
+double strict_nees(const Eigen::VectorXd& error, const Eigen::MatrixXd& P) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (!error.allFinite() || !P.allFinite() || !(P.diagonal().array() > 0.0).all()) return kNone;
+  const Eigen::VectorXd deviation = P.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd allowed = kLargestAsymmetry * deviation * deviation.transpose();
+  if (((P - P.transpose()).cwiseAbs().array() > allowed.array()).any()) return kNone;
+  const Eigen::VectorXd least = Eigen::VectorXd::Zero(error.size());
+  return quadratic_form<Eigen::Dynamic>(error, P, least).value_or(kNone);
 }
 
 double ideal_spread_nees(std::size_t dimension, std::size_t particles) {

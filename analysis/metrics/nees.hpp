@@ -24,6 +24,11 @@ struct Nees {
 template <int Dimension>
 Nees nees(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, int first = 0);
 
+/// NEES of an imported estimate, of which nothing is repaired: `error` {d} with `covariance` {d,
+/// d}. NaN where the covariance is not symmetric (to 1e-6 of the deviations) or not positive
+/// definite (a variance not above 0, a pivot of the correlation matrix not above 1e-12).
+double strict_nees(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance);
+
 /// What the NEES of `dimension` components is on the average if a filter is perfect but its
 /// covariance is the spread, with 1 / particles, of so many independent draws (Hotelling;
 /// STATISTICS 4): d (M + 1) / (M - d - 2), infinite where there are too few. Weights and common

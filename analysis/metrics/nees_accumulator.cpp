@@ -44,9 +44,11 @@ double nees_distance(double nees, std::size_t dimension) {
   return std::abs(std::log2(nees / static_cast<double>(dimension)));
 }
 
-NeesAccumulator::NeesAccumulator(ErrorBlock block, Moments moments, std::size_t scans)
+NeesAccumulator::NeesAccumulator(ErrorBlock block, Moments moments, std::size_t scans,
+                                 std::size_t dimension)
     : block_(block),
       moments_(moments),
+      dimension_(dimension == 0 ? dimension_of(block) : dimension),
       sum_(scans),
       runs_(scans),
       table_(scans),
@@ -70,13 +72,13 @@ void NeesAccumulator::add(std::span<const double> value, std::span<const std::ui
     ++runs_[s];
     table_.add(s, value[s]);
   }
-  neighbours_.add(value, kCapFactor * static_cast<double>(dimension_of(block_)));
+  neighbours_.add(value, kCapFactor * static_cast<double>(dimension_));
   run_averages_.push_back(mean_of_finite(value));
 }
 
 NeesSeries NeesAccumulator::series(double level, const BandWalks& walks) const {
   NeesSeries series;
-  series.dimension = dimension_of(block_);
+  series.dimension = dimension_;
   series.samples = samples_;
   series.floored = floored_;
   series.undefined = undefined_;

@@ -21,7 +21,8 @@ double nees_distance(double nees, std::size_t dimension);
 /// grows by one number with every run.
 class NeesAccumulator {
  public:
-  NeesAccumulator(ErrorBlock block, Moments moments, std::size_t scans);
+  /// `dimension`: components of the block; 0: those of a pose in the plane.
+  NeesAccumulator(ErrorBlock block, Moments moments, std::size_t scans, std::size_t dimension = 0);
   Moments moments() const { return moments_; }
   void add(const RunMetrics& metrics);
   /// The NEES {scan} of a run whose covariances were all regular; `too_few` {scan}: 1 where too few
@@ -36,6 +37,7 @@ class NeesAccumulator {
 
   ErrorBlock block_;
   Moments moments_;
+  std::size_t dimension_;
   std::vector<double> sum_;          ///< {scan} of finite NEES
   std::vector<std::uint32_t> runs_;  ///< {scan} in the sum
   QuantileTable table_;

@@ -2,6 +2,7 @@
 // NEES of the pose and its parts: what the verdict is made of.
 #include "analysis/metrics/cell_panels.hpp"
 #include "analysis/metrics/efficiency.hpp"
+#include "analysis/metrics/imported_notes.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/nees_accumulator.hpp"
@@ -27,7 +28,11 @@ constexpr Score kNeesScores[] = {
     {"nees_position", "1", "mean NEES of the position",
      [](const MeasuredRun& run) { return mean_nees(run, ErrorBlock::position); }, Better::neither},
     {"nees_distance", "1", "NEES distance from consistency [doublings]",
-     [](const MeasuredRun& run) { return nees_distance(mean_nees(run, ErrorBlock::pose), 3); }},
+     [](const MeasuredRun& run) {
+       const NeesRows* nees = run.metrics.leading_nees();
+       return nees_distance(mean_nees(run, ErrorBlock::pose),
+                            nees == nullptr ? 3 : nees->dimension[0]);
+     }},
 };
 
 class NeesOverRuns final : public MetricSums {
@@ -52,7 +57,10 @@ class NeesOverRuns final : public MetricSums {
     for (const Moments moments : kMoments) {
       if (metrics.nees(moments).value[0].empty()) continue;
       for (const ErrorBlock block : kErrorBlocks) {
-        nees_.emplace_back(block, moments, criteria_->times.size());
+        const auto b = static_cast<std::size_t>(block);
+        if (metrics.nees(moments).value[b].empty()) continue;
+        nees_.emplace_back(block, moments, criteria_->times.size(),
+                           metrics.nees(moments).dimension[b]);
       }
     }
   }
@@ -138,6 +146,7 @@ Section verdict_section(const StudyAnalysis& study) {
   Section section{"verdict", "Verdict"};
   section.add("verdict", verdict_table(study));
   section.add("accuracy", accuracy_table(study));
+  section.add(imported_notes(study));
   section.add(too_few_notes(study));
   section.add(verdict_notes(study));
   section.add(bound_notes(study.bound));

@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cmath>
 
 namespace montecarta::analysis {
 namespace {
@@ -36,6 +37,24 @@ void measure_nees(const std::vector<double>& truth, const MomentRows& moments, N
   }
 }
 
+/// Of imported errors: all components, and of a pose in the plane its parts.
+void measure_imported(const ErrorRows& errors, bool is_pose, NeesRows& rows) {
+  const std::size_t d = errors.components();
+  const std::size_t scans = errors.scans();
+  rows.dimension = is_pose ? std::array<std::size_t, 3>{3, 2, 1} : std::array<std::size_t, 3>{d};
+  for (auto& value : rows.value) value.clear();
+  for (auto& floored : rows.floored) floored.clear();
+  for (std::size_t s = 0; s < scans; ++s) {
+    const Eigen::VectorXd e = errors.error(s);
+    const Eigen::MatrixXd P = errors.covariance_of(s);
+    rows.value[0].push_back(strict_nees(e, P));
+    if (!is_pose) continue;
+    const bool is_valid = !std::isnan(rows.value[0].back());
+    rows.value[1].push_back(is_valid ? strict_nees(e.head(2), P.topLeftCorner(2, 2)) : kNaN);
+    rows.value[2].push_back(is_valid ? strict_nees(e.tail(1), P.bottomRightCorner(1, 1)) : kNaN);
+  }
+}
+
 /// Tables that all threads read.
 const SamplerScale& scale_of(ErrorBlock block) {
   static const std::array<SamplerScale, 3> scales = {SamplerScale(3), SamplerScale(2),
@@ -55,7 +74,7 @@ void RunMetrics::measure_errors(const RunRows& rows, std::size_t scans) {
   squared_heading_.clear();
   errors_.clear();
   covariances_.clear();
-  if (rows.truth.empty()) return;
+  if (rows.truth.empty() || mean.empty()) return;
   expect(rows.truth.size() == 3 * scans && mean.size() == 3 * scans, "poses are {scan, 3}");
   for (std::size_t s = 0; s < scans; ++s) {
     const Eigen::Vector3d error = boxminus(pose_of(rows.truth, s), pose_of(mean, s));
@@ -111,7 +130,12 @@ void RunMetrics::correct_spread(const RunRows& rows, std::size_t particles) {
 void RunMetrics::measure(const RunRows& rows, std::size_t particles,
                          std::span<const double> times) {
   measure_errors(rows, times.size());
-  measure_nees(rows.truth, rows.spread, nees_[static_cast<std::size_t>(Moments::spread)]);
+  NeesRows& spread = nees_[static_cast<std::size_t>(Moments::spread)];
+  if (rows.error.components() > 0) {
+    measure_imported(rows.error, !rows.spread.mean.empty(), spread);
+  } else {
+    measure_nees(rows.truth, rows.spread, spread);
+  }
   measure_nees(rows.truth, rows.mixture, nees_[static_cast<std::size_t>(Moments::mixture)]);
   correct_spread(rows, particles);
   diversity_ = nullptr;

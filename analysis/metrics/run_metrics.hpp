@@ -18,7 +18,8 @@ namespace montecarta::analysis {
 
 /// NEES of one run by one definition of the moments; empty where no covariance is stored.
 struct NeesRows {
-  std::array<std::vector<double>, 3> value;          ///< {block}{scan}
+  std::array<std::size_t, 3> dimension = {3, 2, 1};  ///< {block} components
+  std::array<std::vector<double>, 3> value;  ///< {block}{scan}; a block may be empty but the first
   std::array<std::vector<std::uint8_t>, 3> floored;  ///< {block}{scan} the floor was added
   /// {block}{scan} too few effective draws to be judged (SamplerScale), value NaN; empty where the
   /// moments are not corrected.

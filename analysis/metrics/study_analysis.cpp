@@ -4,6 +4,7 @@
 #include "analysis/data/run_reader.hpp"
 #include "analysis/metrics/cell_sums.hpp"
 #include "analysis/metrics/efficiency.hpp"
+#include "analysis/metrics/imported_notes.hpp"
 #include "engine/errors.hpp"
 
 #include <algorithm>
@@ -82,7 +83,8 @@ StudyAnalysis begin(const ResultFile& file, double level, std::optional<double> 
     study.joint_times.push_back(study.times[scan]);
   }
   study.duration = study.times.empty() ? 0.0 : study.times.back();
-  study.has_truth = file.has_truth();
+  study.has_truth = file.has_errors();
+  if (!file.cells().empty()) study.imported = imported_state(file.cells().front());
   study.beacons = file.landmarks().size();
   return study;
 }

@@ -21,6 +21,16 @@ struct JudgedReference {
   bool has_heading = false;
 };
 
+/// What estimates of another program are of; all cells of a file agree.
+struct ImportedState {
+  std::string state;       ///< "pose", "pose in space" or "vector"; empty: filters of ours
+  std::string convention;  ///< of the error: "world", "body" or "right-invariant"
+  std::vector<std::string> components = {"x", "y", "heading"};
+  std::vector<std::string> units = {"m", "m", "rad"};
+
+  bool is_imported() const { return !state.empty(); }
+};
+
 /// Metrics of every cell of a result file, evaluated at its scans, just after each update.
 struct StudyAnalysis {
   std::string file;  ///< name of the result file, without folders
@@ -35,7 +45,8 @@ struct StudyAnalysis {
   double duration = 0.0;            ///< [s] time of the last scan
   std::vector<double> times;        ///< [s] of the scans
   std::vector<double> joint_times;  ///< [s] of the scans at which joint estimates are stored
-  bool has_truth = true;  ///< whether the true path is known: without it no errors, no NEES
+  bool has_truth = true;   ///< whether errors are known: without a true path no errors, no NEES
+  ImportedState imported;  ///< of files that 'montecarta judge' made
   std::vector<JudgedReference> references;  ///< of a recorded drive; the first one leads
   std::size_t beacons = 0;                  ///< landmarks whose true positions are known
   CramerRaoBound bound;                     ///< below which no error can be

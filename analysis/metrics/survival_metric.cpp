@@ -14,14 +14,16 @@ namespace {
 
 class SurvivalOverRuns final : public MetricSums {
  public:
-  explicit SurvivalOverRuns(const RunCriteria& criteria)
-      : criteria_(&criteria),
-        run_bound_(nees_bounds(1, dimension_of(ErrorBlock::pose), criteria.level).upper) {}
+  explicit SurvivalOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
   void add(const MeasuredRun& run) override {
-    if (run.metrics.covariances().empty()) return;
-    const std::vector<double>& nees = run.metrics.leading_nees()->value[0];
+    const NeesRows* nees = run.metrics.leading_nees();
+    if (nees == nullptr) return;
+    if (dimension_ != nees->dimension[0]) {
+      dimension_ = nees->dimension[0];
+      run_bound_ = nees_bounds(1, dimension_, criteria_->level).upper;
+    }
     std::vector<bool> above;
-    for (const double value : nees) above.push_back(value > run_bound_);
+    for (const double value : nees->value[0]) above.push_back(value > run_bound_);
     const auto exit = first_lasting(above, kLastingScans);
     run_exits_.push_back(exit ? criteria_->times[*exit] : std::numeric_limits<double>::infinity());
   }
@@ -34,7 +36,8 @@ class SurvivalOverRuns final : public MetricSums {
 
  private:
   const RunCriteria* criteria_;
-  double run_bound_;               ///< upper end of the band of a single run's NEES
+  std::size_t dimension_ = 0;
+  double run_bound_ = kNaN;        ///< upper end of the band of a single run's NEES
   std::vector<double> run_exits_;  ///< [s] {run}
 };
 

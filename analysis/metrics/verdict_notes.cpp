@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/imported_notes.hpp"
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/number_text.hpp"
 
@@ -6,12 +7,18 @@ namespace montecarta::analysis {
 
 std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
   const std::string level = level_text(study.level), margin = exact_text(study.within);
+  const std::string dimension = std::to_string(study.imported.components.size());
   return {
       "ANEES compares the errors that happened with the errors the filter expected (its "
-      "covariance), averaged over runs and scans: 3 means it knows how wrong it is (three "
-      "components: x, y, heading), more means it is overconfident, less that it is conservative. "
-      "'/ expected' divides it by 3; the brackets hold what infinitely many runs would give in at "
-      "least " +
+      "covariance), averaged over runs and scans: " +
+          dimension +
+          " means it knows how wrong it is (as many components: " + components_text(study) +
+          "), more means it is overconfident, less that it is conservative. '/ expected' divides "
+          "it "
+          "by " +
+          dimension +
+          "; the brackets hold what infinitely many runs would give in at "
+          "least " +
           level +
           " of studies. Where a few runs decide the mean no interval holds it: 'heavy tail', and "
           "the median over runs follows with its interval. 'Would find' is the least ratio that "

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/imported_notes.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/reference_table.hpp"
 #include "analysis/metrics/verdict_table.hpp"
@@ -30,6 +31,7 @@ void print_failures(std::ostream& out, const StudyAnalysis& study) {
 void print_warnings(std::ostream& out, const StudyAnalysis& study) {
   for (const CellAnalysis& cell : study.cells) {
     const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
+    if (study.imported.is_imported()) break;  // imported_notes() say it
     if (pose == nullptr || pose->series.floored + pose->series.undefined == 0) continue;
     print_wrapped(out, cell.label + ": of " + std::to_string(pose->series.samples) +
                            " covariances " + std::to_string(pose->series.floored) +
@@ -98,6 +100,7 @@ void print_tables(std::ostream& out, const StudyAnalysis& study, Explanations ex
   if (explanations == Explanations::shown) {
     for (const Section& section : sections) print_section_notes(out, section);
   } else {
+    for (const std::string& note : imported_notes(study)) print_wrapped(out, note);
     for (const std::string& note : too_few_notes(study)) print_wrapped(out, note);
   }
   print_printed(out, study);

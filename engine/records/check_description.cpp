@@ -93,7 +93,8 @@ const std::vector<std::vector<std::string_view>> kTogether = {
     {"particle_pose", "log_weight"},
     {"map_mean", "map_covariance", "map_seen"},
     {"final_map_mean", "final_map_covariance", "final_map_seen"},
-    {"joint_mean", "joint_covariance"}};
+    {"joint_mean", "joint_covariance"},
+    {"error", "error_covariance"}};
 
 void check_columns(const StoredCell& cell, const Check& check) {
   for (const Column& column : cell.columns) {
@@ -108,8 +109,15 @@ void check_columns(const StoredCell& cell, const Check& check) {
                  "cells/" + cell.label + " has only a part of " + std::string(together.front()) +
                      " and what belongs to it");
   }
-  check.expect(cell.has("pose_mean"), "cells/" + cell.label + " has no pose_mean");
+  check.expect(cell.has("pose_mean") || cell.has("error"),
+               "cells/" + cell.label + " has no pose_mean");
   check.expect(cell.label.size() <= kLongestLabel, "the label of a cell is too long");
+}
+
+/// Rows and columns of a covariance are as many.
+Axis row_axis(Axis axis) {
+  if (axis == Axis::state_column) return Axis::state;
+  return axis == Axis::error_component_column ? Axis::error_component : axis;
 }
 
 void check_lengths(const ResultDescription& d, const StoredCell& cell, const Check& check) {
@@ -117,11 +125,12 @@ void check_lengths(const ResultDescription& d, const StoredCell& cell, const Che
                             .scan = d.scan_times.size(),
                             .joint = d.joint_scans.size(),
                             .particle = cell.particles,
-                            .landmark = std::nullopt};
+                            .landmark = std::nullopt,
+                            .error_component = std::nullopt};
   std::map<Axis, std::size_t> own;
   for (const Column& column : cell.columns) {
     for (std::size_t a = 0; a < column.axes.size(); ++a) {
-      const Axis axis = column.axes[a] == Axis::state_column ? Axis::state : column.axes[a];
+      const Axis axis = row_axis(column.axes[a]);
       const auto known =
           length_of(axis, lengths).value_or(own.try_emplace(axis, column.shape[a]).first->second);
       check.expect(column.shape[a] == known, "cells/" + cell.label + "/" + column.name +

@@ -23,14 +23,17 @@ bool has_mixture(const Cell& cell) { return cell.mixture; }
 bool has_particles(const Cell& cell) { return cell.particles > 0; }
 bool has_map(const Cell& cell) { return cell.landmarks > 0; }
 bool has_joint(const Cell& cell) { return cell.joint; }
+bool has_pose(const Cell& cell) { return cell.poses; }
+bool is_imported(const Cell& cell) { return cell.error_components > 0; }
+bool is_filter(const Cell& cell) { return !is_imported(cell); }
 
 constexpr const char* kPose = "m, m, rad";
 constexpr const char* kPoseSquared = "(m, m, rad)^2";
 
 /// Of a number of every scan, without a unit.
 ColumnKind of_report(const char* name, const char* group, Element element, const char* long_name,
-                     double (*value)(const ScanReport&)) {
-  return {name, group, element, {Axis::scan}, "1", long_name, nullptr, value};
+                     double (*value)(const ScanReport&), bool (*applies)(const Cell&) = is_filter) {
+  return {name, group, element, {Axis::scan}, "1", long_name, applies, value};
 }
 
 ColumnKind column(const char* name, const char* group, Element element, std::vector<Axis> axes,
@@ -45,10 +48,10 @@ std::vector<ColumnKind> make_table() {
   using enum Element;
   using Report = const ScanReport&;
   return {
-      column("pose_mean", "pose", f64, {time, component}, kPose, "estimated pose"),
-      column("pose_covariance", "covariance", f64, {time, component, component_column},
-             kPoseSquared,
-             "covariance of the pose: spread of the weighted particles, or the Gaussian's"),
+      column("pose_mean", "pose", f64, {time, component}, kPose, "estimated pose", has_pose),
+      column(
+          "pose_covariance", "covariance", f64, {time, component, component_column}, kPoseSquared,
+          "covariance of the pose: spread of the weighted particles, or the Gaussian's", has_pose),
       column("pose_mean_mixture", "covariance", f64, {time, component}, kPose,
              "mean of the Gaussian mixture before sampling", has_mixture),
       column("pose_covariance_mixture", "covariance", f64, {time, component, component_column},
@@ -64,8 +67,14 @@ std::vector<ColumnKind> make_table() {
                 [](Report r) { return r.nis; }),
       of_report("nis_dof", "pose", u32, "degrees of freedom of nis",
                 [](Report r) { return static_cast<double>(r.nis_dof); }),
-      of_report("numerical_faults", "pose", u32, "factorisations answered by a fallback",
-                [](Report r) { return static_cast<double>(r.numerical_faults); }),
+      of_report(
+          "numerical_faults", "pose", u32, "factorisations answered by a fallback",
+          [](Report r) { return static_cast<double>(r.numerical_faults); }, nullptr),
+      column("error", "pose", f64, {scan, error_component}, "as the cell's setting units",
+             "imported: error of the estimate, by the cell's setting error", is_imported),
+      column("error_covariance", "pose", f64, {scan, error_component, error_component_column},
+             "products of the cell's setting units",
+             "imported: covariance of error, as the other program reported it", is_imported),
       of_report("map_size", "pose", f64, "landmarks in the map, mean over the particles",
                 [](Report r) { return r.map_size; }),
       of_report("association_correct", "association", f64,
@@ -147,6 +156,9 @@ std::optional<std::size_t> length_of(Axis axis, const AxisLengths& lengths) {
     case Axis::state_column:
       if (lengths.landmark) return 3 + 2 * *lengths.landmark;
       break;
+    case Axis::error_component:
+    case Axis::error_component_column:
+      return lengths.error_component;
   }
   return std::nullopt;
 }

@@ -41,9 +41,10 @@ bool is_selected(const ColumnKind& kind, const ColumnSelection& selection);
 /// How long the axes of a cell's columns are.
 struct AxisLengths {
   std::size_t time = 0, scan = 0, joint = 0, particle = 0;
-  std::optional<std::size_t> landmark;  ///< nullopt: not known
+  std::optional<std::size_t> landmark;         ///< nullopt: not known
+  std::optional<std::size_t> error_component;  ///< likewise
 };
-/// nullopt where that of the landmarks decides, which is not known.
+/// nullopt where that of the landmarks or of the error decides, which is not known.
 std::optional<std::size_t> length_of(Axis axis, const AxisLengths& lengths);
 
 }  // namespace montecarta::engine

@@ -12,13 +12,20 @@ namespace montecarta::engine {
 namespace {
 
 /// In the order of Axis.
-constexpr std::array<std::string_view, 11> kAxisNames = {"time",        "scan",
-                                                         "particle",    "landmark",
-                                                         "component",   "component_column",
-                                                         "coordinate",  "coordinate_column",
-                                                         "joint",       "state",
-                                                         "state_column"};
-static_assert(kAxisNames.size() == static_cast<std::size_t>(Axis::state_column) + 1);
+constexpr std::array<std::string_view, 13> kAxisNames = {"time",
+                                                         "scan",
+                                                         "particle",
+                                                         "landmark",
+                                                         "component",
+                                                         "component_column",
+                                                         "coordinate",
+                                                         "coordinate_column",
+                                                         "joint",
+                                                         "state",
+                                                         "state_column",
+                                                         "error_component",
+                                                         "error_component_column"};
+static_assert(kAxisNames.size() == static_cast<std::size_t>(Axis::error_component_column) + 1);
 
 }  // namespace
 

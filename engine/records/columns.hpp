@@ -27,7 +27,9 @@ enum class Axis : std::uint8_t {
   coordinate_column,
   joint,  ///< the scans of joint_scans_of()
   state,  ///< x, y, heading, then x and y of each landmark
-  state_column
+  state_column,
+  error_component,  ///< of an imported estimate's error, as the cell's settings name them
+  error_component_column
 };
 /// The scans of `all` at which joint estimates are stored: the last of each of `wanted` parts, as
 /// equal as can be, of the run.

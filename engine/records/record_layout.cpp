@@ -33,7 +33,8 @@ RecordLayout::RecordLayout(const Cell& cell, const ColumnSelection& selection,
                             .scan = scans_,
                             .joint = joint_scans_.size(),
                             .particle = cell.particles,
-                            .landmark = cell.landmarks};
+                            .landmark = cell.landmarks,
+                            .error_component = cell.error_components};
   for (const ColumnKind& kind : column_table()) {
     if (!is_selected(kind, selection) || (kind.applies != nullptr && !kind.applies(cell))) continue;
     if (kind.axes.front() == Axis::joint && joint_scans_.empty()) continue;

@@ -93,6 +93,10 @@ const std::vector<ReferencePath>& ResultFile::references() const {
   return description().references;
 }
 bool ResultFile::has_truth() const { return description().has_truth; }
+bool ResultFile::has_errors() const {
+  return has_truth() ||
+         std::ranges::any_of(cells(), [](const StoredCell& cell) { return cell.has("error"); });
+}
 const TextPairs& ResultFile::scenario() const { return description().scenario; }
 const TextPairs& ResultFile::provenance() const { return description().provenance; }
 const std::vector<StoredCell>& ResultFile::cells() const { return description().cells; }

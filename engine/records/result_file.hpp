@@ -45,6 +45,8 @@ class ResultFile {
   const std::vector<double>& scan_times() const;  ///< [s]
   const std::vector<std::pair<double, double>>& landmarks() const;  ///< [m] true positions
   const std::vector<std::pair<double, double>>& waypoints() const;  ///< [m]
+  /// Whether errors are known: true poses are stored, or errors of imported estimates.
+  bool has_errors() const;
   const std::vector<ReferencePath>& references() const;  ///< of a recorded drive, else none
   bool has_truth() const;                                ///< whether true poses are stored
   const TextPairs& scenario() const;

@@ -163,6 +163,9 @@ void add_cell(const h5::Handle& cells, const StoredCell& cell, std::size_t runs,
   for (const Axis axis : {Axis::state, Axis::state_column}) {
     add_own_scale(group, cell, axis, "0 x, 1 y, 2 heading, then x and y of each landmark", scales);
   }
+  for (const Axis axis : {Axis::error_component, Axis::error_component_column}) {
+    add_own_scale(group, cell, axis, "component, in the order of the setting components", scales);
+  }
   add_bookkeeping(group, runs, scales);
   for (const Column& column : cell.columns) add_column(group, column, runs, scales);
 }

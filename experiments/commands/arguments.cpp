@@ -23,7 +23,7 @@ po::options_description described(const CommandSpec& spec) {
     const std::string names = option.name + (option.letter.empty() ? "" : "," + option.letter);
     if (option.values.empty()) {
       all.add_options()(names.c_str(), po::value<bool>()->zero_tokens()->implicit_value(true));
-    } else if (option.values.size() == 1) {
+    } else if (option.values.size() == 1 && !option.is_list) {
       all.add_options()(names.c_str(), po::value<Texts>()->composing());
     } else {
       all.add_options()(names.c_str(), po::value<Texts>()->multitoken()->composing());
@@ -62,7 +62,7 @@ void check_count(const OptionSpec& option, std::size_t given, std::size_t times)
     throw StudyError("--" + option.name + ": given " + std::to_string(times) +
                      " times (once is meant): remove all but one");
   }
-  if (given == option.values.size() * times) return;
+  if (option.is_list ? given > 0 : given == option.values.size() * times) return;
   throw StudyError("--" + option.name + ": " + std::to_string(given) + " values (it takes " +
                    std::to_string(option.values.size()) + "): write --" + option.name + " " +
                    joined(option.values, " "));

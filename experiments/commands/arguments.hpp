@@ -18,6 +18,7 @@ struct OptionSpec {
   std::vector<std::string> values;  ///< names of what follows it; empty: a flag
   std::string meaning;
   bool repeatable = false;
+  bool is_list = false;  ///< one value or more, up to the next option
 };
 
 /// What stands on a command's line besides options.

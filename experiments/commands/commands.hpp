@@ -33,6 +33,7 @@ Command bounds_command();
 Command plan_command();
 Command convert_command();
 Command export_command();
+Command judge_command();
 Command list_command();
 
 /// All commands, in the order of the help.

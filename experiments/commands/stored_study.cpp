@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/commands/stored_study.hpp"
 
+#include "engine/errors.hpp"
 #include "engine/records/open_result.hpp"
 #include "engine/records/provenance.hpp"
 #include "engine/records/sha256.hpp"
+#include "experiments/judging/imported_plan.hpp"
 
 #include <iostream>
 
@@ -14,6 +16,11 @@ OptionSpec data_option() {
 }
 
 Study study_in(const ResultFile& file, const Arguments& arguments) {
+  if (file.study_text().starts_with(kImportedSection)) {
+    throw StudyError(file.path().string() +
+                     ": holds estimates that another program computed (nothing here can compute "
+                     "them again): judge the same files again with 'montecarta judge'");
+  }
   std::vector<std::string> overrides;
   if (const auto folder = arguments.text("data"))
     overrides.push_back("scenario.path=" + std::filesystem::absolute(*folder).string());

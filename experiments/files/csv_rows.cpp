@@ -28,8 +28,24 @@ std::string tight(std::string_view row) {
 
 CsvRows::CsvRows(const std::filesystem::path& path, std::span<const std::string> headers)
     : path_(path.string()), text_(whole_file(path)), rest_(text_) {
-  if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
+  skip_mark();
   read_header(headers);
+}
+
+CsvRows::CsvRows(const std::filesystem::path& path)
+    : path_(path.string()), text_(whole_file(path)), rest_(text_) {
+  skip_mark();
+  const std::optional<std::string_view> row = take_row();
+  if (!row) {
+    throw StudyError(path_ + ": empty (the first row names the columns): begin with their names");
+  }
+  header_text_ = joined(split(*row, ','), ",");
+}
+
+std::vector<std::string> CsvRows::columns() const { return split(header_text_, ','); }
+
+void CsvRows::skip_mark() {
+  if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
 }
 
 std::string CsvRows::place() const { return path_ + ":" + std::to_string(line_); }

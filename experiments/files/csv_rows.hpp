@@ -17,12 +17,16 @@ class CsvRows {
  public:
   /// Reads the file and its header, which must be one of `headers`, e.g. "kind,x,y".
   CsvRows(const std::filesystem::path& path, std::span<const std::string> headers);
+  /// Whatever its header is: see columns().
+  explicit CsvRows(const std::filesystem::path& path);
 
   CsvRows(const CsvRows&) = delete;
   CsvRows& operator=(const CsvRows&) = delete;
 
   /// Which of the headers it has.
   std::size_t header() const { return header_; }
+  /// Names of its columns, trimmed.
+  std::vector<std::string> columns() const;
   /// Reads the next row; false after the last one. Throws unless it has as many fields as the
   /// header.
   bool next();
@@ -37,6 +41,7 @@ class CsvRows {
   /// Takes the next row that is not empty; nullopt at the end.
   std::optional<std::string_view> take_row();
   void refuse_open_end(std::string_view line) const;
+  void skip_mark();
   void read_header(std::span<const std::string> headers);
 
   std::string path_;

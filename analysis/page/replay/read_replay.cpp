@@ -114,7 +114,9 @@ Replay read_replay(const ResultFile& file, std::size_t run, const ReplaySize& si
   read_truth(file, run, frames, replay);
   std::vector<std::size_t> cells;
   for (std::size_t c = 0; c < file.cells().size(); ++c) {
-    if (file.status(file.cells()[c])[run] != RunStatus::missing) cells.push_back(c);
+    const StoredCell& cell = file.cells()[c];
+    if (!cell.has("pose_mean")) continue;
+    if (file.status(cell)[run] != RunStatus::missing) cells.push_back(c);
   }
   for (const std::size_t c : cells) {
     const ReplaySize share = share_of(size, cells.size(), frames.size());

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/data/margin.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/tables/tables.hpp"
+#include "engine/errors.hpp"
+#include "engine/records/result_file.hpp"
+#include "experiments/commands/commands.hpp"
+#include "experiments/commands/output_guard.hpp"
+#include "experiments/commands/plan_arguments.hpp"
+#include "experiments/commands/stored_result.hpp"
+#include "experiments/judging/convention_hints.hpp"
+#include "experiments/judging/judged_study.hpp"
+#include "experiments/text/words.hpp"
+
+#include <iostream>
+
+namespace montecarta::experiments {
+namespace {
+
+ErrorConvention convention_of(const Arguments& arguments) {
+  const auto said = arguments.text("error");
+  std::vector<std::string> known;
+  for (const ErrorConvention convention : conventions_of(StateKind::pose)) {
+    if (said == name_of(convention)) return convention;
+    known.push_back(name_of(convention));
+  }
+  if (said) {
+    throw StudyError("--error " + *said + ": not known (one of " + joined(known) +
+                     "): " + nearest_spelling(*said, known));
+  }
+  throw StudyError(
+      "judge: --error is missing (the covariance is that of an error, and nothing tells which; the "
+      "wrong one makes a wrong verdict): say --error with one of\n" +
+      explained_conventions());
+}
+
+JudgingOptions judging_options(const Arguments& arguments) {
+  const auto output = arguments.text("output");
+  if (!output) {
+    throw StudyError(
+        "judge: -o OUT.h5 is missing (the judged errors need a name): add e.g. -o "
+        "mine.h5");
+  }
+  refuse_to_replace_other_kinds(*output);
+  JudgingOptions options;
+  options.output = *output;
+  options.convention = convention_of(arguments);
+  options.match.tolerance =
+      arguments.number("tolerance", 0.0, 1e6).value_or(options.match.tolerance);
+  options.match.interpolate = arguments.has("interpolate");
+  options.existing = arguments.has("force") ? Existing::replace : Existing::refuse;
+  options.provenance = provenance_of("judge", arguments);
+  options.within = arguments.number("within", kLeastMargin, kMostMargin).value_or(options.within);
+  return options;
+}
+
+int judge_estimates(const Arguments& arguments) {
+  const JudgingOptions options = judging_options(arguments);
+  const std::vector<std::string> truths = arguments.texts("truth");
+  if (truths.empty()) {
+    throw StudyError(
+        "judge: --truth is missing (estimates are judged by the true states): add "
+        "--truth with the files, or with a folder of 'montecarta export'");
+  }
+  const JudgedFiles files = pair_files(arguments.operands(), truths, arguments.text("cell"));
+  const auto hints = judge_files(files, options);
+  const ResultFile file(options.output);
+  print_tables(std::cout, analyze(file, options.level, parallel_of(arguments), options.within));
+  tell_what_explains(options.output.string());
+  for (const ConventionHint& hint : hints) {
+    const std::string words = in_words(hint, options.convention);
+    if (!words.empty()) std::cerr << "montecarta: hint: " << words << "\n";
+  }
+  std::cerr << "montecarta: " << files.runs.size() << " runs of " << files.cells.size()
+            << (files.cells.size() == 1 ? " estimator" : " estimators") << ", stored in "
+            << options.output.string() << "\n";
+  return kDone;
+}
+
+}  // namespace
+
+Command judge_command() {
+  return {
+      {.name = "judge",
+       .summary = "judges estimates that another program computed, from CSV",
+       .operands = {{"ESTIMATE.csv", 1, SIZE_MAX}},
+       .options =
+           {{"truth", "", {"PATH..."}, "truths, or a folder of 'montecarta export'", true, true},
+            {"error", "", {"world|body|right-invariant"}, "what the covariance is of; no default"},
+            {"output", "o", {"OUT.h5"}, "the result file"},
+            {"cell", "", {"NAME"}, "all estimates are of one estimator of this name"},
+            {"tolerance", "", {"SECONDS"}, "times so near are the same; default 1e-6"},
+            {"interpolate", "", {}, "take the truth between its rows where it has none"},
+            {"within", "", {"R"}, kWithinMeaning},
+            {"force", "", {}, "replace OUT.h5"},
+            {"threads", "", {"N"}, "default: what this process may use"},
+            {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},
+       .details =
+           "Columns: time_s, then x_m,y_m,heading_rad or x_m,y_m,z_m,qx,qy,qz,qw or any others, "
+           "then\ncov_A_B (components or indices from 0), all or one triangle. Truths have no "
+           "covariance.\nNothing is aligned.\n\n--error says of which error:\n" +
+           explained_conventions() + "\n" + pairing_rule() +
+           "\nexample:\n"
+           "  montecarta judge runs/*/estimate.csv --truth runs/*/truth.csv --error world -o "
+           "mine.h5\n"},
+      judge_estimates};
+}
+
+}  // namespace montecarta::experiments

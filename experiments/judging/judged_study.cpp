@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/judging/judged_study.hpp"
+
+#include "analysis/metrics/nees.hpp"
+#include "engine/errors.hpp"
+#include "engine/records/output_path.hpp"
+#include "experiments/judging/convention_hints.hpp"
+#include "experiments/judging/imported_plan.hpp"
+#include "experiments/text/numbers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+
+namespace montecarta::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Averages over runs are taken at each time.
+void expect_alike(const StateRows& rows, const fs::path& path, const StateRows& first,
+                  const fs::path& first_path, double tolerance) {
+  if (rows.shape != first.shape) {
+    throw StudyError(path.string() + ": another state than in " + first_path.string() +
+                     " (one study judges one state): judge them apart");
+  }
+  if (rows.time.size() != first.time.size()) {
+    throw StudyError(path.string() + ": " + std::to_string(rows.time.size()) + " rows (" +
+                     first_path.string() + " has " + std::to_string(first.time.size()) +
+                     ", and averages over runs are taken at each time): give all runs the same "
+                     "times; one that broke off is a failure and is not judged");
+  }
+  for (std::size_t s = 0; s < rows.time.size(); ++s) {
+    if (std::abs(rows.time[s] - first.time[s]) <= tolerance) continue;
+    throw StudyError(path.string() + ": row " + std::to_string(s + 1) + " is of time " +
+                     to_text(rows.time[s]) + " s (" + first_path.string() + " has " +
+                     to_text(first.time[s]) +
+                     " s there, and averages over runs are taken at each "
+                     "time): give all runs the same times, counted from their start");
+  }
+}
+
+std::vector<Eigen::VectorXd> truths_for(const StateRows& estimates, const StateRows& truth,
+                                        const TimeMatch& match, const fs::path& estimate_path,
+                                        const fs::path& truth_path) {
+  std::vector<Eigen::VectorXd> truths;
+  for (const double time : estimates.time)
+    truths.push_back(truth_at(truth, time, match, estimate_path, truth_path));
+  return truths;
+}
+
+Pose pose_in(const Eigen::VectorXd& state) { return {state(0), state(1), wrap(state(2))}; }
+
+/// Puts a matrix row by row at its scan.
+void put_rows(const Eigen::MatrixXd& matrix, std::size_t scan, std::span<double> column) {
+  auto out =
+      column.begin() + static_cast<std::ptrdiff_t>(scan * static_cast<std::size_t>(matrix.size()));
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) *out++ = matrix(i, j);
+  }
+}
+
+/// One run of one estimator as the file holds it.
+RunRecord record_of(const RecordLayout& layout, const StateRows& rows,
+                    const std::vector<Eigen::VectorXd>& truths, ErrorConvention convention) {
+  RunRecord record(layout);
+  const auto column = [&](const char* name) { return record.column<double>(*layout.find(name)); };
+  const auto faults = record.column<std::uint32_t>(*layout.find("numerical_faults"));
+  for (std::size_t s = 0; s < truths.size(); ++s) {
+    const Eigen::VectorXd error = error_of(rows.shape, convention, rows.state[s], truths[s]);
+    put_rows(error, s, column("error"));
+    put_rows(rows.covariance[s], s, column("error_covariance"));
+    faults[s] = std::isnan(analysis::strict_nees(error, rows.covariance[s])) ? 1 : 0;
+    if (rows.shape.kind != StateKind::pose) continue;
+    const Pose mean = pose_in(rows.state[s]);
+    put_rows(Eigen::Vector3d(mean.x, mean.y, mean.heading), s, column("pose_mean"));
+    put_rows(covariance_in_map(convention, rows.state[s], rows.covariance[s]), s,
+             column("pose_covariance"));
+  }
+  record.mark_complete(std::numeric_limits<double>::quiet_NaN());
+  return record;
+}
+
+std::vector<ConventionHint> write_runs(const JudgedFiles& files, const JudgingOptions& options,
+                                       const StateRows& first, const StudyPlan& plan,
+                                       ResultWriter& writer) {
+  std::vector<RecordLayout> layouts;
+  std::vector<ConventionHints> hints;
+  for (const Cell& cell : plan.cells) {
+    layouts.emplace_back(cell, plan.columns, plan.drives->itinerary());
+    hints.emplace_back(cell.label, first.shape, first.time);
+  }
+  for (std::size_t run = 0; run < files.runs.size(); ++run) {
+    const StateRows truth = read_truth(files.truth[run], first.shape);
+    for (std::size_t c = 0; c < files.cells.size(); ++c) {
+      const fs::path& path = files.cells[c].of_run[run];
+      const StateRows rows = read_estimates(path);
+      expect_alike(rows, path, first, files.cells.front().of_run.front(), options.match.tolerance);
+      const auto truths = truths_for(rows, truth, options.match, path, files.truth[run]);
+      if (c == 0 && plan.drives->itinerary().has_truth) {
+        Drive drive;
+        std::ranges::transform(truths, std::back_inserter(drive.truth), pose_in);
+        writer.write_truth(run, drive);
+      }
+      writer.write(c, run, record_of(layouts[c], rows, truths, options.convention));
+      hints[c].add(rows, truths);
+    }
+  }
+  std::vector<ConventionHint> found;
+  for (const ConventionHints& of_cell : hints)
+    found.push_back(of_cell.result(options.level, options.within));
+  return found;
+}
+
+}  // namespace
+
+std::vector<ConventionHint> judge_files(const JudgedFiles& files, const JudgingOptions& options) {
+  const StateRows first = read_estimates(files.cells.front().of_run.front());
+  const auto known = conventions_of(first.shape.kind);
+  if (std::ranges::find(known, options.convention) == known.end()) {
+    throw StudyError("--error " + name_of(options.convention) + ": not of a vector (" +
+                     files.cells.front().of_run.front().string() +
+                     " has no pose, which alone has a frame): say --error world");
+  }
+  const StudyPlan plan = imported_plan(files, first, options);
+  ResultWriter writer =
+      ResultWriter::create(options.output, plan, options.provenance, options.existing);
+  try {
+    auto hints = write_runs(files, options, first, plan, writer);
+    writer.finish();
+    return hints;
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(writer.unfinished(), ignored);
+    throw;
+  }
+}
+
+}  // namespace montecarta::experiments

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/judging/run_files.hpp"
+
+#include "engine/errors.hpp"
+#include "experiments/text/numbers.hpp"
+#include "experiments/text/words.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+
+namespace montecarta::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+using RunNumber = std::optional<std::uint64_t>;
+
+/// "12" -> 12, "run_12", "run12" and "ekf_12" likewise; nullopt of "ekf2" and "estimate".
+RunNumber run_in(const std::string& name) {
+  const std::size_t end = name.find_last_not_of("0123456789");
+  const std::size_t begin = end == std::string::npos ? 0 : end + 1;
+  if (begin == name.size()) return std::nullopt;
+  const std::string before = name.substr(0, begin);
+  const bool is_apart = before.empty() || before.ends_with('_') || before.ends_with('-');
+  if (!is_apart && before != "run") return std::nullopt;
+  return to_count(name.substr(begin));
+}
+
+/// A file of one run, and what its path says besides the run.
+struct FoundFile {
+  fs::path path;
+  RunNumber run;
+  std::vector<std::string> rest;  ///< names of folders and file, the run's number taken out
+};
+
+FoundFile file_of_run(const fs::path& path) {
+  FoundFile file{path, std::nullopt, {}};
+  std::vector<std::string> names;
+  for (const fs::path& part : path.parent_path().lexically_normal()) names.push_back(part.string());
+  names.push_back(path.stem().string());
+  for (std::size_t k = names.size(); k > 0 && !file.run; --k) {
+    std::string& name = names[k - 1];
+    file.run = run_in(name);
+    if (!file.run) continue;
+    name.erase(name.find_last_not_of("0123456789") + 1);
+    while (name.ends_with('_') || name.ends_with('-')) name.pop_back();
+    if (name == "run") name.clear();
+  }
+  for (std::string& name : names) {
+    if (!name.empty()) file.rest.push_back(std::move(name));
+  }
+  return file;
+}
+
+/// Files that a word after --truth stands for.
+std::vector<fs::path> truths_in(const std::string& word) {
+  if (!fs::is_directory(word)) return {word};
+  const fs::path folder =
+      fs::is_directory(fs::path(word) / "truth") ? fs::path(word) / "truth" : fs::path(word);
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const fs::path file = entry.path() / "reference.csv";
+    if (fs::is_regular_file(file)) files.push_back(file);
+  }
+  std::ranges::sort(files);
+  if (!files.empty()) return files;
+  throw StudyError(word +
+                   ": no truth in it (a folder of 'montecarta export' has "
+                   "truth/run_0000/reference.csv, ...): name that folder, or the files themselves");
+}
+
+using FilesByRun = std::map<std::uint64_t, fs::path>;
+
+void add_run(const FoundFile& file, FilesByRun& files) {
+  if (!file.run) {
+    throw StudyError(file.path.string() +
+                     ": of which run? (neither the file nor a folder is named after a number): " +
+                     "name it or its folder e.g. run_0007");
+  }
+  const auto [there, is_new] = files.try_emplace(*file.run, file.path);
+  if (is_new) return;
+  throw StudyError(file.path.string() + ": run " + std::to_string(*file.run) + " again (that of " +
+                   there->second.string() +
+                   " has the same number, and nothing tells them apart): " +
+                   "give each run a number, each estimator a folder or a name");
+}
+
+/// Words by which the cells' paths differ.
+std::string label_of(const std::vector<std::string>& rest,
+                     const std::vector<std::vector<std::string>>& all) {
+  if (all.size() == 1) return rest.empty() ? "estimate" : rest.back();
+  const auto is_common = [&](std::size_t k, bool from_the_end) {
+    return std::ranges::all_of(all, [&](const std::vector<std::string>& other) {
+      if (k >= other.size()) return false;
+      return from_the_end ? other[other.size() - 1 - k] == rest[rest.size() - 1 - k]
+                          : other[k] == rest[k];
+    });
+  };
+  std::size_t first = 0, last = 0;
+  while (first < rest.size() && is_common(first, false)) ++first;
+  while (last + first < rest.size() && is_common(last, true)) ++last;
+  const std::vector<std::string> own(rest.begin() + static_cast<std::ptrdiff_t>(first),
+                                     rest.end() - static_cast<std::ptrdiff_t>(last));
+  return own.empty() ? "estimate" : joined(own, "_");
+}
+
+void check_label(const std::string& label) {
+  const bool is_good = std::ranges::all_of(label, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
+  });
+  if (is_good && !label.empty() && label.size() <= 100 && label != "." && label != "..") return;
+  throw StudyError("'" + excerpt(label) +
+                   "' cannot label a cell (up to 100 letters, digits, _ - . can): rename the "
+                   "folder, or say --cell NAME");
+}
+
+std::map<std::string, FilesByRun> cells_of(const std::vector<FoundFile>& files,
+                                           const std::optional<std::string>& cell) {
+  std::map<std::vector<std::string>, FilesByRun> by_path;
+  for (const FoundFile& file : files) {
+    add_run(file, by_path[cell ? std::vector<std::string>{*cell} : file.rest]);
+  }
+  std::vector<std::vector<std::string>> paths;
+  for (const auto& [path, runs] : by_path) paths.push_back(path);
+  std::map<std::string, FilesByRun> cells;
+  for (auto& [path, runs] : by_path) {
+    const std::string label = label_of(path, paths);
+    check_label(label);
+    if (!cells.try_emplace(label, std::move(runs)).second) {
+      throw StudyError(label +
+                       ": two estimators would have this name: put each into a folder of "
+                       "its own name");
+    }
+  }
+  return cells;
+}
+
+void expect_same_runs(const FilesByRun& wanted, const FilesByRun& given, const std::string& of,
+                      const std::string& remedy) {
+  for (const auto& [run, file] : wanted) {
+    if (given.contains(run)) continue;
+    throw StudyError(file.string() + ": run " + std::to_string(run) + " has no " + of + " (" +
+                     std::to_string(wanted.size()) + " runs there, " +
+                     std::to_string(given.size()) + " here): " + remedy);
+  }
+}
+
+void expect_no_gap(const FilesByRun& runs) {
+  const std::uint64_t first = runs.begin()->first;
+  std::uint64_t next = first;
+  for (const auto& [run, file] : runs) {
+    if (run != next++) {
+      throw StudyError(file.string() + ": runs " + std::to_string(next - 1) + " to " +
+                       std::to_string(run - 1) +
+                       " are missing (runs are numbered one after the other; one that failed is "
+                       "a result): judge all runs, or number them without a gap");
+    }
+  }
+}
+
+}  // namespace
+
+std::string pairing_rule() {
+  return "The run of a file is the number at the end of its name or, where that has none, of the\n"
+         "innermost folder that has one: run_0007/estimate.csv, 7.csv, ekf_7.csv are run 7. What "
+         "is\n"
+         "left of the path names the estimator: ekf/run_0007.csv and pf/run_0007.csv are the "
+         "cells\n"
+         "ekf and pf, run_0007/ekf.csv and run_0007/pf.csv too. Estimators of the same runs are\n"
+         "compared run by run. One estimate alone needs no number. A single truth is that of all\n"
+         "runs; else each run has its own, of the same number.\n";
+}
+
+JudgedFiles pair_files(const std::vector<std::string>& estimates,
+                       const std::vector<std::string>& truths,
+                       const std::optional<std::string>& cell) {
+  std::vector<FoundFile> files;
+  for (const std::string& name : estimates) files.push_back(file_of_run(name));
+  if (files.size() == 1 && !files.front().run) files.front().run = 0;
+  const std::map<std::string, FilesByRun> cells = cells_of(files, cell);
+  const FilesByRun& first = cells.begin()->second;
+  expect_no_gap(first);
+  std::vector<fs::path> truth_files;
+  for (const std::string& word : truths) {
+    for (fs::path& file : truths_in(word)) truth_files.push_back(std::move(file));
+  }
+  FilesByRun truth_of;
+  for (const fs::path& file : truth_files) {
+    if (truth_files.size() > 1) add_run(file_of_run(file), truth_of);
+  }
+  if (truth_files.size() == 1) {
+    for (const auto& [run, file] : first) truth_of.emplace(run, truth_files.front());
+  }
+  expect_same_runs(first, truth_of, "truth", "name its truth after --truth too");
+  expect_same_runs(truth_of, first, "estimate",
+                   "a run that failed is a result, do not leave it "
+                   "out; of fewer runs name the truths of these alone");
+  JudgedFiles judged;
+  for (const auto& [run, file] : truth_of) {
+    judged.runs.push_back(run);
+    judged.truth.push_back(file);
+  }
+  for (const auto& [label, of_run] : cells) {
+    expect_same_runs(first, of_run, "estimate in cell " + label,
+                     "estimators are paired by run: "
+                     "judge the same runs of all");
+    expect_same_runs(of_run, first, "estimate in cell " + cells.begin()->first,
+                     "estimators are paired by run: judge the same runs of all");
+    EstimatorFiles& one = judged.cells.emplace_back(EstimatorFiles{label, {}});
+    for (const auto& [run, file] : of_run) one.of_run.push_back(file);
+  }
+  return judged;
+}
+
+}  // namespace montecarta::experiments

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/judging/state_columns.hpp"
+
+#include "engine/errors.hpp"
+#include "experiments/text/words.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <string_view>
+
+namespace montecarta::experiments {
+namespace {
+
+using Names = std::vector<std::string>;
+
+const std::string kTimeColumn = "time_s", kCovariancePrefix = "cov_";
+const Names kPoseColumns = {"x_m", "y_m", "heading_rad"};
+const Names kSpaceColumns = {"x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"};
+const Names kQuaternionColumns = {"qx", "qy", "qz", "qw"};
+constexpr std::array kKnownUnits = {"m", "rad", "mps", "mps2", "radps", "s"};
+/// Without a unit nobody knows whether degrees are meant, and a heading would not be wrapped.
+const Names kNeedUnit = {"x", "y", "z", "heading", "yaw", "pitch", "roll", "theta", "phi", "psi"};
+
+bool has_name(const Names& names, const std::string& name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+std::size_t place_of_name(const Names& names, const std::string& name) {
+  return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+}
+
+void check_header(const Names& header, const std::string& place) {
+  if (header.front() != kTimeColumn) {
+    throw StudyError(place + ": '" + excerpt(header.front()) +
+                     "' is not the first column (times come first): begin the header with time_s");
+  }
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    if (header[i].empty() || place_of_name(header, header[i]) != i) {
+      throw StudyError(place + ": column " + std::to_string(i + 1) + " '" + excerpt(header[i]) +
+                       "' has no name of its own (columns are known by their names): name each "
+                       "column once");
+    }
+  }
+}
+
+/// Component and unit of "vx_mps".
+std::pair<std::string, std::string> component_and_unit(const std::string& column,
+                                                       const std::string& place) {
+  const std::size_t underscore = column.rfind('_');
+  const std::string unit = underscore == std::string::npos ? "" : column.substr(underscore + 1);
+  if (unit == "deg") {
+    throw StudyError(place + ": '" + excerpt(column) +
+                     "' is in degrees (angles are in rad): convert it and its covariance");
+  }
+  if (has_name(kNeedUnit, column)) {
+    throw StudyError(place + ": '" + column + "' has no unit (m and rad are meant, and said): " +
+                     "write x_m, y_m, heading_rad");
+  }
+  if (std::ranges::find(kKnownUnits, unit) == kKnownUnits.end()) return {column, "1"};
+  return {column.substr(0, underscore), unit};
+}
+
+bool is_same_set(Names a, Names b) {
+  std::ranges::sort(a);
+  std::ranges::sort(b);
+  return a == b;
+}
+
+StateShape shape_of(const Names& state, const std::string& place) {
+  if (state.empty()) {
+    throw StudyError(place + ": no state (the header has times and covariances alone): add e.g. " +
+                     joined(kPoseColumns, ","));
+  }
+  if (is_same_set(state, kPoseColumns)) {
+    return {StateKind::pose, kPoseColumns, {"x", "y", "heading"}, {"m", "m", "rad"}};
+  }
+  if (is_same_set(state, kSpaceColumns)) {
+    return {StateKind::pose_in_space,
+            kSpaceColumns,
+            {"x", "y", "z", "rx", "ry", "rz"},
+            {"m", "m", "m", "rad", "rad", "rad"}};
+  }
+  if (std::ranges::any_of(kQuaternionColumns,
+                          [&](const std::string& q) { return has_name(state, q); })) {
+    throw StudyError(place + ": a quaternion, but not a pose in space (nothing else has one): " +
+                     "name the state " + joined(kSpaceColumns, ","));
+  }
+  StateShape shape{StateKind::vector, state, {}, {}};
+  for (const std::string& column : state) {
+    const auto [component, unit] = component_and_unit(column, place);
+    shape.components.push_back(component);
+    shape.units.push_back(unit);
+  }
+  return shape;
+}
+
+/// Row and column of the covariance for each name that its columns may have.
+std::map<std::string, std::pair<std::size_t, std::size_t>> names_of_elements(
+    const StateShape& shape) {
+  std::map<std::string, std::pair<std::size_t, std::size_t>> elements;
+  for (std::size_t i = 0; i < shape.dimension(); ++i) {
+    for (std::size_t j = 0; j < shape.dimension(); ++j) {
+      elements[kCovariancePrefix + shape.components[i] + "_" + shape.components[j]] = {i, j};
+      elements[kCovariancePrefix + std::to_string(i) + "_" + std::to_string(j)] = {i, j};
+    }
+  }
+  return elements;
+}
+
+std::vector<std::size_t> covariance_fields(const Names& header, const StateShape& shape,
+                                           const std::string& place) {
+  const std::size_t d = shape.dimension();
+  const auto elements = names_of_elements(shape);
+  std::vector<std::optional<std::size_t>> found(d * d);
+  for (std::size_t f = 0; f < header.size(); ++f) {
+    if (!header[f].starts_with(kCovariancePrefix)) continue;
+    const auto element = elements.find(header[f]);
+    if (element == elements.end()) {
+      throw StudyError(place + ": '" + excerpt(header[f]) +
+                       "' is no element of the covariance (its components are " +
+                       joined(shape.components) + ", or indices from 0): write cov_" +
+                       shape.components.front() + "_" + shape.components.back() + " or cov_0_" +
+                       std::to_string(d - 1));
+    }
+    const auto [i, j] = element->second;
+    if (found[i * d + j]) {
+      throw StudyError(place + ": '" + header[f] +
+                       "' is there by name and by index (which one is "
+                       "it?): remove one");
+    }
+    found[i * d + j] = f;
+  }
+  std::vector<std::size_t> fields;
+  for (std::size_t i = 0; i < d; ++i) {
+    for (std::size_t j = 0; j < d; ++j) {
+      const auto& field = found[i * d + j] ? found[i * d + j] : found[j * d + i];
+      if (!field) {
+        throw StudyError(place + ": no cov_" + shape.components[i] + "_" + shape.components[j] +
+                         " (a verdict needs the whole covariance, or one triangle of it): add "
+                         "the column");
+      }
+      fields.push_back(*field);
+    }
+  }
+  return fields;
+}
+
+}  // namespace
+
+std::string name_of(StateKind kind) {
+  return kind == StateKind::pose            ? "pose"
+         : kind == StateKind::pose_in_space ? "pose in space"
+                                            : "vector";
+}
+
+EstimateFields estimate_fields(const Names& header, const std::string& place) {
+  check_header(header, place);
+  Names state;
+  for (const std::string& name : header) {
+    if (name != kTimeColumn && !name.starts_with(kCovariancePrefix)) state.push_back(name);
+  }
+  EstimateFields fields{.shape = shape_of(state, place), .state = {}, .covariance = {}};
+  for (const std::string& column : fields.shape.columns)
+    fields.state.push_back(place_of_name(header, column));
+  fields.covariance = covariance_fields(header, fields.shape, place);
+  return fields;
+}
+
+std::vector<std::size_t> truth_fields(const Names& header, const StateShape& shape,
+                                      const std::string& place) {
+  check_header(header, place);
+  std::vector<std::size_t> fields;
+  for (const std::string& column : shape.columns) {
+    if (!has_name(header, column)) {
+      throw StudyError(place + ": no column " + column +
+                       " (the truth of everything that is estimated is needed): add it, or leave "
+                       "it out of the estimates");
+    }
+    fields.push_back(place_of_name(header, column));
+  }
+  return fields;
+}
+
+}  // namespace montecarta::experiments

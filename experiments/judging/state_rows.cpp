@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/judging/state_rows.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/numbers/angle.hpp"
+#include "experiments/files/csv_rows.hpp"
+#include "experiments/text/numbers.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace montecarta::experiments {
+namespace {
+
+/// Printed with three digits a quaternion is as long as this.
+constexpr double kQuaternionPlaceSlack = 2e-3;
+constexpr Eigen::Index kQuaternionPlace = 3;  // behind x, y, z
+
+Eigen::VectorXd state_in(const CsvRows& rows, const std::vector<std::size_t>& fields,
+                         const StateShape& shape) {
+  Eigen::VectorXd state(static_cast<Eigen::Index>(fields.size()));
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    state(static_cast<Eigen::Index>(k)) = rows.number(fields[k], "number");
+  }
+  if (shape.kind != StateKind::pose_in_space) return state;
+  const double length = state.tail<4>().norm();
+  if (std::abs(length - 1.0) > kQuaternionPlaceSlack) {
+    throw StudyError(rows.place() + ": the quaternion has length " + to_text(length) +
+                     " (of a rotation it is 1): write qx, qy, qz, qw of a unit quaternion");
+  }
+  state.tail<4>() /= length;
+  return state;
+}
+
+Eigen::MatrixXd covariance_in(const CsvRows& rows, const EstimateFields& fields) {
+  const auto d = static_cast<Eigen::Index>(fields.shape.dimension());
+  Eigen::MatrixXd P(d, d);
+  for (Eigen::Index i = 0; i < d; ++i) {
+    for (Eigen::Index j = 0; j < d; ++j) {
+      P(i, j) = rows.number(fields.covariance[static_cast<std::size_t>(i * d + j)], "number");
+    }
+  }
+  return P;
+}
+
+void take_time(const CsvRows& rows, std::vector<double>& times) {
+  const double time = rows.number(0, "time");
+  if (!times.empty() && time <= times.back()) {
+    throw StudyError(rows.place() + ": time " + to_text(time) +
+                     " s is not later than that of the "
+                     "row before (rows go forward in time): sort them, one row for each time");
+  }
+  times.push_back(time);
+}
+
+void expect_rows(const StateRows& rows, const std::filesystem::path& path) {
+  if (!rows.time.empty()) return;
+  throw StudyError(path.string() +
+                   ": no rows behind the header (nothing to judge): write one row "
+                   "for each time; a run that gave no estimates is a failure and cannot be judged");
+}
+
+bool is_angle(const StateShape& shape, Eigen::Index k) {
+  return shape.kind != StateKind::pose_in_space &&
+         shape.units[static_cast<std::size_t>(k)] == "rad";
+}
+
+/// Between two states, `share` of the way.
+Eigen::VectorXd between(const StateShape& shape, const Eigen::VectorXd& a, const Eigen::VectorXd& b,
+                        double share) {
+  Eigen::VectorXd state = a + share * (b - a);
+  for (Eigen::Index k = 0; k < state.size(); ++k) {
+    if (is_angle(shape, k)) state(k) = wrap(a(k) + share * wrap(b(k) - a(k)));
+  }
+  if (shape.kind == StateKind::pose_in_space) {
+    const Eigen::Quaterniond from(Eigen::Vector4d(a.segment<4>(kQuaternionPlace)));
+    const Eigen::Quaterniond to(Eigen::Vector4d(b.segment<4>(kQuaternionPlace)));
+    state.segment<4>(kQuaternionPlace) = from.slerp(share, to).coeffs();
+  }
+  return state;
+}
+
+}  // namespace
+
+StateRows read_estimates(const std::filesystem::path& path) {
+  CsvRows file(path);
+  const EstimateFields fields = estimate_fields(file.columns(), file.place());
+  StateRows rows{fields.shape, {}, {}, {}};
+  while (file.next()) {
+    take_time(file, rows.time);
+    rows.state.push_back(state_in(file, fields.state, fields.shape));
+    rows.covariance.push_back(covariance_in(file, fields));
+  }
+  expect_rows(rows, path);
+  return rows;
+}
+
+StateRows read_truth(const std::filesystem::path& path, const StateShape& shape) {
+  CsvRows file(path);
+  const std::vector<std::size_t> fields = truth_fields(file.columns(), shape, file.place());
+  StateRows rows{shape, {}, {}, {}};
+  while (file.next()) {
+    take_time(file, rows.time);
+    rows.state.push_back(state_in(file, fields, shape));
+  }
+  expect_rows(rows, path);
+  return rows;
+}
+
+Eigen::VectorXd truth_at(const StateRows& truth, double time, const TimeMatch& match,
+                         const std::filesystem::path& estimate,
+                         const std::filesystem::path& truths) {
+  const auto after = std::ranges::lower_bound(truth.time, time);
+  const auto right = static_cast<std::size_t>(after - truth.time.begin());
+  const bool has_left = right > 0, has_right = right < truth.time.size();
+  const double to_left = has_left ? time - truth.time[right - 1] : INFINITY;
+  const double to_right = has_right ? truth.time[right] - time : INFINITY;
+  if (std::min(to_left, to_right) <= match.tolerance) {
+    return truth.state[to_right <= to_left ? right : right - 1];
+  }
+  if (match.interpolate && has_left && has_right) {
+    return between(truth.shape, truth.state[right - 1], truth.state[right],
+                   to_left / (to_left + to_right));
+  }
+  throw StudyError(estimate.string() + ": time " + to_text(time) + " s has no truth in " +
+                   truths.string() + " (the nearest is " + to_text(std::min(to_left, to_right)) +
+                   " s away, --tolerance is " + to_text(match.tolerance) + " s): " +
+                   (has_left && has_right
+                        ? "give truths at the times of the estimates, or say --interpolate"
+                        : "leave out what lies outside of the truth"));
+}
+
+}  // namespace montecarta::experiments

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "experiments/judging/state_columns.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace montecarta::experiments {
+
+/// Estimates or truths of one run, as a CSV file has them.
+struct StateRows {
+  StateShape shape;
+  std::vector<double> time;                 ///< [s] {row}, increasing
+  std::vector<Eigen::VectorXd> state;       ///< {row}{width}, quaternions of length 1
+  std::vector<Eigen::MatrixXd> covariance;  ///< {row}{d, d} as it stands there; empty of a truth
+};
+
+/// Reads estimates: mean and covariance at times. Throws StudyError naming file, line and remedy
+/// where the file is empty, damaged, or has numbers that are not finite.
+StateRows read_estimates(const std::filesystem::path& path);
+
+/// Reads a truth of the same state; its other columns are not looked at. Throws as above.
+StateRows read_truth(const std::filesystem::path& path, const StateShape& shape);
+
+/// How the truth is found at the time of an estimate.
+struct TimeMatch {
+  double tolerance = 1e-6;   ///< [s] within which two times are the same
+  bool interpolate = false;  ///< between two rows: lines, and the shorter turn of angles
+};
+
+/// The state of `truth` at `time`. Throws StudyError, worded for `estimate` (a file) and `truths`
+/// (its truth), where there is none.
+Eigen::VectorXd truth_at(const StateRows& truth, double time, const TimeMatch& match,
+                         const std::filesystem::path& estimate,
+                         const std::filesystem::path& truths);
+
+}  // namespace montecarta::experiments

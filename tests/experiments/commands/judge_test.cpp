@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Estimates of another program, end to end.
+#include "analysis/metrics/study_analysis.hpp"
+#include "engine/records/result_file.hpp"
+#include "experiments/text/numbers.hpp"
+#include "tests/experiments/commands/program.hpp"
+
+#include <gmock/gmock.h>
+
+#include <array>
+
+namespace montecarta::experiments {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string kHeader =
+    "time_s,x_m,y_m,heading_rad,cov_0_0,cov_0_1,cov_0_2,cov_1_0,cov_1_1,cov_1_2,cov_2_0,cov_2_1,"
+    "cov_2_2\n";
+
+std::string row_of(std::span<const double> numbers) {
+  std::string row;
+  for (const double number : numbers) row += (row.empty() ? "" : ",") + to_text(number);
+  return row + "\n";
+}
+
+class Judge : public Program {
+ protected:
+  Judge() {
+    write("blink.csv", kBlinkWorld);
+    write("study.ini", kBlink);
+  }
+
+  /// Runs the study of two filters and writes what they estimated, as another program would, beside
+  /// the drives that `export` writes: drives/CELL/run_000N.csv.
+  void write_own_estimates() const {
+    ASSERT_EQ(call({"run", "study.ini", "-o", "own.h5", "--quiet"}).code, 0);
+    ASSERT_EQ(call({"export", "study.ini", "-o", "drives"}).code, 0);
+    const ResultFile file(folder_ / "own.h5");
+    for (const StoredCell& cell : file.cells()) {
+      const std::string suffix = cell.has("pose_mean_mixture") ? "_mixture" : "";
+      std::filesystem::create_directories(folder_ / "drives" / cell.label);
+      std::vector<double> mean(3 * file.times().size()), P(9 * file.times().size());
+      for (std::size_t run = 0; run < file.runs().size(); ++run) {
+        file.read(cell, "pose_mean" + suffix, run, std::span(mean));
+        file.read(cell, "pose_covariance" + suffix, run, std::span(P));
+        std::string text = kHeader;
+        for (const std::size_t k : file.scan_rows()) {
+          std::vector<double> row = {file.times()[k]};
+          row.insert(row.end(), mean.begin() + 3 * k, mean.begin() + 3 * (k + 1));
+          row.insert(row.end(), P.begin() + 9 * k, P.begin() + 9 * (k + 1));
+          text += row_of(row);
+        }
+        write("drives/" + cell.label + "/run_000" + std::to_string(run) + ".csv", text);
+      }
+    }
+  }
+  std::vector<std::string> estimates(const std::string& cell) const {
+    std::vector<std::string> names;
+    for (int run = 0; run < 3; ++run)
+      names.push_back("drives/" + cell + "/run_000" + std::to_string(run) + ".csv");
+    return names;
+  }
+  Called judge(std::vector<std::string> words, const std::vector<std::string>& more) const {
+    words.insert(words.begin(), "judge");
+    words.insert(words.end(), more.begin(), more.end());
+    return call(words);
+  }
+  analysis::StudyAnalysis analyzed(const std::string& name) const {
+    return analysis::analyze(ResultFile(folder_ / name));
+  }
+  /// Two runs of a pose with two rows each, after `change` of the first estimate.
+  Called judged(const std::string& first, const std::string& error = "world") const {
+    write("e_0.csv", first);
+    write("e_1.csv", kHeader + "1,0.1,0,0,1,0,0,0,1,0,0,0,1\n2,0,0.1,0,1,0,0,0,1,0,0,0,1\n");
+    write("truth.csv", "time_s,x_m,y_m,heading_rad\n1,0,0,0\n2,0,0,0\n");
+    return judge({"e_0.csv", "e_1.csv"},
+                 {"--truth", "truth.csv", "--error", error, "-o", "mine.h5", "--force"});
+  }
+};
+
+// Law: the verdict on our own filter's estimates is that on the filter.
+TEST_F(Judge, OwnEstimatesHaveTheVerdictOfTheirFilter) {
+  write_own_estimates();
+  std::vector<std::string> files = estimates("ekf_slam");
+  const Called called = judge(files, {"--truth", "drives", "--error", "world", "-o", "mine.h5"});
+  ASSERT_EQ(called.code, 0) << called.err;
+  EXPECT_THAT(called.out, AllOf(HasSubstr("ekf_slam"), HasSubstr("Imported estimates"),
+                                HasSubstr("RMS of its deviation")))
+      << called.out;
+  const auto own = analyzed("own.h5").cells[0], mine = analyzed("mine.h5").cells[0];
+  ASSERT_EQ(mine.nees.size(), 3U);
+  for (std::size_t b = 0; b < 3; ++b) {
+    EXPECT_EQ(own.nees[b].series.floored, 0U);
+    const double expected = own.nees[b].consistency.mean;
+    EXPECT_NEAR(mine.nees[b].consistency.mean, expected, 1e-12 * expected);
+    EXPECT_EQ(in_words(mine.nees[b].consistency), in_words(own.nees[b].consistency));
+  }
+  EXPECT_DOUBLE_EQ(mine.over_runs("position_rmse").mean, own.over_runs("position_rmse").mean);
+}
+
+TEST_F(Judge, AnalyzeReportAndCompareReadTheResult) {
+  write_own_estimates();
+  std::vector<std::string> files = estimates("ekf_slam");
+  for (const std::string& name : estimates("fastslam2_m10")) files.push_back(name);
+  ASSERT_EQ(judge(files, {"--truth", "drives", "--error", "body", "-o", "mine.h5"}).code, 0);
+  for (const auto& words : std::vector<std::vector<std::string>>{
+           {"analyze", "mine.h5", "--explain", "--csv", "tables", "-o", "all.h5"},
+           {"report", "mine.h5", "-o", "page"},
+           {"compare", "mine.h5", "--baseline", "ekf_slam"},
+           {"info", "mine.h5"}}) {
+    const Called called = call(words);
+    EXPECT_EQ(called.code, 0) << words[0] << called.err;
+    EXPECT_THAT(called.out + called.err, Not(HasSubstr("damaged"))) << words[0];
+  }
+  EXPECT_THAT(text_of("page/index.html"), HasSubstr("Imported estimates of another program"));
+  EXPECT_THAT(call({"verify", "mine.h5"}).err, HasSubstr("another program computed"));
+  EXPECT_THAT(call({"replay", "mine.h5", "--cell", "ekf_slam", "--run", "0", "-o", "r.h5"}).err,
+              HasSubstr("another program computed"));
+}
+
+TEST_F(Judge, CovariancesThatAreNoneAreCountedAndLeftOut) {
+  const std::string good = "1,1,0,0,1,0,0,0,1,0,0,0,1\n";
+  for (const std::string bad : {"2,1,0,0,0,0,0,0,0,0,0,0,0\n", "2,1,0,0,-1,0,0,0,1,0,0,0,1\n",
+                                "2,1,0,0,1,2,0,2,1,0,0,0,1\n", "2,1,0,0,1,0.5,0,0,1,0,0,0,1\n"}) {
+    const Called called = judged(kHeader + good + bad);
+    ASSERT_EQ(called.code, 0) << called.err;
+    EXPECT_THAT(called.out, HasSubstr("1 of 4 covariances (25.0 %)")) << bad;
+    const analysis::CellAnalysis cell = analyzed("mine.h5").cells[0];
+    EXPECT_EQ(cell.nees[0].series.undefined, 1U);
+    EXPECT_NEAR(cell.nees[0].series.average[0], (1.0 + 0.01) / 2.0, 1e-12);
+    EXPECT_NEAR(cell.nees[0].series.average[1], 0.01, 1e-12);
+    EXPECT_EQ(cell.over_runs("numerical_faults").mean, 0.5);
+  }
+}
+
+TEST_F(Judge, AVectorHasItsOwnDimension) {
+  const std::string header = "time_s,a_m,b_mps,cov_0_0,cov_0_1,cov_1_1\n";
+  write("e_0.csv", header + "1,1,2,1,0,4\n2,1,2,1,0,4\n");
+  write("e_1.csv", header + "1,1,0,1,0,4\n2,1,0,1,0,4\n");
+  write("truth.csv", "time_s,a_m,b_mps\n1,0,0\n2,0,0\n");
+  const std::vector<std::string> more = {"--truth", "truth.csv", "-o", "mine.h5", "--error"};
+  auto words = more;
+  words.push_back("world");
+  const Called called = judge({"e_0.csv", "e_1.csv"}, words);
+  ASSERT_EQ(called.code, 0) << called.err;
+  const analysis::StudyAnalysis study = analyzed("mine.h5");
+  ASSERT_EQ(study.cells[0].nees.size(), 1U);
+  EXPECT_EQ(study.cells[0].nees[0].series.dimension, 2U);
+  EXPECT_NEAR(study.cells[0].consistency().mean, 1.5, 1e-12);
+  EXPECT_THAT(call({"analyze", "mine.h5", "--explain"}).out, HasSubstr("components: a, b"));
+  EXPECT_EQ(call({"report", "mine.h5", "-o", "page"}).code, 0);
+  EXPECT_EQ(call({"compare", "mine.h5", "--baseline", "e"}).code, 0);
+  words.back() = "body";
+  EXPECT_THAT(judge({"e_0.csv", "e_1.csv"}, words).err, HasSubstr("not of a vector"));
+}
+
+TEST_F(Judge, WrongInputIsNamed) {
+  EXPECT_THAT(judged(kHeader + "1,0,0,0,1,0,0,0,1,0,0,0,1\n").err,
+              AllOf(HasSubstr("e_1.csv: 2 rows"), HasSubstr("e_0.csv has 1")));
+  EXPECT_FALSE(exists("mine.h5") || exists("mine.h5.part"));
+  EXPECT_THAT(judged(kHeader + "1,0,0,0,1,0,0,0,1,0,0,0,1\n3,0,0,0,1,0,0,0,1,0,0,0,1\n").err,
+              HasSubstr("e_0.csv: time 3 s has no truth in truth.csv"));
+  EXPECT_THAT(judged("").err, HasSubstr("e_0.csv: empty"));
+  EXPECT_THAT(
+      judged(kHeader + "1,0,0,0,1,0,0,0,1,0,0,0,1\n2,0,0,0,1,0,0,0,1,0,0,0,1\n", "wrold").err,
+      HasSubstr("did you mean world"));
+  const Called none = judge({"e_0.csv"}, {"--truth", "truth.csv", "-o", "mine.h5"});
+  EXPECT_EQ(none.code, 2);
+  EXPECT_THAT(none.err, AllOf(HasSubstr("--error is missing"), HasSubstr("R_mean'"),
+                              HasSubstr("right-invariant")));
+  EXPECT_THAT(judge({"e_0.csv"}, {"--error", "world", "-o", "mine.h5"}).err,
+              HasSubstr("--truth is missing"));
+  EXPECT_THAT(judge({"e_0.csv"}, {"--error", "world", "-o", "m.h5", "--truth", "nowhere.csv"}).err,
+              HasSubstr("nowhere.csv: cannot be opened"));
+  EXPECT_THAT(call({"judge", "--help"}).out,
+              AllOf(HasSubstr("run 7"), HasSubstr("right-invariant")));
+}
+
+}  // namespace
+}  // namespace montecarta::experiments
