@@ -20,14 +20,15 @@ double scan_time(const ResultFile& file, std::uint32_t step) {
   return file.scan_times()[std::min(static_cast<std::size_t>(scan), steps.size() - 1)];
 }
 
-/// Run indices in the file of the complete runs; counts and names all in `cell`.
+/// Run indices in the file of the complete runs among the first `runs`; counts and names them all
+/// in `cell`.
 std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell& stored,
-                                       CellAnalysis& cell) {
+                                       std::size_t runs, CellAnalysis& cell) {
   const auto status = file.status(stored);
   const auto reasons = file.failure_reasons(stored);
   const auto steps = file.failure_steps(stored);
   std::vector<std::size_t> complete;
-  for (std::size_t i = 0; i < status.size(); ++i) {
+  for (std::size_t i = 0; i < std::min(runs, status.size()); ++i) {
     if (status[i] == RunStatus::complete) complete.push_back(i);
     if (status[i] == RunStatus::missing) ++cell.missing;
     if (status[i] == RunStatus::spared) ++cell.spared;
@@ -39,16 +40,15 @@ std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell&
   return complete;
 }
 
-CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& stored,
-                          const RunCriteria& criteria, const Parallel& parallel,
-                          std::vector<MeasuredRun>& slots) {
+CellAnalysis cell_by(const RunCriteria& criteria, const ResultFile& file, const StoredCell& stored,
+                     std::size_t runs, const Parallel& parallel, std::vector<MeasuredRun>& slots) {
   CellAnalysis cell;
   cell.label = stored.label;
   cell.filter = stored.filter;
   cell.long_name = stored.long_name;
   cell.particles = stored.particles;
   cell.mismatch = mismatch_of(stored);
-  const auto complete = complete_runs(file, stored, cell);
+  const auto complete = complete_runs(file, stored, runs, cell);
   CellSums sums(criteria);
   add_runs(RunReader(file, stored), complete, stored.particles, criteria, parallel, slots, sums);
   sums.put(cell);
@@ -65,6 +65,17 @@ auto told_by(const ResultFile& file, Read read) {
   }
 }
 
+double margin_of(const ResultFile& file, std::optional<double> within) {
+  return within ? *within : told_by(file, margin_in);
+}
+
+void expect_scans(const ResultFile& file) {
+  if (!file.scan_times().empty()) return;
+  throw StudyError(file.path().string() +
+                   ": no scans (metrics are taken at scans): choose "
+                   "another file");
+}
+
 /// All that the file says of itself.
 StudyAnalysis begin(const ResultFile& file, double level, std::optional<double> within) {
   StudyAnalysis study;
@@ -76,7 +87,7 @@ StudyAnalysis begin(const ResultFile& file, double level, std::optional<double> 
   study.study_runs = file.study_runs();
   study.runs_here = file.runs().size();
   study.level = level;
-  study.within = within ? *within : told_by(file, margin_in);
+  study.within = margin_of(file, within);
   study.printed = told_by(file, printed_in);
   study.times = file.scan_times();
   for (const std::uint32_t scan : file.description().joint_scans) {
@@ -99,24 +110,29 @@ StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& para
                       std::optional<double> within) {
   nees_bounds(1, 1, level);  // refuses a wrong level before the work
   StudyAnalysis study = begin(file, level, within);
-  if (study.times.empty()) {
-    throw StudyError(file.path().string() +
-                     ": no scans (metrics are taken at scans): choose "
-                     "another file");
-  }
+  expect_scans(file);
   const RunCriteria criteria = criteria_of(file, level, study.within);
   for (const PathAtFixes& fixes : criteria.references) {
     study.references.push_back({fixes.name(), fixes.times(), !fixes.headings().empty()});
   }
   std::vector<MeasuredRun> slots = slots_for(parallel);
   for (const StoredCell& cell : file.cells()) {
-    study.cells.push_back(analyze_cell(file, cell, criteria, parallel, slots));
+    study.cells.push_back(cell_by(criteria, file, cell, file.runs().size(), parallel, slots));
   }
   study.bound = cramer_rao_bound(file, parallel);
   for (CellAnalysis& cell : study.cells) {
     cell.findings.put(efficiency_of(cell, study.bound));
   }
   return study;
+}
+
+CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& cell, double level,
+                          std::size_t runs, const Parallel& parallel,
+                          std::optional<double> within) {
+  expect_scans(file);
+  const RunCriteria criteria = criteria_of(file, level, margin_of(file, within));
+  std::vector<MeasuredRun> slots = slots_for(parallel);
+  return cell_by(criteria, file, cell, runs, parallel, slots);
 }
 
 }  // namespace montecarta::analysis

@@ -63,4 +63,10 @@ StudyAnalysis analyze(const ResultFile& file, double level = 0.95,
                       const Parallel& parallel = Parallel::serial(),
                       std::optional<double> within = std::nullopt);
 
+/// One cell of a file by its first `runs` runs alone, as analyze() has it but for what it has of
+/// the study (efficiency). The file may be unfinished.
+CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& cell, double level,
+                          std::size_t runs, const Parallel& parallel,
+                          std::optional<double> within = std::nullopt);
+
 }  // namespace montecarta::analysis

@@ -12,6 +12,8 @@ namespace montecarta::experiments {
 
 /// Exit codes that users and scripts rely on; those of an interrupted study come from exit_code().
 inline constexpr int kDone = 0, kFailed = 1, kWrongInput = 2, kDifferent = 4;
+/// Of `gate`: the filter is not consistent, or there are too few runs to know.
+inline constexpr int kInconsistent = 4, kUndecided = 5;
 
 /// One command of the program: how it is called and what it does. Returns the exit code.
 struct Command {
@@ -29,6 +31,7 @@ Command report_command();
 Command verify_command();
 Command replay_command();
 Command compare_command();
+Command gate_command();
 Command bounds_command();
 Command plan_command();
 Command convert_command();
