@@ -42,6 +42,12 @@ struct ReferencePath {
   std::vector<double> time;               ///< [s] of each fix, increasing
   std::vector<Eigen::Vector2d> position;  ///< [m] of each fix
   std::vector<double> heading;            ///< [rad] of each fix; empty where it is not measured
+  /// (m, m, rad)^2 of the error of each fix; without headings only the block of the position
+  /// counts. Empty where nobody knows it.
+  std::vector<Eigen::Matrix3d> covariance = {};
+
+  /// Components that a fix measures: x, y and, where there are headings, the heading.
+  int dimension() const { return heading.empty() ? 2 : 3; }
 };
 
 /// What all runs of a study share: when steps and scans happen and what there is to map.

@@ -83,6 +83,10 @@ void check_scenario(const ResultDescription& d, const Check& check) {
                  "reference " + path.name + " has other fixes than times");
     check.expect(are_finite(path.time) && std::ranges::all_of(path.position, is_place),
                  "a fix of reference " + path.name + " is no place");
+    const auto is_finite = [](const Eigen::Matrix3d& covariance) { return covariance.allFinite(); };
+    check.expect((path.covariance.empty() || path.covariance.size() == path.time.size()) &&
+                     std::ranges::all_of(path.covariance, is_finite),
+                 "reference " + path.name + " has no covariance for each of its fixes");
   }
 }
 

@@ -110,6 +110,20 @@ void read_axes(const h5::Handle& file, ResultDescription& result) {
   }
 }
 
+/// {fix}; as many as there are whole blocks of `dimension` x `dimension` numbers.
+std::vector<Eigen::Matrix3d> read_covariances(const h5::Handle& group, int dimension) {
+  std::vector<Eigen::Matrix3d> covariances;
+  if (!h5::has(group, "covariance")) return covariances;
+  const auto numbers = read_all<double>(group, "covariance", Element::f64);
+  const auto block = static_cast<std::size_t>(dimension) * static_cast<std::size_t>(dimension);
+  for (std::size_t first = 0; first + block <= numbers.size(); first += block) {
+    covariances.emplace_back(Eigen::Matrix3d::Zero());
+    covariances.back().topLeftCorner(dimension, dimension) =
+        Eigen::Map<const Eigen::MatrixXd>(numbers.data() + first, dimension, dimension);
+  }
+  return covariances;
+}
+
 void read_references(const h5::Handle& scenario, ResultDescription& result) {
   if (!h5::has(scenario, format::kReferences)) return;
   const h5::Handle references = h5::open_group(scenario, format::kReferences);
@@ -118,6 +132,7 @@ void read_references(const h5::Handle& scenario, ResultDescription& result) {
     ReferencePath path{name, read_all<double>(group, "fix", Element::f64), {}, {}};
     for (const auto& [x, y] : read_points(group, "position")) path.position.emplace_back(x, y);
     if (h5::has(group, "heading")) path.heading = read_all<double>(group, "heading", Element::f64);
+    path.covariance = read_covariances(group, path.dimension());
     result.references.push_back(std::move(path));
   }
 }

@@ -116,6 +116,23 @@ void check_references(const DriveLog& log, const std::string& place) {
   }
 }
 
+/// One for each fix, or none; their numbers are those of errors that fixes can have.
+void check_covariances(const ReferencePath& reference, const std::string& place) {
+  const std::vector<Eigen::Matrix3d>& covariance = reference.covariance;
+  if (!covariance.empty() && covariance.size() != reference.time.size()) {
+    throw StudyError(place + ": as many covariances as times are needed, or none: complete them");
+  }
+  for (std::size_t i = 0; i < covariance.size(); ++i) {
+    for (int c = 0; c < reference.dimension(); ++c) {
+      const bool is_heading = c == 2;
+      Record{place, i}.limit(
+          std::sqrt(covariance[i](c, c)), is_heading ? kPi : kFarthestCoordinate,
+          is_heading ? "standard deviation of the heading" : "standard deviation of the position",
+          is_heading ? "radians, at most pi" : "metres, at most 1e6");
+    }
+  }
+}
+
 /// Odometry holds until the next record: where none follows for so long, the file was cut.
 void check_end(const DriveLog& log, const std::string& place) {
   const double last_scan = log.scans.back().time, last_move = log.odometry.back().time;
@@ -180,6 +197,7 @@ void check_reference(const ReferencePath& reference, const std::string& place) {
   for (std::size_t i = 0; i < heading.size(); ++i) {
     Record{place, i}.limit(heading[i], 1e3 * kPi, "heading", "radians");
   }
+  check_covariances(reference, place);
 }
 
 void check_landmarks(std::span<const Eigen::Vector2d> landmarks, const std::string& place) {

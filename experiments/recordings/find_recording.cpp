@@ -29,6 +29,10 @@ class Bytes {
     add(std::uint64_t{path.name.size()});
     text_ += path.name;
     add(path.time), add(path.position), add(path.heading);
+    if (!path.covariance.empty()) add(path.covariance);  // drives without keep their fingerprint
+  }
+  void add(const Eigen::Matrix3d& matrix) {
+    for (const double element : matrix.reshaped()) add(element);
   }
   template <class Item>
   void add(const std::vector<Item>& items) {

@@ -14,8 +14,34 @@ inline const std::array<std::string, 1> kStart = {"time_s,x_m,y_m,heading_rad"};
 inline const std::array<std::string, 1> kOdometry = {"time_s,speed_mps,steer_rad"};
 inline const Headers kDetections = {"time_s,range_m,bearing_rad",
                                     "time_s,range_m,bearing_rad,identity"};
-inline const Headers kReference = {"time_s,x_m,y_m", "time_s,x_m,y_m,heading_rad"};
 inline const Headers kLandmarks = {"x_m,y_m", "x_m,y_m,identity"};
+
+/// Headers of a reference: what a fix measures, then what is known of its error.
+enum class ReferenceColumns {
+  position,
+  pose,
+  position_sigmas,
+  pose_sigmas,
+  position_covariance,
+  pose_covariance
+};
+inline const std::array<std::string, 6> kReference = {
+    "time_s,x_m,y_m",
+    "time_s,x_m,y_m,heading_rad",
+    "time_s,x_m,y_m,sigma_x_m,sigma_y_m",
+    "time_s,x_m,y_m,heading_rad,sigma_x_m,sigma_y_m,sigma_heading_rad",
+    "time_s,x_m,y_m,var_x_m2,cov_x_y_m2,var_y_m2",
+    "time_s,x_m,y_m,heading_rad,var_x_m2,cov_x_y_m2,var_y_m2,"
+    "cov_x_heading_m_rad,cov_y_heading_m_rad,var_heading_rad2"};
+
+inline bool has_heading(ReferenceColumns columns) {
+  return columns == ReferenceColumns::pose || columns == ReferenceColumns::pose_sigmas ||
+         columns == ReferenceColumns::pose_covariance;
+}
+
+inline const std::string& header_of(ReferenceColumns columns) {
+  return kReference[static_cast<std::size_t>(columns)];
+}
 
 /// The reference of the file reference.csv; it comes first, others follow by name.
 inline const std::string kLeading = "reference";

@@ -4,6 +4,7 @@
 #include "experiments/recordings/check_log.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/recordings/log_csv_names.hpp"
+#include "experiments/recordings/reference_csv.hpp"
 #include "experiments/text/numbers.hpp"
 #include "experiments/text/words.hpp"
 
@@ -82,18 +83,6 @@ std::vector<LoggedScan> read_scans(const fs::path& path) {
   return scans;
 }
 
-ReferencePath read_reference(const fs::path& path, const std::string& name) {
-  CsvRows rows(path, log_csv::kReference);
-  ReferencePath reference{.name = name, .time = {}, .position = {}, .heading = {}};
-  while (rows.next()) {
-    reference.time.push_back(rows.number(0, "time"));
-    reference.position.emplace_back(rows.number(1, "coordinate"), rows.number(2, "coordinate"));
-    if (rows.header() == 1) reference.heading.push_back(rows.number(3, "heading"));
-  }
-  check_reference(reference, path.string());
-  return reference;
-}
-
 /// By identity where that column is there: each from 0 on once.
 std::vector<Eigen::Vector2d> read_landmarks(const fs::path& path) {
   CsvRows rows(path, log_csv::kLandmarks);
@@ -138,7 +127,7 @@ std::vector<ReferencePath> read_references(const fs::path& folder) {
   std::vector<ReferencePath> references;
   for (const auto& entry : fs::directory_iterator(folder, failure)) {
     const std::string name = reference_in(entry.path());
-    if (!name.empty()) references.push_back(read_reference(entry.path(), name));
+    if (!name.empty()) references.push_back(read_reference_csv(entry.path(), name));
   }
   std::ranges::sort(references, log_csv::is_before, &ReferencePath::name);
   return references;

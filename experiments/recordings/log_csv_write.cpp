@@ -4,6 +4,7 @@
 #include "experiments/recordings/check_log.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/recordings/log_csv_names.hpp"
+#include "experiments/recordings/reference_csv.hpp"
 #include "experiments/text/numbers.hpp"
 
 #include <algorithm>
@@ -67,17 +68,6 @@ Table detection_table(const DriveLog& log) {
   return table;
 }
 
-Table reference_table(const ReferencePath& reference) {
-  const bool headed = !reference.heading.empty();
-  Table table(log_csv::kReference[headed ? 1 : 0]);
-  for (std::size_t i = 0; i < reference.time.size(); ++i) {
-    const Eigen::Vector2d& place = reference.position[i];
-    table.add({reference.time[i], place.x(), place.y()},
-              headed ? "," + to_text(reference.heading[i]) : "");
-  }
-  return table;
-}
-
 Table landmark_table(const std::vector<Eigen::Vector2d>& landmarks) {
   Table table(log_csv::kLandmarks[0]);
   for (const Eigen::Vector2d& place : landmarks) table.add({place.x(), place.y()});
@@ -112,7 +102,7 @@ void write_log_csv(const DriveLog& log, const fs::path& folder, const fs::path& 
   odometry_table(log.odometry).save(folder / "odometry.csv");
   detection_table(log).save(folder / "detections.csv");
   for (const ReferencePath& reference : log.references) {
-    reference_table(reference).save(truth_folder / log_csv::file_of_reference(reference.name));
+    write_text(truth_folder / log_csv::file_of_reference(reference.name), csv_of(reference));
   }
   if (!log.landmarks.empty()) landmark_table(log.landmarks).save(truth_folder / "landmarks.csv");
 }

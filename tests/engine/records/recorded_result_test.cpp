@@ -19,10 +19,14 @@ using ::testing::HasSubstr;
 /// The scripted drive as if it had been recorded: nobody knows the truth, two instruments saw it.
 class Recording final : public DriveSource {
  public:
-  Recording() : drives_(24), itinerary_(drives_.itinerary()) {
+  explicit Recording(std::vector<Eigen::Matrix3d> of_sun = {},
+                     std::vector<Eigen::Matrix3d> of_gps = {})
+      : drives_(24), itinerary_(drives_.itinerary()) {
     itinerary_.has_truth = false;
     itinerary_.references = {{"sun", {0.0, 0.3}, {{1.0, 2.0}, {3.0, 4.0}}, {0.1, -0.2}},
                              {"gps", {0.1, 0.2, 0.4}, {{5.0, 6.0}, {7.0, 8.0}, {9.0, 10.0}}, {}}};
+    itinerary_.references[0].covariance = std::move(of_sun);
+    itinerary_.references[1].covariance = std::move(of_gps);
   }
   const Itinerary& itinerary() const override { return itinerary_; }
   void generate(std::uint64_t run, Drive& drive) const override {
@@ -52,9 +56,21 @@ TEST_F(RecordedResult, HandsBackItsReferencesAndNoTruth) {
   EXPECT_THAT(sun.heading, ElementsAre(0.1, -0.2));
   const ReferencePath& gps = file.references()[1];
   EXPECT_EQ(gps.name, "gps");
+  EXPECT_TRUE(gps.covariance.empty());
   EXPECT_TRUE(gps.heading.empty());
   EXPECT_THAT(gps.position,
               ElementsAre(Eigen::Vector2d(5, 6), Eigen::Vector2d(7, 8), Eigen::Vector2d(9, 10)));
+}
+
+TEST_F(RecordedResult, HandsBackTheErrorsOfItsReferences) {
+  const Eigen::Matrix3d pose{{4, 1, 0.2}, {1, 9, 0.3}, {0.2, 0.3, 0.25}};
+  const Eigen::Matrix3d place{{4, 1, 0}, {1, 9, 0}, {0, 0, 0}};
+  plan_.drives = std::make_shared<Recording>(std::vector{pose, Eigen::Matrix3d(2.0 * pose)},
+                                             std::vector(3, place));
+  write_result(path_, plan_);
+  const ResultFile file(path_);
+  EXPECT_THAT(file.references()[0].covariance, ElementsAre(pose, Eigen::Matrix3d(2.0 * pose)));
+  EXPECT_THAT(file.references()[1].covariance, ElementsAre(place, place, place));
 }
 
 TEST_F(RecordedResult, ASimulatedOneHasTruthAndNoReferences) {

@@ -20,12 +20,15 @@ inline std::vector<std::uint64_t> bits_of(const DriveLog& log) {
     add(time, detections.size());
     for (const auto& [range, bearing, identity] : detections) add(range, bearing, identity);
   }
-  for (const auto& [name, times, positions, headings] : log.references) {
+  for (const auto& [name, times, positions, headings, covariances] : log.references) {
     add(times.size(), headings.size());
     for (const char c : name) add(c);
     for (const double time : times) add(time);
     for (const auto& position : positions) add(position.x(), position.y());
     for (const double heading : headings) add(heading);
+    for (const auto& covariance : covariances) {
+      for (const double element : covariance.reshaped()) add(element);
+    }
   }
   for (const auto& landmark : log.landmarks) add(landmark.x(), landmark.y());
   return bits;

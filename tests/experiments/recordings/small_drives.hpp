@@ -132,6 +132,8 @@ inline DriveLog full_log() {
                {0.3, {{5e-324, 0.0, 0}}}};
   log.references = {{"reference", {0.0, 1.0}, {{0, 0}, {1.0 / 3, 2}}, {0.1, 1.0 / 7}},
                     {"gps", {0.5}, {{1e5, -1e-5}}, {}}};
+  log.references[0].covariance = {Eigen::Vector3d(1.0 / 3, 0.1, 1.0 / 7).asDiagonal(),
+                                  Eigen::Matrix3d{{2, 0.1, -0.2}, {0.1, 1, 0}, {-0.2, 0, 1.0 / 9}}};
   log.landmarks = {{1.0 / 3, 2}, {-3, 4.0 / 7}};
   return log;
 }
