@@ -127,11 +127,12 @@ std::vector<std::string> comparison_notes(const StudyAnalysis& study,
           "the word is 'in most runs', and 'mixed' where it lies on the other side. 'heavy tail' "
           "stands where a few runs decide the mean difference, so that no interval can be given.",
       "'nees_distance' is how many times the mean NEES of the pose of a run must be halved or "
-      "doubled to be 3, what a consistent filter has: 0 is consistent, 1 is off by a factor of 2. "
-      "It is "
-      "of "
-      "the covariance that the verdict is of, all on one scale: of particle filters that of the "
-      "poses they drew, corrected for their number."};
+      "doubled to be " +
+          std::to_string(study.imported.components.size()) +
+          ", what a consistent filter has: 0 is consistent, 1 is off by a factor of 2. It is of "
+          "the covariance that the verdict is of, all on one scale: of particle filters that of "
+          "the "
+          "poses they drew, corrected for their number."};
   note_failures(study, notes);
   return notes;
 }

@@ -145,7 +145,8 @@ Figure anees_parts_figure(const StudyAnalysis& study) {
 Section verdict_section(const StudyAnalysis& study) {
   Section section{"verdict", "Verdict"};
   section.add("verdict", verdict_table(study));
-  section.add("accuracy", accuracy_table(study));
+  const bool has_poses = !study.imported.is_imported() || study.imported.state == "pose";
+  if (has_poses) section.add("accuracy", accuracy_table(study));
   section.add(imported_notes(study));
   section.add(too_few_notes(study));
   section.add(verdict_notes(study));

@@ -4,26 +4,30 @@
 #include "analysis/output/number_text.hpp"
 
 namespace montecarta::analysis {
+namespace {
+
+std::string anees_note(const StudyAnalysis& study, const std::string& level) {
+  const std::string dimension = std::to_string(study.imported.components.size());
+  return "ANEES compares the errors that happened with the errors the filter expected (its "
+         "covariance), averaged over runs and scans: " +
+         dimension +
+         " means it knows how wrong it is (as many components: " + components_text(study) +
+         "), more means it is overconfident, less that it is conservative. '/ expected' divides it "
+         "by " +
+         dimension + "; the brackets hold what infinitely many runs would give in at least " +
+         level +
+         " of studies. Where a few runs decide the mean no interval holds it: 'heavy tail', and "
+         "the median over runs follows with its interval. 'Would find' is the least ratio that "
+         "this study finds with a probability of " +
+         level_text(kPowerSaid) + ".";
+}
+
+}  // namespace
 
 std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
   const std::string level = level_text(study.level), margin = exact_text(study.within);
-  const std::string dimension = std::to_string(study.imported.components.size());
   return {
-      "ANEES compares the errors that happened with the errors the filter expected (its "
-      "covariance), averaged over runs and scans: " +
-          dimension +
-          " means it knows how wrong it is (as many components: " + components_text(study) +
-          "), more means it is overconfident, less that it is conservative. '/ expected' divides "
-          "it "
-          "by " +
-          dimension +
-          "; the brackets hold what infinitely many runs would give in at "
-          "least " +
-          level +
-          " of studies. Where a few runs decide the mean no interval holds it: 'heavy tail', and "
-          "the median over runs follows with its interval. 'Would find' is the least ratio that "
-          "this study finds with a probability of " +
-          level_text(kPowerSaid) + ".",
+      anees_note(study, level),
       "'NEES of particles' is by the spread of the poses that a scan drew, on the scale on which a "
       "perfect filter of as many draws has 3, as a Gaussian filter has: all rows of this table are "
       "on one scale.",

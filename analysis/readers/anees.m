@@ -7,13 +7,38 @@
 % made here.) A singular covariance
 % (a variance below 1e-10 of the floor's, or a pivot of the correlation matrix below 1e-12) gets the
 % floor diag(1e-4 m, 1e-4 m, 1e-5 rad)^2 added. What is not a number is left out. Mean over runs, then
-% over scans. Only functions that Octave and MATLAB both have.
+% over scans. Of imported estimates it is that of their stored errors, of any dimension, without a
+% floor. Only functions that Octave and MATLAB both have.
 function anees(path)
   s = load_results(path);
   labels = fieldnames(s.cells);
   for k = 1:numel(labels)
-    fprintf('%s %.17g\n', labels{k}, anees_of(s.cells.(labels{k}), s.truth.pose, double(s.scan_row) + 1));
+    cell = s.cells.(labels{k});
+    if isfield(cell, 'error')
+      value = anees_of_errors(cell);
+    else
+      value = anees_of(cell, s.truth.pose, double(s.scan_row) + 1);
+    end
+    fprintf('%s %.17g\n', labels{k}, value);
   end
+end
+
+function value = anees_of_errors(cell)
+  complete = find(cell.status(:) == 1);
+  scans = size(cell.error, 2);
+  average = nan(1, scans);
+  for k = 1:scans
+    nees = nan(numel(complete), 1);
+    for r = 1:numel(complete)
+      P = cell.error_covariance(:, :, k, complete(r))';
+      allowed = 1e-6 * sqrt(diag(P)) * sqrt(diag(P))';
+      if all(diag(P) > 0) && all(all(abs(P - P') <= allowed))
+        nees(r) = quadratic_form(cell.error(:, k, complete(r)), P, zeros(size(P, 1), 1));
+      end
+    end
+    average(k) = mean_of_known(nees);
+  end
+  value = mean_of_known(average);
 end
 
 function value = anees_of(cell, truth, rows)
@@ -46,9 +71,9 @@ function value = quadratic_form(e, P, floor_variance)
   value = NaN;
   if ~all(diag(P) > 1e-10 * floor_variance) || ~all(isfinite(P(:))), return; end
   scale = sqrt(diag(P));
-  L = zeros(3);
-  y = zeros(3, 1);
-  for i = 1:3
+  L = zeros(numel(e));
+  y = zeros(numel(e), 1);
+  for i = 1:numel(e)
     for j = 1:i - 1
       L(i, j) = (P(i, j) / (scale(i) * scale(j)) - L(i, 1:j - 1) * L(j, 1:j - 1)') / L(j, j);
     end

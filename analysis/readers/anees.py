@@ -4,6 +4,7 @@
 At scans, over complete runs (status 1). Mean and covariance are the Gaussian mixture's where the file
 has them, else the spread of the particles (or the one Gaussian's own): rows `mixture`, or else `spread`,
 of consistency.csv. (What is called `corrected` there allows for few particles, and is not made here.)
+Of imported estimates it is that of their stored errors, of any dimension, without a floor.
 A singular covariance (a variance below 1e-10 of the floor's, or a pivot of the correlation matrix below
 1e-12) gets the floor diag(1e-4 m, 1e-4 m, 1e-5 rad)^2 added. What is not a number is left out. Mean over
 runs, then over scans."""
@@ -16,13 +17,13 @@ from load_results import load_cell, load_results
 FLOOR = np.diag([1e-4, 1e-4, 1e-5]) ** 2  # [m, m, rad]^2
 
 
-def quadratic_form(e, P):
+def quadratic_form(e, P, least_variance=1e-10 * np.diag(FLOOR)):
     """e' P^-1 e by Cholesky of the correlation matrix; NaN where P is singular."""
     variance = np.diagonal(P, axis1=-2, axis2=-1)
-    regular = (variance > 1e-10 * np.diag(FLOOR)).all(-1) & np.isfinite(P).all((-2, -1))
+    regular = (variance > least_variance).all(-1) & np.isfinite(P).all((-2, -1))
     scale = np.sqrt(variance)
     L, y = np.zeros_like(P), np.zeros_like(e)
-    for i in range(3):
+    for i in range(e.shape[-1]):
         for j in range(i):
             rest = P[..., i, j] / (scale[..., i] * scale[..., j]) - (L[..., i, :j] * L[..., j, :j]).sum(-1)
             L[..., i, j] = rest / L[..., j, j]
@@ -33,9 +34,22 @@ def quadratic_form(e, P):
     return np.where(regular, (y**2).sum(-1), np.nan)
 
 
+def imported_nees(e, P):
+    """Likewise, NaN where P is not symmetric or not positive definite."""
+    deviation = np.sqrt(np.diagonal(P, axis1=-2, axis2=-1))
+    allowed = 1e-6 * deviation[..., :, None] * deviation[..., None, :]
+    symmetric = (abs(P - np.swapaxes(P, -1, -2)) <= allowed).all((-2, -1))
+    return np.where(symmetric, quadratic_form(e, P, 0.0), np.nan)
+
+
 def anees(cell, truth, scan_row):
     which = "_mixture" if "pose_mean_mixture" in cell else ""
     complete = np.flatnonzero(np.asarray(cell["status"]) == 1)
+    if "error" in cell:
+        with np.errstate(all="ignore"):
+            nees = imported_nees(np.asarray(cell["error"])[complete],
+                                 np.asarray(cell["error_covariance"])[complete])
+        return np.nanmean(np.nanmean(nees, axis=0))
 
     def at_scans(dataset):
         return np.asarray(dataset)[complete][:, np.asarray(scan_row)]
@@ -54,6 +68,8 @@ if __name__ == "__main__":
     for label, cell in results["cells"].items():
         if sys.argv[2:] == ["--xarray"]:
             cell = load_cell(sys.argv[1], label)
-            print(label, repr(float(anees(cell, cell.truth, cell.scan_row))))
+            truth = None if "error" in cell else cell.truth
+            print(label, repr(float(anees(cell, truth, cell.scan_row))))
         else:
-            print(label, repr(float(anees(cell, results["truth"]["pose"], results["scan_row"]))))
+            truth = None if "error" in cell else results["truth"]["pose"]
+            print(label, repr(float(anees(cell, truth, results["scan_row"]))))

@@ -28,6 +28,7 @@ struct Cell {
   std::size_t landmarks = 0;  ///< how many rows the map columns have
   /// Components of the error that is stored of an estimate of another program; 0: a filter of ours.
   std::size_t error_components = 0;
+  bool innovations = true;  ///< of such an estimate: whether its NIS is stored too
   bool poses = true;  ///< whether it estimates a pose in the plane; else only its error is stored
   std::vector<std::pair<std::string, std::string>> settings;  ///< resolved, every one, for the file
   std::function<std::unique_ptr<SlamFilter>()> make_filter;   ///< callable from any thread

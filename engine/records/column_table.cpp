@@ -26,6 +26,7 @@ bool has_joint(const Cell& cell) { return cell.joint; }
 bool has_pose(const Cell& cell) { return cell.poses; }
 bool is_imported(const Cell& cell) { return cell.error_components > 0; }
 bool is_filter(const Cell& cell) { return !is_imported(cell); }
+bool has_innovations(const Cell& cell) { return is_filter(cell) || cell.innovations; }
 
 constexpr const char* kPose = "m, m, rad";
 constexpr const char* kPoseSquared = "(m, m, rad)^2";
@@ -63,10 +64,12 @@ std::vector<ColumnKind> make_table() {
                 [](Report r) { return r.resampled ? 1.0 : 0.0; }),
       of_report("log_likelihood", "pose", f64, "log density of the scan given the past",
                 [](Report r) { return r.log_likelihood; }),
-      of_report("nis", "pose", f64, "normalised innovation squared of the scan",
-                [](Report r) { return r.nis; }),
-      of_report("nis_dof", "pose", u32, "degrees of freedom of nis",
-                [](Report r) { return static_cast<double>(r.nis_dof); }),
+      of_report(
+          "nis", "pose", f64, "normalised innovation squared of the scan",
+          [](Report r) { return r.nis; }, has_innovations),
+      of_report(
+          "nis_dof", "pose", u32, "degrees of freedom of nis",
+          [](Report r) { return static_cast<double>(r.nis_dof); }, has_innovations),
       of_report(
           "numerical_faults", "pose", u32, "factorisations answered by a fallback",
           [](Report r) { return static_cast<double>(r.numerical_faults); }, nullptr),

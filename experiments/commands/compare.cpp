@@ -26,7 +26,7 @@ const Score* score_called(const std::string& name) {
 
 std::vector<const Score*> scores_of(const Arguments& arguments, const ResultFile& file) {
   const auto names = arguments.text("metric");
-  if (!names) return usual_scores(file.has_truth());
+  if (!names) return usual_scores(file.has_errors());
   std::vector<const Score*> scores;
   for (const std::string& name : split(*names, ',')) scores.push_back(score_called(name));
   return scores;

@@ -97,7 +97,8 @@ Command judge_command() {
             {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},
        .details =
            "Columns: time_s, then x_m,y_m,heading_rad or x_m,y_m,z_m,qx,qy,qz,qw or any others, "
-           "then\ncov_A_B (components or indices from 0), all or one triangle. Truths have no "
+           "then\ncov_A_B (components or indices from 0), all or one triangle; perhaps nis,nis_dof "
+           "(innovations). Truths have no "
            "covariance.\nNothing is aligned.\n\n--error says of which error:\n" +
            explained_conventions() + "\n" + pairing_rule() +
            "\nexample:\n"

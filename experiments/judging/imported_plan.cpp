@@ -58,14 +58,14 @@ std::string import_text(const JudgedFiles& files, const TextPairs& settings) {
   return text;
 }
 
-Cell imported_cell(const EstimatorFiles& files, const StateShape& shape,
-                   const TextPairs& settings) {
+Cell imported_cell(const EstimatorFiles& files, const StateRows& first, const TextPairs& settings) {
   Cell cell;
   cell.label = files.cell;
   cell.filter = "imported";
   cell.long_name = files.cell + " (imported)";
-  cell.error_components = shape.dimension();
-  cell.poses = shape.kind == StateKind::pose;
+  cell.error_components = first.shape.dimension();
+  cell.innovations = !first.nis.empty();
+  cell.poses = first.shape.kind == StateKind::pose;
   cell.settings = settings;
   return cell;
 }
@@ -89,7 +89,7 @@ StudyPlan imported_plan(const JudgedFiles& files, const StateRows& first,
   all.insert(all.end(), plan.scenario.begin() + 1, plan.scenario.end());
   plan.resolved_text = import_text(files, all);
   for (const EstimatorFiles& cell : files.cells)
-    plan.cells.push_back(imported_cell(cell, first.shape, settings));
+    plan.cells.push_back(imported_cell(cell, first, settings));
   return plan;
 }
 

@@ -24,6 +24,10 @@ void expect_alike(const StateRows& rows, const fs::path& path, const StateRows& 
     throw StudyError(path.string() + ": another state than in " + first_path.string() +
                      " (one study judges one state): judge them apart");
   }
+  if (rows.nis.empty() != first.nis.empty()) {
+    throw StudyError(path.string() + ": " + (rows.nis.empty() ? "no nis" : "has nis") + " (in " +
+                     first_path.string() + " it is otherwise): give it in all files or in none");
+  }
   if (rows.time.size() != first.time.size()) {
     throw StudyError(path.string() + ": " + std::to_string(rows.time.size()) + " rows (" +
                      first_path.string() + " has " + std::to_string(first.time.size()) +
@@ -76,6 +80,10 @@ RunRecord record_of(const RecordLayout& layout, const StateRows& rows,
     put_rows(Eigen::Vector3d(mean.x, mean.y, mean.heading), s, column("pose_mean"));
     put_rows(covariance_in_map(convention, rows.state[s], rows.covariance[s]), s,
              column("pose_covariance"));
+  }
+  if (!rows.nis.empty()) {
+    std::ranges::copy(rows.nis, column("nis").begin());
+    std::ranges::copy(rows.nis_dof, record.column<std::uint32_t>(*layout.find("nis_dof")).begin());
   }
   record.mark_complete(std::numeric_limits<double>::quiet_NaN());
   return record;

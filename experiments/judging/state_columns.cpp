@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -19,6 +20,7 @@ const std::string kTimeColumn = "time_s", kCovariancePrefix = "cov_";
 const Names kPoseColumns = {"x_m", "y_m", "heading_rad"};
 const Names kSpaceColumns = {"x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"};
 const Names kQuaternionColumns = {"qx", "qy", "qz", "qw"};
+const std::string kNis = "nis", kNisDof = "nis_dof";
 constexpr std::array kKnownUnits = {"m", "rad", "mps", "mps2", "radps", "s"};
 /// Without a unit nobody knows whether degrees are meant, and a heading would not be wrapped.
 const Names kNeedUnit = {"x", "y", "z", "heading", "yaw", "pitch", "roll", "theta", "phi", "psi"};
@@ -147,6 +149,11 @@ std::vector<std::size_t> covariance_fields(const Names& header, const StateShape
   return fields;
 }
 
+bool is_of_state(const std::string& name) {
+  return name != kTimeColumn && name != kNis && name != kNisDof &&
+         !name.starts_with(kCovariancePrefix);
+}
+
 }  // namespace
 
 std::string name_of(StateKind kind) {
@@ -158,10 +165,18 @@ std::string name_of(StateKind kind) {
 EstimateFields estimate_fields(const Names& header, const std::string& place) {
   check_header(header, place);
   Names state;
-  for (const std::string& name : header) {
-    if (name != kTimeColumn && !name.starts_with(kCovariancePrefix)) state.push_back(name);
+  std::ranges::copy_if(header, std::back_inserter(state), is_of_state);
+  EstimateFields fields{
+      .shape = shape_of(state, place), .state = {}, .covariance = {}, .nis = {}, .nis_dof = {}};
+  if (has_name(header, kNis) != has_name(header, kNisDof)) {
+    throw StudyError(place +
+                     ": nis and nis_dof belong together (one says nothing without the "
+                     "other): add the other one");
   }
-  EstimateFields fields{.shape = shape_of(state, place), .state = {}, .covariance = {}};
+  if (has_name(header, kNis)) {
+    fields.nis = place_of_name(header, kNis);
+    fields.nis_dof = place_of_name(header, kNisDof);
+  }
   for (const std::string& column : fields.shape.columns)
     fields.state.push_back(place_of_name(header, column));
   fields.covariance = covariance_fields(header, fields.shape, place);

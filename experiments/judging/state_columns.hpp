@@ -4,6 +4,7 @@
 #include "engine/namespaces.hpp"
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,12 +34,14 @@ struct StateShape {
 /// Where a file has what: fields of a row.
 struct EstimateFields {
   StateShape shape;
-  std::vector<std::size_t> state;       ///< {width}
-  std::vector<std::size_t> covariance;  ///< {d, d}; of a triangle each element stands twice
+  std::vector<std::size_t> state;           ///< {width}
+  std::vector<std::size_t> covariance;      ///< {d, d}; of a triangle each element stands twice
+  std::optional<std::size_t> nis, nis_dof;  ///< both or none
 };
 
 /// Understands the header of estimates: `time_s`, the state, then `cov_A_B` with names of
-/// components or indices from 0, the whole covariance or one triangle. Throws StudyError beginning
+/// components or indices from 0, the whole covariance or one triangle; perhaps `nis` and `nis_dof`.
+/// Throws StudyError beginning
 /// with `place`.
 EstimateFields estimate_fields(const std::vector<std::string>& header, const std::string& place);
 

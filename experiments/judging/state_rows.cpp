@@ -45,6 +45,20 @@ Eigen::MatrixXd covariance_in(const CsvRows& rows, const EstimateFields& fields)
   return P;
 }
 
+void take_innovation(const CsvRows& rows, const EstimateFields& fields, StateRows& all) {
+  if (!fields.nis) return;
+  const double nis = rows.number(*fields.nis, "number"),
+               dof = rows.number(*fields.nis_dof, "number");
+  constexpr double kMostComponents = 1e6;
+  if (nis < 0.0 || dof < 0.0 || dof > kMostComponents || dof != std::floor(dof)) {
+    throw StudyError(rows.place() + ": nis " + to_text(nis) + " with nis_dof " + to_text(dof) +
+                     " (a sum of squares, and how many components it has): write 0 and 0 where "
+                     "nothing was observed");
+  }
+  all.nis.push_back(nis);
+  all.nis_dof.push_back(static_cast<std::uint32_t>(dof));
+}
+
 void take_time(const CsvRows& rows, std::vector<double>& times) {
   const double time = rows.number(0, "time");
   if (!times.empty() && time <= times.back()) {
@@ -87,11 +101,12 @@ Eigen::VectorXd between(const StateShape& shape, const Eigen::VectorXd& a, const
 StateRows read_estimates(const std::filesystem::path& path) {
   CsvRows file(path);
   const EstimateFields fields = estimate_fields(file.columns(), file.place());
-  StateRows rows{fields.shape, {}, {}, {}};
+  StateRows rows{fields.shape, {}, {}, {}, {}, {}};
   while (file.next()) {
     take_time(file, rows.time);
     rows.state.push_back(state_in(file, fields.state, fields.shape));
     rows.covariance.push_back(covariance_in(file, fields));
+    take_innovation(file, fields, rows);
   }
   expect_rows(rows, path);
   return rows;
@@ -100,7 +115,7 @@ StateRows read_estimates(const std::filesystem::path& path) {
 StateRows read_truth(const std::filesystem::path& path, const StateShape& shape) {
   CsvRows file(path);
   const std::vector<std::size_t> fields = truth_fields(file.columns(), shape, file.place());
-  StateRows rows{shape, {}, {}, {}};
+  StateRows rows{shape, {}, {}, {}, {}, {}};
   while (file.next()) {
     take_time(file, rows.time);
     rows.state.push_back(state_in(file, fields, shape));

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -18,6 +19,8 @@ struct StateRows {
   std::vector<double> time;                 ///< [s] {row}, increasing
   std::vector<Eigen::VectorXd> state;       ///< {row}{width}, quaternions of length 1
   std::vector<Eigen::MatrixXd> covariance;  ///< {row}{d, d} as it stands there; empty of a truth
+  std::vector<double> nis;                  ///< {row} empty where it is not there
+  std::vector<std::uint32_t> nis_dof;       ///< {row} likewise
 };
 
 /// Reads estimates: mean and covariance at times. Throws StudyError naming file, line and remedy

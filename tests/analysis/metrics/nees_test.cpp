@@ -32,6 +32,27 @@ TEST(Nees, EqualsTheQuadraticFormOfEachBlock) {
   }
 }
 
+// Law: of any dimension, and nothing of what is no covariance.
+TEST(StrictNees, EqualsTheQuadraticFormOrIsNone) {
+  RngStream draw({6, 0, 0, 0, Draw::test});
+  for (const Eigen::Index d : {1, 2, 6, 15}) {
+    const Eigen::MatrixXd root = Eigen::MatrixXd::NullaryExpr(d, d, [&] { return draw.normal(); });
+    Eigen::MatrixXd P = root * root.transpose() + 0.01 * Eigen::MatrixXd::Identity(d, d);
+    const Eigen::VectorXd e = Eigen::VectorXd::NullaryExpr(d, [&] { return draw.normal(); });
+    const double expected = e.dot(P.llt().solve(e));
+    EXPECT_NEAR(strict_nees(e, P), expected, 1e-9 * expected);
+    EXPECT_NEAR(strict_nees(1e-9 * e, 1e-18 * P), expected, 1e-9 * expected) << "no floor";
+    EXPECT_TRUE(std::isnan(strict_nees(e, -P)));
+    EXPECT_TRUE(std::isnan(strict_nees(e, Eigen::MatrixXd::Zero(d, d))));
+    if (d == 1) continue;
+    P(0, 1) += 1e-3 * std::sqrt(P(0, 0) * P(1, 1));
+    EXPECT_TRUE(std::isnan(strict_nees(e, P))) << "not symmetric";
+    EXPECT_TRUE(std::isnan(strict_nees(e, Eigen::MatrixXd::Ones(d, d)))) << "singular";
+    P(0, 1) = P(1, 0) = std::numeric_limits<double>::infinity();
+    EXPECT_TRUE(std::isnan(strict_nees(e, P)));
+  }
+}
+
 // After eight noisy steps the deviations along the axes are 14 mm, 8 mm and 0.07 mm (EQUATIONS 1).
 TEST(Nees, AcceptsAThinCovariance) {
   const Eigen::Vector3d axes(0.0141, 0.0081, 7.3e-5);

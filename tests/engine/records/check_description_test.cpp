@@ -98,6 +98,23 @@ TEST_F(CheckDescription, RefusesColumnsThatDoNotFitTheirAxes) {
               HasSubstr("too long"));
 }
 
+TEST_F(CheckDescription, HoldsErrorsOfAnyDimension) {
+  plan_.cells[0].error_components = 4;
+  plan_.cells[0].poses = plan_.cells[0].innovations = false;
+  const ResultDescription good = describe(plan_, {});
+  EXPECT_NO_THROW(check_description(good, "out.h5"));
+  for (const char* name : {"pose_mean", "pose_covariance", "ess", "nis"})
+    EXPECT_FALSE(good.cells[0].has(name)) << name;
+  const auto column = [](auto& d, const char* name) {
+    return std::ranges::find(d.cells[0].columns, name, &Column::name);
+  };
+  EXPECT_EQ(column(good, "error")->shape.back(), 4U);
+  EXPECT_THAT(refusal([&](auto& d) { column(d, "error_covariance")->shape.back() = 3; }),
+              HasSubstr("error_covariance is not as long as its axis"));
+  EXPECT_THAT(refusal([&](auto& d) { d.cells[0].columns.erase(column(d, "error")); }),
+              HasSubstr("only a part of error"));
+}
+
 TEST_F(CheckDescription, RefusesPlacesThatAreNone) {
   EXPECT_THAT(refusal([](auto& d) { d.start.x = std::numeric_limits<double>::infinity(); }),
               HasSubstr("no places"));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Estimates of another program, end to end.
+#include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "engine/records/result_file.hpp"
 #include "experiments/text/numbers.hpp"
@@ -7,7 +8,7 @@
 
 #include <gmock/gmock.h>
 
-#include <array>
+#include <algorithm>
 
 namespace montecarta::experiments {
 namespace {
@@ -155,6 +156,55 @@ TEST_F(Judge, AVectorHasItsOwnDimension) {
   EXPECT_EQ(call({"compare", "mine.h5", "--baseline", "e"}).code, 0);
   words.back() = "body";
   EXPECT_THAT(judge({"e_0.csv", "e_1.csv"}, words).err, HasSubstr("not of a vector"));
+}
+
+TEST_F(Judge, InnovationsAreJudgedToo) {
+  const std::string header = "time_s,a_m,cov_0_0,nis,nis_dof\n";
+  write("e_0.csv", header + "1,1,1,6,2\n2,1,1,6,2\n");
+  write("e_1.csv", header + "1,1,1,2,2\n2,1,1,2,2\n");
+  write("truth.csv", "time_s,a_m\n1,0\n2,0\n");
+  const std::vector<std::string> more = {"--truth", "truth.csv", "--error", "world",
+                                         "-o",      "mine.h5",   "--force"};
+  ASSERT_EQ(judge({"e_0.csv", "e_1.csv"}, more).code, 0);
+  const auto numbers = numbers_of(analyzed("mine.h5").cells[0]);
+  const auto nis = std::ranges::find(numbers, "nis_per_component", &analysis::NamedNumber::name);
+  EXPECT_NEAR(nis->value, 2.0, 1e-12);
+  write("e_1.csv", "time_s,a_m,cov_0_0\n1,1,1\n2,1,1\n");
+  EXPECT_THAT(judge({"e_0.csv", "e_1.csv"}, more).err, HasSubstr("e_1.csv: no nis"));
+}
+
+TEST_F(Judge, PosesInSpaceAreJudgedAndCompared) {
+  std::string header = "time_s,x_m,y_m,z_m,qx,qy,qz,qw";
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < 6; ++j) header += ",cov_" + std::to_string(i) + "_" + std::to_string(j);
+  }
+  std::string P;
+  for (int k = 0; k < 36; ++k) P += k % 7 == 0 ? ",0.01" : ",0";
+  for (const char* cell : {"good", "bold"}) {
+    std::filesystem::create_directory(folder_ / cell);
+    const std::string x = cell == std::string("good") ? "0.2" : "0.6";
+    for (const char* run : {"/run_0.csv", "/run_1.csv"})
+      write(cell + std::string(run), header + "\n1," + x + ",0,0,0,0,0,1" + P + "\n");
+  }
+  write("truth.csv", "time_s,x_m,y_m,z_m,qx,qy,qz,qw\n0.5,0,0,0,0,0,0,1\n1.5,0,0,0,0,0,0,1\n");
+  const std::vector<std::string> files = {"good/run_0.csv", "good/run_1.csv", "bold/run_0.csv",
+                                          "bold/run_1.csv"};
+  std::vector<std::string> more = {"--truth",         "truth.csv", "--error",
+                                   "right-invariant", "-o",        "mine.h5"};
+  EXPECT_THAT(judge(files, more).err, HasSubstr("--interpolate"));
+  more.push_back("--interpolate");
+  const Called called = judge(files, more);
+  ASSERT_EQ(called.code, 0) << called.err;
+  EXPECT_THAT(called.err, HasSubstr("hint: good: the verdict is by the error right-invariant"));
+  const analysis::StudyAnalysis study = analyzed("mine.h5");
+  EXPECT_NEAR(study.cells[0].consistency().mean, 36.0, 1e-9);  // bold: 0.6^2 / 0.01
+  EXPECT_NEAR(study.cells[1].consistency().mean, 4.0, 1e-9);
+  EXPECT_EQ(study.cells[0].nees[0].series.dimension, 6U);
+  EXPECT_EQ(call({"report", "mine.h5", "-o", "page"}).code, 0);
+  const Called compared = call({"compare", "mine.h5", "--baseline", "good"});
+  EXPECT_THAT(compared.out,
+              AllOf(HasSubstr("nees_distance  bold"), HasSubstr("6, what a consistent filter has")))
+      << compared.out << compared.err;
 }
 
 TEST_F(Judge, WrongInputIsNamed) {

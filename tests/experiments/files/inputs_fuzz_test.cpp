@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Damaged studies and worlds: read, or refused with the name of the file. (Damaged recorded drives:
-// recordings/readers_fuzz_test.cpp.)
+// Damaged studies, worlds and estimates: read, or refused with the name of the file. (Damaged
+// recorded drives: recordings/readers_fuzz_test.cpp.)
+#include "experiments/judging/state_rows.hpp"
 #include "experiments/study/study.hpp"
 #include "experiments/worlds/world_file.hpp"
 #include "tests/doubles/complaint.hpp"
@@ -46,6 +47,13 @@ TEST(InputsFuzz, WorldCsv) {
   const fs::path path = folder / "yard.csv";
   write_text(path, kWorld);
   EXPECT_GT(refused(path, true, 2000, [&] { read_world_file(path); }), 500U);
+}
+
+TEST(InputsFuzz, Estimates) {
+  const ScratchFolder folder;
+  const fs::path path = folder / "estimate.csv";
+  write_text(path, "time_s,x_m,qual,cov_0_0,cov_1_0,cov_1_1\n0.5,1,2,3,0.5,4\n1.5,1,2,3,0.5,4\n");
+  EXPECT_GT(refused(path, true, 2000, [&] { read_estimates(path); }), 500U);
 }
 
 TEST(InputsFuzz, WorldMat) {

@@ -105,6 +105,17 @@ TEST_F(StateFiles, AreRefusedWithFileLineAndRemedy) {
   EXPECT_THAT(complaint("time_s,cov_x_x\n"), HasSubstr("no state"));
 }
 
+TEST_F(StateFiles, MayHaveInnovations) {
+  const std::string header = "time_s,b,cov_0_0,nis,nis_dof\n";
+  const StateRows rows = read_estimates(written(header + "1,2,3,4.5,2\n2,2,3,0,0\n"));
+  EXPECT_EQ(rows.shape.dimension(), 1U);
+  EXPECT_THAT(rows.nis, ElementsAre(4.5, 0.0));
+  EXPECT_THAT(rows.nis_dof, ElementsAre(2U, 0U));
+  EXPECT_THAT(complaint(header + "1,2,3,-1,2\n"), HasSubstr(":2: nis -1 with nis_dof 2"));
+  EXPECT_THAT(complaint(header + "1,2,3,1,0.5\n"), HasSubstr(":2: nis 1 with nis_dof 0.5"));
+  EXPECT_THAT(complaint("time_s,b,cov_0_0,nis\n"), HasSubstr("belong together"));
+}
+
 TEST_F(StateFiles, HaveTruthsAtTheTimesOfEstimatesOrBetween) {
   const StateShape shape{StateKind::vector, {"a_rad", "b_m"}, {"a", "b"}, {"rad", "m"}};
   const StateRows truth =
