@@ -71,7 +71,12 @@ void NeesAccumulator::add(std::span<const double> value, std::span<const std::ui
     table_.add(s, value[s]);
   }
   neighbours_.add(value, kCapFactor * static_cast<double>(dimension_of(block_)));
-  run_averages_.push_back(mean_of_finite(value));
+  const double average = mean_of_finite(value);
+  if (std::isnan(average)) {
+    ++unjudged_runs_;
+  } else {
+    run_averages_.push_back(average);
+  }
 }
 
 NeesSeries NeesAccumulator::series(double level, const BandWalks& walks) const {
@@ -83,6 +88,7 @@ NeesSeries NeesAccumulator::series(double level, const BandWalks& walks) const {
   series.too_few = too_few_;
   series.runs = runs_;
   series.run_averages = run_averages_;
+  series.unjudged_runs = unjudged_runs_;
   series.test = walks.test(neighbours_.result(), run_averages_.size(), series.dimension, level);
   BandsOf bands(series.dimension, level, std::erf(series.test.deviate / std::sqrt(2.0)));
   for (std::size_t s = 0; s < sum_.size(); ++s) {

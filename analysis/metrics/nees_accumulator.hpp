@@ -40,8 +40,8 @@ class NeesAccumulator {
   std::vector<std::uint32_t> runs_;  ///< {scan} in the sum
   QuantileTable table_;
   NeighbourCorrelation neighbours_;
-  std::vector<double> run_averages_;  ///< {run}
-  std::uint64_t samples_ = 0, floored_ = 0, undefined_ = 0, too_few_ = 0;
+  std::vector<double> run_averages_;  ///< {run that has any}
+  std::uint64_t samples_ = 0, floored_ = 0, undefined_ = 0, too_few_ = 0, unjudged_runs_ = 0;
 };
 
 }  // namespace montecarta::analysis

@@ -60,14 +60,22 @@ std::vector<std::string> consistency_notes() {
       "is far too large they say that few bad runs make the average. 'floored' counts covariances "
       "that were singular (0.1 mm and 0.00001 rad were added), 'undefined' those that were not a "
       "number and left out, 'too few draws' those of no more effective draws than components "
-      "and two, of which no spread says anything."};
+      "and two, of which no spread says anything, 'unjudged runs' complete runs in which no scan "
+      "is left."};
 }
 
 std::vector<std::string> too_few_notes(const StudyAnalysis& study) {
   std::vector<std::string> notes;
   for (const CellAnalysis& cell : study.cells) {
     const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
-    if (pose == nullptr || pose->series.too_few == 0) continue;
+    if (pose == nullptr) continue;
+    if (pose->series.unjudged_runs > 0) {
+      notes.push_back(cell.label + ": " + std::to_string(pose->series.unjudged_runs) + " of " +
+                      std::to_string(cell.complete) +
+                      " complete runs have no scan that can be judged; ANEES and verdict are of "
+                      "the other runs.");
+    }
+    if (pose->series.too_few == 0) continue;
     const double share =
         static_cast<double>(pose->series.too_few) / static_cast<double>(pose->series.samples);
     notes.push_back(cell.label + ": in " + std::to_string(pose->series.too_few) + " of " +

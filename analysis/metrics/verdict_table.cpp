@@ -102,7 +102,8 @@ std::vector<std::string> consistency_row(const CellAnalysis& cell, const NeesRes
           percent(found.share_below),
           std::to_string(nees.series.floored),
           std::to_string(nees.series.undefined),
-          std::to_string(nees.series.too_few)};
+          std::to_string(nees.series.too_few),
+          std::to_string(nees.series.unjudged_runs)};
 }
 
 }  // namespace
@@ -155,7 +156,8 @@ std::vector<NamedNumber> numbers_of(const CellAnalysis& cell, const NeesResult& 
           {"samples", "1", static_cast<double>(nees.series.samples)},
           {"floored", "1", static_cast<double>(nees.series.floored)},
           {"undefined", "1", static_cast<double>(nees.series.undefined)},
-          {"too_few_draws", "1", static_cast<double>(nees.series.too_few)}};
+          {"too_few_draws", "1", static_cast<double>(nees.series.too_few)},
+          {"unjudged_runs", "1", static_cast<double>(nees.series.unjudged_runs)}};
 }
 
 std::string runs_in_words(const CellAnalysis& cell) {
@@ -216,7 +218,8 @@ TextTable consistency_table(const StudyAnalysis& study) {
                     {"below"},
                     {"floored"},
                     {"undefined"},
-                    {"too few draws"}};
+                    {"too few draws"},
+                    {"unjudged runs"}};
   for (const CellAnalysis& cell : study.cells) {
     for (const NeesResult& nees : cell.nees) {
       table.rows.push_back(consistency_row(cell, nees, study.level));
