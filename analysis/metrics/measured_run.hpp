@@ -31,6 +31,10 @@ struct RunCriteria {
   std::span<const std::uint32_t> joint_scans;  ///< of joint estimates
   BandWalks walks;                             ///< of as many scans where there is a truth
   bool calibrates = false;  ///< whether calibration is judged: where noise is matched
+  /// Of each verdict where cells stop by verdict, so that all looks together have `level`.
+  std::optional<double> look_level = {};
+
+  double verdict_level() const { return look_level.value_or(level); }
 };
 
 RunCriteria criteria_of(const ResultFile& file, double level, double within = kUsualMargin);

@@ -79,7 +79,8 @@ void NeesAccumulator::add(std::span<const double> value, std::span<const std::ui
   }
 }
 
-NeesSeries NeesAccumulator::series(double level, const BandWalks& walks) const {
+NeesSeries NeesAccumulator::series(double level, double verdict_level,
+                                   const BandWalks& walks) const {
   NeesSeries series;
   series.dimension = dimension_of(block_);
   series.samples = samples_;
@@ -89,7 +90,8 @@ NeesSeries NeesAccumulator::series(double level, const BandWalks& walks) const {
   series.runs = runs_;
   series.run_averages = run_averages_;
   series.unjudged_runs = unjudged_runs_;
-  series.test = walks.test(neighbours_.result(), run_averages_.size(), series.dimension, level);
+  series.test =
+      walks.test(neighbours_.result(), run_averages_.size(), series.dimension, verdict_level);
   BandsOf bands(series.dimension, level, std::erf(series.test.deviate / std::sqrt(2.0)));
   for (std::size_t s = 0; s < sum_.size(); ++s) {
     series.bounds.push_back(bands.of(runs_[s]).pointwise);
@@ -102,8 +104,9 @@ NeesSeries NeesAccumulator::series(double level, const BandWalks& walks) const {
 }
 
 NeesResult NeesAccumulator::result(std::span<const double> times, double level,
-                                   const BandWalks& walks, double within) const {
-  NeesResult result{block_, moments_, series(level, walks), {}};
+                                   const BandWalks& walks, double within,
+                                   std::optional<double> look_level) const {
+  NeesResult result{block_, moments_, series(level, look_level.value_or(level), walks), {}};
   result.consistency = judge(result.series, times, within);
   return result;
 }

@@ -61,6 +61,8 @@ std::vector<NamedNumber> numbers_of(const CellAnalysis& cell) {
                                   {"runs_complete", "1", count(cell.complete)},
                                   {"runs_missing", "1", count(cell.missing)},
                                   {"runs_spared", "1", count(cell.spared)},
+                                  {"looks_planned", "1", count(cell.looks_planned)},
+                                  {"looks_made", "1", count(cell.looks_made)},
                                   {"particles", "1", count(cell.particles)}};
   for (const Metric& metric : all_metrics()) {
     if (metric.scores_are_numbers) {

@@ -3,10 +3,22 @@
 #include "analysis/output/number_text.hpp"
 
 namespace montecarta::analysis {
+namespace {
+
+std::string looks_note(const StudyAnalysis& study) {
+  return "A cell of this study stops when its verdict is known, which is looked at after up to " +
+         std::to_string(study.looks.size()) + " numbers of runs, " +
+         std::to_string(study.looks[0]) +
+         " first. Brackets and bands of the verdict are widened so that all looks together "
+         "accuse a consistent filter in at most " +
+         level_text(1.0 - study.level) + " of studies. Those of other numbers are not.";
+}
+
+}  // namespace
 
 std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
   const std::string level = level_text(study.level), margin = exact_text(study.within);
-  return {
+  std::vector<std::string> notes = {
       "ANEES compares the errors that happened with the errors the filter expected (its "
       "covariance), averaged over runs and scans: 3 means it knows how wrong it is (three "
       "components: x, y, heading), more means it is overconfident, less that it is conservative. "
@@ -41,6 +53,8 @@ std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
       "RMSE is the mean over runs, with the interval that holds it for infinitely many; ESS is the "
       "effective number of particles, roots how many of the first particles still have descendants "
       "at the end, CPU the filter's own time in a run; all of complete runs only."};
+  if (study.looks.size() > 1) notes.push_back(looks_note(study));
+  return notes;
 }
 
 std::vector<std::string> consistency_notes() {

@@ -165,10 +165,14 @@ std::string runs_in_words(const CellAnalysis& cell) {
   if (!cell.failures.empty()) words += std::to_string(cell.failures.size()) + " FAILED, ";
   if (cell.missing > 0) words += std::to_string(cell.missing) + " missing, ";
   words += std::to_string(cell.complete) + " complete";
-  if (cell.spared == 0) return words;
+  if (cell.spared == 0 && cell.looks_planned == 0) return words;
   const std::size_t made = cell.complete + cell.failures.size();
+  const std::string look =
+      ", look " + std::to_string(cell.looks_made) + " of " + std::to_string(cell.looks_planned);
+  if (cell.spared == 0) return words + look;
   return words + ", stopped at " + std::to_string(made) + " of " +
-         std::to_string(made + cell.missing + cell.spared) + ": precise enough";
+         std::to_string(made + cell.missing + cell.spared) + ": " +
+         (cell.looks_planned > 0 ? "verdict known" + look : "precise enough");
 }
 
 TextTable verdict_table(const StudyAnalysis& study) {
