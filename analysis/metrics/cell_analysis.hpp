@@ -64,7 +64,9 @@ struct CellAnalysis {
   Mismatch mismatch;          ///< what it believes besides what the study tells
   std::size_t complete = 0;
   std::size_t missing = 0;
-  std::size_t spared = 0;  ///< not made: the cell was precise enough
+  std::size_t spared = 0;         ///< not made: the cell was precise enough, or its verdict known
+  std::size_t looks_planned = 0;  ///< at its verdict, where cells stop by it, else 0
+  std::size_t looks_made = 0;     ///< of them
   std::vector<FailedRun> failures;
   Moments leading = Moments::spread;      ///< of errors and verdict: the first of kMoments there is
   std::vector<NeesResult> nees;           ///< leading first; pose, position, heading; may be empty

@@ -2,6 +2,7 @@
 #include "analysis/metrics/cell_sums.hpp"
 
 #include "analysis/statistics/bootstrap.hpp"
+#include "analysis/statistics/means.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,15 +11,21 @@ namespace montecarta::analysis {
 namespace {
 
 /// Fills CellAnalysis::score_intervals, and Consistency::average_interval of every test from its
-/// runs: one bootstrap over runs at `level`.
+/// runs: one bootstrap over runs at `level`, and one over the judged runs where some are not.
 void put_score_intervals(CellAnalysis& cell, double level) {
   std::vector<std::vector<double>> columns;
   for (const Score& score : all_scores()) columns.push_back(cell.scores.column(score.name));
-  for (const NeesResult& nees : cell.nees) columns.push_back(nees.series.run_averages);
+  for (const NeesResult& nees : cell.nees) {
+    columns.push_back(nees.series.unjudged_runs == 0 ? nees.series.run_averages
+                                                     : std::vector<double>(cell.complete, kNaN));
+  }
   std::vector<Interval> intervals = bootstrap_means(columns, level);
   const std::size_t scores = all_scores().size();
   for (std::size_t k = 0; k < cell.nees.size(); ++k) {
-    cell.nees[k].consistency.average_interval = intervals[scores + k];
+    NeesResult& nees = cell.nees[k];
+    nees.consistency.average_interval = nees.series.unjudged_runs == 0
+                                            ? intervals[scores + k]
+                                            : bootstrap_mean(nees.series.run_averages, level);
   }
   intervals.resize(scores);
   cell.score_intervals = std::move(intervals);

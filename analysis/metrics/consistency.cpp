@@ -26,14 +26,6 @@ double mean_of_numbers(const std::vector<double>& values) {
   return n == 0 ? kNaN : sum / static_cast<double>(n);
 }
 
-std::vector<double> numbers_in(const std::vector<double>& values) {
-  std::vector<double> numbers;
-  for (const double value : values) {
-    if (!std::isnan(value)) numbers.push_back(value);
-  }
-  return numbers;
-}
-
 /// The ratio of a scan to what it should be, by the band for all scans: above 1 where the scan is
 /// above the band.
 Interval ratio_of_scan(const NeesSeries& series, std::size_t s) {
@@ -82,7 +74,7 @@ void compare_scans(const NeesSeries& series, std::span<const double> times, Cons
 
 /// The average over the run: where it should be, and where its ratio to that lies.
 void compare_average(const NeesSeries& series, Consistency& result) {
-  const std::vector<double> averages = numbers_in(series.run_averages);
+  const std::vector<double>& averages = series.run_averages;
   const auto d = static_cast<double>(series.dimension);
   const AverageLaw law = average_law(averages, series.dimension, series.test.average_deviate,
                                      series.test.average_skew);

@@ -35,11 +35,12 @@ struct NeesSeries {
   std::vector<Interval> bounds;            ///< {scan} of the average at that scan, from `runs`
   std::vector<Interval> whole_run_bounds;  ///< {scan} of the average at all scans together
   WholeRunTest test;                       ///< what the average over the run is tested by
-  std::vector<double> run_averages;        ///< {run} over its scans; NaN where none is finite
+  std::vector<double> run_averages;        ///< {run} over its scans, of runs that have any NEES
   std::uint64_t samples = 0;               ///< scans x complete runs
   std::uint64_t floored = 0;               ///< of them: singular covariance, floor was added
   std::uint64_t undefined = 0;  ///< of them: not a number, left out of average and median
   std::uint64_t too_few = 0;    ///< of them: too few effective draws to be judged, left out as well
+  std::uint64_t unjudged_runs = 0;  ///< complete runs without a NEES at any scan, left out as well
 };
 
 enum class Verdict {

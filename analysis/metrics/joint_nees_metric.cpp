@@ -32,8 +32,8 @@ class JointNeesOverRuns final : public MetricSums {
   explicit JointNeesOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
   void add(const MeasuredRun& run) override { joint_.add(run.joint); }
   void put(CellAnalysis& cell) override {
-    cell.findings.put(
-        joint_.result(criteria_->level, criteria_->map.identities_known, criteria_->within));
+    cell.findings.put(joint_.result(criteria_->verdict_level(), criteria_->map.identities_known,
+                                    criteria_->within));
   }
 
  private:

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/measured_run.hpp"
 
+#include "analysis/data/looks.hpp"
 #include "analysis/metrics/simulated_world.hpp"
+#include "analysis/statistics/group_sequential.hpp"
 
 #include <algorithm>
 
@@ -39,7 +41,11 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
                        .map = map_criteria_of(file),
                        .joint_scans = file.description().joint_scans,
                        .walks = BandWalks(scans),
-                       .calibrates = noise_is_matched(file)};
+                       .calibrates = noise_is_matched(file),
+                       .look_level = {},
+                       .printed = printed_in(file.study_text())};
+  const auto looks = looks_in(file.study_text(), file.study_runs());
+  if (looks.size() > 1) criteria.look_level = level_of_a_look(level, looks.size());
   for (const ReferencePath& path : file.references()) {
     criteria.references.emplace_back(path, file.times(), file.description().start);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/data/printed.hpp"
 #include "analysis/data/run_reader.hpp"
 #include "analysis/metrics/beacon_scores.hpp"
 #include "analysis/metrics/consistency.hpp"
@@ -31,6 +32,11 @@ struct RunCriteria {
   std::span<const std::uint32_t> joint_scans;  ///< of joint estimates
   BandWalks walks;                             ///< of as many scans where there is a truth
   bool calibrates = false;  ///< whether calibration is judged: where noise is matched
+  /// Of each verdict where cells stop by verdict, so that all looks together have `level`.
+  std::optional<double> look_level = {};
+  Printed printed = {};  ///< by runs of the paper and its bands batches are judged
+
+  double verdict_level() const { return look_level.value_or(level); }
 };
 
 RunCriteria criteria_of(const ResultFile& file, double level, double within = kUsualMargin);

@@ -73,10 +73,16 @@ void NeesAccumulator::add(std::span<const double> value, std::span<const std::ui
     table_.add(s, value[s]);
   }
   neighbours_.add(value, kCapFactor * static_cast<double>(dimension_));
-  run_averages_.push_back(mean_of_finite(value));
+  const double average = mean_of_finite(value);
+  if (std::isnan(average)) {
+    ++unjudged_runs_;
+  } else {
+    run_averages_.push_back(average);
+  }
 }
 
-NeesSeries NeesAccumulator::series(double level, const BandWalks& walks) const {
+NeesSeries NeesAccumulator::series(double level, double verdict_level,
+                                   const BandWalks& walks) const {
   NeesSeries series;
   series.dimension = dimension_;
   series.samples = samples_;
@@ -85,7 +91,9 @@ NeesSeries NeesAccumulator::series(double level, const BandWalks& walks) const {
   series.too_few = too_few_;
   series.runs = runs_;
   series.run_averages = run_averages_;
-  series.test = walks.test(neighbours_.result(), run_averages_.size(), series.dimension, level);
+  series.unjudged_runs = unjudged_runs_;
+  series.test =
+      walks.test(neighbours_.result(), run_averages_.size(), series.dimension, verdict_level);
   BandsOf bands(series.dimension, level, std::erf(series.test.deviate / std::sqrt(2.0)));
   for (std::size_t s = 0; s < sum_.size(); ++s) {
     series.bounds.push_back(bands.of(runs_[s]).pointwise);
@@ -98,8 +106,9 @@ NeesSeries NeesAccumulator::series(double level, const BandWalks& walks) const {
 }
 
 NeesResult NeesAccumulator::result(std::span<const double> times, double level,
-                                   const BandWalks& walks, double within) const {
-  NeesResult result{block_, moments_, series(level, walks), {}};
+                                   const BandWalks& walks, double within,
+                                   std::optional<double> look_level) const {
+  NeesResult result{block_, moments_, series(level, look_level.value_or(level), walks), {}};
   result.consistency = judge(result.series, times, within);
   return result;
 }

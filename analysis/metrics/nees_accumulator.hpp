@@ -8,6 +8,7 @@
 #include "analysis/statistics/whole_run_band.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,12 +29,14 @@ class NeesAccumulator {
   /// The NEES {scan} of a run whose covariances were all regular; `too_few` {scan}: 1 where too few
   /// draws were left to judge (empty: nowhere).
   void add(std::span<const double> value, std::span<const std::uint8_t> too_few = {});
-  /// `times` [s] of the scans; `walks` of as many; `within` the margin of judge().
+  /// `times` [s] of the scans; `walks` of as many; `within` the margin of judge(). `look_level` is
+  /// that of the verdict where it is taken at several looks; `level` where it is not given.
   NeesResult result(std::span<const double> times, double level, const BandWalks& walks,
-                    double within = kUsualMargin) const;
+                    double within = kUsualMargin,
+                    std::optional<double> look_level = std::nullopt) const;
 
  private:
-  NeesSeries series(double level, const BandWalks& walks) const;
+  NeesSeries series(double level, double verdict_level, const BandWalks& walks) const;
 
   ErrorBlock block_;
   Moments moments_;
@@ -42,8 +45,8 @@ class NeesAccumulator {
   std::vector<std::uint32_t> runs_;  ///< {scan} in the sum
   QuantileTable table_;
   NeighbourCorrelation neighbours_;
-  std::vector<double> run_averages_;  ///< {run}
-  std::uint64_t samples_ = 0, floored_ = 0, undefined_ = 0, too_few_ = 0;
+  std::vector<double> run_averages_;  ///< {run that has any}
+  std::uint64_t samples_ = 0, floored_ = 0, undefined_ = 0, too_few_ = 0, unjudged_runs_ = 0;
 };
 
 }  // namespace montecarta::analysis

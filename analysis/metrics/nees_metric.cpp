@@ -46,8 +46,8 @@ class NeesOverRuns final : public MetricSums {
   void put(CellAnalysis& cell) override {
     if (!nees_.empty()) cell.leading = nees_.front().moments();
     for (const NeesAccumulator& nees : nees_) {
-      cell.nees.push_back(
-          nees.result(criteria_->times, criteria_->level, criteria_->walks, criteria_->within));
+      cell.nees.push_back(nees.result(criteria_->times, criteria_->level, criteria_->walks,
+                                      criteria_->within, criteria_->look_level));
     }
   }
 

@@ -13,6 +13,7 @@ namespace montecarta::analysis {
 Metric errors_metric();
 Metric nees_metric();
 Metric imported_metric();
+Metric nees_batches_metric();
 Metric map_size_metric();
 Metric particles_metric();
 Metric lineages_metric();
@@ -36,7 +37,7 @@ std::span<const Metric> all_metrics() {
       particles_metric(),     lineages_metric(), association_metric(), references_metric(),
       beacons_metric(),       bound_metric(),    map_metric(),         joint_nees_metric(),
       error_anatomy_metric(), survival_metric(), innovations_metric(), diversity_metric(),
-      calibration_metric(),   mismatch_metric(), cost_metric()};
+      calibration_metric(),   mismatch_metric(), cost_metric(),        nees_batches_metric()};
   return all;
 }
 
@@ -62,6 +63,8 @@ std::vector<NamedNumber> numbers_of(const CellAnalysis& cell) {
                                   {"runs_complete", "1", count(cell.complete)},
                                   {"runs_missing", "1", count(cell.missing)},
                                   {"runs_spared", "1", count(cell.spared)},
+                                  {"looks_planned", "1", count(cell.looks_planned)},
+                                  {"looks_made", "1", count(cell.looks_made)},
                                   {"particles", "1", count(cell.particles)}};
   for (const Metric& metric : all_metrics()) {
     if (metric.scores_are_numbers) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/study_analysis.hpp"
 
+#include "analysis/data/looks.hpp"
 #include "analysis/data/run_reader.hpp"
 #include "analysis/metrics/cell_sums.hpp"
 #include "analysis/metrics/efficiency.hpp"
@@ -36,6 +37,11 @@ std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell&
       cell.failures.push_back({file.runs()[i], steps[i], reasons[i], scan_time(file, steps[i])});
     }
   }
+  const auto looks = looks_in(file.study_text(), file.study_runs());
+  const std::uint64_t made = complete.size() + cell.failures.size();
+  cell.looks_planned = looks.size();
+  cell.looks_made = static_cast<std::size_t>(
+      std::ranges::count_if(looks, [&](std::uint64_t look) { return look <= made; }));
   for (const std::size_t i : complete) cell.runs.push_back(file.runs()[i]);
   return complete;
 }
@@ -88,6 +94,7 @@ StudyAnalysis begin(const ResultFile& file, double level, std::optional<double> 
   study.runs_here = file.runs().size();
   study.level = level;
   study.within = margin_of(file, within);
+  study.looks = looks_in(file.study_text(), file.study_runs());
   study.printed = told_by(file, printed_in);
   study.times = file.scan_times();
   for (const std::uint32_t scan : file.description().joint_scans) {

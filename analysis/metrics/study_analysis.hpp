@@ -38,13 +38,14 @@ struct StudyAnalysis {
   std::string title;
   std::string study_sha256;
   std::uint64_t seed = 0;
-  std::uint64_t study_runs = 0;     ///< of the whole study
-  std::uint64_t runs_here = 0;      ///< held by the file
-  double level = 0.95;              ///< of all NEES bounds
-  double within = kUsualMargin;     ///< what counts as consistent (judge())
-  double duration = 0.0;            ///< [s] time of the last scan
-  std::vector<double> times;        ///< [s] of the scans
-  std::vector<double> joint_times;  ///< [s] of the scans at which joint estimates are stored
+  std::uint64_t study_runs = 0;      ///< of the whole study
+  std::uint64_t runs_here = 0;       ///< held by the file
+  double level = 0.95;               ///< of all NEES bounds
+  double within = kUsualMargin;      ///< what counts as consistent (judge())
+  std::vector<std::uint64_t> looks;  ///< looks_in(): runs at each, where cells stop by verdict
+  double duration = 0.0;             ///< [s] time of the last scan
+  std::vector<double> times;         ///< [s] of the scans
+  std::vector<double> joint_times;   ///< [s] of the scans at which joint estimates are stored
   bool has_truth = true;   ///< whether errors are known: without a true path no errors, no NEES
   ImportedState imported;  ///< of files that 'montecarta judge' made
   std::vector<JudgedReference> references;  ///< of a recorded drive; the first one leads

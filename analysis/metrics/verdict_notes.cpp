@@ -22,11 +22,20 @@ std::string anees_note(const StudyAnalysis& study, const std::string& level) {
          level_text(kPowerSaid) + ".";
 }
 
+std::string looks_note(const StudyAnalysis& study) {
+  return "A cell of this study stops when its verdict is known, which is looked at after up to " +
+         std::to_string(study.looks.size()) + " numbers of runs, " +
+         std::to_string(study.looks[0]) +
+         " first. Brackets and bands of the verdict are widened so that all looks together "
+         "accuse a consistent filter in at most " +
+         level_text(1.0 - study.level) + " of studies. Those of other numbers are not.";
+}
+
 }  // namespace
 
 std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
   const std::string level = level_text(study.level), margin = exact_text(study.within);
-  return {
+  std::vector<std::string> notes = {
       anees_note(study, level),
       "'NEES of particles' is by the spread of the poses that a scan drew, on the scale on which a "
       "perfect filter of as many draws has 3, as a Gaussian filter has: all rows of this table are "
@@ -52,6 +61,8 @@ std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
       "RMSE is the mean over runs, with the interval that holds it for infinitely many; ESS is the "
       "effective number of particles, roots how many of the first particles still have descendants "
       "at the end, CPU the filter's own time in a run; all of complete runs only."};
+  if (study.looks.size() > 1) notes.push_back(looks_note(study));
+  return notes;
 }
 
 std::vector<std::string> consistency_notes() {
@@ -71,14 +82,22 @@ std::vector<std::string> consistency_notes() {
       "is far too large they say that few bad runs make the average. 'floored' counts covariances "
       "that were singular (0.1 mm and 0.00001 rad were added), 'undefined' those that were not a "
       "number and left out, 'too few draws' those of no more effective draws than components "
-      "and two, of which no spread says anything."};
+      "and two, of which no spread says anything, 'unjudged runs' complete runs in which no scan "
+      "is left."};
 }
 
 std::vector<std::string> too_few_notes(const StudyAnalysis& study) {
   std::vector<std::string> notes;
   for (const CellAnalysis& cell : study.cells) {
     const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
-    if (pose == nullptr || pose->series.too_few == 0) continue;
+    if (pose == nullptr) continue;
+    if (pose->series.unjudged_runs > 0) {
+      notes.push_back(cell.label + ": " + std::to_string(pose->series.unjudged_runs) + " of " +
+                      std::to_string(cell.complete) +
+                      " complete runs have no scan that can be judged; ANEES and verdict are of "
+                      "the other runs.");
+    }
+    if (pose->series.too_few == 0) continue;
     const double share =
         static_cast<double>(pose->series.too_few) / static_cast<double>(pose->series.samples);
     notes.push_back(cell.label + ": in " + std::to_string(pose->series.too_few) + " of " +

@@ -102,7 +102,8 @@ std::vector<std::string> consistency_row(const CellAnalysis& cell, const NeesRes
           percent(found.share_below),
           std::to_string(nees.series.floored),
           std::to_string(nees.series.undefined),
-          std::to_string(nees.series.too_few)};
+          std::to_string(nees.series.too_few),
+          std::to_string(nees.series.unjudged_runs)};
 }
 
 }  // namespace
@@ -155,7 +156,8 @@ std::vector<NamedNumber> numbers_of(const CellAnalysis& cell, const NeesResult& 
           {"samples", "1", static_cast<double>(nees.series.samples)},
           {"floored", "1", static_cast<double>(nees.series.floored)},
           {"undefined", "1", static_cast<double>(nees.series.undefined)},
-          {"too_few_draws", "1", static_cast<double>(nees.series.too_few)}};
+          {"too_few_draws", "1", static_cast<double>(nees.series.too_few)},
+          {"unjudged_runs", "1", static_cast<double>(nees.series.unjudged_runs)}};
 }
 
 std::string runs_in_words(const CellAnalysis& cell) {
@@ -163,10 +165,14 @@ std::string runs_in_words(const CellAnalysis& cell) {
   if (!cell.failures.empty()) words += std::to_string(cell.failures.size()) + " FAILED, ";
   if (cell.missing > 0) words += std::to_string(cell.missing) + " missing, ";
   words += std::to_string(cell.complete) + " complete";
-  if (cell.spared == 0) return words;
+  if (cell.spared == 0 && cell.looks_planned == 0) return words;
   const std::size_t made = cell.complete + cell.failures.size();
+  const std::string look =
+      ", look " + std::to_string(cell.looks_made) + " of " + std::to_string(cell.looks_planned);
+  if (cell.spared == 0) return words + look;
   return words + ", stopped at " + std::to_string(made) + " of " +
-         std::to_string(made + cell.missing + cell.spared) + ": precise enough";
+         std::to_string(made + cell.missing + cell.spared) + ": " +
+         (cell.looks_planned > 0 ? "verdict known" + look : "precise enough");
 }
 
 TextTable verdict_table(const StudyAnalysis& study) {
@@ -216,7 +222,8 @@ TextTable consistency_table(const StudyAnalysis& study) {
                     {"below"},
                     {"floored"},
                     {"undefined"},
-                    {"too few draws"}};
+                    {"too few draws"},
+                    {"unjudged runs"}};
   for (const CellAnalysis& cell : study.cells) {
     for (const NeesResult& nees : cell.nees) {
       table.rows.push_back(consistency_row(cell, nees, study.level));

@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::size_t kMostWalks = 4000, kFewestWalks = 500;
 constexpr std::size_t kMostNormals = 16'000'000;
-constexpr double kBandShare = 0.25;  // false accusations by the band for one by the average
 constexpr std::uint32_t kWalks = 0xfffffffeU;  // tells these numbers from those of replicates
 
 std::size_t walks_of(std::size_t scans) {

@@ -19,11 +19,14 @@ std::uint64_t spare_rest(std::size_t cell, std::uint64_t first, std::uint64_t la
 }  // namespace
 
 std::vector<std::uint64_t> rounds_of(const StudyPlan& plan) {
+  if (plan.is_enough) return rounds_of(plan.runs_here());
+  return {plan.runs_here()};
+}
+
+std::vector<std::uint64_t> rounds_of(std::uint64_t runs) {
   std::vector<std::uint64_t> rounds;
-  for (std::uint64_t n = kFirstRound; plan.is_enough && n < plan.runs_here(); n *= 2) {
-    rounds.push_back(n);
-  }
-  rounds.push_back(plan.runs_here());
+  for (std::uint64_t n = kFirstRound; n < runs; n *= 2) rounds.push_back(n);
+  rounds.push_back(runs);
   return rounds;
 }
 

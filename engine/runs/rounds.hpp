@@ -14,6 +14,8 @@ namespace montecarta::engine {
 /// then twice as many each time, and at last all of them. All of them alone where no cell may stop.
 std::vector<std::uint64_t> rounds_of(const StudyPlan& plan);
 inline constexpr std::uint64_t kFirstRound = 32;
+/// Of a study of `runs` runs whose cells may stop early.
+std::vector<std::uint64_t> rounds_of(std::uint64_t runs);
 
 /// Between rounds, when the first `runs` runs of every cell have ended: spares the later runs of
 /// each cell that says it has enough. Tells how many that were. A study killed in between finds the

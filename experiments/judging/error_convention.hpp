@@ -11,7 +11,7 @@
 
 namespace montecarta::experiments {
 
-/// What error a covariance is the covariance of (STATISTICS 18).
+/// What error a covariance is the covariance of (STATISTICS 19).
 enum class ErrorConvention { world, body, right_invariant };
 
 /// "world", "body", "right-invariant".

@@ -132,10 +132,28 @@ void expect_joint_estimates(const Study& study) {
   throw StudyError(study.settings.place("record", "columns") + ": joint " + objection);
 }
 
+/// Cells that stop by their verdict need one.
+void expect_verdict(const Study& study) {
+  if (!study.until || study.until->score != nullptr) return;
+  const Settings& settings = study.settings;
+  const std::string problem =
+      settings.place("study", "until") + ": until = " + text_of(*study.until);
+  if (settings.scenario_kind() != "simulated") {
+    throw StudyError(problem +
+                     " and a recorded drive (its true path is unknown, so that no verdict ever "
+                     "comes): remove it");
+  }
+  if (!settings.lists("record", "columns", "covariance")) {
+    throw StudyError(problem +
+                     " without covariance in record.columns (no NEES, so that no verdict ever "
+                     "comes): add covariance there");
+  }
+}
+
 /// A cell stops by what all of its first runs say.
 [[noreturn]] void refuse_part(const Study& study) {
   throw StudyError(study.settings.place("study", "until") + ": until = " + text_of(*study.until) +
-                   " and only part of the runs (none of the parts knows when all are precise "
+                   " and only part of the runs (none of the parts knows when the whole is "
                    "enough): run the whole study in one piece, or add --set study.until= to make "
                    "all runs");
 }
@@ -157,6 +175,7 @@ std::string objection_to_joint(const Study& study) {
 
 StudyPlan make_plan(const Study& study, std::optional<RunRange> range, ExternalPrograms programs) {
   if (range && study.until) refuse_part(study);
+  expect_verdict(study);
   const Settings& settings = study.settings;
   StudyPlan plan;
   plan.name = settings.text("study", "name");

@@ -15,7 +15,8 @@ void add_study(std::vector<Setting>& table) {
   table.push_back(count(s, "seed", "1", 0, kMostSeed, "of all random numbers; any will do"));
   table.push_back(required(count(s, "runs", "", 1, 1e7, "repetitions of every cell"), "100"));
   table.push_back(
-      text(s, "until", "METRIC < HALF-WIDTH: a cell stops when so precise; else empty"));
+      text(s, "until",
+           "METRIC < HALF-WIDTH or verdict: a cell stops when so precise or judged; else empty"));
   table.push_back(number(s, "within", "1", kUsualWithin, kLeastMargin, kMostMargin,
                          "consistent: ANEES so many times too large or small at most"));
 }

@@ -3,6 +3,8 @@
 
 #include "analysis/metrics/credibility.hpp"
 #include "analysis/metrics/error_anatomy.hpp"
+#include "analysis/metrics/verdict_table.hpp"
+#include "analysis/statistics/means.hpp"
 #include "analysis/statistics/survival.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
 
@@ -167,6 +169,39 @@ TEST(CellSums, LetsTheMixtureLeadAndKeepsTheSpread) {
   EXPECT_EQ(nees_of(cell, ErrorBlock::pose).consistency.verdict, Verdict::optimistic);
   EXPECT_NEAR(nees_of(cell, ErrorBlock::pose).consistency.mean, 4.0 * cell.consistency().mean,
               1e-9);
+}
+
+// Run 2 has no scan with a number: what is known of the cell is that of the other runs.
+TEST(CellSums, LeavesOutAndCountsARunWithoutAJudgedScan) {
+  SyntheticStudy study;
+  study.scans = 30;
+  Sums sums(study.times()), without(study.times());
+  for (std::uint64_t run = 0; run < 12; ++run) {
+    RunRows rows = study.run(run);
+    if (run != 2) without.add(rows);
+    if (run == 2) std::ranges::fill(rows.spread.covariance, kNaN);
+    sums.add(rows);
+  }
+  const CellAnalysis cell = sums.result(), others = without.result();
+  EXPECT_EQ(cell.complete, 12u);
+  for (const ErrorBlock block : kErrorBlocks) {
+    const NeesResult &found = nees_of(cell, block), &expected = nees_of(others, block);
+    EXPECT_EQ(found.series.unjudged_runs, 1u);
+    EXPECT_EQ(expected.series.unjudged_runs, 0u);
+    EXPECT_EQ(found.consistency.average_interval.lower,
+              expected.consistency.average_interval.lower);
+    EXPECT_EQ(found.consistency.average_interval.upper,
+              expected.consistency.average_interval.upper);
+    EXPECT_EQ(found.consistency.ratio.lower, expected.consistency.ratio.lower);
+    EXPECT_EQ(found.consistency.mean, expected.consistency.mean);
+    EXPECT_EQ(found.consistency.verdict, expected.consistency.verdict);
+  }
+  StudyAnalysis analysis;
+  analysis.cells = {cell};
+  analysis.cells[0].label = "kf";
+  EXPECT_EQ(too_few_notes(analysis).front(),
+            "kf: 1 of 12 complete runs have no scan that can be judged; ANEES and verdict are of "
+            "the other runs.");
 }
 
 TEST(CellSums, CountsWhatIsSingularOrUndefined) {

@@ -63,6 +63,7 @@ TEST_F(Rounds, DoubleUntilAllRunsAreMade) {
   EXPECT_THAT(rounds_of(plan), ElementsAre(32, 64, 128, kRunsOfRounds));
   plan.last_run = 32;
   EXPECT_THAT(rounds_of(plan), ElementsAre(32));
+  EXPECT_THAT(rounds_of(100), ElementsAre(32, 64, 100));
 }
 
 TEST_F(Rounds, SpareWhatIsEnough) {

@@ -1,15 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/text/words.hpp"
 #include "tests/doubles/same_results.hpp"
 #include "tests/experiments/commands/program.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
 namespace montecarta::experiments {
 namespace {
 
 using testing::ContainsRegex;
 using testing::HasSubstr;
+
+/// ratio_upper / ratio_lower of the first row of a consistency.csv.
+double ratio_width(const std::string& csv) {
+  std::istringstream lines(csv);
+  std::string names, values;
+  std::getline(lines, names);
+  std::getline(lines, values);
+  const std::vector<std::string> columns = split(names, ','), row = split(values, ',');
+  const auto number = [&](const std::string& name) {
+    const auto at = std::ranges::find_if(
+        columns, [&](const std::string& column) { return column.starts_with(name); });
+    return std::stod(row.at(static_cast<std::size_t>(at - columns.begin())));
+  };
+  return std::log(number("ratio_upper") / number("ratio_lower"));
+}
 
 class UntilPrecise : public Program {
  protected:
@@ -80,6 +100,64 @@ TEST_F(UntilPrecise, IsExplainedByCheck) {
   const Called called = call({"check", "blink.ini", "--set", "study.until=position_rmse < 0.02"});
   EXPECT_EQ(called.code, 0) << called.err;
   EXPECT_THAT(called.out, HasSubstr("a cell stops after 32, 64, 128, ... runs"));
+}
+
+/// The same study in the world that its filters assume: dead reckoning as it is, and one that
+/// believes half of the noise.
+class UntilVerdict : public Program {
+ protected:
+  UntilVerdict() {
+    write("blink.csv", kBlinkWorld);
+    write("blink.ini",
+          "[study]\nname = blink\nruns = 500\nuntil = verdict\nwithin = 1.3\n[scenario]\n"
+          "world = blink.csv\nnoise = matched\n[cells]\ncell = dead_reckoning label=right\n"
+          "cell = dead_reckoning label=too_sure motion_noise=0.5\n");
+  }
+  Called run(const std::string& output, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {"run", "blink.ini", "-o", output, "--quiet"};
+    words.insert(words.end(), more.begin(), more.end());
+    return call(words);
+  }
+  std::string difference_of(const std::string& a, const std::string& b) const {
+    return difference(ResultFile(folder_ / a), ResultFile(folder_ / b));
+  }
+};
+
+TEST_F(UntilVerdict, StopsACellWhenItIsKnownAndSaysAtWhichLook) {
+  const Called ran = run("out.h5");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const std::string out = call({"analyze", "out.h5", "--explain"}).out;
+  EXPECT_THAT(out, HasSubstr("32 complete, stopped at 32 of 500: verdict known, look 1 of 5"));
+  EXPECT_THAT(out, ContainsRegex("right +(64|128|256|500) complete.*consistent within 1.3"));
+  EXPECT_THAT(out, HasSubstr("widened so that all looks together"));
+  EXPECT_EQ(call({"gate", "out.h5", "--cell", "right"}).code, 0);
+  EXPECT_EQ(call({"gate", "out.h5", "--cell", "too_sure"}).code, 4);
+}
+
+// The interval of a file that was looked at several times is wider than that of the same runs of a
+// study that was not.
+TEST_F(UntilVerdict, WidensTheIntervalOfTheFile) {
+  ASSERT_EQ(run("looked.h5", {"--set", "study.within=1.001"}).code, 0);
+  ASSERT_EQ(run("once.h5", {"--set", "study.within=1.001", "--set", "study.until="}).code, 0);
+  const auto width = [&](const std::string& name) {
+    const std::string csv = name + "_csv";
+    EXPECT_EQ(call({"analyze", name, "--csv", csv}).code, 0);
+    return ratio_width(text_of(csv + "/consistency.csv"));
+  };
+  EXPECT_NEAR(width("looked.h5") / width("once.h5"), 1.26, 0.06);
+}
+
+TEST_F(UntilVerdict, GivesTheSameBitsOnAnyThreadsKilledAndResumed) {
+  ASSERT_EQ(run("one.h5", {"--threads", "1"}).code, 0);
+  ASSERT_EQ(run("two.h5", {"--threads", "2"}).code, 0);
+  EXPECT_EQ(difference_of("one.h5", "two.h5"), "");
+  for (const char* seconds : {"0.1", "0.3"}) {
+    call({"run", "blink.ini", "-o", "killed.h5", "--quiet"},
+         "timeout -s KILL " + std::string(seconds) + " ");
+    ASSERT_EQ(run("killed.h5", {"--resume"}).code, 0);
+    EXPECT_EQ(difference_of("one.h5", "killed.h5"), "") << "killed after " << seconds << " s";
+    std::filesystem::remove(folder_ / "killed.h5");
+  }
 }
 
 }  // namespace

@@ -48,6 +48,27 @@ TEST(Until, RefusesWhatItCannotDecide) {
   }
 }
 
+TEST(Until, MayBeTheVerdict) {
+  const Study study = parse_study(study_until(" verdict "), "trial.ini", ".");
+  ASSERT_TRUE(study.until);
+  EXPECT_EQ(text_of(*study.until), "verdict");
+  EXPECT_THAT(resolved_text(study), HasSubstr("until = verdict\n"));
+  EXPECT_TRUE(make_plan(study).is_enough);
+  EXPECT_THROW(make_plan(study, RunRange{0, 10}), StudyError);
+  EXPECT_THAT(in_words(*study.until, 1000), HasSubstr("widened for up to 6 looks"));
+}
+
+TEST(Until, IsNoVerdictWithoutACovariance) {
+  const std::vector<std::string> poses = {"record.columns=pose"};
+  const Study study = parse_study(study_until("verdict"), "trial.ini", ".", poses);
+  try {
+    make_plan(study);
+    FAIL() << "a study was planned whose verdict never comes";
+  } catch (const StudyError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("trial.ini:4"), HasSubstr("add covariance")));
+  }
+}
+
 TEST(Until, NeedsAllRuns) {
   const Study study = parse_study(study_until("position_rmse < 1"), "trial.ini", ".");
   EXPECT_THROW(make_plan(study, RunRange{0, 10}), StudyError);
