@@ -48,6 +48,8 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
   if (looks.size() > 1) criteria.look_level = level_of_a_look(level, looks.size());
   for (const ReferencePath& path : file.references()) {
     criteria.references.emplace_back(path, file.times(), file.description().start);
+    if (path.covariance.empty()) continue;
+    criteria.judged_fixes.emplace_back(path, file.scan_times(), file.description().start);
   }
   for (const auto& [x, y] : file.landmarks()) criteria.beacons.emplace_back(x, y);
   return criteria;
@@ -58,6 +60,10 @@ void MeasuredRun::measure(const RunCriteria& criteria, std::size_t particles) {
   references.clear();
   for (const PathAtFixes& fixes : criteria.references) {
     references.push_back(measure_against(fixes, rows.path));
+  }
+  drives.clear();
+  for (const PathAtFixes& fixes : criteria.judged_fixes) {
+    drives.push_back(drive_scores(fixes, criteria.times, rows, particles, criteria.level));
   }
   map.reset();
   if (criteria.map.known && rows.final_map) {

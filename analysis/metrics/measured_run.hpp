@@ -5,6 +5,7 @@
 #include "analysis/data/run_reader.hpp"
 #include "analysis/metrics/beacon_scores.hpp"
 #include "analysis/metrics/consistency.hpp"
+#include "analysis/metrics/drive_scores.hpp"
 #include "analysis/metrics/joint_nees.hpp"
 #include "analysis/metrics/map_scores.hpp"
 #include "analysis/metrics/path_at_fixes.hpp"
@@ -31,6 +32,7 @@ struct RunCriteria {
   MapCriteria map;                             ///< of a simulation
   std::span<const std::uint32_t> joint_scans;  ///< of joint estimates
   BandWalks walks;                             ///< of as many scans where there is a truth
+  std::vector<PathAtFixes> judged_fixes = {};  ///< of the scans, of references with known errors
   bool calibrates = false;  ///< whether calibration is judged: where noise is matched
   /// Of each verdict where cells stop by verdict, so that all looks together have `level`.
   std::optional<double> look_level = {};
@@ -47,6 +49,7 @@ struct MeasuredRun {
   RunReader::Scratch scratch;
   RunMetrics metrics;
   std::vector<ReferenceRun> references;
+  std::vector<DriveScores> drives;      ///< by each of RunCriteria::judged_fixes
   std::optional<BeaconScores> beacons;  ///< where the final map is stored and beacons are known
   std::optional<MapScores> map;         ///< where it is stored and the world is known
   std::vector<JointScore> joint;        ///< where joint estimates are stored

@@ -27,8 +27,17 @@ PathAtFixes::PathAtFixes(const ReferencePath& reference, std::span<const double>
     used_.time.push_back(time);
     used_.position.push_back(reference.position[f]);
     if (!reference.heading.empty()) used_.heading.push_back(reference.heading[f]);
+    if (!reference.covariance.empty()) used_.covariance.push_back(reference.covariance[f]);
     places_.push_back(place_of(time, times));
   }
+}
+
+bool PathAtFixes::has_start() const {
+  constexpr double kSame = 1e-6;  // [m]
+  const Eigen::Vector2d start(start_.x, start_.y);
+  return std::ranges::any_of(used_.position, [&](const Eigen::Vector2d& position) {
+    return (position - start).norm() < kSame;
+  });
 }
 
 PathAtFixes::Place PathAtFixes::place_of(double time, std::span<const double> times) {

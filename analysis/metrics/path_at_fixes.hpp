@@ -29,15 +29,23 @@ class PathAtFixes {
   /// [rad]; empty where the reference has none.
   const std::vector<double>& headings() const { return used_.heading; }
 
-  /// `path` {row, 3} [m, m, rad], linearly in time at every fix; the heading turns the shorter way.
-  std::vector<Pose> interpolate(std::span<const double> path) const;
+  /// (m, m, rad)^2 of each fix; empty where nobody knows it.
+  const std::vector<Eigen::Matrix3d>& covariances() const { return used_.covariance; }
 
- private:
   /// Between row `next` - 1 (the start for 0) and row `next`.
   struct Place {
     std::size_t next = 0;
     double share = 0.0;  ///< of the way, in [0, 1]
   };
+  /// Of each fix.
+  const std::vector<Place>& places() const { return places_; }
+  /// Whether a fix is where the vehicle starts, to a micrometre: the start was taken from it.
+  bool has_start() const;
+
+  /// `path` {row, 3} [m, m, rad], linearly in time at every fix; the heading turns the shorter way.
+  std::vector<Pose> interpolate(std::span<const double> path) const;
+
+ private:
   static Place place_of(double time, std::span<const double> times);
 
   Pose start_;

@@ -4,6 +4,8 @@
 #include "analysis/metrics/reference_table.hpp"
 #include "analysis/output/number_text.hpp"
 
+#include <algorithm>
+
 namespace montecarta::analysis {
 namespace {
 
@@ -54,7 +56,11 @@ std::vector<std::string> distance_notes() {
 
 }  // namespace
 
-std::string no_truth_sentence() {
+std::string no_truth_sentence(const StudyAnalysis& study) {
+  if (std::ranges::any_of(study.references, &JudgedReference::has_errors)) {
+    return "This drive was recorded: nobody knows its true path. References whose own errors are "
+           "stated take its place: the NEES at their fixes is by the covariance of both.";
+  }
   return "This drive was recorded: nobody knows its true path, so there is no verdict on "
          "consistency (NEES) and no true error; estimates are judged by independent measurements "
          "of the path.";

@@ -20,7 +20,7 @@ TextTable map_table(const StudyAnalysis& study);
 TextTable baseline_table(const StudyAnalysis& study);
 
 /// Why a recorded drive has no verdict on consistency.
-std::string no_truth_sentence();
+std::string no_truth_sentence(const StudyAnalysis& study);
 
 /// How to read the tables, a sentence each.
 std::vector<std::string> reference_notes(const StudyAnalysis& study);

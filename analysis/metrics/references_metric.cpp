@@ -54,7 +54,7 @@ class ReferencesOverRuns final : public MetricSums {
 std::vector<Section> references_sections(const StudyAnalysis& study) {
   if (study.has_truth && study.references.empty()) return {};
   Section section{"references", "Judged by references"};
-  if (!study.has_truth) section.add_html("<p>" + no_truth_sentence() + "</p>\n");
+  if (!study.has_truth) section.add_html("<p>" + no_truth_sentence(study) + "</p>\n");
   section.add("reference", reference_table(study));
   section.add("baseline", baseline_table(study));
   section.add("map", map_table(study));

@@ -19,6 +19,7 @@ Metric particles_metric();
 Metric lineages_metric();
 Metric association_metric();
 Metric references_metric();
+Metric drive_metric();
 Metric beacons_metric();
 Metric bound_metric();
 Metric map_metric();
@@ -33,11 +34,12 @@ Metric cost_metric();
 
 std::span<const Metric> all_metrics() {
   static const std::vector<Metric> all = {
-      errors_metric(),        nees_metric(),     imported_metric(),    map_size_metric(),
-      particles_metric(),     lineages_metric(), association_metric(), references_metric(),
-      beacons_metric(),       bound_metric(),    map_metric(),         joint_nees_metric(),
-      error_anatomy_metric(), survival_metric(), innovations_metric(), diversity_metric(),
-      calibration_metric(),   mismatch_metric(), cost_metric(),        nees_batches_metric()};
+      errors_metric(),      nees_metric(),          imported_metric(),    map_size_metric(),
+      particles_metric(),   lineages_metric(),      association_metric(), references_metric(),
+      drive_metric(),       beacons_metric(),       bound_metric(),       map_metric(),
+      joint_nees_metric(),  error_anatomy_metric(), survival_metric(),    innovations_metric(),
+      diversity_metric(),   calibration_metric(),   mismatch_metric(),    cost_metric(),
+      nees_batches_metric()};
   return all;
 }
 

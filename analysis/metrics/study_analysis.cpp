@@ -120,7 +120,8 @@ StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& para
   expect_scans(file);
   const RunCriteria criteria = criteria_of(file, level, study.within);
   for (const PathAtFixes& fixes : criteria.references) {
-    study.references.push_back({fixes.name(), fixes.times(), !fixes.headings().empty()});
+    study.references.push_back({fixes.name(), fixes.times(), !fixes.headings().empty(),
+                                !fixes.covariances().empty(), fixes.has_start()});
   }
   std::vector<MeasuredRun> slots = slots_for(parallel);
   for (const StoredCell& cell : file.cells()) {

@@ -19,6 +19,8 @@ struct JudgedReference {
   std::string name;
   std::vector<double> times;  ///< [s] of the fixes within the drive
   bool has_heading = false;
+  bool has_errors = false;  ///< whether its own errors are known: then it gives a NEES
+  bool has_start = false;   ///< whether the drive starts at one of its fixes
 };
 
 /// What estimates of another program are of; all cells of a file agree.

@@ -42,8 +42,9 @@ void print_warnings(std::ostream& out, const StudyAnalysis& study) {
 }
 
 /// In this order; tables of other sections follow.
-constexpr std::array kTerminalOrder = {"verdict",       "references", "map_errors",  "joint_nees",
-                                       "error_anatomy", "diversity",  "innovations", "association"};
+constexpr std::array kTerminalOrder = {"verdict",    "drive",       "references",
+                                       "map_errors", "joint_nees",  "error_anatomy",
+                                       "diversity",  "innovations", "association"};
 
 std::vector<Section> terminal_sections(const StudyAnalysis& study) {
   std::vector<Section> sections = sections_of(study);
@@ -92,7 +93,7 @@ void print_tables(std::ostream& out, const StudyAnalysis& study, Explanations ex
       << study.times.size() << " scans each, seed " << study.seed << "\n\n";
   if (study.has_failures()) print_failures(out, study);
   if (!study.has_truth) {
-    print_wrapped(out, no_truth_sentence());
+    print_wrapped(out, no_truth_sentence(study));
     out << '\n';
   }
   for (const Section& section : sections) print_section_tables(out, section);

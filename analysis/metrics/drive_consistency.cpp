@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/drive_consistency.hpp"
+
+#include "analysis/output/number_text.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace montecarta::analysis {
+namespace {
+
+/// So few effective samples may as well be one that lasts for the whole drive.
+constexpr double kHardlyAny = 3.0;
+
+/// Means over runs; each run by itself has an interval that holds, and the runs are not
+/// independent.
+CorrelatedAverage mean_over_drives(std::span<const DriveScores> runs, std::size_t block) {
+  const auto n = static_cast<double>(runs.size());
+  CorrelatedAverage mean;
+  double inverse = 0.0;
+  for (const DriveScores& run : runs) {
+    const CorrelatedAverage& one = run.blocks[block];
+    mean.mean += one.mean / n;
+    mean.ratio.lower += one.ratio.lower / n;
+    mean.ratio.upper += one.ratio.upper / n;
+    inverse += 1.0 / one.effective_samples / n;
+  }
+  mean.effective_samples = 1.0 / inverse;  // 0 where one of them is
+  return mean;
+}
+
+DriveScores mean_scores(std::span<const DriveScores> runs) {
+  DriveScores all = runs.front();
+  all.median = 0.0;
+  for (std::size_t block = 0; block < all.blocks.size(); ++block) {
+    all.blocks[block] = mean_over_drives(runs, block);
+  }
+  for (const DriveScores& run : runs) {
+    all.median += run.median / static_cast<double>(runs.size());
+    all.in_gaps = std::max(all.in_gaps, run.in_gaps);
+    all.undefined = std::max(all.undefined, run.undefined);
+    all.fixes = std::min(all.fixes, run.fixes);
+    all.is_the_reference = all.is_the_reference || run.is_the_reference;
+    all.is_below_reference = all.is_below_reference || run.is_below_reference;
+  }
+  return all;
+}
+
+Verdict verdict_of_drive(const Interval& ratio, double within) {
+  if (ratio.lower >= 1.0 / within && ratio.upper <= within) return Verdict::consistent;
+  if (ratio.lower > 1.0) return Verdict::optimistic;
+  return ratio.upper < 1.0 ? Verdict::conservative : Verdict::undecided;
+}
+
+std::string minutes_text(const DriveConsistency& drive) {
+  if (std::isinf(drive.minutes)) return "this drive cannot tell, nor could a longer one";
+  const bool is_least = drive.mean.leads().effective_samples < kHardlyAny;
+  return std::string("this drive cannot tell: it would need ") + (is_least ? "at least " : "") +
+         compact(std::max(drive.minutes, 1.0)) + " minutes";
+}
+
+std::string by_words(const Interval& ratio) {
+  if (std::isinf(ratio.upper)) return " by more than " + compact(ratio.lower);
+  return " by " + compact(ratio.lower) + " to " + compact(ratio.upper);
+}
+
+}  // namespace
+
+DriveConsistency judge_drive(std::span<const DriveScores> runs, double level, double within) {
+  DriveConsistency result;
+  result.within = within;
+  if (runs.empty()) return result;
+  result.mean = mean_scores(runs);
+  const CorrelatedAverage& leads = result.mean.leads();
+  if (!(leads.effective_samples > 0.0) || result.mean.is_the_reference) return result;
+  result.verdict = verdict_of_drive(leads.ratio, within);
+  result.minutes = result.mean.seconds / 60.0 *
+                   samples_that_decide(dimension_of(result.mean.leading), level, within) /
+                   leads.effective_samples;
+  return result;
+}
+
+std::string in_words(const DriveConsistency& drive) {
+  switch (drive.verdict) {
+    case Verdict::consistent:
+      return "consistent within " + exact_text(drive.within);
+    case Verdict::optimistic:
+      return "optimistic" + by_words(drive.mean.leads().ratio);
+    case Verdict::conservative:
+      return "conservative" + by_words(drive.mean.leads().ratio);
+    case Verdict::undecided:
+      return minutes_text(drive);
+    case Verdict::untested:
+      break;
+  }
+  return drive.mean.is_the_reference ? "refused: the reference is this estimate" : "not tested";
+}
+
+}  // namespace montecarta::analysis

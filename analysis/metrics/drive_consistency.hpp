@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/metrics/consistency.hpp"
+#include "analysis/metrics/drive_scores.hpp"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace montecarta::analysis {
+
+/// What all runs of a cell on one drive say by one reference. The runs met the same drive: they
+/// differ by the filter's random numbers alone, and many say no more of the drive than one.
+struct DriveConsistency {
+  Verdict verdict = Verdict::untested;
+  double within = kUsualMargin;
+  DriveScores mean;      ///< means over runs; of counts and flags the largest
+  double minutes = 0.0;  ///< of a drive like this that decide; infinite where none does
+};
+
+/// `runs` of one cell and reference. Untested where there are none, no fix can be judged, or the
+/// estimate is the reference itself.
+DriveConsistency judge_drive(std::span<const DriveScores> runs, double level, double within);
+
+/// "consistent within 1.1", "optimistic by 1.3 to 2.1", "this drive cannot tell: it would need 40
+/// minutes", ...
+std::string in_words(const DriveConsistency& drive);
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/statistics/correlated_average.hpp"
+
+#include "analysis/statistics/weighted_squares.hpp"
+#include "engine/errors.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <boost/math/distributions/chi_squared.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+
+namespace montecarta::analysis {
+namespace {
+
+constexpr double kEndless = std::numeric_limits<double>::infinity();
+constexpr std::size_t kBlocks = 24;     // of a series, between which correlation is resolved
+constexpr double kFarthestRatio = 1e9;  // beyond, an interval has no upper end
+constexpr double kMostEffective = 1e9;
+constexpr double kEndAccuracy = 1e-4;  // of the end of an interval, relative
+
+/// Squares of n correlated samples of one component, divided by n, as a sum of independent ones.
+/// `semivariance` {lag} is the component's; its variance is `variance`, its correlation whatever
+/// the semivariance leaves of that.
+class ComponentLaw {
+ public:
+  ComponentLaw(const std::vector<double>& semivariance, double variance) : variance_(variance) {
+    for (const double value : semivariance) covariance_.push_back(std::max(variance - value, 0.0));
+    covariance_.front() = variance;
+  }
+
+  /// Adds them with weights divided by `dimension`.
+  void add_to(std::vector<WeightedSquares>& terms, double dimension) const {
+    const Eigen::VectorXd slow =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(between_blocks(), Eigen::EigenvaluesOnly)
+            .eigenvalues()
+            .cwiseMax(0.0);
+    for (const double weight : slow) terms.push_back({weight / dimension, 1.0});
+    // What is left varies within the blocks: equal weights with its sum and sum of squares.
+    const auto n = static_cast<double>(covariance_.size());
+    const double rest = variance_ - slow.sum();
+    if (rest <= 1e-12 * variance_) return;
+    const double squares = std::max(sum_of_squares() - slow.squaredNorm(), rest * rest / n);
+    terms.push_back({squares / rest / dimension, rest * rest / squares});
+  }
+
+ private:
+  /// Of all eigenvalues of the covariance of the samples, divided by n.
+  double sum_of_squares() const {
+    const auto n = static_cast<double>(covariance_.size());
+    double sum = covariance_.front() * covariance_.front();
+    for (std::size_t lag = 1; lag < covariance_.size(); ++lag) {
+      sum += 2.0 * (1.0 - static_cast<double>(lag) / n) * covariance_[lag] * covariance_[lag];
+    }
+    return sum / n;
+  }
+
+  /// Covariance of the means of two blocks that lie so many blocks apart.
+  double covariance_at(std::size_t apart, double length) const {
+    const double middle = static_cast<double>(apart) * length;
+    const auto first = static_cast<std::size_t>(std::max(std::ceil(middle - length), 0.0));
+    double sum = 0.0, weights = 0.0;
+    for (std::size_t lag = first; lag < covariance_.size(); ++lag) {
+      const double distance = std::abs(static_cast<double>(lag) - middle) / length;
+      if (static_cast<double>(lag) >= middle + length) break;
+      const double weight = (1.0 - distance) * (apart == 0 && lag > 0 ? 2.0 : 1.0);
+      sum += weight * covariance_[lag];
+      weights += weight;
+    }
+    return sum / weights;
+  }
+
+  Eigen::MatrixXd between_blocks() const {
+    const std::size_t blocks = std::min(kBlocks, covariance_.size());
+    const auto count = static_cast<double>(blocks);
+    std::vector<double> at(blocks);
+    for (std::size_t k = 0; k < blocks; ++k) {
+      at[k] = covariance_at(k, static_cast<double>(covariance_.size()) / count) / count;
+    }
+    const auto side = static_cast<Eigen::Index>(blocks);
+    return Eigen::MatrixXd::NullaryExpr(side, side, [&](Eigen::Index i, Eigen::Index j) {
+      return at[static_cast<std::size_t>(std::abs(i - j))];
+    });
+  }
+
+  double variance_;
+  std::vector<double> covariance_;  ///< {lag}
+};
+
+/// Probability that a drive whose expected ratio is `ratio` has an average of at most `mean`, if
+/// what its variogram does not show is an error that lasts for all of the drive.
+double probability_of_less(const VectorSeries& variogram, double mean, double ratio) {
+  std::vector<WeightedSquares> terms;
+  for (const auto& semivariance : variogram) {
+    ComponentLaw(semivariance, ratio).add_to(terms, static_cast<double>(variogram.size()));
+  }
+  return probability_below(terms, mean);
+}
+
+/// The ratio from `mean` on at which the decreasing `probability` is `tail`.
+double ratio_where(const std::function<double(double)>& probability, double tail, double mean) {
+  double below = mean, above = 2.0 * mean;
+  while (probability(above) > tail) {
+    below = above;
+    above *= 2.0;
+    if (above > kFarthestRatio * mean) return kEndless;
+  }
+  while (above > (1.0 + kEndAccuracy) * below) {
+    const double middle = std::sqrt(below * above);
+    (probability(middle) > tail ? below : above) = middle;
+  }
+  return above;
+}
+
+/// Upper bound of an average of a consistent filter, over its expectation, with so many degrees of
+/// freedom.
+double largest_by_chance(double freedom, double tail) {
+  const boost::math::chi_squared law(freedom);
+  return boost::math::quantile(boost::math::complement(law, tail)) / freedom;
+}
+
+/// Average of the squares, and their variance in units of the square of the average.
+struct SquareMoments {
+  double mean = 0.0, variation = 0.0;
+};
+
+SquareMoments moments_of_nees(const VectorSeries& errors) {
+  const std::size_t n = errors.front().size();
+  std::vector<double> nees(n);
+  for (const auto& component : errors) {
+    for (std::size_t t = 0; t < n; ++t) nees[t] += component[t] * component[t];
+  }
+  const auto count = static_cast<double>(n);
+  const double mean = std::accumulate(nees.begin(), nees.end(), 0.0) / count;
+  double squares = 0.0;
+  for (const double value : nees) squares += (value - mean) * (value - mean);
+  return {mean, mean > 0.0 ? squares / count / (mean * mean) : 0.0};
+}
+
+/// As chi-square bounds: the interval of a series with so many independent samples, expected 1.
+double end_ratio(double samples, double d, double tail) {
+  const auto probability = [&](double ratio) {
+    const std::array<WeightedSquares, 2> terms = {
+        {{(ratio - 1.0 + 1.0 / samples) / d, d}, {1.0 / (samples * d), d * (samples - 1.0)}}};
+    return probability_below(terms, 1.0);
+  };
+  return ratio_where(probability, tail, 1.0) * largest_by_chance(d * samples, tail);
+}
+
+}  // namespace
+
+CorrelatedAverage correlated_average(const VectorSeries& errors, double level) {
+  expect(!errors.empty() && !errors.front().empty(), "a series has components and samples");
+  nees_bounds(1, 1, level);  // refuses a wrong level
+  const double tail = 0.5 * (1.0 - level);
+  const auto d = static_cast<double>(errors.size());
+  const SquareMoments nees = moments_of_nees(errors);
+  CorrelatedAverage result{.mean = nees.mean / d, .effective_samples = 0.0, .ratio = {}};
+  // Squares of errors that are not Gaussian, a few wild ones say, vary more than 2 / d.
+  const double gaussian = nees.variation > 2.0 / d ? 2.0 / d / nees.variation : 1.0;
+  result.effective_samples =
+      std::max(effective_samples(squared_correlations(errors)) * gaussian, 1.0);
+  if (nees.mean == 0.0) return result;
+  const VectorSeries variogram = semivariances(errors);
+  const auto probability = [&](double ratio) {
+    return probability_of_less(variogram, result.mean, ratio);
+  };
+  result.ratio = {result.mean / largest_by_chance(d * result.effective_samples, tail),
+                  ratio_where(probability, tail, result.mean)};
+  return result;
+}
+
+double samples_that_decide(std::size_t dimension, double level, double within) {
+  const double tail = 0.5 * (1.0 - level);
+  const auto d = static_cast<double>(dimension);
+  const auto decide = [&](double samples) { return end_ratio(samples, d, tail) <= within; };
+  if (!decide(kMostEffective)) return kEndless;
+  double too_few = 1.0, enough = kMostEffective;
+  while (enough > 1.01 * too_few) {
+    const double middle = std::sqrt(too_few * enough);
+    (decide(middle) ? enough : too_few) = middle;
+  }
+  return enough;
+}
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/statistics/lag_sums.hpp"
+#include "analysis/statistics/nees_bounds.hpp"
+
+#include <cstddef>
+
+namespace montecarta::analysis {
+
+/// What the NEES along one drive says (STATISTICS 20).
+struct CorrelatedAverage {
+  double mean = 0.0;               ///< average NEES divided by the components: 1 is expected
+  double effective_samples = 0.0;  ///< independent ones with an average that varies as much
+  Interval ratio = {};             ///< where the expected average of all such drives lies, over
+                                   ///< the components
+};
+
+/// Of `errors` in units of the covariance, {component}{sample} in the order of time: an error of
+/// covariance P times the inverse of the Cholesky factor of P, so that their squares add up to the
+/// NEES. If the filter is consistent they are Gaussian with mean zero and covariance one, and go
+/// together for any time, up to all of the drive. The interval then excludes 1 in at most 1 -
+/// `level` of all drives. Throws StudyError where level is not inside (0, 1); there must be a
+/// component and a sample.
+CorrelatedAverage correlated_average(const VectorSeries& errors, double level);
+
+/// How many effective samples make that interval so short that its ends have a ratio of at most
+/// `within`, so that it excludes 1 or is inside [1 / within, within]; infinite where more than 1e9.
+double samples_that_decide(std::size_t dimension, double level, double within);
+
+}  // namespace montecarta::analysis

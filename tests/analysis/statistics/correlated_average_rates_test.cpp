@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the verdict on one drive promises, by simulated drives of 300 s with a fix a second.
+// `MONTECARTA_STUDIES=4000 build/analysis_tests --gtest_filter='*SlowDrive*'` prints the whole
+// table; without the variable 1000 drives of a few lines.
+#include "analysis/statistics/correlated_average.hpp"
+#include "engine/random/stream.hpp"
+#include "tests/analysis/verdict_studies.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <tuple>
+
+namespace montecarta::analysis {
+namespace {
+
+constexpr std::size_t kFixes = 300;
+constexpr double kInfiniteMemory = 1e12;  // [s]
+
+/// How errors of variance 1 go together over a drive.
+enum class Shape {
+  one_memory,     ///< all components forget by exp(-t / memory)
+  two_memories,   ///< half of the variance does, half is gone within a second
+  swings,         ///< and turn once in twice the memory
+  one_slow_only,  ///< the first component does, the others forget within a second
+};
+
+const char* name_of(Shape shape) {
+  constexpr const char* names[] = {"one memory", "two memories", "swings", "one slow"};
+  return names[static_cast<std::size_t>(shape)];
+}
+
+void add_forgetting(RngStream& draw, double memory, double sigma, std::vector<double>& series) {
+  const double keep = std::exp(-1.0 / memory), rest = std::sqrt(1.0 - keep * keep);
+  double state = draw.normal();
+  for (double& value : series) {
+    value += sigma * state;
+    state = keep * state + rest * draw.normal();
+  }
+}
+
+void add_swings(RngStream& draw, double memory, std::vector<double>& series) {
+  const double keep = std::exp(-1.0 / memory), rest = std::sqrt(1.0 - keep * keep);
+  double a = draw.normal(), b = draw.normal();
+  for (std::size_t t = 0; t < series.size(); ++t) {
+    const double turn = kPi * static_cast<double>(t) / memory;
+    series[t] += a * std::cos(turn) + b * std::sin(turn);
+    a = keep * a + rest * draw.normal();
+    b = keep * b + rest * draw.normal();
+  }
+}
+
+VectorSeries draw_errors(Shape shape, std::size_t dimension, double memory, double ratio,
+                         std::uint64_t drive) {
+  RngStream draw({.seed = drive, .purpose = Draw::test});
+  VectorSeries errors(dimension, std::vector<double>(kFixes));
+  for (std::size_t c = 0; c < dimension; ++c) {
+    const bool is_slow = shape != Shape::one_slow_only || c == 0;
+    const double half = std::sqrt(0.5);
+    switch (shape) {
+      case Shape::one_memory:
+      case Shape::one_slow_only:
+        add_forgetting(draw, is_slow ? memory : 0.3, 1.0, errors[c]);
+        break;
+      case Shape::two_memories:
+        add_forgetting(draw, memory, half, errors[c]);
+        add_forgetting(draw, 0.3, half, errors[c]);
+        break;
+      case Shape::swings:
+        add_swings(draw, memory, errors[c]);
+        break;
+    }
+    for (double& error : errors[c]) error *= std::sqrt(ratio);
+  }
+  return errors;
+}
+
+/// Shares of drives.
+struct DriveRates {
+  double above = 0.0, below = 0.0;  ///< the interval is above or below 1
+  double naive = 0.0;               ///< the bounds of as many independent fixes are left
+  double samples = 0.0;             ///< effective ones, mean
+};
+
+DriveRates drive_rates(Shape shape, std::size_t dimension, double memory, double ratio,
+                       std::uint64_t drives) {
+  const double one = 1.0 / static_cast<double>(drives);
+  const Interval naive = nees_bounds(kFixes, dimension, 0.95);
+  DriveRates rates;
+  for (std::uint64_t drive = 0; drive < drives; ++drive) {
+    const CorrelatedAverage found =
+        correlated_average(draw_errors(shape, dimension, memory, ratio, drive), 0.95);
+    rates.above += found.ratio.lower > 1.0 ? one : 0.0;
+    rates.below += found.ratio.upper < 1.0 ? one : 0.0;
+    const double nees = found.mean * static_cast<double>(dimension);
+    rates.naive += nees < naive.lower || nees > naive.upper ? one : 0.0;
+    rates.samples += one * found.effective_samples;
+  }
+  return rates;
+}
+
+class SlowDriveRates : public ::testing::TestWithParam<std::tuple<Shape, std::size_t>> {};
+
+TEST_P(SlowDriveRates, AccuseAConsistentFilterInFivePercentOfDrivesAtMost) {
+  const auto [shape, dimension] = GetParam();
+  const bool is_sample = dimension == 3 || shape == Shape::one_memory;
+  if (!is_sample && !is_table_wanted()) GTEST_SKIP() << kHowToGetTheTable;
+  const std::uint64_t drives = studies_of_a_line(1000);
+  std::printf(
+      "%s, %d components\nmemory [s]  accused [%%]  above  below  by as many independent "
+      "fixes  effective\n",
+      name_of(shape), static_cast<int>(dimension));
+  for (const double memory : {1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, kInfiniteMemory}) {
+    const DriveRates rates = drive_rates(shape, dimension, memory, 1.0, drives);
+    std::printf("%10.3g  %11.2f  %5.2f  %5.2f  %27.2f  %9.1f\n", memory,
+                100.0 * (rates.above + rates.below), 100.0 * rates.above, 100.0 * rates.below,
+                100.0 * rates.naive, rates.samples);
+    std::fflush(stdout);
+    const double chance = 3.0 * std::sqrt(0.05 * 0.95 / static_cast<double>(drives));
+    EXPECT_LT(rates.above + rates.below, 0.05 + chance) << memory;
+    if (memory >= 10.0 && shape == Shape::one_memory) {
+      EXPECT_GT(rates.naive, 0.3) << memory << ": the drives are not correlated";
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OfShapesAndComponents, SlowDriveRates,
+                         ::testing::Combine(::testing::Values(Shape::one_memory,
+                                                              Shape::two_memories, Shape::swings,
+                                                              Shape::one_slow_only),
+                                            ::testing::Values(1U, 2U, 3U)));
+
+class SlowDrivePower : public ::testing::TestWithParam<std::size_t> {};
+
+// A drive is not silent either: what is far off is found while errors forget within seconds.
+TEST_P(SlowDrivePower, FindsWhatIsFarOff) {
+  const std::size_t dimension = GetParam();
+  const std::uint64_t drives = studies_of_a_line(1000) / 4;
+  std::printf("%d components\nmemory [s]  ratio  above [%%]  below\n", static_cast<int>(dimension));
+  for (const double memory : {1.0, 10.0, 100.0}) {
+    for (const double ratio : {0.1, 0.25, 0.5, 1.5, 2.0, 4.0, 10.0}) {
+      const DriveRates rates = drive_rates(Shape::one_memory, dimension, memory, ratio, drives);
+      std::printf("%10.3g  %5.3g  %9.1f  %5.1f\n", memory, ratio, 100.0 * rates.above,
+                  100.0 * rates.below);
+      std::fflush(stdout);
+      const double chance = 3.0 * std::sqrt(0.025 * 0.975 / static_cast<double>(drives));
+      EXPECT_LT(ratio > 1.0 ? rates.below : rates.above, 0.025 + chance) << memory << " " << ratio;
+      const bool is_found = memory <= 1.0 && (ratio >= 1.5 || (ratio <= 0.1 && dimension > 1));
+      if (!is_found) continue;
+      EXPECT_GT(ratio > 1.0 ? rates.above : rates.below, 0.9) << ratio;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OfComponents, SlowDrivePower, ::testing::Values(1U, 2U, 3U));
+
+}  // namespace
+}  // namespace montecarta::analysis
