@@ -58,7 +58,7 @@ struct ScanRatio {
 };
 
 /// What a NeesSeries says in a few numbers. One test at the level of the study has two parts that
-/// share the probability of a false accusation (WholeRunTest): the average over runs at every scan
+/// share the probability of a false rejection (WholeRunTest): the average over runs at every scan
 /// against whole_run_bounds, and the average over runs and scans against average_bounds. A
 /// consistent filter stays inside both with the probability `level`, however many scans a run has.
 /// Its interval, `ratio`, and the same bands in units of the margin show that a filter is

@@ -46,7 +46,7 @@ Interval bounds_per_component(double dimensions, double level) {
   return {sum.lower / dimensions, sum.upper / dimensions};
 }
 
-/// Consistent where every row is shown to be within the margin, else accused where one is shown to
+/// Consistent where every row is shown to be within the margin, else rejected where one is shown to
 /// be off; too large goes before too small.
 void judge_rows(JointConsistency& found) {
   bool is_within = true;

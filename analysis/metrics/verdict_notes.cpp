@@ -27,7 +27,7 @@ std::string looks_note(const StudyAnalysis& study) {
          std::to_string(study.looks.size()) + " numbers of runs, " +
          std::to_string(study.looks[0]) +
          " first. Brackets and bands of the verdict are widened so that all looks together "
-         "accuse a consistent filter in at most " +
+         "reject a consistent filter in at most " +
          level_text(1.0 - study.level) + " of studies. Those of other numbers are not.";
 }
 
@@ -44,7 +44,7 @@ std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
           margin +
           ", and no scan is shown to be farther off. 'Optimistic' or 'conservative by a to b': 1 "
           "is outside the brackets or, 'at t', a scan is outside a band that is wide enough for "
-          "all scans together; a consistent filter is accused so in at most " +
+          "all scans together; a consistent filter is rejected so in at most " +
           level_text(1.0 - study.level) +
           " of studies, however long they are. 'Undecided': neither is shown; after so many more "
           "runs one of them will be, if runs go on to vary as they do.",

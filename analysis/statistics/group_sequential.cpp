@@ -68,14 +68,14 @@ double crossing_probability(std::uint64_t looks, double single) {
 double level_of_a_look(double level, std::uint64_t looks) {
   if (looks <= 1) return level;
   const auto n = static_cast<double>(looks);
-  const auto accused = [&](double at_a_look) {
+  const auto rejected = [&](double at_a_look) {
     return crossing_probability(looks, at_a_look / (1.0 + kBandShare)) +
            n * at_a_look * kBandShare / (1.0 + kBandShare);
   };
   double low = (1.0 - level) / n, high = 1.0 - level;
   for (int halving = 0; halving < 40; ++halving) {
     const double middle = 0.5 * (low + high);
-    (accused(middle) > 1.0 - level ? high : low) = middle;
+    (rejected(middle) > 1.0 - level ? high : low) = middle;
   }
   return 1.0 - low;
 }

@@ -10,7 +10,7 @@ namespace montecarta::analysis {
 /// probability `single` (two-sided).
 double crossing_probability(std::uint64_t looks, double single);
 
-/// The level of each of `looks` looks, so that the verdicts at all of them accuse a consistent
+/// The level of each of `looks` looks, so that the verdicts at all of them reject a consistent
 /// filter with a probability of 1 - level at most: the same at every look (Pocock), with looks
 /// after 1, 2, 4, ... times as many runs. `level` itself where there is one look. The average over
 /// the run counts by its correlation between looks, the band for all scans by Bonferroni.

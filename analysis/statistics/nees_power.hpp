@@ -12,7 +12,7 @@ namespace montecarta::analysis {
 /// Which study is planned for the verdict on an average NEES (STATISTICS 5).
 struct NeesTest {
   std::uint64_t dimension = 3;  ///< of the error
-  double level = 0.95;          ///< probability that a consistent filter is not accused
+  double level = 0.95;          ///< probability that a consistent filter is not rejected
   std::uint64_t scans = 1;      ///< independent ones in a run; 1: its NEES is as good as constant
 };
 

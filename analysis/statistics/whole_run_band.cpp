@@ -76,10 +76,10 @@ class StudentisedAverage {
 };
 
 /// The probability of exceeding that the average is given, so that it, or the band with kBandShare
-/// of it, accuses with probability `accused`; what the band adds is counted over walks.
+/// of it, rejects with probability `rejected`; what the band adds is counted over walks.
 double share_of_average(const std::vector<double>& farther, const std::vector<double>& of_averages,
-                        double accused) {
-  double low = 0.0, high = accused;
+                        double rejected) {
+  double low = 0.0, high = rejected;
   for (int halving = 0; halving < 30; ++halving) {
     const double share = 0.5 * (low + high);
     std::size_t added = 0;
@@ -87,7 +87,7 @@ double share_of_average(const std::vector<double>& farther, const std::vector<do
       added += farther[walk] <= kBandShare * share && of_averages[walk] > share ? 1 : 0;
     }
     const double all = share + static_cast<double>(added) / static_cast<double>(farther.size());
-    (all > accused ? high : low) = share;
+    (all > rejected ? high : low) = share;
   }
   return low;
 }

@@ -7,10 +7,10 @@
 
 namespace montecarta::analysis {
 
-/// False accusations by the band for one by the average.
+/// False rejections by the band for one by the average.
 inline constexpr double kBandShare = 0.25;
 
-/// A test in two parts that together accuse a consistent filter with the probability that the level
+/// A test in two parts that together reject a consistent filter with the probability that the level
 /// leaves, the average over the run four times as often as the band.
 struct WholeRunTest {
   double deviate = 0.0;          ///< of the band: the process stays within so many deviations

@@ -41,7 +41,7 @@ std::string meaning_of(const NeesTest& test, const Question& question) {
          (question.ratio > 1.0 ? "optimistic" : "conservative") + " in " + power +
          " of studies, where it is not within the margin.\n'show': a consistent filter is called "
          "consistent within " +
-         margin + " in " + power + " of studies, and accused in " + level_text(1.0 - test.level) +
+         margin + " in " + power + " of studies, and rejected in " + level_text(1.0 - test.level) +
          " at most.\n'decide': whatever the filter, one of the three is said.\n";
 }
 
@@ -94,7 +94,7 @@ Command plan_command() {
             {"level",
              "",
              {"L"},
-             "probability that a consistent filter is not accused; default 0.95"},
+             "probability that a consistent filter is not rejected; default 0.95"},
             {"scans", "", {"K"}, "also: of a run of K independent scans"}},
        .details = "examples:\n  montecarta plan --dim 3 --ratio 1.5\n  montecarta plan --dim 3 "
                   "--ratio 1.2 --power 0.8 --scans 100\n"},

@@ -66,14 +66,14 @@ struct VerdictRates {
   double stays = 0.0;    ///< some end of the run is outside the band for all scans
   std::map<Verdict, double> answers;
 
-  double accused() const { return above + below; }
+  double rejected() const { return above + below; }
   double answer(Verdict verdict) const {
     const auto found = answers.find(verdict);
     return found == answers.end() ? 0.0 : found->second;
   }
 };
 
-/// Whether the test accuses, whatever the margin.
+/// Whether the test rejects, whatever the margin.
 inline bool is_above(const Consistency& found) {
   return found.above_from || found.mean > found.average_bounds.upper;
 }

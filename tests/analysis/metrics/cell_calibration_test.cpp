@@ -51,14 +51,14 @@ TEST(CellCalibration, NamesWhatIsWrongWithAFilter) {
 // A cell has 12 histograms; 5 % of cells at most have a fault in any: 3 standard errors.
 TEST(CellCalibration, FindsFaultWithAPerfectFilterInFivePercentOfStudies) {
   constexpr std::uint64_t kCells = 400;
-  double accused = 0.0;
+  double rejected = 0.0;
   for (std::uint64_t seed = 0; seed < kCells; ++seed) {
     const auto found = judged({.scans = 4, .seed = 100 + seed}, 60);
-    accused += std::ranges::any_of(
+    rejected += std::ranges::any_of(
         found, [](const PitHistogram& one) { return one.test.verdict != Calibration::calibrated; });
   }
-  EXPECT_LT(accused, 0.05 * kCells + 3.0 * std::sqrt(0.05 * 0.95 * kCells));
-  EXPECT_GT(accused, 0.0) << "a test that never fails is none";
+  EXPECT_LT(rejected, 0.05 * kCells + 3.0 * std::sqrt(0.05 * 0.95 * kCells));
+  EXPECT_GT(rejected, 0.0) << "a test that never fails is none";
 }
 
 /// A cloud of M particles around the truth of each moment, the truth one more draw of the same law.

@@ -108,15 +108,15 @@ JointConsistency study_of(std::size_t runs, const Eigen::MatrixXd& drawn,
   return sums.result(0.95, true);
 }
 
-TEST(JointConsistency, AccusesAConsistentFilterSeldom) {
-  int accused = 0;
+TEST(JointConsistency, RejectsAConsistentFilterSeldom) {
+  int rejected = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     const Verdict verdict = study_of(20, covariance(), covariance(), seed).verdict;
-    accused += verdict == Verdict::optimistic || verdict == Verdict::conservative ? 1 : 0;
+    rejected += verdict == Verdict::optimistic || verdict == Verdict::conservative ? 1 : 0;
   }
   // 5 % or a little less, and 5 standard errors of 400 studies
-  EXPECT_LE(accused, 400 * 0.05 + 5.0 * std::sqrt(400 * 0.05 * 0.95));
-  EXPECT_GE(accused, 2);
+  EXPECT_LE(rejected, 400 * 0.05 + 5.0 * std::sqrt(400 * 0.05 * 0.95));
+  EXPECT_GE(rejected, 2);
 }
 
 TEST(JointConsistency, FindsTheScaleOfACovariance) {

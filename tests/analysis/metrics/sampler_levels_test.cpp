@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Few particles are no fault: how often the verdict accuses a perfect sampler, for any number of
+// Few particles are no fault: how often the verdict rejects a perfect sampler, for any number of
 // draws and any share of the uncertainty within the particles.
 #include "analysis/metrics/nees_accumulator.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
@@ -89,7 +89,7 @@ NeesResult judged_sampler(const Sampler& sampler, std::uint64_t study, std::uint
 }
 
 /// Share of studies of 30 runs in which the test finds a fault.
-double share_accused(const Sampler& sampler) {
+double share_rejected(const Sampler& sampler) {
   const BandWalks walks(kSamplerScans);
   const std::uint64_t studies = studies_of_a_line(4000);
   double n = 0.0;
@@ -113,9 +113,9 @@ TEST_P(SlowSamplerLevel, IsFivePercent) {
                                             : sampler.draws == 30 ? 1.0
                                                                   : 0.0);
   if (!is_sample && !is_table_wanted()) GTEST_SKIP() << kHowToGetTheTable;
-  const double found = share_accused(sampler);
+  const double found = share_rejected(sampler);
   EXPECT_NEAR(found, 0.05, 0.0103);
-  RecordProperty("accused", std::to_string(found));
+  RecordProperty("rejected", std::to_string(found));
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, SlowSamplerLevel,

@@ -36,7 +36,7 @@ StoppedStudy stopped_study(const GaussianLaw& law, std::uint64_t study, const Ba
 }
 
 struct SequentialRates {
-  double accused = 0.0, consistent = 0.0, covered = 0.0, runs = 0.0;
+  double rejected = 0.0, consistent = 0.0, covered = 0.0, runs = 0.0;
 };
 
 SequentialRates sequential_rates(const GaussianLaw& law, double look_level, std::uint64_t studies) {
@@ -46,9 +46,9 @@ SequentialRates sequential_rates(const GaussianLaw& law, double look_level, std:
   for (std::uint64_t study = 0; study < studies; ++study) {
     const StoppedStudy stopped = stopped_study(law, study, walks, look_level);
     const Consistency& found = stopped.found;
-    const bool is_accused =
+    const bool is_rejected =
         found.verdict == Verdict::optimistic || found.verdict == Verdict::conservative;
-    rates.accused += is_accused ? one : 0.0;
+    rates.rejected += is_rejected ? one : 0.0;
     rates.consistent += found.verdict == Verdict::consistent ? one : 0.0;
     const bool holds = found.ratio.lower <= law.ratio && law.ratio <= found.ratio.upper;
     rates.covered += holds ? one : 0.0;
@@ -59,7 +59,7 @@ SequentialRates sequential_rates(const GaussianLaw& law, double look_level, std:
 
 void print_line(const char* how, const GaussianLaw& law, const SequentialRates& rates) {
   std::printf("%-9s  %6.2f  %5.2f  %11.2f  %10.2f  %14.2f  %9.0f\n", how, law.memory, law.ratio,
-              100.0 * rates.accused, 100.0 * rates.consistent, 100.0 * rates.covered, rates.runs);
+              100.0 * rates.rejected, 100.0 * rates.consistent, 100.0 * rates.covered, rates.runs);
   std::fflush(stdout);
 }
 
@@ -75,14 +75,14 @@ TEST_P(SlowSequential, LooksCostNoErrors) {
   if (memory != 0.7 && memory != 1.0 && !is_table_wanted()) GTEST_SKIP() << kHowToGetTheTable;
   const std::uint64_t studies = studies_of_a_line(500);
   const double widened = level_of_a_look(0.95, rounds_of(kSequentialRuns).size());
-  std::printf("interval   memory  ratio  accused [%%]  consistent  interval holds  mean runs\n");
+  std::printf("interval   memory  ratio  rejected [%%]  consistent  interval holds  mean runs\n");
   for (const double ratio : {1.0, kUsualMargin, 1.0 / kUsualMargin}) {
     const GaussianLaw law{.memory = memory, .ratio = ratio};
     const SequentialRates rates = sequential_rates(law, widened, studies);
     print_line("widened", law, rates);
     EXPECT_GT(rates.covered, 0.95 - reach_of(0.05, studies)) << memory << ' ' << ratio;
     if (ratio == 1.0) {
-      EXPECT_LT(rates.accused, 0.05 + reach_of(0.05, studies)) << memory;
+      EXPECT_LT(rates.rejected, 0.05 + reach_of(0.05, studies)) << memory;
     } else {
       EXPECT_LT(rates.consistent, 0.025 + reach_of(0.025, studies)) << memory << ' ' << ratio;
     }
@@ -92,11 +92,11 @@ TEST_P(SlowSequential, LooksCostNoErrors) {
 INSTANTIATE_TEST_SUITE_P(OfMemory, SlowSequential, ::testing::Values(0.0, 0.7, 0.95, 1.0));
 
 // The interval of a single look, taken at five: the widening is needed.
-TEST(SlowSequentialWithoutWidening, AccusesMoreThanPromised) {
+TEST(SlowSequentialWithoutWidening, RejectsMoreThanPromised) {
   const GaussianLaw law{.memory = 1.0};
   const SequentialRates rates = sequential_rates(law, 0.95, studies_of_a_line(500));
   print_line("single", law, rates);
-  EXPECT_GT(rates.accused, 0.08);
+  EXPECT_GT(rates.rejected, 0.08);
   EXPECT_LT(rates.covered, 0.93);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The verdict is a statistical test, so it is held to its level: how often it accuses a right
+// The verdict is a statistical test, so it is held to its level: how often it rejects a right
 // filter, and how often it finds a wrong one.
 #include "analysis/metrics/nees.hpp"
 #include "analysis/metrics/nees_accumulator.hpp"
@@ -43,20 +43,20 @@ RunRows draw_run(const Law& law, std::uint64_t study, std::uint64_t run, std::si
 using DrawRun = std::function<RunRows(std::uint64_t study, std::uint64_t run, std::size_t scans)>;
 
 /// Shares of studies.
-struct Accused {
+struct Rejected {
   double above = 0.0;  ///< too large somewhere
   double below = 0.0;  ///< too small only
   double either() const { return above + below; }
 };
 
-/// Judges studies of `runs` runs and gives the shares of those that the test accuses.
-Accused accused(const DrawRun& draw, Moments moments, std::size_t particles, std::uint64_t runs,
-                std::size_t scans, std::uint64_t studies) {
+/// Judges studies of `runs` runs and gives the shares of those that the test rejects.
+Rejected rejected(const DrawRun& draw, Moments moments, std::size_t particles, std::uint64_t runs,
+                  std::size_t scans, std::uint64_t studies) {
   std::vector<double> times;
   for (std::size_t s = 0; s < scans; ++s) times.push_back(0.2 * static_cast<double>(s + 1));
   const BandWalks walks(scans);
   RunMetrics metrics;
-  Accused found;
+  Rejected found;
   for (std::uint64_t study = 0; study < studies; ++study) {
     NeesAccumulator sums(ErrorBlock::pose, moments, scans);
     for (std::uint64_t run = 0; run < runs; ++run) {
@@ -74,22 +74,22 @@ Accused accused(const DrawRun& draw, Moments moments, std::size_t particles, std
   return {found.above / n, found.below / n};
 }
 
-Accused accused(const Law& law, std::uint64_t runs, std::size_t scans, std::uint64_t studies) {
+Rejected rejected(const Law& law, std::uint64_t runs, std::size_t scans, std::uint64_t studies) {
   const DrawRun draw = [&](std::uint64_t study, std::uint64_t run, std::size_t n) {
     return draw_run(law, study, run, n);
   };
-  return accused(draw, Moments::spread, 0, runs, scans, studies);
+  return rejected(draw, Moments::spread, 0, runs, scans, studies);
 }
 
 // 30 runs of 60 independent scans: the average over the run has a deviation of 0.058, so that
 // errors 1.1 times too large (NEES 1.21 times) lie 11 deviations off.
 TEST(VerdictPower, FindsAFilterThatIsATenthTooSure) {
-  EXPECT_GE(accused({.inflation = 1.1}, 30, 60, 40).either(), 0.975);
-  EXPECT_GE(accused({.inflation = 0.9}, 30, 60, 40).either(), 0.975);
+  EXPECT_GE(rejected({.inflation = 1.1}, 30, 60, 40).either(), 0.975);
+  EXPECT_GE(rejected({.inflation = 0.9}, 30, 60, 40).either(), 0.975);
 }
 
 TEST(VerdictPower, FindsABiasOfHalfADeviation) {
-  EXPECT_GE(accused({.bias = 0.5}, 60, 60, 40).either(), 0.975);
+  EXPECT_GE(rejected({.bias = 0.5}, 60, 60, 40).either(), 0.975);
 }
 
 }  // namespace

@@ -22,20 +22,20 @@ double errors_of(double share, std::uint64_t studies) {
 class SlowVerdictRates : public ::testing::TestWithParam<std::tuple<std::uint64_t, std::size_t>> {};
 
 // The part of each line that is promised is 5 %, +- 0.7 % where methods are approximate.
-TEST_P(SlowVerdictRates, AccuseAConsistentFilterInFivePercentOfStudies) {
+TEST_P(SlowVerdictRates, RejectAConsistentFilterInFivePercentOfStudies) {
   const auto [runs, dimension] = GetParam();
   const bool is_sample = (runs == 20 || runs == 200) && dimension != 2;
   if (!is_sample && !is_table_wanted()) GTEST_SKIP() << kHowToGetTheTable;
   const std::uint64_t studies = studies_of_a_line(2000);
-  std::printf("runs  dim  memory  accused [%%]  above  below  interval holds  stays outside\n");
+  std::printf("runs  dim  memory  rejected [%%]  above  below  interval holds  stays outside\n");
   for (const double memory : {0.0, 0.7, 0.95, 0.99, 1.0}) {
     const VerdictRates rates =
         verdict_rates({.dimension = dimension, .memory = memory}, runs, kRateScans, studies);
     std::printf("%4d  %3d  %6.2f  %11.2f  %5.2f  %5.2f  %14.2f  %13.2f\n", static_cast<int>(runs),
-                static_cast<int>(dimension), memory, 100.0 * rates.accused(), 100.0 * rates.above,
+                static_cast<int>(dimension), memory, 100.0 * rates.rejected(), 100.0 * rates.above,
                 100.0 * rates.below, 100.0 * rates.covered, 100.0 * rates.stays);
     std::fflush(stdout);
-    EXPECT_NEAR(rates.accused(), 0.05, 0.007 + errors_of(0.05, studies)) << memory;
+    EXPECT_NEAR(rates.rejected(), 0.05, 0.007 + errors_of(0.05, studies)) << memory;
     EXPECT_GT(rates.covered, 0.94 - errors_of(0.05, studies)) << memory;
     EXPECT_LT(rates.covered, 0.97 + errors_of(0.04, studies)) << memory;
     EXPECT_LT(rates.stays, 0.0125 + errors_of(0.0125, studies)) << memory;
@@ -48,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(OfRunsAndComponents, SlowVerdictRates,
 
 class SlowVerdictAnswers : public ::testing::TestWithParam<std::uint64_t> {};
 
-// A filter that is off is called consistent within 1.1 where its ratio is beyond that, or accused
+// A filter that is off is called consistent within 1.1 where its ratio is beyond that, or rejected
 // of the wrong side, in at most 2.5 % of studies.
 TEST_P(SlowVerdictAnswers, AreWrongSeldom) {
   const std::uint64_t runs = GetParam(), studies = studies_of_a_line(2000) / 4;

@@ -102,13 +102,13 @@ DriveRates drive_rates(Shape shape, std::size_t dimension, double memory, double
 
 class SlowDriveRates : public ::testing::TestWithParam<std::tuple<Shape, std::size_t>> {};
 
-TEST_P(SlowDriveRates, AccuseAConsistentFilterInFivePercentOfDrivesAtMost) {
+TEST_P(SlowDriveRates, RejectAConsistentFilterInFivePercentOfDrivesAtMost) {
   const auto [shape, dimension] = GetParam();
   const bool is_sample = dimension == 3 || shape == Shape::one_memory;
   if (!is_sample && !is_table_wanted()) GTEST_SKIP() << kHowToGetTheTable;
   const std::uint64_t drives = studies_of_a_line(1000);
   std::printf(
-      "%s, %d components\nmemory [s]  accused [%%]  above  below  by as many independent "
+      "%s, %d components\nmemory [s]  rejected [%%]  above  below  by as many independent "
       "fixes  effective\n",
       name_of(shape), static_cast<int>(dimension));
   for (const double memory : {1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0, kInfiniteMemory}) {

@@ -42,15 +42,15 @@ TEST(WholeRunTest, IsStudentsWhereFewRunsEstimateTheDeviation) {
 }
 
 // |z| > c or |z| > a min(s, 1), s^2 a chi-square over its 19 / (1 + 1/3) degrees of freedom: what
-// the band accuses the average does as well (a million draws by numpy: 5.00 % at a = 2.209).
-TEST(WholeRunTest, CountsWhatAnEstimatedDeviationAccusesBesidesTheBand) {
+// the band rejects the average does as well (a million draws by numpy: 5.00 % at a = 2.209).
+TEST(WholeRunTest, CountsWhatAnEstimatedDeviationRejectsBesidesTheBand) {
   EXPECT_NEAR(test_of(1.0 - 1e-9, 20).deviate, 2.498, 0.1);
   EXPECT_NEAR(test_of(1.0 - 1e-9, 20).average_deviate, 2.209, 0.06);
 }
 
 // Where a walk that goes far at one scan also has a far average, the parts share false alarms: of
 // a million walks of five scans numpy finds the average to have 4.96 %, at a deviate of 1.962.
-TEST(WholeRunTest, CountsOnceWhatBothPartsAccuse) {
+TEST(WholeRunTest, CountsOnceWhatBothPartsReject) {
   const WholeRunTest found = BandWalks(5).test(std::vector<double>(4, 0.9), kManyRuns, 3, 0.95);
   EXPECT_NEAR(found.average_deviate, 1.962, 0.06);
 }
