@@ -113,7 +113,7 @@ std::vector<std::string> warnings_of(const CellAnalysis& cell, const JudgedRefer
         "and in no covariance");
   }
   if (cell.filter == "external") {
-    warnings.emplace_back("a program of the user's: only he knows whether it read the reference");
+    warnings.emplace_back("a program: only its author knows whether it read the reference");
   }
   if (drive.mean.in_gaps > 0) {
     warnings.push_back(std::to_string(drive.mean.in_gaps) +

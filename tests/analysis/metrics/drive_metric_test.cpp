@@ -155,7 +155,7 @@ TEST_F(Drive10, ItsTableHasARowForACellAndSaysWhatToConsider) {
   ASSERT_NE(warnings, nullptr);
   ASSERT_EQ(warnings->table.rows.size(), 2U);
   EXPECT_THAT(warnings->table.rows[0][2], HasSubstr("starts at a fix"));
-  EXPECT_THAT(warnings->table.rows[1][2], HasSubstr("only he knows"));
+  EXPECT_THAT(warnings->table.rows[1][2], HasSubstr("only its author knows"));
   EXPECT_THAT(no_truth_sentence(study), HasSubstr("take its place"));
   study.references.front().has_errors = false;
   EXPECT_THAT(reported_table(study, "drive").rows, IsEmpty());
