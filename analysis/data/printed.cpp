@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/data/printed.hpp"
 
+#include "analysis/output/number_text.hpp"
 #include "engine/errors.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <sstream>
@@ -13,6 +15,7 @@ namespace {
 constexpr const char* kValueForm =
     "write value = cell=LABEL metric=NAME printed=NUMBER [relative_to=LABEL] [runs=N] "
     "[note=\"...\"]";
+constexpr const char* kBandForm = "write band = pose LOWER UPPER (or position, heading)";
 constexpr const char* kClaimForm = "write claim = METRIC LABEL < LABEL [note=\"...\"] (or >, ~)";
 
 /// A line's words, and the note behind them, which may have spaces.
@@ -44,6 +47,12 @@ std::uint64_t count_in(const std::string& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
   if (error == std::errc() && end == text.data() + text.size() && count > 0) return count;
   throw StudyError("runs = " + text + " (a whole number above 0 is needed): correct it");
+}
+
+double number_in(const std::string& text) {
+  double number = 0.0;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
 }
 
 bool is_number(const std::string& text) {
@@ -100,16 +109,28 @@ PrintedClaim parse_claim(const std::string& text) {
   return {words[0], words[1], words[2][0], words[3], line.note};
 }
 
+PrintedBand parse_band(const std::string& text) {
+  const std::vector<std::string> words = split_line(text).words;
+  const bool good = words.size() == 3 &&
+                    (words[0] == "pose" || words[0] == "position" || words[0] == "heading") &&
+                    is_number(words[1]) && is_number(words[2]);
+  if (!good) throw StudyError("'" + text + "' is not understood: " + kBandForm);
+  PrintedBand band{words[0], number_in(words[1]), number_in(words[2])};
+  if (band.lower < band.upper) return band;
+  throw StudyError("'" + text + "' has no width (the lower end comes first): " + kBandForm);
+}
+
 std::string note_text(const std::string& note) {
   return note.empty() ? "" : " note=\"" + note + "\"";
 }
 
 }  // namespace
 
-double PrintedValue::number() const {
-  double number = 0.0;
-  std::from_chars(printed.data(), printed.data() + printed.size(), number);
-  return number;
+double PrintedValue::number() const { return number_in(printed); }
+
+const PrintedBand* Printed::find_band(std::string_view error) const {
+  const auto found = std::ranges::find(bands, error, &PrintedBand::error);
+  return found == bands.end() ? nullptr : &*found;
 }
 
 double PrintedValue::rounding() const {
@@ -127,6 +148,15 @@ void take_printed_line(const std::string& key, const std::string& text, Printed&
     printed.claims.push_back(parse_claim(text));
   } else if (key == "assume") {
     printed.assumptions.push_back(text);
+  } else if (key == "band") {
+    const PrintedBand band = parse_band(text);
+    if (printed.find_band(band.error) != nullptr) {
+      throw StudyError("band of the " + band.error + " is given twice: remove one of the two");
+    }
+    printed.bands.push_back(band);
+  } else if (key == "baseline") {
+    if (!printed.baseline.empty()) throw StudyError("baseline is given twice: remove one of them");
+    printed.baseline = text;
   } else if (key == "source") {
     if (!printed.source.empty()) throw StudyError("source is given twice: remove one of the two");
     printed.source = text;
@@ -134,8 +164,10 @@ void take_printed_line(const std::string& key, const std::string& text, Printed&
     if (printed.runs != 0) throw StudyError("runs is given twice: remove one of the two");
     printed.runs = count_in(text);
   } else {
-    throw StudyError("unknown key printed." + key +
-                     " (nothing would come of it): use source, runs, value, claim or assume");
+    throw StudyError(
+        "unknown key printed." + key +
+        " (nothing would come of it): use source, runs, baseline, band, value, claim or "
+        "assume");
   }
 }
 
@@ -143,6 +175,11 @@ std::string printed_text(const Printed& printed) {
   std::string text;
   if (!printed.source.empty()) text += "source = " + printed.source + "\n";
   if (printed.runs != 0) text += "runs = " + std::to_string(printed.runs) + "\n";
+  if (!printed.baseline.empty()) text += "baseline = " + printed.baseline + "\n";
+  for (const PrintedBand& band : printed.bands) {
+    text +=
+        "band = " + band.error + " " + exact_text(band.lower) + " " + exact_text(band.upper) + "\n";
+  }
   for (const PrintedValue& value : printed.values) {
     text += "value = cell=" + value.cell + " metric=" + value.metric + " printed=" + value.printed;
     if (!value.relative_to.empty()) text += " relative_to=" + value.relative_to;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace montecarta::analysis {
@@ -30,15 +31,26 @@ struct PrintedClaim {
   std::string note;
 };
 
+/// The band that a paper drew for its average NEES.
+struct PrintedBand {
+  std::string error;  ///< "pose", "position" or "heading"
+  double lower = 0.0;
+  double upper = 0.0;
+};
+
 /// What a study repeats: section [printed] of a study file.
 struct Printed {
   std::string source;      ///< which paper
   std::uint64_t runs = 0;  ///< of the paper; 0: it does not say
+  std::string baseline;    ///< label of the cell without which no other number can be compared
+  std::vector<PrintedBand> bands;
   std::vector<PrintedValue> values;
   std::vector<PrintedClaim> claims;
   std::vector<std::string> assumptions;  ///< what the paper leaves open, and what is taken instead
 
   bool empty() const { return values.empty() && claims.empty() && assumptions.empty(); }
+  /// nullptr where the paper has none for this error.
+  const PrintedBand* find_band(std::string_view error) const;
 };
 
 /// Adds one line `key = text` of the section. Throws StudyError, without a place, where it cannot

@@ -42,7 +42,8 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
                        .joint_scans = file.description().joint_scans,
                        .walks = BandWalks(scans),
                        .calibrates = noise_is_matched(file),
-                       .look_level = {}};
+                       .look_level = {},
+                       .printed = printed_in(file.study_text())};
   const auto looks = looks_in(file.study_text(), file.study_runs());
   if (looks.size() > 1) criteria.look_level = level_of_a_look(level, looks.size());
   for (const ReferencePath& path : file.references()) {

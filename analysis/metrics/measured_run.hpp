@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/data/printed.hpp"
 #include "analysis/data/run_reader.hpp"
 #include "analysis/metrics/beacon_scores.hpp"
 #include "analysis/metrics/consistency.hpp"
@@ -33,6 +34,7 @@ struct RunCriteria {
   bool calibrates = false;  ///< whether calibration is judged: where noise is matched
   /// Of each verdict where cells stop by verdict, so that all looks together have `level`.
   std::optional<double> look_level = {};
+  Printed printed = {};  ///< by runs of the paper and its bands batches are judged
 
   double verdict_level() const { return look_level.value_or(level); }
 };

@@ -12,6 +12,7 @@ namespace montecarta::analysis {
 // Each is defined in a file *_metric.cpp.
 Metric errors_metric();
 Metric nees_metric();
+Metric nees_batches_metric();
 Metric map_size_metric();
 Metric particles_metric();
 Metric lineages_metric();
@@ -31,11 +32,11 @@ Metric cost_metric();
 
 std::span<const Metric> all_metrics() {
   static const std::vector<Metric> all = {
-      errors_metric(),   nees_metric(),        map_size_metric(),   particles_metric(),
-      lineages_metric(), association_metric(), references_metric(), beacons_metric(),
-      bound_metric(),    map_metric(),         joint_nees_metric(), error_anatomy_metric(),
-      survival_metric(), innovations_metric(), diversity_metric(),  calibration_metric(),
-      mismatch_metric(), cost_metric()};
+      errors_metric(),   nees_metric(),        map_size_metric(),    particles_metric(),
+      lineages_metric(), association_metric(), references_metric(),  beacons_metric(),
+      bound_metric(),    map_metric(),         joint_nees_metric(),  error_anatomy_metric(),
+      survival_metric(), innovations_metric(), diversity_metric(),   calibration_metric(),
+      mismatch_metric(), cost_metric(),        nees_batches_metric()};
   return all;
 }
 

@@ -3,16 +3,20 @@
 
 #include "analysis/output/number_text.hpp"
 #include "analysis/printed/run_samples.hpp"
+#include "analysis/statistics/means.hpp"
 #include "analysis/statistics/t_quantile.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string_view>
 
 namespace montecarta::analysis {
 namespace {
 
 /// Without runs to tell chance from difference, this near is near.
 constexpr double kNearWithoutInterval = 0.2;
+constexpr std::string_view kNotReproduced = "not reproduced";
 
 std::string factor_text(double factor) {
   const std::string how = factor >= 1.0 ? " times as large" : " times smaller";
@@ -20,11 +24,11 @@ std::string factor_text(double factor) {
 }
 
 std::string distance_text(double measured, double printed) {
-  if (!std::isfinite(measured)) return "not reproduced: never";
+  if (!std::isfinite(measured)) return std::string(kNotReproduced) + ": never";
   const double factor = measured / printed;
   if (!(factor > 0.0) || !std::isfinite(factor)) return "differs";
   const bool far = factor > kReproducedWithin || factor < 1.0 / kReproducedWithin;
-  return (far ? "not reproduced: " : "differs: ") + factor_text(factor);
+  return (far ? std::string(kNotReproduced) + ": " : "differs: ") + factor_text(factor);
 }
 
 /// Whether one run more could well be the printed one: not among our most extreme (1 - level).
@@ -65,6 +69,18 @@ std::string verdict_on(char relation, const Interval& difference, double scale) 
   return below == (relation == '<') ? "holds" : "contradicted";
 }
 
+std::uint64_t paper_runs_of(const StudyAnalysis& study, const PrintedValue& value) {
+  return value.runs == 0 ? study.printed.runs : value.runs;
+}
+
+/// Whether the printed number lies among those of batches; beside their median where not.
+std::string verdict_on(const PrintedValue& value, const BatchSpread& spread) {
+  const double number = value.number(), rounding = value.rounding();
+  const bool is_among =
+      number >= spread.range.lower - rounding && number <= spread.range.upper + rounding;
+  return is_among ? "agrees" : distance_text(spread.median, number);
+}
+
 std::string measured_text(double value) { return std::isinf(value) ? "never" : readable(value, 4); }
 
 const CellAnalysis* cell_named(const StudyAnalysis& study, const std::string& label) {
@@ -72,21 +88,77 @@ const CellAnalysis* cell_named(const StudyAnalysis& study, const std::string& la
   return found == study.cells.end() ? nullptr : &*found;
 }
 
-}  // namespace
+/// By the paper's band where it printed one, else by that of so many runs.
+std::vector<double> batches_by_paper(const CellAnalysis* cell, const std::string& metric,
+                                     std::uint64_t runs) {
+  std::vector<double> values = batches_of(cell, metric, runs, BatchBand::printed);
+  return values.empty() ? batches_of(cell, metric, runs, BatchBand::expected) : values;
+}
 
-ComparedValue compare(const StudyAnalysis& study, const PrintedValue& value) {
+/// Adds what batches of the paper's size say, which decides where runs have no number each.
+void compare_batches(const StudyAnalysis& study, const PrintedValue& value,
+                     const CellAnalysis* cell, ComparedValue& compared) {
+  if (!value.relative_to.empty()) return;
+  const std::uint64_t runs = std::max<std::uint64_t>(1, paper_runs_of(study, value));
+  compared.batches = spread_of_batches(batches_by_paper(cell, value.metric, runs), study.level);
+  if (is_run_metric(value.metric) || compared.batches.batches == 0) return;
+  compared.by_expected =
+      spread_of_batches(batches_of(cell, value.metric, runs, BatchBand::expected), study.level);
+  compared.measured = compared.batches.median;
+  compared.interval = {kNaN, kNaN};
+  compared.verdict = verdict_on(value, compared.batches);
+}
+
+ComparedValue compare_alone(const StudyAnalysis& study, const PrintedValue& value) {
   const CellAnalysis* cell = cell_named(study, value.cell);
   const CellAnalysis* unit = cell_named(study, value.relative_to);
   const Sample sample = value.relative_to.empty() ? sample_of(cell, value.metric)
                                                   : ratio_of(cell, unit, value.metric);
   ComparedValue compared{sample.mean, interval_of(sample, study.level), "not measured"};
   if (std::isnan(sample.mean)) return compared;
-  const std::uint64_t runs = value.runs == 0 ? study.printed.runs : value.runs;
-  compared.verdict = verdict_on(value, runs, sample, study.level);
+  compared.verdict = verdict_on(value, paper_runs_of(study, value), sample, study.level);
+  compare_batches(study, value, cell, compared);
+  return compared;
+}
+
+/// The baseline's own number of this metric, where it is off by so much that no other compares.
+std::optional<std::string> other_world(const StudyAnalysis& study, const PrintedValue& value) {
+  const std::string& baseline = study.printed.baseline;
+  if (baseline.empty() || value.cell == baseline) return std::nullopt;
+  for (const PrintedValue& other : study.printed.values) {
+    if (other.cell != baseline || other.metric != value.metric) continue;
+    const std::string verdict = compare_alone(study, other).verdict;
+    if (verdict.starts_with(kNotReproduced)) {
+      return "another world: " + baseline + verdict.substr(kNotReproduced.size());
+    }
+  }
+  return std::nullopt;
+}
+
+/// Of a number that all runs of a batch have together; nothing without two batches of both cells.
+std::optional<ComparedClaim> claim_by_batches(const StudyAnalysis& study,
+                                              const PrintedClaim& claim) {
+  if (is_run_metric(claim.metric) || claim.relation == '~') return std::nullopt;
+  const auto batches = [&](const std::string& label) {
+    return batches_by_paper(cell_named(study, label), claim.metric, study.printed.runs);
+  };
+  const BatchClaim found =
+      claim_over_batches(batches(claim.left), batches(claim.right), claim.relation);
+  if (found.batches < 2) return std::nullopt;
+  return ComparedClaim{
+      found.difference, {kNaN, kNaN}, found.batches * study.printed.runs, in_words(found)};
+}
+
+}  // namespace
+
+ComparedValue compare(const StudyAnalysis& study, const PrintedValue& value) {
+  ComparedValue compared = compare_alone(study, value);
+  if (const auto other = other_world(study, value)) compared.verdict = *other;
   return compared;
 }
 
 ComparedClaim compare(const StudyAnalysis& study, const PrintedClaim& claim) {
+  if (const auto batches = claim_by_batches(study, claim)) return *batches;
   const CellAnalysis* left = cell_named(study, claim.left);
   const CellAnalysis* right = cell_named(study, claim.right);
   const Sample difference = difference_of(left, right, claim.metric);
@@ -109,6 +181,8 @@ TextTable printed_value_table(const StudyAnalysis& study) {
                     {"paper printed"},
                     {"we measure"},
                     {level_text(study.level) + " interval"},
+                    {"batches: median [" + level_text(study.level) + "]"},
+                    {"by the expected band"},
                     {"verdict", Align::left},
                     {"where", Align::left}};
   for (const PrintedValue& value : study.printed.values) {
@@ -116,6 +190,7 @@ TextTable printed_value_table(const StudyAnalysis& study) {
     const std::string per = value.relative_to.empty() ? "" : ", in those of " + value.relative_to;
     table.rows.push_back({value.cell, metric_in_words(value.metric) + per, value.printed,
                           measured_text(compared.measured), interval_text(compared.interval),
+                          in_words(compared.batches), in_words(compared.by_expected),
                           compared.verdict, value.note});
   }
   return table;
@@ -157,7 +232,15 @@ std::vector<std::string> printed_notes(const StudyAnalysis& study) {
       "A claim 'holds' or is 'contradicted' where the whole " + level +
           " interval of the difference, run by run on the same worlds and noise, lies on one "
           "side; '~' claims less than 10 % difference. A number that all runs have together has "
-          "no interval."};
+          "no interval.",
+      "'Batches' are our runs in groups of as many as the paper had: the median over them, and "
+      "where " +
+          level +
+          " of them lie (of fewer than 40 all). Times and shares of a band, which depend on the "
+          "number of runs, are compared with them, by the band that the paper printed; beside it "
+          "by that which so many runs of a consistent filter have. 'Another world': the baseline "
+          "itself is off by more than a factor of " +
+          readable(kReproducedWithin, 1) + ", so that no number of its column compares."};
 }
 
 }  // namespace montecarta::analysis

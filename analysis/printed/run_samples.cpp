@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/printed/run_samples.hpp"
 
+#include "analysis/metrics/nees_batches.hpp"
 #include "analysis/metrics/paired_runs.hpp"
 #include "analysis/statistics/means.hpp"
 #include "analysis/statistics/t_quantile.hpp"
@@ -21,6 +22,7 @@ struct JointName {
   const char* words;
   ErrorBlock block;
   double (*value)(const Consistency&);
+  std::vector<double> BatchNumbers::*of_batches;
 };
 
 double inside(const Consistency& found) { return found.share_inside; }
@@ -30,16 +32,18 @@ double exit_time(const Consistency& found) {
 }
 
 constexpr JointName kJoint[] = {
-    {"share_inside_pose", "share of scans inside the band, pose", ErrorBlock::pose, inside},
+    {"share_inside_pose", "share of scans inside the band, pose", ErrorBlock::pose, inside,
+     &BatchNumbers::share_inside},
     {"share_inside_position", "share of scans inside the band, position", ErrorBlock::position,
-     inside},
-    {"share_above_pose", "share of scans above the band, pose", ErrorBlock::pose, above},
-    {"share_above_position", "share of scans above the band, position", ErrorBlock::position,
-     above},
+     inside, &BatchNumbers::share_inside},
+    {"share_above_pose", "share of scans above the band, pose", ErrorBlock::pose, above,
+     &BatchNumbers::share_above},
+    {"share_above_position", "share of scans above the band, position", ErrorBlock::position, above,
+     &BatchNumbers::share_above},
     {"stays_above_from_pose", "above the band to the end from, pose [s]", ErrorBlock::pose,
-     exit_time},
+     exit_time, &BatchNumbers::stays_above_from},
     {"stays_above_from_position", "above the band to the end from, position [s]",
-     ErrorBlock::position, exit_time},
+     ErrorBlock::position, exit_time, &BatchNumbers::stays_above_from},
 };
 
 template <class Names>
@@ -51,6 +55,14 @@ Sample joint_sample(const CellAnalysis& cell, const JointName& joint) {
   const NeesResult* nees = cell.find_nees(joint.block, cell.leading);
   if (nees == nullptr || nees->consistency.verdict == Verdict::untested) return {};
   return {joint.value(nees->consistency), kNaN, 1, {}};
+}
+
+std::vector<double> joint_batches(const CellAnalysis& cell, const JointName& joint,
+                                  std::uint64_t runs, BatchBand band) {
+  const NeesBatches& batches = cell.get<NeesBatches>();
+  const BlockBatches* const found = batches.find(joint.block);
+  if (found == nullptr || batches.runs != runs) return {};
+  return (band == BatchBand::printed ? found->by_printed : found->by_expected).*joint.of_batches;
 }
 
 Sample sample_over(std::span<const double> values) {
@@ -110,6 +122,22 @@ Sample difference_of(const CellAnalysis* left, const CellAnalysis* right,
   std::vector<double> differences;
   for (const auto& [l, r] : pairs_of(*left, *right, *score)) differences.push_back(l - r);
   return sample_over(differences);
+}
+
+std::vector<double> batches_of(const CellAnalysis* cell, const std::string& metric,
+                               std::uint64_t runs, BatchBand band) {
+  if (cell == nullptr || runs == 0) return {};
+  if (const auto joint = find_name(kJoint, metric); joint != std::end(kJoint)) {
+    return joint_batches(*cell, *joint, runs, band);
+  }
+  const Score* score = find_score(metric);
+  std::vector<double> means;
+  if (score == nullptr) return means;
+  const std::span<const double> values = cell->scores.column(score->name);
+  for (std::size_t first = 0; first + runs <= values.size(); first += runs) {
+    means.push_back(sample_over(values.subspan(first, runs)).mean);
+  }
+  return means;
 }
 
 Interval interval_of(const Sample& sample, double level) {

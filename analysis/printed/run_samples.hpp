@@ -5,6 +5,7 @@
 #include "analysis/statistics/nees_bounds.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,15 @@ Sample ratio_of(const CellAnalysis* cell, const CellAnalysis* unit, const std::s
 /// Left minus right over the runs that both completed.
 Sample difference_of(const CellAnalysis* left, const CellAnalysis* right,
                      const std::string& metric);
+
+/// By which band batches are judged.
+enum class BatchBand : std::uint8_t { printed, expected };
+
+/// A metric of each batch of `runs` complete runs, in their order: the mean of a score over the
+/// batch, whatever the band, or a number that all runs of a batch have together. Empty where there
+/// is none.
+std::vector<double> batches_of(const CellAnalysis* cell, const std::string& metric,
+                               std::uint64_t runs, BatchBand band);
 
 /// Of the mean; NaN of fewer than two runs.
 Interval interval_of(const Sample& sample, double level);

@@ -37,6 +37,7 @@ void take(const IniEntry& entry, std::span<const std::string> labels, Printed& p
     take_printed_line(entry.key, entry.value, printed);
     if (entry.key == "value") check(printed.values.back(), labels);
     if (entry.key == "claim") check(printed.claims.back(), labels);
+    if (entry.key == "baseline") refuse_unknown("cell", printed.baseline, labels);
   } catch (const StudyError& error) {
     throw StudyError(entry.place + ": " + entry.key + ": " + error.what());
   }

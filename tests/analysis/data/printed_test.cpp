@@ -71,5 +71,20 @@ TEST(Printed, BadLinesAreAnsweredWithARemedy) {
   EXPECT_THAT(complaint("vale", "x"), HasSubstr("unknown key printed.vale"));
 }
 
+TEST(Printed, HasTheBandsAndTheBaselineOfAPaper) {
+  Printed printed;
+  take_printed_line("runs", "20", printed);
+  take_printed_line("baseline", "fastslam2", printed);
+  take_printed_line("band", "position 1.3 2.79", printed);
+  ASSERT_NE(printed.find_band("position"), nullptr);
+  EXPECT_EQ(printed.find_band("position")->upper, 2.79);
+  EXPECT_EQ(printed.find_band("pose"), nullptr);
+  EXPECT_EQ(printed_text(printed), "runs = 20\nbaseline = fastslam2\nband = position 1.3 2.79\n");
+  for (const char* text : {"position 1.3", "place 1 2", "pose 2 1", "pose 1 x", "position 1 2"}) {
+    EXPECT_THROW(take_printed_line("band", text, printed), StudyError) << text;
+  }
+  EXPECT_THROW(take_printed_line("baseline", "ekf_slam", printed), StudyError);
+}
+
 }  // namespace
 }  // namespace montecarta::analysis

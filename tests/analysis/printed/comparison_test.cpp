@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/printed/comparison.hpp"
 
+#include "analysis/metrics/nees_batches.hpp"
 #include "analysis/printed/run_samples.hpp"
 #include "analysis/statistics/t_quantile.hpp"
 #include "analysis/tables/tables.hpp"
@@ -142,6 +143,67 @@ TEST(Comparison, LeavingTheBandIsOneNumberOfAllRuns) {
             "holds, without interval");
   EXPECT_EQ(compare(study, claim_of("stays_above_from_pose", "late", '>', "a")).verdict,
             "not measured");
+}
+
+/// Ten batches of 20 runs that leave the printed band at `by_printed` [s], and the expected one 5 s
+/// later.
+void leave_band_in_batches(std::vector<double> by_printed, CellAnalysis& cell) {
+  BlockBatches block;
+  block.by_printed.stays_above_from = by_printed;
+  for (double& time : by_printed) time += 5.0;
+  block.by_expected.stays_above_from = by_printed;
+  cell.findings.put(NeesBatches{20, {block}});
+}
+
+// The time of all 200 runs together is another number than that of 20.
+TEST(Comparison, ATimeIsComparedWithThoseOfBatchesOfThePapersSize) {
+  StudyAnalysis study = paired_study(200);
+  study.printed.runs = 20;
+  for (CellAnalysis& cell : study.cells) leave_band_at(1.0, cell);
+  leave_band_in_batches({70, 75, 80, 82, 84, 86, 90, 95, 99, 120}, study.cells[0]);
+  leave_band_in_batches({30, 35, 40, 42, 44, 46, 50, HUGE_VAL, HUGE_VAL, 99}, study.cells[1]);
+  const auto compared = [&](const char* cell, const char* printed, std::uint64_t runs = 0) {
+    return compare(study, value_of(cell, "stays_above_from_pose", printed, runs));
+  };
+  EXPECT_EQ(compared("a", "80").verdict, "agrees");
+  EXPECT_EQ(compared("a", "80").measured, 85.0);
+  EXPECT_EQ(in_words(compared("a", "80").batches), "85.0 [70.0, 120]");
+  EXPECT_EQ(in_words(compared("a", "80").by_expected), "90.0 [75.0, 125]");
+  EXPECT_EQ(compared("a", "35").verdict, "not reproduced: 2.4 times as large");
+  EXPECT_EQ(in_words(compared("b", "80").batches), "45.0 [30.0, never], never in 2 of 10");
+  EXPECT_EQ(compared("a", "80", 30).measured, 1.0) << "of another number of runs there is none";
+  const auto claim = [&](char relation) {
+    return compare(study, claim_of("stays_above_from_pose", "a", relation, "b")).verdict;
+  };
+  EXPECT_EQ(claim('>'), "undecided: holds in 8 of 10 batches, contradicted in 2 of 10");
+  leave_band_in_batches(std::vector<double>(10, 3.0), study.cells[1]);
+  EXPECT_EQ(claim('>'), "holds in 10 of 10 batches");
+  EXPECT_EQ(claim('<'), "contradicted in 10 of 10 batches");
+}
+
+TEST(Comparison, MeansOfScoresAreShownInBatchesToo) {
+  StudyAnalysis study = paired_study(200);
+  study.printed.runs = 20;
+  const ComparedValue found = compare(study, value_of("a", "position_rmse", "4.0", 0));
+  EXPECT_EQ(found.batches.batches, 10u);
+  EXPECT_NEAR(found.batches.median, 4.0, 0.4);
+  EXPECT_LT(found.batches.range.upper - found.batches.range.lower, 1.6);
+  EXPECT_EQ(found.by_expected.batches, 0u);
+}
+
+TEST(Comparison, NothingComparesWhereTheBaselineIsAnotherWorld) {
+  StudyAnalysis study = paired_study(400);
+  study.printed.values = {value_of("a", "position_rmse", "1.0", 30),
+                          value_of("b", "position_rmse", "5.0", 30),
+                          value_of("b", "cpu_seconds", "0.5", 30)};
+  const auto verdict = [&](std::size_t k) {
+    return compare(study, study.printed.values[k]).verdict;
+  };
+  EXPECT_EQ(verdict(1), "agrees");
+  study.printed.baseline = "a";
+  EXPECT_THAT(verdict(0), testing::StartsWith("not reproduced: 4.0 times as large"));
+  EXPECT_THAT(verdict(1), testing::StartsWith("another world: a: 4.0 times as large"));
+  EXPECT_EQ(verdict(2), "agrees") << "of this metric the baseline has no printed number";
 }
 
 TEST(Comparison, StandsAtTheEndOfATerminalsTables) {
