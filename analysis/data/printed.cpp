@@ -115,7 +115,7 @@ PrintedBand parse_band(const std::string& text) {
                     (words[0] == "pose" || words[0] == "position" || words[0] == "heading") &&
                     is_number(words[1]) && is_number(words[2]);
   if (!good) throw StudyError("'" + text + "' is not understood: " + kBandForm);
-  const PrintedBand band{words[0], number_in(words[1]), number_in(words[2])};
+  PrintedBand band{words[0], number_in(words[1]), number_in(words[2])};
   if (band.lower < band.upper) return band;
   throw StudyError("'" + text + "' has no width (the lower end comes first): " + kBandForm);
 }
