@@ -155,7 +155,7 @@ double expected_trimmed(std::size_t dimension) {
 Consistency judge(const NeesSeries& series, std::span<const double> times, double within) {
   Consistency result;
   result.within = within;
-  result.mean = mean_of_numbers(series.average);
+  result.mean = mean_of_numbers(series.run_averages);
   result.median = mean_of_numbers(series.median);
   result.trimmed = mean_of_numbers(series.trimmed);
   count_shares(series, result);

@@ -73,7 +73,7 @@ struct Consistency {
   std::optional<ScanRatio> highest;  ///< of the scans outside the band for all that farthest above
   std::optional<ScanRatio> lowest;   ///< and that farthest below
   std::optional<std::uint64_t> more_runs;  ///< that decide what is undecided; none known: nullopt
-  double mean = 0.0;                       ///< of the averages, over scans
+  double mean = 0.0;                       ///< of run_averages
   double median = 0.0;                     ///< of the medians, over scans
   double trimmed = 0.0;                    ///< of the trimmed means, over scans
   double share_inside = 0.0;               ///< of scans with a valid run; the three add up to 1
