@@ -68,12 +68,6 @@ ScanBelief belief_between(const std::vector<ScanBelief>& scans, const PathAtFixe
           before.is_known && after.is_known};
 }
 
-const SamplerScale& scale_at_fixes(std::size_t dimension) {
-  static const std::array<SamplerScale, 3> scales = {SamplerScale(1), SamplerScale(2),
-                                                     SamplerScale(3)};
-  return scales[dimension - 1];
-}
-
 /// What the NEES by `total` = P + R is on the scale of the chi-square: degrees of freedom of the
 /// sum of an estimated and an exact covariance (K. Krishnamoorthy, J. Yu 2004).
 double on_chi_square_scale(double nees, const Eigen::MatrixXd& total, const Eigen::MatrixXd& own,
@@ -84,7 +78,7 @@ double on_chi_square_scale(double nees, const Eigen::MatrixXd& total, const Eige
   const double of_one = (share * share).trace() + share.trace() * share.trace();
   const double freedom = (d + d * d) / (inverse_freedom * of_one);
   constexpr double kExactMean = 1e300;  // the covariance is already that of the mean's error
-  return scale_at_fixes(static_cast<std::size_t>(total.rows()))(nees, {kExactMean, freedom + 1.0});
+  return sampler_scale(static_cast<std::size_t>(total.rows()))(nees, {kExactMean, freedom + 1.0});
 }
 
 void add_whitened(const Eigen::VectorXd& error, VectorSeries& series) {

@@ -55,13 +55,6 @@ void measure_imported(const ErrorRows& errors, bool is_pose, NeesRows& rows) {
   }
 }
 
-/// Tables that all threads read.
-const SamplerScale& scale_of(ErrorBlock block) {
-  static const std::array<SamplerScale, 3> scales = {SamplerScale(3), SamplerScale(2),
-                                                     SamplerScale(1)};
-  return scales[static_cast<std::size_t>(block)];
-}
-
 const MomentRows& leading(const RunRows& rows) {
   return rows.mixture.mean.empty() ? rows.spread : rows.mixture;
 }
@@ -111,7 +104,7 @@ void RunMetrics::correct_spread(const RunRows& rows, std::size_t particles) {
   corrected = particles > 0 ? nees(Moments::spread) : NeesRows{};
   const NeesRows& mixture = nees(Moments::mixture);
   for (std::size_t b = 0; b < kErrorBlocks.size(); ++b) {
-    const SamplerScale& scale = scale_of(kErrorBlocks[b]);
+    const SamplerScale& scale = sampler_scale(dimension_of(kErrorBlocks[b]));
     std::vector<double>& value = corrected.value[b];
     corrected.too_few[b].assign(value.size(), 0);
     for (std::size_t s = 0; s < value.size(); ++s) {

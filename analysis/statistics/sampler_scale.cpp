@@ -7,6 +7,7 @@
 #include <boost/math/distributions/fisher_f.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace montecarta::analysis {
@@ -84,6 +85,12 @@ double SamplerScale::operator()(double nees, const EffectiveDraws& draws) const 
   }
   const double first = octave(below) + ratio(below), second = octave(above) + ratio(above);
   return std::exp2(octave(below) + (log_f - first) / ((second - first) * kStepsPerOctave));
+}
+
+const SamplerScale& sampler_scale(std::size_t dimension) {
+  static const std::array<SamplerScale, 3> scales = {SamplerScale(1), SamplerScale(2),
+                                                     SamplerScale(3)};
+  return scales[dimension - 1];
 }
 
 }  // namespace montecarta::analysis

@@ -42,4 +42,7 @@ class SamplerScale {
   std::vector<double> log_ratios_;  ///< {1 / freedom, chi-square} log2 of d F / chi-square
 };
 
+/// The table of 1 to 3 components, made once and read by all threads.
+const SamplerScale& sampler_scale(std::size_t dimension);
+
 }  // namespace montecarta::analysis
