@@ -2,6 +2,7 @@
 #include "experiments/judging/state_rows.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/numbers/angle.hpp"
 
 #include <gmock/gmock.h>
 
