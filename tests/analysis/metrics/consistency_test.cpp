@@ -155,11 +155,9 @@ TEST(Judge, TellsOptimisticFromConservative) {
 }
 
 TEST(Judge, UsesTheAverageOverTheRunWhereNoScanIsFarOff) {
-  NeesSeries series = series_of(std::vector<double>(100, 3.4));
-  for (int run = 0; run < 30; ++run) series.run_averages.push_back(3.4 + 0.02 * (run % 2));
-  EXPECT_EQ(judge(series, every_fifth_of_a_second(100)).verdict, Verdict::optimistic);
-  std::ranges::fill(series.average, 2.7);
-  EXPECT_EQ(judge(series, every_fifth_of_a_second(100)).verdict, Verdict::conservative);
+  const auto times = every_fifth_of_a_second(100);
+  EXPECT_EQ(judge(runs_about(3.4, 0.01), times).verdict, Verdict::optimistic);
+  EXPECT_EQ(judge(runs_about(2.7, 0.01), times).verdict, Verdict::conservative);
 }
 
 TEST(ExpectedValues, AreThoseOfTheChiSquare) {

@@ -26,7 +26,7 @@ class DeSrcdFastSlam : public SrcdFastSlam {
     if (i == 0 && de_.mode != DeMode::unbiased) move_cloud(context, scan);
     const Eigen::Vector3d predicted = p.pose;
     const Eigen::Matrix3d P_predicted = p.covariance;
-    if (!pays()) p.pose = centres_[i];
+    if (!weighs_draws()) p.pose = centres_[i];
     const double log_closed = refine(p, scan);
     p.refined_pose = p.pose;
     p.refined_covariance = p.covariance;
@@ -43,11 +43,11 @@ class DeSrcdFastSlam : public SrcdFastSlam {
     RngStream draw = context.stream(Draw::pose_proposal, i);
     Eigen::Vector3d eps;
     for (int k = 0; k < 3; ++k) eps(k) = draw.normal();
-    const double inflation = pays() ? de_.inflation : 1.0;
+    const double inflation = weighs_draws() ? de_.inflation : 1.0;
     p.pose = wrapped(centre + std::sqrt(inflation) * root * eps);
     p.covariance.setZero();
     p.factor.setZero();
-    if (!pays()) {
+    if (!weighs_draws()) {
       p.log_weight += log_closed;
       return;
     }
@@ -61,7 +61,9 @@ class DeSrcdFastSlam : public SrcdFastSlam {
                     log_density(p.pose, centre, inflation * p.refined_covariance);
   }
 
-  bool pays() const { return de_.mode == DeMode::unbiased || de_.mode == DeMode::shared; }
+  bool weighs_draws() const override {
+    return de_.mode == DeMode::unbiased || de_.mode == DeMode::shared;
+  }
 
   /// Mode unbiased: a population of its own, in standard deviations of its refined Gaussian.
   Eigen::Vector3d most_probable(const StreamIdentity& chance, const Particle& p,

@@ -20,12 +20,16 @@ class FastSlam2 : public FastSlam {
   /// Before the next step: the Gaussians before drawing. Afterwards: poses with the covariance
   /// gathered since.
   PoseEstimate estimate() const override {
+    if (weighs_draws()) return {drawn(), std::nullopt};
     return {drawn(), mixture_moments(
                          particles_, [](const Particle& p) { return p.refined_pose; },
                          [](const Particle& p) { return p.refined_covariance; })};
   }
 
  protected:
+  /// Whether the weights are of the drawn poses: then there is no mixture (EQUATIONS 19).
+  virtual bool weighs_draws() const { return weight_ == Weight::ratio; }
+
   /// Carries (p.pose, p.covariance) through one step.
   virtual void move_gaussian(Particle& p, const Control& control, double duration) const {
     const auto step = linearised_move(as_pose(p.pose), control, duration, settings_.belief.vehicle);
