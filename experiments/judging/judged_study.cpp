@@ -17,22 +17,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Averages over runs are taken at each time.
+/// Averages over runs are taken at each time; a run may end before the others.
 void expect_alike(const StateRows& rows, const fs::path& path, const StateRows& first,
                   const fs::path& first_path, double tolerance) {
   if (rows.shape != first.shape) {
     throw StudyError(path.string() + ": another state than in " + first_path.string() +
                      " (one study judges one state): judge them apart");
   }
+  if (rows.time.empty()) return;
   if (rows.nis.empty() != first.nis.empty()) {
     throw StudyError(path.string() + ": " + (rows.nis.empty() ? "no nis" : "has nis") + " (in " +
                      first_path.string() + " it is otherwise): give it in all files or in none");
-  }
-  if (rows.time.size() != first.time.size()) {
-    throw StudyError(path.string() + ": " + std::to_string(rows.time.size()) + " rows (" +
-                     first_path.string() + " has " + std::to_string(first.time.size()) +
-                     ", and averages over runs are taken at each time): give all runs the same "
-                     "times; one that broke off is a failure and is not judged");
   }
   for (std::size_t s = 0; s < rows.time.size(); ++s) {
     if (std::abs(rows.time[s] - first.time[s]) <= tolerance) continue;
@@ -44,11 +39,11 @@ void expect_alike(const StateRows& rows, const fs::path& path, const StateRows& 
   }
 }
 
-std::vector<Eigen::VectorXd> truths_for(const StateRows& estimates, const StateRows& truth,
+std::vector<Eigen::VectorXd> truths_for(const std::vector<double>& times, const StateRows& truth,
                                         const TimeMatch& match, const fs::path& estimate_path,
                                         const fs::path& truth_path) {
   std::vector<Eigen::VectorXd> truths;
-  for (const double time : estimates.time)
+  for (const double time : times)
     truths.push_back(truth_at(truth, time, match, estimate_path, truth_path));
   return truths;
 }
@@ -64,13 +59,25 @@ void put_rows(const Eigen::MatrixXd& matrix, std::size_t scan, std::span<double>
   }
 }
 
+/// A run that ends before the others has failed there.
+void end_run(const StateRows& rows, std::size_t scans, RunRecord& record) {
+  constexpr double kUnknownCost = std::numeric_limits<double>::quiet_NaN();
+  if (rows.time.size() == scans) {
+    record.mark_complete(kUnknownCost);
+    return;
+  }
+  const std::string reason =
+      rows.time.empty() ? "no estimates" : "estimates end at " + to_text(rows.time.back()) + " s";
+  record.mark_failed(static_cast<std::uint32_t>(rows.time.size()), reason, kUnknownCost);
+}
+
 /// One run of one estimator as the file holds it.
 RunRecord record_of(const RecordLayout& layout, const StateRows& rows,
                     const std::vector<Eigen::VectorXd>& truths, ErrorConvention convention) {
   RunRecord record(layout);
   const auto column = [&](const char* name) { return record.column<double>(*layout.find(name)); };
   const auto faults = record.column<std::uint32_t>(*layout.find("numerical_faults"));
-  for (std::size_t s = 0; s < truths.size(); ++s) {
+  for (std::size_t s = 0; s < rows.time.size(); ++s) {
     const Eigen::VectorXd error = error_of(rows.shape, convention, rows.state[s], truths[s]);
     put_rows(error, s, column("error"));
     put_rows(rows.covariance[s], s, column("error_covariance"));
@@ -85,33 +92,55 @@ RunRecord record_of(const RecordLayout& layout, const StateRows& rows,
     std::ranges::copy(rows.nis, column("nis").begin());
     std::ranges::copy(rows.nis_dof, record.column<std::uint32_t>(*layout.find("nis_dof")).begin());
   }
-  record.mark_complete(std::numeric_limits<double>::quiet_NaN());
+  end_run(rows, truths.size(), record);
   return record;
 }
 
+/// The estimates whose times are those of the study.
+struct LongestRun {
+  fs::path path;
+  StateRows rows;
+};
+
+LongestRun longest_of(const JudgedFiles& files) {
+  LongestRun longest;
+  for (const EstimatorFiles& cell : files.cells) {
+    for (const fs::path& path : cell.of_run) {
+      StateRows rows = read_estimates(path);
+      if (longest.path.empty() || rows.time.size() > longest.rows.time.size())
+        longest = {path, std::move(rows)};
+    }
+  }
+  if (!longest.rows.time.empty()) return longest;
+  throw StudyError(longest.path.string() +
+                   ": no rows behind the header, nor in any other file (nothing to judge): write "
+                   "one row for each time");
+}
+
 std::vector<ConventionHint> write_runs(const JudgedFiles& files, const JudgingOptions& options,
-                                       const StateRows& first, const StudyPlan& plan,
+                                       const LongestRun& longest, const StudyPlan& plan,
                                        ResultWriter& writer) {
   std::vector<RecordLayout> layouts;
   std::vector<ConventionHints> hints;
   for (const Cell& cell : plan.cells) {
     layouts.emplace_back(cell, plan.columns, plan.drives->itinerary());
-    hints.emplace_back(cell.label, first.shape, first.time);
+    hints.emplace_back(cell.label, longest.rows.shape, longest.rows.time);
   }
   for (std::size_t run = 0; run < files.runs.size(); ++run) {
-    const StateRows truth = read_truth(files.truth[run], first.shape);
+    const StateRows truth = read_truth(files.truth[run], longest.rows.shape);
     for (std::size_t c = 0; c < files.cells.size(); ++c) {
       const fs::path& path = files.cells[c].of_run[run];
       const StateRows rows = read_estimates(path);
-      expect_alike(rows, path, first, files.cells.front().of_run.front(), options.match.tolerance);
-      const auto truths = truths_for(rows, truth, options.match, path, files.truth[run]);
+      expect_alike(rows, path, longest.rows, longest.path, options.match.tolerance);
+      const auto truths =
+          truths_for(longest.rows.time, truth, options.match, path, files.truth[run]);
       if (c == 0 && plan.drives->itinerary().has_truth) {
         Drive drive;
         std::ranges::transform(truths, std::back_inserter(drive.truth), pose_in);
         writer.write_truth(run, drive);
       }
       writer.write(c, run, record_of(layouts[c], rows, truths, options.convention));
-      hints[c].add(rows, truths);
+      if (rows.time.size() == truths.size()) hints[c].add(rows, truths);
     }
   }
   std::vector<ConventionHint> found;
@@ -123,18 +152,18 @@ std::vector<ConventionHint> write_runs(const JudgedFiles& files, const JudgingOp
 }  // namespace
 
 std::vector<ConventionHint> judge_files(const JudgedFiles& files, const JudgingOptions& options) {
-  const StateRows first = read_estimates(files.cells.front().of_run.front());
-  const auto known = conventions_of(first.shape.kind);
+  const LongestRun longest = longest_of(files);
+  const auto known = conventions_of(longest.rows.shape.kind);
   if (std::ranges::find(known, options.convention) == known.end()) {
     throw StudyError("--error " + name_of(options.convention) + ": not of a vector (" +
-                     files.cells.front().of_run.front().string() +
+                     longest.path.string() +
                      " has no pose, which alone has a frame): say --error world");
   }
-  const StudyPlan plan = imported_plan(files, first, options);
+  const StudyPlan plan = imported_plan(files, longest.rows, options);
   ResultWriter writer =
       ResultWriter::create(options.output, plan, options.provenance, options.existing);
   try {
-    auto hints = write_runs(files, options, first, plan, writer);
+    auto hints = write_runs(files, options, longest, plan, writer);
     writer.finish();
     return hints;
   } catch (...) {

@@ -154,7 +154,7 @@ void expect_no_gap(const FilesByRun& runs) {
       throw StudyError(file.string() + ": runs " + std::to_string(next - 1) + " to " +
                        std::to_string(run - 1) +
                        " are missing (runs are numbered one after the other; one that failed is "
-                       "a result): judge all runs, or number them without a gap");
+                       "a result): give a failed run the file that it wrote, the header at least");
     }
   }
 }
@@ -194,8 +194,8 @@ JudgedFiles pair_files(const std::vector<std::string>& estimates,
   }
   expect_same_runs(first, truth_of, "truth", "name its truth after --truth too");
   expect_same_runs(truth_of, first, "estimate",
-                   "a run that failed is a result, do not leave it "
-                   "out; of fewer runs name the truths of these alone");
+                   "a run that failed is a result, give it the file that it wrote, the header at "
+                   "least; of fewer runs name the truths of these alone");
   JudgedFiles judged;
   for (const auto& [run, file] : truth_of) {
     judged.runs.push_back(run);

@@ -69,13 +69,6 @@ void take_time(const CsvRows& rows, std::vector<double>& times) {
   times.push_back(time);
 }
 
-void expect_rows(const StateRows& rows, const std::filesystem::path& path) {
-  if (!rows.time.empty()) return;
-  throw StudyError(path.string() +
-                   ": no rows behind the header (nothing to judge): write one row "
-                   "for each time; a run that gave no estimates is a failure and cannot be judged");
-}
-
 bool is_angle(const StateShape& shape, Eigen::Index k) {
   return shape.kind != StateKind::pose_in_space &&
          shape.units[static_cast<std::size_t>(k)] == "rad";
@@ -108,7 +101,6 @@ StateRows read_estimates(const std::filesystem::path& path) {
     rows.covariance.push_back(covariance_in(file, fields));
     take_innovation(file, fields, rows);
   }
-  expect_rows(rows, path);
   return rows;
 }
 
@@ -120,8 +112,9 @@ StateRows read_truth(const std::filesystem::path& path, const StateShape& shape)
     take_time(file, rows.time);
     rows.state.push_back(state_in(file, fields, shape));
   }
-  expect_rows(rows, path);
-  return rows;
+  if (!rows.time.empty()) return rows;
+  throw StudyError(path.string() +
+                   ": no rows behind the header (a truth of no time): write one row for each time");
 }
 
 Eigen::VectorXd truth_at(const StateRows& truth, double time, const TimeMatch& match,
