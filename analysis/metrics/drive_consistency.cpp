@@ -15,17 +15,22 @@ constexpr double kHardlyAny = 3.0;
 /// Means over runs; each run by itself has an interval that holds, and the runs are not
 /// independent.
 CorrelatedAverage mean_over_drives(std::span<const DriveScores> runs, std::size_t block) {
-  const auto n = static_cast<double>(runs.size());
+  const auto is_judged = [&](const DriveScores& run) {
+    return run.blocks[block].effective_samples > 0.0;
+  };
+  const auto n = static_cast<double>(std::ranges::count_if(runs, is_judged));
   CorrelatedAverage mean;
+  if (n == 0.0) return mean;
   double inverse = 0.0;
   for (const DriveScores& run : runs) {
+    if (!is_judged(run)) continue;
     const CorrelatedAverage& one = run.blocks[block];
     mean.mean += one.mean / n;
     mean.ratio.lower += one.ratio.lower / n;
     mean.ratio.upper += one.ratio.upper / n;
     inverse += 1.0 / one.effective_samples / n;
   }
-  mean.effective_samples = 1.0 / inverse;  // 0 where one of them is
+  mean.effective_samples = 1.0 / inverse;
   return mean;
 }
 

@@ -17,7 +17,11 @@ std::string numbers_behind(const Consistency& found, const JudgedRuns& runs) {
             " times the expected one, ";
   }
   words += std::to_string(runs.complete) + " complete runs";
-  return runs.failed == 0 ? words : words + ", " + std::to_string(runs.failed) + " failed";
+  if (runs.failed > 0) words += ", " + std::to_string(runs.failed) + " failed";
+  if (runs.unjudged > 0) words += ", " + std::to_string(runs.unjudged) + " without any NEES";
+  if (runs.invalid == 0) return words;
+  return words + "; " + std::to_string(runs.invalid) + " of " + std::to_string(runs.covariances) +
+         " covariances are invalid and left out";
 }
 
 /// Whether ratios within the margin are left: then more runs may show the filter to be.
@@ -30,10 +34,10 @@ bool may_be_within(const Consistency& found) {
 Gate gate(const Consistency& found, const JudgedRuns& runs) {
   const std::string numbers = "; " + numbers_behind(found, runs);
   const std::string margin = " within " + exact_text(found.within);
-  if (runs.failed > runs.most_failed) {
-    return {GateAnswer::inconsistent, std::to_string(runs.failed) + " of " +
+  if (found.verdict != Verdict::untested && runs.failed + runs.unjudged > runs.most_failed) {
+    return {GateAnswer::inconsistent, std::to_string(runs.failed + runs.unjudged) + " of " +
                                           std::to_string(runs.complete + runs.failed) +
-                                          " runs failed"};
+                                          " runs failed or have no NEES"};
   }
   switch (found.verdict) {
     case Verdict::untested:

@@ -16,10 +16,13 @@ struct Gate {
   std::string why;  ///< one line without the name of what was judged
 };
 
-/// Runs that a verdict is of, and those that ended early, which are in no NEES.
+/// Runs that a verdict is of, and what is in no NEES.
 struct JudgedRuns {
   std::uint64_t complete = 0;
-  std::uint64_t failed = 0;
+  std::uint64_t failed = 0;       ///< ended early
+  std::uint64_t unjudged = 0;     ///< of the complete ones: without any NEES; count as failed
+  std::uint64_t covariances = 0;  ///< at all scans of the complete runs
+  std::uint64_t invalid = 0;      ///< of them: no covariance, so that its scan has no NEES
   std::uint64_t most_failed =
       0;  ///< more failed runs than these are inconsistent whatever the NEES
 };

@@ -63,7 +63,9 @@ TextTable component_table(const StudyAnalysis& study) {
                     {"RMS error"},         {"RMS of its deviation"},   {"ratio"}};
   for (const CellAnalysis& cell : study.cells) {
     const ComponentErrors& found = cell.get<ComponentErrors>();
-    for (std::size_t c = 0; c < found.error.size(); ++c) {
+    const std::size_t named =
+        std::min(study.imported.components.size(), study.imported.units.size());
+    for (std::size_t c = 0; c < std::min(found.error.size(), named); ++c) {
       table.rows.push_back({cell.label, study.imported.components[c], study.imported.units[c],
                             readable(found.error[c]), readable(found.deviation[c]),
                             readable(found.error[c] / found.deviation[c])});

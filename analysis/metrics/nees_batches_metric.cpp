@@ -30,7 +30,8 @@ void add_batch(std::span<const double> average, std::span<const Interval> band,
   }
   numbers.share_inside.push_back(inside / judged);
   numbers.share_above.push_back(above / judged);
-  numbers.stays_above_from.push_back(from);
+  numbers.stays_above_from.push_back(judged > 0.0 ? from
+                                                  : std::numeric_limits<double>::quiet_NaN());
 }
 
 /// The batches of one block, one after the other.

@@ -35,9 +35,7 @@ PathAtFixes::PathAtFixes(const ReferencePath& reference, std::span<const double>
 bool PathAtFixes::has_start() const {
   constexpr double kSame = 1e-6;  // [m]
   const Eigen::Vector2d start(start_.x, start_.y);
-  return std::ranges::any_of(used_.position, [&](const Eigen::Vector2d& position) {
-    return (position - start).norm() < kSame;
-  });
+  return !used_.position.empty() && (used_.position.front() - start).norm() < kSame;
 }
 
 PathAtFixes::Place PathAtFixes::place_of(double time, std::span<const double> times) {

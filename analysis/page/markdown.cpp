@@ -10,7 +10,7 @@ namespace montecarta::analysis {
 namespace {
 
 /// Failures of a study that fails a thousand times are not worth a thousand lines.
-constexpr std::size_t kMostRows = 60;
+constexpr std::size_t kMostTableRows = 60;
 
 std::string markdown_escape(const std::string& text) {
   std::string markdown;
@@ -83,7 +83,7 @@ std::string markdown_table(const TextTable& table) {
     rule += heading.align == Align::left ? "---|" : "---:|";
   }
   std::string markdown = markdown_row(headings) + rule + "\n";
-  const std::size_t shown = std::min(table.rows.size(), kMostRows);
+  const std::size_t shown = std::min(table.rows.size(), kMostTableRows);
   for (std::size_t i = 0; i < shown; ++i) markdown += markdown_row(table.rows[i]);
   const std::size_t hidden = table.rows.size() - shown;
   return hidden == 0 ? markdown : markdown + "\n... and " + std::to_string(hidden) + " rows more\n";

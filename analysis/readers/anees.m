@@ -6,9 +6,9 @@
 % `spread`, of consistency.csv. (What is called `corrected` there allows for few particles, and is not
 % made here.) A singular covariance
 % (a variance below 1e-10 of the floor's, or a pivot of the correlation matrix below 1e-12) gets the
-% floor diag(1e-4 m, 1e-4 m, 1e-5 rad)^2 added. What is not a number is left out. Mean over runs, then
-% over scans. Of imported estimates it is that of their stored errors, of any dimension, without a
-% floor. Only functions that Octave and MATLAB both have.
+% floor diag(1e-4 m, 1e-4 m, 1e-5 rad)^2 added. What is not a number is left out. Mean over the scans
+% of a run, then over runs. Of imported estimates it is that of their stored errors, of any
+% dimension, without a floor. Only functions that Octave and MATLAB both have.
 function anees(path)
   s = load_results(path);
   labels = fieldnames(s.cells);
@@ -26,17 +26,17 @@ end
 function value = anees_of_errors(cell)
   complete = find(cell.status(:) == 1);
   scans = size(cell.error, 2);
-  average = nan(1, scans);
-  for k = 1:scans
-    nees = nan(numel(complete), 1);
-    for r = 1:numel(complete)
+  average = nan(1, numel(complete));
+  for r = 1:numel(complete)
+    nees = nan(scans, 1);
+    for k = 1:scans
       P = cell.error_covariance(:, :, k, complete(r))';
       allowed = 1e-6 * sqrt(diag(P)) * sqrt(diag(P))';
       if all(diag(P) > 0) && all(all(abs(P - P') <= allowed))
-        nees(r) = quadratic_form(cell.error(:, k, complete(r)), P, zeros(size(P, 1), 1));
+        nees(k) = quadratic_form(cell.error(:, k, complete(r)), P, zeros(size(P, 1), 1));
       end
     end
-    average(k) = mean_of_known(nees);
+    average(r) = mean_of_known(nees);
   end
   value = mean_of_known(average);
 end
@@ -55,8 +55,8 @@ function value = anees_of(cell, truth, rows)
       nees(r, k) = nees_of(e(:, k), covariance(:, :, rows(k), complete(r)));
     end
   end
-  average = nan(1, numel(rows));
-  for k = 1:numel(rows), average(k) = mean_of_known(nees(:, k)); end
+  average = nan(1, numel(complete));
+  for r = 1:numel(complete), average(r) = mean_of_known(nees(r, :)); end
   value = mean_of_known(average);
 end
 

@@ -7,7 +7,7 @@ of consistency.csv. (What is called `corrected` there allows for few particles, 
 Of imported estimates it is that of their stored errors, of any dimension, without a floor.
 A singular covariance (a variance below 1e-10 of the floor's, or a pivot of the correlation matrix below
 1e-12) gets the floor diag(1e-4 m, 1e-4 m, 1e-5 rad)^2 added. What is not a number is left out. Mean over
-runs, then over scans."""
+the scans of a run, then over runs."""
 import sys
 
 import numpy as np
@@ -49,7 +49,7 @@ def anees(cell, truth, scan_row):
         with np.errstate(all="ignore"):
             nees = imported_nees(np.asarray(cell["error"])[complete],
                                  np.asarray(cell["error_covariance"])[complete])
-        return np.nanmean(np.nanmean(nees, axis=0))
+            return np.nanmean(np.nanmean(nees, axis=1))
 
     def at_scans(dataset):
         return np.asarray(dataset)[complete][:, np.asarray(scan_row)]
@@ -60,7 +60,7 @@ def anees(cell, truth, scan_row):
     with np.errstate(all="ignore"):
         nees = quadratic_form(e, P)
         nees = np.where(np.isnan(nees), quadratic_form(e, P + FLOOR), nees)
-    return np.nanmean(np.nanmean(nees, axis=0))
+    return np.nanmean(np.nanmean(nees, axis=1))
 
 
 if __name__ == "__main__":

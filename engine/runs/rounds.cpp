@@ -25,7 +25,10 @@ std::vector<std::uint64_t> rounds_of(const StudyPlan& plan) {
 
 std::vector<std::uint64_t> rounds_of(std::uint64_t runs) {
   std::vector<std::uint64_t> rounds;
-  for (std::uint64_t n = kFirstRound; n < runs; n *= 2) rounds.push_back(n);
+  for (std::uint64_t n = kFirstRound; n < runs; n *= 2) {
+    rounds.push_back(n);
+    if (n > runs / 2) break;  // 2 n may be beyond 64 bits
+  }
   rounds.push_back(runs);
   return rounds;
 }

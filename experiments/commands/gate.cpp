@@ -47,22 +47,33 @@ int code_of(GateAnswer answer) {
                                               : kUndecided;
 }
 
+JudgedRuns judged_runs(const CellAnalysis& cell, std::uint64_t most_failed) {
+  JudgedRuns runs{
+      .complete = cell.complete, .failed = cell.failures.size(), .most_failed = most_failed};
+  if (const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading)) {
+    runs.unjudged = pose->series.unjudged_runs;
+    runs.covariances = pose->series.samples;
+    runs.invalid = pose->series.undefined;
+  }
+  return runs;
+}
+
 int gate_file(const Arguments& arguments) {
   const auto within = arguments.number("within", kLeastMargin, kMostMargin);
   const std::uint64_t most_failed = arguments.count("failed", 0, UINT64_MAX).value_or(0);
   const ResultFile file = open_stored(arguments.operands().front());
   const StoredCell& stored = cell_to_judge(arguments, file);
   const std::string place = file.path().string();
-  if (!file.has_truth()) {
+  if (!file.has_errors()) {
     throw StudyError(place +
-                     ": a recorded drive without truth (no errors, so no NEES): gate a simulated "
+                     ": a recorded drive without truth (no run knows its errors): gate a simulated "
                      "study, or see the scores against references by montecarta analyze");
   }
   expect_all_runs(file, stored);
   const CellAnalysis cell =
       analyze_cell(file, stored, kGateLevel, file.runs().size(), parallel_of(arguments), within);
   try {
-    const Gate found = gate(cell.consistency(), {cell.complete, cell.failures.size(), most_failed});
+    const Gate found = gate(cell.consistency(), judged_runs(cell, most_failed));
     std::cout << stored.label << ": " << found.why << "\n";
     return code_of(found.answer);
   } catch (const StudyError& error) {

@@ -16,6 +16,7 @@ using analysis::Moments;
 using analysis::NeesAccumulator;
 using analysis::Verdict;
 
+/// Whether the test of the verdict does not reject it.
 bool fits_errors(const ConventionHint::Judged& judged) {
   const Verdict verdict = judged.consistency.verdict;
   return verdict == Verdict::consistent || verdict == Verdict::undecided;
@@ -63,6 +64,7 @@ std::string in_words(const ConventionHint& hint, ErrorConvention said) {
   std::vector<std::string> fitting, others;
   bool said_fits = false;
   for (const ConventionHint::Judged& judged : hint.by_convention) {
+    if (judged.consistency.verdict == Verdict::untested) return "";
     if (judged.convention == said) {
       said_fits = fits_errors(judged);
     } else {
@@ -72,9 +74,9 @@ std::string in_words(const ConventionHint& hint, ErrorConvention said) {
   if (fitting.empty() && others.empty()) return "";
   std::string words = hint.cell + ": the verdict is by the error " + name_of(said) + ". ";
   if (fitting.empty())
-    return words + "By no other would it have been consistent: " + joined(others);
-  words += "The same covariances would have been consistent as " + joined(fitting);
-  if (!others.empty()) words += ", not as " + joined(others);
+    return words + "Every other would have been rejected as well: " + joined(others);
+  words += "The same covariances would not have been rejected as " + joined(fitting);
+  if (!others.empty()) words += ", but as " + joined(others);
   return words + (said_fits ? ": this study cannot tell them apart"
                             : ": were they meant so? If not, this is by chance, and no verdict");
 }

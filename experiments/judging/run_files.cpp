@@ -16,6 +16,9 @@ namespace fs = std::filesystem;
 
 using RunNumber = std::optional<std::uint64_t>;
 
+/// As many as a study may have.
+constexpr std::uint64_t kMostRuns = 10'000'000;
+
 /// "12" -> 12, "run_12", "run12" and "ekf_12" likewise; nullopt of "ekf2" and "estimate".
 RunNumber run_in(const std::string& name) {
   const std::size_t end = name.find_last_not_of("0123456789");
@@ -24,7 +27,8 @@ RunNumber run_in(const std::string& name) {
   const std::string before = name.substr(0, begin);
   const bool is_apart = before.empty() || before.ends_with('_') || before.ends_with('-');
   if (!is_apart && before != "run") return std::nullopt;
-  return to_count(name.substr(begin));
+  const RunNumber run = to_count(name.substr(begin));
+  return run && *run < kMostRuns ? run : std::nullopt;
 }
 
 /// A file of one run, and what its path says besides the run.
@@ -53,15 +57,26 @@ FoundFile file_of_run(const fs::path& path) {
   return file;
 }
 
+/// The run that a single truth names itself after, by its own name or its folder's: such a truth is
+/// of no other run.
+RunNumber own_run_of(const fs::path& path) {
+  const RunNumber by_name = run_in(path.stem().string());
+  const std::string folder = path.parent_path().filename().string();
+  return by_name || !folder.starts_with("run") ? by_name : run_in(folder);
+}
+
 /// Files that a word after --truth stands for.
 std::vector<fs::path> truths_in(const std::string& word) {
-  if (!fs::is_directory(word)) return {word};
-  const fs::path folder =
-      fs::is_directory(fs::path(word) / "truth") ? fs::path(word) / "truth" : fs::path(word);
+  std::error_code ignored;
+  const auto is_folder = [&](const fs::path& path) { return fs::is_directory(path, ignored); };
+  if (!is_folder(word)) return {word};
+  const fs::path folder = is_folder(fs::path(word) / "truth") ? fs::path(word) / "truth" : word;
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const fs::path file = entry.path() / "reference.csv";
-    if (fs::is_regular_file(file)) files.push_back(file);
+  for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
+       entry.increment(ignored)) {
+    const fs::path file = entry->path() / "reference.csv";
+    std::error_code missing;
+    if (fs::is_regular_file(file, missing)) files.push_back(file);
   }
   std::ranges::sort(files);
   if (!files.empty()) return files;
@@ -168,8 +183,8 @@ std::string pairing_rule() {
          "left of the path names the estimator: ekf/run_0007.csv and pf/run_0007.csv are the "
          "cells\n"
          "ekf and pf, run_0007/ekf.csv and run_0007/pf.csv too. Estimators of the same runs are\n"
-         "compared run by run. One estimate alone needs no number. A single truth is that of all\n"
-         "runs; else each run has its own, of the same number.\n";
+         "compared run by run. One estimate alone needs no number. A single truth without a "
+         "number is\nthat of all runs; else each run has its own, of the same number.\n";
 }
 
 JudgedFiles pair_files(const std::vector<std::string>& estimates,
@@ -177,7 +192,8 @@ JudgedFiles pair_files(const std::vector<std::string>& estimates,
                        const std::optional<std::string>& cell) {
   std::vector<FoundFile> files;
   for (const std::string& name : estimates) files.push_back(file_of_run(name));
-  if (files.size() == 1 && !files.front().run) files.front().run = 0;
+  const bool is_unnumbered = files.size() == 1 && !files.front().run;
+  if (is_unnumbered) files.front().run = 0;
   const std::map<std::string, FilesByRun> cells = cells_of(files, cell);
   const FilesByRun& first = cells.begin()->second;
   expect_no_gap(first);
@@ -190,7 +206,11 @@ JudgedFiles pair_files(const std::vector<std::string>& estimates,
     if (truth_files.size() > 1) add_run(file_of_run(file), truth_of);
   }
   if (truth_files.size() == 1) {
-    for (const auto& [run, file] : first) truth_of.emplace(run, truth_files.front());
+    const RunNumber of_run = own_run_of(truth_files.front());
+    const bool is_of_all = !of_run || (first.size() == 1 && is_unnumbered);
+    for (const auto& [run, file] : first) {
+      if (is_of_all || run == of_run) truth_of.emplace(run, truth_files.front());
+    }
   }
   expect_same_runs(first, truth_of, "truth", "name its truth after --truth too");
   expect_same_runs(truth_of, first, "estimate",

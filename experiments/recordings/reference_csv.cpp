@@ -14,15 +14,17 @@ namespace {
 
 using log_csv::ReferenceColumns;
 
+constexpr double kLeastDeviation = 1e-9;  // [m, rad]
+
 /// Diagonal, of as many sigmas from field `first` on.
 Eigen::Matrix3d covariance_of_sigmas(const CsvRows& rows, std::size_t first, int dimension) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (int i = 0; i < dimension; ++i) {
     const std::size_t field = first + static_cast<std::size_t>(i);
     const double sigma = rows.number(field, "standard deviation");
-    if (!(sigma > 0.0)) {
+    if (!(sigma >= kLeastDeviation)) {
       throw StudyError(rows.place() + ": standard deviation " + std::string(rows.field(field)) +
-                       " (every fix has an error, and it must be above 0): correct it, or leave "
+                       " (every fix has an error, at least 1e-9 m or rad): correct it, or leave "
                        "the sigmas out where nobody knows them");
     }
     covariance(i, i) = sigma * sigma;
@@ -32,7 +34,7 @@ Eigen::Matrix3d covariance_of_sigmas(const CsvRows& rows, std::size_t first, int
 
 bool is_positive_definite(const Eigen::Matrix3d& covariance, int dimension) {
   const Eigen::VectorXd variances = covariance.diagonal().head(dimension);
-  if (!(variances.array() > 0.0).all()) return false;
+  if (!(variances.array() >= kLeastDeviation * kLeastDeviation).all()) return false;
   const Eigen::VectorXd scale = variances.cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd correlation =
       scale.asDiagonal() * covariance.topLeftCorner(dimension, dimension) * scale.asDiagonal();

@@ -61,11 +61,21 @@ TEST(Gate, WaitsWhereNothingIsKnown) {
 
 TEST(Gate, StopsAFilterWhoseRunsFail) {
   const Consistency good = found_by_average(Verdict::consistent, {0.97, 1.08});
-  EXPECT_EQ(gate(good, {.complete = 38, .failed = 2}).why, "2 of 40 runs failed");
+  EXPECT_EQ(gate(good, {.complete = 38, .failed = 2}).why, "2 of 40 runs failed or have no NEES");
   EXPECT_EQ(gate(good, {.complete = 38, .failed = 2}).answer, GateAnswer::inconsistent);
   const Gate tolerant = gate(good, {.complete = 38, .failed = 2, .most_failed = 2});
   EXPECT_EQ(tolerant.answer, GateAnswer::consistent);
   EXPECT_THAT(tolerant.why, HasSubstr("38 complete runs, 2 failed"));
+}
+
+TEST(Gate, StopsAFilterThatHasNoCovariance) {
+  const Consistency good = found_by_average(Verdict::consistent, {0.97, 1.08});
+  EXPECT_EQ(gate(good, {.complete = 60, .unjudged = 40}).answer, GateAnswer::inconsistent);
+  EXPECT_EQ(gate(good, {.complete = 60, .unjudged = 40}).why,
+            "40 of 60 runs failed or have no NEES");
+  const Gate some = gate(good, {.complete = 60, .covariances = 600, .invalid = 30});
+  EXPECT_EQ(some.answer, GateAnswer::consistent);
+  EXPECT_THAT(some.why, HasSubstr("; 30 of 600 covariances are invalid and left out"));
 }
 
 TEST(Gate, RefusesWhatWasNotJudged) { EXPECT_THROW(gate({}, {.complete = 20}), StudyError); }

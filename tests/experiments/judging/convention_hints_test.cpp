@@ -46,7 +46,7 @@ Fitting fitting_in(const StateShape& shape, ErrorConvention right, std::uint64_t
   for (std::uint64_t study = 0; study < studies; ++study) {
     const ConventionHint hint = hint_of(shape, right, study);
     const std::string by_right = in_words(hint, right);
-    fitting.wrong += by_right.find("By no other") == std::string::npos ? 1.0 : 0.0;
+    fitting.wrong += by_right.find("Every other would") == std::string::npos ? 1.0 : 0.0;
     const ErrorConvention other =
         right == ErrorConvention::world ? ErrorConvention::body : ErrorConvention::world;
     const std::string by_other = in_words(hint, other);
@@ -82,7 +82,7 @@ TEST(ConventionHints, SayWhatCannotBeToldApart) {
               testing::AllOf(HasSubstr("mine: the verdict is by the error world."),
                              HasSubstr("consistent as body (ANEES "),
                              HasSubstr("not as right-invariant"), HasSubstr("no verdict")));
-  EXPECT_THAT(in_words(hint, ErrorConvention::body), HasSubstr("By no other"));
+  EXPECT_THAT(in_words(hint, ErrorConvention::body), HasSubstr("Every other would"));
   ConventionHint alike{"mine", {hint.by_convention[1], hint.by_convention[1]}};
   alike.by_convention[0].convention = ErrorConvention::world;
   EXPECT_THAT(in_words(alike, ErrorConvention::body), HasSubstr("cannot tell them apart"));

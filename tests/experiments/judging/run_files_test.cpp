@@ -68,5 +68,16 @@ TEST(RunFiles, ThatDoNotFitAreNamed) {
   EXPECT_THAT(complaint({"a b/run_3.csv", "a b/run_4.csv"}), HasSubstr("cannot label a cell"));
 }
 
+TEST(PairFiles, GivesASingleTruthToAllRunsUnlessItIsOfOne) {
+  const Names estimates = {"e/1.csv", "e/2.csv"};
+  EXPECT_EQ(pair_files(estimates, {"truth.csv"}, std::nullopt).truth[1], "truth.csv");
+  EXPECT_EQ(pair_files(estimates, {"2026/truth.csv"}, std::nullopt).truth.size(), 2U);
+  EXPECT_THAT(complaint(estimates, {"t/run_0000/reference.csv"}), HasSubstr("has no truth"));
+  EXPECT_THAT(complaint(estimates, {"t/run_0001/reference.csv"}), HasSubstr("run 2 has no truth"));
+  EXPECT_THAT(complaint({"e/99999999999.csv", "e/2.csv"}), HasSubstr("of which run?"));
+  const JudgedFiles alone = pair_files({"mine.csv"}, {"t/run_0007/reference.csv"}, std::nullopt);
+  EXPECT_EQ(alone.truth.size(), 1U);
+}
+
 }  // namespace
 }  // namespace montecarta::experiments

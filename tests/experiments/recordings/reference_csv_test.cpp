@@ -71,7 +71,7 @@ TEST_F(ReferenceCsv, RefusesErrorsThatNoFixHas) {
   EXPECT_THAT(complaint(kSigmas + "0,1,2,0.5,3,4,0.5\n1,1,2,0.5,3,-4,0.5\n"),
               AllOf(HasSubstr("reference.csv:3"), HasSubstr("standard deviation -4"),
                     HasSubstr("leave the sigmas out")));
-  EXPECT_THAT(complaint(kSigmas + "0,1,2,0.5,3,0,0.5\n"), HasSubstr("above 0"));
+  EXPECT_THAT(complaint(kSigmas + "0,1,2,0.5,3,0,0.5\n"), HasSubstr("at least 1e-9"));
   EXPECT_THAT(complaint(kSigmas + "0,1,2,0.5,3,,0.5\n"), HasSubstr("is no standard deviation"));
   EXPECT_THAT(complaint(kSigmas + "0,1,2,0.5,3,4,12\n"),
               AllOf(HasSubstr("record 1"), HasSubstr("radians, at most pi")));
