@@ -17,6 +17,13 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
+/// One after the other: arguments of a call have no order.
+Eigen::Vector3d three_normals(RngStream& draw) {
+  Eigen::Vector3d numbers;
+  for (double& number : numbers) number = draw.normal();
+  return numbers;
+}
+
 /// A drive of ten minutes along x with a scan and a fix a second.
 class Drive10 : public ::testing::Test {
  protected:
@@ -25,8 +32,9 @@ class Drive10 : public ::testing::Test {
     RngStream draw({.seed = 8, .purpose = Draw::test});
     for (const double time : times_) {
       reference_.time.push_back(time);
-      reference_.position.emplace_back(time + draw.normal(), draw.normal());
-      reference_.heading.push_back(0.1 * draw.normal());
+      const Eigen::Vector3d error = three_normals(draw);
+      reference_.position.emplace_back(time + error(0), error(1));
+      reference_.heading.push_back(0.1 * error(2));
       reference_.covariance.emplace_back(Eigen::Vector3d(1.0, 1.0, 0.01).asDiagonal());
     }
   }
@@ -36,13 +44,12 @@ class Drive10 : public ::testing::Test {
   RunRows run(double ratio, double keep, std::uint64_t number = 0) const {
     RngStream draw({.seed = 4, .run = number, .purpose = Draw::test});
     RunRows rows;
-    Eigen::Vector3d error(draw.normal(), draw.normal(), draw.normal());
+    Eigen::Vector3d error = three_normals(draw);
     for (const double time : times_) {
       const Eigen::Vector3d e = std::sqrt(ratio) * error;
       rows.spread.mean.insert(rows.spread.mean.end(), {time + e(0), e(1), 0.1 * e(2)});
       rows.spread.covariance.insert(rows.spread.covariance.end(), {1, 0, 0, 0, 1, 0, 0, 0, 0.01});
-      const Eigen::Vector3d fresh(draw.normal(), draw.normal(), draw.normal());
-      error = keep * error + std::sqrt(1.0 - keep * keep) * fresh;
+      error = keep * error + std::sqrt(1.0 - keep * keep) * three_normals(draw);
     }
     return rows;
   }
