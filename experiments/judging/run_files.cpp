@@ -70,7 +70,8 @@ std::vector<fs::path> truths_in(const std::string& word) {
   std::error_code ignored;
   const auto is_folder = [&](const fs::path& path) { return fs::is_directory(path, ignored); };
   if (!is_folder(word)) return {word};
-  const fs::path folder = is_folder(fs::path(word) / "truth") ? fs::path(word) / "truth" : word;
+  const fs::path inner = fs::path(word) / "truth";
+  const fs::path folder = is_folder(inner) ? inner : fs::path(word);
   std::vector<fs::path> files;
   for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end;
        entry.increment(ignored)) {
