@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace montecarta::analysis {
 namespace {
@@ -119,9 +118,9 @@ ImportedState imported_state(const StoredCell& cell) {
 }
 
 std::string components_text(const StudyAnalysis& study) {
-  const std::vector<std::string>& names = study.imported.components;
-  return std::accumulate(names.begin() + 1, names.end(), names.front(),
-                         [](std::string all, const std::string& one) { return all + ", " + one; });
+  std::string all;
+  for (const std::string& name : study.imported.components) all += (all.empty() ? "" : ", ") + name;
+  return all;
 }
 
 std::vector<std::string> imported_notes(const StudyAnalysis& study) {
