@@ -80,8 +80,8 @@ TEST(ConventionHints, SayWhatCannotBeToldApart) {
   const ConventionHint hint = hint_of(plane_shape(), ErrorConvention::body, 1);
   EXPECT_THAT(in_words(hint, ErrorConvention::world),
               testing::AllOf(HasSubstr("mine: the verdict is by the error world."),
-                             HasSubstr("consistent as body (ANEES "),
-                             HasSubstr("not as right-invariant"), HasSubstr("no verdict")));
+                             HasSubstr("not have been rejected as body (ANEES "),
+                             HasSubstr("but as right-invariant"), HasSubstr("no verdict")));
   EXPECT_THAT(in_words(hint, ErrorConvention::body), HasSubstr("Every other would"));
   ConventionHint alike{"mine", {hint.by_convention[1], hint.by_convention[1]}};
   alike.by_convention[0].convention = ErrorConvention::world;

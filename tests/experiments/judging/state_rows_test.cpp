@@ -86,7 +86,7 @@ TEST_F(StateFiles, HavePosesInSpace) {
 TEST_F(StateFiles, AreRefusedWithFileLineAndRemedy) {
   const std::string file = path_.string();
   EXPECT_THAT(complaint(""), HasSubstr(file + ": empty"));
-  EXPECT_EQ(complaint(kPoseHeader), "nothing") << "a run that gave no estimates";
+  EXPECT_EQ(complaint(kPoseHeader), "") << "a run that gave no estimates";
   EXPECT_THAT(complaint("0.5,1,2,3\n"), AllOf(HasSubstr(file + ":1: '0.5'"), HasSubstr("time_s")));
   EXPECT_THAT(complaint(kPoseHeader + "0.5,1,2\n"), HasSubstr(":2: 3 fields"));
   EXPECT_THAT(complaint(kPoseHeader + "0.5,nan,2,3,11,12,22,13,23,33\n"),
