@@ -112,9 +112,9 @@ std::vector<std::string> joint_notes(const StudyAnalysis& study) {
     notes.push_back(
         "Pose and map together: the squared error of the vehicle and of all landmarks at once, "
         "measured by the covariance that the filter has of them all, for each component (1 is "
-        "right, more is overconfident). It also sees wrong correlations, which no part by "
+        "expected, more is overconfident). It also sees wrong correlations, which no part by "
         "itself shows. It is consistent where the average of every stored scan is shown to be "
-        "within the margin. 'Right' is where a consistent filter stays at all " +
+        "within the margin. 'Expected within' is where a consistent filter stays at all " +
         std::to_string(study.joint_times.size()) + " stored scans with a probability of " +
         percent(study.level) + " at least.");
   }

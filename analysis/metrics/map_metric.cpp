@@ -108,7 +108,7 @@ std::vector<std::string> map_error_notes(const StudyAnalysis& study) {
     notes.push_back(
         "The map after the last scan: landmark RMSE is how far landmarks are from where they "
         "stand; "
-        "landmark NEES compares that with what the filter expected (2 is right, more is "
+        "landmark NEES compares that with what the filter expected (2 is expected, more is "
         "overconfident "
         "of "
         "itself), and 'landmarks inside' is the share of landmarks whose NEES over runs is in "
