@@ -175,6 +175,27 @@ void expect_no_gap(const FilesByRun& runs) {
   }
 }
 
+/// The truth of each run. `is_unnumbered`: there is one estimate, and no number tells its run.
+FilesByRun truths_of(const FilesByRun& first, const std::vector<std::string>& truths,
+                     bool is_unnumbered) {
+  std::vector<fs::path> truth_files;
+  for (const std::string& word : truths) {
+    for (fs::path& file : truths_in(word)) truth_files.push_back(std::move(file));
+  }
+  FilesByRun truth_of;
+  for (const fs::path& file : truth_files) {
+    if (truth_files.size() > 1) add_run(file_of_run(file), truth_of);
+  }
+  if (truth_files.size() == 1) {
+    const RunNumber of_run = own_run_of(truth_files.front());
+    const bool is_of_all = !of_run || (first.size() == 1 && is_unnumbered);
+    for (const auto& [run, file] : first) {
+      if (is_of_all || run == of_run) truth_of.emplace(run, truth_files.front());
+    }
+  }
+  return truth_of;
+}
+
 }  // namespace
 
 std::string pairing_rule() {
@@ -198,21 +219,7 @@ JudgedFiles pair_files(const std::vector<std::string>& estimates,
   const std::map<std::string, FilesByRun> cells = cells_of(files, cell);
   const FilesByRun& first = cells.begin()->second;
   expect_no_gap(first);
-  std::vector<fs::path> truth_files;
-  for (const std::string& word : truths) {
-    for (fs::path& file : truths_in(word)) truth_files.push_back(std::move(file));
-  }
-  FilesByRun truth_of;
-  for (const fs::path& file : truth_files) {
-    if (truth_files.size() > 1) add_run(file_of_run(file), truth_of);
-  }
-  if (truth_files.size() == 1) {
-    const RunNumber of_run = own_run_of(truth_files.front());
-    const bool is_of_all = !of_run || (first.size() == 1 && is_unnumbered);
-    for (const auto& [run, file] : first) {
-      if (is_of_all || run == of_run) truth_of.emplace(run, truth_files.front());
-    }
-  }
+  const FilesByRun truth_of = truths_of(first, truths, is_unnumbered);
   expect_same_runs(first, truth_of, "truth", "name its truth after --truth too");
   expect_same_runs(truth_of, first, "estimate",
                    "a run that failed is a result, give it the file that it wrote, the header at "
