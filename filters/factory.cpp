@@ -1,21 +1,50 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/factory.hpp"
 
+#include "engine/errors.hpp"
 #include "filters/dead_reckoning.hpp"
 #include "filters/fastslam/fast_slam_filters.hpp"
 #include "filters/joint/joint_filters.hpp"
 #include "filters/marginal/marginal_filter.hpp"
 
-namespace montecarta::filters {
+#include <algorithm>
+#include <utility>
+#include <vector>
 
-std::span<const FilterKind> filter_kinds() {
-  static const std::vector<FilterKind> kinds{
+namespace montecarta::filters {
+namespace {
+
+std::vector<FilterKind (*)()>& added_filters() {
+  static std::vector<FilterKind (*)()> added;
+  return added;
+}
+
+std::vector<FilterKind> all_kinds() {
+  std::vector<FilterKind> kinds{
       ekf_slam_kind(),  riekf_slam_kind(),     hrb_kind(),     fastslam1_kind(),
       fastslam2_kind(), ufastslam_kind(),      srcd_kind(),    srcd_aided_kind(),
       srcd_pf_kind(),   de_srcd_kind(),        delayed_kind(), marginal_kind(),
       ampf_de_kind(),   dead_reckoning_kind(),
   };
+  for (const auto& make : added_filters()) {
+    FilterKind kind = make();
+    if (std::ranges::find(kinds, kind.name, &FilterKind::name) != kinds.end())
+      throw StudyError("filter " + kind.name + ": there is one already: give yours another name");
+    kinds.push_back(std::move(kind));
+  }
   return kinds;
+}
+
+}  // namespace
+
+std::span<const FilterKind> filter_kinds() {
+  static const std::vector<FilterKind> kinds = all_kinds();
+  return kinds;
+}
+
+bool add_filter(FilterKind (*make)()) {
+  added_filters().push_back(make);
+  return true;
 }
 
 }  // namespace montecarta::filters

@@ -7,7 +7,12 @@
 
 namespace montecarta::filters {
 
-/// All filters, in the order in which they are listed.
+/// All filters, in the order in which they are listed. Throws StudyError where two that were added
+/// have one name.
 std::span<const FilterKind> filter_kinds();
+
+/// Adds a filter of another source tree; before main(), by a static variable that its answer, true,
+/// is put into. `make` is called later, when all static variables have their values.
+bool add_filter(FilterKind (*make)());
 
 }  // namespace montecarta::filters

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/data/run_reader.hpp"
 
+#include "analysis/data/met_drive.hpp"
 #include "engine/errors.hpp"
 
 #include <algorithm>
@@ -16,10 +17,14 @@ constexpr double kRounding = 1e-6;  // [landmarks]
 RunReader::RunReader(const ResultFile& file, const StoredCell& cell)
     : file_(&file), cell_(&cell), cpu_seconds_(file.cpu_seconds(cell)) {}
 
-void RunReader::keep_scans(std::span<const double> all, std::size_t width,
+std::size_t RunReader::scans_of(std::size_t i) const {
+  return drive_met_by(*file_, file_->runs()[i]).scan_times.size();
+}
+
+void RunReader::keep_scans(std::span<const double> all, std::size_t width, std::size_t scans,
                            std::vector<double>& out) const {
   out.clear();
-  for (const std::size_t row : file_->scan_rows()) {
+  for (const std::size_t row : std::span(file_->scan_rows()).first(scans)) {
     const auto begin = all.begin() + static_cast<std::ptrdiff_t>(row * width);
     out.insert(out.end(), begin, begin + static_cast<std::ptrdiff_t>(width));
   }
@@ -33,7 +38,7 @@ void RunReader::read_truth(std::size_t i, std::vector<double>& out, Scratch& scr
     const std::lock_guard lock(reading_);
     file_->read_truth(i, scratch);
   }
-  keep_scans(scratch, 3, out);
+  keep_scans(scratch, 3, scans_of(i), out);
 }
 
 void RunReader::read_at_scans(std::string_view column, std::size_t width, std::size_t i,
@@ -45,21 +50,25 @@ void RunReader::read_at_scans(std::string_view column, std::size_t width, std::s
     const std::lock_guard lock(reading_);
     file_->read(*cell_, column, i, std::span(scratch));
   }
-  keep_scans(scratch, width, out);
+  keep_scans(scratch, width, scans_of(i), out);
 }
 
 void RunReader::read_path(std::size_t i, std::vector<double>& out) const {
   out.clear();
-  if (file_->references().empty()) return;
+  if (drive_met_by(*file_, file_->runs()[i]).references.empty()) return;
   out.resize(file_->times().size() * 3);
   const bool mixture = cell_->has("pose_mean_mixture");
-  const std::lock_guard lock(reading_);
-  file_->read(*cell_, mixture ? "pose_mean_mixture" : "pose_mean", i, std::span(out));
+  {
+    const std::lock_guard lock(reading_);
+    file_->read(*cell_, mixture ? "pose_mean_mixture" : "pose_mean", i, std::span(out));
+  }
+  if (!file_->description().drives.empty()) out.resize(scans_of(i) * 3);  // rows are scans
 }
 
 void RunReader::read_final_map(std::size_t i, RunRows& rows, Scratch& scratch) const {
   rows.final_map.reset();
-  const std::string prefix = cell_->has(kFinalMapSeen) ? "final_map_" : "map_";
+  const bool is_final = cell_->has(kFinalMapSeen);
+  const std::string prefix = is_final ? "final_map_" : "map_";
   const auto seen_column = std::ranges::find(cell_->columns, prefix + "seen", &Column::name);
   if (seen_column == cell_->columns.end()) return;
   const std::size_t landmarks = seen_column->shape.back();
@@ -68,7 +77,8 @@ void RunReader::read_final_map(std::size_t i, RunRows& rows, Scratch& scratch) c
     return;  // record.map_rows left part of it out
   const auto last = [&](const char* name, std::size_t width) {
     read_whole(prefix + name, i, scratch);
-    return std::span<const double>(scratch).last(landmarks * width);
+    const std::size_t maps = is_final ? 1 : scans_of(i);
+    return std::span<const double>(scratch).first(maps * landmarks * width).last(landmarks * width);
   };
   FinalMap& map = rows.final_map.emplace();
   for (const double one : last("seen", 1)) map.seen.push_back(one != 0.0 ? 1 : 0);
@@ -115,8 +125,11 @@ void RunReader::read_scans(std::string_view column, std::size_t width, std::size
   out.clear();
   if (!cell_->has(column)) return;
   out.resize(file_->scan_times().size() * width);
-  const std::lock_guard lock(reading_);
-  file_->read(*cell_, column, i, std::span(out));
+  {
+    const std::lock_guard lock(reading_);
+    file_->read(*cell_, column, i, std::span(out));
+  }
+  out.resize(scans_of(i) * width);
 }
 
 void RunReader::expect_particles(const RunRows& rows) const {
@@ -126,6 +139,21 @@ void RunReader::expect_particles(const RunRows& rows) const {
                  std::to_string(rows.run) +
                  ": an ancestor is none of the particles (the file is damaged): run the study "
                  "again");
+}
+
+void RunReader::read_particles(std::size_t i, RunRows& rows) const {
+  rows.ess.clear();
+  rows.resampled.clear();
+  rows.ancestor.clear();
+  rows.particle_pose.clear();
+  rows.log_weight.clear();
+  if (cell_->particles == 0) return;
+  read_scans("ess", 1, i, rows.ess);
+  read_scans("resampled", 1, i, rows.resampled);
+  read_scans("ancestor", cell_->particles, i, rows.ancestor);
+  expect_particles(rows);
+  read_scans("particle_pose", 3 * cell_->particles, i, rows.particle_pose);
+  read_scans("log_weight", cell_->particles, i, rows.log_weight);
 }
 
 void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
@@ -150,24 +178,16 @@ void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
   read_whole("joint_covariance", i, rows.joint.covariance);
   read_whole("error", i, rows.error.value);
   read_whole("error_covariance", i, rows.error.covariance);
+  for (std::size_t k = 0; k < kErrorConventions.size(); ++k) {
+    read_whole(kErrorConventions[k].column, i, rows.error.nees_by[k]);
+  }
   rows.run = file_->runs()[i];
   {
     const std::lock_guard lock(reading_);
     rows.landmarks = file_->landmarks_of(i);
   }
   rows.cpu_seconds = cpu_seconds_[i];
-  rows.ess.clear();
-  rows.resampled.clear();
-  rows.ancestor.clear();
-  rows.particle_pose.clear();
-  rows.log_weight.clear();
-  if (cell_->particles == 0) return;
-  read_scans("ess", 1, i, rows.ess);
-  read_scans("resampled", 1, i, rows.resampled);
-  read_scans("ancestor", cell_->particles, i, rows.ancestor);
-  expect_particles(rows);
-  read_scans("particle_pose", 3 * cell_->particles, i, rows.particle_pose);
-  read_scans("log_weight", cell_->particles, i, rows.log_weight);
+  read_particles(i, rows);
 }
 
 RunRows read_run(const ResultFile& file, const StoredCell& cell, std::size_t i) {

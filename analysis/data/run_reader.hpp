@@ -35,12 +35,17 @@ class RunReader {
   /// All of a column, as far as it is stored.
   void read_whole(std::string_view column, std::size_t i, std::vector<double>& out) const;
   void read_cloud(std::size_t i, CloudRows& out, Scratch& scratch) const;
+  /// Weights, parents and poses of the particles; empty where the cell has none.
+  void read_particles(std::size_t i, RunRows& rows) const;
   /// Throws RunError where a parent does not exist.
   void expect_particles(const RunRows& rows) const;
   template <class Number>
   void read_scans(std::string_view column, std::size_t width, std::size_t i,
                   std::vector<Number>& out) const;
-  void keep_scans(std::span<const double> all, std::size_t width, std::vector<double>& out) const;
+  /// Of run index `i`: a shorter drive than others has fewer than the file.
+  std::size_t scans_of(std::size_t i) const;
+  void keep_scans(std::span<const double> all, std::size_t width, std::size_t scans,
+                  std::vector<double>& out) const;
 
   const ResultFile* file_;
   const StoredCell* cell_;

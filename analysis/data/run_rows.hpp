@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/data/final_map.hpp"
+#include "engine/records/error_conventions.hpp"
 
 #include <array>
 #include <cstddef>
@@ -54,6 +55,8 @@ struct JointRows {
 struct ErrorRows {
   std::vector<double> value;       ///< {scan, component}
   std::vector<double> covariance;  ///< {scan, component, component} as the other program gave it
+  /// {kErrorConventions}{scan} NEES if the covariance were of that error; empty where not stored.
+  std::array<std::vector<double>, kErrorConventions.size()> nees_by;
 
   std::size_t components() const { return value.empty() ? 0 : covariance.size() / value.size(); }
   std::size_t scans() const { return value.empty() ? 0 : value.size() / components(); }

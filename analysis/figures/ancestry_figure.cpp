@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/figures/ancestry_figure.hpp"
 
+#include "analysis/data/met_drive.hpp"
 #include "analysis/data/run_reader.hpp"
 #include "analysis/figures/chosen_run.hpp"
 #include "analysis/metrics/ancestry_tree.hpp"
@@ -31,9 +32,10 @@ std::vector<DrawnTree> drawn_trees(const ResultFile& file, std::size_t run) {
     if (cell.particles < 2 || !cell.has("ancestor")) continue;
     if (file.status(cell)[run] != RunStatus::complete) continue;
     const RunRows rows = read_run(file, cell, run);
+    const auto times = drive_met_by(file, file.runs()[run]).scan_times;
     drawn.push_back({cell.label, c,
-                     ancestry_tree(rows.ancestor, cell.particles, file.scan_times(), kMostLeaves),
-                     file.scan_times().back()});
+                     ancestry_tree(rows.ancestor, cell.particles, times, kMostLeaves),
+                     times.back()});
   }
   return drawn;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/figures/path_data.hpp"
 
+#include "analysis/data/met_drive.hpp"
 #include "analysis/figures/ellipse.hpp"
 #include "analysis/figures/stored_map.hpp"
 
@@ -27,7 +28,7 @@ const std::vector<double>& leading_mean(const RunRows& run) {
 
 FigureData recorded_path(const ResultFile& file, const StoredCell& cell, const RunRows& run) {
   FigureData data{"path_" + cell.label + ".csv", {"time [s]", "x [m]", "y [m]"}, {}};
-  const auto& times = file.scan_times();
+  const auto times = drive_met_by(file, run.run).scan_times;
   const auto& mean = leading_mean(run);
   const std::size_t stride = 1 + times.size() / kMostRecorded;
   for (std::size_t s = 0; s < times.size(); s += stride) {
@@ -57,8 +58,9 @@ FigureData pose_ellipses(const StoredCell& cell, const RunRows& run) {
   FigureData data{"pose_ellipses_" + cell.label + ".csv", kEllipseHeadings, {}};
   const MomentRows& moments = run.mixture.mean.empty() ? run.spread : run.mixture;
   const std::size_t scans = moments.covariance.size() / 9;
-  for (std::size_t k = 1; k <= kPoseEllipses && scans > 0; ++k) {
-    const std::size_t s = k * scans / kPoseEllipses - 1;
+  const std::size_t ellipses = std::min(kPoseEllipses, scans);
+  for (std::size_t k = 1; k <= ellipses; ++k) {
+    const std::size_t s = k * scans / ellipses - 1;
     const double* P = moments.covariance.data() + 9 * s;
     data.rows.push_back(ellipse_row(
         two_sigma_ellipse(moments.mean[3 * s], moments.mean[3 * s + 1], P[0], P[3], P[4])));
@@ -74,9 +76,10 @@ FigureData map_data(const ResultFile& file, const StoredCell& cell, std::size_t 
   return data;
 }
 
-FigureData fix_data(const ResultFile& file) {
-  if (file.references().empty()) return {"fixes.csv", {"time [s]", "x [m]", "y [m]"}, {}};
-  const ReferencePath& path = file.references().front();
+FigureData fix_data(const ResultFile& file, std::size_t run_index) {
+  const auto references = drive_met_by(file, file.runs()[run_index]).references;
+  if (references.empty()) return {"fixes.csv", {"time [s]", "x [m]", "y [m]"}, {}};
+  const ReferencePath& path = references.front();
   FigureData data{"fixes_" + path.name + ".csv", {"time [s]", "x [m]", "y [m]"}, {}};
   const std::size_t stride = 1 + path.time.size() / kMostFixes;
   for (std::size_t f = 0; f < path.time.size(); f += stride) {

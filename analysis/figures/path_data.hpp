@@ -21,7 +21,7 @@ FigureData pose_ellipses(const StoredCell& cell, const RunRows& run);
 /// the map nor the final map is stored.
 FigureData map_data(const ResultFile& file, const StoredCell& cell, std::size_t run_index);
 /// (time, x, y) of up to some hundred fixes of the leading reference; no rows where there is none.
-FigureData fix_data(const ResultFile& file);
+FigureData fix_data(const ResultFile& file, std::size_t run_index);
 /// True landmarks in a run.
 FigureData landmark_data(const ResultFile& file, std::size_t run_index);
 

@@ -69,7 +69,7 @@ Figure path_figure(const ResultFile& file, std::optional<std::uint64_t> run) {
     if (file.has_truth()) figure.data.push_back(cell.poses);
   }
   const FigureData landmarks = landmark_data(file, *run_index);
-  const FigureData fixes = file.has_truth() ? FigureData{} : fix_data(file);
+  const FigureData fixes = file.has_truth() ? FigureData{} : fix_data(file, *run_index);
   if (!file.has_truth()) figure.data.push_back(fixes);
   figure.data.push_back(landmarks);
   const Bounds bounds =

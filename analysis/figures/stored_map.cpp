@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/figures/stored_map.hpp"
 
+#include "analysis/data/met_drive.hpp"
+
 #include <algorithm>
 #include <span>
 #include <string>
@@ -17,6 +19,7 @@ StoredMap::StoredMap(const ResultFile& file, const StoredCell& cell, std::size_t
   covariance_.resize(4 * seen_.size());
   landmarks_ = column->shape.back();
   scans_ = landmarks_ == 0 ? 0 : seen_.size() / landmarks_;
+  scans_ = std::min(scans_, drive_met_by(file, file.runs()[run]).scan_times.size());
   file.read(cell, prefix + "seen", run, std::span(seen_));
   file.read(cell, prefix + "mean", run, std::span(mean_));
   file.read(cell, prefix + "covariance", run, std::span(covariance_));

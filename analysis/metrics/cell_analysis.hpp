@@ -6,8 +6,8 @@
 #include "analysis/metrics/moments.hpp"
 #include "analysis/metrics/score.hpp"
 #include "analysis/output/named_rows.hpp"
+#include "analysis/statistics/means.hpp"
 #include "analysis/statistics/spread.hpp"
-#include "analysis/statistics/summary.hpp"
 
 #include <any>
 #include <cstddef>

@@ -35,18 +35,18 @@ void put_score_intervals(CellAnalysis& cell, double level) {
 
 void MeanOverTime::add(const std::vector<double>& values) {
   sum_.resize(values.size());
-  for (std::size_t s = 0; s < sum_.size(); ++s) sum_[s] += values[s];
-  ++runs_;
+  for (std::size_t s = 0; s < values.size(); ++s) sum_[s] += values[s];
+  runs_ += 1.0;
 }
 
 std::vector<double> MeanOverTime::mean() const {
   std::vector<double> means = sum_;
-  for (double& mean : means) mean /= static_cast<double>(runs_);
+  for (double& mean : means) mean /= runs_;
   return means;
 }
 
 CellSums::CellSums(const RunCriteria& criteria)
-    : level_(criteria.level), over_time_(all_scan_series().size()) {
+    : level_(criteria.level), over_time_(criteria.drives.empty() ? all_scan_series().size() : 0) {
   for (const Metric& metric : all_metrics()) {
     if (metric.sums != nullptr) metrics_.push_back(metric.sums(criteria));
   }

@@ -14,7 +14,7 @@
 
 namespace montecarta::analysis {
 
-/// Adds up a number of every scan over runs.
+/// Adds up a number of every scan over runs of the same scans.
 class MeanOverTime {
  public:
   void add(const std::vector<double>& values);
@@ -23,7 +23,7 @@ class MeanOverTime {
 
  private:
   std::vector<double> sum_;
-  std::size_t runs_ = 0;
+  double runs_ = 0.0;
 };
 
 /// Adds up complete runs of one cell in the order of the calls. Memory depends on scans, and grows
@@ -44,7 +44,8 @@ class CellSums {
 
   double level_;
   ScoreTable scores_;
-  std::vector<MeanOverTime> over_time_;               ///< of all_scan_series()
+  /// Of all_scan_series(); none where runs are drives of their own, scanned at other times.
+  std::vector<MeanOverTime> over_time_;
   std::vector<std::unique_ptr<MetricSums>> metrics_;  ///< those that have any
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/data/margin.hpp"
+#include "analysis/data/study_settings.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 #include "analysis/statistics/whole_run_band.hpp"
 

@@ -124,8 +124,7 @@ CramerRaoBound none_for(const std::string& reason) {
 CramerRaoBound squared_bound(const SimulatedWorld& world, const TruePath& path) {
   // A detection that may be missed brings its information times the chance that it is there.
   const Eigen::Vector2d observation_variance = world.sigma_observation.cwiseAbs2() / world.detected;
-  JointBound joint(path.landmarks.size(), world.vehicle, world.sigma_control.cwiseAbs2(),
-                   observation_variance);
+  JointBound joint(path.landmarks.size(), world.vehicle, world.control_noise, observation_variance);
   CramerRaoBound bound;
   std::size_t row = 0;
   for (const std::uint32_t scan_row : path.scan_rows) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/metrics/ancestor_set.hpp"
+#include "analysis/metrics/lineages.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -5,12 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace montecarta::analysis {
 namespace {
 
 /// So few effective samples may as well be one that lasts for the whole drive.
-constexpr double kHardlyAny = 3.0;
+constexpr double kFewestEffective = 3.0;
 
 /// Means over runs; each run by itself has an interval that holds, and the runs are not
 /// independent.
@@ -57,9 +58,63 @@ Verdict verdict_of_drive(const Interval& ratio, double within) {
   return ratio.upper < 1.0 ? Verdict::conservative : Verdict::undecided;
 }
 
+/// Of runs that all have the block.
+CorrelatedAverage over_own_drives(std::span<const DriveScores> runs, std::size_t block,
+                                  double level) {
+  std::vector<VectorSeries> drives;
+  for (const DriveScores& run : runs) {
+    if (run.blocks[block].effective_samples > 0.0) drives.push_back(run.errors[block]);
+  }
+  return drives.empty() ? CorrelatedAverage{} : correlated_average(drives, level);
+}
+
+DriveScores sums_over_drives(std::span<const DriveScores> runs, double level) {
+  DriveScores all;
+  all.leading = runs.front().leading;
+  all.median = 0.0;
+  double judged = 0.0;
+  for (std::size_t block = 0; block < all.blocks.size(); ++block) {
+    all.blocks[block] = over_own_drives(runs, block, level);
+  }
+  for (const DriveScores& run : runs) {
+    all.in_gaps += run.in_gaps;
+    all.undefined += run.undefined;
+    if (!(run.leads().effective_samples > 0.0)) continue;
+    judged += 1.0;
+    all.median += run.median;
+    all.fixes += run.fixes;
+    all.seconds += run.seconds;
+    all.is_the_reference = all.is_the_reference || run.is_the_reference;
+    all.is_below_reference = all.is_below_reference || run.is_below_reference;
+  }
+  all.median /= judged;
+  return all;
+}
+
+/// Fills verdict and minutes from the mean.
+void decide(double level, DriveConsistency& result) {
+  const CorrelatedAverage& leads = result.mean.leads();
+  if (!(leads.effective_samples > 0.0) || result.mean.is_the_reference) return;
+  result.verdict = verdict_of_drive(leads.ratio, result.within);
+  result.minutes = result.mean.seconds / 60.0 *
+                   samples_that_decide(dimension_of(result.mean.leading), level, result.within) /
+                   leads.effective_samples;
+}
+
+std::string drives_text(const DriveConsistency& found) {
+  const std::string these = found.drives == 1
+                                ? "one judged drive cannot tell"
+                                : std::to_string(found.drives) + " drives cannot tell";
+  const double needed =
+      static_cast<double>(found.drives) * found.minutes * 60.0 / found.mean.seconds;
+  if (!std::isfinite(needed)) return these + ", nor could more";
+  return these + ": it would take " + compact(std::ceil(needed)) + " like them";
+}
+
 std::string minutes_text(const DriveConsistency& drive) {
+  if (drive.drives > 0) return drives_text(drive);
   if (std::isinf(drive.minutes)) return "this drive cannot tell, nor could a longer one";
-  const bool is_least = drive.mean.leads().effective_samples < kHardlyAny;
+  const bool is_least = drive.mean.leads().effective_samples < kFewestEffective;
   return std::string("this drive cannot tell: it would need ") + (is_least ? "at least " : "") +
          compact(std::max(drive.minutes, 1.0)) + " minutes";
 }
@@ -76,12 +131,18 @@ DriveConsistency judge_drive(std::span<const DriveScores> runs, double level, do
   result.within = within;
   if (runs.empty()) return result;
   result.mean = mean_scores(runs);
-  const CorrelatedAverage& leads = result.mean.leads();
-  if (!(leads.effective_samples > 0.0) || result.mean.is_the_reference) return result;
-  result.verdict = verdict_of_drive(leads.ratio, within);
-  result.minutes = result.mean.seconds / 60.0 *
-                   samples_that_decide(dimension_of(result.mean.leading), level, within) /
-                   leads.effective_samples;
+  decide(level, result);
+  return result;
+}
+
+DriveConsistency judge_own_drives(std::span<const DriveScores> runs, double level, double within) {
+  DriveConsistency result;
+  result.within = within;
+  result.drives = static_cast<std::size_t>(std::ranges::count_if(
+      runs, [](const DriveScores& run) { return run.leads().effective_samples > 0.0; }));
+  if (runs.empty()) return result;
+  result.mean = sums_over_drives(runs, level);
+  decide(level, result);
   return result;
 }
 

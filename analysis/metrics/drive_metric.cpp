@@ -21,18 +21,25 @@ using DriveConsistencies = std::vector<DriveConsistency>;
 class DrivesOverRuns final : public MetricSums {
  public:
   explicit DrivesOverRuns(const RunCriteria& criteria)
-      : level_(criteria.level), within_(criteria.within), runs_(criteria.judged_fixes.size()) {}
+      : level_(criteria.level),
+        within_(criteria.within),
+        are_own_(!criteria.drives.empty()),
+        runs_(criteria.judged_fixes.size()) {}
   void add(const MeasuredRun& run) override {
     for (std::size_t r = 0; r < runs_.size(); ++r) runs_[r].push_back(run.drives[r]);
   }
   void put(CellAnalysis& cell) override {
     DriveConsistencies all;
-    for (const auto& runs : runs_) all.push_back(judge_drive(runs, level_, within_));
+    for (const auto& runs : runs_) {
+      all.push_back(are_own_ ? judge_own_drives(runs, level_, within_)
+                             : judge_drive(runs, level_, within_));
+    }
     if (!all.empty()) cell.findings.put(all);
   }
 
  private:
   double level_, within_;
+  bool are_own_;
   std::vector<std::vector<DriveScores>> runs_;  ///< {reference}{run}
 };
 
@@ -139,18 +146,32 @@ TextTable warning_table(const StudyAnalysis& study) {
   return table;
 }
 
-std::vector<std::string> drive_notes() {
+std::string independence_note(const StudyAnalysis& study) {
+  const std::string fixes =
+      "Errors of neighbouring fixes are correlated: 'effective' is how many independent fixes vary "
+      "as much. ";
+  if (study.own_drives == 0) {
+    return "All runs met the same drive, so many runs say no more of it than one. " + fixes +
+           "Where an error may last for the whole drive there is hardly more than one, and the "
+           "drive cannot tell.";
+  }
+  return "Every run met a drive of its own: the verdict is of the mean over drives of their "
+         "averages. " +
+         fixes +
+         "An error that lasts for a whole drive counts once for each. What all drives have in "
+         "common, a calibration that is off say, is no independent error: it needs other drives.";
+}
+
+std::vector<std::string> drive_notes(const StudyAnalysis& study) {
   return {
       "The NEES at a fix is the squared error in units of the filter's covariance plus that of the "
       "fix, both as they stand, without alignment; divided by the components it is 1 on the "
       "average of a consistent filter.",
-      "All runs met the same drive, so many runs say no more of it than one. Errors of "
-      "neighbouring "
-      "fixes go together: 'effective' is how many independent fixes vary as much. Where an error "
-      "may last for the whole drive there is hardly more than one, and the drive cannot tell.",
-      "The minutes are those of a drive on which errors go together for as long as on this one, "
+      independence_note(study),
+      "The minutes are those of a drive on which errors are correlated for as long as on this one, "
       "that would show the filter to be consistent within the margin, or to be off.",
-      "A wild fix makes the average large and leaves the median; the verdict is by the average."};
+      "An outlier among the fixes makes the average large and leaves the median; the verdict is by "
+      "the average."};
 }
 
 std::vector<Section> drive_sections(const StudyAnalysis& study) {
@@ -159,7 +180,7 @@ std::vector<Section> drive_sections(const StudyAnalysis& study) {
   Section section{"drive", "Does the covariance cover the errors along the drive?"};
   section.add("drive", table);
   section.add("drive_warnings", warning_table(study));
-  section.add(drive_notes());
+  section.add(drive_notes(study));
   return {section};
 }
 
@@ -180,7 +201,8 @@ std::vector<NamedNumber> drive_numbers(const DriveConsistency& drive) {
                                   {"fixes_in_gaps", "1", count(mean.in_gaps)},
                                   {"fixes_undefined", "1", count(mean.undefined)},
                                   {"median_nees_ratio", "1", mean.median},
-                                  {"needed", "min", drive.minutes}};
+                                  {"needed", "min", drive.minutes},
+                                  {"drives", "1", count(drive.drives)}};
   add_block("pose", mean.blocks[0], all);
   add_block("position", mean.blocks[1], all);
   add_block("heading", mean.blocks[2], all);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace montecarta::analysis {
 namespace {
@@ -42,10 +43,11 @@ DriveScores drive_scores(const PathAtFixes& fixes, std::span<const double> scan_
   DriveScores scores;
   scores.leading = fixes.headings().empty() ? ErrorBlock::position : ErrorBlock::pose;
   for (const ErrorBlock block : kErrorBlocks) {
-    const FixErrors errors = errors_at_fixes(fixes, scan_times, rows, particles, block);
+    FixErrors errors = errors_at_fixes(fixes, scan_times, rows, particles, block);
     if (block == scores.leading) judge_leading(errors, level, scores);
     if (errors.nees.size() < kFewestFixes) continue;
     scores.blocks[static_cast<std::size_t>(block)] = correlated_average(errors.whitened, level);
+    scores.errors[static_cast<std::size_t>(block)] = std::move(errors.whitened);
   }
   return scores;
 }

@@ -17,6 +17,8 @@ struct DriveScores {
 
   /// {ErrorBlock} NEES at the fixes; effective_samples 0 where the block is not measured.
   std::array<CorrelatedAverage, kErrorBlocks.size()> blocks;
+  /// {ErrorBlock} what those are of; empty where the block is not measured.
+  std::array<VectorSeries, kErrorBlocks.size()> errors;
   ErrorBlock leading = ErrorBlock::pose;  ///< the pose where there are headings, else the position
   double median = kNone;                  ///< of the leading NEES, over that of a chi-square
   double seconds = 0.0;                   ///< from the first fix judged to the last

@@ -3,7 +3,7 @@
 
 #include "analysis/metrics/cell_sums.hpp"
 #include "analysis/statistics/heavy_tail.hpp"
-#include "analysis/statistics/summary.hpp"
+#include "analysis/statistics/means.hpp"
 #include "analysis/statistics/t_quantile.hpp"
 
 #include <limits>

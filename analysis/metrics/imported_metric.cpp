@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Estimates of another program: errors and deviations of each component, in the stated convention.
+#include "analysis/metrics/convention_hints.hpp"
 #include "analysis/metrics/imported_notes.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
@@ -114,6 +115,7 @@ ImportedState imported_state(const StoredCell& cell) {
   found.convention = setting("error");
   found.components = words_in(setting("components"));
   found.units = words_in(setting("units"));
+  found.lacks_cross_terms = !setting("cross_terms").empty();
   return found;
 }
 
@@ -128,6 +130,17 @@ std::vector<std::string> imported_notes(const StudyAnalysis& study) {
   std::vector<std::string> notes = {
       "Imported estimates of another program, error " + study.imported.convention + " (" +
       sentence_on(study.imported.convention) + "), components " + components_text(study) + "."};
+  if (study.imported.lacks_cross_terms) {
+    notes.emplace_back(
+        "The files give no covariance between position and rotation: it is taken as 0. What ANEES "
+        "is expected to be does not depend on that; how much it varies does, so that the verdict "
+        "of few runs is less certain than it says.");
+  }
+  for (const CellAnalysis& cell : study.cells) {
+    const std::string hint =
+        in_words(cell.get<ConventionHint>(), cell.label, study.imported.convention);
+    if (!hint.empty()) notes.push_back("Hint, no verdict: " + hint + ".");
+  }
   for (const CellAnalysis& cell : study.cells) {
     const NeesResult* all = cell.find_nees(ErrorBlock::pose, cell.leading);
     if (all == nullptr || all->series.undefined == 0) continue;

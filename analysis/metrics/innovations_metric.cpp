@@ -19,16 +19,25 @@ namespace {
 class InnovationsOverRuns final : public MetricSums {
  public:
   explicit InnovationsOverRuns(const RunCriteria& criteria)
-      : level_(criteria.level), innovations_(criteria.times.size()) {}
+      : level_(criteria.level),
+        has_common_scans_(criteria.drives.empty()),
+        innovations_(criteria.times.size()) {}
   void add(const MeasuredRun& run) override {
     if (!run.rows.nis.empty()) innovations_.add(run.rows.nis, run.rows.nis_dof);
   }
   void put(CellAnalysis& cell) override {
-    if (!innovations_.empty()) cell.findings.put(innovations_.result(level_));
+    if (innovations_.empty()) return;
+    Innovations found = innovations_.result(level_);
+    if (!has_common_scans_) {
+      found.average.clear();
+      found.bounds.clear();
+    }
+    cell.findings.put(std::move(found));
   }
 
  private:
   double level_;
+  bool has_common_scans_;  ///< else runs are drives of their own, without a mean over time
   InnovationSums innovations_;
 };
 
@@ -48,7 +57,7 @@ void innovations_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all
 
 void innovations_series(const CellAnalysis& cell, std::vector<NamedSeries>& all) {
   const Innovations* innovations = cell.find<Innovations>();
-  if (innovations == nullptr) return;
+  if (innovations == nullptr || innovations->average.empty()) return;
   all.push_back({"nis_per_component", "1", innovations->average});
   all.push_back({"nis_lower", "1", ends_of(innovations->bounds, &Interval::lower)});
   all.push_back({"nis_upper", "1", ends_of(innovations->bounds, &Interval::upper)});

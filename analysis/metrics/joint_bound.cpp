@@ -15,10 +15,10 @@ void mirror_lower(Eigen::Matrix3d& P) { P.triangularView<Eigen::StrictlyUpper>()
 }  // namespace
 
 JointBound::JointBound(std::size_t landmarks, const Vehicle& vehicle,
-                       const Eigen::Vector2d& control_variance,
+                       const ControlNoise& control_noise,
                        const Eigen::Vector2d& observation_variance)
     : vehicle_(vehicle),
-      sigma_control_(control_variance.cwiseSqrt()),
+      control_noise_(control_noise),
       observation_variance_(observation_variance),
       row_(landmarks, 0) {
   const auto rows = 3 + 2 * static_cast<Eigen::Index>(landmarks);
@@ -30,7 +30,10 @@ JointBound::JointBound(std::size_t landmarks, const Vehicle& vehicle,
 Pose JointBound::move(const Pose& pose, const Control& control, double duration) {
   const auto step = linearised_move(pose, control, duration, vehicle_);
   const Eigen::Matrix3d F = pose_jacobian(step.jacobians);
-  const Matrix32 noise = control_jacobian(step.jacobians) * sigma_control_.asDiagonal();
+  const auto sigma = deviations_of(control_noise_, control, vehicle_);
+  ControlJacobian noise = control_jacobian(step.jacobians);
+  for (Eigen::Index i = 0; i < noise.cols(); ++i)
+    noise.col(i) *= sigma[static_cast<std::size_t>(i)];
   pose_ = F * pose_ * F.transpose() + noise * noise.transpose();
   mirror_lower(pose_);
   pending_x_heading_ += step.jacobians.x_heading;

@@ -3,6 +3,7 @@
 
 #include "engine/core/drive.hpp"
 #include "engine/core/pose.hpp"
+#include "filters/models/control_noise.hpp"
 #include "filters/models/point.hpp"
 #include "filters/models/vehicle.hpp"
 
@@ -19,8 +20,8 @@ namespace montecarta::analysis {
 /// of a landmark before its first observation. The pose is known exactly at the start.
 class JointBound {
  public:
-  /// Room for all `landmarks`; nothing is allocated later. `control_variance`: (speed, steering).
-  JointBound(std::size_t landmarks, const Vehicle& vehicle, const Eigen::Vector2d& control_variance,
+  /// Room for all `landmarks`; nothing is allocated later. `control_noise`: of the vehicle.
+  JointBound(std::size_t landmarks, const Vehicle& vehicle, const ControlNoise& control_noise,
              const Eigen::Vector2d& observation_variance);
 
   /// One control step from the true `pose`; returns where it leads.
@@ -49,7 +50,7 @@ class JointBound {
   Eigen::Index& row_of(std::size_t identity) { return row_[identity]; }
 
   Vehicle vehicle_;
-  Eigen::Vector2d sigma_control_;
+  ControlNoise control_noise_;
   Eigen::Vector2d observation_variance_;
   Eigen::Matrix3d pose_ = Eigen::Matrix3d::Zero();  ///< symmetric
   double pending_x_heading_ = 0.0;                  ///< [m/rad] of Fx since the last scan

@@ -2,7 +2,7 @@
 #include "analysis/metrics/lineages.hpp"
 
 #include "analysis/metrics/diversity.hpp"
-#include "analysis/statistics/summary.hpp"
+#include "analysis/statistics/means.hpp"
 
 #include <cmath>
 #include <numeric>

@@ -114,7 +114,8 @@ std::vector<std::string> map_error_notes(const StudyAnalysis& study) {
         "itself), and 'landmarks inside' is the share of landmarks whose NEES over runs is in "
         "its " +
         level_text(study.level) +
-        " band, each by itself: the errors of neighbours go together. All three need to know which "
+        " band, each by itself: the errors of neighbours are correlated. All three need to know "
+        "which "
         "landmark is which.");
     notes.push_back(
         "GOSPA pairs the map with the true landmarks that came into view, whoever is who: the root "

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/measured_run.hpp"
 
-#include "analysis/data/looks.hpp"
+#include "analysis/data/met_drive.hpp"
+#include "analysis/data/study_settings.hpp"
 #include "analysis/metrics/simulated_world.hpp"
 #include "analysis/statistics/group_sequential.hpp"
 
@@ -29,6 +30,16 @@ MapCriteria map_criteria_of(const ResultFile& file) {
   return criteria;
 }
 
+DriveCriteria criteria_of_drive(const MetDrive& drive) {
+  DriveCriteria criteria{drive.scan_times, {}, {}};
+  for (const ReferencePath& path : drive.references) {
+    criteria.references.emplace_back(path, drive.scan_times, drive.start);
+    if (path.covariance.empty()) continue;
+    criteria.judged_fixes.emplace_back(path, drive.scan_times, drive.start);
+  }
+  return criteria;
+}
+
 }  // namespace
 
 RunCriteria criteria_of(const ResultFile& file, double level, double within) {
@@ -51,19 +62,30 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
     if (path.covariance.empty()) continue;
     criteria.judged_fixes.emplace_back(path, file.scan_times(), file.description().start);
   }
+  for (std::size_t run = 0; run < file.description().drives.size(); ++run) {
+    criteria.drives.push_back(criteria_of_drive(drive_met_by(file, run)));
+  }
+  if (!criteria.drives.empty()) {
+    criteria.references = criteria.drives.front().references;
+    criteria.judged_fixes = criteria.drives.front().judged_fixes;
+  }
   for (const auto& [x, y] : file.landmarks()) criteria.beacons.emplace_back(x, y);
   return criteria;
 }
 
 void MeasuredRun::measure(const RunCriteria& criteria, std::size_t particles) {
-  metrics.measure(rows, particles, criteria.times);
+  const DriveCriteria* own = criteria.drives.empty() ? nullptr : &criteria.drives.at(rows.run);
+  const std::span<const double> times = own != nullptr ? own->times : criteria.times;
+  metrics.measure(rows, particles, times);
   references.clear();
-  for (const PathAtFixes& fixes : criteria.references) {
+  for (const PathAtFixes& fixes : own != nullptr ? own->references : criteria.references) {
     references.push_back(measure_against(fixes, rows.path));
   }
   drives.clear();
-  for (const PathAtFixes& fixes : criteria.judged_fixes) {
-    drives.push_back(drive_scores(fixes, criteria.times, rows, particles, criteria.level));
+  for (const PathAtFixes& fixes : own != nullptr ? own->judged_fixes : criteria.judged_fixes) {
+    drives.push_back(drive_scores(fixes, times, rows, particles, criteria.level));
+    if (own == nullptr)
+      drives.back().errors = {};  // one drive needs none, and there may be many runs
   }
   map.reset();
   if (criteria.map.known && rows.final_map) {

@@ -22,6 +22,13 @@
 
 namespace montecarta::analysis {
 
+/// What a run is measured by whose drive is its own.
+struct DriveCriteria {
+  std::span<const double> times;          ///< [s] of the scans
+  std::vector<PathAtFixes> references;    ///< as many as those of RunCriteria
+  std::vector<PathAtFixes> judged_fixes;  ///< likewise
+};
+
 /// What runs are measured by, common to all cells of a file, which must outlive it.
 struct RunCriteria {
   std::span<const double> times;  ///< [s] of the scans
@@ -37,6 +44,10 @@ struct RunCriteria {
   /// Of each verdict where cells stop by verdict, so that all looks together have `level`.
   std::optional<double> look_level = {};
   Printed printed = {};  ///< by runs of the paper and its bands batches are judged
+
+  /// {run of the study} Where every run is a drive of its own; then times are those of the longest
+  /// one, references and judged_fixes those of the first.
+  std::vector<DriveCriteria> drives = {};
 
   double verdict_level() const { return look_level.value_or(level); }
 };

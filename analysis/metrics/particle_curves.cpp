@@ -110,7 +110,7 @@ ChartPanel chart_panel(const std::vector<ParticleCurve>& curves,
 
 std::vector<ParticleCurve> particle_curves(const StudyAnalysis& study) {
   std::vector<ParticleCurve> curves;
-  if (study.references.empty() || study.references.front().times.empty()) return curves;
+  if (study.references.empty() || study.references.front().fixes == 0) return curves;
   const std::vector<std::string> labels = filter_labels(study);
   for (std::size_t i = 0; i < labels.size(); ++i) curves.push_back({labels[i], i, {}});
   for (const CellAnalysis& cell : study.cells) {

@@ -75,7 +75,8 @@ TextTable diversity_table(const StudyAnalysis& study) {
                     {"ancestors, 1 s ago"}, {"10 s ago"}, {"100 s ago"},
                     {"common ancestor"},    {"in scans"}};
   for (const CellAnalysis& cell : study.cells) {
-    if (!cell.over_time("ess").empty()) table.rows.push_back(diversity_row(cell));
+    const bool has_ess = study.own_drives > 0 ? cell.complete > 0 : !cell.over_time("ess").empty();
+    if (has_ess) table.rows.push_back(diversity_row(cell));
   }
   return table;
 }

@@ -27,7 +27,7 @@ struct RunPits {
 
 /// Of run number `run` with `particles` (0: none). `landmarks` [m]: where they really are, by
 /// identity; empty where unknown. Every run gives one landmark alone, another one from run to run:
-/// those of one map go together.
+/// those of one map are correlated.
 RunPits pits_of(const RunRows& rows, std::size_t particles, std::uint64_t run,
                 std::span<const Eigen::Vector2d> landmarks);
 

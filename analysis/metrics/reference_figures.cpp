@@ -42,7 +42,7 @@ void add(const std::vector<Panel>& panels, const std::vector<double>& times, Fig
 
 Figure reference_error_figure(const StudyAnalysis& study) {
   Figure figure{"reference_error", "How far from the reference over time?", ""};
-  if (study.references.empty()) return figure;
+  if (study.references.empty() || study.own_drives > 0) return figure;
   const JudgedReference& reference = study.references.front();
   figure.sentence = "Distance between the estimate as it stands and each fix of " + reference.name +
                     ", root mean square over runs: lower is better, but no curve can be nearer "

@@ -6,6 +6,8 @@
 #include "analysis/output/named_rows.hpp"
 #include "analysis/statistics/means.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace montecarta::analysis {
@@ -30,7 +32,7 @@ bool is_of_the_map(const std::string& name) {
 std::vector<NamedNumber> reference_numbers(const CellAnalysis& cell, std::size_t reference) {
   const ReferenceAnalysis& against = cell.get<ReferenceAnalyses>()[reference];
   const auto count = [](std::size_t n) { return static_cast<double>(n); };
-  const bool judged = cell.complete == 0 || !against.error_over_time.empty();
+  const bool judged = cell.complete == 0 || against.with_fixes() > 0;
   const std::size_t lost = against.lost() + cell.failures.size();
   std::vector<NamedNumber> all = {{"runs_failed", "1", count(cell.failures.size())},
                                   {"runs_complete", "1", count(cell.complete)},

@@ -9,21 +9,28 @@
 namespace montecarta::analysis {
 namespace {
 
+/// "the drive", "2 of 3 drives".
+std::string drives_in_words(const StudyAnalysis& study, const JudgedReference& reference) {
+  if (study.own_drives == 0) return "the drive";
+  return std::to_string(reference.drives) + " of " + std::to_string(study.own_drives) + " drives";
+}
+
 std::string fixes_note(const StudyAnalysis& study) {
   std::string sentence =
       "Estimates are compared with each reference at its fixes only, interpolated linearly in time "
       "between the poses that are stored:";
   for (const JudgedReference& reference : study.references) {
-    sentence += " " + reference.name + " has " + std::to_string(reference.times.size()) +
-                " fixes within the drive" + (&reference == &study.references.back() ? "." : ",");
+    sentence += " " + reference.name + " has " + std::to_string(reference.fixes) +
+                " fixes within " + drives_in_words(study, reference) +
+                (&reference == &study.references.back() ? "." : ",");
   }
   return sentence;
 }
 
 std::string baseline_note(const StudyAnalysis& study) {
-  if (study.references.front().times.empty()) {
-    return "No fix of " + study.references.front().name +
-           " lies within the drive, so nothing can be said by it.";
+  if (study.references.front().fixes == 0) {
+    return "No fix of " + study.references.front().name + " lies within " +
+           (study.own_drives == 0 ? "the drive" : "any drive") + ", so nothing can be said by it.";
   }
   const CellAnalysis* baseline = baseline_of(study);
   if (baseline == nullptr) return "No cell runs EKF-SLAM, so there is no baseline to beat.";
@@ -34,12 +41,12 @@ std::string baseline_note(const StudyAnalysis& study) {
          " m; failed runs beat nothing.";
 }
 
-std::vector<std::string> distance_notes() {
+std::vector<std::string> distance_notes(const StudyAnalysis& study) {
   return {
       "'raw' compares as it stands; 'aligned' first turns and shifts the estimated path as a whole "
       "(no stretching, no mirroring) to where it fits all fixes best, since nobody knows exactly "
       "where the drive began and which way the vehicle looked.",
-      "The median is the middle fix and cares little for wild fixes; 'gated' is the aligned RMS "
+      "The median is the middle fix and is hardly moved by outliers; 'gated' is the aligned RMS "
       "over the "
       "fixes within " +
           readable(kReferenceGate, 1) +
@@ -47,9 +54,11 @@ std::vector<std::string> distance_notes() {
           "hundred metres off. A filter that leaves the path half way keeps few fixes: read it "
           "with the "
           "share.",
-      "Runs see the same drive and differ by the filter's own randomness alone: numbers are means "
-      "over runs +- their standard error; 'middle run' is the median over runs of the aligned RMS, "
-      "with the best and the worst run.",
+      std::string(study.own_drives > 0
+                      ? "Every run met a drive of its own, and those without a fix are left out"
+                      : "Runs see the same drive and differ by the filter's own randomness alone") +
+          ": numbers are means over runs +- their standard error; 'middle run' is the median over "
+          "runs of the aligned RMS, with the best and the worst run.",
       "A run lost the map where it failed or the median of its aligned errors exceeds " +
           readable(kLostBeyond, 2) + " m."};
 }
@@ -69,7 +78,7 @@ std::string no_truth_sentence(const StudyAnalysis& study) {
 std::vector<std::string> reference_notes(const StudyAnalysis& study) {
   std::vector<std::string> notes;
   if (!study.references.empty()) {
-    notes = distance_notes();
+    notes = distance_notes(study);
     notes.insert(notes.begin(), fixes_note(study));
     notes.push_back(baseline_note(study));
   }
@@ -79,6 +88,11 @@ std::vector<std::string> reference_notes(const StudyAnalysis& study) {
         "within " +
         readable(kFoundWithin, 1) +
         " m of it; its error is the RMS over the beacons found, as the map stands and aligned.");
+  }
+  if (study.own_drives > 0) {
+    notes.emplace_back(
+        "Every drive has scan times of its own, so no mean over runs is taken scan by scan: there "
+        "are no series and no figures over time.");
   }
   notes.emplace_back(
       "Landmarks are those in the map after the last scan; ESS is the effective number of "

@@ -4,6 +4,7 @@
 #include "analysis/metrics/path_at_fixes.hpp"
 #include "analysis/metrics/rigid_alignment.hpp"
 
+#include <cmath>
 #include <limits>
 #include <span>
 #include <vector>
@@ -33,6 +34,8 @@ struct ReferenceScores {
   double aligned_gated_share = kNone;  ///< [1]
   double heading_rmse = kNone;         ///< [rad] raw; NaN where the reference has no heading
 
+  /// Also where estimates are no numbers: of those 0 are within the gate.
+  bool has_fixes() const { return !std::isnan(rms) || !std::isnan(gated_share); }
   bool lost() const { return !(aligned_median <= kLostBeyond); }
 };
 

@@ -33,10 +33,12 @@ std::string of_text(std::size_t k, std::size_t n) {
 }
 
 /// Runs that can be judged: failed ones are lost and beat nothing.
-std::size_t judged_runs(const CellAnalysis& cell) { return cell.complete + cell.failures.size(); }
+std::size_t judged_runs(const CellAnalysis& cell, const ReferenceAnalysis& against) {
+  return against.with_fixes() + cell.failures.size();
+}
 
 std::string lost_text(const CellAnalysis& cell, const ReferenceAnalysis& against) {
-  return of_text(against.lost() + cell.failures.size(), judged_runs(cell));
+  return of_text(against.lost() + cell.failures.size(), judged_runs(cell, against));
 }
 
 bool any_heading(const StudyAnalysis& study) {
@@ -54,7 +56,7 @@ std::vector<std::string> reference_row(const StudyAnalysis& study, const CellAna
       cell.label,
       study.references[r].name,
       runs_in_words(cell),
-      study.references[r].times.empty() ? "-" : lost_text(cell, against),
+      study.references[r].fixes == 0 ? "-" : lost_text(cell, against),
       text(&ReferenceScores::rms),
       text(&ReferenceScores::median),
       text(&ReferenceScores::aligned_rms),
@@ -104,7 +106,7 @@ std::vector<std::string> baseline_row(const CellAnalysis& cell, const CellAnalys
                              .front()
                              .over_runs(&ReferenceScores::aligned_rms)
                              .summary.mean;
-  const std::size_t better = leading.better_than(aligned), runs = judged_runs(cell);
+  const std::size_t better = leading.better_than(aligned), runs = judged_runs(cell, leading);
   row.insert(row.end(), {of_text(better, runs), against_baseline(better, runs)});
   return row;
 }
@@ -148,7 +150,7 @@ TextTable map_table(const StudyAnalysis& study) {
 
 TextTable baseline_table(const StudyAnalysis& study) {
   TextTable table;
-  if (study.references.empty() || study.references.front().times.empty()) return table;
+  if (study.references.empty() || study.references.front().fixes == 0) return table;
   const CellAnalysis* baseline = baseline_of(study);
   table.headings = {{"cell", Align::left}, {"loses the map"}};
   if (baseline != nullptr) {

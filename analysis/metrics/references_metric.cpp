@@ -37,7 +37,10 @@ constexpr Score kReferencesScores[] = {
 class ReferencesOverRuns final : public MetricSums {
  public:
   explicit ReferencesOverRuns(const RunCriteria& criteria)
-      : references_(criteria.references.size()) {}
+      : references_(
+            criteria.references.size(),
+            ReferenceAccumulator(criteria.drives.empty() ? ReferenceAccumulator::Fixes::same
+                                                         : ReferenceAccumulator::Fixes::own)) {}
   void add(const MeasuredRun& run) override {
     for (std::size_t r = 0; r < references_.size(); ++r) references_[r].add(run.references[r]);
   }
@@ -64,6 +67,10 @@ std::vector<Section> references_sections(const StudyAnalysis& study) {
 
 bool has_references(const StudyAnalysis& study) { return !study.references.empty(); }
 
+bool has_common_fixes(const StudyAnalysis& study) {
+  return has_references(study) && study.own_drives == 0;
+}
+
 }  // namespace
 
 Metric references_metric() {
@@ -73,7 +80,7 @@ Metric references_metric() {
           .sections = references_sections,
           .figures = reference_figures,
           .files = {{"references.csv", has_references, write_references},
-                    {"reference_errors.csv", has_references, write_reference_errors}}};
+                    {"reference_errors.csv", has_common_fixes, write_reference_errors}}};
 }
 
 }  // namespace montecarta::analysis

@@ -1,57 +1,64 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/simulated_world.hpp"
 
+#include "filters/models/vehicle_settings.hpp"
+
 #include <algorithm>
 #include <charconv>
-#include <string_view>
+#include <string>
 
 namespace montecarta::analysis {
 namespace {
 
-/// Settings of a scenario by name; notes whether all that was asked for is there.
+/// Settings of a scenario by name; notes whether all that must be there is.
 class Facts {
  public:
   explicit Facts(const TextPairs& pairs) : pairs_(&pairs) {}
 
-  std::string_view text(std::string_view name) {
+  std::optional<std::string> optional_text(const std::string& name) const {
     const auto found =
         std::ranges::find_if(*pairs_, [&](const auto& p) { return p.first == name; });
-    if (found != pairs_->end()) return found->second;
-    complete_ = false;
-    return {};
+    return found == pairs_->end() ? std::nullopt : std::optional(found->second);
   }
-  double number(std::string_view name) {
-    const std::string_view written = text(name);
+  std::optional<double> optional_number(const std::string& name) const {
+    const std::optional<std::string> written = optional_text(name);
+    if (!written) return std::nullopt;
     double value = 0.0;
-    const auto end = written.data() + written.size();
-    complete_ = complete_ && std::from_chars(written.data(), end, value).ptr == end;
+    const auto end = written->data() + written->size();
+    if (std::from_chars(written->data(), end, value).ptr != end) return std::nullopt;
     return value;
   }
-  double radians(std::string_view name) { return number(name) / 180.0 * kPi; }
+  std::string text(const std::string& name) { return needed(optional_text(name)); }
+  double number(const std::string& name) { return needed(optional_number(name)); }
+  double radians(const std::string& name) { return in_si(name, number(name)); }
   bool complete() const { return complete_; }
 
  private:
+  template <class Value>
+  Value needed(const std::optional<Value>& value) {
+    complete_ = complete_ && value.has_value();
+    return value.value_or(Value());
+  }
+
   const TextPairs* pairs_;
   bool complete_ = true;
 };
-
-Vehicle vehicle_of(Facts& facts) {
-  return {.kind = facts.text("vehicle") == "rear_wheel" ? Vehicle::Kind::rear_wheel
-                                                        : Vehicle::Kind::front_axle,
-          .wheelbase = facts.number("wheelbase"),
-          .wheel_left = facts.number("wheel_left"),
-          .sensor_ahead = facts.number("sensor_ahead"),
-          .sensor_left = facts.number("sensor_left")};
-}
 
 }  // namespace
 
 std::optional<SimulatedWorld> simulated_world_of(const ResultFile& file) {
   Facts facts(file.scenario());
   if (facts.text("kind") != "simulated" || !file.has_truth()) return std::nullopt;
+  const std::optional<Vehicle> vehicle = vehicle_named(
+      facts.text("vehicle"), [&](const auto& key) { return std::optional(facts.text(key)); },
+      [&](const auto& key) { return std::optional(facts.number(key)); });
+  if (!vehicle) return std::nullopt;
+  const std::optional<ControlNoise> control_noise =
+      control_noise_of(*vehicle, [&](const auto& key) { return facts.optional_number(key); });
+  if (!control_noise) return std::nullopt;
   SimulatedWorld world{
-      .vehicle = vehicle_of(facts),
-      .sigma_control = {facts.number("sigma_speed"), facts.radians("sigma_steer_deg")},
+      .vehicle = *vehicle,
+      .control_noise = *control_noise,
       .sigma_observation = {facts.number("sigma_range"), facts.radians("sigma_bearing_deg")},
       .detected = 1.0 - facts.number("miss_probability"),
       .view = FieldOfView(facts.number("max_range"), facts.radians("field_of_view_deg")),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/records/result_file.hpp"
+#include "filters/models/control_noise.hpp"
 #include "filters/models/field_of_view.hpp"
 #include "filters/models/vehicle.hpp"
 
@@ -15,7 +16,7 @@ namespace montecarta::analysis {
 /// Vehicle, sensor and their noise as they really are in a simulation, whatever filters believe.
 struct SimulatedWorld {
   Vehicle vehicle;
-  Eigen::Vector2d sigma_control;      ///< speed [m/s], steering [rad]
+  ControlNoise control_noise;
   Eigen::Vector2d sigma_observation;  ///< range [m], bearing [rad]
   double detected = 1.0;              ///< probability that what is in view is detected
   FieldOfView view;

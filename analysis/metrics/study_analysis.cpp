@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/study_analysis.hpp"
 
-#include "analysis/data/looks.hpp"
+#include "analysis/data/met_drive.hpp"
 #include "analysis/data/run_reader.hpp"
+#include "analysis/data/study_settings.hpp"
 #include "analysis/metrics/cell_sums.hpp"
 #include "analysis/metrics/efficiency.hpp"
 #include "analysis/metrics/imported_notes.hpp"
@@ -15,10 +16,9 @@ namespace montecarta::analysis {
 namespace {
 
 /// [s] of the first scan at or after a step, or of the last one.
-double scan_time(const ResultFile& file, std::uint32_t step) {
-  const auto& steps = file.description().scan_steps;
-  const auto scan = std::ranges::lower_bound(steps, step) - steps.begin();
-  return file.scan_times()[std::min(static_cast<std::size_t>(scan), steps.size() - 1)];
+double scan_time(const MetDrive& drive, std::uint32_t step) {
+  const auto scan = std::ranges::lower_bound(drive.scan_steps, step) - drive.scan_steps.begin();
+  return drive.scan_times[std::min(static_cast<std::size_t>(scan), drive.scan_steps.size() - 1)];
 }
 
 /// Run indices in the file of the complete runs among the first `runs`; counts and names them all
@@ -34,7 +34,8 @@ std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell&
     if (status[i] == RunStatus::missing) ++cell.missing;
     if (status[i] == RunStatus::spared) ++cell.spared;
     if (status[i] == RunStatus::failed) {
-      cell.failures.push_back({file.runs()[i], steps[i], reasons[i], scan_time(file, steps[i])});
+      cell.failures.push_back({file.runs()[i], steps[i], reasons[i],
+                               scan_time(drive_met_by(file, file.runs()[i]), steps[i])});
     }
   }
   const auto looks = looks_in(file.study_text(), file.study_runs());
@@ -102,9 +103,31 @@ StudyAnalysis begin(const ResultFile& file, double level, std::optional<double> 
   }
   study.duration = study.times.empty() ? 0.0 : study.times.back();
   study.has_truth = file.has_errors();
+  study.own_drives = file.description().drives.size();
   if (!file.cells().empty()) study.imported = imported_state(file.cells().front());
   study.beacons = file.landmarks().size();
   return study;
+}
+
+/// Whichever drive is met has its reference r there; a drive may have no fix of it.
+std::vector<JudgedReference> judged_references(const RunCriteria& criteria) {
+  std::vector<JudgedReference> all;
+  const auto add = [](JudgedReference& reference, const PathAtFixes& fixes) {
+    reference.name = fixes.name();
+    reference.fixes += fixes.times().size();
+    reference.drives += fixes.times().empty() ? 0 : 1;
+    reference.has_heading = reference.has_heading || !fixes.headings().empty();
+    reference.has_errors = reference.has_errors || !fixes.covariances().empty();
+    reference.has_start = reference.has_start || fixes.has_start();
+  };
+  for (std::size_t r = 0; r < criteria.references.size(); ++r) {
+    JudgedReference& reference = all.emplace_back();
+    for (const DriveCriteria& drive : criteria.drives) add(reference, drive.references[r]);
+    if (!criteria.drives.empty()) continue;
+    add(reference, criteria.references[r]);
+    reference.times = criteria.references[r].times();
+  }
+  return all;
 }
 
 }  // namespace
@@ -113,16 +136,18 @@ bool StudyAnalysis::has_failures() const {
   return std::ranges::any_of(cells, [](const CellAnalysis& c) { return !c.failures.empty(); });
 }
 
+std::string StudyAnalysis::scans_text() const {
+  const std::string scans = std::to_string(times.size()) + " scans";
+  return own_drives > 0 ? "up to " + scans : scans + " each";
+}
+
 StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& parallel,
                       std::optional<double> within) {
   nees_bounds(1, 1, level);  // refuses a wrong level before the work
   StudyAnalysis study = begin(file, level, within);
   expect_scans(file);
   const RunCriteria criteria = criteria_of(file, level, study.within);
-  for (const PathAtFixes& fixes : criteria.references) {
-    study.references.push_back({fixes.name(), fixes.times(), !fixes.headings().empty(),
-                                !fixes.covariances().empty(), fixes.has_start()});
-  }
+  study.references = judged_references(criteria);
   std::vector<MeasuredRun> slots = slots_for(parallel);
   for (const StoredCell& cell : file.cells()) {
     study.cells.push_back(cell_by(criteria, file, cell, file.runs().size(), parallel, slots));

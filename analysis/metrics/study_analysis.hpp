@@ -17,7 +17,10 @@ namespace montecarta::analysis {
 /// An independent measurement of the path, as far as estimates are judged by it.
 struct JudgedReference {
   std::string name;
-  std::vector<double> times;  ///< [s] of the fixes within the drive
+  std::vector<double>
+      times;               ///< [s] of the fixes within the drive; empty where runs have their own
+  std::size_t fixes = 0;   ///< within the drive, or within all of several
+  std::size_t drives = 0;  ///< that have fixes
   bool has_heading = false;
   bool has_errors = false;  ///< whether its own errors are known: then it gives a NEES
   bool has_start = false;   ///< whether the drive starts at one of its fixes
@@ -29,6 +32,7 @@ struct ImportedState {
   std::string convention;  ///< of the error: "world", "body" or "right-invariant"
   std::vector<std::string> components = {"x", "y", "heading"};
   std::vector<std::string> units = {"m", "m", "rad"};
+  bool lacks_cross_terms = false;  ///< between position and rotation: taken as 0
 
   bool is_imported() const { return !state.empty(); }
 };
@@ -48,8 +52,9 @@ struct StudyAnalysis {
   double duration = 0.0;             ///< [s] time of the last scan
   std::vector<double> times;         ///< [s] of the scans
   std::vector<double> joint_times;   ///< [s] of the scans at which joint estimates are stored
-  bool has_truth = true;   ///< whether errors are known: without a true path no errors, no NEES
-  ImportedState imported;  ///< of files that 'montecarta judge' made
+  bool has_truth = true;       ///< whether errors are known: without a true path no errors, no NEES
+  std::size_t own_drives = 0;  ///< runs, where every run is a recorded drive of its own; else 0
+  ImportedState imported;      ///< of files that 'montecarta judge' made
   std::vector<JudgedReference> references;  ///< of a recorded drive; the first one leads
   std::size_t beacons = 0;                  ///< landmarks whose true positions are known
   CramerRaoBound bound;                     ///< below which no error can be
@@ -57,6 +62,8 @@ struct StudyAnalysis {
   Printed printed;  ///< what the study repeats; empty where it repeats nothing
 
   bool has_failures() const;
+  /// "200 scans each", "up to 200 scans".
+  std::string scans_text() const;
 };
 
 /// Analyses a result file run by run: memory does not grow with the number of runs. The same

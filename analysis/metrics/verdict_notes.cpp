@@ -57,7 +57,7 @@ std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
           " s of this study. A single run is lost when its own NEES is above its band for " +
           std::to_string(kLastingScans) + " scans in a row, or when it fails.",
       "'scans inside' counts the scans whose average lies in the pointwise band: " + level +
-          " of them are expected of a consistent filter, and neighbouring scans go together.",
+          " of them are expected of a consistent filter, and neighbouring scans are correlated.",
       "RMSE is the mean over runs, with the interval that holds it for infinitely many; ESS is the "
       "effective number of particles, roots how many of the first particles still have descendants "
       "at the end, CPU the filter's own time in a run; all of complete runs only."};

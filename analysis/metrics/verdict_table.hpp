@@ -3,6 +3,7 @@
 
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/output/text_table.hpp"
+#include "analysis/statistics/nees_bounds.hpp"
 
 #include <string>
 #include <vector>
@@ -36,5 +37,11 @@ std::string runs_in_words(const CellAnalysis& cell);
 
 std::string name_of(ErrorBlock block);
 std::string name_of(Moments moments);
+
+/// The mean of `values`, one a run, with its `interval`. Where they have a heavy tail, of which no
+/// interval of the mean holds, the mean says so and the median over runs follows with its interval
+/// at `level`. All times `factor`.
+std::string text_of_mean(const std::vector<double>& values, double mean, const Interval& interval,
+                         double factor, double level);
 
 }  // namespace montecarta::analysis

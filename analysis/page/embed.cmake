@@ -22,7 +22,7 @@ endfunction()
 
 separate_arguments(STYLES)
 separate_arguments(SCRIPTS)
-file(WRITE ${SOURCE} "#include \"analysis/page/assets.hpp\"\n\nnamespace montecarta::analysis {\n")
+file(WRITE ${SOURCE} "#include \"analysis/page/html.hpp\"\n\nnamespace montecarta::analysis {\n")
 append_text(page_style "${STYLES}")
 append_text(page_script "${SCRIPTS}")
 file(APPEND ${SOURCE} "\n}  // namespace montecarta::analysis\n")

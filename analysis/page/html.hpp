@@ -4,10 +4,17 @@
 #include "analysis/metrics/verdict_table.hpp"
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace montecarta::analysis {
+
+/// The style sheet of the page: analysis/page/page.css, put into the program when it is built.
+std::string_view page_style();
+/// The scripts of the page, analysis/page/script/*.js in the order in which they need each other,
+/// as the body of one function.
+std::string_view page_script();
 
 /// Plain text as a page shows it.
 std::string html_escape(const std::string& text);

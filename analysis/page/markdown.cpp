@@ -37,10 +37,10 @@ std::string study_lines(const StudyAnalysis& study, const TextPairs& provenance)
   return "# " + markdown_escape(study.title.empty() ? study.study_name : study.title) + "\n\n" +
          "- study `" + study.study_name + "`, seed " + std::to_string(study.seed) + ": " +
          std::to_string(study.runs_here) + " of " + std::to_string(study.study_runs) + " runs, " +
-         std::to_string(study.times.size()) + " scans each\n- run on " +
-         value_of(provenance, "date") + " by montecarta " + value_of(provenance, "version") +
-         ", commit " + value_of(provenance, "git") + "\n- on " + value_of(provenance, "cpu") +
-         ", " + value_of(provenance, "compiler") + ", " + value_of(provenance, "libm") + "\n";
+         study.scans_text() + "\n- run on " + value_of(provenance, "date") + " by montecarta " +
+         value_of(provenance, "version") + ", commit " + value_of(provenance, "git") + "\n- on " +
+         value_of(provenance, "cpu") + ", " + value_of(provenance, "compiler") + ", " +
+         value_of(provenance, "libm") + "\n";
 }
 
 std::string markdown_figure(const Figure& figure) {

@@ -12,7 +12,7 @@ import sys
 
 import numpy as np
 
-from load_results import load_cell, load_results
+import montecarta
 
 FLOOR = np.diag([1e-4, 1e-4, 1e-5]) ** 2  # [m, m, rad]^2
 
@@ -64,12 +64,8 @@ def anees(cell, truth, scan_row):
 
 
 if __name__ == "__main__":
-    results = load_results(sys.argv[1])
-    for label, cell in results["cells"].items():
-        if sys.argv[2:] == ["--xarray"]:
-            cell = load_cell(sys.argv[1], label)
-            truth = None if "error" in cell else cell.truth
-            print(label, repr(float(anees(cell, truth, cell.scan_row))))
-        else:
-            truth = None if "error" in cell else results["truth"]["pose"]
-            print(label, repr(float(anees(cell, truth, results["scan_row"]))))
+    results, arrays = montecarta.open(sys.argv[1]), montecarta.arrays(sys.argv[1])
+    for label in results.labels:
+        cell = results[label] if sys.argv[2:] == ["--xarray"] else arrays["cells"][label]
+        truth = None if "error" in cell else cell["truth"] if "truth" in cell else arrays["truth"]["pose"]
+        print(label, repr(float(anees(cell, truth, arrays["scan_row"]))))

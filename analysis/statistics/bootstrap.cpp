@@ -4,7 +4,7 @@
 #include "analysis/statistics/means.hpp"
 #include "analysis/statistics/t_quantile.hpp"
 #include "engine/errors.hpp"
-#include "engine/random/normal_quantile.hpp"
+#include "engine/random/normals.hpp"
 #include "engine/random/stream.hpp"
 
 #include <boost/math/distributions/normal.hpp>

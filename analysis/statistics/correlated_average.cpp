@@ -17,7 +17,7 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr double kEndless = std::numeric_limits<double>::infinity();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kBlocks = 24;     // of a series, between which correlation is resolved
 constexpr double kFarthestRatio = 1e9;  // beyond, an interval has no upper end
 constexpr double kMostEffective = 1e9;
@@ -91,12 +91,15 @@ class ComponentLaw {
   std::vector<double> covariance_;  ///< {lag}
 };
 
-/// Probability that a drive whose expected ratio is `ratio` has an average of at most `mean`, if
-/// what its variogram does not show is an error that lasts for all of the drive.
-double probability_of_less(const VectorSeries& variogram, double mean, double ratio) {
+/// Probability that drives whose expected ratio is `ratio` have a mean of averages of at most
+/// `mean`, if what their variograms do not show are errors that last for all of a drive.
+double probability_of_less(const std::vector<VectorSeries>& variograms, double mean, double ratio) {
   std::vector<WeightedSquares> terms;
-  for (const auto& semivariance : variogram) {
-    ComponentLaw(semivariance, ratio).add_to(terms, static_cast<double>(variogram.size()));
+  for (const VectorSeries& variogram : variograms) {
+    const auto parts = static_cast<double>(variogram.size() * variograms.size());
+    for (const auto& semivariance : variogram) {
+      ComponentLaw(semivariance, ratio).add_to(terms, parts);
+    }
   }
   return probability_below(terms, mean);
 }
@@ -107,7 +110,7 @@ double ratio_where(const std::function<double(double)>& probability, double tail
   while (probability(above) > tail) {
     below = above;
     above *= 2.0;
-    if (above > kFarthestRatio * mean) return kEndless;
+    if (above > kFarthestRatio * mean) return kInfinity;
   }
   while (above > (1.0 + kEndAccuracy) * below) {
     const double middle = std::sqrt(below * above);
@@ -141,6 +144,13 @@ SquareMoments moments_of_nees(const VectorSeries& errors) {
   return {mean, mean > 0.0 ? squares / count / (mean * mean) : 0.0};
 }
 
+/// Squares of errors that are not Gaussian, a few wild ones say, vary more than 2 / d.
+double effective_samples_of(const VectorSeries& errors, const SquareMoments& nees) {
+  const auto d = static_cast<double>(errors.size());
+  const double gaussian = nees.variation > 2.0 / d ? 2.0 / d / nees.variation : 1.0;
+  return std::max(effective_samples(squared_correlations(errors)) * gaussian, 1.0);
+}
+
 /// As chi-square bounds: the interval of a series with so many independent samples, expected 1.
 double end_ratio(double samples, double d, double tail) {
   const auto probability = [&](double ratio) {
@@ -154,20 +164,29 @@ double end_ratio(double samples, double d, double tail) {
 }  // namespace
 
 CorrelatedAverage correlated_average(const VectorSeries& errors, double level) {
-  expect(!errors.empty() && !errors.front().empty(), "a series has components and samples");
+  return correlated_average(std::span(&errors, 1), level);
+}
+
+CorrelatedAverage correlated_average(std::span<const VectorSeries> drives, double level) {
+  expect(!drives.empty() && !drives.front().empty() && !drives.front().front().empty(),
+         "there is a drive, and a series has components and samples");
   nees_bounds(1, 1, level);  // refuses a wrong level
   const double tail = 0.5 * (1.0 - level);
-  const auto d = static_cast<double>(errors.size());
-  const SquareMoments nees = moments_of_nees(errors);
-  CorrelatedAverage result{.mean = nees.mean / d, .effective_samples = 0.0, .ratio = {}};
-  // Squares of errors that are not Gaussian, a few wild ones say, vary more than 2 / d.
-  const double gaussian = nees.variation > 2.0 / d ? 2.0 / d / nees.variation : 1.0;
-  result.effective_samples =
-      std::max(effective_samples(squared_correlations(errors)) * gaussian, 1.0);
-  if (nees.mean == 0.0) return result;
-  const VectorSeries variogram = semivariances(errors);
+  const auto d = static_cast<double>(drives.front().size());
+  const auto count = static_cast<double>(drives.size());
+  CorrelatedAverage result;
+  double inverse = 0.0;  // sum over drives of one over their effective samples
+  for (const VectorSeries& errors : drives) {
+    const SquareMoments nees = moments_of_nees(errors);
+    result.mean += nees.mean / d / count;
+    inverse += 1.0 / effective_samples_of(errors, nees);
+  }
+  result.effective_samples = count * count / inverse;
+  if (result.mean == 0.0) return result;
+  std::vector<VectorSeries> variograms;
+  for (const VectorSeries& errors : drives) variograms.push_back(semivariances(errors));
   const auto probability = [&](double ratio) {
-    return probability_of_less(variogram, result.mean, ratio);
+    return probability_of_less(variograms, result.mean, ratio);
   };
   result.ratio = {result.mean / largest_by_chance(d * result.effective_samples, tail),
                   ratio_where(probability, tail, result.mean)};
@@ -178,7 +197,7 @@ double samples_that_decide(std::size_t dimension, double level, double within) {
   const double tail = 0.5 * (1.0 - level);
   const auto d = static_cast<double>(dimension);
   const auto decide = [&](double samples) { return end_ratio(samples, d, tail) <= within; };
-  if (!decide(kMostEffective)) return kEndless;
+  if (!decide(kMostEffective)) return kInfinity;
   double too_few = 1.0, enough = kMostEffective;
   while (enough > 1.01 * too_few) {
     const double middle = std::sqrt(too_few * enough);

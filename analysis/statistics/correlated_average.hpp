@@ -5,6 +5,7 @@
 #include "analysis/statistics/nees_bounds.hpp"
 
 #include <cstddef>
+#include <span>
 
 namespace montecarta::analysis {
 
@@ -23,6 +24,10 @@ struct CorrelatedAverage {
 /// `level` of all drives. Throws StudyError where level is not inside (0, 1); there must be a
 /// component and a sample.
 CorrelatedAverage correlated_average(const VectorSeries& errors, double level);
+
+/// Of several independent drives of as many components, at least one: the average over drives of
+/// their averages, whatever their lengths. Of one drive as above.
+CorrelatedAverage correlated_average(std::span<const VectorSeries> drives, double level);
 
 /// How many effective samples make that interval so short that its ends have a ratio of at most
 /// `within`, so that it excludes 1 or is inside [1 / within, within]; infinite where more than 1e9.

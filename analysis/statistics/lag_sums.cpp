@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kEveryLag = 128;  // up to here, then in steps that grow with the lag
 constexpr double kLagGrowth = 1.05;
 constexpr double kWindow = 5.0;
-constexpr double kSurely = 4.0;  // times its mean by chance
+constexpr double kChanceFactor = 4.0;  // times its mean by chance
 
 /// `of(lag)` at few lags, linear in between: a long series costs n log n.
 template <class Function>
@@ -56,7 +56,7 @@ std::vector<double> squared_correlations(const VectorSeries& series) {
   const double by_chance = unit / d / effective_samples(squares);
   const std::vector<double> between = at_all_lags(n, [&](std::size_t lag) {
     const double least =
-        kSurely * by_chance * static_cast<double>(n) / static_cast<double>(n - lag);
+        kChanceFactor * by_chance * static_cast<double>(n) / static_cast<double>(n - lag);
     double sum = 0.0;
     for (const auto& a : series) {
       for (const auto& b : series) {

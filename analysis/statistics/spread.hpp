@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/statistics/means.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
-#include "analysis/statistics/summary.hpp"
 
 #include <limits>
 #include <span>

@@ -45,7 +45,8 @@ void write_references(const h5::Handle& cell_group, const StudyAnalysis& study,
   for (std::size_t r = 0; r < cell.get<ReferenceAnalyses>().size(); ++r) {
     const auto group = h5::create_group(references, study.references[r].name);
     for (const NamedNumber& number : reference_numbers(cell, r)) write_number(group, number);
-    if (cell.complete == 0 || study.references[r].times.empty()) continue;
+    if (cell.get<ReferenceAnalyses>()[r].error_over_time.empty()) continue;
+    if (study.references[r].times.empty()) continue;
     write_series(group, {"error_over_time", "m", cell.get<ReferenceAnalyses>()[r].error_over_time},
                  times.fixes[r]);
   }

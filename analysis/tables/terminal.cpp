@@ -90,7 +90,7 @@ void print_printed(std::ostream& out, const StudyAnalysis& study) {
 void print_tables(std::ostream& out, const StudyAnalysis& study, Explanations explanations) {
   const std::vector<Section> sections = terminal_sections(study);
   out << study.study_name << ": " << study.runs_here << " of " << study.study_runs << " runs, "
-      << study.times.size() << " scans each, seed " << study.seed << "\n\n";
+      << study.scans_text() << ", seed " << study.seed << "\n\n";
   if (study.has_failures()) print_failures(out, study);
   if (!study.has_truth) {
     print_wrapped(out, no_truth_sentence(study));

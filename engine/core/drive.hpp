@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -13,14 +15,20 @@
 
 namespace montecarta::engine {
 
-/// What the filter is told about the motion of one step.
+/// What the filter is told about the motion of one step. How many components it has and what they
+/// mean the vehicle says (EQUATIONS 1); those it does not have are 0.
 struct Control {
-  double speed = 0.0;  ///< [m/s]
-  double steer = 0.0;  ///< [rad]
+  static constexpr std::size_t kMost = 3;  ///< components
+  std::array<double, kMost> values{};
 
+  double operator[](std::size_t i) const { return values[i]; }
+  double& operator[](std::size_t i) { return values[i]; }
   /// A vehicle that stands does not move, whatever noise its motion has (EQUATIONS 1): no
-  /// prediction.
-  bool stands() const { return speed == 0.0; }
+  /// prediction. `moving`: how many of the first components are all 0 then.
+  bool stands(std::size_t moving) const {
+    return std::all_of(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(moving),
+                       [](double value) { return value == 0.0; });
+  }
 };
 
 /// One range-bearing measurement of a landmark.
@@ -59,6 +67,7 @@ struct Itinerary {
   std::vector<Eigen::Vector2d> waypoints;  ///< [m] for figures only; may be empty
   Pose start;  ///< pose before the first step, known to the filter exactly
   std::vector<ReferencePath> references;  ///< of a recorded drive
+  std::size_t moving_controls = 1;        ///< a vehicle stands where so many first components are 0
   bool has_truth = true;  ///< whether drives carry the true poses; a recorded one does not
 
   std::size_t steps() const { return step_time.size(); }
@@ -85,8 +94,13 @@ struct Drive {
 class DriveSource {
  public:
   virtual ~DriveSource() = default;
-  /// Common to all runs.
+  /// Common to all runs; where every run is a drive of its own, that of the one with most scans,
+  /// without references.
   virtual const Itinerary& itinerary() const = 0;
+  /// How many runs there are, where every run is a recorded drive of its own; else 0.
+  virtual std::size_t own_drives() const { return 0; }
+  /// Of one run: it has at most as many scans as itinerary(), and the same landmarks.
+  virtual const Itinerary& itinerary_of(std::uint64_t /*run*/) const { return itinerary(); }
   /// Fills `drive` for one run: a pure function of (study, run), whatever `drive` held before.
   virtual void generate(std::uint64_t run, Drive& drive) const = 0;
 };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/column_selection.hpp"
 #include "engine/core/drive.hpp"
 #include "engine/core/slam_filter.hpp"
+#include "engine/namespaces.hpp"
 #include "engine/threads/parallel.hpp"
 
 #include <cstddef>
@@ -17,6 +17,22 @@
 
 namespace montecarta::engine {
 
+/// What a study may ask to be stored (study file: record.columns). The per-scan diagnostics
+/// (ess, resampled, log_likelihood, nis, nis_dof, numerical_faults, map_size) and pose_mean are
+/// always stored.
+struct ColumnSelection {
+  bool covariance =
+      true;  ///< pose_covariance; pose_mean_mixture, pose_covariance_mixture where there is one
+  bool ancestry = true;      ///< ancestor
+  bool particles = false;    ///< particle_pose, log_weight
+  bool association = false;  ///< association_correct, _wrong, _new_again, _missed, _clutter
+  bool map = false;          ///< map_mean, map_covariance, map_seen, at every scan
+  bool final_map = false;    ///< final_map_mean, final_map_covariance, final_map_seen, at the last
+  bool joint = false;        ///< joint_mean, joint_covariance of filters that have a joint estimate
+  std::size_t joint_scans = 16;  ///< record.joint_scans: at so many scans (joint_scans_of())
+  bool scans_only = false;       ///< record.rate = scan: rows of `time` only where a scan was taken
+};
+
 /// One filter in one setting, repeated in runs: one curve of a figure.
 struct Cell {
   std::string label;  ///< unique in the study, made of what distinguishes it, e.g. "fastslam2_m100"
@@ -29,6 +45,8 @@ struct Cell {
   /// Components of the error that is stored of an estimate of another program; 0: a filter of ours.
   std::size_t error_components = 0;
   bool innovations = true;  ///< of such an estimate: whether its NIS is stored too
+  /// Of such an estimate: whether its error may be by several conventions (kErrorConventions).
+  bool several_conventions = false;
   bool poses = true;  ///< whether it estimates a pose in the plane; else only its error is stored
   std::vector<std::pair<std::string, std::string>> settings;  ///< resolved, every one, for the file
   std::function<std::unique_ptr<SlamFilter>()> make_filter;   ///< callable from any thread

@@ -6,6 +6,7 @@
 #include "engine/numbers/register_exponential.hpp"
 #include "engine/numbers/register_trigonometry.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <type_traits>
@@ -14,6 +15,7 @@
 /// The functions that per-particle arithmetic is written in, for `Real` = double and `Real` = Lanes
 /// alike. Every lane is a function of that lane alone, so a result never depends on which particles
 /// share a register.
+
 namespace montecarta::engine {
 
 template <class Real>
@@ -142,6 +144,23 @@ inline Lanes wrap(const Lanes& angle) {
         return xsimd::select(wrapped > Register(-kPi), wrapped, Register(kPi));
       },
       angle);
+}
+
+/// The unit vectors at a few angles [rad], computed together: not much dearer than one.
+template <std::size_t N>
+[[gnu::always_inline]] inline std::array<Direction<double>, N> directions_of(
+    const std::array<double, N>& angles) {
+  static_assert(N <= Lanes::kSize);
+  constexpr std::size_t size = Lanes::Register::size;
+  std::array<Direction<double>, N> directions;
+  for (std::size_t first = 0; first < N; first += size) {
+    Lanes::Register angle(0.0), sine, cosine;
+    for (std::size_t k = first; k < N && k < first + size; ++k) angle.data[k - first] = angles[k];
+    register_math::sincos(angle, sine, cosine);
+    for (std::size_t k = first; k < N && k < first + size; ++k)
+      directions[k] = {cosine.data[k - first], sine.data[k - first]};
+  }
+  return directions;
 }
 
 }  // namespace montecarta::engine

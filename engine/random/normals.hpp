@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/namespaces.hpp"
 #include "engine/numbers/real.hpp"
 #include "engine/random/philox.hpp"
 #include "engine/random/stream.hpp"
@@ -86,5 +87,8 @@ template <class Real>
 Pair<Real> normal_pairs(const StreamIdentity& identity, std::uint32_t block) {
   return box_muller(uniform_pairs(identity, block, Real()));
 }
+
+/// The number that a standard normal variable stays below with `probability` in (0, 1).
+double normal_quantile(double probability);
 
 }  // namespace montecarta::engine

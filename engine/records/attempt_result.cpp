@@ -4,7 +4,7 @@
 // writes a file that another process may be writing, and every byte taken over is checked.
 #include "engine/errors.hpp"
 #include "engine/records/open_result.hpp"
-#include "engine/records/output_path.hpp"
+#include "engine/records/posix_file.hpp"
 #include "engine/records/read_description.hpp"
 #include "engine/records/seal.hpp"
 #include "engine/records/shard.hpp"

@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/column_table.hpp"
+#include "engine/records/error_conventions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -73,11 +74,8 @@ void check_times(const ResultDescription& d, const Check& check) {
                "joint_scan does not increase, or is beyond the scans");
 }
 
-void check_scenario(const ResultDescription& d, const Check& check) {
-  check.expect(are_finite({d.start.x, d.start.y, d.start.heading}) && are_finite(d.landmarks) &&
-                   are_finite(d.waypoints),
-               "start, landmarks or waypoints are no places");
-  for (const ReferencePath& path : d.references) {
+void check_references(const std::vector<ReferencePath>& references, const Check& check) {
+  for (const ReferencePath& path : references) {
     check.expect(path.position.size() == path.time.size() &&
                      (path.heading.empty() || path.heading.size() == path.time.size()),
                  "reference " + path.name + " has other fixes than times");
@@ -90,6 +88,45 @@ void check_scenario(const ResultDescription& d, const Check& check) {
   }
 }
 
+/// Whether two drives are judged alike by the two.
+bool are_alike(const ReferencePath& a, const ReferencePath& b) {
+  return a.name == b.name && a.heading.empty() == b.heading.empty() &&
+         a.covariance.empty() == b.covariance.empty();
+}
+
+void check_scenario(const ResultDescription& d, const Check& check) {
+  check.expect(are_finite({d.start.x, d.start.y, d.start.heading}) && are_finite(d.landmarks) &&
+                   are_finite(d.waypoints),
+               "start, landmarks or waypoints are no places");
+  check_references(d.references, check);
+}
+
+/// Runs of their own drives are read by the times of these.
+void check_drives(const ResultDescription& d, const Check& check) {
+  if (d.drives.empty()) return;
+  check.expect(d.drives.size() == d.study_runs && d.times.size() == d.scan_times.size(),
+               "it has not one drive for each run, with rows at scans");
+  for (const OwnDrive& drive : d.drives) {
+    check.expect(!drive.scan_times.empty() && drive.scan_times.size() <= d.scan_times.size() &&
+                     drive.scan_times.size() == drive.scan_steps.size(),
+                 "a drive has no scans, or more than the file");
+    check.expect(are_finite(drive.scan_times) && increases(drive.scan_times) &&
+                     increases(drive.scan_steps) &&
+                     are_finite({drive.start.x, drive.start.y, drive.start.heading}),
+                 "the times or the start of a drive are no numbers, or do not increase");
+    check_references(drive.references, check);
+    check.expect(std::ranges::equal(drive.references, d.drives.front().references, are_alike),
+                 "its drives have different references");
+  }
+}
+
+std::vector<std::string_view> nees_columns() {
+  std::vector<std::string_view> names;
+  for (const StoredConvention& convention : kErrorConventions)
+    names.emplace_back(convention.column);
+  return names;
+}
+
 /// Columns that are read together.
 const std::vector<std::vector<std::string_view>> kTogether = {
     {"pose_mean_mixture", "pose_covariance_mixture"},
@@ -98,7 +135,8 @@ const std::vector<std::vector<std::string_view>> kTogether = {
     {"map_mean", "map_covariance", "map_seen"},
     {"final_map_mean", "final_map_covariance", "final_map_seen"},
     {"joint_mean", "joint_covariance"},
-    {"error", "error_covariance"}};
+    {"error", "error_covariance"},
+    nees_columns()};
 
 void check_columns(const StoredCell& cell, const Check& check) {
   for (const Column& column : cell.columns) {
@@ -151,6 +189,7 @@ void check_description(const ResultDescription& description, const std::filesyst
   check_runs(description, check);
   check_times(description, check);
   check_scenario(description, check);
+  check_drives(description, check);
   for (const StoredCell& cell : description.cells) {
     check_columns(cell, check);
     check_lengths(description, cell, check);

@@ -2,6 +2,7 @@
 #include "engine/records/column_table.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/records/error_conventions.hpp"
 
 #include <algorithm>
 #include <string_view>
@@ -25,6 +26,7 @@ bool has_map(const Cell& cell) { return cell.landmarks > 0; }
 bool has_joint(const Cell& cell) { return cell.joint; }
 bool has_pose(const Cell& cell) { return cell.poses; }
 bool is_imported(const Cell& cell) { return cell.error_components > 0; }
+bool has_conventions(const Cell& cell) { return is_imported(cell) && cell.several_conventions; }
 bool is_filter(const Cell& cell) { return !is_imported(cell); }
 bool has_innovations(const Cell& cell) { return is_filter(cell) || cell.innovations; }
 
@@ -42,6 +44,12 @@ ColumnKind column(const char* name, const char* group, Element element, std::vec
                   bool (*applies)(const Cell&) = nullptr) {
   return {name, group, element, std::move(axes), units, long_name, applies};
 }
+
+ColumnKind nees_by(const StoredConvention& convention) {
+  return column(convention.column, "pose", Element::f64, {Axis::scan}, "1", convention.meaning,
+                has_conventions);
+}
+static_assert(kErrorConventions.size() == 3, "make_table() has a column of each");
 
 // NOLINTNEXTLINE(readability-function-size): a table, a column in two lines
 std::vector<ColumnKind> make_table() {
@@ -78,6 +86,9 @@ std::vector<ColumnKind> make_table() {
       column("error_covariance", "pose", f64, {scan, error_component, error_component_column},
              "products of the cell's setting units",
              "imported: covariance of error, as the other program reported it", is_imported),
+      nees_by(kErrorConventions[0]),
+      nees_by(kErrorConventions[1]),
+      nees_by(kErrorConventions[2]),
       of_report("map_size", "pose", f64, "landmarks in the map, mean over the particles",
                 [](Report r) { return r.map_size; }),
       of_report("association_correct", "association", f64,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/errors.hpp"
 #include "engine/records/open_result.hpp"
-#include "engine/records/output_path.hpp"
+#include "engine/records/posix_file.hpp"
 #include "engine/records/result_layout.hpp"
 #include "engine/records/seal.hpp"
 

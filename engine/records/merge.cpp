@@ -3,7 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/open_result.hpp"
-#include "engine/records/output_path.hpp"
+#include "engine/records/posix_file.hpp"
 #include "engine/records/shard.hpp"
 
 #include <algorithm>

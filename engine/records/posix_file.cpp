@@ -10,6 +10,7 @@
 #include <fcntl.h>
 #include <string>
 #include <sys/stat.h>
+#include <system_error>
 #include <unistd.h>
 #include <utility>
 #include <vector>
@@ -208,6 +209,20 @@ void PosixFile::rename(const std::filesystem::path& name, Target target) {
   if (status != 0) fail_to_write(name, errno);
   path_ = name;
   sync_folder_of(path_);
+}
+
+std::filesystem::path part_of(std::filesystem::path path) { return path += ".part"; }
+
+bool is_there(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored);
+}
+
+void expect_free(const std::filesystem::path& path) {
+  if (!is_there(path)) return;
+  throw StudyError(path.string() +
+                   ": exists (nothing is overwritten unasked): add --force to replace it, or "
+                   "choose another path");
 }
 
 }  // namespace montecarta::engine

@@ -53,4 +53,14 @@ class PosixFile {
   int descriptor_ = -1;
 };
 
+/// Name of the work in progress of the result `path`.
+std::filesystem::path part_of(std::filesystem::path path);
+
+/// Whether something has that name. False where its folder may not be searched: opening the file
+/// says so better than this could.
+bool is_there(const std::filesystem::path& path);
+
+/// Throws StudyError where something has that name already.
+void expect_free(const std::filesystem::path& path);
+
 }  // namespace montecarta::engine

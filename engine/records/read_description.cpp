@@ -3,6 +3,8 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/check_description.hpp"
+#include "engine/records/drive_layout.hpp"
+#include "engine/records/read_numbers.hpp"
 #include "engine/records/result_layout.hpp"
 
 #include <algorithm>
@@ -28,25 +30,6 @@ void expect_result_file(const h5::Handle& file, const std::filesystem::path& pat
                      " (this program reads version " + std::to_string(format::kMajor) +
                      "): use the montecarta that wrote it");
   }
-}
-
-template <class T>
-std::vector<T> read_all(const h5::Handle& parent, const std::string& name, Element element) {
-  const h5::Handle dataset = h5::open_dataset(parent, name);
-  const h5::Shape shape = h5::shape(dataset);
-  const auto count = std::accumulate(shape.begin(), shape.end(), 1ULL, std::multiplies<>());
-  std::vector<T> values(count);
-  h5::read(dataset, element, std::as_writable_bytes(std::span(values)));
-  return values;
-}
-
-std::vector<std::pair<double, double>> read_points(const h5::Handle& group,
-                                                   const std::string& name) {
-  std::vector<std::pair<double, double>> points;
-  if (!h5::has(group, name)) return points;
-  const auto flat = read_all<double>(group, name, Element::f64);
-  for (std::size_t i = 0; i + 1 < flat.size(); i += 2) points.emplace_back(flat[i], flat[i + 1]);
-  return points;
 }
 
 /// The axes behind `run` out of "run, time, component"; nullopt where it is not of that kind.
@@ -110,33 +93,6 @@ void read_axes(const h5::Handle& file, ResultDescription& result) {
   }
 }
 
-/// {fix}; as many as there are whole blocks of `dimension` x `dimension` numbers.
-std::vector<Eigen::Matrix3d> read_covariances(const h5::Handle& group, int dimension) {
-  std::vector<Eigen::Matrix3d> covariances;
-  if (!h5::has(group, "covariance")) return covariances;
-  const auto numbers = read_all<double>(group, "covariance", Element::f64);
-  const auto block = static_cast<std::size_t>(dimension) * static_cast<std::size_t>(dimension);
-  for (std::size_t first = 0; first + block <= numbers.size(); first += block) {
-    covariances.emplace_back(Eigen::Matrix3d::Zero());
-    covariances.back().topLeftCorner(dimension, dimension) =
-        Eigen::Map<const Eigen::MatrixXd>(numbers.data() + first, dimension, dimension);
-  }
-  return covariances;
-}
-
-void read_references(const h5::Handle& scenario, ResultDescription& result) {
-  if (!h5::has(scenario, format::kReferences)) return;
-  const h5::Handle references = h5::open_group(scenario, format::kReferences);
-  for (const std::string& name : h5::members(references)) {
-    const h5::Handle group = h5::open_group(references, name);
-    ReferencePath path{name, read_all<double>(group, "fix", Element::f64), {}, {}};
-    for (const auto& [x, y] : read_points(group, "position")) path.position.emplace_back(x, y);
-    if (h5::has(group, "heading")) path.heading = read_all<double>(group, "heading", Element::f64);
-    path.covariance = read_covariances(group, path.dimension());
-    result.references.push_back(std::move(path));
-  }
-}
-
 void read_scenario(const h5::Handle& file, ResultDescription& result) {
   const h5::Handle group = h5::open_group(file, "scenario");
   result.scenario = h5::texts(group);
@@ -144,7 +100,8 @@ void read_scenario(const h5::Handle& file, ResultDescription& result) {
            std::as_writable_bytes(std::span(&result.start, 1)));
   result.landmarks = read_points(group, "landmarks");
   result.waypoints = read_points(group, "waypoints");
-  read_references(group, result);
+  result.references = read_references(group);
+  result.drives = read_own_drives(group);
 }
 
 void read_provenance(const h5::Handle& file, ResultDescription& result) {

@@ -36,7 +36,7 @@ void copy(const Eigen::Matrix<double, N, N>& matrix, std::span<double> row) {
 
 }  // namespace
 
-Recorder::Recorder(RunRecord& record) : layout_(&record.layout()) {
+Recorder::Recorder(RunRecord& record) : layout_(&record.layout()), scans_(record.layout().scans()) {
   columns_.pose_mean = column<double>(record, "pose_mean");
   columns_.pose_covariance = column<double>(record, "pose_covariance");
   columns_.pose_mean_mixture = column<double>(record, "pose_mean_mixture");
@@ -136,7 +136,7 @@ void Recorder::record_particles(const SlamFilter& filter, std::size_t scan) {
 }
 
 void Recorder::record_map(const SlamFilter& filter, std::size_t scan) {
-  const bool last = scan + 1 == layout_->scans();
+  const bool last = scan + 1 == scans_;
   if (landmarks_.empty() || (columns_.map.mean.empty() && !last)) return;
   std::ranges::fill(landmarks_, std::nullopt);
   filter.map(landmarks_);

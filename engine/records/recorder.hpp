@@ -21,6 +21,10 @@ class Recorder {
  public:
   explicit Recorder(RunRecord& record);
 
+  /// Of the next run, where that has fewer scans than the layout: the last of them has the final
+  /// map.
+  void expect_scans(std::size_t scans) { scans_ = scans; }
+
   /// Row `step` of the columns over time. Nothing where rows are scans. Returns the estimate it
   /// recorded, nullptr where it recorded none, so that the caller can judge it without asking
   /// twice.
@@ -60,6 +64,7 @@ class Recorder {
   void write_map(const MapColumns& columns, std::size_t row) const;
 
   const RecordLayout* layout_;
+  std::size_t scans_;  ///< of this run
   Columns columns_;
   std::vector<Reported> reported_;
   PoseEstimate estimate_;                 ///< the last one recorded

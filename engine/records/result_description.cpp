@@ -43,6 +43,13 @@ void describe_time(const Itinerary& itinerary, bool scans_only, ResultDescriptio
   if (scans_only) std::iota(result.scan_rows.begin(), result.scan_rows.end(), 0U);
 }
 
+OwnDrive own_drive(const Itinerary& itinerary) {
+  OwnDrive drive{itinerary.start, {}, itinerary.scan_step, itinerary.references};
+  for (const std::uint32_t step : itinerary.scan_step)
+    drive.scan_times.push_back(itinerary.step_time[step]);
+  return drive;
+}
+
 }  // namespace
 
 bool StoredCell::has(std::string_view column) const {
@@ -78,6 +85,9 @@ ResultDescription describe(const StudyPlan& plan, const TextPairs& provenance) {
   result.landmarks = pairs(itinerary.landmarks);
   result.waypoints = pairs(itinerary.waypoints);
   result.references = itinerary.references;
+  for (std::size_t run = 0; run < plan.drives->own_drives(); ++run) {
+    result.drives.push_back(own_drive(plan.drives->itinerary_of(run)));
+  }
   result.has_truth = itinerary.has_truth;
   result.own_landmarks = plan.own_landmarks && !itinerary.landmarks.empty();
   result.scenario = plan.scenario;

@@ -28,6 +28,14 @@ struct StoredCell {
   bool has(std::string_view column) const;
 };
 
+/// A recorded drive that is a run by itself.
+struct OwnDrive {
+  Pose start;                             ///< before the first step
+  std::vector<double> scan_times;         ///< [s], at most as many as the file has scans
+  std::vector<std::uint32_t> scan_steps;  ///< step after which each scan is taken
+  std::vector<ReferencePath> references;  ///< of the same names in all drives
+};
+
 /// All that a result file says besides the numbers of its runs: from a plan it says how to lay a
 /// file out, from a file what lies in it.
 struct ResultDescription {
@@ -47,8 +55,10 @@ struct ResultDescription {
   std::vector<std::pair<double, double>> landmarks;  ///< [m] true positions; empty where unknown
   std::vector<std::pair<double, double>> waypoints;  ///< [m]; may be empty
   std::vector<ReferencePath> references;             ///< by which a recorded drive is judged
-  bool has_truth = true;                             ///< whether true poses are stored
-  bool own_landmarks = false;                        ///< whether true landmarks of runs are stored
+  std::vector<OwnDrive> drives;  ///< {run of the study} where every run is a drive of its own:
+                                 ///< then `references` is empty, and times are of the longest
+  bool has_truth = true;         ///< whether true poses are stored
+  bool own_landmarks = false;    ///< whether true landmarks of runs are stored
   TextPairs scenario;
   TextPairs provenance;
   std::vector<StoredCell> cells;

@@ -3,7 +3,7 @@
 
 #include "engine/records/columns.hpp"
 #include "engine/records/result_description.hpp"
-#include "engine/records/run_status.hpp"
+#include "engine/records/run_record.hpp"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/records/result_layout.hpp"
 
+#include "engine/records/drive_layout.hpp"
 #include "engine/records/h5.hpp"
 #include "engine/records/labelled_dataset.hpp"
 #include "engine/records/run_record.hpp"
@@ -68,44 +69,6 @@ void add_points(const h5::Handle& group, const std::string& one, const Points& p
   h5::write(dataset, Element::f64, points.data());
 }
 
-/// Of every fix the block of the components that it measures, row by row.
-std::vector<double> covariance_rows(const ReferencePath& path) {
-  const int d = path.dimension();
-  std::vector<double> rows;
-  for (const Eigen::Matrix3d& covariance : path.covariance) {
-    for (int i = 0; i < d; ++i) {
-      for (int j = 0; j < d; ++j) rows.push_back(covariance(i, j));
-    }
-  }
-  return rows;
-}
-
-void add_covariance(const h5::Handle& group, const ReferencePath& path, const Scales& scales) {
-  if (path.covariance.empty()) return;
-  const bool headed = path.dimension() == 3;
-  const std::string axis = headed ? "component" : "coordinate";
-  const auto side = static_cast<std::uint64_t>(path.dimension());
-  const auto dataset =
-      add_dataset(group, "covariance", Element::f64, {path.covariance.size(), side, side},
-                  {"fix", axis, axis + "_column"},
-                  {headed ? "(m, m, rad)^2" : "m2", "covariance of the error of the fix"}, scales);
-  h5::write(dataset, Element::f64, covariance_rows(path).data());
-}
-
-void add_reference(const h5::Handle& references, const ReferencePath& path, Scales& scales) {
-  const h5::Handle group = h5::create_group(references, path.name);
-  add_scale(group, "fix", path.time, {"s", "time of the fix"}, scales);
-  const auto position =
-      add_dataset(group, "position", Element::f64, {path.position.size(), 2}, {"fix", "coordinate"},
-                  {"m", "measured position of the vehicle"}, scales);
-  h5::write(position, Element::f64, path.position.data());
-  add_covariance(group, path, scales);
-  if (path.heading.empty()) return;
-  const auto heading = add_dataset(group, "heading", Element::f64, {path.heading.size()}, {"fix"},
-                                   {"rad", "measured heading of the vehicle"}, scales);
-  h5::write(heading, Element::f64, path.heading.data());
-}
-
 void add_scenario(const h5::Handle& file, const ResultDescription& result, Scales& scales) {
   static_assert(sizeof(Pose) == 3 * sizeof(double));
   const h5::Handle group = h5::create_group(file, "scenario");
@@ -115,9 +78,8 @@ void add_scenario(const h5::Handle& file, const ResultDescription& result, Scale
   h5::write(start, Element::f64, &result.start);
   add_points(group, "landmark", result.landmarks, "true position of the landmark", scales);
   add_points(group, "waypoint", result.waypoints, "position of the way-point", scales);
-  if (result.references.empty()) return;
-  const h5::Handle references = h5::create_group(group, format::kReferences);
-  for (const ReferencePath& path : result.references) add_reference(references, path, scales);
+  add_references(group, result.references, scales);
+  add_own_drives(group, result.drives, scales);
 }
 
 /// Bookkeeping must not depend on what happens to lie in the new file.

@@ -13,12 +13,14 @@ namespace montecarta::engine {
 namespace format {
 inline constexpr std::string_view kFiletype = "montecarta-results";
 inline constexpr std::uint64_t kMajor = 1;           ///< grows when a meaning changes
-inline constexpr std::uint64_t kMinor = 6;           ///< grows when something is added
+inline constexpr std::uint64_t kMinor = 7;           ///< grows when something is added
 inline constexpr std::size_t kSittingsBytes = 4096;  ///< room for the log of resumptions
 /// Fact of /provenance: --force allowed finishing to replace what had the final name.
 inline constexpr std::string_view kReplaces = "replaces";
 /// Group of /scenario, with one group for each independent measurement of the path.
 inline constexpr const char* kReferences = "references";
+/// Group of /scenario, with one group for each run where every run is a recorded drive of its own.
+inline constexpr const char* kDrives = "drives";
 }  // namespace format
 
 /// Creates at `path` a complete, closed result file in which every run is missing: all groups,

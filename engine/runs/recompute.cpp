@@ -118,7 +118,8 @@ std::optional<std::string> Recomputation::difference(StoredRun which) const {
     Recorder recorder(record);
     const SpareThreads none(Parallel::serial(), 1);
     const StopRequest never;
-    const RunConditions conditions{plan_.seed, run, plan_.drives->itinerary(), drive, none, never};
+    const RunConditions conditions{plan_.seed, run,  plan_.drives->itinerary_of(run),
+                                   drive,      none, never};
     expect(run_one(conditions, *filter, recorder, record) == RunEnd::recorded, "nobody dropped it");
     differs = difference(record, which);
   }

@@ -45,7 +45,8 @@ class Walk {
     const StepContext context(conditions_.seed, conditions_.run, step_,
                               conditions_.spare_threads.lend(particles_), &conditions_.stop);
     const Control& control = conditions_.drive.controls[step_];
-    if (!control.stands()) filter_.predict(context, control, itinerary.duration(step_));
+    if (!control.stands(itinerary.moving_controls))
+      filter_.predict(context, control, itinerary.duration(step_));
     while (scan_ < itinerary.scans() && itinerary.scan_step[scan_] == step_) {
       filter_.update(context, conditions_.drive.scan(scan_));
       const std::string_view flaw = defect_of(recorder_.after_scan(filter_, scan_++));
@@ -68,6 +69,7 @@ class Walk {
 RunEnd run_one(const RunConditions& conditions, SlamFilter& filter, Recorder& recorder,
                RunRecord& record) {
   record.clear();
+  recorder.expect_scans(conditions.itinerary.scans());
   const CpuClock clock;
   Walk walk(conditions, filter, recorder, record.layout().particles());
   try {

@@ -35,9 +35,10 @@ void Worker::execute(const Task& task) {
   fetch_drive(task.run_index);
   CellState& here = cell_state(task.cell);
   const StudyPlan& plan = session_.plan;
+  const std::uint64_t run = plan.first_run + task.run_index;
   const RunConditions conditions{
-      plan.seed, plan.first_run + task.run_index, plan.drives->itinerary(),
-      drive_,    session_.spare_threads,          session_.stop};
+      plan.seed,    run, plan.drives->itinerary_of(run), drive_, session_.spare_threads,
+      session_.stop};
   if (run_one(conditions, *here.filter, here.recorder, here.record) == RunEnd::dropped) return;
   session_.writer.write(task.cell, task.run_index, here.record);
   session_.progress.run_ended(here.record.status());

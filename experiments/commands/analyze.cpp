@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/data/margin.hpp"
+#include "analysis/data/study_settings.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"

@@ -24,18 +24,21 @@ Estimate print_cells(const StudyPlan& plan) {
   plan.drives->generate(plan.first_run, drive);
   const Itinerary& itinerary = plan.drives->itinerary();
   const double runs = static_cast<double>(plan.runs_here());
+  const double alike = runs_like_the_first(plan);
   Estimate total;
   const auto truth = static_cast<double>(itinerary.steps() * sizeof(Pose));
   total.disk = itinerary.has_truth ? runs * truth : 0.0;
   total.per_thread = 2.0 * truth;
   std::vector<TableRow> rows{{"cell", "filter", "ms a run", "a run", "all runs"}};
   for (const Cell& cell : plan.cells) {
-    const std::optional<double> seconds = trial_seconds(cell, plan, drive);
+    const std::optional<double> first = trial_seconds(cell, plan, drive);
+    const double cpu_seconds = first.value_or(0.0) * alike;
     const double bytes = static_cast<double>(RecordLayout(cell, plan.columns, itinerary).bytes());
-    rows.push_back({cell.label, cell.long_name,
-                    seconds ? std::to_string(std::max(1L, std::lround(*seconds * 1e3))) : "?",
-                    bytes_text(bytes), bytes_text(bytes * runs)});
-    total.cpu_seconds += seconds.value_or(0.0) * runs;
+    rows.push_back(
+        {cell.label, cell.long_name,
+         first ? std::to_string(std::max(1L, std::lround(cpu_seconds / runs * 1e3))) : "?",
+         bytes_text(bytes), bytes_text(bytes * runs)});
+    total.cpu_seconds += cpu_seconds;
     total.disk += bytes * runs;
     total.per_thread += bytes;
   }
@@ -58,10 +61,11 @@ int check(const Arguments& arguments) {
                                   sha256(plan.resolved_text)},
                     {"runs", std::to_string(plan.runs_here()) + " of " + std::to_string(plan.runs) +
                                  " for each of " + std::to_string(plan.cells.size()) + " cells"},
-                    {"a run", std::to_string(itinerary.steps()) + " steps, " +
-                                  std::to_string(itinerary.scans()) + " scans, " +
-                                  duration_text(itinerary.step_time.back()) + " of driving, " +
-                                  std::to_string(itinerary.landmarks.size()) + " landmarks"}})
+                    {plan.drives->own_drives() > 0 ? "the longest run" : "a run",
+                     std::to_string(itinerary.steps()) + " steps, " +
+                         std::to_string(itinerary.scans()) + " scans, " +
+                         duration_text(itinerary.step_time.back()) + " of driving, " +
+                         std::to_string(itinerary.landmarks.size()) + " landmarks"}})
             << "\n";
   if (study.until) std::cout << "until: " << in_words(*study.until, plan.runs) << "\n\n";
   const Estimate total = print_cells(plan);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/comparison_csv.hpp"
 #include "analysis/comparison/comparison_tables.hpp"
-#include "analysis/data/margin.hpp"
+#include "analysis/data/study_settings.hpp"
 #include "analysis/output/print_table.hpp"
 #include "engine/errors.hpp"
 #include "experiments/commands/commands.hpp"
@@ -37,6 +37,11 @@ std::string baseline_of(const Arguments& arguments, const ResultFile& file) {
   std::vector<std::string> labels;
   for (const StoredCell& cell : file.cells()) labels.push_back(cell.label);
   const auto baseline = arguments.text("baseline");
+  if (labels.size() == 1) {
+    throw StudyError(file.path().string() + ": has one cell, " + labels.front() +
+                     " (compare needs another one to compare it with): run a study of several "
+                     "cells, or judge the estimates of several estimators in one file");
+  }
   if (!baseline) {
     throw StudyError(
         "compare: --baseline CELL is needed (what the others are compared with): one of " +

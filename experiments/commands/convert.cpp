@@ -24,6 +24,11 @@ int convert(const Arguments& arguments) {
                      ": the drives of this study are simulated (there is nothing to "
                      "convert): give a study of a recorded drive");
   }
+  if (!study.own_logs.empty()) {
+    throw StudyError(name +
+                     ": has several drives (they are plain CSV logs already, and one folder holds "
+                     "one): copy their folders");
+  }
   write_log_csv(*study.log, folder);
   write_text(folder / "study.ini", study_of_log(study));
   std::cerr << "montecarta: " << study.log->odometry.size() << " odometry records and "

@@ -5,6 +5,7 @@
 #include "experiments/commands/plan_arguments.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/recordings/log_of_drive.hpp"
+#include "experiments/study/make_drives.hpp"
 
 #include <algorithm>
 #include <iostream>
@@ -55,12 +56,13 @@ int export_drives(const Arguments& arguments) {
   const StudyPlan plan = plan_of(study, arguments);
   const bool known = study.settings.text("association", "kind") == "known";
   const Itinerary& itinerary = plan.drives->itinerary();
+  const auto controls = controls_of(vehicle_of(study.settings, "scenario"));
   Drive drive;
   for (std::uint64_t run = plan.first_run; run < plan.last_run; ++run) {
     plan.drives->generate(run, drive);
-    const DriveLog log =
-        log_of(itinerary, drive, plan.own_landmarks ? plan.own_landmarks(run) : itinerary.landmarks,
-               known ? Identities::told : Identities::withheld);
+    const DriveLog log = log_of(itinerary, drive, controls,
+                                plan.own_landmarks ? plan.own_landmarks(run) : itinerary.landmarks,
+                                known ? Identities::told : Identities::withheld);
     const std::string name = name_of_run(run, plan.runs);
     write_log_csv(log, folder / "runs" / name, folder / "truth" / name);
   }

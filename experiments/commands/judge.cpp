@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/data/margin.hpp"
+#include "analysis/data/study_settings.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
@@ -8,7 +8,6 @@
 #include "experiments/commands/output_guard.hpp"
 #include "experiments/commands/plan_arguments.hpp"
 #include "experiments/commands/stored_result.hpp"
-#include "experiments/judging/convention_hints.hpp"
 #include "experiments/judging/judged_study.hpp"
 #include "experiments/text/words.hpp"
 
@@ -50,7 +49,7 @@ JudgingOptions judging_options(const Arguments& arguments) {
   options.match.interpolate = arguments.has("interpolate");
   options.existing = arguments.has("force") ? Existing::replace : Existing::refuse;
   options.provenance = provenance_of("judge", arguments);
-  options.within = arguments.number("within", kLeastMargin, kMostMargin).value_or(options.within);
+  options.within = arguments.number("within", kLeastMargin, kMostMargin);
   return options;
 }
 
@@ -63,14 +62,10 @@ int judge_estimates(const Arguments& arguments) {
         "--truth with the files, or with a folder of 'montecarta export'");
   }
   const JudgedFiles files = pair_files(arguments.operands(), truths, arguments.text("cell"));
-  const auto hints = judge_files(files, options);
+  judge_files(files, options);
   const ResultFile file(options.output);
-  print_tables(std::cout, analyze(file, options.level, parallel_of(arguments), options.within));
+  print_tables(std::cout, analyze(file, 0.95, parallel_of(arguments)));
   tell_what_explains(options.output.string());
-  for (const ConventionHint& hint : hints) {
-    const std::string words = in_words(hint, options.convention);
-    if (!words.empty()) std::cerr << "montecarta: hint: " << words << "\n";
-  }
   std::cerr << "montecarta: " << files.runs.size() << " runs of " << files.cells.size()
             << (files.cells.size() == 1 ? " estimator" : " estimators") << ", stored in "
             << options.output.string() << "\n";
@@ -98,8 +93,9 @@ Command judge_command() {
        .details =
            "Columns: time_s, then x_m,y_m,heading_rad or x_m,y_m,z_m,qx,qy,qz,qw or any others, "
            "then\ncov_A_B (components or indices from 0), all or one triangle; perhaps nis,nis_dof "
-           "(innovations). Truths have no "
-           "covariance.\nNothing is aligned.\n\n--error says of which error:\n" +
+           "(innovations),\nor innovation.csv beside estimate.csv. Truths have no covariance. Also "
+           "TUM trajectories, with the\ncovariances of OpenVINS behind them or STEM.cov beside. "
+           "Nothing is aligned.\n\n--error says of which error:\n" +
            explained_conventions() + "\n" + pairing_rule() +
            "\nexample:\n"
            "  montecarta judge runs/*/estimate.csv --truth runs/*/truth.csv --error world -o "

@@ -11,6 +11,7 @@
 #include "experiments/text/table.hpp"
 #include "experiments/text/words.hpp"
 #include "experiments/worlds/world_file.hpp"
+#include "filters/models/vehicle_settings.hpp"
 
 #include <algorithm>
 #include <fstream>
@@ -46,8 +47,11 @@ std::string fallback_text(const Setting& setting) {
 }
 
 std::string meaning_of(const Setting& setting) {
-  if (setting.kinds.empty()) return setting.meaning;
-  return setting.meaning + " (" + joined(setting.kinds) + ")";
+  std::string meaning = setting.meaning;
+  if (!setting.vehicles.empty() && setting.vehicles != vehicle_names())
+    meaning += " (" + joined(setting.vehicles) + ")";
+  if (!setting.kinds.empty()) meaning += " (" + joined(setting.kinds) + ")";
+  return meaning;
 }
 
 /// The settings of the given sections with unit, default and meaning.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/data/margin.hpp"
+#include "analysis/data/study_settings.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/nees_power.hpp"
 #include "engine/errors.hpp"

@@ -4,7 +4,10 @@
 #include "engine/errors.hpp"
 #include "engine/records/provenance.hpp"
 #include "engine/threads/thread_budget.hpp"
+#include "experiments/files/shipped_files.hpp"
 #include "experiments/study/make_plan.hpp"
+
+#include <filesystem>
 
 namespace montecarta::experiments {
 namespace {
@@ -18,6 +21,12 @@ std::optional<RunRange> range_of(const Arguments& arguments, std::uint64_t runs)
   if (range) return parse_run_range(*range, runs);
   if (shard) return parse_shard(*shard, runs);
   return std::nullopt;
+}
+
+/// The file of a study that comes with the program, as `montecarta list studies` names them.
+std::optional<std::filesystem::path> shipped_study(const std::string& name) {
+  if (name.find('/') != std::string::npos) return std::nullopt;
+  return shipped_file("studies", name + ".ini");
 }
 
 }  // namespace
@@ -50,7 +59,9 @@ ExternalPrograms programs_of(const Study& study, const Arguments& arguments) {
 }
 
 Study study_of(const Arguments& arguments) {
-  return read_study(arguments.operands().front(), arguments.texts("set"));
+  const std::string& name = arguments.operands().front();
+  const auto shipped = std::filesystem::exists(name) ? std::nullopt : shipped_study(name);
+  return read_study(shipped.value_or(name), arguments.texts("set"));
 }
 
 StudyPlan plan_of(const Study& study, const Arguments& arguments) {

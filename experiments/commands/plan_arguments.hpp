@@ -24,7 +24,7 @@ std::vector<OptionSpec> plan_options();
 OptionSpec external_option();
 /// Whether that was given. Throws StudyError where it was not and a cell of the study is a program.
 ExternalPrograms programs_of(const Study& study, const Arguments& arguments);
-/// The study file that is the first operand, changed by --set.
+/// The study that is the first operand, a file or the name of a shipped study, changed by --set.
 Study study_of(const Arguments& arguments);
 /// Its plan, cut by --runs or --shard, with programs if --allow-external is given.
 StudyPlan plan_of(const Study& study, const Arguments& arguments);

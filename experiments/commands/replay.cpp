@@ -7,6 +7,7 @@
 #include "experiments/commands/plan_arguments.hpp"
 #include "experiments/commands/stored_result.hpp"
 #include "experiments/commands/stored_study.hpp"
+#include "experiments/recordings/find_recording.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/study/make_plan.hpp"
 #include "experiments/study/setting.hpp"
@@ -46,14 +47,18 @@ std::string all_columns(const Study& study) {
   return joined(columns, ", ");
 }
 
-/// The study of one cell alone that keeps all it can.
-Study recording_everything(Study study, std::size_t cell) {
+/// The study of one run of one cell alone that keeps all it can.
+Study recording_everything(Study study, std::size_t cell, std::uint64_t run) {
   study.cells = {study.cells[cell]};
   study.printed = {};   // what a paper says of cells that are not there
   study.until.reset();  // one run decides nothing
   study.settings.replace("study", "until", "");
   study.settings.replace("record", "columns", all_columns(study));
   study.settings.replace("record", "rate", "control");
+  if (study.own_logs.empty()) return study;
+  study.log = study.own_logs.at(run);  // of one drive every step can be kept
+  study.own_logs.clear();
+  study.settings.replace("scenario", "data_sha256", fingerprint_of(*study.log));
   return study;
 }
 
@@ -90,7 +95,7 @@ int replay(const Arguments& arguments) {
   refuse_to_replace_other_kinds(output);
   const Study study = study_in(file, arguments);
   const std::size_t cell = cell_of(study, label);
-  const Study whole = recording_everything(study, cell);
+  const Study whole = recording_everything(study, cell, run);
   const ExternalPrograms programs = programs_of(whole, arguments);
   const auto departs = departure(file, study, cell, run, programs);
   const StudyPlan plan = make_plan(whole, RunRange{run, run + 1}, programs);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/report.hpp"
 
-#include "analysis/data/margin.hpp"
+#include "analysis/data/study_settings.hpp"
 #include "analysis/output/gnuplot.hpp"
 #include "engine/errors.hpp"
 #include "experiments/commands/commands.hpp"

@@ -2,7 +2,7 @@
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
-#include "engine/records/output_path.hpp"
+#include "engine/records/posix_file.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
 #include "engine/threads/thread_budget.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/commands/stored_result.hpp"
 
-#include "engine/records/output_path.hpp"
+#include "engine/records/posix_file.hpp"
 #include "experiments/commands/arguments.hpp"
 
 #include <algorithm>

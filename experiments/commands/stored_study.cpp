@@ -6,13 +6,15 @@
 #include "engine/records/provenance.hpp"
 #include "engine/records/sha256.hpp"
 #include "experiments/judging/imported_plan.hpp"
+#include "experiments/recordings/find_recording.hpp"
+#include "experiments/text/words.hpp"
 
 #include <iostream>
 
 namespace montecarta::experiments {
 
 OptionSpec data_option() {
-  return {"data", "", {"FOLDER"}, "where the recorded drive of the study lies"};
+  return {"data", "", {"FOLDER[,...]"}, "where the recorded drives of the study lie, in its order"};
 }
 
 Study study_in(const ResultFile& file, const Arguments& arguments) {
@@ -22,8 +24,11 @@ Study study_in(const ResultFile& file, const Arguments& arguments) {
                      "them again): judge the same files again with 'montecarta judge'");
   }
   std::vector<std::string> overrides;
-  if (const auto folder = arguments.text("data"))
-    overrides.push_back("scenario.path=" + std::filesystem::absolute(*folder).string());
+  if (const auto folders = arguments.text("data")) {
+    std::vector<std::string> paths = recordings_in(*folders, {});
+    for (std::string& path : paths) path = std::filesystem::absolute(path).string();
+    overrides.push_back("scenario.path=" + joined(paths));
+  }
   const std::string name = file.path().string() + " (the study in it)";
   Study study = parse_study(file.study_text(), name, file.path().parent_path(), overrides);
   if (sha256(resolved_text(study)) != file.study_sha256())

@@ -12,4 +12,8 @@ namespace montecarta::experiments {
 /// is a program that nobody allowed to start.
 std::optional<double> trial_seconds(const Cell& cell, const StudyPlan& plan, const Drive& drive);
 
+/// How many runs like the first one have as many steps as all runs of the plan: drives of their own
+/// have different lengths.
+double runs_like_the_first(const StudyPlan& plan);
+
 }  // namespace montecarta::experiments

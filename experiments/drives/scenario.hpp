@@ -3,6 +3,7 @@
 
 #include "engine/core/pose.hpp"
 #include "engine/numbers/angle.hpp"
+#include "filters/models/control_noise.hpp"
 #include "filters/models/vehicle.hpp"
 
 #include <cstdint>
@@ -30,19 +31,16 @@ struct Scenario {
   std::uint32_t steps_per_scan = 8;  ///< control_rate / scan_rate
   double control_rate = 40.0;        ///< [Hz]
   Vehicle vehicle = {};
-  double speed = 3.0;                            ///< [m/s]
-  double sigma_speed = 0.3;                      ///< [m/s]
-  double sigma_steer = 3.0 * kPi / 180.0;        ///< [rad]
-  double sigma_range = 0.1;                      ///< [m]
-  double sigma_bearing = 1.0 * kPi / 180.0;      ///< [rad]
-  double max_range = 30.0;                       ///< [m]
-  double field_of_view = kPi;                    ///< [rad] full angle, centred ahead
-  double waypoint_radius = 1.0;                  ///< [m] nearer than this a way-point is reached
-  double steer_limit = 30.0 * kPi / 180.0;       ///< [rad]
-  double steer_rate_limit = 20.0 * kPi / 180.0;  ///< [rad/s]
-  double clutter_rate = 0.0;                     ///< mean false alarms a scan
-  double miss_probability = 0.0;                 ///< that a visible landmark is not detected
-  Pose start{};                                  ///< before the first step
+  double speed = 3.0;                                       ///< [m/s]
+  ControlNoise control{.sigma = {0.3, 3.0 * kPi / 180.0}};  ///< e.g. [m/s], [rad]
+  double sigma_range = 0.1;                                 ///< [m]
+  double sigma_bearing = 1.0 * kPi / 180.0;                 ///< [rad]
+  double max_range = 30.0;                                  ///< [m]
+  double field_of_view = kPi;                               ///< [rad] full angle, centred ahead
+  double waypoint_radius = 1.0;   ///< [m] nearer than this a way-point is reached
+  double clutter_rate = 0.0;      ///< mean false alarms a scan
+  double miss_probability = 0.0;  ///< that a visible landmark is not detected
+  Pose start{};                   ///< before the first step
 };
 
 }  // namespace montecarta::experiments

@@ -11,28 +11,33 @@
 namespace montecarta::experiments {
 namespace {
 
-/// How far [m] a vehicle may drive towards one way-point before it is clear that it circles around
-/// it.
+/// [m]
+double step_length(const Scenario& scenario) { return scenario.speed / scenario.control_rate; }
+
+/// How far [m] a vehicle may drive towards one way-point before it is clear that it misses it.
 double time_limit(const Pose& pose, const Eigen::Vector2d& waypoint, const Scenario& scenario) {
   const double distance = std::hypot(waypoint.x() - pose.x, waypoint.y() - pose.y);
-  const double turning_circle =
-      kTwoPi * scenario.vehicle.wheelbase / std::sin(scenario.steer_limit);
-  const double time_to_full_lock = scenario.steer_limit / scenario.steer_rate_limit;
-  return 3.0 * distance + 10.0 * (turning_circle + scenario.speed * time_to_full_lock);
+  return 3.0 * distance + 10.0 * way_to_turn(scenario.vehicle, scenario.speed);
 }
 
 [[noreturn]] void throw_unreachable(const World& world, std::size_t waypoint,
                                     const Scenario& scenario) {
+  const double step = step_length(scenario);
+  const std::string why_and_remedy =
+      step > scenario.waypoint_radius
+          ? " m (the vehicle steps over it, " + to_text(step) +
+                " m at a time): lower scenario.speed, or enlarge scenario.control_rate or "
+                "scenario.waypoint_radius"
+          : " m (the vehicle circles around it): enlarge scenario.waypoint_radius or scenario." +
+                std::string(turn_limit_key(scenario.vehicle)) + ", or move the way-point";
   throw StudyError("world " + world.name + ": way-point " + std::to_string(waypoint + 1) +
-                   " is not reached within " + to_text(scenario.waypoint_radius) +
-                   " m (the vehicle circles around it): enlarge scenario.waypoint_radius or "
-                   "steer_rate_limit_deg, or move the way-point");
+                   " is not reached within " + to_text(scenario.waypoint_radius) + why_and_remedy);
 }
 
 [[noreturn]] void throw_too_long(const World& world) {
-  throw StudyError(
-      "world " + world.name + ": a run has more than " + std::to_string(kMostSteps) +
-      " steps (no result file would hold it): use fewer scenario.loops or a lower control_rate");
+  throw StudyError("world " + world.name + ": a run has more than " + std::to_string(kMostSteps) +
+                   " steps (no result file would hold it): use fewer scenario.loops or a lower "
+                   "scenario.control_rate");
 }
 
 }  // namespace
@@ -70,7 +75,7 @@ void SimulatedDrive::generate(std::uint64_t run, Drive& drive) const {
 
 void SimulatedDrive::drive_without_noise() {
   WaypointPilot pilot(world_.waypoints, scenario_);
-  const double step_length = scenario_.speed / scenario_.control_rate;
+  const double step = step_length(scenario_);
   std::size_t target = pilot.next_waypoint();
   Pose pose = scenario_.start;
   double left = time_limit(pose, world_.waypoints[target], scenario_);
@@ -79,9 +84,9 @@ void SimulatedDrive::drive_without_noise() {
       target = pilot.next_waypoint();
       left = time_limit(pose, world_.waypoints[target], scenario_);
     }
-    if ((left -= step_length) < 0.0) throw_unreachable(world_, target, scenario_);
+    if ((left -= step) < 0.0) throw_unreachable(world_, target, scenario_);
     if (nominal_.size() == kMostSteps) throw_too_long(world_);
-    nominal_.push_back({scenario_.speed, pilot.steer(pose)});
+    nominal_.push_back(pilot.steer(pose));
     pose = move(pose, nominal_.back(), 1.0 / scenario_.control_rate, scenario_.vehicle);
     path_.push_back(pose);
   }
@@ -100,6 +105,7 @@ void SimulatedDrive::fill_itinerary() {
   itinerary_.landmarks = world_.landmarks;
   itinerary_.waypoints = world_.waypoints;
   itinerary_.start = scenario_.start;
+  itinerary_.moving_controls = moving_controls(controls_of(scenario_.vehicle));
 }
 
 void SimulatedDrive::find_visible_landmarks() {
@@ -114,8 +120,7 @@ void SimulatedDrive::find_visible_landmarks() {
 void SimulatedDrive::move_measured(std::uint64_t run, Drive& drive) const {
   drive.truth = path_;
   for (std::size_t k = 0; k < nominal_.size(); ++k) {
-    const Control error = noise(run, k);
-    drive.controls[k] = {nominal_[k].speed + error.speed, nominal_[k].steer + error.steer};
+    drive.controls[k] = noisy(nominal_[k], run, k);
   }
 }
 
@@ -136,10 +141,9 @@ void SimulatedDrive::generate_matched(std::uint64_t run, Landmarks landmarks, Dr
   Pose pose = scenario_.start;
   for (std::size_t k = 0; k < itinerary_.steps(); ++k) {
     pilot.look_ahead(pose);
-    const Control error = noise(run, k);
-    drive.controls[k] = {scenario_.speed, pilot.steer(pose)};
-    pose = move(pose, Control{scenario_.speed + error.speed, drive.controls[k].steer + error.steer},
-                1.0 / scenario_.control_rate, scenario_.vehicle);
+    drive.controls[k] = pilot.steer(pose);
+    pose = move(pose, noisy(drive.controls[k], run, k), 1.0 / scenario_.control_rate,
+                scenario_.vehicle);
     drive.truth[k] = pose;
     if ((k + 1) % scenario_.steps_per_scan == 0) scan(place(run, k), pose, landmarks, drive);
   }
@@ -165,12 +169,15 @@ std::size_t SimulatedDrive::expected_detections() const {
   return 2 * (visible_.size() + static_cast<std::size_t>(clutter)) + 1000;
 }
 
-Control SimulatedDrive::noise(std::uint64_t run, std::size_t step) const {
+Control SimulatedDrive::noisy(const Control& control, std::uint64_t run, std::size_t step) const {
   StreamIdentity identity = place(run, step);
   identity.purpose = Draw::world_control;
   RngStream draw(identity);
-  const double speed = scenario_.sigma_speed * draw.normal();
-  return {speed, scenario_.sigma_steer * draw.normal()};
+  const auto sigma = deviations_of(scenario_.control, control, scenario_.vehicle);
+  Control result = control;
+  const std::size_t controls = controls_of(scenario_.vehicle).size();
+  for (std::size_t i = 0; i < controls; ++i) result[i] += sigma[i] * draw.normal();
+  return result;
 }
 
 StreamIdentity SimulatedDrive::place(std::uint64_t run, std::size_t step) const {

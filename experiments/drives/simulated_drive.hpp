@@ -42,7 +42,8 @@ class SimulatedDrive final : public DriveSource {
   void scan(const StreamIdentity& here, const Pose& pose, Landmarks landmarks, Drive& drive) const;
   void end_scan(const StreamIdentity& here, Drive& drive) const;
   std::size_t expected_detections() const;
-  Control noise(std::uint64_t run, std::size_t step) const;
+  /// `control` with the noise of that run and step.
+  Control noisy(const Control& control, std::uint64_t run, std::size_t step) const;
   StreamIdentity place(std::uint64_t run, std::size_t step) const;
 
   World world_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/drives/waypoint_pilot.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace montecarta::experiments {
@@ -15,13 +14,14 @@ void WaypointPilot::look_ahead(const Pose& pose) {
   if (next_ == 0) ++loops_done_;
 }
 
-double WaypointPilot::steer(const Pose& pose) {
+const Control& WaypointPilot::steer(const Pose& pose) {
   const Eigen::Vector2d& ahead = (*waypoints_)[next_];
   const double course = std::atan2(ahead.y() - pose.y, ahead.x() - pose.x);
-  const double most = scenario_->steer_rate_limit / scenario_->control_rate;
-  const double change = std::clamp(wrap(course - pose.heading - steer_), -most, most);
-  steer_ = std::clamp(steer_ + change, -scenario_->steer_limit, scenario_->steer_limit);
-  return steer_;
+  control_ = steered(scenario_->vehicle, {.before = control_,
+                                          .off = course - pose.heading,
+                                          .speed = scenario_->speed,
+                                          .control_rate = scenario_->control_rate});
+  return control_;
 }
 
 }  // namespace montecarta::experiments

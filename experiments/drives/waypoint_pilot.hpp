@@ -21,8 +21,8 @@ class WaypointPilot {
 
   /// Notes whether the way-point ahead is reached at `pose`; at most one a step.
   void look_ahead(const Pose& pose);
-  /// The steering angle [rad] for the next step from `pose`, rate and angle limited.
-  double steer(const Pose& pose);
+  /// The control for the next step from `pose`.
+  const Control& steer(const Pose& pose);
 
   std::uint32_t loops_done() const { return loops_done_; }
   std::size_t next_waypoint() const { return next_; }
@@ -32,7 +32,7 @@ class WaypointPilot {
   const Scenario* scenario_;
   std::size_t next_ = 0;
   std::uint32_t loops_done_ = 0;
-  double steer_ = 0.0;
+  Control control_;  ///< of the step before
 };
 
 }  // namespace montecarta::experiments

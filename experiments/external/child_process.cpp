@@ -19,7 +19,10 @@ namespace montecarta::experiments {
 namespace {
 
 constexpr int kFarewell = 1000;  // [ms] for a program to end when nobody asks it any more
-constexpr int kLookUp = 50;      // [ms] between two looks at the stop sign
+constexpr int kLookUp = 50;      // [ms] between two looks at the stop flag
+/// How long a worker looks for an answer before it sleeps: to wake it on an idle core costs more
+/// than a scan of a fast filter.
+constexpr std::chrono::microseconds kAwake{50};
 constexpr std::size_t kErrorOutput = 4096;  // [byte]
 
 /// While one lives, a pipe that nobody reads is an error of write(), no signal to this thread.
@@ -94,7 +97,12 @@ void ChildProcess::wait_for_events(int milliseconds) {
   std::array<pollfd, 3> events{{{at_end_ || has_line() ? -1 : output_.number(), POLLIN, 0},
                                 {error_.number(), POLLIN, 0},
                                 {sent_ < outgoing_.size() ? input_.number() : -1, POLLOUT, 0}}};
-  ::poll(events.data(), events.size(), milliseconds);
+  const auto awake_until = std::chrono::steady_clock::now() + kAwake;
+  int ready = 0;
+  do {
+    ready = ::poll(events.data(), events.size(), 0);
+  } while (ready == 0 && std::chrono::steady_clock::now() < awake_until);
+  if (ready == 0) ::poll(events.data(), events.size(), milliseconds);
   if (events[1].revents != 0) listen();
 }
 

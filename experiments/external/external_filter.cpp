@@ -24,7 +24,10 @@ void ExternalFilter::start(const Pose& start) {
 
 void ExternalFilter::predict(const StepContext& context, const Control& control, double duration) {
   begin(context);
-  session_->controls.push_back({control.speed, control.steer, duration});
+  const auto controls = controls_of(setup_.belief.vehicle).size();
+  ControlRow& row =
+      session_->controls.emplace_back(control.values.begin(), control.values.begin() + controls);
+  row.push_back(duration);
 }
 
 void ExternalFilter::update(const StepContext& context, Scan scan) {

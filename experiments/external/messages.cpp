@@ -2,6 +2,10 @@
 #include "experiments/external/messages.hpp"
 
 #include "analysis/page/json.hpp"
+#include "filters/models/vehicle_settings.hpp"
+
+#include <array>
+#include <type_traits>
 
 namespace montecarta::experiments {
 namespace {
@@ -24,18 +28,35 @@ void tell_controls(JsonWriter& json, std::span<const ControlRow> controls) {
   json.end_array();
 }
 
+void tell_control_names(JsonWriter& json, const Vehicle& vehicle) {
+  json.key("controls").begin_array();
+  for (const ControlName& control : controls_of(vehicle)) json.value(control.name);
+  json.end_array();
+}
+
+void tell_control_noise(JsonWriter& json, const Vehicle& vehicle, const ControlNoise& noise) {
+  std::size_t i = 0;
+  for (const ControlName& control : controls_of(vehicle)) {
+    json.key(si_name(control.sigma)).exact(noise.sigma[i++]);
+  }
+  if (!noise.grows()) return;
+  for (std::size_t k = 0; k < noise.alpha.size(); ++k) json.key(alpha_key(k)).exact(noise.alpha[k]);
+}
+
 void tell_settings(JsonWriter& json, const FilterSetup& setup) {
-  const auto& [vehicle, sigma_speed, sigma_steer, sigma_range, sigma_bearing] = setup.belief;
-  const bool front = vehicle.kind == Vehicle::Kind::front_axle;
+  const auto& [vehicle, control, sigma_range, sigma_bearing] = setup.belief;
   const bool known = setup.association.kind == Association::known;
   json.key("settings").begin_object();
-  json.member("vehicle", front ? "front_axle" : "rear_wheel");
-  json.key("wheelbase").exact(vehicle.wheelbase);
-  json.key("wheel_left").exact(vehicle.wheel_left);
-  json.key("sensor_ahead").exact(vehicle.sensor_ahead);
-  json.key("sensor_left").exact(vehicle.sensor_left);
-  json.key("sigma_speed").exact(sigma_speed);
-  json.key("sigma_steer").exact(sigma_steer);
+  json.member("vehicle", name_of(vehicle));
+  tell_vehicle(vehicle, [&](const std::string& name, const auto& value) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>) {
+      json.key(name).exact(value);
+    } else {
+      json.member(name, value);
+    }
+  });
+  tell_control_names(json, vehicle);
+  tell_control_noise(json, vehicle, control);
   json.key("sigma_range").exact(sigma_range);
   json.key("sigma_bearing").exact(sigma_bearing);
   json.member("association", known ? "known" : "nearest");

@@ -4,18 +4,18 @@
 #include "engine/core/drive.hpp"
 #include "filters/setup/filter_setup.hpp"
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace montecarta::experiments {
 
 // What a program is told, one line of JSON a message; EXTERNAL_FILTERS.md describes them. Numbers
 // are the shortest text that reads back as the same bits.
 
-/// One control step: speed [m/s], steering [rad], duration [s].
-using ControlRow = std::array<double, 3>;
+/// One control step: the controls of the vehicle, then its duration [s].
+using ControlRow = std::vector<double>;
 
 /// A run that begins.
 struct RunStart {

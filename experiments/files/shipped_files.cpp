@@ -10,10 +10,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::array<fs::path, 2> shipped_roots() {
+std::array<fs::path, 3> shipped_roots() {
   std::error_code none;
   const fs::path executable = fs::read_symlink("/proc/self/exe", none);
-  return {executable.parent_path().parent_path() / "share" / "montecarta", MONTECARTA_SHIPPED_DIR};
+  return {executable.parent_path().parent_path() / "share" / "montecarta", MONTECARTA_INSTALLED_DIR,
+          MONTECARTA_SHIPPED_DIR};
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/numbers/angle.hpp"
+#include "engine/records/error_conventions.hpp"
 #include "filters/joint/retraction.hpp"
 
 #include <Eigen/Geometry>
@@ -18,7 +19,12 @@ using Convention = ErrorConvention;
 
 constexpr std::array kConventions = {Convention::world, Convention::body,
                                      Convention::right_invariant};
+static_assert(kConventions.size() == kErrorConventions.size(), "all are stored, in this order");
 constexpr double kSmallTurn = 1e-5;  // [rad] below it series to second order have all digits
+
+const StoredConvention& stored(Convention convention) {
+  return kErrorConventions.at(static_cast<std::size_t>(convention));
+}
 
 Eigen::Vector3d pose_error(Convention convention, const Eigen::Vector3d& mean,
                            const Eigen::Vector3d& truth) {
@@ -90,11 +96,9 @@ Eigen::VectorXd vector_error(const StateShape& shape, const Eigen::VectorXd& mea
 
 }  // namespace
 
-std::string name_of(Convention convention) {
-  return convention == Convention::world  ? "world"
-         : convention == Convention::body ? "body"
-                                          : "right-invariant";
-}
+std::string name_of(Convention convention) { return stored(convention).name; }
+
+std::string nees_column(Convention convention) { return stored(convention).column; }
 
 std::span<const Convention> conventions_of(StateKind kind) {
   return std::span(kConventions).first(kind == StateKind::vector ? 1 : kConventions.size());

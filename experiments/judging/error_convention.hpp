@@ -11,11 +11,13 @@
 
 namespace montecarta::experiments {
 
-/// What error a covariance is the covariance of (STATISTICS 19).
+/// What error a covariance is the covariance of (STATISTICS 19), in the order of kErrorConventions.
 enum class ErrorConvention { world, body, right_invariant };
 
 /// "world", "body", "right-invariant".
 std::string name_of(ErrorConvention convention);
+/// Name of the column with the NEES by it: "nees_world", ...
+std::string nees_column(ErrorConvention convention);
 /// Those that a state has: all of a pose, of a vector `world` alone.
 std::span<const ErrorConvention> conventions_of(StateKind kind);
 

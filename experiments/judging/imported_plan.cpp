@@ -4,6 +4,8 @@
 #include "engine/errors.hpp"
 #include "engine/records/sha256.hpp"
 #include "experiments/files/whole_file.hpp"
+#include "experiments/judging/innovation_rows.hpp"
+#include "experiments/judging/tum_rows.hpp"
 #include "experiments/text/numbers.hpp"
 #include "experiments/text/words.hpp"
 
@@ -31,18 +33,25 @@ class ImportedDrives final : public DriveSource {
   Itinerary itinerary_;
 };
 
-/// Of all files, in their order.
+/// Of all files, in their order, and of what is read beside each.
 std::string contents_of(const std::vector<std::filesystem::path>& files) {
   std::string all;
-  for (const std::filesystem::path& file : files) all += sha256(whole_file(file)) + "\n";
+  for (const std::filesystem::path& file : files) {
+    all += sha256(whole_file(file)) + "\n";
+    if (const auto beside = innovations_beside(file)) all += sha256(whole_file(*beside)) + "\n";
+    if (!is_tum(file)) continue;
+    if (const auto beside = covariance_beside(file)) all += sha256(whole_file(*beside)) + "\n";
+  }
   return sha256(all);
 }
 
-TextPairs import_settings(const StateShape& shape, const JudgingOptions& options) {
-  return {{"state", name_of(shape.kind)},
-          {"error", name_of(options.convention)},
-          {"components", joined(shape.components)},
-          {"units", joined(shape.units)}};
+TextPairs import_settings(const StateRows& first, const JudgingOptions& options) {
+  TextPairs settings = {{"state", name_of(first.shape.kind)},
+                        {"error", name_of(options.convention)},
+                        {"components", joined(first.shape.components)},
+                        {"units", joined(first.shape.units)}};
+  if (!first.has_cross_terms) settings.emplace_back("cross_terms", "none, taken as 0");
+  return settings;
 }
 
 std::string import_text(const JudgedFiles& files, const TextPairs& settings) {
@@ -65,6 +74,8 @@ Cell imported_cell(const EstimatorFiles& files, const StateRows& first, const Te
   cell.long_name = files.cell + " (imported)";
   cell.error_components = first.shape.dimension();
   cell.innovations = !first.nis.empty();
+  // A layout without cross terms says of which error its covariance is.
+  cell.several_conventions = first.has_cross_terms && conventions_of(first.shape.kind).size() > 1;
   cell.poses = first.shape.kind == StateKind::pose;
   cell.settings = settings;
   return cell;
@@ -74,7 +85,7 @@ Cell imported_cell(const EstimatorFiles& files, const StateRows& first, const Te
 
 StudyPlan imported_plan(const JudgedFiles& files, const StateRows& first,
                         const JudgingOptions& options) {
-  const TextPairs settings = import_settings(first.shape, options);
+  const TextPairs settings = import_settings(first, options);
   StudyPlan plan;
   plan.name = options.output.stem().string();
   plan.title = "Imported estimates: " + plan.name;
@@ -88,6 +99,7 @@ StudyPlan imported_plan(const JudgedFiles& files, const StateRows& first,
   TextPairs all = settings;
   all.insert(all.end(), plan.scenario.begin() + 1, plan.scenario.end());
   plan.resolved_text = import_text(files, all);
+  if (options.within) plan.resolved_text += "[study]\nwithin = " + to_text(*options.within) + "\n";
   for (const EstimatorFiles& cell : files.cells)
     plan.cells.push_back(imported_cell(cell, first, settings));
   return plan;

@@ -3,9 +3,9 @@
 
 #include "analysis/metrics/nees.hpp"
 #include "engine/errors.hpp"
-#include "engine/records/output_path.hpp"
-#include "experiments/judging/convention_hints.hpp"
+#include "engine/records/posix_file.hpp"
 #include "experiments/judging/imported_plan.hpp"
+#include "experiments/judging/innovation_rows.hpp"
 #include "experiments/text/numbers.hpp"
 
 #include <algorithm>
@@ -28,6 +28,16 @@ void expect_alike(const StateRows& rows, const fs::path& path, const StateRows& 
   if (rows.nis.empty() != first.nis.empty()) {
     throw StudyError(path.string() + ": " + (rows.nis.empty() ? "no nis" : "has nis") + " (in " +
                      first_path.string() + " it is otherwise): give it in all files or in none");
+  }
+  if (rows.has_cross_terms != first.has_cross_terms) {
+    throw StudyError(path.string() + ": another layout than " + first_path.string() +
+                     " (one of the two has no covariance between position and rotation): judge "
+                     "them apart");
+  }
+  if (rows.time.size() > first.time.size()) {
+    throw StudyError(path.string() + ": " + std::to_string(rows.time.size()) + " rows, " +
+                     first_path.string() + " has " + std::to_string(first.time.size()) +
+                     " with as many lines: give all files one layout");
   }
   for (std::size_t s = 0; s < rows.time.size(); ++s) {
     if (std::abs(rows.time[s] - first.time[s]) <= tolerance) continue;
@@ -71,6 +81,20 @@ void end_run(const StateRows& rows, std::size_t scans, RunRecord& record) {
   record.mark_failed(static_cast<std::uint32_t>(rows.time.size()), reason, kUnknownCost);
 }
 
+/// NEES by every convention that the state has, of which the file has columns.
+void put_conventions(const StateRows& rows, const std::vector<Eigen::VectorXd>& truths,
+                     RunRecord& record) {
+  for (const ErrorConvention convention : conventions_of(rows.shape.kind)) {
+    const auto column = record.layout().find(nees_column(convention));
+    if (!column) return;
+    const auto nees = record.column<double>(*column);
+    for (std::size_t s = 0; s < rows.time.size(); ++s) {
+      nees[s] = analysis::strict_nees(error_of(rows.shape, convention, rows.state[s], truths[s]),
+                                      rows.covariance[s]);
+    }
+  }
+}
+
 /// One run of one estimator as the file holds it.
 RunRecord record_of(const RecordLayout& layout, const StateRows& rows,
                     const std::vector<Eigen::VectorXd>& truths, ErrorConvention convention) {
@@ -92,6 +116,7 @@ RunRecord record_of(const RecordLayout& layout, const StateRows& rows,
     std::ranges::copy(rows.nis, column("nis").begin());
     std::ranges::copy(rows.nis_dof, record.column<std::uint32_t>(*layout.find("nis_dof")).begin());
   }
+  put_conventions(rows, truths, record);
   end_run(rows, truths.size(), record);
   return record;
 }
@@ -102,35 +127,43 @@ struct LongestRun {
   StateRows rows;
 };
 
-LongestRun longest_of(const JudgedFiles& files) {
-  LongestRun longest;
+StateRows read_with_innovations(const fs::path& path, double tolerance) {
+  StateRows rows = read_estimates(path);
+  if (const auto beside = innovations_beside(path)) {
+    read_innovations(*beside, path, tolerance, rows);
+  }
+  return rows;
+}
+
+/// Reads the file with most lines alone: the others are read when they are written.
+LongestRun longest_of(const JudgedFiles& files, double tolerance) {
+  fs::path longest;
+  std::size_t most = 0;
   for (const EstimatorFiles& cell : files.cells) {
     for (const fs::path& path : cell.of_run) {
-      StateRows rows = read_estimates(path);
-      if (longest.path.empty() || rows.time.size() > longest.rows.time.size())
-        longest = {path, std::move(rows)};
+      const std::size_t rows = rows_in(path);
+      if (!longest.empty() && rows <= most) continue;
+      longest = path;
+      most = rows;
     }
   }
-  if (!longest.rows.time.empty()) return longest;
-  throw StudyError(longest.path.string() +
+  StateRows rows = read_with_innovations(longest, tolerance);
+  if (!rows.time.empty()) return {longest, std::move(rows)};
+  throw StudyError(longest.string() +
                    ": no rows behind the header, nor in any other file (nothing to judge): write "
                    "one row for each time");
 }
 
-std::vector<ConventionHint> write_runs(const JudgedFiles& files, const JudgingOptions& options,
-                                       const LongestRun& longest, const StudyPlan& plan,
-                                       ResultWriter& writer) {
+void write_runs(const JudgedFiles& files, const JudgingOptions& options, const LongestRun& longest,
+                const StudyPlan& plan, ResultWriter& writer) {
   std::vector<RecordLayout> layouts;
-  std::vector<ConventionHints> hints;
-  for (const Cell& cell : plan.cells) {
+  for (const Cell& cell : plan.cells)
     layouts.emplace_back(cell, plan.columns, plan.drives->itinerary());
-    hints.emplace_back(cell.label, longest.rows.shape, longest.rows.time);
-  }
   for (std::size_t run = 0; run < files.runs.size(); ++run) {
     const StateRows truth = read_truth(files.truth[run], longest.rows.shape);
     for (std::size_t c = 0; c < files.cells.size(); ++c) {
       const fs::path& path = files.cells[c].of_run[run];
-      const StateRows rows = read_estimates(path);
+      const StateRows rows = read_with_innovations(path, options.match.tolerance);
       expect_alike(rows, path, longest.rows, longest.path, options.match.tolerance);
       const auto truths =
           truths_for(longest.rows.time, truth, options.match, path, files.truth[run]);
@@ -140,32 +173,36 @@ std::vector<ConventionHint> write_runs(const JudgedFiles& files, const JudgingOp
         writer.write_truth(run, drive);
       }
       writer.write(c, run, record_of(layouts[c], rows, truths, options.convention));
-      if (rows.time.size() == truths.size()) hints[c].add(rows, truths);
     }
   }
-  std::vector<ConventionHint> found;
-  for (const ConventionHints& of_cell : hints)
-    found.push_back(of_cell.result(options.level, options.within));
-  return found;
+}
+
+/// Where the layout of the file says of which error its covariance is.
+void expect_stated_error(const LongestRun& longest, ErrorConvention said) {
+  const auto known = conventions_of(longest.rows.shape.kind);
+  if (std::ranges::find(known, said) == known.end()) {
+    throw StudyError("--error " + name_of(said) + ": not of a vector (" + longest.path.string() +
+                     " has no pose, which alone has a frame): say --error world");
+  }
+  if (longest.rows.has_cross_terms || said == ErrorConvention::world) return;
+  throw StudyError("--error " + name_of(said) + ": not of OpenVINS' layout (" +
+                   longest.path.string() +
+                   " has the position's covariance in the map and the rotation's in the body, "
+                   "which is turned into the map): say --error world, or write whole covariances "
+                   "as CSV");
 }
 
 }  // namespace
 
-std::vector<ConventionHint> judge_files(const JudgedFiles& files, const JudgingOptions& options) {
-  const LongestRun longest = longest_of(files);
-  const auto known = conventions_of(longest.rows.shape.kind);
-  if (std::ranges::find(known, options.convention) == known.end()) {
-    throw StudyError("--error " + name_of(options.convention) + ": not of a vector (" +
-                     longest.path.string() +
-                     " has no pose, which alone has a frame): say --error world");
-  }
+void judge_files(const JudgedFiles& files, const JudgingOptions& options) {
+  const LongestRun longest = longest_of(files, options.match.tolerance);
+  expect_stated_error(longest, options.convention);
   const StudyPlan plan = imported_plan(files, longest.rows, options);
   ResultWriter writer =
       ResultWriter::create(options.output, plan, options.provenance, options.existing);
   try {
-    auto hints = write_runs(files, options, longest, plan, writer);
+    write_runs(files, options, longest, plan, writer);
     writer.finish();
-    return hints;
   } catch (...) {
     std::error_code ignored;
     fs::remove(writer.unfinished(), ignored);

@@ -18,7 +18,6 @@ using Names = std::vector<std::string>;
 
 const std::string kTimeColumn = "time_s", kCovariancePrefix = "cov_";
 const Names kPoseColumns = {"x_m", "y_m", "heading_rad"};
-const Names kSpaceColumns = {"x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"};
 const Names kQuaternionColumns = {"qx", "qy", "qz", "qw"};
 const std::string kNis = "nis", kNisDof = "nis_dof";
 constexpr std::array kKnownUnits = {"m", "rad", "mps", "mps2", "radps", "s"};
@@ -78,20 +77,25 @@ StateShape shape_of(const Names& state, const std::string& place) {
   if (is_same_set(state, kPoseColumns)) {
     return {StateKind::pose, kPoseColumns, {"x", "y", "heading"}, {"m", "m", "rad"}};
   }
-  if (is_same_set(state, kSpaceColumns)) {
-    return {StateKind::pose_in_space,
-            kSpaceColumns,
-            {"x", "y", "z", "rx", "ry", "rz"},
-            {"m", "m", "m", "rad", "rad", "rad"}};
+  if (is_same_set(state, pose_in_space_shape().columns)) {
+    return pose_in_space_shape();
   }
   if (std::ranges::any_of(kQuaternionColumns,
                           [&](const std::string& q) { return has_name(state, q); })) {
     throw StudyError(place + ": a quaternion, but not a pose in space (nothing else has one): " +
-                     "name the state " + joined(kSpaceColumns, ","));
+                     "name the state " + joined(pose_in_space_shape().columns, ","));
   }
   StateShape shape{StateKind::vector, state, {}, {}};
   for (const std::string& column : state) {
     const auto [component, unit] = component_and_unit(column, place);
+    const auto same = std::ranges::find(shape.components, component);
+    if (same != shape.components.end()) {
+      throw StudyError(
+          place + ": '" + state[static_cast<std::size_t>(same - shape.components.begin())] +
+          "' and '" + column + "' are both of a component " + component +
+          " (units do not count, and cov_" + component + "_" + component +
+          " would be of either): name them apart, e.g. " + component + "1, " + component + "2");
+    }
     shape.components.push_back(component);
     shape.units.push_back(unit);
   }
@@ -156,6 +160,14 @@ bool is_of_state(const std::string& name) {
 
 }  // namespace
 
+const StateShape& pose_in_space_shape() {
+  static const StateShape shape = {StateKind::pose_in_space,
+                                   {"x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"},
+                                   {"x", "y", "z", "rx", "ry", "rz"},
+                                   {"m", "m", "m", "rad", "rad", "rad"}};
+  return shape;
+}
+
 std::string name_of(StateKind kind) {
   return kind == StateKind::pose            ? "pose"
          : kind == StateKind::pose_in_space ? "pose in space"
@@ -181,6 +193,24 @@ EstimateFields estimate_fields(const Names& header, const std::string& place) {
     fields.state.push_back(place_of_name(header, column));
   fields.covariance = covariance_fields(header, fields.shape, place);
   return fields;
+}
+
+InnovationFields innovation_fields(const Names& header, const std::string& place) {
+  InnovationFields fields;
+  if (is_same_set(header, {kTimeColumn, kNis, kNisDof})) {
+    check_header(header, place);
+    fields.nis = place_of_name(header, kNis);
+    fields.nis_dof = place_of_name(header, kNisDof);
+    return fields;
+  }
+  if (has_name(header, kNis) || has_name(header, kNisDof)) {
+    throw StudyError(place +
+                     ": nis and other columns (innovations are either): write time_s,nis,nis_dof, "
+                     "or the components of the innovation and their covariance");
+  }
+  fields.whole = estimate_fields(header, place);
+  if (fields.whole->shape.kind != StateKind::pose_in_space) return fields;
+  throw StudyError(place + ": a quaternion is no innovation: write its components, e.g. rx_rad");
 }
 
 std::vector<std::size_t> truth_fields(const Names& header, const StateShape& shape,

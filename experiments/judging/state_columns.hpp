@@ -31,6 +31,9 @@ struct StateShape {
   bool operator==(const StateShape&) const = default;
 };
 
+/// That of a pose in space, whatever layout it is in.
+const StateShape& pose_in_space_shape();
+
 /// Where a file has what: fields of a row.
 struct EstimateFields {
   StateShape shape;
@@ -44,6 +47,18 @@ struct EstimateFields {
 /// Throws StudyError beginning
 /// with `place`.
 EstimateFields estimate_fields(const std::vector<std::string>& header, const std::string& place);
+
+/// Where a file of innovations has what.
+struct InnovationFields {
+  std::optional<EstimateFields> whole;  ///< innovation and covariance; else the next two
+  std::size_t nis = 0, nis_dof = 0;
+};
+
+/// Understands the header of innovations: `time_s`, then `nis` and `nis_dof` alone, or as the
+/// header of estimates, whose components are those of the innovation. Throws StudyError beginning
+/// with `place`.
+InnovationFields innovation_fields(const std::vector<std::string>& header,
+                                   const std::string& place);
 
 /// The fields of the state in the header of a truth, which may have other columns besides. Throws
 /// StudyError beginning with `place`.

@@ -4,12 +4,16 @@
 #include "engine/errors.hpp"
 #include "engine/numbers/angle.hpp"
 #include "experiments/files/csv_rows.hpp"
+#include "experiments/files/whole_file.hpp"
+#include "experiments/judging/tum_rows.hpp"
 #include "experiments/text/numbers.hpp"
+#include "experiments/text/words.hpp"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace montecarta::experiments {
 namespace {
@@ -24,13 +28,7 @@ Eigen::VectorXd state_in(const CsvRows& rows, const std::vector<std::size_t>& fi
   for (std::size_t k = 0; k < fields.size(); ++k) {
     state(static_cast<Eigen::Index>(k)) = rows.number(fields[k], "number");
   }
-  if (shape.kind != StateKind::pose_in_space) return state;
-  const double length = state.tail<4>().norm();
-  if (std::abs(length - 1.0) > kQuaternionPlaceSlack) {
-    throw StudyError(rows.place() + ": the quaternion has length " + to_text(length) +
-                     " (of a rotation it is 1): write qx, qy, qz, qw of a unit quaternion");
-  }
-  state.tail<4>() /= length;
+  if (shape.kind == StateKind::pose_in_space) normalise_quaternion(state, rows.place());
   return state;
 }
 
@@ -47,26 +45,9 @@ Eigen::MatrixXd covariance_in(const CsvRows& rows, const EstimateFields& fields)
 
 void take_innovation(const CsvRows& rows, const EstimateFields& fields, StateRows& all) {
   if (!fields.nis) return;
-  const double nis = rows.number(*fields.nis, "number"),
-               dof = rows.number(*fields.nis_dof, "number");
-  constexpr double kMostComponents = 1e6;
-  if (nis < 0.0 || dof < 0.0 || dof > kMostComponents || dof != std::floor(dof)) {
-    throw StudyError(rows.place() + ": nis " + to_text(nis) + " with nis_dof " + to_text(dof) +
-                     " (a sum of squares, and how many components it has): write 0 and 0 where "
-                     "nothing was observed");
-  }
+  const double nis = rows.number(*fields.nis, "number");
+  all.nis_dof.push_back(checked_dof(nis, rows.number(*fields.nis_dof, "number"), rows.place()));
   all.nis.push_back(nis);
-  all.nis_dof.push_back(static_cast<std::uint32_t>(dof));
-}
-
-void take_time(const CsvRows& rows, std::vector<double>& times) {
-  const double time = rows.number(0, "time");
-  if (!times.empty() && time <= times.back()) {
-    throw StudyError(rows.place() + ": time " + to_text(time) +
-                     " s is not later than that of the "
-                     "row before (rows go forward in time): sort them, one row for each time");
-  }
-  times.push_back(time);
 }
 
 bool is_angle(const StateShape& shape, Eigen::Index k) {
@@ -91,12 +72,41 @@ Eigen::VectorXd between(const StateShape& shape, const Eigen::VectorXd& a, const
 
 }  // namespace
 
+std::uint32_t checked_dof(double nis, double dof, const std::string& place) {
+  constexpr double kMostComponents = 1e6;
+  if (nis >= 0.0 && dof >= 0.0 && dof <= kMostComponents && dof == std::floor(dof)) {
+    return static_cast<std::uint32_t>(dof);
+  }
+  throw StudyError(place + ": nis " + to_text(nis) + " with nis_dof " + to_text(dof) +
+                   " (a sum of squares, and how many components it has): write 0 and 0 where "
+                   "nothing was observed");
+}
+
+void take_time(double time, const std::string& place, std::vector<double>& times) {
+  if (!times.empty() && time <= times.back()) {
+    throw StudyError(place + ": time " + to_text(time) +
+                     " s is not later than that of the row before (rows go forward in time): sort "
+                     "them, one row for each time");
+  }
+  times.push_back(time);
+}
+
+void normalise_quaternion(Eigen::VectorXd& state, const std::string& place) {
+  const double length = state.tail<4>().norm();
+  if (std::abs(length - 1.0) > kQuaternionPlaceSlack) {
+    throw StudyError(place + ": the quaternion has length " + to_text(length) +
+                     " (of a rotation it is 1): write qx, qy, qz, qw of a unit quaternion");
+  }
+  state.tail<4>() /= length;
+}
+
 StateRows read_estimates(const std::filesystem::path& path) {
+  if (is_tum(path)) return read_tum_estimates(path);
   CsvRows file(path);
   const EstimateFields fields = estimate_fields(file.columns(), file.place());
   StateRows rows{fields.shape, {}, {}, {}, {}, {}};
   while (file.next()) {
-    take_time(file, rows.time);
+    take_time(file.number(0, "time"), file.place(), rows.time);
     rows.state.push_back(state_in(file, fields.state, fields.shape));
     rows.covariance.push_back(covariance_in(file, fields));
     take_innovation(file, fields, rows);
@@ -104,12 +114,26 @@ StateRows read_estimates(const std::filesystem::path& path) {
   return rows;
 }
 
+std::size_t rows_in(const std::filesystem::path& path) {
+  const std::string text = whole_file(path);
+  std::size_t lines = 0;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::size_t length = std::min(rest.find('\n'), rest.size());
+    const std::string_view line = rest.substr(0, length);
+    rest.remove_prefix(std::min(length + 1, rest.size()));
+    if (!trimmed(line.substr(0, line.find('#'))).empty()) ++lines;
+  }
+  const std::size_t header = is_tum(path) ? 0 : 1;
+  return lines - std::min(lines, header);
+}
+
 StateRows read_truth(const std::filesystem::path& path, const StateShape& shape) {
+  if (is_tum(path)) return read_tum_truth(path, shape);
   CsvRows file(path);
   const std::vector<std::size_t> fields = truth_fields(file.columns(), shape, file.place());
   StateRows rows{shape, {}, {}, {}, {}, {}};
   while (file.next()) {
-    take_time(file, rows.time);
+    take_time(file.number(0, "time"), file.place(), rows.time);
     rows.state.push_back(state_in(file, fields, shape));
   }
   if (!rows.time.empty()) return rows;
@@ -136,8 +160,10 @@ Eigen::VectorXd truth_at(const StateRows& truth, double time, const TimeMatch& m
                    truths.string() + " (the nearest is " + to_text(std::min(to_left, to_right)) +
                    " s away, --tolerance is " + to_text(match.tolerance) + " s): " +
                    (has_left && has_right
-                        ? "give truths at the times of the estimates, or say --interpolate"
-                        : "leave out what lies outside of the truth"));
+                        ? "give truths at the times of the estimates, or say --interpolate, or a "
+                          "larger --tolerance where times have few digits"
+                        : "leave out what lies outside of the truth, or say a larger --tolerance "
+                          "where times have few digits"));
 }
 
 }  // namespace montecarta::experiments

@@ -14,7 +14,6 @@ namespace montecarta::experiments {
 namespace {
 
 constexpr double kLatestTime = 1e10;  ///< [s] beyond are nanoseconds
-constexpr double kFastest = 1e3;      ///< [m/s]
 constexpr double kLongestHold = 5.0;  ///< [s] that scans may outlast the odometry
 
 /// A record of one file, for errors.
@@ -159,13 +158,15 @@ void check_start(const DriveLog& log, const std::string& place) {
 
 }  // namespace
 
-void check_odometry(std::span<const Odometry> odometry, const std::string& place) {
+void check_odometry(std::span<const Odometry> odometry, std::span<const ControlName> controls,
+                    const std::string& place) {
   check_times(
       odometry.size(), [&](std::size_t i) { return odometry[i].time; }, place);
   for (std::size_t i = 0; i < odometry.size(); ++i) {
     const Record record{place, i};
-    record.limit(odometry[i].control.speed, kFastest, "speed", "metres per second, at most 1000");
-    record.limit(odometry[i].control.steer, kPi / 2, "steering", "radians, at most pi / 2");
+    for (std::size_t c = 0; c < controls.size(); ++c) {
+      record.limit(odometry[i].control[c], controls[c].most, controls[c].noun, controls[c].limit);
+    }
   }
 }
 
@@ -209,7 +210,7 @@ void check_log(const DriveLog& log, const std::string& place) {
   Record{start, 0}.limit(log.start_time, kLatestTime, "time", "seconds, a finite number");
   Record{start, 0}.place_on_map({log.start.x, log.start.y});
   Record{start, 0}.limit(log.start.heading, 1e3 * kPi, "heading", "radians");
-  check_odometry(log.odometry, place + " (odometry)");
+  check_odometry(log.odometry, log.controls, place + " (odometry)");
   check_scans(log.scans, place + " (scans)");
   check_references(log, place);
   check_landmarks(log.landmarks, place + " (landmarks)");

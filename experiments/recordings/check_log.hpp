@@ -14,7 +14,8 @@ inline constexpr std::int32_t kMostIdentities = 1'000'000;
 // Each throws StudyError "place: record N: problem (why): remedy" at the first record (from 1) that
 // cannot be: time not increasing, a number not finite or beyond anything that drives, e.g. degrees
 // in place of radians. `place` is the file.
-void check_odometry(std::span<const Odometry> odometry, const std::string& place);
+void check_odometry(std::span<const Odometry> odometry, std::span<const ControlName> controls,
+                    const std::string& place);
 void check_scans(std::span<const LoggedScan> scans, const std::string& place);
 void check_reference(const ReferencePath& reference, const std::string& place);
 void check_landmarks(std::span<const Eigen::Vector2d> landmarks, const std::string& place);

@@ -2,16 +2,18 @@
 #pragma once
 
 #include "engine/core/drive.hpp"
+#include "filters/models/vehicle.hpp"
 
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace montecarta::experiments {
 
-/// What wheel and steering measured; holds from its time to that of the next.
+/// What the vehicle measured of its motion, or was told; holds from its time to that of the next.
 struct Odometry {
   double time = 0.0;  ///< [s]
   Control control;
@@ -29,8 +31,9 @@ struct DriveLog {
   /// [s] when the vehicle was at `start`; what it did before nobody knows.
   double start_time = 0.0;
   Pose start;
-  std::vector<Odometry> odometry;          ///< in increasing time
-  std::vector<LoggedScan> scans;           ///< in increasing time
+  std::span<const ControlName> controls = controls_of(Vehicle());  ///< what odometry consists of
+  std::vector<Odometry> odometry;                                  ///< in increasing time
+  std::vector<LoggedScan> scans;                                   ///< in increasing time
   std::vector<ReferencePath> references;   ///< at least one; the first one leads
   std::vector<Eigen::Vector2d> landmarks;  ///< [m] surveyed positions; empty where unknown
 };

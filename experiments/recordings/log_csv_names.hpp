@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "filters/models/vehicle.hpp"
+
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string>
 
 namespace montecarta::experiments::log_csv {
@@ -11,7 +14,12 @@ namespace montecarta::experiments::log_csv {
 using Headers = std::array<std::string, 2>;
 
 inline const std::array<std::string, 1> kStart = {"time_s,x_m,y_m,heading_rad"};
-inline const std::array<std::string, 1> kOdometry = {"time_s,speed_mps,steer_rad"};
+/// Of the odometry of a vehicle with these controls.
+inline std::string odometry_header(std::span<const ControlName> controls) {
+  std::string header = "time_s";
+  for (const ControlName& control : controls) header.append(",").append(control.column);
+  return header;
+}
 inline const Headers kDetections = {"time_s,range_m,bearing_rad",
                                     "time_s,range_m,bearing_rad,identity"};
 inline const Headers kLandmarks = {"x_m,y_m", "x_m,y_m,identity"};

@@ -7,6 +7,7 @@
 #include "experiments/recordings/reference_csv.hpp"
 #include "experiments/text/numbers.hpp"
 #include "experiments/text/words.hpp"
+#include "filters/models/vehicle_settings.hpp"
 
 #include <algorithm>
 #include <system_error>
@@ -30,15 +31,27 @@ void read_start(const fs::path& path, DriveLog& log) {
                    " (a drive starts at one pose): write one row");
 }
 
-std::vector<Odometry> read_odometry(const fs::path& path) {
-  CsvRows rows(path, log_csv::kOdometry);
-  std::vector<Odometry> odometry;
+/// The different sets of controls that vehicles have.
+std::vector<std::span<const ControlName>> known_controls() {
+  std::vector<std::span<const ControlName>> known;
+  for_each_vehicle([&](const Vehicle& vehicle) { known.push_back(controls_of(vehicle)); });
+  return known;
+}
+
+/// The columns say what kind of vehicle it is of.
+void read_odometry(const fs::path& path, DriveLog& log) {
+  const std::vector<std::span<const ControlName>> known = known_controls();
+  std::vector<std::string> headers;
+  for (const auto& controls : known) headers.push_back(log_csv::odometry_header(controls));
+  CsvRows rows(path, headers);
+  log.controls = known[rows.header()];
   while (rows.next()) {
-    odometry.push_back({rows.number(0, "time"),
-                        {.speed = rows.number(1, "speed"), .steer = rows.number(2, "steering")}});
+    Odometry& odometry = log.odometry.emplace_back(Odometry{rows.number(0, "time"), {}});
+    for (std::size_t c = 0; c < log.controls.size(); ++c) {
+      odometry.control[c] = rows.number(c + 1, log.controls[c].noun);
+    }
   }
-  check_odometry(odometry, path.string());
-  return odometry;
+  check_odometry(log.odometry, log.controls, path.string());
 }
 
 /// The whole number in a field; nullopt where it is empty.
@@ -138,7 +151,7 @@ std::vector<ReferencePath> read_references(const fs::path& folder) {
 DriveLog read_log_csv(const fs::path& folder) {
   DriveLog log;
   read_start(folder / "start.csv", log);
-  log.odometry = read_odometry(folder / "odometry.csv");
+  read_odometry(folder / "odometry.csv", log);
   log.scans = read_scans(folder / "detections.csv");
   log.references = read_references(folder);
   if (fs::exists(folder / "landmarks.csv")) {

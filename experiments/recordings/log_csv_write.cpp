@@ -8,7 +8,9 @@
 #include "experiments/text/numbers.hpp"
 
 #include <algorithm>
+#include <array>
 #include <initializer_list>
+#include <span>
 
 namespace montecarta::experiments {
 namespace {
@@ -21,6 +23,9 @@ class Table {
   explicit Table(const std::string& header) : text_(header + "\n") {}
 
   void add(std::initializer_list<double> numbers, const std::string& rest = "") {
+    add(std::span(numbers.begin(), numbers.size()), rest);
+  }
+  void add(std::span<const double> numbers, const std::string& rest = "") {
     for (const double number : numbers) {
       if (text_.back() != '\n') text_ += ',';
       text_ += to_text(number);
@@ -39,9 +44,13 @@ Table start_table(double time, const Pose& start) {
   return table;
 }
 
-Table odometry_table(const std::vector<Odometry>& odometry) {
-  Table table(log_csv::kOdometry[0]);
-  for (const auto& [time, control] : odometry) table.add({time, control.speed, control.steer});
+Table odometry_table(const DriveLog& log) {
+  Table table(log_csv::odometry_header(log.controls));
+  for (const auto& [time, control] : log.odometry) {
+    std::array<double, 1 + Control::kMost> row{time};
+    std::ranges::copy(control.values, row.begin() + 1);
+    table.add(std::span(row).first(1 + log.controls.size()));
+  }
   return table;
 }
 
@@ -99,7 +108,7 @@ void write_log_csv(const DriveLog& log, const fs::path& folder, const fs::path& 
   make_folder(folder);
   make_folder(truth_folder);
   start_table(log.start_time, log.start).save(folder / "start.csv");
-  odometry_table(log.odometry).save(folder / "odometry.csv");
+  odometry_table(log).save(folder / "odometry.csv");
   detection_table(log).save(folder / "detections.csv");
   for (const ReferencePath& reference : log.references) {
     write_text(truth_folder / log_csv::file_of_reference(reference.name), csv_of(reference));

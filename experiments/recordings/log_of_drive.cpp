@@ -42,10 +42,12 @@ ReferencePath truth_path(const Itinerary& itinerary, const Drive& drive) {
 }  // namespace
 
 DriveLog log_of(const Itinerary& itinerary, const Drive& drive,
-                std::vector<Eigen::Vector2d> landmarks, Identities identities) {
+                std::span<const ControlName> controls, std::vector<Eigen::Vector2d> landmarks,
+                Identities identities) {
   expect(itinerary.has_truth, "a log is made of a drive whose truth is unknown");
   DriveLog log;
   log.start = itinerary.start;
+  log.controls = controls;
   log.odometry = odometry_rows(itinerary, drive);
   for (std::size_t s = 0; s < itinerary.scans(); ++s) {
     log.scans.push_back(

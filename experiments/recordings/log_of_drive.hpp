@@ -11,8 +11,10 @@ enum class Identities { told, withheld };
 
 /// A drive with known truth as if it had been recorded: RecordedDrive makes the same steps,
 /// controls and scans of it, bit for bit, while no detection is beyond its max_range. Times count
-/// from the start. The truth after every step is its only reference, `landmarks` its survey.
+/// from the start. The truth after every step is its only reference, `landmarks` its survey,
+/// `controls` what its controls are.
 DriveLog log_of(const Itinerary& itinerary, const Drive& drive,
-                std::vector<Eigen::Vector2d> landmarks, Identities identities);
+                std::span<const ControlName> controls, std::vector<Eigen::Vector2d> landmarks,
+                Identities identities);
 
 }  // namespace montecarta::experiments

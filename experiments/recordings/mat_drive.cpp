@@ -31,9 +31,9 @@ std::vector<Odometry> odometry_of(const MatFile& file, const std::vector<double>
   const std::vector<double> steers = series_of(file, steering, times.size());
   std::vector<Odometry> odometry(times.size());
   for (std::size_t i = 0; i < times.size(); ++i) {
-    odometry[i] = {times[i], {.speed = speeds[i], .steer = steers[i]}};
+    odometry[i] = {times[i], {speeds[i], steers[i]}};
   }
-  check_odometry(odometry, file.place());
+  check_odometry(odometry, controls_of(Car()), file.place());
   return odometry;
 }
 

@@ -9,6 +9,7 @@ namespace montecarta::experiments {
 RecordedDrive::RecordedDrive(const DriveLog& log, double max_range, double scan_delay) {
   itinerary_.start = {log.start.x, log.start.y, wrap(log.start.heading)};
   itinerary_.has_truth = false;
+  itinerary_.moving_controls = moving_controls(log.controls);
   itinerary_.landmarks = log.landmarks;
   itinerary_.references = log.references;
   for (ReferencePath& path : itinerary_.references) {

@@ -34,9 +34,9 @@ std::vector<Odometry> calibrated_odometry(const fs::path& path) {
   NumberRecords records(path, 3, RecordEnd::lines);
   std::vector<Odometry> odometry;
   while (const auto record = records.next()) {
-    odometry.push_back({(*record)[0], {.speed = (*record)[1], .steer = (*record)[2]}});
+    odometry.push_back({(*record)[0], {(*record)[1], (*record)[2]}});
   }
-  check_odometry(odometry, path.string());
+  check_odometry(odometry, controls_of(Car()), path.string());
   return odometry;
 }
 

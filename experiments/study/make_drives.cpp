@@ -4,10 +4,14 @@
 #include "engine/errors.hpp"
 #include "experiments/drives/simulated_drive.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
+#include "experiments/recordings/several_drives.hpp"
 #include "experiments/text/numbers.hpp"
+#include "experiments/text/words.hpp"
+#include "filters/models/vehicle_settings.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace montecarta::experiments {
 namespace {
@@ -37,15 +41,12 @@ Scenario scenario_of(const Settings& s) {
   scenario.control_rate = s.number(in, "control_rate");
   scenario.vehicle = vehicle_of(s, in);
   scenario.speed = s.number(in, "speed");
-  scenario.sigma_speed = s.number(in, "sigma_speed");
-  scenario.sigma_steer = s.radians(in, "sigma_steer_deg");
+  scenario.control = control_noise_of(s, in);
   scenario.sigma_range = s.number(in, "sigma_range");
   scenario.sigma_bearing = s.radians(in, "sigma_bearing_deg");
   scenario.max_range = s.number(in, "max_range");
   scenario.field_of_view = s.radians(in, "field_of_view_deg");
   scenario.waypoint_radius = s.number(in, "waypoint_radius");
-  scenario.steer_limit = s.radians(in, "steer_limit_deg");
-  scenario.steer_rate_limit = s.radians(in, "steer_rate_limit_deg");
   scenario.clutter_rate = s.number(in, "clutter_rate");
   scenario.miss_probability = s.number(in, "miss_probability");
   scenario.start = {s.number(in, "start_x"), s.number(in, "start_y"),
@@ -68,9 +69,8 @@ void refuse_use_of_identities(const Settings& s) {
 }
 
 /// Scans before the start would all be taken there, at one time and with the same random numbers.
-void refuse_early_scans(const Study& study) {
-  const Settings& s = study.settings;
-  const double most = study.log->scans.front().time - study.log->start_time;
+void refuse_early_scans(const Settings& s, const DriveLog& log) {
+  const double most = log.scans.front().time - log.start_time;
   if (s.number("scenario", "scan_delay") <= most) return;
   throw StudyError(s.place("scenario", "scan_delay") +
                    ": scan_delay = " + s.text("scenario", "scan_delay") +
@@ -79,48 +79,108 @@ void refuse_early_scans(const Study& study) {
                    to_text(most) + " s");
 }
 
-/// Steering at which the measured wheel all but stands still, beyond which the model has no answer.
-void refuse_impossible_steering(const Study& study) {
-  const Vehicle vehicle = vehicle_of(study.settings, "belief");
-  for (std::size_t i = 0; i < study.log->odometry.size(); ++i) {
-    const double steer = study.log->odometry[i].control.steer;
-    if (turns_about_its_wheel(vehicle, steer)) {
+/// Where the model has no answer: steering at which the measured wheel all but stands still.
+void refuse_impossible_steering(const Settings& s, const DriveLog& log) {
+  const Vehicle vehicle = vehicle_of(s, "belief");
+  for (std::size_t i = 0; i < log.odometry.size(); ++i) {
+    const Control& control = log.odometry[i].control;
+    if (is_beyond_model(vehicle, control)) {
       throw StudyError(
-          study.settings.place("belief", "wheel_left") + ": odometry record " +
-          std::to_string(i + 1) + " steers by " + to_text(steer) +
+          s.place("belief", "wheel_left") + ": odometry record " + std::to_string(i + 1) +
+          " steers by " + to_text(control[1]) +
           " rad (the vehicle of [belief] then turns about its measured wheel): correct "
           "the log, or wheelbase and wheel_left");
     }
   }
 }
 
+/// "speed, steer"
+std::string names_of(std::span<const ControlName> controls) {
+  std::vector<std::string> names;
+  for (const ControlName& control : controls) names.emplace_back(control.name);
+  return joined(names);
+}
+
+/// A filter is given controls of the vehicle that drives: it must believe in one that has these.
+void refuse_other_controls(const Settings& s, std::span<const ControlName> driven) {
+  const std::string given = names_of(driven);
+  const std::string believed = names_of(controls_of(vehicle_of(s, "belief")));
+  if (given == believed) return;
+  throw StudyError(s.place("belief", "vehicle") +
+                   ": belief.vehicle = " + s.text("belief", "vehicle") + " is controlled by " +
+                   believed + " (the drive has " + given +
+                   "): give belief.vehicle one that is controlled by these");
+}
+
 /// The log with the reference alone that the study judges by, if it names one.
-DriveLog judged(const Study& study) {
-  DriveLog log = *study.log;
-  const std::string& name = study.settings.text("scenario", "reference");
+DriveLog judged(const Settings& s, DriveLog log) {
+  const std::string& name = s.text("scenario", "reference");
   if (!name.empty())
     std::erase_if(log.references, [&](const ReferencePath& path) { return path.name != name; });
   return log;
 }
 
+/// How many landmarks its detections can name; 0 where nobody identified them.
+std::size_t identities_in(const DriveLog& log) {
+  std::int32_t last = -1;
+  for (const LoggedScan& scan : log.scans) {
+    for (const Detection& detection : scan.detections) last = std::max(last, detection.identity);
+  }
+  return last < 0 ? 0 : static_cast<std::size_t>(last) + 1;
+}
+
+RecordedDrive drive_of(const Settings& s, const DriveLog& log) {
+  refuse_other_controls(s, log.controls);
+  if (identities_in(log) == 0) refuse_use_of_identities(s);
+  refuse_early_scans(s, log);
+  refuse_impossible_steering(s, log);
+  return {judged(s, log), s.number("scenario", "max_range"), s.number("scenario", "scan_delay")};
+}
+
+std::shared_ptr<const DriveSource> several_drives_of(const Study& study) {
+  const std::string& place = study.settings.place("scenario", "path");
+  std::vector<RecordedDrive> drives;
+  for (std::size_t k = 0; k < study.own_logs.size(); ++k) {
+    try {
+      drives.push_back(drive_of(study.settings, *study.own_logs[k]));
+    } catch (const StudyError& error) {
+      throw StudyError(place + ": drive " + std::to_string(k + 1) + ": " + error.what());
+    }
+  }
+  try {
+    return std::make_shared<SeveralDrives>(std::move(drives));
+  } catch (const StudyError& error) {
+    throw StudyError(place + ": " + error.what());
+  }
+}
+
+/// The pilot's limits are in [scenario] only.
+std::optional<double> number_of(const Settings& s, const char* in, const std::string& key) {
+  return s.has(in, key) ? std::optional(s.number(in, key)) : std::nullopt;
+}
+
 }  // namespace
 
 Vehicle vehicle_of(const Settings& s, const char* in) {
-  return {.kind = s.text(in, "vehicle") == "rear_wheel" ? Vehicle::Kind::rear_wheel
-                                                        : Vehicle::Kind::front_axle,
-          .wheelbase = s.number(in, "wheelbase"),
-          .wheel_left = s.number(in, "wheel_left"),
-          .sensor_ahead = s.number(in, "sensor_ahead"),
-          .sensor_left = s.number(in, "sensor_left")};
+  const auto vehicle = vehicle_named(
+      s.text(in, "vehicle"), [&](const auto& key) { return std::optional(s.text(in, key)); },
+      [&](const auto& key) { return number_of(s, in, key); });
+  expect(vehicle.has_value(), "a study has a vehicle that is not known");
+  return *vehicle;
+}
+
+ControlNoise control_noise_of(const Settings& s, const char* in) {
+  const auto noise =
+      control_noise_of(vehicle_of(s, in), [&](const auto& key) { return number_of(s, in, key); });
+  expect(noise.has_value(), "a study lacks the noise of a control");
+  return *noise;
 }
 
 std::size_t identities_of(const Study& study) {
   if (study.log == nullptr) return study.world.landmarks.size();
-  std::int32_t last = -1;
-  for (const LoggedScan& scan : study.log->scans) {
-    for (const Detection& detection : scan.detections) last = std::max(last, detection.identity);
-  }
-  return last < 0 ? 0 : static_cast<std::size_t>(last) + 1;
+  std::size_t most = identities_in(*study.log);
+  for (const auto& log : study.own_logs) most = std::max(most, identities_in(*log));
+  return most;
 }
 
 std::function<std::vector<Eigen::Vector2d>(std::uint64_t run)> own_landmarks_of(
@@ -133,13 +193,12 @@ std::function<std::vector<Eigen::Vector2d>(std::uint64_t run)> own_landmarks_of(
 
 std::shared_ptr<const DriveSource> drives_of(const Study& study, std::uint64_t seed) {
   const Settings& s = study.settings;
-  if (study.log == nullptr)
+  if (study.log == nullptr) {
+    refuse_other_controls(s, controls_of(vehicle_of(s, "scenario")));
     return std::make_shared<SimulatedDrive>(study.world, scenario_of(s), seed);
-  if (identities_of(study) == 0) refuse_use_of_identities(s);
-  refuse_early_scans(study);
-  refuse_impossible_steering(study);
-  return std::make_shared<RecordedDrive>(judged(study), s.number("scenario", "max_range"),
-                                         s.number("scenario", "scan_delay"));
+  }
+  if (!study.own_logs.empty()) return several_drives_of(study);
+  return std::make_shared<RecordedDrive>(drive_of(s, *study.log));
 }
 
 }  // namespace montecarta::experiments

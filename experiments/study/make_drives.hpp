@@ -2,6 +2,7 @@
 #pragma once
 
 #include "experiments/study/study.hpp"
+#include "filters/models/control_noise.hpp"
 #include "filters/models/vehicle.hpp"
 
 #include <functional>
@@ -12,6 +13,8 @@ namespace montecarta::experiments {
 
 /// The vehicle of a section: [scenario] or [belief].
 Vehicle vehicle_of(const Settings& settings, const char* section);
+/// The noise of the controls of that vehicle, as the section says it.
+ControlNoise control_noise_of(const Settings& settings, const char* section);
 /// How many landmarks detections can name; 0 where nobody identified them.
 std::size_t identities_of(const Study& study);
 /// The drives of a study. Throws StudyError where its settings do not fit together.

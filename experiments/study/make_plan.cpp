@@ -17,9 +17,11 @@ Belief belief_of(const Settings& s, const CellSpec& spec) {
   const char* in = "belief";
   const double motion = mismatch_of(spec, "motion_noise");
   const double sensor = mismatch_of(spec, "sensor_noise");
+  ControlNoise control = control_noise_of(s, in);
+  for (double& sigma : control.sigma) sigma *= motion;
+  for (double& alpha : control.alpha) alpha *= motion * motion;
   return {.vehicle = vehicle_of(s, in),
-          .sigma_speed = motion * s.number(in, "sigma_speed"),
-          .sigma_steer = motion * s.radians(in, "sigma_steer_deg"),
+          .control = control,
           .sigma_range = sensor * s.number(in, "sigma_range"),
           .sigma_bearing = sensor * s.radians(in, "sigma_bearing_deg")};
 }

@@ -9,7 +9,7 @@ namespace montecarta::experiments {
 std::span<const Option> mismatch_options() {
   static const std::vector<Option> options = {
       number_option("motion_noise", "1", 1e-3, 1e3,
-                    "factor on the believed sigma_speed and sigma_steer"),
+                    "factor on the believed deviations of the controls"),
       number_option("sensor_noise", "1", 1e-3, 1e3,
                     "factor on the believed sigma_range and sigma_bearing")};
   return options;

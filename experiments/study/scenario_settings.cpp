@@ -1,10 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/study/setting_builders.hpp"
 
+#include <algorithm>
+#include <array>
+
 namespace montecarta::experiments::setting_builders {
 namespace {
 
-const std::vector<std::string> kVehicles = {"front_axle", "rear_wheel"};
+/// alpha_1 to alpha_4 (EQUATIONS 1), added by `add`.
+template <class Add>
+void add_growth(const char* section, const Add& add) {
+  static constexpr std::array<const char*, 4> kMeanings = {
+      "variance of a speed by its square", "and by the square of steering angle or yaw rate",
+      "variance of steering angle or yaw rate by the square of the speed", "and by its own square"};
+  for (std::size_t i = 0; i < kMeanings.size(); ++i) {
+    add(quiet(number(section, alpha_key(i).c_str(), "SI", "0", 0, 1e6, kMeanings[i])));
+  }
+}
 
 void add_drive(std::vector<Setting>& table) {
   const char* s = "scenario";
@@ -19,35 +31,36 @@ void add_drive(std::vector<Setting>& table) {
   add(choice(s, "map", {"fixed", "random"},
              "landmarks where the world has them, or displaced anew in every run"));
   add(number(s, "map_shift", "m", "10", 0, 1e4, "farthest that a random map displaces one"));
-  add(choice(s, "vehicle", kVehicles,
-             "pose and speed of the middle of the front axle, or pose of the sensor and speed of a "
-             "rear wheel (EQUATIONS 1)"));
-  add(number(s, "wheelbase", "m", "4", 1e-3, 1000, "between the axles"));
-  add(number(s, "wheel_left", "m", "0", -1000, 1000, "measured rear wheel left of the middle"));
-  add(number(s, "sensor_ahead", "m", "0", -1000, 1000, "sensor ahead of the rear axle"));
-  add(number(s, "sensor_left", "m", "0", -1000, 1000, "sensor left of the middle"));
-  add(number(s, "speed", "m/s", "3", 1e-3, 1000, "of the front axle, or of the rear wheel"));
+  add(choice(s, "vehicle", vehicle_names(),
+             "what drives, and what its controls are (EQUATIONS 1)"));
+  const auto add_all = [&](const std::vector<VehicleSetting>& settings) {
+    for (const VehicleSetting& setting : settings) add(of_vehicles(s, setting));
+  };
+  add_all(vehicle_settings(VehicleUse::motion));
+  add(number(s, "speed", "m/s", "3", 1e-3, 1000, "along the path; of rear_wheel: of that wheel"));
   add(number(s, "control_rate", "Hz", "40", 1e-3, 1e5, "control steps a second"));
   add(number(s, "scan_rate", "Hz", "5", 1e-4, 1e5, "scans a second; must divide control_rate"));
   add(number(s, "waypoint_radius", "m", "1", 1e-3, 1e4, "nearer than this a way-point is reached"));
-  add(number(s, "steer_limit_deg", "deg", "30", 0.1, 89, "largest steering angle"));
-  add(number(s, "steer_rate_limit_deg", "deg/s", "20", 0.1, 1e5, "fastest turn of the steering"));
+  add_all(vehicle_settings(VehicleUse::pilot));
   add(number(s, "start_x", "m", "0", -1e6, 1e6, "pose before the first step"));
   add(number(s, "start_y", "m", "0", -1e6, 1e6, "pose before the first step"));
   add(number(s, "start_heading_deg", "deg", "0", -360, 360, "pose before the first step"));
-  add(number(s, "sigma_speed", "m/s", "0.3", 0, 1000, "noise of the speed"));
-  add(number(s, "sigma_steer_deg", "deg", "3", 0, 180, "noise of the steering angle"));
+  add_all(control_noise_settings());
+  add_growth(s, add);
   add(number(s, "sigma_range", "m", "0.1", 0, 1000, "noise of a range"));
   add(number(s, "sigma_bearing_deg", "deg", "1", 0, 180, "noise of a bearing"));
 }
 
 void add_recording(std::vector<Setting>& table) {
   const char* s = "scenario";
-  table.push_back(only_for(recorded_kinds(),
-                           required(text(s, "path", "the folder that holds the recorded drive"),
-                                    "../shared/data/victoria_park")));
+  table.push_back(only_for(
+      recorded_kinds(),
+      required(
+          text(s, "path",
+               "the folder of the recorded drive; of kind log several, one a run, with commas"),
+          "../shared/data/victoria_park")));
   table.push_back(
-      only_for(recorded_kinds(), text(s, "data_sha256", "fingerprint of the drive, filled in")));
+      only_for(recorded_kinds(), text(s, "data_sha256", "fingerprint of each drive, filled in")));
   table.push_back(only_for(recorded_kinds(),
                            text(s, "reference", "the one to judge by; all of them where empty")));
   table.push_back(only_for(
@@ -68,15 +81,36 @@ void add_sensor(std::vector<Setting>& table) {
   add(number(s, "miss_probability", "1", "0", 0, 1, "that a landmark in view is not detected"));
 }
 
-/// With defaults for the two published drives, whose vehicle is one.
-Setting of_car(Setting setting, const char* value) {
-  return but_for("victoria_park", value, but_for("car_park", value, std::move(setting)));
-}
+/// What a setting is in the two published drives.
+struct Published {
+  const char* key;
+  const char* victoria_park;
+  const char* car_park;
+};
+/// The car is one. Noise: Ankishan 2016, Simulation IV; what is customary for the car park.
+constexpr std::array<Published, 9> kPublished = {{{"vehicle", "rear_wheel", "rear_wheel"},
+                                                  {"wheelbase", "2.83", "2.83"},
+                                                  {"wheel_left", "0.76", "0.76"},
+                                                  {"sensor_ahead", "3.78", "3.78"},
+                                                  {"sensor_left", "0.5", "0.5"},
+                                                  {"sigma_speed", "0.4", "0.7"},
+                                                  {"sigma_steer_deg", "1.4", "7"},
+                                                  {"sigma_range", "0.5", "0.1"},
+                                                  {"sigma_bearing_deg", "1.5", "1"}}};
 
-/// Follows the scenario in a simulation; of a drive of the user's own nobody else knows it.
-Setting of_own_log(Setting setting, const char* example) {
-  setting.example = example;
-  return but_for("simulated", kFromScenario, but_for("log", kRequired, std::move(setting)));
+/// In a simulation it follows the scenario; in the published drives it is what is known of them.
+/// With an `example` it must be given for a log of the user's own, of which nobody else knows it.
+Setting believed(Setting setting, const std::string& example) {
+  if (!example.empty()) {
+    setting.example = example;
+    setting = but_for("log", kRequired, std::move(setting));
+  }
+  setting = but_for("simulated", kFromScenario, std::move(setting));
+  const auto published = std::ranges::find_if(
+      kPublished, [&](const Published& row) { return setting.key == row.key; });
+  if (published == kPublished.end()) return setting;
+  setting = but_for("car_park", published->car_park, std::move(setting));
+  return but_for("victoria_park", published->victoria_park, std::move(setting));
 }
 
 }  // namespace
@@ -93,25 +127,21 @@ void add_scenario(std::vector<Setting>& table) {
 /// In a simulation everything follows the scenario unless it says otherwise.
 void add_belief(std::vector<Setting>& table) {
   const char* s = "belief";
-  const auto add = [&](const char* value, Setting setting) {
-    table.push_back(of_car(but_for("simulated", kFromScenario, std::move(setting)), value));
-  };
   const char* meaning = "what the filter takes it to be";
-  add("rear_wheel", choice(s, "vehicle", kVehicles, meaning));
-  table.push_back(
-      of_car(of_own_log(number(s, "wheelbase", "m", "4", 1e-3, 1000, meaning), "2.83"), "2.83"));
-  add("0.76", number(s, "wheel_left", "m", "0", -1000, 1000, meaning));
-  add("3.78", number(s, "sensor_ahead", "m", "0", -1000, 1000, meaning));
-  add("0.5", number(s, "sensor_left", "m", "0", -1000, 1000, meaning));
-  // Victoria Park: Ankishan 2016, Simulation IV. Car park: what is customary there.
-  const auto noise = [&](const char* park, const char* car_park, Setting setting) {
-    table.push_back(but_for("victoria_park", park,
-                            but_for("car_park", car_park, of_own_log(std::move(setting), park))));
+  const auto add = [&](Setting setting, const std::string& example = {}) {
+    setting.meaning = meaning;
+    table.push_back(believed(std::move(setting), example));
   };
-  noise("0.4", "0.7", number(s, "sigma_speed", "m/s", "0.3", 0, 1000, meaning));
-  noise("1.4", "7", number(s, "sigma_steer_deg", "deg", "3", 0, 180, meaning));
-  noise("0.5", "0.1", number(s, "sigma_range", "m", "0.1", kTiny, 1000, meaning));
-  noise("1.5", "1", number(s, "sigma_bearing_deg", "deg", "1", kTiny, 180, meaning));
+  add(choice(s, "vehicle", vehicle_names(), meaning));
+  for (const VehicleSetting& setting : vehicle_settings(VehicleUse::motion)) {
+    add(of_vehicles(s, setting), setting.example);
+  }
+  for (const VehicleSetting& setting : control_noise_settings()) {
+    add(of_vehicles(s, setting), setting.example);
+  }
+  add_growth(s, add);
+  add(number(s, "sigma_range", "m", "0.1", kTiny, 1000, meaning), "0.5");
+  add(number(s, "sigma_bearing_deg", "deg", "1", kTiny, 180, meaning), "1.5");
 }
 
 }  // namespace montecarta::experiments::setting_builders

@@ -79,6 +79,10 @@ bool Setting::is_for(std::string_view scenario_kind) const {
   return kinds.empty() || std::ranges::find(kinds, scenario_kind) != kinds.end();
 }
 
+bool Setting::is_for_vehicle(std::string_view vehicle) const {
+  return vehicles.empty() || std::ranges::find(vehicles, vehicle) != vehicles.end();
+}
+
 std::optional<std::string> Setting::fallback_for(std::string_view scenario_kind) const {
   for (const auto& [of_kind, value] : fallback_of_kind) {
     if (of_kind != scenario_kind) continue;

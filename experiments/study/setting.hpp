@@ -22,11 +22,17 @@ struct Setting : Option {
   std::string section = {};
   /// Kinds of scenario (scenario.kind) that it says something of; empty: all.
   std::vector<std::string> kinds = {};
+  /// Vehicles (of the same section) that it says something of; empty: all.
+  std::vector<std::string> vehicles = {};
+  /// Left out of the resolved text where it and, for a belief, the scenario have the default: so
+  /// that the text of studies that are older than the setting stays.
+  bool is_quiet = false;
   /// (kind of scenario, its fallback) where that differs. kFromScenario: the scenario's value of
   /// that key; kRequired: must be given.
   std::vector<std::pair<std::string, std::string>> fallback_of_kind = {};
 
   bool is_for(std::string_view scenario_kind) const;
+  bool is_for_vehicle(std::string_view vehicle) const;
   std::optional<std::string> fallback_for(std::string_view scenario_kind) const;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "experiments/study/setting.hpp"
+#include "filters/models/vehicle_settings.hpp"
 
 #include <string>
 #include <utility>
@@ -46,6 +47,24 @@ inline Setting required(Setting setting, const char* example) {
 /// Of these kinds of scenario only.
 inline Setting only_for(std::vector<std::string> kinds, Setting setting) {
   setting.kinds = std::move(kinds);
+  return setting;
+}
+
+/// A setting of some vehicles.
+inline Setting of_vehicles(const char* section, const VehicleSetting& v) {
+  const bool is_choice = !v.choices.empty();
+  Setting setting{
+      is_choice ? choice_option(v.key.c_str(), v.usual, v.choices, v.meaning.c_str())
+                : number_option(v.key.c_str(), v.usual.c_str(), v.least, v.most, v.meaning.c_str()),
+      section};
+  setting.unit = v.unit;
+  setting.vehicles = v.vehicles;
+  return setting;
+}
+
+/// Left out of the resolved text where it says nothing.
+inline Setting quiet(Setting setting) {
+  setting.is_quiet = true;
   return setting;
 }
 

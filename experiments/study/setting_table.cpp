@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/data/margin.hpp"
+#include "analysis/data/study_settings.hpp"
 #include "engine/records/column_table.hpp"
 #include "experiments/study/setting_builders.hpp"
 

@@ -35,6 +35,14 @@ const Setting& known_setting(const IniEntry& entry) {
                    "): " + (believed ? "give it under [belief], or remove it" : "remove it"));
 }
 
+[[noreturn]] void throw_other_vehicle(const Setting& setting, const std::string& vehicle,
+                                      const std::string& place) {
+  throw StudyError(place + ": " + setting.section + "." + setting.key +
+                   " says nothing of a vehicle " + vehicle + " (it is for " +
+                   joined(setting.vehicles) + "): remove it, or correct " + setting.section +
+                   ".vehicle");
+}
+
 }  // namespace
 
 Settings::Settings(std::span<const IniEntry> entries, const std::string& name) {
@@ -68,6 +76,10 @@ void Settings::fill_in(const std::string& name) {
       if (given != values_.end()) throw_out_of_place(setting, kind, given->second.place);
       continue;
     }
+    if (!is_for_vehicle(setting)) {
+      if (given == values_.end()) continue;
+      throw_other_vehicle(setting, text(setting.section, "vehicle"), given->second.place);
+    }
     if (given != values_.end()) continue;
     const std::optional<std::string> fallback = setting.fallback_for(kind);
     if (!fallback) {
@@ -84,6 +96,7 @@ void Settings::fill_in(const std::string& name) {
 
 /// What a filter is not told it takes from the world, which may have values that no filter can use.
 std::string Settings::copied_from_scenario(const Setting& setting) const {
+  if (!has("scenario", setting.key)) return setting.fallback.value();  // of another vehicle
   const auto& [value, given_at] = at("scenario", setting.key);
   try {
     return checked_value(setting, value, given_at);
@@ -98,6 +111,22 @@ const Settings::Value& Settings::at(std::string_view section, std::string_view k
   const auto found = values_.find({std::string(section), std::string(key)});
   expect(found != values_.end(), "a setting is asked for that the table does not have");
   return found->second;
+}
+
+/// The vehicle of a section comes before what depends on it.
+bool Settings::is_for_vehicle(const Setting& setting) const {
+  return setting.vehicles.empty() || setting.is_for_vehicle(text(setting.section, "vehicle"));
+}
+
+bool Settings::says_nothing(const Setting& setting) const {
+  const auto has_default = [&](const char* section) {
+    return !has(section, setting.key) || text(section, setting.key) == setting.fallback;
+  };
+  return setting.is_quiet && has_default("scenario") && has_default("belief");
+}
+
+bool Settings::has(std::string_view section, std::string_view key) const {
+  return values_.contains({std::string(section), std::string(key)});
 }
 
 const std::string& Settings::text(std::string_view section, std::string_view key) const {
@@ -132,8 +161,8 @@ void Settings::replace(std::string_view section, std::string_view key, const std
 std::vector<std::pair<std::string, std::string>> Settings::section(std::string_view name) const {
   std::vector<std::pair<std::string, std::string>> pairs;
   for (const Setting& setting : study_settings()) {
-    if (setting.section == name && setting.is_for(scenario_kind()))
-      pairs.emplace_back(setting.key, text(name, setting.key));
+    if (setting.section != name || !has(name, setting.key)) continue;
+    if (!says_nothing(setting)) pairs.emplace_back(setting.key, text(name, setting.key));
   }
   return pairs;
 }

@@ -91,15 +91,22 @@ Study parse_study(const std::string& text, const std::string& name,
   IniText ini = read_ini(text, name);
   apply(overrides, ini);
   refuse_unknown_sections(ini);
-  Study study{
-      Settings(ini.entries, name), read_cells(ini.entries, name, known_filters()), {}, {}, {}, {}};
+  Study study{Settings(ini.entries, name),
+              read_cells(ini.entries, name, known_filters()),
+              {},
+              {},
+              {},
+              {},
+              {}};
   study.printed = read_printed(ini.entries, study.cells);
   if (study.settings.scenario_kind() == "simulated") {
     study.world = world_of(ini, study.settings, folder);
     study.settings.replace("scenario", "world", study.world.name);
   } else {
     refuse_world(ini, study.settings);
-    study.log = read_drive_of(study.settings, folder);
+    study.own_logs = read_drives_of(study.settings, folder);
+    study.log = study.own_logs.front();
+    if (study.own_logs.size() == 1) study.own_logs.clear();
   }
   study.until =
       parse_until(study.settings.text("study", "until"), study.settings.place("study", "until"));

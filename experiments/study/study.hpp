@@ -23,8 +23,10 @@ struct Study {
   std::vector<CellSpec> cells;
   World world;                          ///< of a simulation
   std::shared_ptr<const DriveLog> log;  ///< nullptr in a simulation
-  std::optional<Until> until;           ///< when a cell stops early
-  Printed printed;                      ///< what a paper says of it; no result depends on it
+  /// {run} Where every run is a drive of its own, the first one being `log`; else empty.
+  std::vector<std::shared_ptr<const DriveLog>> own_logs;
+  std::optional<Until> until;  ///< when a cell stops early
+  Printed printed;             ///< what a paper says of it; no result depends on it
 };
 
 /// Reads a study file. `overrides` are "section.key=value" as given to --set; "cells.cell=..."

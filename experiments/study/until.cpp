@@ -2,7 +2,7 @@
 #include "experiments/study/until.hpp"
 
 #include "analysis/comparison/cell_comparison.hpp"
-#include "analysis/data/looks.hpp"
+#include "analysis/data/study_settings.hpp"
 #include "analysis/metrics/first_values.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "engine/errors.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/particles/block_tasks.hpp"
+#include "engine/particles/blocks.hpp"
 #include "filters/fastslam/delayed_map.hpp"
 #include "filters/fastslam/gaussian_proposal.hpp"
 #include "filters/moments/correlated_steps.hpp"

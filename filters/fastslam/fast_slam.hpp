@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/particles/block_tasks.hpp"
+#include "engine/particles/blocks.hpp"
 #include "filters/fastslam/concepts.hpp"
 #include "filters/population/cloud_moments.hpp"
 

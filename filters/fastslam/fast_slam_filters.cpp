@@ -62,8 +62,9 @@ SigmaPoints unscented_points(const FilterSetup& setup) {
     return unscented_rule(n, setup.options.number("alpha"), setup.options.number("beta"),
                           setup.options.number("kappa"));
   };
-  return SigmaPoints({.motion = rule(5), .pose = rule(5), .landmark = rule(2)}, setup.belief,
-                     map_uncertainty(setup.options));
+  const double controls = static_cast<double>(controls_of(setup.belief.vehicle).size());
+  return SigmaPoints({.motion = rule(3 + controls), .pose = rule(5), .landmark = rule(2)},
+                     setup.belief, map_uncertainty(setup.options));
 }
 
 FilterKind fastslam1_kind() {

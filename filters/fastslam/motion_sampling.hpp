@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/particles/block_tasks.hpp"
+#include "engine/particles/blocks.hpp"
 #include "engine/random/normals.hpp"
 #include "filters/fastslam/concepts.hpp"
 #include "filters/models/ackermann.hpp"
@@ -81,10 +81,14 @@ class MotionSampling {
   BasicPose<Real> moved(const StepContext& context, const Control& control, double duration,
                         std::size_t b, const BasicPose<Real>& pose) const {
     const auto first = static_cast<std::uint32_t>(b * kLanesOf<Real>);
-    const auto [e0, e1] = normal_pairs<Real>(context.identity(Draw::motion_sample, first), 0);
-    const Real speed = control.speed + belief_.sigma_speed * e0;
-    const Real steer = control.steer + belief_.sigma_steer * e1;
-    return move(pose, speed, steer, duration, belief_.vehicle);
+    const StreamIdentity identity = context.identity(Draw::motion_sample, first);
+    const auto sigma = deviations_of(belief_.control, control, belief_.vehicle);
+    const auto [e0, e1] = normal_pairs<Real>(identity, 0);
+    ControlOf<Real> sample{control[0] + sigma[0] * e0, control[1] + sigma[1] * e1, Real(0.0)};
+    if (controls_of(belief_.vehicle).size() > 2) {
+      sample[2] = control[2] + sigma[2] * normal_pairs<Real>(identity, 1).first;
+    }
+    return move(pose, sample, duration, belief_.vehicle);
   }
 
   Belief belief_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/joint/gaussian_bank.hpp"
 
-#include "engine/random/normal_quantile.hpp"
+#include "engine/random/normals.hpp"
 #include "filters/joint/mixture.hpp"
 
 #include <algorithm>

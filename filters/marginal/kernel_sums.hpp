@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/core/step_context.hpp"
-#include "engine/particles/block_tasks.hpp"
+#include "engine/particles/blocks.hpp"
 #include "engine/particles/weights.hpp"
 #include "filters/marginal/direct_sums.hpp"
 #include "filters/marginal/ifgt_sums.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/particles/block_tasks.hpp"
+#include "engine/particles/blocks.hpp"
 #include "filters/marginal/kernel_sums.hpp"
 #include "filters/marginal/map_learning.hpp"
 #include "filters/marginal/marginal_options.hpp"

@@ -19,10 +19,14 @@ inline Eigen::Matrix3d pose_jacobian(const MotionJacobians<double>& j) {
   return F;
 }
 
-/// Fu: pose after by (speed, steer).
-inline Matrix32 control_jacobian(const MotionJacobians<double>& j) {
-  Matrix32 F;
-  F << j.x_speed, j.x_steer, j.y_speed, j.y_steer, j.heading_speed, j.heading_steer;
+/// Fu: pose after by the controls of the vehicle, of which each has a column.
+using ControlJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, Control::kMost>;
+inline ControlJacobian control_jacobian(const MotionJacobians<double>& j) {
+  ControlJacobian F(3, j.controls);
+  for (std::size_t i = 0; i < j.controls; ++i) {
+    const auto& [x, y, heading] = j.by_control[i];
+    F.col(static_cast<Eigen::Index>(i)) << x, y, heading;
+  }
   return F;
 }
 

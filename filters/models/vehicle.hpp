@@ -1,85 +1,158 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/numbers/real.hpp"
+#include "filters/models/car.hpp"
+#include "filters/models/differential_drive.hpp"
+#include "filters/models/omnidirectional.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include <array>
+#include <cstddef>
+#include <span>
+#include <tuple>
+#include <type_traits>
+#include <variant>
 
 namespace montecarta::models {
 
-/// A car steered at the front: which of its points the pose is of, and what its controls mean.
-struct Vehicle {
-  enum class Kind {
-    front_axle,  ///< pose and speed are of the middle of the front axle (EQUATIONS 1)
-    rear_wheel   ///< pose is of the sensor, speed of a rear wheel (EQUATIONS 1)
-  };
-  Kind kind = Kind::front_axle;
-  double wheelbase = 4.0;     ///< L [m]
-  double wheel_left = 0.0;    ///< H [m] of the rear wheel, left of the middle of its axle
-  double sensor_ahead = 0.0;  ///< a [m] of the sensor, from the middle of the rear axle
-  double sensor_left = 0.0;   ///< b [m] likewise
+/// All vehicles there are; the first is the default. One more is a struct like these, in a file of
+/// its own, and its name here. A vehicle of n controls says
+/// - kNames, name(), named(): what study files call it; kControls: its n controls; numbers(): its
+///   other settings; `integration`, where it has a choice of that;
+/// - travel(): its step, linear in the first n - 1 controls, at a given bend. The bend is the angle
+///   that the last control times bend_scale() makes; where kTurnsByBend the vehicle turns by it,
+///   and travel() turns by nothing;
+/// - travel_by_bend(): the derivative of travel(); control_of(): the control of a step;
+/// - steered(), way_to_turn(), kTurnLimit: how a pilot turns it to a way-point.
+using Vehicle = std::variant<Car, DifferentialDrive, Omnidirectional>;
+
+/// How many controls a vehicle of type V has, and how many of them it is linear in.
+template <class V>
+inline constexpr std::size_t kControlsOf = std::tuple_size_v<decltype(V::kControls)>;
+template <class V>
+inline constexpr std::size_t kLinearOf = kControlsOf<V> - 1;
+
+/// The controls of a vehicle, in their order.
+inline std::span<const ControlName> controls_of(const Vehicle& vehicle) {
+  return std::visit([](const auto& one) { return std::span<const ControlName>(one.kControls); },
+                    vehicle);
+}
+
+/// How many of the first controls are all 0 where the vehicle stands.
+inline std::size_t moving_controls(std::span<const ControlName> controls) {
+  std::size_t moving = 0;
+  while (moving < controls.size() && controls[moving].moves) ++moving;
+  return moving;
+}
+
+/// A control of which each lane (Real) has its own.
+template <class Real>
+using ControlOf = std::array<Real, Control::kMost>;
+
+/// The first N components.
+template <std::size_t N, class Real>
+std::array<Real, N> first_of(const ControlOf<Real>& control) {
+  std::array<Real, N> first;
+  for (std::size_t i = 0; i < N; ++i) first[i] = control[i];
+  return first;
+}
+
+/// The angle [rad] in which a step of `duration` [s] is not linear (struct Bend).
+inline double bend_angle(const Vehicle& vehicle, const Control& control, double duration) {
+  return std::visit(
+      [&](const auto& one) {
+        return control[kLinearOf<std::decay_t<decltype(one)>>] * one.bend_scale(duration);
+      },
+      vehicle);
+}
+
+/// One control step of `duration` [s] of one vehicle (double) or one a lane, in the frame of the
+/// vehicle; `bend` is that of the control. EQUATIONS 1.
+template <class V, class Real>
+BodyStep<Real> body_step_at(const V& vehicle, const ControlOf<Real>& control,
+                            const Bend<Real>& bend, double duration) {
+  BodyStep<Real> step = vehicle.travel(first_of<kLinearOf<V>>(control), bend, duration);
+  if constexpr (V::kTurnsByBend) step.turn = bend.angle;
+  return step;
+}
+template <class Real>
+BodyStep<Real> body_step(const Vehicle& vehicle, const ControlOf<Real>& control, double duration) {
+  return std::visit(
+      [&](const auto& one) {
+        constexpr std::size_t kLinear = kLinearOf<std::decay_t<decltype(one)>>;
+        const Real angle = control[kLinear] * Real(one.bend_scale(duration));
+        return body_step_at(one, control, bend_of(angle), duration);
+      },
+      vehicle);
+}
+inline BodyStep<double> body_step(const Vehicle& vehicle, const Control& control, double duration) {
+  return body_step(vehicle, control.values, duration);
+}
+
+/// A step and its derivatives.
+struct DifferentiatedStep {
+  BodyStep<double> step;
+  std::array<BodyStep<double>, Control::kMost> by_control;  ///< by each component, per its unit
+  std::size_t controls;
 };
 
-/// The least share of the rear axle's speed that the measured wheel may have (EQUATIONS 1: a
-/// guard). Nearer to the point about which the vehicle turns, that wheel says nothing of the
-/// vehicle.
-inline constexpr double kLeastWheelShare = 0.1;
-
-/// Whether at this steering angle [rad] the measured wheel is that near.
-inline bool turns_about_its_wheel(const Vehicle& vehicle, double steer) {
-  return vehicle.kind == Vehicle::Kind::rear_wheel &&
-         1.0 - vehicle.wheel_left / vehicle.wheelbase * std::tan(steer) < kLeastWheelShare;
+/// travel() of component i alone, of that size: its image, for the motion is linear in it.
+template <class V>
+BodyStep<double> unit_travel(const V& vehicle, std::size_t i, double size, const Bend<double>& bend,
+                             double duration) {
+  std::array<double, kLinearOf<V>> linear{};
+  linear[i] = size;
+  return vehicle.travel(linear, bend, duration);
 }
 
-/// A step as the vehicle sees it from where it was; where that is in the world does not matter.
-template <class Real>
-struct BodyStep {
-  Real forward;  ///< [m]
-  Real left;     ///< [m]
-  Real turn;     ///< [rad] counter-clockwise
-};
-
-/// One control step: `speed` [m/s] and the direction of the steered wheel, of one vehicle (double)
-/// or one a lane; `duration` [s]. Linear in the speed. EQUATIONS 1, in the frame of the
-/// vehicle.
-template <class Real>
-BodyStep<Real> body_step(const Vehicle& vehicle, const Real& speed, const Direction<Real>& wheel,
-                         double duration) {
-  const Real way = speed * Real(duration);
-  if (vehicle.kind == Vehicle::Kind::front_axle) {
-    const Real left = way * wheel.sine;
-    return {way * wheel.cosine, left, left * Real(1.0 / vehicle.wheelbase)};
-  }
-  const Real tangent = wheel.sine / wheel.cosine;
-  const Real slower = max(Real(1.0) - Real(vehicle.wheel_left / vehicle.wheelbase) * tangent,
-                          Real(kLeastWheelShare));
-  const Real of_axle = way / slower;
-  const Real turn = of_axle * tangent * Real(1.0 / vehicle.wheelbase);
-  return {of_axle - Real(vehicle.sensor_left) * turn, Real(vehicle.sensor_ahead) * turn, turn};
+/// body_step() with its derivatives; `bend` is that of the control.
+inline DifferentiatedStep differentiated_step(const Vehicle& vehicle, const Control& control,
+                                              const Bend<double>& bend, double duration) {
+  return std::visit(
+      [&](const auto& one) {
+        using V = std::decay_t<decltype(one)>;
+        constexpr std::size_t kLinear = kLinearOf<V>;
+        DifferentiatedStep result{.step = body_step_at(one, control.values, bend, duration),
+                                  .by_control = {},
+                                  .controls = kControlsOf<V>};
+        for (std::size_t i = 0; i < kLinear; ++i) {
+          result.by_control[i] = unit_travel(one, i, 1.0, bend, duration);
+        }
+        BodyStep<double>& last = result.by_control[kLinear];
+        last = one.travel_by_bend(first_of<kLinear>(control.values), bend, duration);
+        if constexpr (V::kTurnsByBend) {
+          const double scale = one.bend_scale(duration);
+          last = {last.forward * scale, last.left * scale, scale};
+        }
+        return result;
+      },
+      vehicle);
 }
 
-/// The same, of a steering angle [rad].
-template <class Real>
-BodyStep<Real> body_step(const Vehicle& vehicle, const Real& speed, const Real& steer,
-                         double duration) {
-  return body_step(vehicle, speed, direction_of(steer), duration);
+/// The control that turns a simulated vehicle to a way-point.
+inline Control steered(const Vehicle& vehicle, const Aim& aim) {
+  return std::visit([&](const auto& one) { return one.steered(aim); }, vehicle);
 }
 
-/// Derivative of body_step() by the steering angle, each element per rad.
-inline BodyStep<double> steer_derivative(const Vehicle& vehicle, double speed,
-                                         const Direction<double>& wheel, double duration) {
-  const double way = speed * duration;
-  const double L = vehicle.wheelbase;
-  if (vehicle.kind == Vehicle::Kind::front_axle) {
-    return {-way * wheel.sine, way * wheel.cosine, way * wheel.cosine / L};
-  }
-  const double tangent = wheel.sine / wheel.cosine;
-  const double by_steer = 1.0 + tangent * tangent;  // of the tangent
-  const double slower = std::max(1.0 - vehicle.wheel_left / L * tangent, kLeastWheelShare);
-  const double of_axle = way * vehicle.wheel_left / L * by_steer / (slower * slower);
-  const double turn = way * by_steer / (slower * slower * L);  // of v tan G, in one term
-  return {of_axle - vehicle.sensor_left * turn, vehicle.sensor_ahead * turn, turn};
+/// [m] that it may drive before it heads anywhere (steered()), at `speed` [m/s].
+inline double way_to_turn(const Vehicle& vehicle, double speed) {
+  return std::visit([&](const auto& one) { return one.way_to_turn(speed); }, vehicle);
+}
+/// The setting that says how fast it turns.
+inline const char* turn_limit_key(const Vehicle& vehicle) {
+  return std::visit([](const auto& one) { return one.kTurnLimit; }, vehicle);
+}
+
+/// Whether its model has no answer to this control, which a log may hold.
+inline bool is_beyond_model(const Vehicle& vehicle, const Control& control) {
+  return std::visit(
+      [&](const auto& one) {
+        if constexpr (requires { one.is_beyond_model(control); }) {
+          return one.is_beyond_model(control);
+        } else {
+          return false;
+        }
+      },
+      vehicle);
 }
 
 }  // namespace montecarta::models

@@ -52,7 +52,7 @@ class SigmaPoints {
  public:
   static constexpr bool kRefinesInBatch = false;
   struct Rules {
-    SigmaRule motion;    ///< of (pose, control noise): 5 dimensions
+    SigmaRule motion;    ///< of (pose, control noise): 5 dimensions of two controls
     SigmaRule pose;      ///< of (pose, landmark): 5
     SigmaRule landmark;  ///< of a landmark, or of (range, bearing): 2
   };

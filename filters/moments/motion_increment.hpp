@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/numbers/directions.hpp"
+#include "engine/numbers/real.hpp"
 #include "filters/models/ackermann.hpp"
+#include "filters/models/control_noise.hpp"
 #include "filters/moments/gaussians.hpp"
 #include "filters/moments/sigma_rule.hpp"
 #include "filters/setup/filter_setup.hpp"
@@ -24,14 +25,16 @@ class MotionIncrement {
 
   /// One control step of `duration` [s], linearised.
   void advance(const Control& control, double duration, const Belief& belief) {
-    const auto [heading, wheel] = directions_of<2>({pose_.heading, control.steer});
+    const double angle = bend_angle(belief.vehicle, control, duration);
+    const auto [heading, bend] = directions_of<2>({pose_.heading, angle});
     const auto [pose, F] =
-        linearised_move(pose_, heading, control.speed, wheel, duration, belief.vehicle);
+        linearised_move(pose_, heading, control, {angle, bend}, duration, belief.vehicle);
     covariance_ = sheared(covariance_, F.x_heading, F.y_heading);
-    add_outer(covariance_, belief.sigma_speed * belief.sigma_speed,
-              {F.x_speed, F.y_speed, F.heading_speed});
-    add_outer(covariance_, belief.sigma_steer * belief.sigma_steer,
-              {F.x_steer, F.y_steer, F.heading_steer});
+    const auto sigma = deviations_of(belief.control, control, belief.vehicle);
+    for (std::size_t i = 0; i < F.controls; ++i) {
+      const auto& [x, y, turn] = F.by_control[i];
+      add_outer(covariance_, sigma[i] * sigma[i], {x, y, turn});
+    }
     pose_ = pose;
   }
 
@@ -56,15 +59,16 @@ class MotionIncrement {
 
 /// One control step of `duration` [s] by sigma points of (pose, control noise) (EQUATIONS 3). The
 /// square root has the heading first: its column alone bends, those of x and y are carried along
-/// unchanged. Equal to sending all eleven points through the vehicle.
+/// unchanged; of the controls the last one alone bends. Equal to sending all eleven points (of two
+/// controls) through the vehicle.
 MotionIncrement moved_by_sigma_points(const MotionIncrement& before, const Control& control,
                                       double duration, const Belief& belief, const SigmaRule& rule);
 
 /// One control step of `duration` [s] whose noise is averaged instead of linearised: mean and
-/// covariance of the vehicle's own displacement are exact in the speed, which enters as a factor,
-/// and by Gauss-Hermite quadrature with three nodes in the steering angle. What a linearised step
-/// leaves out is that a vehicle whose steering trembles gets less far, and that noise on the speed
-/// multiplies noise on the steering. The heading it began with is carried along linearised.
+/// covariance of the vehicle's own displacement are exact in the controls that it is linear in, and
+/// by Gauss-Hermite quadrature with three nodes in the last one. What a linearised step leaves out
+/// is that a vehicle whose steering trembles gets less far, and that noise on the speed multiplies
+/// noise on the steering. The heading it began with is carried along linearised.
 MotionIncrement moved_by_quadrature(const MotionIncrement& before, const Control& control,
                                     double duration, const Belief& belief);
 

@@ -18,36 +18,103 @@ struct BodyMoments {
   Symmetric3<double> covariance;
 };
 
-/// `wheels`: the directions of the nodes' steering angles.
-BodyMoments body_moments(std::span<const Direction<double>> wheels, double speed, double duration,
-                         const Belief& belief) {
-  Column3<double> mean{0.0, 0.0, 0.0};  // at 1 m/s
-  Symmetric3<double> second;            // likewise, about the origin
-  for (std::size_t k = 0; k < kNodes.size(); ++k) {
-    const auto step = body_step(belief.vehicle, 1.0, wheels[k], duration);
-    const Column3<double> way{step.forward, step.left, step.turn};
-    mean = mean + kWeights[k] * way;
-    add_outer(second, kWeights[k], way);
+/// Adds weight (a b' + b a').
+void add_cross(Symmetric3<double>& P, double weight, const Column3<double>& a,
+               const Column3<double>& b) {
+  add_outer(P, 0.5 * weight, a + b);
+  add_outer(P, -0.5 * weight, a - b);
+}
+
+/// A part of the displacement: a coefficient of known mean and variance times a column that depends
+/// on the bend alone.
+struct Part {
+  double mean, variance;
+  std::array<Column3<double>, kNodes.size()> at_node;
+
+  Column3<double> average() const {
+    Column3<double> sum{0.0, 0.0, 0.0};
+    for (std::size_t k = 0; k < at_node.size(); ++k) sum = sum + kWeights[k] * at_node[k];
+    return sum;
   }
-  const double square = speed * speed;
-  Symmetric3<double> covariance = (square + belief.sigma_speed * belief.sigma_speed) * second;
-  add_outer(covariance, -square, mean);
-  return {speed * mean, covariance};
+};
+
+/// Moments of the sum of parts whose coefficients are independent.
+BodyMoments moments_of(std::span<const Part> parts) {
+  BodyMoments result{{0.0, 0.0, 0.0}, {}};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const auto& [mean, variance, columns] = parts[i];
+    const Column3<double> average = parts[i].average();
+    Symmetric3<double> second;  // about the origin, of a coefficient 1
+    for (std::size_t k = 0; k < kNodes.size(); ++k) add_outer(second, kWeights[k], columns[k]);
+    const double square = mean * mean;
+    Symmetric3<double> covariance = (square + variance) * second;
+    add_outer(covariance, -square, average);
+    for (std::size_t j = 0; j < i; ++j) {
+      const double product = mean * parts[j].mean;
+      for (std::size_t k = 0; k < kNodes.size(); ++k) {
+        add_cross(covariance, product * kWeights[k], columns[k], parts[j].at_node[k]);
+      }
+      add_cross(covariance, -product, average, parts[j].average());
+    }
+    result.mean = result.mean + mean * average;
+    result.covariance = result.covariance + covariance;
+  }
+  return result;
+}
+
+/// The displacement of a vehicle of type V, part by part: one for each control that it is linear
+/// in, at 1 per unit, and the turn by the bend itself, less that of the central node. `bends` are
+/// those of the nodes.
+template <class V>
+BodyMoments body_moments(const V& vehicle, std::span<const Bend<double>> bends,
+                         const Control& control, double duration, const ControlOf<double>& sigma) {
+  constexpr std::size_t kLinear = kLinearOf<V>;
+  std::array<Part, kLinear + (V::kTurnsByBend ? 1 : 0)> parts;
+  for (std::size_t i = 0; i < kLinear; ++i) {
+    parts[i] = {.mean = control[i], .variance = sigma[i] * sigma[i], .at_node = {}};
+    for (std::size_t k = 0; k < bends.size(); ++k) {
+      const auto [forward, left, turn] = unit_travel(vehicle, i, 1.0, bends[k], duration);
+      parts[i].at_node[k] = {forward, left, turn};
+    }
+  }
+  if constexpr (V::kTurnsByBend) {
+    parts.back() = {.mean = 1.0, .variance = 0.0, .at_node = {}};
+    for (std::size_t k = 0; k < bends.size(); ++k) {
+      parts.back().at_node[k] = {0.0, 0.0, bends[k].angle - bends[0].angle};
+    }
+  }
+  BodyMoments moments = moments_of(parts);
+  if constexpr (V::kTurnsByBend) moments.mean.h += bends[0].angle;
+  return moments;
+}
+
+/// The motion of a vehicle of type V.
+template <class V>
+MotionIncrement averaged(const V& vehicle, const MotionIncrement& before, const Control& control,
+                         double duration, const ControlOf<double>& sigma) {
+  constexpr std::size_t kLast = kLinearOf<V>;
+  const Pose& from = before.pose();
+  const auto angle = [&](std::size_t k) {
+    return (control[kLast] + kNodes[k] * sigma[kLast]) * vehicle.bend_scale(duration);
+  };
+  const auto directions = directions_of<4>({angle(0), angle(1), angle(2), from.heading});
+  std::array<Bend<double>, kNodes.size()> bends;
+  for (std::size_t k = 0; k < kNodes.size(); ++k) bends[k] = {angle(k), directions[k]};
+  const Direction<double>& course = directions.back();
+  const auto [way, noise] = body_moments(vehicle, bends, control, duration, sigma);
+  const Point moved = in_world(course, way.x, way.y);
+  return {{from.x + moved.x, from.y + moved.y, wrap(from.heading + way.h)},
+          sheared(before.covariance(), -moved.y, moved.x) + turned(noise, course)};
 }
 
 }  // namespace
 
 MotionIncrement moved_by_quadrature(const MotionIncrement& before, const Control& control,
                                     double duration, const Belief& belief) {
-  const Pose& from = before.pose();
-  const auto angle = [&](std::size_t k) { return control.steer + kNodes[k] * belief.sigma_steer; };
-  const auto directions = directions_of<4>({angle(0), angle(1), angle(2), from.heading});
-  const Direction<double>& course = directions.back();
-  const auto [way, noise] =
-      body_moments(std::span(directions).first(3), control.speed, duration, belief);
-  const Point moved = in_world(course, way.x, way.y);
-  return {{from.x + moved.x, from.y + moved.y, wrap(from.heading + way.h)},
-          sheared(before.covariance(), -moved.y, moved.x) + turned(noise, course)};
+  const auto sigma = deviations_of(belief.control, control, belief.vehicle);
+  return std::visit(
+      [&](const auto& one) { return averaged(one, before, control, duration, sigma); },
+      belief.vehicle);
 }
 
 }  // namespace montecarta::filters

@@ -26,9 +26,9 @@ Pair heading_pair(const Column3<double>& step, const Column3<double>& column,
           {bend * step.x, bend * step.y, 0.0}};
 }
 
-/// Points that differ in steering angle; their images are combined before they are turned.
-Pair steer_pair(const Column3<double>& centre, const Column3<double>& leftward,
-                const Column3<double>& rightward, const Direction<double>& course) {
+/// Points that differ in the angle of the bend; their images are combined before they are turned.
+Pair bend_pair(const Column3<double>& centre, const Column3<double>& leftward,
+               const Column3<double>& rightward, const Direction<double>& course) {
   return {turned(0.5 * (leftward - rightward), course),
           turned(0.5 * (leftward + rightward) - centre, course)};
 }
@@ -40,29 +40,42 @@ Column3<double> heading_column(const Symmetric3<double>& P) {
   return {P.xh * inverse, P.yh * inverse, root};
 }
 
-/// The direction at the sum of two angles.
-Direction<double> at_sum(const Direction<double>& a, const Direction<double>& b) {
-  return {a.cosine * b.cosine - a.sine * b.sine, a.sine * b.cosine + a.cosine * b.sine};
+/// The bend at the sum of two angles.
+Bend<double> at_sum(const Bend<double>& a, const Bend<double>& b) {
+  const auto& [c, s] = a.direction;
+  const auto& [d, t] = b.direction;
+  return {a.angle + b.angle, {c * d - s * t, s * d + c * t}};
 }
 
-}  // namespace
+Column3<double> column_of(const BodyStep<double>& step) {
+  return {step.forward, step.left, step.turn};
+}
 
-MotionIncrement moved_by_sigma_points(const MotionIncrement& before, const Control& control,
-                                      double duration, const Belief& belief,
-                                      const SigmaRule& rule) {
+/// The motion of a vehicle of type V.
+template <class V>
+MotionIncrement moved(const V& vehicle, const MotionIncrement& before, const Control& control,
+                      double duration, const ControlOf<double>& sigma, const SigmaRule& rule) {
+  constexpr std::size_t kLinear = kLinearOf<V>;
   const Pose& from = before.pose();
   const Column3<double> column = heading_column(before.covariance());
-  const auto [course, turn, ahead, aside] = directions_of<4>(
-      {from.heading, rule.spread * column.h, control.steer, rule.spread * belief.sigma_steer});
-  const auto image = [&](double speed, const Direction<double>& wheel) {
-    const auto step = body_step(belief.vehicle, speed, wheel, duration);
-    return Column3<double>{step.forward, step.left, step.turn};
+  const double scale = vehicle.bend_scale(duration);
+  const double angle = control[kLinear] * scale, spread = rule.spread * (sigma[kLinear] * scale);
+  const auto [course, turn, ahead, aside] =
+      directions_of<4>({from.heading, rule.spread * column.h, angle, spread});
+  const Bend<double> bend{angle, ahead};
+  const auto image = [&](const Bend<double>& at) {
+    return column_of(body_step_at(vehicle, control.values, at, duration));
   };
-  const Column3<double> centre = image(control.speed, ahead);
+  const Column3<double> centre = image(bend);
   const Column3<double> step = turned(centre, course);
   Symmetric3<double> P = before.covariance();
   add_outer(P, -1.0, column);
-  add_outer(P, 1.0, turned(image(belief.sigma_speed, ahead), course));  // linear: no points
+  const auto add_linear = [&, course = course](std::size_t i) {  // linear: no points
+    const auto travel = unit_travel(vehicle, i, sigma[i], bend, duration);
+    add_outer(P, 1.0, turned(column_of(travel), course));
+  };
+  add_linear(0);  // no loop: g++ 12 fuses the products of in_world() where it vectorises one
+  if constexpr (kLinear > 1) add_linear(1);
   const auto add = [&](const Pair& pair) {
     add_outer(P, rule.antisymmetric, pair.odd);
     add_outer(P, rule.symmetric, pair.even);
@@ -70,11 +83,22 @@ MotionIncrement moved_by_sigma_points(const MotionIncrement& before, const Contr
   };
   const Column3<double> a = add(heading_pair(step, rule.spread * column, turn));
   const Column3<double> b =
-      add(steer_pair(centre, image(control.speed, at_sum(ahead, aside)),
-                     image(control.speed, at_sum(ahead, {aside.cosine, -aside.sine})), course));
+      add(bend_pair(centre, image(at_sum(bend, {spread, aside})),
+                    image(at_sum(bend, {-spread, {aside.cosine, -aside.sine}})), course));
   const Column3<double> e = rule.mean_weight * (a + b);
   add_outer(P, rule.shift, e);
   return {{from.x + step.x + e.x, from.y + step.y + e.y, wrap(from.heading + step.h + e.h)}, P};
+}
+
+}  // namespace
+
+MotionIncrement moved_by_sigma_points(const MotionIncrement& before, const Control& control,
+                                      double duration, const Belief& belief,
+                                      const SigmaRule& rule) {
+  const auto sigma = deviations_of(belief.control, control, belief.vehicle);
+  return std::visit(
+      [&](const auto& one) { return moved(one, before, control, duration, sigma, rule); },
+      belief.vehicle);
 }
 
 }  // namespace montecarta::filters

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/core/slam_filter.hpp"
+#include "filters/models/control_noise.hpp"
 #include "filters/models/vehicle.hpp"
 #include "filters/setup/filter_options.hpp"
 
@@ -16,10 +17,9 @@ namespace montecarta::filters {
 /// What the filter believes about vehicle and sensor (study file: [belief], default [scenario]).
 struct Belief {
   Vehicle vehicle = {};
-  double sigma_speed = 0.3;     ///< [m/s]
-  double sigma_steer = 0.05;    ///< [rad]
-  double sigma_range = 0.1;     ///< [m]
-  double sigma_bearing = 0.02;  ///< [rad]
+  ControlNoise control{.sigma = {0.3, 0.05}};  ///< e.g. [m/s], [rad]
+  double sigma_range = 0.1;                    ///< [m]
+  double sigma_bearing = 0.02;                 ///< [rad]
 };
 
 enum class Association { known, nearest };

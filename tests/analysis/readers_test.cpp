@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <sstream>
 
@@ -68,6 +70,52 @@ TEST_F(SlowReaders, Xarray) {
   if (!python_has("xarray, netCDF4, h5py"))
     GTEST_SKIP() << "python3-xarray, python3-netcdf4, python3-h5py are not installed";
   expect_same("/usr/bin/python3 -B " + kReaders + "/anees.py " + path_.string() + " --xarray");
+}
+
+TEST_F(SlowReaders, TheModuleNamesItsArraysAndReadsTheTables) {
+  if (!python_has("xarray, netCDF4, h5py, pandas"))
+    GTEST_SKIP()
+        << "python3-xarray, python3-netcdf4, python3-h5py, python3-pandas are not installed";
+  const std::string script = R"(
+import sys, montecarta
+results = montecarta.open(sys.argv[1])
+tables = results.tables(sys.argv[2])
+verdicts = tables["consistency"]
+for label in results.labels:
+    cell = montecarta.at_scans(results[label])
+    assert list(cell.component.values) == ["x", "y", "heading"], cell.component
+    assert cell.pose_mean.attrs["units"] == "m, m, rad" and cell.sizes["scan"] == len(cell.scan_row)
+    estimate = cell.get("pose_mean_mixture", cell.pose_mean)
+    error = montecarta.pose_error(cell.truth, estimate).sel(component=["x", "y"])
+    rmse = (error ** 2).sum("component", skipna=False).mean("run").values ** 0.5
+    theirs = tables["series_" + label]["position_rmse [m]"].values
+    assert abs(rmse / theirs - 1).max() < 1e-12, label
+    print(label, *verdicts.query("cell == @label and error == 'pose'").anees_mean[:1])
+for wrong, error in [(lambda: results["none"], KeyError), (lambda: montecarta.open("/none"), OSError)]:
+    try:
+        wrong()
+        sys.exit("nothing was raised")
+    except error:
+        pass
+)";
+  std::ofstream(folder_ / "try.py") << script;
+  const auto whole = folder_ / "whole.h5";
+  write_synthetic_result(whole, 12, 400);
+  const auto outcome = run_program("HDF5_USE_FILE_LOCKING= PYTHONPATH=" + kReaders +
+                                   " /usr/bin/python3 -B " + (folder_ / "try.py").string() + " " +
+                                   whole.string() + " " + MONTECARTA_EXECUTABLE);
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_EQ(printed(outcome.output).size(), 2u) << outcome.output;
+}
+
+TEST_F(SlowReaders, Figure) {
+  if (!python_has("xarray, netCDF4, h5py, matplotlib"))
+    GTEST_SKIP() << "python3-matplotlib or what montecarta.py needs is not installed";
+  const auto outcome = run_program("HDF5_USE_FILE_LOCKING= /usr/bin/python3 -B " + kReaders +
+                                   "/anees_figure.py " + path_.string() + " " +
+                                   (folder_ / "anees.svg").string() + " " + MONTECARTA_EXECUTABLE);
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "anees.svg"));
 }
 
 TEST_F(SlowReaders, Octave) {

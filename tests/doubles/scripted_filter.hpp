@@ -49,9 +49,9 @@ class ScriptedFilter : public SlamFilter {
     context.parallel_for(particles_.size(), [&](std::size_t i) {
       RngStream draw = context.stream(Draw::motion_sample, static_cast<std::uint32_t>(i));
       Pose& pose = particles_[i];
-      pose.heading = wrap(pose.heading + duration * (control.steer + 0.01 * draw.normal()));
-      pose.x += duration * control.speed * std::cos(pose.heading);
-      pose.y += duration * control.speed * std::sin(pose.heading) + 0.01 * draw.normal();
+      pose.heading = wrap(pose.heading + duration * (control[1] + 0.01 * draw.normal()));
+      pose.x += duration * control[0] * std::cos(pose.heading);
+      pose.y += duration * control[0] * std::sin(pose.heading) + 0.01 * draw.normal();
     });
     meet_mishap(context);
   }

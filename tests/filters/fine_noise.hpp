@@ -9,8 +9,7 @@ namespace montecarta::filters {
 /// world.
 inline Belief fine() {
   return {.vehicle = {},
-          .sigma_speed = 3e-3,
-          .sigma_steer = 5e-4,
+          .control = {.sigma = {3e-3, 5e-4}},
           .sigma_range = 1e-3,
           .sigma_bearing = 2e-4};
 }

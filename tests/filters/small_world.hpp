@@ -10,6 +10,7 @@
 #include "filters/models/range_bearing.hpp"
 
 #include <cmath>
+#include <vector>
 
 namespace montecarta::filters {
 
@@ -28,6 +29,8 @@ struct SmallWorldSettings {
   std::size_t steps_per_scan = 8;
   double max_range = 30.0;  ///< [m], in front only
   Belief noise = {};        ///< of the truth
+  /// From scan to scan in turn.
+  std::vector<Control> controls = std::vector<Control>(1, Control{3.0, 0.15});
 };
 
 inline void place_landmarks(const SmallWorldSettings& settings, SmallWorld& world) {
@@ -63,10 +66,14 @@ inline SmallWorld small_world(const SmallWorldSettings& settings) {
   const auto n_steps = static_cast<std::uint32_t>(settings.scans * settings.steps_per_scan);
   for (std::uint32_t step = 0; step < n_steps; ++step) {
     RngStream draw({settings.seed, 0, step, 0, Draw::world_control});
-    const Control control{3.0, 0.15};
-    const double speed = control.speed + settings.noise.sigma_speed * draw.normal();
-    const double steer = control.steer + settings.noise.sigma_steer * draw.normal();
-    truth = move(truth, speed, steer, 0.025, settings.noise.vehicle);
+    const std::size_t leg = (step / settings.steps_per_scan) % settings.controls.size();
+    const Control& control = settings.controls[leg];
+    Control driven = control;
+    const std::size_t n_controls = controls_of(settings.noise.vehicle).size();
+    for (std::size_t i = 0; i < n_controls; ++i) {
+      driven[i] += settings.noise.control.sigma[i] * draw.normal();
+    }
+    truth = move(truth, driven, 0.025, settings.noise.vehicle);
     world.itinerary.step_time.push_back(0.025 * (step + 1));
     world.drive.controls.push_back(control);
     world.drive.truth.push_back(truth);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/page/replay/read_replay.hpp"
 
+#include "analysis/data/met_drive.hpp"
 #include "analysis/data/run_reader.hpp"
 #include "analysis/figures/path_data.hpp"
-#include "analysis/page/replay/read_map.hpp"
+#include "analysis/figures/stored_map.hpp"
 #include "analysis/page/replay/thin_particles.hpp"
 
 #include <algorithm>
@@ -86,10 +87,11 @@ ReplaySize share_of(const ReplaySize& size, std::size_t cells, std::size_t frame
 
 void add_surroundings(const ResultFile& file, std::size_t run, const Scans& frames,
                       Replay& replay) {
-  for (const std::size_t s : frames) replay.times.push_back(file.scan_times()[s]);
+  const auto times = drive_met_by(file, file.runs()[run]).scan_times;
+  for (const std::size_t s : frames) replay.times.push_back(times[s]);
   for (const auto& row : landmark_data(file, run).rows)
     replay.landmarks.emplace_back(row[0], row[1]);
-  for (const auto& row : fix_data(file).rows) replay.fixes.emplace_back(row[1], row[2]);
+  for (const auto& row : fix_data(file, run).rows) replay.fixes.emplace_back(row[1], row[2]);
 }
 
 void read_truth(const ResultFile& file, std::size_t run, const Scans& frames, Replay& replay) {
@@ -107,7 +109,8 @@ void read_truth(const ResultFile& file, std::size_t run, const Scans& frames, Re
 }  // namespace
 
 Replay read_replay(const ResultFile& file, std::size_t run, const ReplaySize& size) {
-  const Scans frames = frame_scans(file.scan_times().size(), size.frames);
+  const std::size_t scans = drive_met_by(file, file.runs()[run]).scan_times.size();
+  const Scans frames = frame_scans(scans, size.frames);
   Replay replay{file.runs()[run]};
   if (frames.empty()) return replay;
   add_surroundings(file, run, frames, replay);
@@ -123,6 +126,21 @@ Replay read_replay(const ResultFile& file, std::size_t run, const ReplaySize& si
     replay.cells.push_back(read_cell(file, c, run, frames, share));
   }
   return replay;
+}
+
+std::vector<ReplayMap> read_maps(const ResultFile& file, const StoredCell& cell, std::size_t run,
+                                 std::span<const std::size_t> frame_scans, std::size_t ellipses) {
+  const StoredMap stored(file, cell, run);
+  if (stored.scans() == 0) return {};
+  const std::size_t frames = frame_scans.size();
+  if (stored.is_final_only()) return {{frames - 1, stored.at(0)}};
+  std::vector<ReplayMap> maps;
+  const std::size_t count = std::clamp<std::size_t>(ellipses / stored.landmarks(), 1, frames);
+  for (std::size_t k = 1; k <= count; ++k) {
+    const std::size_t frame = k * frames / count - 1;
+    maps.push_back({frame, stored.at(frame_scans[frame])});
+  }
+  return maps;
 }
 
 }  // namespace montecarta::analysis

@@ -5,6 +5,8 @@
 #include "engine/records/result_file.hpp"
 
 #include <cstddef>
+#include <span>
+#include <vector>
 
 namespace montecarta::analysis {
 
@@ -19,5 +21,10 @@ struct ReplaySize {
 /// Reads run index `run` of every cell that completed it or failed in it, thinned in time to equal
 /// steps from scan to scan.
 Replay read_replay(const ResultFile& file, std::size_t run, const ReplaySize& size = {});
+
+/// The landmarks a cell had, at as many of the frames, evenly, as `ellipses` in all allow; where
+/// only the final map is stored that one, at the last frame; else nothing.
+std::vector<ReplayMap> read_maps(const ResultFile& file, const StoredCell& cell, std::size_t run,
+                                 std::span<const std::size_t> frame_scans, std::size_t ellipses);
 
 }  // namespace montecarta::analysis

@@ -7,6 +7,7 @@ function montecarta_filter(filter)
 %     a run begins at pose [x; y; heading], known exactly; settings: vehicle and noise as believed;
 %     seed: for a random generator, the same for the same study and run
 %   belief = filter.predict(belief, speed, steer, duration)
+%     instead of speed and steer what settings.controls names, where the vehicle is no car
 %   belief = filter.update(belief, detections)
 %     detections: n x 3, rows [range bearing identity]; identity -1: a false alarm, or unknown
 %   [mean, covariance] = filter.estimate(belief)
@@ -52,8 +53,9 @@ function [belief, members] = answer(filter, belief, message, line)
     members = [',"map":' rows_text(filter.map(belief))];
     return
   end
-  for u = reshape(exact(line, 'controls'), 3, [])
-    belief = filter.predict(belief, u(1), u(2), u(3));
+  for u = reshape(exact(line, 'controls'), max(columns(message.controls), 1), [])
+    u = num2cell(u);
+    belief = filter.predict(belief, u{:});
   end
   if strcmp(message.type, 'scan')
     belief = filter.update(belief, reshape(exact(line, 'detections'), 3, [])');

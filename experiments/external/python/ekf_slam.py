@@ -13,7 +13,8 @@ def wrapped(angle):
 
 class EkfSlam(montecarta_filter.Filter):
     def start(self, pose, settings, run, seed):
-        assert settings["association"] == "known" and settings["vehicle"] == "front_axle"
+        if settings["association"] != "known" or settings["vehicle"] != "front_axle":
+            raise ValueError("for known association and vehicle = front_axle only")
         self.wheelbase = settings["wheelbase"]
         self.Q = np.diag([settings["sigma_speed"], settings["sigma_steer"]]) ** 2
         self.R = np.diag([settings["sigma_range"], settings["sigma_bearing"]]) ** 2

@@ -24,7 +24,10 @@ class Filter:
         raise NotImplementedError
 
     def predict(self, speed, steer, duration):
-        """The vehicle drove at `speed` [m/s] with its wheel at `steer` [rad] for `duration` [s]."""
+        """The vehicle drove at `speed` [m/s] with its wheel at `steer` [rad] for `duration` [s].
+
+        Other vehicles have other controls: those that settings["controls"] names, then `duration`.
+        """
         raise NotImplementedError
 
     def update(self, detections):

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/ancestry_tree.hpp"
 
-#include "analysis/metrics/ancestor_set.hpp"
+#include "analysis/metrics/lineages.hpp"
 #include "engine/errors.hpp"
 #include "engine/random/stream.hpp"
 

@@ -17,8 +17,8 @@ constexpr double kStep = 0.1;  // [s]
 using Landmarks = std::vector<Eigen::Vector2d>;
 
 SimulatedWorld open_world() {
-  return {.vehicle = {.wheelbase = 2.0},
-          .sigma_control = {0.3, 0.05},
+  return {.vehicle = Car{.wheelbase = 2.0},
+          .control_noise = {.sigma = {0.3, 0.05}},
           .sigma_observation = {0.1, 0.02},
           .detected = 1.0,
           .view = FieldOfView(50.0, kPi),
@@ -26,8 +26,8 @@ SimulatedWorld open_world() {
 }
 
 /// A path under these controls, with a scan after every `every`-th step.
-TruePath path_of(const std::vector<Control>& controls, std::size_t every, Landmarks landmarks) {
-  const Vehicle vehicle = open_world().vehicle;
+TruePath path_of(const std::vector<Control>& controls, std::size_t every, Landmarks landmarks,
+                 const Vehicle& vehicle = open_world().vehicle) {
   TruePath path;
   path.landmarks = std::move(landmarks);
   Pose pose = path.start;
@@ -62,7 +62,7 @@ struct Trajectory {
     const auto n = static_cast<Eigen::Index>(controls->size());
     for (Eigen::Index k = 0; k < n; ++k) {
       const Control& control = (*controls)[static_cast<std::size_t>(k)];
-      pose = move(pose, {control.speed + unknown(2 * k), control.steer + unknown(2 * k + 1)}, kStep,
+      pose = move(pose, {control[0] + unknown(2 * k), control[1] + unknown(2 * k + 1)}, kStep,
                   world->vehicle);
       if (static_cast<std::size_t>(k + 1) % every != 0 || observations == nullptr) continue;
       for (Eigen::Index l = 0; l < static_cast<Eigen::Index>(landmarks->size()); ++l) {
@@ -98,9 +98,11 @@ Eigen::Matrix3d reference(const SimulatedWorld& world, const Landmarks& landmark
   }
   Eigen::MatrixXd information = H.transpose() * H;
   for (std::size_t k = 0; k < controls.size(); ++k) {
+    const auto deviations = deviations_of(world.control_noise, controls[k], world.vehicle);
     for (Eigen::Index c = 0; c < 2; ++c) {
       const auto i = 2 * static_cast<Eigen::Index>(k) + c;
-      information(i, i) += 1.0 / (world.sigma_control(c) * world.sigma_control(c));
+      const double sigma = deviations[static_cast<std::size_t>(c)];
+      information(i, i) += 1.0 / (sigma * sigma);
     }
   }
   return G * information.ldlt().solve(G.transpose());
@@ -108,10 +110,9 @@ Eigen::Matrix3d reference(const SimulatedWorld& world, const Landmarks& landmark
 
 const Landmarks kAhead = {{30, 3}, {31, -6}, {40, 12}};  // always in view
 
-TEST(CramerRaoBound, IsThatOfTheJointInformationOfTheWholeTrajectory) {
-  const SimulatedWorld world = open_world();
+void expect_information_of_trajectory(const SimulatedWorld& world) {
   const std::vector<Control> controls = bends(24);
-  const CramerRaoBound bound = squared_bound(world, path_of(controls, 4, kAhead));
+  const CramerRaoBound bound = squared_bound(world, path_of(controls, 4, kAhead, world.vehicle));
   ASSERT_EQ(bound.position.size(), 6u);
   for (std::size_t s = 0; s < 6; ++s) {
     const std::vector<Control> until(controls.begin(),
@@ -122,12 +123,23 @@ TEST(CramerRaoBound, IsThatOfTheJointInformationOfTheWholeTrajectory) {
   }
 }
 
+TEST(CramerRaoBound, IsThatOfTheJointInformationOfTheWholeTrajectory) {
+  expect_information_of_trajectory(open_world());
+}
+
+TEST(CramerRaoBound, IsThatOfARobotWhoseNoiseGrowsWithItsMotion) {
+  SimulatedWorld world = open_world();
+  world.vehicle = DifferentialDrive{};
+  world.control_noise.alpha = {0.02, 0.1, 1e-3, 0.5};
+  expect_information_of_trajectory(world);
+}
+
 // On a straight line towards its only landmark, with an error of the speed alone, the problem is
 // linear: a Kalman filter of two numbers, by hand.
 TEST(CramerRaoBound, IsTheKalmanFiltersCovarianceWhereTheProblemIsLinear) {
   SimulatedWorld world = open_world();
   world.view = FieldOfView(200.0, kPi);
-  world.sigma_control = {0.3, 0.0};
+  world.control_noise.sigma = {0.3, 0.0};
   const std::vector<Control> controls(20, Control{3.0, 0.0});
   const CramerRaoBound bound = squared_bound(world, path_of(controls, 2, {{100.0, 0.0}}));
   const double q = 2.0 * 0.3 * 0.3 * kStep * kStep, r = 0.1 * 0.1;

@@ -2,7 +2,6 @@
 #include "analysis/metrics/nees.hpp"
 
 #include "analysis/statistics/means.hpp"
-#include "analysis/statistics/summary.hpp"
 #include "engine/random/stream.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
 

@@ -2,6 +2,7 @@
 #include "analysis/metrics/reference_analysis.hpp"
 
 #include "analysis/metrics/measured_run.hpp"
+#include "analysis/metrics/score.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -46,6 +47,17 @@ TEST(ReferenceAnalysis, GivesMeanMiddleAndExtremesOverRuns) {
   EXPECT_DOUBLE_EQ(rms.median, 6.0);
   EXPECT_EQ(rms.least, 1.0);
   EXPECT_EQ(rms.greatest, 11.0);
+}
+
+TEST(ReferenceAnalysis, IsOfTheRunsThatHaveFixes) {
+  ReferenceAnalysis cell = four_runs();
+  cell.runs.emplace_back();  // its drive has none
+  EXPECT_EQ(cell.with_fixes(), 4u);
+  EXPECT_EQ(cell.lost(), 1u);
+  EXPECT_DOUBLE_EQ(cell.over_runs(&ReferenceScores::aligned_rms).median, 6.0);
+  cell.runs.back().gated_share = 0.0;  // it has some, and its estimates are no numbers
+  EXPECT_EQ(cell.with_fixes(), 5u);
+  EXPECT_EQ(cell.lost(), 2u);
 }
 
 TEST(ReferenceAnalysis, TakesTheRootOfTheMeanSquareAtEveryFix) {

@@ -38,7 +38,7 @@ StudyAnalysis study_of(const std::vector<CellAnalysis>& cells) {
   StudyAnalysis study;
   study.has_truth = false;
   study.times = {1.0, 2.0};
-  study.references = {{"gps", {0.5, 1.0, 1.5}, false}};
+  study.references = {{"gps", {0.5, 1.0, 1.5}, 3, 1, false}};
   study.cells = cells;
   return study;
 }

@@ -61,6 +61,7 @@ TEST_F(ReferenceFiles, AreNotThereWhereTheTruthIsKnown) {
 }
 
 TEST_F(ReferenceFiles, AreGroupsOfTheAnalysisFile) {
+  study_.references[1].fixes = 0;
   study_.references[1].times.clear();  // as if no fix lay within the drive
   write_analysis_file(study_, folder_ / "analysis.h5");
   const auto file = h5::open_file(folder_ / "analysis.h5");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/reference_table.hpp"
 
+#include "analysis/metrics/reference_analysis.hpp"
 #include "analysis/tables/tables.hpp"
 #include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/synthetic_result.hpp"
@@ -81,11 +82,29 @@ TEST(BaselineTable, NeedsABaseline) {
 
 TEST(ReferenceTable, SaysNothingByAReferenceWithoutFixesInTheDrive) {
   StudyAnalysis study = recorded_study();
-  study.references.front().times.clear();
+  study.references.front().fixes = 0;
   EXPECT_EQ(reference_table(study).rows[2][3], "-");
   EXPECT_EQ(reference_table(study).rows[3][3], "1 of 4");
   EXPECT_THAT(baseline_table(study).rows, testing::IsEmpty());
   EXPECT_THAT(reference_notes(study), Contains(HasSubstr("No fix of gps lies within the drive")));
+}
+
+TEST(ReferenceTable, JudgesDrivesOfTheirOwnByThoseThatHaveFixes) {
+  StudyAnalysis study = recorded_study();
+  study.own_drives = 4;
+  study.references.front().times.clear();
+  study.references.front().drives = 3;
+  for (CellAnalysis& cell : study.cells) {
+    ReferenceAnalyses all = cell.get<ReferenceAnalyses>();
+    all.front().runs.front() = {};
+    cell.findings.put(all);
+  }
+  EXPECT_EQ(reference_table(study).rows[2][3], "1 of 3");
+  EXPECT_THAT(reference_table(study).rows[2][4], Not(HasSubstr("nan")));
+  EXPECT_EQ(baseline_table(study).rows[2][1], "0 of 3");
+  EXPECT_THAT(reference_notes(study),
+              Contains(HasSubstr("gps has 100 fixes within 3 of 4 drives")));
+  EXPECT_THAT(reference_notes(study), Not(Contains(HasSubstr("No fix"))));
 }
 
 TEST(MapTable, CountsLandmarksAndBeacons) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/page/html.hpp"
 
-#include "analysis/page/assets.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -50,6 +50,14 @@ TEST_F(Commands, HelpAndVersionAreForStandardOutput) {
   }
 }
 
+TEST_F(Commands, AShippedStudyIsKnownByItsName) {
+  const Called called = call({"run", "first_study", "-o", "out.h5", "--runs", "0:1", "--quiet"});
+  EXPECT_EQ(called.code, 0) << called.err;
+  EXPECT_TRUE(exists("out.h5"));
+  write("first_study", "not a study");
+  EXPECT_EQ(call({"check", "first_study"}).code, 2) << "a file of that name goes first";
+}
+
 TEST_F(Commands, WrongInputIsNamedWithItsRemedy) {
   expect_wrong({"rnu"}, "rnu: unknown command (see montecarta --help): did you mean run?");
   expect_wrong({"run", "blink.ini"}, "-o OUT.h5 is missing");

@@ -24,7 +24,7 @@ std::vector<std::uint64_t> bits_of(const Itinerary& itinerary, const Drive& driv
   add(itinerary.start.x, itinerary.start.y, itinerary.start.heading);
   for (const double time : itinerary.step_time) add(time);
   for (const std::uint32_t step : itinerary.scan_step) add(step);
-  for (const Control& control : drive.controls) add(control.speed, control.steer);
+  for (const Control& control : drive.controls) add(control[0], control[1]);
   for (const std::uint32_t begin : drive.scan_begin) add(begin);
   for (const Detection& d : drive.detections) add(d.range, d.bearing, d.identity);
   return bits;

@@ -31,7 +31,7 @@ bool same_numbers(const Drive& a, const Drive& b) {
     return x.range == y.range && x.bearing == y.bearing && x.identity == y.identity;
   };
   const auto same_control = [](const Control& x, const Control& y) {
-    return x.speed == y.speed && x.steer == y.steer;
+    return x[0] == y[0] && x[1] == y[1];
   };
   const auto same_pose = [](const Pose& x, const Pose& y) { return boxminus(x, y).isZero(0.0); };
   return std::ranges::equal(a.detections, b.detections, same_detection) &&
@@ -64,7 +64,7 @@ TEST(SimulatedDrive, DrivesTheShippedWorldsAsTheyPromise) {
   EXPECT_NEAR(seen_in(drive_of(web, 0)).empty_share, 0.2, 0.05);
   const SimulatedDrive dense(find_world("dense_loop"), Scenario{}, 1);
   EXPECT_NEAR(seen_in(drive_of(dense, 0)).mean, 5.2, 0.3);
-  const Scenario small{.vehicle = {.wheelbase = 0.26}, .speed = 0.8, .max_range = 5.0};
+  const Scenario small{.vehicle = Car{.wheelbase = 0.26}, .speed = 0.8, .max_range = 5.0};
   EXPECT_EQ(seen_in(drive_of(SimulatedDrive(find_world("small_loop"), small, 1), 0)).different, 15U)
       << "reached with the default radius and steering rate, too";
 }
@@ -103,24 +103,23 @@ TEST(SimulatedDrive, SharesOneTruthWhereOnlyTheMeasuredControlIsNoisy) {
   const Drive b = drive_of(source, 1);
   EXPECT_EQ(a.truth[5000].x, b.truth[5000].x);
   EXPECT_EQ(a.scan_begin, b.scan_begin);
-  EXPECT_NE(a.controls[5000].steer, b.controls[5000].steer);
+  EXPECT_NE(a.controls[5000][1], b.controls[5000][1]);
 }
 
 // Mean and standard deviation of (true control - given control) within 5 standard errors.
 TEST(SimulatedDrive, DrawsTheNoiseThatTheScenarioNames) {
   const Scenario scenario{
-      .sigma_speed = 0.3, .sigma_steer = 0.05, .sigma_range = 0.2, .sigma_bearing = 0.02};
+      .control = {.sigma = {0.3, 0.05}}, .sigma_range = 0.2, .sigma_bearing = 0.02};
   const Drive noisy = drive_of(SimulatedDrive(find_world("dense_loop"), scenario, 9), 0);
-  const Scenario silent{
-      .sigma_speed = 0.0, .sigma_steer = 0.0, .sigma_range = 0.0, .sigma_bearing = 0.0};
+  const Scenario silent{.control = {.sigma = {0.0, 0.0}}, .sigma_range = 0.0, .sigma_bearing = 0.0};
   const Drive exact = drive_of(SimulatedDrive(find_world("dense_loop"), silent, 9), 0);
   Eigen::Array4d sum = Eigen::Array4d::Zero();
   Eigen::Array4d squares = Eigen::Array4d::Zero();
   const std::size_t count = exact.detections.size();
   ASSERT_EQ(noisy.detections.size(), count);
   for (std::size_t i = 0; i < count; ++i) {
-    const Eigen::Array4d error = {noisy.controls[i].speed - exact.controls[i].speed,
-                                  noisy.controls[i].steer - exact.controls[i].steer,
+    const Eigen::Array4d error = {noisy.controls[i][0] - exact.controls[i][0],
+                                  noisy.controls[i][1] - exact.controls[i][1],
                                   noisy.detections[i].range - exact.detections[i].range,
                                   wrap(noisy.detections[i].bearing - exact.detections[i].bearing)};
     sum += error;
@@ -134,12 +133,12 @@ TEST(SimulatedDrive, DrawsTheNoiseThatTheScenarioNames) {
 }
 
 TEST(SimulatedDrive, MovesTheTruthByTheNoiseWhereMatched) {
-  const Scenario scenario{.noise = NoiseMode::matched, .sigma_speed = 0.3, .sigma_steer = 0.05};
+  const Scenario scenario{.noise = NoiseMode::matched, .control = {.sigma = {0.3, 0.05}}};
   const SimulatedDrive source(find_world("web_loop"), scenario, 9);
   const Drive drive = drive_of(source, 4);
   double squares = 0.0;
   for (std::size_t k = 1; k < drive.truth.size(); ++k) {
-    EXPECT_EQ(drive.controls[k].speed, 3.0);
+    EXPECT_EQ(drive.controls[k][0], 3.0);
     const double dx = drive.truth[k].x - drive.truth[k - 1].x;
     const double dy = drive.truth[k].y - drive.truth[k - 1].y;
     squares += std::pow(std::hypot(dx, dy) * 40.0 - 3.0, 2);
@@ -155,7 +154,7 @@ TEST(SimulatedDrive, TurnsWithTheWorld) {
   const Eigen::Vector2d shift(40.0, -7.0);
   const Eigen::Matrix2d rotation = Eigen::Rotation2Dd(turn).toRotationMatrix();
   World world = find_world("web_loop");
-  Scenario scenario{.noise = NoiseMode::matched, .sigma_speed = 0.1, .sigma_steer = 0.01};
+  Scenario scenario{.noise = NoiseMode::matched, .control = {.sigma = {0.1, 0.01}}};
   const Drive straight = drive_of(SimulatedDrive(world, scenario, 2), 0);
   for (auto& p : world.landmarks) p = rotation * p + shift;
   for (auto& p : world.waypoints) p = rotation * p + shift;
@@ -171,7 +170,7 @@ TEST(SimulatedDrive, TurnsWithTheWorld) {
 TEST(SimulatedDrive, CountsScansInWholeNumbers) {
   const World square{
       .name = "square", .waypoints = {{10, 0}, {10, 10}, {0, 10}, {0, 0}}, .landmarks = {{5, 5}}};
-  const Scenario scenario{.loops = 400, .vehicle = {.wheelbase = 1.0}, .speed = 0.6};
+  const Scenario scenario{.loops = 400, .vehicle = Car{.wheelbase = 1.0}, .speed = 0.6};
   const SimulatedDrive source(square, scenario, 1);
   const Itinerary& itinerary = source.itinerary();
   ASSERT_GT(itinerary.steps(), 1'000'000U);
@@ -185,10 +184,12 @@ TEST(SimulatedDrive, CountsScansInWholeNumbers) {
 TEST(SimulatedDrive, SaysWhichWaypointCannotBeReached) {
   const World tight{.name = "tight", .waypoints = {{30, 0}, {30, 2}}, .landmarks = {{5, 5}}};
   try {
-    const SimulatedDrive source(tight, Scenario{.waypoint_radius = 0.05}, 1);
+    const SimulatedDrive source(tight, Scenario{.waypoint_radius = 0.1}, 1);
     ADD_FAILURE() << "reached in " << source.itinerary().steps() << " steps";
   } catch (const StudyError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("is not reached within 0.05 m"));
+    EXPECT_THAT(error.what(),
+                HasSubstr("is not reached within 0.1 m (the vehicle circles around it): enlarge "
+                          "scenario.waypoint_radius or scenario.steer_rate_limit_deg"));
   }
 }
 

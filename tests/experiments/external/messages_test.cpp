@@ -24,14 +24,28 @@ TEST(ExternalMessages, IdentitiesAreWithheld) {
 
 TEST(ExternalMessages, AStartWithAllThatIsBelieved) {
   FilterSetup setup{.belief = {}, .association = {}, .options = FilterOptions({}), .landmarks = 35};
-  setup.belief.vehicle = {.kind = Vehicle::Kind::rear_wheel, .wheelbase = 2.83};
+  setup.belief.vehicle = Car{.kind = Car::Kind::rear_wheel, .wheelbase = 2.83};
   setup.association.kind = Association::nearest;
-  EXPECT_EQ(start_message(0, {.run = 12, .seed = 4'000'000'000, .pose = {1.0, -2.5, 0.0}}, setup),
-            R"({"id":0,"type":"start","run":12,"seed":4000000000,"start":[1.0,-2.5,0.0],)"
-            R"("settings":{"vehicle":"rear_wheel","wheelbase":2.83,"wheel_left":0.0,)"
-            R"("sensor_ahead":0.0,"sensor_left":0.0,"sigma_speed":0.3,"sigma_steer":0.05,)"
-            R"("sigma_range":0.1,"sigma_bearing":0.02,"association":"nearest",)"
-            R"("gate":5.991464547107979,"new_gate":25.0,"landmarks":35}})");
+  EXPECT_EQ(
+      start_message(0, {.run = 12, .seed = 4'000'000'000, .pose = {1.0, -2.5, 0.0}}, setup),
+      R"({"id":0,"type":"start","run":12,"seed":4000000000,"start":[1.0,-2.5,0.0],)"
+      R"("settings":{"vehicle":"rear_wheel","wheelbase":2.83,"wheel_left":0.0,)"
+      R"("sensor_ahead":0.0,"sensor_left":0.0,"controls":["speed","steer"],"sigma_speed":0.3,"sigma_steer":0.05,)"
+      R"("sigma_range":0.1,"sigma_bearing":0.02,"association":"nearest",)"
+      R"("gate":5.991464547107979,"new_gate":25.0,"landmarks":35}})");
+}
+
+TEST(ExternalMessages, SayWhichControlsARobotHas) {
+  FilterSetup setup{.belief = {}, .association = {}, .options = FilterOptions({}), .landmarks = 35};
+  setup.belief.vehicle = DifferentialDrive{.integration = Integration::euler};
+  setup.belief.control = {.sigma = {0.1, 0.25}, .alpha = {0.5, 0.0, 0.0, 0.125}};
+  const std::string text = start_message(0, {.run = 0, .seed = 1, .pose = {}}, setup);
+  EXPECT_NE(text.find(R"("vehicle":"differential_drive","integration":"euler",)"
+                      R"("controls":["speed","yaw_rate"],"sigma_speed":0.1,"sigma_yaw_rate":0.25,)"
+                      R"("alpha_1":0.5,"alpha_2":0.0,"alpha_3":0.0,"alpha_4":0.125,)"
+                      R"("sigma_range")"),
+            std::string::npos)
+      << text;
 }
 
 TEST(ExternalMessages, PredictionsAndMaps) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Damaged studies, worlds and estimates: read, or refused with the name of the file. (Damaged
 // recorded drives: recordings/readers_fuzz_test.cpp.)
+#include "experiments/judging/innovation_rows.hpp"
 #include "experiments/judging/state_rows.hpp"
 #include "experiments/study/study.hpp"
 #include "experiments/worlds/world_file.hpp"
@@ -54,6 +55,26 @@ TEST(InputsFuzz, Estimates) {
   const fs::path path = folder / "estimate.csv";
   write_text(path, "time_s,x_m,qual,cov_0_0,cov_1_0,cov_1_1\n0.5,1,2,3,0.5,4\n1.5,1,2,3,0.5,4\n");
   EXPECT_GT(refused(path, true, 2000, [&] { read_estimates(path); }), 500U);
+}
+
+TEST(InputsFuzz, Trajectories) {
+  const ScratchFolder folder;
+  const fs::path path = folder / "estimate.txt";
+  const std::string row = ".5 1 2 3 0 0 0.6 0.8 1 0 0 1 0 1 2 0 0 2 0 2\n";
+  write_text(path, "# timestamp tx ty tz qx qy qz qw\n1" + row + "2" + row);
+  EXPECT_GT(refused(path, true, 2000, [&] { read_estimates(path); }), 500U);
+}
+
+TEST(InputsFuzz, Innovations) {
+  const ScratchFolder folder;
+  const fs::path path = folder / "innovation.csv";
+  write_text(path, "time_s,r_m,b_rad,cov_0_0,cov_1_0,cov_1_1\n1,1,2,3,0.5,4\n2,1,2,3,0.5,4\n");
+  const auto read = [&] {
+    StateRows rows;
+    rows.time = {1.0, 2.0};
+    read_innovations(path, "estimate.csv", 1e-6, rows);
+  };
+  EXPECT_GT(refused(path, true, 2000, read), 500U);
 }
 
 TEST(InputsFuzz, WorldMat) {

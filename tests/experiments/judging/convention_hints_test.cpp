@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/judging/convention_hints.hpp"
+#include "analysis/metrics/convention_hints.hpp"
 
+#include "analysis/metrics/nees.hpp"
 #include "tests/analysis/verdict_studies.hpp"
 #include "tests/experiments/judging/drawn_errors.hpp"
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 #include <iostream>
 
 namespace montecarta::experiments {
 namespace {
 
+using analysis::ConventionHint;
+using analysis::ConventionHints;
 using testing::HasSubstr;
 
 constexpr std::uint64_t kRuns = 20, kScans = 10;
@@ -19,21 +23,23 @@ constexpr std::uint64_t kRuns = 20, kScans = 10;
 /// Errors whose covariance is right by one convention, judged by all.
 ConventionHint hint_of(const StateShape& shape, ErrorConvention right, std::uint64_t study) {
   const Eigen::MatrixXd P = some_covariance(shape);
-  StateRows rows{shape, {}, {}, {}, {}, {}};
-  for (std::size_t s = 0; s < kScans; ++s) rows.time.push_back(static_cast<double>(s));
-  rows.covariance.assign(kScans, P);
-  ConventionHints hints("mine", shape, rows.time);
+  ConventionHints hints(shape.dimension(), kScans);
   for (std::uint64_t run = 0; run < kRuns; ++run) {
     RngStream draw({study, run, 0, static_cast<std::uint32_t>(right), Draw::test});
-    std::vector<Eigen::VectorXd> truths;
-    rows.state.clear();
+    std::array<std::vector<double>, engine::kErrorConventions.size()> nees;
     for (std::size_t s = 0; s < kScans; ++s) {
-      truths.push_back(drawn_truth(shape, draw));
-      rows.state.push_back(mean_with_error(shape, right, truths.back(), drawn_error(P, draw)));
+      const Eigen::VectorXd truth = drawn_truth(shape, draw);
+      const Eigen::VectorXd mean = mean_with_error(shape, right, truth, drawn_error(P, draw));
+      for (std::size_t k = 0; k < nees.size(); ++k) {
+        const ErrorConvention by = conventions_of(shape.kind)[k];
+        EXPECT_EQ(name_of(by), engine::kErrorConventions[k].name);
+        nees[k].push_back(analysis::strict_nees(error_of(shape, by, mean, truth), P));
+      }
     }
-    hints.add(rows, truths);
+    hints.add(nees);
   }
-  return hints.result(0.95, 1.1);
+  const std::vector<double> times = analysis::five_a_second(kScans);
+  return hints.result(times, 0.95, analysis::BandWalks(kScans), 1.1);
 }
 
 /// Of how many studies the right convention fits, and a wrong one does.
@@ -45,13 +51,14 @@ Fitting fitting_in(const StateShape& shape, ErrorConvention right, std::uint64_t
   Fitting fitting;
   for (std::uint64_t study = 0; study < studies; ++study) {
     const ConventionHint hint = hint_of(shape, right, study);
-    const std::string by_right = in_words(hint, right);
+    const std::string by_right = in_words(hint, "mine", name_of(right));
     fitting.wrong += by_right.find("Every other would") == std::string::npos ? 1.0 : 0.0;
     const ErrorConvention other =
         right == ErrorConvention::world ? ErrorConvention::body : ErrorConvention::world;
-    const std::string by_other = in_words(hint, other);
-    const std::string fits = by_other.substr(0, by_other.find(", not as"));
-    const bool has_it = fits.find("as " + name_of(right) + " (ANEES") != std::string::npos;
+    const std::string by_other = in_words(hint, "mine", name_of(other));
+    const std::string fits = by_other.substr(0, by_other.find(", but as"));
+    const bool has_it = fits.find("not have been rejected") != std::string::npos &&
+                        fits.find(" " + name_of(right) + " (ANEES") != std::string::npos;
     fitting.right += has_it ? 1.0 : 0.0;
     fitting.named += has_it && by_other.find("were they meant so") != std::string::npos ? 1.0 : 0.0;
   }
@@ -78,22 +85,19 @@ TEST(ConventionHintsSlow, NameTheRightConvention) {
 
 TEST(ConventionHints, SayWhatCannotBeToldApart) {
   const ConventionHint hint = hint_of(plane_shape(), ErrorConvention::body, 1);
-  EXPECT_THAT(in_words(hint, ErrorConvention::world),
+  EXPECT_THAT(in_words(hint, "mine", "world"),
               testing::AllOf(HasSubstr("mine: the verdict is by the error world."),
                              HasSubstr("not have been rejected as body (ANEES "),
                              HasSubstr("but as right-invariant"), HasSubstr("no verdict")));
-  EXPECT_THAT(in_words(hint, ErrorConvention::body), HasSubstr("Every other would"));
-  ConventionHint alike{"mine", {hint.by_convention[1], hint.by_convention[1]}};
-  alike.by_convention[0].convention = ErrorConvention::world;
-  EXPECT_THAT(in_words(alike, ErrorConvention::body), HasSubstr("cannot tell them apart"));
+  EXPECT_THAT(in_words(hint, "mine", "body"), HasSubstr("would have been rejected: world (ANEES "));
+  const ConventionHint none{{hint.by_convention[0], hint.by_convention[0], hint.by_convention[0]}};
+  EXPECT_THAT(in_words(none, "mine", "body"), HasSubstr("rejected as well: world (ANEES "));
+  const ConventionHint alike{{hint.by_convention[1], hint.by_convention[1]}};
+  EXPECT_THAT(in_words(alike, "mine", "body"), HasSubstr("cannot tell them apart"));
 }
 
 TEST(ConventionHints, SayNothingOfAVector) {
-  const StateShape shape{StateKind::vector, {"b_m"}, {"b"}, {"m"}};
-  const std::vector<double> times = {0.0, 1.0};
-  EXPECT_EQ(
-      in_words(ConventionHints("mine", shape, times).result(0.95, 1.1), ErrorConvention::world),
-      "");
+  EXPECT_EQ(in_words(ConventionHint{}, "mine", "world"), "");
 }
 
 }  // namespace

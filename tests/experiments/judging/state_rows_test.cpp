@@ -137,8 +137,9 @@ TEST_F(StateFiles, HaveTruthsAtTheTimesOfEstimatesOrBetween) {
     }
     return "";
   };
-  EXPECT_THAT(refused(0.25, {}), AllOf(HasSubstr("est.csv: time 0.25 s has no truth in truth.csv"),
-                                       HasSubstr("0.25 s away"), HasSubstr("--interpolate")));
+  EXPECT_THAT(refused(0.25, {}),
+              AllOf(HasSubstr("est.csv: time 0.25 s has no truth in truth.csv"),
+                    HasSubstr("0.25 s away"), HasSubstr("--interpolate, or a larger --tolerance")));
   EXPECT_THAT(refused(1.5, {.interpolate = true}), HasSubstr("outside of the truth"));
   EXPECT_THROW(read_truth(written("time_s,b_m\n0,1\n"), shape), StudyError);
 }

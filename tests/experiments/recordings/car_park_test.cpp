@@ -34,8 +34,8 @@ TEST(CarPark, ReadsPolesAndSurvey) {
   const ScratchFolder folder;
   write_small_car_park(folder.path());
   const DriveLog log = read_car_park(folder.path());
-  EXPECT_EQ(log.odometry[1].control.speed, 2.1);
-  EXPECT_EQ(log.odometry[1].control.steer, 0.2);
+  EXPECT_EQ(log.odometry[1].control[0], 2.1);
+  EXPECT_EQ(log.odometry[1].control[1], 0.2);
   ASSERT_EQ(log.scans.size(), 2U);
   ASSERT_EQ(log.scans[0].detections.size(), 1U);
   EXPECT_NEAR(log.scans[0].detections[0].range, 10.03, 1e-12);

@@ -56,9 +56,9 @@ TEST(CheckLog, WantsTimesToIncrease) {
 }
 
 TEST(CheckLog, WantsNumbersThatCanBe) {
-  EXPECT_THAT(complaint_after([](DriveLog& log) { log.odometry[0].control.speed = kNan; }),
+  EXPECT_THAT(complaint_after([](DriveLog& log) { log.odometry[0].control[0] = kNan; }),
               HasSubstr("(odometry): record 1: speed nan"));
-  EXPECT_THAT(complaint_after([](DriveLog& log) { log.odometry[1].control.steer = 5; }),
+  EXPECT_THAT(complaint_after([](DriveLog& log) { log.odometry[1].control[1] = 5; }),
               HasSubstr("record 2: steering 5 (radians"));
   EXPECT_THAT(complaint_after([](DriveLog& log) { log.scans[1].detections[0].range = kNan; }),
               HasSubstr("(scans): record 2: range nan"));

@@ -42,7 +42,7 @@ TEST_F(LogCsv, ReadsRowsOfOneTimeAsOneScan) {
   const DriveLog log = read();
   EXPECT_EQ(log.start_time, 0.1);
   EXPECT_EQ(log.start.heading, 0.5);
-  EXPECT_EQ(log.odometry[1].control.steer, 0.1);
+  EXPECT_EQ(log.odometry[1].control[1], 0.1);
   ASSERT_EQ(log.scans.size(), 2U);
   EXPECT_EQ(log.scans[0].detections.size(), 2U);
   EXPECT_EQ(log.scans[0].detections[0].identity, Detection::kUnidentified);

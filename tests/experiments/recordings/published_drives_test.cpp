@@ -56,7 +56,7 @@ Journey journey(const std::string& kind, const std::string& cell, const std::str
   filter->start(made.itinerary.start);
   for (std::size_t k = 0, s = 0; k < made.itinerary.steps(); ++k) {
     const StepContext context(1, 0, static_cast<std::uint32_t>(k), Parallel::serial());
-    if (!drive.controls[k].stands())
+    if (!drive.controls[k].stands(1))
       filter->predict(context, drive.controls[k], made.itinerary.duration(k));
     if (s < made.itinerary.scans() && made.itinerary.scan_step[s] == k)
       filter->update(context, drive.scan(s++));

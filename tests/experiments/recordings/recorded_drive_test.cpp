@@ -26,7 +26,7 @@ DriveLog small_log() {
 
 std::vector<double> speeds(const Drive& drive) {
   std::vector<double> speeds;
-  for (const Control& control : drive.controls) speeds.push_back(control.speed);
+  for (const Control& control : drive.controls) speeds.push_back(control[0]);
   return speeds;
 }
 
@@ -99,7 +99,7 @@ TEST(FingerprintOfALog, ChangesWithEveryNumberOfIt) {
   };
   EXPECT_TRUE(changed([](DriveLog& log) { log.start.x += 1e-9; }));
   EXPECT_TRUE(changed([](DriveLog& log) { log.start_time = 9.0; }));
-  EXPECT_TRUE(changed([](DriveLog& log) { log.odometry[1].control.steer = 0.0; }));
+  EXPECT_TRUE(changed([](DriveLog& log) { log.odometry[1].control[1] = 0.0; }));
   EXPECT_TRUE(changed([](DriveLog& log) { log.scans[0].detections[0].identity = 3; }));
   EXPECT_TRUE(changed([](DriveLog& log) { log.scans[3].detections = one_at(1.0); }));
   EXPECT_TRUE(changed([](DriveLog& log) { log.references[0].name = "gpt"; }));

@@ -15,7 +15,7 @@ inline std::vector<std::uint64_t> bits_of(const DriveLog& log) {
     (bits.push_back(std::bit_cast<std::uint64_t>(static_cast<double>(numbers))), ...);
   };
   add(log.start.x, log.start.y, log.start.heading, log.odometry.size(), log.scans.size());
-  for (const auto& [time, control] : log.odometry) add(time, control.speed, control.steer);
+  for (const auto& [time, control] : log.odometry) add(time, control[0], control[1]);
   for (const auto& [time, detections] : log.scans) {
     add(time, detections.size());
     for (const auto& [range, bearing, identity] : detections) add(range, bearing, identity);

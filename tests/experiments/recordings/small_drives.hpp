@@ -125,8 +125,7 @@ inline DriveLog full_log() {
   DriveLog log;
   log.start_time = 1.0 / 11;
   log.start = {.x = 1.0 / 3, .y = -0.0, .heading = -2.0 / 3};
-  log.odometry = {{0.1, {.speed = 1.0 / 7, .steer = -1e-17}},
-                  {0.30000000000000004, {.speed = -0.5, .steer = 1.0 / 9}}};
+  log.odometry = {{0.1, {1.0 / 7, -1e-17}}, {0.30000000000000004, {-0.5, 1.0 / 9}}};
   log.scans = {{0.1, {}},
                {0.2, {{10.0 / 3, -1.0 / 3, 1}, {20.1, 0.7, Detection::kClutter}}},
                {0.3, {{5e-324, 0.0, 0}}}};

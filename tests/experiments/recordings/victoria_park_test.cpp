@@ -46,7 +46,7 @@ class VictoriaPark : public testing::Test {
 TEST_F(VictoriaPark, ReadsTheTextRelease) {
   const DriveLog log = read();
   ASSERT_EQ(log.odometry.size(), 3U);
-  EXPECT_EQ(log.odometry[0].control.steer, -0.01);
+  EXPECT_EQ(log.odometry[0].control[1], -0.01);
   EXPECT_EQ(log.odometry[2].time, 1.025);
   ASSERT_EQ(log.scans.size(), 2U);
   EXPECT_EQ(log.scans[1].detections.size(), 1U);
@@ -61,7 +61,7 @@ TEST_F(VictoriaPark, ReadsTheTextRelease) {
 TEST_F(VictoriaPark, BringsTheMatReleaseToTheTextsClockAndOrigin) {
   const DriveLog log = read(Steering::raw);
   EXPECT_EQ(log.odometry[0].time, 0.975);
-  EXPECT_EQ(log.odometry[0].control.steer, -0.0125);
+  EXPECT_EQ(log.odometry[0].control[1], -0.0125);
   EXPECT_EQ(log.references[1].name, "gps_all");
   EXPECT_EQ(log.references[1].time[1], 1.0);
   EXPECT_EQ(log.references[1].position[0], Eigen::Vector2d(0, 0));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/study/make_plan.hpp"
 
-#include "analysis/data/margin.hpp"
+#include "analysis/data/study_settings.hpp"
 #include "experiments/study/setting.hpp"
 #include "experiments/text/numbers.hpp"
 #include "tests/experiments/study/study_text.hpp"

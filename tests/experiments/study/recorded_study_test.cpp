@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/study/recorded_study.hpp"
 
+#include "experiments/recordings/find_recording.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/study/make_plan.hpp"
 #include "experiments/study/study_of_log.hpp"
@@ -85,10 +86,24 @@ TEST_F(RecordedStudy, IsCalledTheSameWhereverItsDriveLies) {
   EXPECT_THAT(moved, AllOf(Not(HasSubstr("world")), Not(HasSubstr("loops"))));
 }
 
+TEST_F(RecordedStudy, FindsFoldersWithCommasInTheirNames) {
+  for (const char* name : {"a", "b,c", "d, e/f"}) {
+    std::filesystem::create_directories(folder_ / name);
+  }
+  const auto named = [&](const std::string& list) { return recordings_in(list, {folder_.path()}); };
+  EXPECT_THAT(named("b,c"), testing::ElementsAre("b,c"));
+  EXPECT_THAT(named("a, b,c,d, e/f"), testing::ElementsAre("a", "b,c", "d, e/f"));
+  EXPECT_THAT(named("a,nowhere , b,c"), testing::ElementsAre("a", "nowhere", "b,c"));
+  EXPECT_THAT(named("a,,a,"), testing::ElementsAre("a", "", "a", ""));
+  EXPECT_THAT(named(""), testing::ElementsAre(""));
+  std::filesystem::rename(folder_ / "drive", folder_ / "my,drive");
+  EXPECT_NE(read(kStudy, {"scenario.path=my,drive"}).log, nullptr);
+}
+
 TEST_F(RecordedStudy, RefusesAnotherDriveThanItWasMadeWith) {
   const std::string resolved = resolved_text(read(kStudy));
   std::filesystem::remove_all(folder_ / "drive");
-  log_.odometry[1].control.speed += 1e-9;
+  log_.odometry[1].control[0] += 1e-9;
   write_log_csv(log_, folder_ / "drive");
   try {
     read(resolved, {"scenario.path=drive"});

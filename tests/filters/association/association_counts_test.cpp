@@ -105,7 +105,7 @@ std::unique_ptr<SlamFilter> make_default(const FilterKind& kind, const SmallWorl
 
 TEST(AssociationCounts, AddUpToTheDetectionsInEveryFilter) {
   SmallWorldSettings settings{.seed = 3, .landmarks = 60, .scans = 30};
-  settings.noise.sigma_steer = 0.3;  // so that some go wrong
+  settings.noise.control.sigma[1] = 0.3;  // so that some go wrong
   const SmallWorld world = small_world(settings);
   for (const FilterKind& kind : filter_kinds()) {
     if (kind.name == "dead_reckoning") continue;  // associates nothing

@@ -25,7 +25,7 @@ constexpr std::size_t kStepsPerScan = 8;
 const Control kControl{3.0, 0.05};
 
 Belief belief() {
-  return {.sigma_speed = 0.3, .sigma_steer = 0.05, .sigma_range = 0.1, .sigma_bearing = 0.02};
+  return {.control = {.sigma = {0.3, 0.05}}, .sigma_range = 0.1, .sigma_bearing = 0.02};
 }
 
 /// Five landmarks around a circling vehicle, seen without noise at every scan.
@@ -75,9 +75,9 @@ double price_of_clock() {
 }
 
 void count(benchmark::State& state, std::size_t items) {
-  state.counters["ns_per_item"] = benchmark::Counter(
-      static_cast<double>(items) * 1e-9,
-      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["per_item"] =
+      benchmark::Counter(static_cast<double>(items), benchmark::Counter::kIsIterationInvariantRate |
+                                                         benchmark::Counter::kInvert);
 }
 
 /// Drives far, without a scan. Items are particle-steps.

@@ -10,11 +10,8 @@
 namespace montecarta::filters {
 namespace {
 
-const Belief kRough{.vehicle = {},
-                    .sigma_speed = 1.0,
-                    .sigma_steer = 0.2,
-                    .sigma_range = 0.3,
-                    .sigma_bearing = 0.05};
+const Belief kRough{
+    .vehicle = {}, .control = {.sigma = {1.0, 0.2}}, .sigma_range = 0.3, .sigma_bearing = 0.05};
 const std::vector<Detection> kFirstScan{{8.0, 0.9, 0}, {12.0, -0.7, 1}, {6.0, -1.2, 2}};
 
 /// The same drive for both: out, three landmarks, and on.
@@ -86,8 +83,7 @@ TEST(JointGaussian, AnIteratedDetectionPassesTheBackwardDirection) {
   // On its way the estimate passes the landmark, so that the bearing turns by more than half a turn
   // in all: wrapped may be only what is left to explain.
   const Belief belief{.vehicle = {},
-                      .sigma_speed = 1.0,
-                      .sigma_steer = 0.2,
+                      .control = {.sigma = {1.0, 0.2}},
                       .sigma_range = 0.1,
                       .sigma_bearing = 2.0 * kPi / 180.0};
   JointGaussian gaussian(belief, Retraction::additive, 1);

@@ -116,10 +116,10 @@ TEST(EkfSlam, RoomForLandmarksIsNoLimit) {
 
 TEST(EkfSlam, NearestNeighbourFindsTheTrueLandmarksWhereTheyStandApart) {
   SmallWorldSettings settings{.seed = 10, .landmarks = 8, .scans = 200};
-  settings.noise.sigma_steer = 0.01;
+  settings.noise.control.sigma[1] = 0.01;
   const SmallWorld world = small_world(settings);
   FilterSetup setup = setup_for(8, Association::nearest);
-  setup.belief.sigma_steer = 0.01;
+  setup.belief.control.sigma[1] = 0.01;
   setup.association.gate = 25.0;  // nothing true is beyond it
   const auto nearest = make_ekf_slam(setup);
   setup.association.kind = Association::known;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/random/normal_quantile.hpp"
+#include "engine/random/normals.hpp"
 #include "filters/joint/joint_filters.hpp"
 #include "tests/filters/default_options.hpp"
 #include "tests/filters/fine_noise.hpp"
@@ -166,7 +166,7 @@ TEST(Hrb, LeavesTheShareOfTheHeadingThatItIsToldToKeep) {
 TEST(Hrb, SplitsBySizeWhereATurnBendsTheMapByMoreThanTheSensorErrs) {
   // sigma^2 D / 2 against sigma_range = 0.1 m, sigma = 2.9 degrees after 2 s: at D = 120 m only.
   for (const auto& [distance, splits] : {std::pair{120.0, true}, std::pair{20.0, false}}) {
-    const auto bank = make_hrb(setup_of(hrb_kind(), {}, {.sigma_steer = 0.3}));
+    const auto bank = make_hrb(setup_of(hrb_kind(), {}, {.control = {.sigma = {0.3, 0.3}}}));
     const StepContext context(7, 0, 0, Parallel::serial());
     bank->start({});
     for (int step = 0; step < 80; ++step) bank->predict(context, {3.0, 0.0}, 0.025);

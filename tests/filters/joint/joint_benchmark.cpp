@@ -53,7 +53,7 @@ void ekf_slam_scan(benchmark::State& state, Association kind) {
   const auto filter = filter_knowing(all, kind, context);
   const Scan scan = Scan(all).first(kSeenPerScan);
   for (auto _ : state) filter->update(context, scan);
-  state.counters["s/detection"] =
+  state.counters["per_detection"] =
       benchmark::Counter(static_cast<double>(state.iterations() * kSeenPerScan),
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
@@ -75,7 +75,7 @@ void hrb_scan(benchmark::State& state) {
   filter->update(context, all);
   const Scan scan = Scan(all).first(kSeenPerScan);
   for (auto _ : state) filter->update(context, scan);
-  state.counters["s/particle-detection"] =
+  state.counters["per_particle_detection"] =
       benchmark::Counter(static_cast<double>(state.iterations() * kSeenPerScan * particles),
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
@@ -113,11 +113,12 @@ template <class Around>
 void drive(SlamFilter& filter, const RingRoad& road, double way, std::size_t scans, Pose& pose,
            const Around& around) {
   const Belief belief;
-  const Control control{way / 0.2, std::asin(belief.vehicle.wheelbase / road.radius)};
+  const Control control{way / 0.2,
+                        std::asin(std::get<Car>(belief.vehicle).wheelbase / road.radius)};
   std::vector<std::vector<Detection>> seen;
   for (std::uint32_t s = 0; s < scans; ++s) {
     for (int step = 0; step < 8; ++step) {
-      pose = move(pose, control.speed, control.steer, 0.025, belief.vehicle);
+      pose = move(pose, control, 0.025, belief.vehicle);
     }
     seen.push_back(road.scan(pose, s));
   }

@@ -100,7 +100,7 @@ TEST(RiekfSlam, IsEkfSlamUntilALandmarkIsSeenAgain) {
 }
 
 /// Noise that bends the models: here EKF-SLAM and RI-EKF-SLAM part.
-Belief rough() { return {.sigma_steer = 0.1, .sigma_bearing = 0.05}; }
+Belief rough() { return {.control = {.sigma = {0.3, 0.1}}, .sigma_bearing = 0.05}; }
 
 /// How much of the heading's variance is left to a vehicle that drove blindly, stood, and looked a
 /// hundred times at landmarks it had never seen before: nothing of that tells where x points.

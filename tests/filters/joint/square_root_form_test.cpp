@@ -17,8 +17,7 @@ namespace {
 
 /// Of Ankishan et al., Simulation I.
 const Belief kLargeNoise{.vehicle = {},
-                         .sigma_speed = 1.0,
-                         .sigma_steer = 10.0 * kPi / 180.0,
+                         .control = {.sigma = {1.0, 10.0 * kPi / 180.0}},
                          .sigma_range = 1.2,
                          .sigma_bearing = 12.0 * kPi / 180.0};
 

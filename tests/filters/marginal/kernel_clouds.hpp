@@ -22,7 +22,7 @@ struct KernelCloud {
       : kernels((n + kLanesOf<Real> - 1) / kLanesOf<Real>), targets(kernels.size()), w(n) {
     MotionIncrement motion;
     for (int k = 0; k < 8; ++k)
-      motion.advance({3.0, 0.1}, 0.025, {.sigma_speed = 0.2, .sigma_steer = 0.035});
+      motion.advance({3.0, 0.1}, 0.025, {.control = {.sigma = {0.2, 0.035}}});
     RngStream draw({seed, 0, 0, 0, Draw::test});
     const double across = width * 0.02;  // [m]
     double sum_w = 0.0, sum_lambda = 0.0;

@@ -27,12 +27,12 @@ struct Case {
     before = {pose, random_pose_covariance(draw, 0.5, 0.2)};
     control = {5.0 * draw.normal(), 0.5 * draw.normal()};
     if (draw.uniform() < 0.5) {
-      belief.vehicle = {Vehicle::Kind::rear_wheel, 2.83, 0.76, 3.78, 0.5};
-      control.steer *= 0.5;  // sampled angles stay below the one at which the wheel stands still
+      belief.vehicle = Car{Car::Kind::rear_wheel, 2.83, 0.76, 3.78, 0.5};
+      control[1] *= 0.5;  // sampled angles stay below the one at which the wheel stands still
     }
-    belief.sigma_speed = draw.uniform(), belief.sigma_steer = 0.3 * draw.uniform();
+    belief.control.sigma = {draw.uniform(), 0.3 * draw.uniform()};
     x.head<3>() << pose.x, pose.y, pose.heading;
-    const Vector<2> Q(belief.sigma_speed, belief.sigma_steer), R(0.3, 0.1);
+    const Vector<2> Q(belief.control.sigma[0], belief.control.sigma[1]), R(0.3, 0.1);
     const Eigen::Matrix2d q = Q.asDiagonal(), r = R.asDiagonal();
     S = blocks<3, 2, 2>(chol_in<3>(heading_first(), symmetric(before.covariance())), q, r);
   }
@@ -70,7 +70,7 @@ TEST(SigmaMotion, EqualsFifteenCentralDifferencePointsOfSevenDimensions) {
 
 TEST(SigmaMotion, WithoutNoiseIsTheVehicleItself) {
   Belief sure;
-  sure.sigma_speed = sure.sigma_steer = 0.0;
+  sure.control = {};
   const MotionIncrement moved = moved_by_sigma_points(MotionIncrement(), {3.0, 0.2}, 0.025, sure,
                                                       unscented_rule(5, 0.9, 2, 0));
   EXPECT_LT(boxminus(moved.pose(), move(Pose(), Control{3.0, 0.2}, 0.025, sure.vehicle)).norm(),

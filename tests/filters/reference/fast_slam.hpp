@@ -23,7 +23,9 @@ class FastSlam : public SlamFilter {
     const Belief& b = settings.belief;
     R_ = Eigen::Vector2d(b.sigma_range * b.sigma_range, b.sigma_bearing * b.sigma_bearing)
              .asDiagonal();
-    Q_ = Eigen::Vector2d(b.sigma_speed * b.sigma_speed, b.sigma_steer * b.sigma_steer).asDiagonal();
+    Q_ = Eigen::Vector2d(b.control.sigma[0] * b.control.sigma[0],
+                         b.control.sigma[1] * b.control.sigma[1])
+             .asDiagonal();
   }
 
   void start(const Pose& start) override {

@@ -17,9 +17,9 @@ class FastSlam1 : public FastSlam {
                         const Control& control, double duration) override {
     const Belief& belief = settings_.belief;
     RngStream draw = context.stream(Draw::motion_sample, i);
-    const double speed = control.speed + belief.sigma_speed * draw.normal();
-    const double steer = control.steer + belief.sigma_steer * draw.normal();
-    const Pose moved = move(as_pose(p.pose), speed, steer, duration, belief.vehicle);
+    const double speed = control[0] + belief.control.sigma[0] * draw.normal();
+    const double steer = control[1] + belief.control.sigma[1] * draw.normal();
+    const Pose moved = move(as_pose(p.pose), Control{speed, steer}, duration, belief.vehicle);
     p.pose = Eigen::Vector3d(moved.x, moved.y, moved.heading);
   }
 

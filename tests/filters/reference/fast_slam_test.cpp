@@ -11,8 +11,8 @@ namespace {
 /// So much noise on the motion that the controls alone soon lead astray.
 Belief rough() {
   Belief belief;
-  belief.sigma_speed = 1.0;
-  belief.sigma_steer = 0.25;
+  belief.control.sigma[0] = 1.0;
+  belief.control.sigma[1] = 0.25;
   return belief;
 }
 

@@ -26,21 +26,22 @@ class InvariantEkfSlam {
 
   /// The error does not change but for the noise, which turns pose and map about the origin.
   void predict(const Control& u, double duration) {
-    const double way = u.speed * duration;
-    points[0] += way * Eigen::Vector2d(std::cos(heading + u.steer), std::sin(heading + u.steer));
-    Eigen::RowVector2d turn(duration * std::sin(u.steer), way * std::cos(u.steer));
-    turn /= belief_.vehicle.wheelbase;
+    const double way = u[0] * duration;
+    points[0] += way * Eigen::Vector2d(std::cos(heading + u[1]), std::sin(heading + u[1]));
+    Eigen::RowVector2d turn(duration * std::sin(u[1]), way * std::cos(u[1]));
+    turn /= std::get<Car>(belief_.vehicle).wheelbase;
     Eigen::Matrix2d shift;  // of the vehicle alone, by (speed, steer)
-    shift << duration * std::cos(heading + u.steer), -way * std::sin(heading + u.steer),
-        duration * std::sin(heading + u.steer), way * std::cos(heading + u.steer);
-    heading = wrap(heading + way * std::sin(u.steer) / belief_.vehicle.wheelbase);
+    shift << duration * std::cos(heading + u[1]), -way * std::sin(heading + u[1]),
+        duration * std::sin(heading + u[1]), way * std::cos(heading + u[1]);
+    heading = wrap(heading + way * std::sin(u[1]) / std::get<Car>(belief_.vehicle).wheelbase);
     Eigen::MatrixXd G(P.rows(), 2);
     G.row(2) = turn;
     for (std::size_t k = 0; k < points.size(); ++k) {
       G.middleRows<2>(row(k)) = -J() * points[k] * turn;
     }
     G.topRows<2>() += shift;
-    const Eigen::Vector2d Q(std::pow(belief_.sigma_speed, 2), std::pow(belief_.sigma_steer, 2));
+    const Eigen::Vector2d Q(std::pow(belief_.control.sigma[0], 2),
+                            std::pow(belief_.control.sigma[1], 2));
     P += G * Q.asDiagonal() * G.transpose();
   }
 

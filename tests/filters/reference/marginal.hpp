@@ -25,7 +25,8 @@ class Marginal : public SlamFilter {
       : settings_(settings), setup_(setup), learning_(settings.map, setup.belief) {
     const Belief& b = setup.belief;
     R_ = Eigen::Vector2d(std::pow(b.sigma_range, 2), std::pow(b.sigma_bearing, 2)).asDiagonal();
-    Q_ = Eigen::Vector2d(std::pow(b.sigma_speed, 2), std::pow(b.sigma_steer, 2)).asDiagonal();
+    Q_ = Eigen::Vector2d(std::pow(b.control.sigma[0], 2), std::pow(b.control.sigma[1], 2))
+             .asDiagonal();
     floor_ = Eigen::Vector3d(std::pow(settings.kernel_floor_xy, 2),
                              std::pow(settings.kernel_floor_xy, 2),
                              std::pow(settings.kernel_floor_heading, 2))

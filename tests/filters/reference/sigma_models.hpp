@@ -17,7 +17,7 @@ struct MotionModel {
   Vehicle vehicle;
   Vector<3> operator()(const Vector<7>& x) const {
     const Pose from{x(0), x(1), x(2)};
-    return to_vector(move(from, control.speed + x(3), control.steer + x(4), duration, vehicle));
+    return to_vector(move(from, Control{control[0] + x(3), control[1] + x(4)}, duration, vehicle));
   }
 };
 

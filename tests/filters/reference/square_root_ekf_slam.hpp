@@ -33,7 +33,7 @@ class SquareRootEkfSlam {
     mean.head<3>() << step.pose.x, step.pose.y, step.pose.heading;
     F.topRows<3>() = (pose_jacobian(step.jacobians) * F.topRows<3>()).eval();
     Eigen::MatrixXd noise = Eigen::MatrixXd::Zero(F.rows(), 2);
-    const Eigen::Vector2d sigma(belief_.sigma_speed, belief_.sigma_steer);
+    const Eigen::Vector2d sigma(belief_.control.sigma[0], belief_.control.sigma[1]);
     noise.topRows<3>() = control_jacobian(step.jacobians) * sigma.asDiagonal();
     append_columns(noise);
   }

@@ -35,7 +35,8 @@ class TextbookEkfSlam {
     F.topLeftCorner<3, 3>() = pose_jacobian(step.jacobians);
     Eigen::MatrixXd G = Eigen::MatrixXd::Zero(mean.size(), 2);
     G.topRows<3>() = control_jacobian(step.jacobians);
-    const Eigen::Vector2d Q(std::pow(belief_.sigma_speed, 2), std::pow(belief_.sigma_steer, 2));
+    const Eigen::Vector2d Q(std::pow(belief_.control.sigma[0], 2),
+                            std::pow(belief_.control.sigma[1], 2));
     mean.head<3>() << step.pose.x, step.pose.y, step.pose.heading;
     covariance = sandwich(F, covariance) + sandwich(G, Q.asDiagonal());
   }

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/models/body_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace montecarta::models {
+
+/// The least share of the rear axle's speed that the measured wheel may have (EQUATIONS 1: a
+/// guard). Nearer to the point about which the vehicle turns, that wheel says nothing of the
+/// vehicle.
+inline constexpr double kLeastWheelShare = 0.1;
+
+/// A car steered at the front: which of its points the pose is of, and what its controls mean. The
+/// control is (speed [m/s], steering angle [rad]); a step is linear in the speed and bends with the
+/// steering angle.
+struct Car {
+  enum class Kind {
+    front_axle,  ///< pose and speed are of the middle of the front axle (EQUATIONS 1)
+    rear_wheel   ///< pose is of the sensor, speed of a rear wheel (EQUATIONS 1)
+  };
+  Kind kind = Kind::front_axle;
+  double wheelbase = 4.0;                        ///< L [m]
+  double wheel_left = 0.0;                       ///< H [m] of the rear wheel, left of the middle
+  double sensor_ahead = 0.0;                     ///< a [m] of the sensor, from the rear axle
+  double sensor_left = 0.0;                      ///< b [m] likewise, from its middle
+  double steer_limit = 30.0 * kPi / 180.0;       ///< [rad] of the pilot
+  double steer_rate_limit = 20.0 * kPi / 180.0;  ///< [rad/s] of the pilot
+
+  static constexpr std::array<const char*, 2> kNames = {"front_axle", "rear_wheel"};
+  const char* name() const { return kNames[kind == Kind::front_axle ? 0 : 1]; }
+  static Car named(std::string_view name) {
+    return {.kind = name == kNames[0] ? Kind::front_axle : Kind::rear_wheel};
+  }
+  static constexpr std::array<ControlName, 2> kControls = {
+      kSpeedControl,
+      {.name = "steer",
+       .noun = "steering",
+       .column = "steer_rad",
+       .most = kPi / 2,
+       .limit = "radians, at most pi / 2",
+       .moves = false,
+       .sigma = "sigma_steer_deg",
+       .unit = "deg",
+       .usual = "3",
+       .most_sigma = 180,
+       .noise_text = "noise of the steering angle"}};
+  static const std::array<VehicleNumber<Car>, 6>& numbers();
+
+  static constexpr bool kTurnsByBend = false;
+  static double bend_scale(double /*duration*/) { return 1.0; }
+
+  /// EQUATIONS 1, in the frame of the vehicle; linear in the speed.
+  template <class Real>
+  BodyStep<Real> travel(const std::array<Real, 1>& speed, const Bend<Real>& steer,
+                        double duration) const {
+    const auto& wheel = steer.direction;
+    const Real way = speed[0] * Real(duration);
+    if (kind == Kind::front_axle) {
+      const Real left = way * wheel.sine;
+      return {way * wheel.cosine, left, left * Real(1.0 / wheelbase)};
+    }
+    const Real tangent = wheel.sine / wheel.cosine;
+    const Real slower =
+        max(Real(1.0) - Real(wheel_left / wheelbase) * tangent, Real(kLeastWheelShare));
+    const Real of_axle = way / slower;
+    const Real turn = of_axle * tangent * Real(1.0 / wheelbase);
+    return {of_axle - Real(sensor_left) * turn, Real(sensor_ahead) * turn, turn};
+  }
+
+  /// Derivative of travel() by the steering angle, each element per rad.
+  BodyStep<double> travel_by_bend(const std::array<double, 1>& speed, const Bend<double>& steer,
+                                  double duration) const {
+    const auto& wheel = steer.direction;
+    const double way = speed[0] * duration;
+    const double L = wheelbase;
+    if (kind == Kind::front_axle) {
+      return {-way * wheel.sine, way * wheel.cosine, way * wheel.cosine / L};
+    }
+    const double tangent = wheel.sine / wheel.cosine;
+    const double by_steer = 1.0 + tangent * tangent;  // of the tangent
+    const double slower = std::max(1.0 - wheel_left / L * tangent, kLeastWheelShare);
+    const double of_axle = way * wheel_left / L * by_steer / (slower * slower);
+    const double turn = way * by_steer / (slower * slower * L);  // of v tan G, in one term
+    return {of_axle - sensor_left * turn, sensor_ahead * turn, turn};
+  }
+
+  /// travel() turned round. A car that did not move has an unknown steering angle: 0.
+  Control control_of(const BodyStep<double>& step, double duration) const {
+    if (kind == Kind::front_axle) {
+      return {std::hypot(step.forward, step.left) / duration, std::atan2(step.left, step.forward)};
+    }
+    const double of_axle = step.forward + sensor_left * step.turn;
+    if (of_axle == 0.0) return {};
+    const double tangent = step.turn * wheelbase / of_axle;
+    const double slower = std::max(1.0 - wheel_left / wheelbase * tangent, kLeastWheelShare);
+    return {of_axle * slower / duration, std::atan(tangent)};
+  }
+
+  /// Turns the steering towards the way-point, limited in rate and angle (EQUATIONS (1.7)).
+  Control steered(const Aim& aim) const {
+    const double steer = aim.before[1];
+    const double most = steer_rate_limit / aim.control_rate;
+    const double change = std::clamp(wrap(aim.off - steer), -most, most);
+    return {aim.speed, std::clamp(steer + change, -steer_limit, steer_limit)};
+  }
+  /// [m] that it drives at most before it heads anywhere: a circle, and the way to full lock.
+  double way_to_turn(double speed) const {
+    const double turning_circle = kTwoPi * wheelbase / std::sin(steer_limit);
+    return turning_circle + speed * (steer_limit / steer_rate_limit);
+  }
+  static constexpr const char* kTurnLimit = "steer_rate_limit_deg";
+
+  /// Whether at this control the measured wheel is too near to the point about which the car turns.
+  bool is_beyond_model(const Control& control) const {
+    return kind == Kind::rear_wheel &&
+           1.0 - wheel_left / wheelbase * std::tan(control[1]) < kLeastWheelShare;
+  }
+};
+
+inline const std::array<VehicleNumber<Car>, 6>& Car::numbers() {
+  constexpr auto pilot = VehicleUse::pilot;
+  static constexpr std::array<VehicleNumber<Car>, 6> kNumbers = {
+      {{.key = "wheelbase",
+        .unit = "m",
+        .usual = "4",
+        .least = 1e-3,
+        .most = 1000,
+        .meaning = "between the axles",
+        .member = &Car::wheelbase,
+        .example = "2.83"},
+       {"wheel_left", "m", "0", -1000, 1000, "measured rear wheel left of the middle",
+        &Car::wheel_left},
+       {"sensor_ahead", "m", "0", -1000, 1000, "sensor ahead of the rear axle", &Car::sensor_ahead},
+       {"sensor_left", "m", "0", -1000, 1000, "sensor left of the middle", &Car::sensor_left},
+       {"steer_limit_deg", "deg", "30", 0.1, 89, "largest steering angle", &Car::steer_limit,
+        pilot},
+       {"steer_rate_limit_deg", "deg/s", "20", 0.1, 1e5, "fastest turn of the steering",
+        &Car::steer_rate_limit, pilot}}};
+  return kNumbers;
+}
+
+}  // namespace montecarta::models

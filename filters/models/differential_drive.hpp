@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/models/twist.hpp"
+
+#include <string_view>
+
+namespace montecarta::models {
+
+/// Two wheels on one axle, each with a motor of its own: it turns on the spot. The control is
+/// (speed [m/s], yaw rate [rad/s]), the pose that of the middle of the axle (EQUATIONS 1).
+struct DifferentialDrive {
+  Integration integration = Integration::arc;
+  double yaw_rate_limit = 90.0 * kPi / 180.0;  ///< [rad/s] of the pilot
+  double turn_on_spot = 45.0 * kPi / 180.0;    ///< [rad] of the pilot: farther off it stops to turn
+
+  static constexpr std::array<const char*, 1> kNames = {"differential_drive"};
+  const char* name() const { return kNames[0]; }
+  static DifferentialDrive named(std::string_view /*name*/) { return {}; }
+  static constexpr std::array<ControlName, 2> kControls = {kSpeedControl, kYawRateControl};
+  static const std::array<VehicleNumber<DifferentialDrive>, 2>& numbers();
+
+  static constexpr bool kTurnsByBend = true;
+  static double bend_scale(double duration) { return duration; }
+
+  template <class Real>
+  BodyStep<Real> travel(const std::array<Real, 1>& speed, const Bend<Real>& turn,
+                        double duration) const {
+    return twist_travel(integration, speed[0], Real(0.0), turn, duration);
+  }
+  BodyStep<double> travel_by_bend(const std::array<double, 1>& speed, const Bend<double>& turn,
+                                  double duration) const {
+    return twist_travel_by_turn(integration, speed[0], 0.0, turn, duration);
+  }
+  /// It cannot move sideways: the control that comes nearest.
+  Control control_of(const BodyStep<double>& step, double duration) const {
+    const Control twist = twist_of(integration, step, duration);
+    return {twist[0], twist[2]};
+  }
+
+  Control steered(const Aim& aim) const {
+    const double off = wrap(aim.off);
+    const double speed = std::abs(off) > turn_on_spot ? 0.0 : aim.speed;
+    return {speed, yaw_rate_towards(aim, off, yaw_rate_limit)};
+  }
+  /// [m] that it would drive in the time of a whole turn.
+  double way_to_turn(double speed) const { return speed * kTwoPi / yaw_rate_limit; }
+  static constexpr const char* kTurnLimit = "yaw_rate_limit_deg";
+};
+
+inline const std::array<VehicleNumber<DifferentialDrive>, 2>& DifferentialDrive::numbers() {
+  static constexpr std::array<VehicleNumber<DifferentialDrive>, 2> kNumbers = {
+      yaw_rate_limit_of(&DifferentialDrive::yaw_rate_limit),
+      {"turn_on_spot_deg", "deg", "45", 0.1, 180,
+       "farther off the way-point it stops and turns on the spot", &DifferentialDrive::turn_on_spot,
+       VehicleUse::pilot}};
+  return kNumbers;
+}
+
+}  // namespace montecarta::models

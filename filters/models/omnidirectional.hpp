@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/models/twist.hpp"
+
+#include <string_view>
+
+namespace montecarta::models {
+
+/// The control of one component of the velocity, as ControlName names it.
+constexpr ControlName velocity_control(const char* name, const char* column, const char* sigma,
+                                       const char* noise_text) {
+  ControlName control = kSpeedControl;
+  control.name = control.noun = name;
+  control.column = column;
+  control.sigma = sigma;
+  control.noise_text = noise_text;
+  return control;
+}
+
+/// A vehicle on Mecanum or Swedish wheels, which moves in any direction while it turns. The control
+/// is (forward [m/s], left [m/s], yaw rate [rad/s]), the pose that of the point these are measured
+/// at (EQUATIONS 1).
+struct Omnidirectional {
+  Integration integration = Integration::arc;
+  double yaw_rate_limit = 90.0 * kPi / 180.0;  ///< [rad/s] of the pilot
+
+  static constexpr std::array<const char*, 1> kNames = {"omnidirectional"};
+  const char* name() const { return kNames[0]; }
+  static Omnidirectional named(std::string_view /*name*/) { return {}; }
+  static constexpr std::array<ControlName, 3> kControls = {
+      velocity_control("forward", "forward_mps", "sigma_forward", "noise of the speed forward"),
+      velocity_control("left", "left_mps", "sigma_left", "noise of the speed to the left"),
+      kYawRateControl};
+  static const std::array<VehicleNumber<Omnidirectional>, 1>& numbers();
+
+  static constexpr bool kTurnsByBend = true;
+  static double bend_scale(double duration) { return duration; }
+
+  template <class Real>
+  BodyStep<Real> travel(const std::array<Real, 2>& velocity, const Bend<Real>& turn,
+                        double duration) const {
+    return twist_travel(integration, velocity[0], velocity[1], turn, duration);
+  }
+  BodyStep<double> travel_by_bend(const std::array<double, 2>& velocity, const Bend<double>& turn,
+                                  double duration) const {
+    return twist_travel_by_turn(integration, velocity[0], velocity[1], turn, duration);
+  }
+  Control control_of(const BodyStep<double>& step, double duration) const {
+    return twist_of(integration, step, duration);
+  }
+
+  /// Straight to the way-point, while it turns there.
+  Control steered(const Aim& aim) const {
+    const double off = wrap(aim.off);
+    return {aim.speed * std::cos(off), aim.speed * std::sin(off),
+            yaw_rate_towards(aim, off, yaw_rate_limit)};
+  }
+  /// [m] that it would drive in the time of a whole turn.
+  double way_to_turn(double speed) const { return speed * kTwoPi / yaw_rate_limit; }
+  static constexpr const char* kTurnLimit = "yaw_rate_limit_deg";
+};
+
+inline const std::array<VehicleNumber<Omnidirectional>, 1>& Omnidirectional::numbers() {
+  static constexpr std::array<VehicleNumber<Omnidirectional>, 1> kNumbers = {
+      yaw_rate_limit_of(&Omnidirectional::yaw_rate_limit)};
+  return kNumbers;
+}
+
+}  // namespace montecarta::models

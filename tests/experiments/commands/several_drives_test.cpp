@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Several recorded drives of one scenario, each a run, through every command.
+#include "engine/records/result_file.hpp"
+#include "experiments/recordings/log_csv.hpp"
+#include "tests/doubles/same_results.hpp"
+#include "tests/experiments/commands/program.hpp"
+
+#include <gmock/gmock.h>
+
+namespace montecarta::experiments {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+const std::string kDrives = R"([study]
+name = drives
+runs = 3
+[scenario]
+kind = log
+path = long, short, middle
+[belief]
+wheelbase = 4
+sigma_speed = 0.3
+sigma_steer_deg = 3
+sigma_range = 0.1
+sigma_bearing_deg = 1
+[cells]
+cell = ekf_slam
+cell = fastslam2 particles=10
+)";
+
+class SeveralDrives : public Program {
+ protected:
+  /// Three simulated drives, cut to lengths of their own, with fixes that tell their errors.
+  SeveralDrives() {
+    write("blink.csv", kBlinkWorld);
+    write("blink.ini", kBlink);
+    write("drives.ini", kDrives);
+    call({"export", "blink.ini", "-o", "exported"});
+    make("long", "run_0000", 1.0);
+    make("short", "run_0001", 0.5);
+    make("middle", "run_0002", 0.8);
+  }
+
+  void make(const std::string& name, const std::string& run, double share) const {
+    const std::filesystem::path from = folder_ / "exported";
+    std::filesystem::copy(from / "truth" / run / "reference.csv", from / "runs" / run);
+    DriveLog log = read_log_csv(from / "runs" / run);
+    log.landmarks.clear();
+    log.scans.resize(static_cast<std::size_t>(share * static_cast<double>(log.scans.size())));
+    std::erase_if(log.odometry, [&](const Odometry& o) { return o.time > log.scans.back().time; });
+    for (LoggedScan& scan : log.scans) {
+      for (Detection& detection : scan.detections) detection.identity = Detection::kUnidentified;
+    }
+    ReferencePath& path = log.references.front();
+    path.covariance.assign(path.time.size(), 0.01 * Eigen::Matrix3d::Identity());
+    for (std::size_t f = 0; f < path.time.size(); ++f) path.position[f].x() += f % 2 ? 0.1 : -0.1;
+    write_log_csv(log, folder_ / name);
+  }
+
+  Called run(const std::string& output, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words{"run", "drives.ini", "-o", output, "--quiet"};
+    words.insert(words.end(), more.begin(), more.end());
+    return call(words);
+  }
+};
+
+TEST_F(SeveralDrives, EachIsARunAndOneThatEndsEarlierIsComplete) {
+  const Called called = run("out.h5");
+  ASSERT_EQ(called.code, 0) << called.err;
+  const ResultFile file(folder_ / "out.h5");
+  ASSERT_EQ(file.description().drives.size(), 3U);
+  EXPECT_EQ(file.description().drives[0].scan_times, file.scan_times());
+  EXPECT_LT(file.description().drives[1].scan_times.size(), file.scan_times().size());
+  EXPECT_TRUE(file.references().empty());
+  for (const StoredCell& cell : file.cells()) {
+    EXPECT_THAT(file.status(cell), testing::Each(RunStatus::complete)) << cell.label;
+    std::vector<double> mean(3 * file.scan_times().size());
+    file.read(cell, "pose_mean", 1, std::span(mean));
+    const std::size_t scans = file.description().drives[1].scan_times.size();
+    EXPECT_FALSE(std::isnan(mean[3 * scans - 1]));
+    EXPECT_TRUE(std::isnan(mean[3 * scans]));
+    std::vector<double> seen(
+        *std::ranges::find(cell.columns, "final_map_seen", &Column::name)->shape.begin());
+    file.read(cell, "final_map_seen", 1, std::span(seen));
+    EXPECT_GT(std::ranges::count(seen, 1.0), 0) << "the map is that after its own last scan";
+  }
+}
+
+TEST_F(SeveralDrives, ShardsThreadsAndResumptionGiveTheSameBits) {
+  ASSERT_EQ(run("out.h5", {"--threads", "1"}).code, 0);
+  ASSERT_EQ(run("a.h5", {"--runs", "0:1"}).code, 0);
+  ASSERT_EQ(run("b.h5", {"--runs", "1:3", "--threads", "2"}).code, 0);
+  ASSERT_EQ(call({"merge", "merged.h5", "b.h5", "a.h5"}).code, 0);
+  EXPECT_EQ(engine::difference(ResultFile(folder_ / "out.h5"), ResultFile(folder_ / "merged.h5")),
+            "");
+  EXPECT_EQ(run("out.h5", {"--resume"}).code, 0);
+}
+
+TEST_F(SeveralDrives, VerifyAndReplayFindThemByTheirFolders) {
+  ASSERT_EQ(run("out.h5").code, 0);
+  const std::vector<std::string> verify = {"verify", "out.h5", "--sample", "6"};
+  std::vector<std::string> words = verify;
+  words.insert(words.end(), {"--data", "long,short,middle"});
+  const Called called = call(words);
+  EXPECT_THAT(called.out, StartsWith("6 of 6 runs computed again are the same bytes"))
+      << called.err;
+  std::filesystem::rename(folder_ / "short", folder_ / "short, cut");
+  words.back() = "long,short, cut,middle";
+  EXPECT_EQ(call(words).code, 0) << "a folder with a comma in its name";
+  std::filesystem::rename(folder_ / "short, cut", folder_ / "short");
+  words.back() = "short,long,middle";
+  EXPECT_THAT(call(words).err, HasSubstr("is another one than the study was made with"));
+  words.back() = "long";
+  EXPECT_THAT(call(words).err, HasSubstr("3 fingerprints of 1 drives"));
+  const Called replay = call({"replay", "out.h5", "--cell", "ekf_slam", "--run", "1", "-o",
+                              "again.h5", "--data", "long,short,middle"});
+  EXPECT_EQ(replay.code, 0) << replay.err;
+}
+
+TEST_F(SeveralDrives, AnalysisJudgesThemAsIndependent) {
+  ASSERT_EQ(run("out.h5").code, 0);
+  const Called called = call({"analyze", "out.h5", "--explain", "--csv", "tables"});
+  EXPECT_EQ(called.code, 0) << called.err;
+  EXPECT_THAT(called.out, HasSubstr("Every run met a drive of its own"));
+  EXPECT_THAT(called.out, Not(HasSubstr("met the same drive")));
+  EXPECT_THAT(text_of("tables/drive.csv"), HasSubstr("drives"));
+  EXPECT_FALSE(exists("tables/reference_errors.csv")) << "fixes of three drives have no mean";
+  EXPECT_THAT(called.out, HasSubstr("no figures over time"));
+  EXPECT_EQ(text_of("tables/series_ekf_slam.csv"), "time [s]\n") << "nor have their scans";
+  EXPECT_EQ(call({"report", "out.h5", "-o", "page"}).code, 0);
+  EXPECT_FALSE(exists("page/figures/map_size.svg"));
+  EXPECT_EQ(call({"compare", "out.h5", "--baseline", "ekf_slam"}).code, 0);
+  EXPECT_EQ(call({"check", "drives.ini"}).code, 0);
+}
+
+TEST_F(SeveralDrives, SayWhatDoesNotFitTogether) {
+  EXPECT_THAT(run("x.h5", {"--set", "study.runs=2"}).err,
+              HasSubstr("with 3 drives in scenario.path (each drive is one run): set runs = 3"));
+  EXPECT_THAT(run("x.h5", {"--set", "record.rate=control"}).err, HasSubstr("set rate = scan"));
+  EXPECT_THAT(run("x.h5", {"--set", "scenario.path=long, short, long"}).err,
+              HasSubstr("long holds the drive of long again"));
+  EXPECT_THAT(run("x.h5", {"--set", "scenario.path=long,,short"}).err,
+              HasSubstr("folders are separated by commas"));
+  std::filesystem::rename(folder_ / "short/reference.csv", folder_ / "short/reference_gps.csv");
+  EXPECT_THAT(run("x.h5").err, HasSubstr("drive 2 has the references"));
+  std::filesystem::rename(folder_ / "short/reference_gps.csv", folder_ / "short/reference.csv");
+  std::ofstream(folder_ / "short/landmarks.csv") << "x_m,y_m\n1,2\n";
+  EXPECT_THAT(run("x.h5").err, HasSubstr("drive 2 has other surveyed landmarks"));
+  EXPECT_THAT(call({"convert", "drives.ini", "-o", "one"}).err, HasSubstr("has several drives"));
+}
+
+}  // namespace
+}  // namespace montecarta::experiments

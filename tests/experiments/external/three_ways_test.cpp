@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Law: one estimator has one ANEES, whether its estimates are judged, it is a cell, or it is a cell
+// on recorded drives whose reference is the truth.
+#include "analysis/metrics/study_analysis.hpp"
+#include "experiments/recordings/log_csv.hpp"
+#include "experiments/text/numbers.hpp"
+#include "tests/doubles/csv_table.hpp"
+#include "tests/doubles/reader_program.hpp"
+#include "tests/experiments/commands/program.hpp"
+
+#include <algorithm>
+
+namespace montecarta::experiments {
+namespace {
+
+const std::string kOwnFilters = MONTECARTA_SOURCE_DIR "/experiments/external";
+constexpr double kLeastVariance = 1.001e-18;  // of a fix [m2, rad2]
+const std::string kBeliefOfAll = R"(wheelbase = 4
+sigma_speed = 0.3
+sigma_steer_deg = 3
+sigma_range = 0.1
+sigma_bearing_deg = 1
+)";
+
+/// Takes a program that is a cell through exported drives, without montecarta.
+const std::string kOutside = R"(import csv, json, math, shlex, subprocess, sys
+program = subprocess.Popen(shlex.split(sys.argv[1]), stdin=subprocess.PIPE,
+                           stdout=subprocess.PIPE, text=True)
+said = 0
+def ask(**message):
+    global said
+    said += 1
+    print(json.dumps(dict(message, id=said)), file=program.stdin, flush=True)
+    return json.loads(program.stdout.readline())
+def rows(folder, name):
+    return [[float(x) if x else None for x in row]
+            for row in list(csv.reader(open(f"{folder}/{name}.csv")))[1:]]
+settings = {"vehicle": "front_axle", "wheelbase": 4, "wheel_left": 0, "sensor_ahead": 0,
+            "sensor_left": 0, "sigma_speed": 0.3, "sigma_steer": 3 / 180 * math.pi,
+            "sigma_range": 0.1, "sigma_bearing": 1 / 180 * math.pi, "association": "known",
+            "gate": 5.99, "new_gate": 25, "landmarks": 2}
+for folder in sys.argv[3:]:
+    ask(type="start", run=0, seed=1, start=rows(folder, "start")[0][1:], settings=settings)
+    odometry, detections = rows(folder, "odometry"), rows(folder, "detections")
+    with open(f"{folder}/{sys.argv[2]}.csv", "w") as out:
+        print("time_s,x_m,y_m,heading_rad",
+              *(f"cov_{i}_{j}" for i in range(3) for j in range(3)), sep=",", file=out)
+        for time in sorted({row[0] for row in detections}):
+            controls = []
+            while odometry[0][0] < time:
+                controls.append(odometry[0][1:] + [odometry[1][0] - odometry[0][0]])
+                odometry = odometry[1:]
+            seen = [[r, b, int(i)] for t, r, b, i in detections if t == time and r is not None]
+            answer = ask(type="scan", controls=controls, detections=seen)
+            P = [value for row in answer["covariance"] for value in row]
+            print(*map(repr, map(float, [time, *answer["mean"], *P])), sep=",", file=out)
+)";
+
+class SlowThreeWays : public Program {
+ protected:
+  SlowThreeWays() {
+    write("blink.csv", kBlinkWorld);
+    write("outside.py", kOutside);
+  }
+
+  /// The study of a cell, simulated or on logs.
+  std::string study(const std::string& scenario, const std::string& cell) const {
+    return "[study]\nname = ways\nruns = 3\n[scenario]\n" + scenario + "[belief]\n" + kBeliefOfAll +
+           "[association]\nkind = known\n[record]\nrate = scan\ncolumns = pose, covariance\n" +
+           "[cells]\ncell = " + cell + "\n";
+  }
+  /// Exported drives become logs whose fixes are the truth, at the scans.
+  void make_logs() const {
+    for (const std::string run : {"run_0000", "run_0001", "run_0002"}) {
+      const std::filesystem::path from = folder_ / "drives/runs" / run;
+      std::filesystem::create_directories(folder_ / "logs");
+      std::filesystem::copy(from, folder_ / "logs" / run);
+      std::filesystem::copy(folder_ / "drives/truth" / run / "reference.csv",
+                            folder_ / "logs" / run);
+      DriveLog log = read_log_csv(folder_ / "logs" / run);
+      std::filesystem::remove_all(folder_ / "logs" / run);
+      ReferencePath truth = log.references.front(), fixes{truth.name, {}, {}, {}};
+      for (std::size_t f = 0; f < truth.time.size(); ++f) {
+        if (std::ranges::count(log.scans, truth.time[f], &LoggedScan::time) == 0) continue;
+        fixes.time.push_back(truth.time[f]);
+        fixes.position.push_back(truth.position[f]);
+        fixes.heading.push_back(truth.heading[f]);
+        fixes.covariance.emplace_back(kLeastVariance * Eigen::Matrix3d::Identity());
+      }
+      log.references = {fixes};
+      log.landmarks.clear();
+      write_log_csv(log, folder_ / "logs" / run);
+    }
+  }
+  double anees_in(const std::string& file) const {
+    return analysis::analyze(ResultFile(folder_ / file)).cells.front().consistency().mean;
+  }
+  /// By the table of drives, over the three components.
+  double anees_of_drives(const std::string& file) const {
+    EXPECT_EQ(call({"analyze", file, "--csv", "tables", "--force"}).code, 0);
+    const auto rows = engine::read_csv(folder_ / "tables/drive.csv");
+    return 3.0 * to_number(rows.front().at("pose_nees_ratio")).value();
+  }
+  void run(const std::string& text, const std::string& output) const {
+    write("study.ini", text);
+    const Called called =
+        call({"run", "study.ini", "-o", output, "--quiet", "--force", "--allow-external"});
+    ASSERT_EQ(called.code, 0) << called.err;
+  }
+
+  /// `command` of a program; empty: the cell ekf_slam of this build.
+  void expect_one_anees(const std::string& command) const {
+    const std::string cell =
+        command.empty() ? "ekf_slam"
+                        : "external command=\"" + command + "\" label=mine answer_limit=300";
+    const std::string simulated = "world = blink.csv\nnoise = matched\n";
+    run(study(simulated, cell), "cell.h5");
+    ASSERT_EQ(call({"export", "study.ini", "-o", "drives"}).code, 0);
+    const double as_cell = anees_in("cell.h5");
+    EXPECT_GT(as_cell, 0.1);
+
+    if (command.empty()) {
+      write_own_estimates();
+    } else {
+      const Called outside = call({"help"}, "/usr/bin/python3 outside.py '" + command +
+                                                "' estimate drives/runs/run_000[0-2] && ");
+      ASSERT_EQ(outside.code, 0) << outside.err;
+    }
+    const Called judged =
+        call({"judge", "drives/runs/run_0000/estimate.csv", "drives/runs/run_0001/estimate.csv",
+              "drives/runs/run_0002/estimate.csv", "--truth", "drives", "--error", "world", "-o",
+              "judged.h5", "--force"});
+    ASSERT_EQ(judged.code, 0) << judged.err;
+    EXPECT_NEAR(anees_in("judged.h5") / as_cell, 1.0, 1e-12);
+
+    make_logs();
+    run(study("kind = log\npath = logs/run_0000, logs/run_0001, logs/run_0002\n", cell), "logs.h5");
+    // The variance of the fixes, though the least that a reference may have, is part of the NEES.
+    EXPECT_NEAR(anees_of_drives("logs.h5") / as_cell, 1.0, 1e-11);
+  }
+
+  /// Of the cell of this build, which no program outside has.
+  void write_own_estimates() const {
+    const ResultFile file(folder_ / "cell.h5");
+    const StoredCell& cell = file.cells().front();
+    std::vector<double> mean(3 * file.times().size()), P(9 * file.times().size());
+    for (std::size_t run = 0; run < file.runs().size(); ++run) {
+      file.read(cell, "pose_mean", run, std::span(mean));
+      file.read(cell, "pose_covariance", run, std::span(P));
+      std::string text =
+          "time_s,x_m,y_m,heading_rad,cov_0_0,cov_0_1,cov_0_2,cov_1_0,cov_1_1,cov_1_2,cov_2_0,"
+          "cov_2_1,cov_2_2\n";
+      for (std::size_t s = 0; s < file.times().size(); ++s) {
+        text += to_text(file.times()[s]);
+        for (std::size_t k = 0; k < 3; ++k) text += "," + to_text(mean[3 * s + k]);
+        for (std::size_t k = 0; k < 9; ++k) text += "," + to_text(P[9 * s + k]);
+        text += "\n";
+      }
+      write("drives/runs/run_000" + std::to_string(run) + "/estimate.csv", text);
+    }
+  }
+};
+
+TEST_F(SlowThreeWays, AnEstimatorInCpp) { expect_one_anees(""); }
+
+TEST_F(SlowThreeWays, AnEstimatorInPython) {
+  if (!python_has("numpy")) GTEST_SKIP() << "numpy (python3-numpy) is not installed";
+  expect_one_anees("/usr/bin/python3 -B " + kOwnFilters + "/python/ekf_slam.py");
+}
+
+TEST_F(SlowThreeWays, AnEstimatorInOctave) {
+  if (!installed("octave-cli")) GTEST_SKIP() << "octave is not installed";
+  expect_one_anees("octave-cli --quiet --no-init-file --no-history --path " + kOwnFilters +
+                   "/octave --eval ekf_slam");
+}
+
+}  // namespace
+}  // namespace montecarta::experiments
