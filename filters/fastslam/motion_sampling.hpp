@@ -25,10 +25,16 @@ class MotionSampling {
   void predict(const StepContext& context, const Control& control, double duration,
                std::vector<BasicPose<Real>>& poses) {
     constexpr std::size_t kBlocksPerTask = 1024 / kLanesOf<Real>;
-    BlockTasks<Real>(poses.size(), kBlocksPerTask)
-        .run(context, [&](std::size_t /*task*/, std::size_t b) {
-          poses[b] = moved(context, control, duration, b, poses[b]);
-        });
+    const auto sigma = deviations_of(belief_.control, control, belief_.vehicle);
+    const auto move_all = [&](const auto& vehicle) {
+      BlockTasks<Real>(poses.size(), kBlocksPerTask)
+          .run(context, [&](std::size_t /*task*/, std::size_t b) {
+            const auto first = static_cast<std::uint32_t>(b * kLanesOf<Real>);
+            const StreamIdentity noise = context.identity(Draw::motion_sample, first);
+            poses[b] = moved(vehicle, poses[b], control, sigma, noise, duration);
+          });
+    };
+    std::visit(move_all, belief_.vehicle);
   }
   /// The pose is certain within a particle.
   PoseGaussian<Real> predicted(std::size_t /*b*/, const BasicPose<Real>& pose) const {
@@ -78,17 +84,18 @@ class MotionSampling {
   }
 
  private:
-  BasicPose<Real> moved(const StepContext& context, const Control& control, double duration,
-                        std::size_t b, const BasicPose<Real>& pose) const {
-    const auto first = static_cast<std::uint32_t>(b * kLanesOf<Real>);
-    const StreamIdentity identity = context.identity(Draw::motion_sample, first);
-    const auto sigma = deviations_of(belief_.control, control, belief_.vehicle);
-    const auto [e0, e1] = normal_pairs<Real>(identity, 0);
+  /// One control step with noise of its own in each lane.
+  template <class V>
+  [[gnu::flatten]] static BasicPose<Real> moved(const V& vehicle, const BasicPose<Real>& pose,
+                                                const Control& control,
+                                                const std::array<double, Control::kMost>& sigma,
+                                                const StreamIdentity& noise, double duration) {
+    const auto [e0, e1] = normal_pairs<Real>(noise, 0);
     ControlOf<Real> sample{control[0] + sigma[0] * e0, control[1] + sigma[1] * e1, Real(0.0)};
-    if (controls_of(belief_.vehicle).size() > 2) {
-      sample[2] = control[2] + sigma[2] * normal_pairs<Real>(identity, 1).first;
+    if constexpr (kControlsOf < V >> 2) {
+      sample[2] = control[2] + sigma[2] * normal_pairs<Real>(noise, 1).first;
     }
-    return move(pose, sample, duration, belief_.vehicle);
+    return moved_by(pose, body_step_of(vehicle, sample, duration));
   }
 
   Belief belief_;

@@ -39,15 +39,20 @@ BasicPoint<Real> in_world(const Direction<Real>& heading, const Real& forward, c
           heading.sine * forward + heading.cosine * left};
 }
 
+/// A pose moved by a step, which is common to all lanes (double) or one a lane (Real).
+template <class Real, class Input>
+BasicPose<Real> moved_by(const BasicPose<Real>& pose, const BodyStep<Input>& step) {
+  const BasicPoint<Real> way =
+      in_world(direction_of(pose.heading), Real(step.forward), Real(step.left));
+  return {pose.x + way.x, pose.y + way.y, wrap(Real(pose.heading + Real(step.turn)))};
+}
+
 /// One step of a vehicle (EQUATIONS 1; Ankishan eq. (38) prints cos in both rows). Each component
 /// of `control` is common to all lanes (double) or one a lane (Real); `duration` [s].
 template <class Real, class Input>
 BasicPose<Real> move(const BasicPose<Real>& pose, const ControlOf<Input>& control, double duration,
                      const Vehicle& vehicle) {
-  const BodyStep<Input> step = body_step(vehicle, control, duration);
-  const BasicPoint<Real> way =
-      in_world(direction_of(pose.heading), Real(step.forward), Real(step.left));
-  return {pose.x + way.x, pose.y + way.y, wrap(Real(pose.heading + Real(step.turn)))};
+  return moved_by(pose, body_step(vehicle, control, duration));
 }
 
 /// As above, with the control a filter is given.
@@ -59,30 +64,44 @@ BasicPose<Real> move(const BasicPose<Real>& pose, const Control& control, double
 
 /// move() with its derivatives at (pose, control), where `heading` is the direction of the pose and
 /// `bend` that of the control; the control is common to all lanes.
-template <class Real>
-LinearisedMove<Real> linearised_move(const BasicPose<Real>& pose, const Direction<Real>& heading,
-                                     const Control& control, const Bend<double>& bend,
-                                     double duration, const Vehicle& vehicle) {
-  const auto [step, by_control, controls] = differentiated_step(vehicle, control, bend, duration);
-  const BasicPoint<Real> way = in_world(heading, Real(step.forward), Real(step.left));
+template <class Real, class V>
+[[gnu::always_inline]] inline LinearisedMove<Real> linearised_move(
+    const BasicPose<Real>& pose, const Direction<Real>& heading, const Control& control,
+    const Bend<double>& bend, double duration, const V& vehicle) {
+  const DifferentiatedStep<kControlsOf<V>> body =
+      differentiated_step(vehicle, control, bend, duration);
+  const BasicPoint<Real> way = in_world(heading, Real(body.step.forward), Real(body.step.left));
+  using Column = typename MotionJacobians<Real>::Column;
   // No loop: g++ 12 fuses the products of in_world() where it vectorises one.
-  const auto column = [&heading](const BodyStep<double>& by) {
-    const BasicPoint<Real> moved = in_world(heading, Real(by.forward), Real(by.left));
-    return typename MotionJacobians<Real>::Column{moved.x, moved.y, Real(by.turn)};
+  const auto column = [&](auto i) -> Column {
+    if constexpr (i < kControlsOf<V>) {
+      const BodyStep<double>& by = body.by_control[i];
+      const BasicPoint<Real> moved = in_world(heading, Real(by.forward), Real(by.left));
+      return {moved.x, moved.y, Real(by.turn)};
+    } else {
+      return {};
+    }
   };
-  return {{pose.x + way.x, pose.y + way.y, wrap(Real(pose.heading + Real(step.turn)))},
+  using First = std::integral_constant<std::size_t, 0>;
+  using Second = std::integral_constant<std::size_t, 1>;
+  using Third = std::integral_constant<std::size_t, 2>;
+  return {{pose.x + way.x, pose.y + way.y, wrap(Real(pose.heading + Real(body.step.turn)))},
           {.x_heading = -way.y,
            .y_heading = way.x,
-           .by_control = {column(by_control[0]), column(by_control[1]), column(by_control[2])},
-           .controls = controls}};
+           .by_control = {column(First()), column(Second()), column(Third())},
+           .controls = kControlsOf<V>}};
 }
 
 /// The same at (pose, control).
 template <class Real>
 LinearisedMove<Real> linearised_move(const BasicPose<Real>& pose, const Control& control,
                                      double duration, const Vehicle& vehicle) {
-  return linearised_move(pose, direction_of(pose.heading), control,
-                         bend_of(bend_angle(vehicle, control, duration)), duration, vehicle);
+  return std::visit(
+      [&](const auto& one) {
+        return linearised_move(pose, direction_of(pose.heading), control,
+                               bend_of(bend_angle(one, control, duration)), duration, one);
+      },
+      vehicle);
 }
 
 }  // namespace montecarta::models

@@ -57,12 +57,9 @@ std::array<Real, N> first_of(const ControlOf<Real>& control) {
 }
 
 /// The angle [rad] in which a step of `duration` [s] is not linear (struct Bend).
-inline double bend_angle(const Vehicle& vehicle, const Control& control, double duration) {
-  return std::visit(
-      [&](const auto& one) {
-        return control[kLinearOf<std::decay_t<decltype(one)>>] * one.bend_scale(duration);
-      },
-      vehicle);
+template <class V>
+double bend_angle(const V& vehicle, const Control& control, double duration) {
+  return control[kLinearOf<V>] * vehicle.bend_scale(duration);
 }
 
 /// One control step of `duration` [s] of one vehicle (double) or one a lane, in the frame of the
@@ -74,25 +71,25 @@ BodyStep<Real> body_step_at(const V& vehicle, const ControlOf<Real>& control,
   if constexpr (V::kTurnsByBend) step.turn = bend.angle;
   return step;
 }
+/// The same at the bend of the control.
+template <class V, class Real>
+BodyStep<Real> body_step_of(const V& vehicle, const ControlOf<Real>& control, double duration) {
+  const Real angle = control[kLinearOf<V>] * Real(vehicle.bend_scale(duration));
+  return body_step_at(vehicle, control, bend_of(angle), duration);
+}
 template <class Real>
 BodyStep<Real> body_step(const Vehicle& vehicle, const ControlOf<Real>& control, double duration) {
-  return std::visit(
-      [&](const auto& one) {
-        constexpr std::size_t kLinear = kLinearOf<std::decay_t<decltype(one)>>;
-        const Real angle = control[kLinear] * Real(one.bend_scale(duration));
-        return body_step_at(one, control, bend_of(angle), duration);
-      },
-      vehicle);
+  return std::visit([&](const auto& one) { return body_step_of(one, control, duration); }, vehicle);
 }
 inline BodyStep<double> body_step(const Vehicle& vehicle, const Control& control, double duration) {
   return body_step(vehicle, control.values, duration);
 }
 
-/// A step and its derivatives.
+/// A step and its derivatives by the N controls, each per its unit.
+template <std::size_t N>
 struct DifferentiatedStep {
   BodyStep<double> step;
-  std::array<BodyStep<double>, Control::kMost> by_control;  ///< by each component, per its unit
-  std::size_t controls;
+  std::array<BodyStep<double>, N> by_control;
 };
 
 /// travel() of component i alone, of that size: its image, for the motion is linear in it.
@@ -104,28 +101,23 @@ BodyStep<double> unit_travel(const V& vehicle, std::size_t i, double size, const
   return vehicle.travel(linear, bend, duration);
 }
 
-/// body_step() with its derivatives; `bend` is that of the control.
-inline DifferentiatedStep differentiated_step(const Vehicle& vehicle, const Control& control,
-                                              const Bend<double>& bend, double duration) {
-  return std::visit(
-      [&](const auto& one) {
-        using V = std::decay_t<decltype(one)>;
-        constexpr std::size_t kLinear = kLinearOf<V>;
-        DifferentiatedStep result{.step = body_step_at(one, control.values, bend, duration),
-                                  .by_control = {},
-                                  .controls = kControlsOf<V>};
-        for (std::size_t i = 0; i < kLinear; ++i) {
-          result.by_control[i] = unit_travel(one, i, 1.0, bend, duration);
-        }
-        BodyStep<double>& last = result.by_control[kLinear];
-        last = one.travel_by_bend(first_of<kLinear>(control.values), bend, duration);
-        if constexpr (V::kTurnsByBend) {
-          const double scale = one.bend_scale(duration);
-          last = {last.forward * scale, last.left * scale, scale};
-        }
-        return result;
-      },
-      vehicle);
+/// body_step_at() with its derivatives; `bend` is that of the control.
+template <class V>
+[[gnu::always_inline]] inline DifferentiatedStep<kControlsOf<V>> differentiated_step(
+    const V& vehicle, const Control& control, const Bend<double>& bend, double duration) {
+  constexpr std::size_t kLinear = kLinearOf<V>;
+  DifferentiatedStep<kControlsOf<V>> result{
+      .step = body_step_at(vehicle, control.values, bend, duration), .by_control = {}};
+  for (std::size_t i = 0; i < kLinear; ++i) {
+    result.by_control[i] = unit_travel(vehicle, i, 1.0, bend, duration);
+  }
+  BodyStep<double>& last = result.by_control[kLinear];
+  last = vehicle.travel_by_bend(first_of<kLinear>(control.values), bend, duration);
+  if constexpr (V::kTurnsByBend) {
+    const double scale = vehicle.bend_scale(duration);
+    last = {last.forward * scale, last.left * scale, scale};
+  }
+  return result;
 }
 
 /// The control that turns a simulated vehicle to a way-point.

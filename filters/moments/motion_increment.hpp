@@ -25,17 +25,8 @@ class MotionIncrement {
 
   /// One control step of `duration` [s], linearised.
   void advance(const Control& control, double duration, const Belief& belief) {
-    const double angle = bend_angle(belief.vehicle, control, duration);
-    const auto [heading, bend] = directions_of<2>({pose_.heading, angle});
-    const auto [pose, F] =
-        linearised_move(pose_, heading, control, {angle, bend}, duration, belief.vehicle);
-    covariance_ = sheared(covariance_, F.x_heading, F.y_heading);
     const auto sigma = deviations_of(belief.control, control, belief.vehicle);
-    for (std::size_t i = 0; i < F.controls; ++i) {
-      const auto& [x, y, turn] = F.by_control[i];
-      add_outer(covariance_, sigma[i] * sigma[i], {x, y, turn});
-    }
-    pose_ = pose;
+    std::visit([&](const auto& one) { advance(one, control, duration, sigma); }, belief.vehicle);
   }
 
   const Pose& pose() const { return pose_; }
@@ -53,6 +44,21 @@ class MotionIncrement {
   }
 
  private:
+  template <class V>
+  void advance(const V& vehicle, const Control& control, double duration,
+               const std::array<double, Control::kMost>& sigma) {
+    const double angle = bend_angle(vehicle, control, duration);
+    const auto [heading, bend] = directions_of<2>({pose_.heading, angle});
+    const auto [pose, F] =
+        linearised_move(pose_, heading, control, {angle, bend}, duration, vehicle);
+    covariance_ = sheared(covariance_, F.x_heading, F.y_heading);
+    for (std::size_t i = 0; i < kControlsOf<V>; ++i) {
+      const auto& [x, y, turn] = F.by_control[i];
+      add_outer(covariance_, sigma[i] * sigma[i], {x, y, turn});
+    }
+    pose_ = pose;
+  }
+
   Pose pose_;
   Symmetric3<double> covariance_;
 };

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <span>
 
 namespace montecarta::filters {
 namespace {
@@ -39,9 +38,10 @@ struct Part {
 };
 
 /// Moments of the sum of parts whose coefficients are independent.
-BodyMoments moments_of(std::span<const Part> parts) {
+template <std::size_t N>
+BodyMoments moments_of(const std::array<Part, N>& parts) {
   BodyMoments result{{0.0, 0.0, 0.0}, {}};
-  for (std::size_t i = 0; i < parts.size(); ++i) {
+  for (std::size_t i = 0; i < N; ++i) {
     const auto& [mean, variance, columns] = parts[i];
     const Column3<double> average = parts[i].average();
     Symmetric3<double> second;  // about the origin, of a coefficient 1
@@ -66,7 +66,7 @@ BodyMoments moments_of(std::span<const Part> parts) {
 /// in, at 1 per unit, and the turn by the bend itself, less that of the central node. `bends` are
 /// those of the nodes.
 template <class V>
-BodyMoments body_moments(const V& vehicle, std::span<const Bend<double>> bends,
+BodyMoments body_moments(const V& vehicle, const std::array<Bend<double>, kNodes.size()>& bends,
                          const Control& control, double duration, const ControlOf<double>& sigma) {
   constexpr std::size_t kLinear = kLinearOf<V>;
   std::array<Part, kLinear + (V::kTurnsByBend ? 1 : 0)> parts;
