@@ -43,6 +43,7 @@ inline FilterKind dead_reckoning_kind() {
           .has_particles = false,
           .has_mixture = false,
           .options = {},
+          .sensors = {},
           .make = [](const FilterSetup& setup) { return std::make_unique<DeadReckoning>(setup); }};
 }
 

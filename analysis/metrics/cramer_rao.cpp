@@ -41,7 +41,7 @@ std::vector<JointBound::Seen> seen_from(const Pose& pose, const SimulatedWorld& 
                                         std::span<const Eigen::Vector2d> landmarks) {
   std::vector<JointBound::Seen> seen;
   world.view.look(pose, landmarks, [&](const InView& one) {
-    if (one.range < kLeastDistance) return;  // a bearing without a derivative
+    if (one.range < kLeastDistance) return;  // nothing with a derivative
     const Eigen::Vector2d& at = landmarks[one.landmark];
     seen.push_back({one.landmark, {at.x(), at.y()}});
   });
@@ -124,7 +124,8 @@ CramerRaoBound none_for(const std::string& reason) {
 CramerRaoBound squared_bound(const SimulatedWorld& world, const TruePath& path) {
   // A detection that may be missed brings its information times the chance that it is there.
   const Eigen::Vector2d observation_variance = world.sigma_observation.cwiseAbs2() / world.detected;
-  JointBound joint(path.landmarks.size(), world.vehicle, world.control_noise, observation_variance);
+  JointBound joint(path.landmarks.size(), world.vehicle, world.control_noise, observation_variance,
+                   world.sensor);
   CramerRaoBound bound;
   std::size_t row = 0;
   for (const std::uint32_t scan_row : path.scan_rows) {

@@ -10,16 +10,21 @@
 namespace montecarta::analysis {
 namespace {
 
+/// [m] what is known of a landmark that one detection does not fix: so little that it adds nothing,
+/// and not so little that rounding would.
+constexpr double kUnknown = 1000.0;
+
 void mirror_lower(Eigen::Matrix3d& P) { P.triangularView<Eigen::StrictlyUpper>() = P.transpose(); }
 
 }  // namespace
 
 JointBound::JointBound(std::size_t landmarks, const Vehicle& vehicle,
                        const ControlNoise& control_noise,
-                       const Eigen::Vector2d& observation_variance)
+                       const Eigen::Vector2d& observation_variance, const Sensor& sensor)
     : vehicle_(vehicle),
       control_noise_(control_noise),
       observation_variance_(observation_variance),
+      sensor_(sensor),
       row_(landmarks, 0) {
   const auto rows = 3 + 2 * static_cast<Eigen::Index>(landmarks);
   joint_.setZero(rows, rows);
@@ -51,6 +56,11 @@ void JointBound::finish_motion() {
 
 bool JointBound::scan(const Pose& pose, std::span<const Seen> landmarks) {
   finish_motion();
+  if (!fixes_landmark(sensor_)) {
+    for (const Seen& landmark : landmarks) {
+      if (row_of(landmark.identity) == 0) append_unknown(landmark);
+    }
+  }
   std::vector<Seen> known;
   for (const Seen& landmark : landmarks) {
     if (row_of(landmark.identity) != 0) known.push_back(landmark);
@@ -74,14 +84,15 @@ bool JointBound::correct(const Pose& pose, std::span<const Seen> landmarks) {
   const auto m = 2 * static_cast<Eigen::Index>(landmarks.size());
   Eigen::MatrixXd gain(size_, m);  // P H'
   Eigen::MatrixXd S(m, m);
-  std::vector<LinearisedObservation<double>> observations;
+  std::vector<LinearisedDetection> observations;
   for (const Seen& landmark : landmarks) {
     const auto i = 2 * static_cast<Eigen::Index>(observations.size());
-    const auto& observation =
-        observations.emplace_back(linearised_observation(pose, landmark.point));
+    const auto observation = linearised_detection(sensor_, pose, landmark.point);
+    if (!observation) return false;
+    observations.push_back(*observation);
     const Eigen::Index row = row_of(landmark.identity);
-    const Matrix23 Hx = pose_jacobian(observation);
-    const Eigen::Matrix2d Hf = landmark_jacobian(observation);
+    const Matrix23& Hx = observation->by_pose;
+    const Eigen::Matrix2d& Hf = observation->by_landmark;
     gain.middleCols<2>(i).noalias() = joint_.block(0, 0, size_, 3) * Hx.transpose();
     gain.middleCols<2>(i) += column(row) * Hf.col(0).transpose();
     gain.middleCols<2>(i) += column(row + 1) * Hf.col(1).transpose();
@@ -89,8 +100,8 @@ bool JointBound::correct(const Pose& pose, std::span<const Seen> landmarks) {
   for (std::size_t k = 0; k < observations.size(); ++k) {
     const auto i = 2 * static_cast<Eigen::Index>(k);
     S.middleRows<2>(i) =
-        pose_jacobian(observations[k]) * gain.topRows<3>() +
-        landmark_jacobian(observations[k]) * gain.middleRows<2>(row_of(landmarks[k].identity));
+        observations[k].by_pose * gain.topRows<3>() +
+        observations[k].by_landmark * gain.middleRows<2>(row_of(landmarks[k].identity));
     S.diagonal().segment<2>(i) += observation_variance_;
   }
   const Eigen::LLT<Eigen::MatrixXd> factor(S);
@@ -104,9 +115,10 @@ bool JointBound::correct(const Pose& pose, std::span<const Seen> landmarks) {
 }
 
 void JointBound::append(const Pose& pose, const Seen& landmark) {
-  const auto placed = linearised_place(pose, predicted_observation(pose, landmark.point));
-  const Matrix23 Gx = pose_jacobian(placed);
-  const Eigen::Matrix2d Gz = observation_jacobian(placed);
+  const auto seen = linearised_detection(sensor_, pose, landmark.point);
+  const auto placed = placed_landmark(sensor_, pose, seen->value);
+  const Matrix23& Gx = placed->by_pose;
+  const Eigen::Matrix2d& Gz = placed->by_detection;
   row_of(landmark.identity) = size_;
   joint_.block(size_, 0, 2, size_).noalias() = Gx * joint_.block(0, 0, size_, 3).transpose();
   joint_.block<2, 2>(size_, size_) =
@@ -114,9 +126,23 @@ void JointBound::append(const Pose& pose, const Seen& landmark) {
   size_ += 2;
 }
 
+void JointBound::append_unknown(const Seen& landmark) {
+  row_of(landmark.identity) = size_;
+  joint_.block(size_, 0, 2, size_).setZero();
+  joint_.block<2, 2>(size_, size_) = kUnknown * kUnknown * Eigen::Matrix2d::Identity();
+  size_ += 2;
+}
+
 double JointBound::mean_map_variance() const {
-  if (size_ == 3) return std::numeric_limits<double>::quiet_NaN();
-  return joint_.diagonal().segment(3, size_ - 3).sum() / static_cast<double>(seen());
+  double sum = 0.0, count = 0.0;
+  for (Eigen::Index row = 3; row < size_; row += 2) {
+    const double x = joint_(row, row), y = joint_(row + 1, row + 1);
+    if (x + y > 0.01 * kUnknown * kUnknown) continue;  // seen along one line
+    sum += x;
+    sum += y;
+    count += 1.0;
+  }
+  return count == 0.0 ? std::numeric_limits<double>::quiet_NaN() : sum / count;
 }
 
 Eigen::MatrixXd JointBound::covariance() const {

@@ -5,6 +5,7 @@
 #include "engine/core/pose.hpp"
 #include "filters/models/control_noise.hpp"
 #include "filters/models/point.hpp"
+#include "filters/models/sensor.hpp"
 #include "filters/models/vehicle.hpp"
 
 #include <Eigen/Core>
@@ -17,12 +18,14 @@ namespace montecarta::analysis {
 
 /// The Cramer-Rao bound on pose and landmarks together, as a covariance that is carried along a
 /// known path: the recursion of a Kalman filter with all Jacobians at the truth, and nothing known
-/// of a landmark before its first observation. The pose is known exactly at the start.
+/// of a landmark before its first observation; where one detection does not fix it, it is known to
+/// a kilometre. The pose is known exactly at the start.
 class JointBound {
  public:
-  /// Room for all `landmarks`; nothing is allocated later. `control_noise`: of the vehicle.
+  /// Room for all `landmarks`; nothing is allocated later. `control_noise`: of the vehicle,
+  /// `observation_variance`: of the components of the sensor.
   JointBound(std::size_t landmarks, const Vehicle& vehicle, const ControlNoise& control_noise,
-             const Eigen::Vector2d& observation_variance);
+             const Eigen::Vector2d& observation_variance, const Sensor& sensor = {});
 
   /// One control step from the true `pose`; returns where it leads.
   Pose move(const Pose& pose, const Control& control, double duration);
@@ -35,9 +38,8 @@ class JointBound {
   [[nodiscard]] bool scan(const Pose& pose, std::span<const Seen> landmarks);
 
   const Eigen::Matrix3d& pose() const { return pose_; }
-  /// How many landmarks have been seen.
-  std::size_t seen() const { return static_cast<std::size_t>(size_ - 3) / 2; }
-  /// [m^2] Mean of the squared position error over the landmarks seen; NaN where none is.
+  /// [m^2] Mean of the squared position error over the landmarks whose place the detections fix;
+  /// NaN where there is none.
   double mean_map_variance() const;
   /// All that is known, pose first, landmarks in the order of their first observation.
   Eigen::MatrixXd covariance() const;
@@ -46,12 +48,14 @@ class JointBound {
   void finish_motion();
   [[nodiscard]] bool correct(const Pose& pose, std::span<const Seen> landmarks);
   void append(const Pose& pose, const Seen& landmark);
+  void append_unknown(const Seen& landmark);
   Eigen::VectorXd column(Eigen::Index j) const;
   Eigen::Index& row_of(std::size_t identity) { return row_[identity]; }
 
   Vehicle vehicle_;
   ControlNoise control_noise_;
   Eigen::Vector2d observation_variance_;
+  Sensor sensor_;
   Eigen::Matrix3d pose_ = Eigen::Matrix3d::Zero();  ///< symmetric
   double pending_x_heading_ = 0.0;                  ///< [m/rad] of Fx since the last scan
   double pending_y_heading_ = 0.0;                  ///< [m/rad]

@@ -30,7 +30,7 @@ class Facts {
   }
   std::string text(const std::string& name) { return needed(optional_text(name)); }
   double number(const std::string& name) { return needed(optional_number(name)); }
-  double radians(const std::string& name) { return in_si(name, number(name)); }
+  double si(const std::string& name) { return in_si(name, number(name)); }
   bool complete() const { return complete_; }
 
  private:
@@ -44,6 +44,26 @@ class Facts {
   bool complete_ = true;
 };
 
+/// Files do not say what is usual. Nothing where the sensor is not known.
+std::optional<Sensor> sensor_of(const Facts& facts) {
+  const auto usual = [&](const char* key) {
+    return in_si(key, facts.optional_number(key).value_or(0.0));
+  };
+  return sensor_named(facts.optional_text("sensor").value_or(name_of(Sensor())),
+                      {.forward = usual("mount_forward"),
+                       .left = usual("mount_left"),
+                       .turn = wrap(usual("mount_turn_deg"))});
+}
+
+Eigen::Vector2d sigma_of(Facts& facts, const Sensor& sensor) {
+  Eigen::Vector2d sigma = Eigen::Vector2d::Ones();
+  Eigen::Index i = 0;
+  for (const Quantity quantity : components_of(sensor)) {
+    sigma(i++) = facts.si(name_of(quantity).sigma);
+  }
+  return sigma;
+}
+
 }  // namespace
 
 std::optional<SimulatedWorld> simulated_world_of(const ResultFile& file) {
@@ -56,13 +76,17 @@ std::optional<SimulatedWorld> simulated_world_of(const ResultFile& file) {
   const std::optional<ControlNoise> control_noise =
       control_noise_of(*vehicle, [&](const auto& key) { return facts.optional_number(key); });
   if (!control_noise) return std::nullopt;
+  const std::optional<Sensor> sensor = sensor_of(facts);
+  if (!sensor) return std::nullopt;
   SimulatedWorld world{
       .vehicle = *vehicle,
       .control_noise = *control_noise,
-      .sigma_observation = {facts.number("sigma_range"), facts.radians("sigma_bearing_deg")},
+      .sigma_observation = sigma_of(facts, *sensor),
       .detected = 1.0 - facts.number("miss_probability"),
-      .view = FieldOfView(facts.number("max_range"), facts.radians("field_of_view_deg")),
-      .same_path = facts.text("noise") != "matched"};
+      .view = FieldOfView(facts.number("max_range"), facts.si("field_of_view_deg"),
+                          sensor->mounting, facts.optional_number("min_range").value_or(0.0)),
+      .same_path = facts.text("noise") != "matched",
+      .sensor = *sensor};
   if (!facts.complete()) return std::nullopt;
   return world;
 }

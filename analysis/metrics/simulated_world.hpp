@@ -4,6 +4,7 @@
 #include "engine/records/result_file.hpp"
 #include "filters/models/control_noise.hpp"
 #include "filters/models/field_of_view.hpp"
+#include "filters/models/sensor.hpp"
 #include "filters/models/vehicle.hpp"
 
 #include <Eigen/Core>
@@ -17,10 +18,11 @@ namespace montecarta::analysis {
 struct SimulatedWorld {
   Vehicle vehicle;
   ControlNoise control_noise;
-  Eigen::Vector2d sigma_observation;  ///< range [m], bearing [rad]
+  Eigen::Vector2d sigma_observation;  ///< of the sensor's components (deviations_of())
   double detected = 1.0;              ///< probability that what is in view is detected
   FieldOfView view;
   bool same_path = true;  ///< of all runs: the noise is on the controls that filters are given
+  Sensor sensor = {};
 };
 
 /// What the file says of its world in the attributes of /scenario; nullopt where it is not that of

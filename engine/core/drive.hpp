@@ -31,14 +31,18 @@ struct Control {
   }
 };
 
-/// One range-bearing measurement of a landmark.
+/// One measurement of a landmark. How many components it has and what they mean the sensor says
+/// (EQUATIONS 2); those it does not have are 0.
 struct Detection {
+  static constexpr std::size_t kMost = 2;            ///< components
   static constexpr std::int32_t kClutter = -1;       ///< identity of a false alarm
   static constexpr std::int32_t kUnidentified = -2;  ///< identity that nobody knows
-  double range = 0.0;                                ///< [m]
-  double bearing = 0.0;                              ///< [rad], relative to the heading
+  std::array<double, kMost> values{};                ///< e.g. range [m], bearing [rad]
   std::int32_t identity =
       kClutter;  ///< landmark of the world; a filter may estimate by it only with known association
+
+  double operator[](std::size_t i) const { return values[i]; }
+  double& operator[](std::size_t i) { return values[i]; }
 };
 
 /// All detections of one instant, no identity twice but clutter and the unidentified; may be empty.

@@ -60,9 +60,10 @@ int export_drives(const Arguments& arguments) {
   Drive drive;
   for (std::uint64_t run = plan.first_run; run < plan.last_run; ++run) {
     plan.drives->generate(run, drive);
-    const DriveLog log = log_of(itinerary, drive, controls,
-                                plan.own_landmarks ? plan.own_landmarks(run) : itinerary.landmarks,
-                                known ? Identities::told : Identities::withheld);
+    DriveLog log = log_of(itinerary, drive, controls,
+                          plan.own_landmarks ? plan.own_landmarks(run) : itinerary.landmarks,
+                          known ? Identities::told : Identities::withheld);
+    log.components = components_of(sensor_of(study.settings, "scenario"));
     const std::string name = name_of_run(run, plan.runs);
     write_log_csv(log, folder / "runs" / name, folder / "truth" / name);
   }

@@ -48,8 +48,8 @@ std::string fallback_text(const Setting& setting) {
 
 std::string meaning_of(const Setting& setting) {
   std::string meaning = setting.meaning;
-  if (!setting.vehicles.empty() && setting.vehicles != vehicle_names())
-    meaning += " (" + joined(setting.vehicles) + ")";
+  if (!setting.chosen.empty() && setting.chosen != vehicle_names())
+    meaning += " (" + joined(setting.chosen) + ")";
   if (!setting.kinds.empty()) meaning += " (" + joined(setting.kinds) + ")";
   return meaning;
 }

@@ -4,6 +4,7 @@
 #include "engine/core/pose.hpp"
 #include "engine/numbers/angle.hpp"
 #include "filters/models/control_noise.hpp"
+#include "filters/models/sensor.hpp"
 #include "filters/models/vehicle.hpp"
 
 #include <cstdint>
@@ -36,11 +37,15 @@ struct Scenario {
   double sigma_range = 0.1;                                 ///< [m]
   double sigma_bearing = 1.0 * kPi / 180.0;                 ///< [rad]
   double max_range = 30.0;                                  ///< [m]
-  double field_of_view = kPi;                               ///< [rad] full angle, centred ahead
+  double field_of_view = kPi;     ///< [rad] full angle, centred where the sensor looks
   double waypoint_radius = 1.0;   ///< [m] nearer than this a way-point is reached
   double clutter_rate = 0.0;      ///< mean false alarms a scan
   double miss_probability = 0.0;  ///< that a visible landmark is not detected
   Pose start{};                   ///< before the first step
+  Sensor sensor = {};             ///< whose components say which deviations count
+  double sigma_forward = 0.1;     ///< [m] of a position in the frame of the sensor
+  double sigma_left = 0.1;        ///< [m] likewise
+  double min_range = 0.0;         ///< [m]
 };
 
 }  // namespace montecarta::experiments

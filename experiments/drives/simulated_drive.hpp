@@ -4,7 +4,7 @@
 #include "engine/core/drive.hpp"
 #include "experiments/drives/random_map.hpp"
 #include "experiments/drives/scenario.hpp"
-#include "experiments/drives/sensor.hpp"
+#include "experiments/drives/simulated_sensor.hpp"
 #include "experiments/worlds/world.hpp"
 
 #include <cstdint>
@@ -49,7 +49,7 @@ class SimulatedDrive final : public DriveSource {
   World world_;
   Scenario scenario_;
   std::uint64_t seed_;
-  Sensor sensor_;
+  SimulatedSensor sensor_;
   std::optional<RandomMap> random_map_;  ///< nullopt: every run has the world's landmarks
   Itinerary itinerary_;
   std::vector<Control> nominal_;              ///< controls of the noise-free drive

@@ -35,7 +35,8 @@ void ExternalFilter::update(const StepContext& context, Scan scan) {
   use_process([&](Session& session) {
     const std::uint64_t id = session.next_id++;
     const std::string_view line =
-        ask(scan_message(id, session.controls, scan, setup_.association.kind));
+        ask(scan_message(id, session.controls, scan, setup_.association.kind,
+                         components_of(setup_.belief.sensor).size()));
     const ProgramEstimate estimate = read_estimate(line, id);
     session.pose = estimate.pose;
     session.controls.clear();

@@ -44,6 +44,7 @@ FilterKind external_kind() {
                                     "[s] to wait for an answer before the run fails"),
                       choice_option("process", kProcesses.front(), kProcesses,
                                     "one process of a worker for all its runs, or a new one each")},
+          .sensors = {},
           .make = make_external};
 }
 

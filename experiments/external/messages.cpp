@@ -43,8 +43,21 @@ void tell_control_noise(JsonWriter& json, const Vehicle& vehicle, const ControlN
   for (std::size_t k = 0; k < noise.alpha.size(); ++k) json.key(alpha_key(k)).exact(noise.alpha[k]);
 }
 
+void tell_sensor(JsonWriter& json, const Belief& belief) {
+  const auto& [forward, left, turn] = belief.sensor.mounting;
+  json.member("sensor", name_of(belief.sensor));
+  for (const Quantity quantity : components_of(belief.sensor)) {
+    json.key(si_name(name_of(quantity).sigma)).exact(deviation_of(quantity, belief));
+  }
+  if (belief.sensor.mounting.is_none()) return;
+  json.key("mount_forward").exact(forward);
+  json.key("mount_left").exact(left);
+  json.key("mount_turn").exact(turn);
+}
+
 void tell_settings(JsonWriter& json, const FilterSetup& setup) {
-  const auto& [vehicle, control, sigma_range, sigma_bearing] = setup.belief;
+  const Belief& belief = setup.belief;
+  const Vehicle& vehicle = belief.vehicle;
   const bool known = setup.association.kind == Association::known;
   json.key("settings").begin_object();
   json.member("vehicle", name_of(vehicle));
@@ -56,9 +69,8 @@ void tell_settings(JsonWriter& json, const FilterSetup& setup) {
     }
   });
   tell_control_names(json, vehicle);
-  tell_control_noise(json, vehicle, control);
-  json.key("sigma_range").exact(sigma_range);
-  json.key("sigma_bearing").exact(sigma_bearing);
+  tell_control_noise(json, vehicle, belief.control);
+  tell_sensor(json, belief);
   json.member("association", known ? "known" : "nearest");
   json.key("gate").exact(setup.association.gate);
   json.key("new_gate").exact(setup.association.new_gate);
@@ -83,13 +95,14 @@ std::string predict_message(std::uint64_t id, std::span<const ControlRow> contro
 }
 
 std::string scan_message(std::uint64_t id, std::span<const ControlRow> controls, Scan scan,
-                         Association association) {
+                         Association association, std::size_t components) {
   JsonWriter json = json_message(id, "scan");
   tell_controls(json, controls);
   json.key("detections").begin_array();
   for (const Detection& detection : scan) {
     const bool named = association == Association::known && detection.identity >= 0;
-    json.begin_array().exact(detection.range).exact(detection.bearing);
+    json.begin_array();
+    for (std::size_t i = 0; i < components; ++i) json.exact(detection[i]);
     json.value(named ? detection.identity : -1).end_array();
   }
   return json.end_array().end_object().text();

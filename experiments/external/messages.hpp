@@ -26,9 +26,10 @@ struct RunStart {
 
 std::string start_message(std::uint64_t id, const RunStart& start, const FilterSetup& setup);
 std::string predict_message(std::uint64_t id, std::span<const ControlRow> controls);
-/// Identities are told with known association only; -1 is a false alarm, or unknown.
+/// Identities are told with known association only; -1 is a false alarm, or unknown. `components`
+/// of a detection.
 std::string scan_message(std::uint64_t id, std::span<const ControlRow> controls, Scan scan,
-                         Association association);
+                         Association association, std::size_t components);
 std::string map_message(std::uint64_t id);
 
 }  // namespace montecarta::experiments

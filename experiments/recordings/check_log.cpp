@@ -52,13 +52,17 @@ void check_times(std::size_t count, const Time& time, const std::string& place) 
   }
 }
 
-void check_detection(const Detection& detection, const Record& record) {
-  const auto& [range, bearing, identity] = detection;
-  if (!(range > 0.0)) {
-    record.refuse("range " + to_text(range) + " (a detection is farther than 0 m): correct it");
+void check_detection(const Detection& detection, std::span<const Quantity> components,
+                     const Record& record) {
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    const DetectionName& component = name_of(components[i]);
+    if (component.is_positive && !(detection[i] > 0.0)) {
+      record.refuse(std::string(component.name) + " " + to_text(detection[i]) +
+                    " (a detection is farther than 0 m): correct it");
+    }
+    record.limit(detection[i], component.most, component.name, component.limit);
   }
-  record.limit(range, kFarthestCoordinate, "range", "metres, a finite number");
-  record.limit(bearing, 2 * kPi, "bearing", "radians relative to the heading");
+  const std::int32_t identity = detection.identity;
   if (identity < Detection::kUnidentified || identity >= kMostIdentities) {
     record.refuse("identity " + std::to_string(identity) +
                   " (a whole number from 0 to 999999): number the landmarks from 0");
@@ -170,12 +174,13 @@ void check_odometry(std::span<const Odometry> odometry, std::span<const ControlN
   }
 }
 
-void check_scans(std::span<const LoggedScan> scans, const std::string& place) {
+void check_scans(std::span<const LoggedScan> scans, const std::string& place,
+                 std::span<const Quantity> components) {
   check_times(
       scans.size(), [&](std::size_t i) { return scans[i].time; }, place);
   for (std::size_t i = 0; i < scans.size(); ++i) {
     for (const Detection& detection : scans[i].detections) {
-      check_detection(detection, Record{place, i});
+      check_detection(detection, components, Record{place, i});
     }
   }
 }
@@ -211,7 +216,7 @@ void check_log(const DriveLog& log, const std::string& place) {
   Record{start, 0}.place_on_map({log.start.x, log.start.y});
   Record{start, 0}.limit(log.start.heading, 1e3 * kPi, "heading", "radians");
   check_odometry(log.odometry, log.controls, place + " (odometry)");
-  check_scans(log.scans, place + " (scans)");
+  check_scans(log.scans, place + " (scans)", log.components);
   check_references(log, place);
   check_landmarks(log.landmarks, place + " (landmarks)");
   check_identities(log, place + " (scans)");

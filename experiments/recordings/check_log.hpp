@@ -16,7 +16,8 @@ inline constexpr std::int32_t kMostIdentities = 1'000'000;
 // in place of radians. `place` is the file.
 void check_odometry(std::span<const Odometry> odometry, std::span<const ControlName> controls,
                     const std::string& place);
-void check_scans(std::span<const LoggedScan> scans, const std::string& place);
+void check_scans(std::span<const LoggedScan> scans, const std::string& place,
+                 std::span<const Quantity> components = components_of(Sensor()));
 void check_reference(const ReferencePath& reference, const std::string& place);
 void check_landmarks(std::span<const Eigen::Vector2d> landmarks, const std::string& place);
 

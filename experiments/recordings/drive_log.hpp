@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/core/drive.hpp"
+#include "filters/models/sensor.hpp"
 #include "filters/models/vehicle.hpp"
 
 #include <Eigen/Core>
@@ -33,6 +34,7 @@ struct DriveLog {
   Pose start;
   std::span<const ControlName> controls = controls_of(Vehicle());  ///< what odometry consists of
   std::vector<Odometry> odometry;                                  ///< in increasing time
+  std::span<const Quantity> components = components_of(Sensor());  ///< of the detections
   std::vector<LoggedScan> scans;                                   ///< in increasing time
   std::vector<ReferencePath> references;   ///< at least one; the first one leads
   std::vector<Eigen::Vector2d> landmarks;  ///< [m] surveyed positions; empty where unknown

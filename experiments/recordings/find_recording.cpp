@@ -18,8 +18,9 @@ namespace fs = std::filesystem;
 /// All numbers of a log, one behind the other, lengths before what has one.
 class Bytes {
  public:
-  /// Of a log with so many controls.
-  explicit Bytes(std::size_t controls) : controls_(controls) {}
+  /// Of a log with so many controls, and components of a detection.
+  Bytes(std::size_t controls, std::size_t components)
+      : controls_(controls), components_(components) {}
   template <class Number>
   void add(Number number) {
     text_.append(reinterpret_cast<const char*>(&number), sizeof number);
@@ -34,7 +35,10 @@ class Bytes {
     add(o.time);
     for (std::size_t i = 0; i < controls_; ++i) add(o.control[i]);
   }
-  void add(const Detection& d) { add(d.range), add(d.bearing), add(d.identity); }
+  void add(const Detection& d) {
+    for (std::size_t i = 0; i < components_; ++i) add(d[i]);
+    add(d.identity);
+  }
   void add(const LoggedScan& scan) { add(scan.time), add(scan.detections); }
   void add(const ReferencePath& path) {
     add_name(path.name);
@@ -52,7 +56,7 @@ class Bytes {
   const std::string& text() const { return text_; }
 
  private:
-  std::size_t controls_;
+  std::size_t controls_, components_;
   std::string text_;
 };
 
@@ -99,11 +103,14 @@ std::vector<std::string> recordings_in(const std::string& list,
 }
 
 std::string fingerprint_of(const DriveLog& log) {
-  Bytes bytes(log.controls.size());
+  Bytes bytes(log.controls.size(), log.components.size());
   bytes.add(log.start_time);
   bytes.add(log.start);
   if (log.controls.data() != controls_of(Car()).data()) {  // drives of cars keep theirs
     for (const ControlName& control : log.controls) bytes.add_name(control.name);
+  }
+  if (log.components.data() != components_of(Sensor()).data()) {  // those of range and bearing too
+    for (const Quantity quantity : log.components) bytes.add_name(name_of(quantity).name);
   }
   bytes.add(log.odometry);
   bytes.add(log.scans);

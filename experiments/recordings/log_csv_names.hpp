@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "filters/models/sensor.hpp"
 #include "filters/models/vehicle.hpp"
 
 #include <algorithm>
@@ -20,8 +21,12 @@ inline std::string odometry_header(std::span<const ControlName> controls) {
   for (const ControlName& control : controls) header.append(",").append(control.column);
   return header;
 }
-inline const Headers kDetections = {"time_s,range_m,bearing_rad",
-                                    "time_s,range_m,bearing_rad,identity"};
+/// Of the detections of a sensor with these components.
+inline Headers detection_headers(std::span<const Quantity> components) {
+  std::string header = "time_s";
+  for (const Quantity quantity : components) header.append(",").append(name_of(quantity).column);
+  return {header, header + ",identity"};
+}
 inline const Headers kLandmarks = {"x_m,y_m", "x_m,y_m,identity"};
 
 /// Headers of a reference: what a fix measures, then what is known of its error.

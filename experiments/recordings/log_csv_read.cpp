@@ -10,6 +10,7 @@
 #include "filters/models/vehicle_settings.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <system_error>
 
 namespace montecarta::experiments {
@@ -64,36 +65,58 @@ std::optional<std::int32_t> identity_in(const CsvRows& rows, std::size_t column)
                    "from 0, or leave the field empty for clutter");
 }
 
-Detection detection_in(const CsvRows& rows, bool identified) {
-  Detection detection{.range = rows.number(1, "range"),
-                      .bearing = rows.number(2, "bearing"),
-                      .identity = Detection::kUnidentified};
-  if (identified) detection.identity = identity_in(rows, 3).value_or(Detection::kClutter);
+Detection detection_in(const CsvRows& rows, std::span<const Quantity> components, bool identified) {
+  Detection detection{.values = {}, .identity = Detection::kUnidentified};
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    detection[i] = rows.number(i + 1, name_of(components[i]).name);
+  }
+  if (!identified) return detection;
+  detection.identity = identity_in(rows, components.size() + 1).value_or(Detection::kClutter);
   return detection;
 }
 
-bool is_empty_scan(const CsvRows& rows, bool identified) {
-  return rows.field(1).empty() && rows.field(2).empty() && (!identified || rows.field(3).empty());
+/// Nothing behind the time, in so many fields.
+bool is_empty_scan(const CsvRows& rows, std::size_t fields) {
+  for (std::size_t i = 1; i <= fields; ++i) {
+    if (!rows.field(i).empty()) return false;
+  }
+  return true;
 }
 
-/// Rows of one time make one scan; a row of a time alone is a scan that saw nothing.
-std::vector<LoggedScan> read_scans(const fs::path& path) {
-  CsvRows rows(path, log_csv::kDetections);
-  const bool identified = rows.header() == 1;
-  std::vector<LoggedScan> scans;
+/// Headers of the detections of all sensors, two of each.
+std::vector<std::string> known_detections() {
+  std::vector<std::string> headers;
+  for_each_sensor([&](const Sensor& sensor) {
+    std::ranges::copy(log_csv::detection_headers(components_of(sensor)),
+                      std::back_inserter(headers));
+  });
+  return headers;
+}
+
+/// The columns say what sensor it is of. Rows of one time make one scan; a row of a time alone is a
+/// scan that saw nothing.
+void read_scans(const fs::path& path, DriveLog& log) {
+  CsvRows rows(path, known_detections());
+  const bool identified = rows.header() % 2 == 1;
+  std::size_t kind = 0;
+  for_each_sensor([&](const Sensor& sensor) {
+    if (kind++ == rows.header() / 2) log.components = components_of(sensor);
+  });
+  const std::size_t fields = log.components.size() + (identified ? 1 : 0);
+  std::vector<LoggedScan>& scans = log.scans;
   while (rows.next()) {
     const double time = rows.number(0, "time");
-    const bool nothing = is_empty_scan(rows, identified);
+    const bool nothing = is_empty_scan(rows, fields);
     const bool again = !scans.empty() && scans.back().time == time;
     if (again && (nothing || scans.back().detections.empty())) {
       throw StudyError(rows.place() + ": a scan at " + to_text(time) +
                        " s that saw nothing has other rows (it is one row): delete one of them");
     }
     if (!again) scans.push_back({time, {}});
-    if (!nothing) scans.back().detections.push_back(detection_in(rows, identified));
+    if (nothing) continue;
+    scans.back().detections.push_back(detection_in(rows, log.components, identified));
   }
-  check_scans(scans, path.string());
-  return scans;
+  check_scans(scans, path.string(), log.components);
 }
 
 /// By identity where that column is there: each from 0 on once.
@@ -152,7 +175,7 @@ DriveLog read_log_csv(const fs::path& folder) {
   DriveLog log;
   read_start(folder / "start.csv", log);
   read_odometry(folder / "odometry.csv", log);
-  log.scans = read_scans(folder / "detections.csv");
+  read_scans(folder / "detections.csv", log);
   log.references = read_references(folder);
   if (fs::exists(folder / "landmarks.csv")) {
     log.landmarks = read_landmarks(folder / "landmarks.csv");

@@ -66,12 +66,14 @@ std::string identity_field(const Detection& detection) {
 
 Table detection_table(const DriveLog& log) {
   const bool identified = is_identified(log);
-  Table table(log_csv::kDetections[identified ? 1 : 0]);
+  const std::size_t n = log.components.size();
+  Table table(log_csv::detection_headers(log.components)[identified ? 1 : 0]);
   for (const auto& [time, detections] : log.scans) {
-    if (detections.empty()) table.add({time}, identified ? ",,," : ",,");
+    if (detections.empty()) table.add({time}, std::string(identified ? n + 1 : n, ','));
     for (const Detection& detection : detections) {
-      table.add({time, detection.range, detection.bearing},
-                identified ? identity_field(detection) : "");
+      std::array<double, 1 + Detection::kMost> row{time};
+      std::ranges::copy(detection.values, row.begin() + 1);
+      table.add(std::span(row).first(1 + n), identified ? identity_field(detection) : "");
     }
   }
   return table;

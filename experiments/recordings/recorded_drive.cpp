@@ -6,7 +6,7 @@
 #include <limits>
 
 namespace montecarta::experiments {
-RecordedDrive::RecordedDrive(const DriveLog& log, double max_range, double scan_delay) {
+RecordedDrive::RecordedDrive(const DriveLog& log, const Reach& reach, double scan_delay) {
   itinerary_.start = {log.start.x, log.start.y, wrap(log.start.heading)};
   itinerary_.has_truth = false;
   itinerary_.moving_controls = moving_controls(log.controls);
@@ -15,10 +15,10 @@ RecordedDrive::RecordedDrive(const DriveLog& log, double max_range, double scan_
   for (ReferencePath& path : itinerary_.references) {
     for (double& time : path.time) time -= log.start_time;
   }
-  merge(log, max_range, scan_delay);
+  merge(log, reach, scan_delay);
 }
 
-void RecordedDrive::merge(const DriveLog& log, double max_range, double scan_delay) {
+void RecordedDrive::merge(const DriveLog& log, const Reach& reach, double scan_delay) {
   drive_.scan_begin.assign(1, 0);
   Control control;  // the vehicle stands until it says otherwise
   auto odometry = log.odometry.begin();
@@ -32,7 +32,7 @@ void RecordedDrive::merge(const DriveLog& log, double max_range, double scan_del
     const double time = scan.time - scan_delay;
     drive_until(time);
     end_step(time - log.start_time, control);
-    take_scan(scan, max_range);
+    take_scan(scan, log.components, reach);
   }
   drive_until(std::numeric_limits<double>::infinity());
 }
@@ -46,14 +46,18 @@ void RecordedDrive::end_step(double time, const Control& control) {
   drive_.controls.push_back(control);
 }
 
-void RecordedDrive::take_scan(const LoggedScan& scan, double max_range) {
+void RecordedDrive::take_scan(const LoggedScan& scan, std::span<const Quantity> components,
+                              const Reach& reach) {
   if (itinerary_.step_time.empty()) {  // at the start
     itinerary_.step_time.push_back(0.0);
     drive_.controls.emplace_back();
   }
   itinerary_.scan_step.push_back(static_cast<std::uint32_t>(itinerary_.steps() - 1));
-  std::ranges::copy_if(scan.detections, std::back_inserter(drive_.detections),
-                       [&](const Detection& d) { return d.range <= max_range; });
+  std::ranges::copy_if(
+      scan.detections, std::back_inserter(drive_.detections), [&](const Detection& d) {
+        const double distance = distance_in(components, d).value_or(reach.max_range);
+        return distance <= reach.max_range && distance >= reach.min_range;
+      });
   drive_.scan_begin.push_back(static_cast<std::uint32_t>(drive_.detections.size()));
 }
 

@@ -12,17 +12,22 @@ namespace montecarta::experiments {
 /// they differ by the filter's random numbers alone.
 class RecordedDrive final : public DriveSource {
  public:
-  /// Detections beyond `max_range` [m] are left out; scans happened `scan_delay` [s] before the log
-  /// has them (a laser scanner takes its time to send). The log must have passed check_log().
-  RecordedDrive(const DriveLog& log, double max_range, double scan_delay = 0.0);
+  /// Distances [m] of detections that are used, as far as detections say how far they are.
+  struct Reach {
+    double max_range;
+    double min_range = 0.0;
+  };
+  /// Scans happened `scan_delay` [s] before the log has them (a laser scanner takes its time to
+  /// send). The log must have passed check_log().
+  RecordedDrive(const DriveLog& log, const Reach& reach, double scan_delay = 0.0);
 
   const Itinerary& itinerary() const override { return itinerary_; }
   void generate(std::uint64_t run, Drive& drive) const override;
 
  private:
-  void merge(const DriveLog& log, double max_range, double scan_delay);
+  void merge(const DriveLog& log, const Reach& reach, double scan_delay);
   void end_step(double time, const Control& control);
-  void take_scan(const LoggedScan& scan, double max_range);
+  void take_scan(const LoggedScan& scan, std::span<const Quantity> components, const Reach& reach);
 
   Itinerary itinerary_;
   Drive drive_;

@@ -35,8 +35,7 @@ Detection pole_of(std::span<const Echo> echoes) {
     sum.range += echo.range;
   }
   const auto count = static_cast<double>(echoes.size());
-  return {.range = sum.range / count + kPoleRadius,
-          .bearing = bearing_of(sum.angle / count),
+  return {.values = {sum.range / count + kPoleRadius, bearing_of(sum.angle / count)},
           .identity = Detection::kUnidentified};
 }
 

@@ -107,8 +107,8 @@ bool is_trunk(const Segment& segment) {
 
 /// Step 8.
 Detection detection_of(const Segment& trunk) {
-  return {.range = trunk.middle + diameter(trunk) / 2,
-          .bearing = bearing_of((trunk.start.angle + trunk.end.angle) / 2),
+  return {.values = {trunk.middle + diameter(trunk) / 2,
+                     bearing_of((trunk.start.angle + trunk.end.angle) / 2)},
           .identity = Detection::kUnidentified};
 }
 

@@ -42,9 +42,9 @@ Scenario scenario_of(const Settings& s) {
   scenario.vehicle = vehicle_of(s, in);
   scenario.speed = s.number(in, "speed");
   scenario.control = control_noise_of(s, in);
-  scenario.sigma_range = s.number(in, "sigma_range");
-  scenario.sigma_bearing = s.radians(in, "sigma_bearing_deg");
+  take_sensor(s, in, 1.0, scenario);
   scenario.max_range = s.number(in, "max_range");
+  scenario.min_range = s.number(in, "min_range");
   scenario.field_of_view = s.radians(in, "field_of_view_deg");
   scenario.waypoint_radius = s.number(in, "waypoint_radius");
   scenario.clutter_rate = s.number(in, "clutter_rate");
@@ -112,6 +112,15 @@ void refuse_other_controls(const Settings& s, std::span<const ControlName> drive
                    "): give belief.vehicle one that is controlled by these");
 }
 
+/// A filter is given detections of the sensor that saw them.
+void refuse_other_detections(const Settings& s, std::span<const Quantity> seen) {
+  const std::span<const Quantity> believed = components_of(sensor_of(s, "belief"));
+  if (std::ranges::equal(seen, believed)) return;
+  throw StudyError(s.place("belief", "sensor") + ": belief.sensor = " + s.text("belief", "sensor") +
+                   " has other detections than the drive (nothing could be compared): set "
+                   "belief.sensor to the sensor of the drive");
+}
+
 /// The log with the reference alone that the study judges by, if it names one.
 DriveLog judged(const Settings& s, DriveLog log) {
   const std::string& name = s.text("scenario", "reference");
@@ -131,10 +140,13 @@ std::size_t identities_in(const DriveLog& log) {
 
 RecordedDrive drive_of(const Settings& s, const DriveLog& log) {
   refuse_other_controls(s, log.controls);
+  refuse_other_detections(s, log.components);
   if (identities_in(log) == 0) refuse_use_of_identities(s);
   refuse_early_scans(s, log);
   refuse_impossible_steering(s, log);
-  return {judged(s, log), s.number("scenario", "max_range"), s.number("scenario", "scan_delay")};
+  return {judged(s, log),
+          {s.number("scenario", "max_range"), s.number("scenario", "min_range")},
+          s.number("scenario", "scan_delay")};
 }
 
 std::shared_ptr<const DriveSource> several_drives_of(const Study& study) {
@@ -169,6 +181,15 @@ Vehicle vehicle_of(const Settings& s, const char* in) {
   return *vehicle;
 }
 
+Sensor sensor_of(const Settings& s, const char* in) {
+  const auto sensor =
+      sensor_named(s.text(in, "sensor"), {.forward = s.number(in, "mount_forward"),
+                                          .left = s.number(in, "mount_left"),
+                                          .turn = wrap(s.radians(in, "mount_turn_deg"))});
+  expect(sensor.has_value(), "a study has a sensor that is not known");
+  return *sensor;
+}
+
 ControlNoise control_noise_of(const Settings& s, const char* in) {
   const auto noise =
       control_noise_of(vehicle_of(s, in), [&](const auto& key) { return number_of(s, in, key); });
@@ -195,6 +216,7 @@ std::shared_ptr<const DriveSource> drives_of(const Study& study, std::uint64_t s
   const Settings& s = study.settings;
   if (study.log == nullptr) {
     refuse_other_controls(s, controls_of(vehicle_of(s, "scenario")));
+    refuse_other_detections(s, components_of(sensor_of(s, "scenario")));
     return std::make_shared<SimulatedDrive>(study.world, scenario_of(s), seed);
   }
   if (!study.own_logs.empty()) return several_drives_of(study);

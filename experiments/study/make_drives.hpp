@@ -4,6 +4,7 @@
 #include "experiments/study/study.hpp"
 #include "filters/models/control_noise.hpp"
 #include "filters/models/vehicle.hpp"
+#include "filters/models/vehicle_settings.hpp"
 
 #include <functional>
 #include <memory>
@@ -13,8 +14,19 @@ namespace montecarta::experiments {
 
 /// The vehicle of a section: [scenario] or [belief].
 Vehicle vehicle_of(const Settings& settings, const char* section);
+Sensor sensor_of(const Settings& settings, const char* section);
 /// The noise of the controls of that vehicle, as the section says it.
 ControlNoise control_noise_of(const Settings& settings, const char* section);
+/// The sensor of a section, as it is mounted, and the deviations of its components, each times
+/// `factor`, for a belief or a scenario.
+template <class Owner>
+void take_sensor(const Settings& settings, const char* section, double factor, Owner& owner) {
+  owner.sensor = sensor_of(settings, section);
+  for (const Quantity quantity : components_of(owner.sensor)) {
+    const char* key = name_of(quantity).sigma;
+    deviation_of(quantity, owner) = factor * in_si(key, settings.number(section, key));
+  }
+}
 /// How many landmarks detections can name; 0 where nobody identified them.
 std::size_t identities_of(const Study& study);
 /// The drives of a study. Throws StudyError where its settings do not fit together.

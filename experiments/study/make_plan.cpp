@@ -20,22 +20,25 @@ Belief belief_of(const Settings& s, const CellSpec& spec) {
   ControlNoise control = control_noise_of(s, in);
   for (double& sigma : control.sigma) sigma *= motion;
   for (double& alpha : control.alpha) alpha *= motion * motion;
-  return {.vehicle = vehicle_of(s, in),
-          .control = control,
-          .sigma_range = sensor * s.number(in, "sigma_range"),
-          .sigma_bearing = sensor * s.radians(in, "sigma_bearing_deg")};
+  Belief belief{.vehicle = vehicle_of(s, in), .control = control};
+  take_sensor(s, in, sensor, belief);
+  return belief;
 }
 
-/// The chi-square gate, 2 degrees of freedom, that accepts as often as k sigma of a normal: the
-/// quantile at p = erf(k / sqrt 2), which is -2 ln(1 - p).
-double gate_of(double sigmas) { return -2.0 * std::log(std::erfc(sigmas / std::sqrt(2.0))); }
+/// The chi-square gate, of 1 or 2 degrees of freedom, that accepts as often as k sigma of a normal:
+/// the quantile at p = erf(k / sqrt 2), which is k^2 or -2 ln(1 - p).
+double gate_of(double sigmas, std::size_t dimension) {
+  if (dimension == 1) return sigmas * sigmas;
+  return -2.0 * std::log(std::erfc(sigmas / std::sqrt(2.0)));
+}
 
 AssociationSettings association_of(const Settings& s) {
   const char* in = "association";
   AssociationSettings association;
   association.kind = s.text(in, "kind") == "nearest" ? Association::nearest : Association::known;
-  association.gate = gate_of(s.number(in, "gate_sigma"));
-  association.new_gate = gate_of(s.number(in, "new_gate_sigma"));
+  const std::size_t dimension = components_of(sensor_of(s, "belief")).size();
+  association.gate = gate_of(s.number(in, "gate_sigma"), dimension);
+  association.new_gate = gate_of(s.number(in, "new_gate_sigma"), dimension);
   association.log_new_density_offset = s.number(in, "log_new_density_offset");
   association.most_landmarks = s.count(in, "most_landmarks");
   if (association.new_gate < association.gate) {

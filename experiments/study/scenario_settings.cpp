@@ -18,6 +18,21 @@ void add_growth(const char* section, const Add& add) {
   }
 }
 
+/// Which sensor, where it is mounted, and its noise, added by `add`. Deviations from `least` on.
+template <class Add>
+void add_sensor_kind(const char* section, double least, const Add& add) {
+  const auto mount = [&](const char* key, const char* unit, double most, const char* meaning) {
+    add(quiet(number(section, key, unit, "0", -most, most, meaning)), "");
+  };
+  add(quiet(choice(section, "sensor", sensor_names(), "what detects landmarks (EQUATIONS 2)")), "");
+  mount("mount_forward", "m", 1000, "of the sensor, ahead of the pose");
+  mount("mount_left", "m", 1000, "of the sensor, left of the pose");
+  mount("mount_turn_deg", "deg", 360, "where the sensor looks, left of the heading");
+  for (const Quantity q : {Quantity::range, Quantity::bearing, Quantity::forward, Quantity::left}) {
+    add(deviation_setting(section, q, least), name_of(q).example);
+  }
+}
+
 void add_drive(std::vector<Setting>& table) {
   const char* s = "scenario";
   const auto add = [&](Setting setting) {
@@ -47,8 +62,7 @@ void add_drive(std::vector<Setting>& table) {
   add(number(s, "start_heading_deg", "deg", "0", -360, 360, "pose before the first step"));
   add_all(control_noise_settings());
   add_growth(s, add);
-  add(number(s, "sigma_range", "m", "0.1", 0, 1000, "noise of a range"));
-  add(number(s, "sigma_bearing_deg", "deg", "1", 0, 180, "noise of a bearing"));
+  add_sensor_kind(s, 0.0, [&](const Setting& setting, const std::string&) { add(setting); });
 }
 
 void add_recording(std::vector<Setting>& table) {
@@ -73,10 +87,12 @@ void add_recording(std::vector<Setting>& table) {
 void add_sensor(std::vector<Setting>& table) {
   const char* s = "scenario";
   table.push_back(number(s, "max_range", "m", "30", 1e-3, 1e6, "farther is not detected"));
+  table.push_back(quiet(number(s, "min_range", "m", "0", 0, 1e6, "nearer is not detected")));
   const auto add = [&](Setting setting) {
     table.push_back(only_for({"simulated"}, std::move(setting)));
   };
-  add(number(s, "field_of_view_deg", "deg", "180", 0.1, 360, "of the sensor, centred ahead"));
+  add(number(s, "field_of_view_deg", "deg", "180", 0.1, 360,
+             "of the sensor, centred where it looks"));
   add(number(s, "clutter_rate", "1", "0", 0, 100, "mean false alarms a scan"));
   add(number(s, "miss_probability", "1", "0", 0, 1, "that a landmark in view is not detected"));
 }
@@ -140,8 +156,7 @@ void add_belief(std::vector<Setting>& table) {
     add(of_vehicles(s, setting), setting.example);
   }
   add_growth(s, add);
-  add(number(s, "sigma_range", "m", "0.1", kTiny, 1000, meaning), "0.5");
-  add(number(s, "sigma_bearing_deg", "deg", "1", kTiny, 180, meaning), "1.5");
+  add_sensor_kind(s, kTiny, add);
 }
 
 }  // namespace montecarta::experiments::setting_builders

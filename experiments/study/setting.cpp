@@ -79,8 +79,8 @@ bool Setting::is_for(std::string_view scenario_kind) const {
   return kinds.empty() || std::ranges::find(kinds, scenario_kind) != kinds.end();
 }
 
-bool Setting::is_for_vehicle(std::string_view vehicle) const {
-  return vehicles.empty() || std::ranges::find(vehicles, vehicle) != vehicles.end();
+bool Setting::is_for_choice(std::string_view choice) const {
+  return chosen.empty() || std::ranges::find(chosen, choice) != chosen.end();
 }
 
 std::optional<std::string> Setting::fallback_for(std::string_view scenario_kind) const {

@@ -22,8 +22,10 @@ struct Setting : Option {
   std::string section = {};
   /// Kinds of scenario (scenario.kind) that it says something of; empty: all.
   std::vector<std::string> kinds = {};
-  /// Vehicles (of the same section) that it says something of; empty: all.
-  std::vector<std::string> vehicles = {};
+  /// "vehicle" or "sensor": the setting of the same section that decides whether this one says
+  /// something, by which of its values; empty: always.
+  std::string chooser = {};
+  std::vector<std::string> chosen = {};
   /// Left out of the resolved text where it and, for a belief, the scenario have the default: so
   /// that the text of studies that are older than the setting stays.
   bool is_quiet = false;
@@ -32,7 +34,7 @@ struct Setting : Option {
   std::vector<std::pair<std::string, std::string>> fallback_of_kind = {};
 
   bool is_for(std::string_view scenario_kind) const;
-  bool is_for_vehicle(std::string_view vehicle) const;
+  bool is_for_choice(std::string_view choice) const;
   std::optional<std::string> fallback_for(std::string_view scenario_kind) const;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "experiments/study/setting.hpp"
+#include "filters/models/sensor.hpp"
 #include "filters/models/vehicle_settings.hpp"
 
 #include <string>
@@ -58,7 +59,17 @@ inline Setting of_vehicles(const char* section, const VehicleSetting& v) {
                 : number_option(v.key.c_str(), v.usual.c_str(), v.least, v.most, v.meaning.c_str()),
       section};
   setting.unit = v.unit;
-  setting.vehicles = v.vehicles;
+  setting.chooser = "vehicle";
+  setting.chosen = v.vehicles;
+  return setting;
+}
+
+/// The deviation of a component of some sensors, from `least` on.
+inline Setting deviation_setting(const char* section, Quantity quantity, double least) {
+  const DetectionName& c = name_of(quantity);
+  Setting setting = number(section, c.sigma, c.unit, c.usual, least, c.most_sigma, c.noise_text);
+  setting.chooser = "sensor";
+  setting.chosen = sensors_with(quantity);
   return setting;
 }
 

@@ -35,12 +35,11 @@ const Setting& known_setting(const IniEntry& entry) {
                    "): " + (believed ? "give it under [belief], or remove it" : "remove it"));
 }
 
-[[noreturn]] void throw_other_vehicle(const Setting& setting, const std::string& vehicle,
-                                      const std::string& place) {
-  throw StudyError(place + ": " + setting.section + "." + setting.key +
-                   " says nothing of a vehicle " + vehicle + " (it is for " +
-                   joined(setting.vehicles) + "): remove it, or correct " + setting.section +
-                   ".vehicle");
+[[noreturn]] void throw_other_choice(const Setting& setting, const std::string& choice,
+                                     const std::string& place) {
+  throw StudyError(place + ": " + setting.section + "." + setting.key + " says nothing of a " +
+                   setting.chooser + " " + choice + " (it is for " + joined(setting.chosen) +
+                   "): remove it, or correct " + setting.section + "." + setting.chooser);
 }
 
 }  // namespace
@@ -76,9 +75,9 @@ void Settings::fill_in(const std::string& name) {
       if (given != values_.end()) throw_out_of_place(setting, kind, given->second.place);
       continue;
     }
-    if (!is_for_vehicle(setting)) {
+    if (!is_for_choice(setting)) {
       if (given == values_.end()) continue;
-      throw_other_vehicle(setting, text(setting.section, "vehicle"), given->second.place);
+      throw_other_choice(setting, text(setting.section, setting.chooser), given->second.place);
     }
     if (given != values_.end()) continue;
     const std::optional<std::string> fallback = setting.fallback_for(kind);
@@ -96,7 +95,8 @@ void Settings::fill_in(const std::string& name) {
 
 /// What a filter is not told it takes from the world, which may have values that no filter can use.
 std::string Settings::copied_from_scenario(const Setting& setting) const {
-  if (!has("scenario", setting.key)) return setting.fallback.value();  // of another vehicle
+  if (!has("scenario", setting.key))
+    return setting.fallback.value();  // of another vehicle or sensor
   const auto& [value, given_at] = at("scenario", setting.key);
   try {
     return checked_value(setting, value, given_at);
@@ -113,9 +113,9 @@ const Settings::Value& Settings::at(std::string_view section, std::string_view k
   return found->second;
 }
 
-/// The vehicle of a section comes before what depends on it.
-bool Settings::is_for_vehicle(const Setting& setting) const {
-  return setting.vehicles.empty() || setting.is_for_vehicle(text(setting.section, "vehicle"));
+/// Vehicle and sensor of a section come before what depends on them.
+bool Settings::is_for_choice(const Setting& setting) const {
+  return setting.chooser.empty() || setting.is_for_choice(text(setting.section, setting.chooser));
 }
 
 bool Settings::says_nothing(const Setting& setting) const {

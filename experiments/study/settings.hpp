@@ -38,10 +38,10 @@ class Settings {
   /// What scenario.kind says.
   std::string scenario_kind() const;
 
-  /// Whether there is a value: the kind of scenario and the vehicle have that key.
+  /// Whether there is a value: kind of scenario, vehicle and sensor have that key.
   bool has(std::string_view section, std::string_view key) const;
-  /// (key, value) of a section in the order of the table, as far as the kind of scenario and the
-  /// vehicle have them; without quiet ones that say nothing.
+  /// (key, value) of a section in the order of the table, as far as the kind of scenario,
+  /// vehicle and sensor have them; without quiet ones that say nothing.
   std::vector<std::pair<std::string, std::string>> section(std::string_view name) const;
 
  private:
@@ -53,7 +53,7 @@ class Settings {
   void take(const IniEntry& entry);
   void fill_in(const std::string& name);
   std::string copied_from_scenario(const Setting& setting) const;
-  bool is_for_vehicle(const Setting& setting) const;
+  bool is_for_choice(const Setting& setting) const;
   bool says_nothing(const Setting& setting) const;
   const Value& at(std::string_view section, std::string_view key) const;
 

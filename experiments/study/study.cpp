@@ -6,6 +6,7 @@
 #include "experiments/study/inline_world.hpp"
 #include "experiments/study/printed_section.hpp"
 #include "experiments/study/recorded_study.hpp"
+#include "experiments/study/refuse_sensors.hpp"
 #include "experiments/text/words.hpp"
 #include "experiments/worlds/world_file.hpp"
 
@@ -108,6 +109,7 @@ Study parse_study(const std::string& text, const std::string& name,
     study.log = study.own_logs.front();
     if (study.own_logs.size() == 1) study.own_logs.clear();
   }
+  refuse_sensors(study.settings, study.cells);
   study.until =
       parse_until(study.settings.text("study", "until"), study.settings.place("study", "until"));
   if (study.until) study.settings.replace("study", "until", text_of(*study.until));

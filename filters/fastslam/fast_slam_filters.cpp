@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/fast_slam_filters.hpp"
 
+#include "filters/fastslam/fastslam2_position.hpp"
+
 #include <string>
 
 namespace montecarta::filters {
@@ -83,8 +85,13 @@ FilterKind fastslam2_kind() {
           .options = joined({population_options(),
                              {choice_option("weights", "closed", kWeightForms,
                                             "form of the importance weight (EQUATIONS 6)")}}),
+          .sensors = {RangeBearingSensor::kName, PositionSensor::kName},
           .drops_mixture = weighs_by_ratio,
-          .make = make_fastslam2<Lanes>};
+          .make = [](const FilterSetup& setup) {
+            return std::holds_alternative<PositionSensor>(setup.belief.sensor.kind)
+                       ? make_fastslam2_position<Lanes>(setup)
+                       : make_fastslam2<Lanes>(setup);
+          }};
 }
 
 FilterKind ufastslam_kind() {

@@ -134,7 +134,9 @@ bool CompressedGaussian::is_out_of_reach(std::size_t slot, const Drift& drift, d
       std::sqrt(distance_squared(pose().mean, whole_.mean.segment<2>(row_of(slot))));
   const double spread = std::sqrt(variance + share * share * drift.variance) +
                         std::sqrt(pose().covariance.topLeftCorner<2, 2>().trace());
-  return distance - share * drift.mean - range > sigmas * (spread + near_.belief().sigma_range);
+  const Belief& belief = near_.belief();
+  const double noise = length_deviation(belief.sensor, belief, range);
+  return distance - share * drift.mean - range > sigmas * (spread + noise);
 }
 
 JointGaussian::Trouble CompressedGaussian::look_at(std::size_t slot,
@@ -143,9 +145,33 @@ JointGaussian::Trouble CompressedGaussian::look_at(std::size_t slot,
   return near_.look_at(far_point(slot), expected);
 }
 
-void CompressedGaussian::append(const RangeBearing<double>& observation) {
+void CompressedGaussian::append(const Eigen::Vector2d& detection) {
   point_of_.push_back(static_cast<std::uint32_t>(near_.landmarks()));
-  near_.append(observation);
+  near_.append(detection);
+}
+
+void CompressedGaussian::use_near_slots(NewPoint& point) const {
+  for (NewPoint::Part& part : point.by_points) {
+    assert(is_near(part.slot));
+    part.slot = point_of_[part.slot];
+  }
+}
+
+void CompressedGaussian::append(NewPoint point) {
+  use_near_slots(point);
+  point_of_.push_back(static_cast<std::uint32_t>(near_.landmarks()));
+  near_.append(point);
+}
+
+void CompressedGaussian::replace(std::size_t slot, NewPoint point) {
+  assert(is_near(slot));
+  use_near_slots(point);
+  near_.replace(point_of_[slot], point);
+}
+
+Matrix7 CompressedGaussian::covariance_with(std::size_t first, std::size_t second) const {
+  assert(is_near(first) && is_near(second));
+  return near_.covariance_with(point_of_[first], point_of_[second]);
 }
 
 void CompressedGaussian::make_near(std::span<const std::uint32_t> slots) {

@@ -53,22 +53,26 @@ class CompressedGaussian {
     double variance;  ///< [m^2]
   };
   Drift drift() const;
-  /// Whether no detection up to `range` [m] can come within so many standard deviations of a
-  /// landmark, of which it is far. Quicker than looking at it.
+  /// Whether no detection up to `range` [m] from the pose can come within so many standard
+  /// deviations of a landmark, of which it is far. Quicker than looking at it.
   bool is_out_of_reach(std::size_t slot, const Drift& drift, double range, double sigmas) const;
   [[nodiscard]] Trouble look_at(std::size_t slot, ExpectedObservation& expected) const;
 
   /// Makes landmarks near, and others around the vehicle with them; does nothing where they are.
   void make_near(std::span<const std::uint32_t> slots);
   /// JointGaussian::update_with() of a landmark that is near.
-  Trouble update_with(std::size_t slot, const RangeBearing<double>& detected, int iterations,
+  Trouble update_with(std::size_t slot, const Eigen::Vector2d& detected, int iterations,
                       ExpectedObservation& expected) {
     assert(is_near(slot));
     ++updates_;
     return near_.update_with(point_of_[slot], detected, iterations, expected);
   }
   void draw_heading(double keep, double normal) { near_.draw_heading(keep, normal); }
-  void append(const RangeBearing<double>& observation);
+  void append(const Eigen::Vector2d& detection);
+  /// JointGaussian::append(), replace() and covariance_with() of points that are near.
+  void append(NewPoint point);
+  void replace(std::size_t slot, NewPoint point);
+  Matrix7 covariance_with(std::size_t first, std::size_t second) const;
 
  private:
   using Columns2 = Eigen::Matrix<double, Eigen::Dynamic, 2>;
@@ -81,6 +85,7 @@ class CompressedGaussian {
     double variance = 0.0;  ///< [m^2] trace of its covariance
   };
 
+  void use_near_slots(NewPoint& point) const;
   Eigen::Index rows() const { return packed(landmarks()); }
   auto coefficients_of_mean() const { return near_.map().mean.segment(stand_ins_, basis_.size()); }
   auto coefficients_of_cross() const {

@@ -47,15 +47,16 @@ JointGaussian::Trouble JointGaussian::linearise_after(const Step& step, std::siz
     landmark_way = V * landmark_way;
   }
   const Pose& from = pose_.mean;
-  const auto at = linearised_observation(
-      Pose{from.x + pose_way(0), from.y + pose_way(1), from.heading + step.pose(2)},
+  const auto at = linearised_detection(
+      belief_.sensor, Pose{from.x + pose_way(0), from.y + pose_way(1), from.heading + step.pose(2)},
       Point{map_.mean(row) + landmark_way(0), map_.mean(row + 1) + landmark_way(1)});
-  if (too_near(at.observation)) return Trouble::too_near;
-  ExpectedObservation next{.pose_jacobian = pose_jacobian(at),
-                           .landmark_jacobian = landmark_jacobian(at),
-                           .observation = at.observation,
+  if (!at) return Trouble::too_near;
+  ExpectedObservation next{.pose_jacobian = at->by_pose,
+                           .landmark_jacobian = at->by_landmark,
+                           .observation = at->value,
                            .factor = {},
-                           .ahead = {}};
+                           .ahead = {},
+                           .wraps = wraps_};
   if (retraction_ == Retraction::invariant) {  // the error at the estimate before
     next.pose_jacobian.col(2) += next.pose_jacobian.leftCols<2>() * (quarter_turn() * pose_way) +
                                  next.landmark_jacobian * (quarter_turn() * landmark_way);
@@ -68,8 +69,7 @@ JointGaussian::Trouble JointGaussian::linearise_after(const Step& step, std::siz
   return Trouble::none;
 }
 
-JointGaussian::Trouble JointGaussian::update_with(std::size_t slot,
-                                                  const RangeBearing<double>& detected,
+JointGaussian::Trouble JointGaussian::update_with(std::size_t slot, const Eigen::Vector2d& detected,
                                                   int iterations, ExpectedObservation& expected) {
   Eigen::Vector2d innovation = expected.innovation(detected);
   Trouble trouble = Trouble::none;

@@ -53,13 +53,27 @@ void GaussianBank::update(const StepContext& context, Scan scan) {
   weigh();
   estimate_of_scan_ = mixture();
   split(context);
-  context.parallel_for(active_.size(),
-                       [&](std::size_t a) { beliefs_[active_[a]].initialise_landmarks(scan); });
+  initialise_landmarks(context, scan);
   for (std::size_t i = 0; i < slot_of_.size(); ++i) {
-    population_.report().map_size +=
-        weight_of(i) * static_cast<double>(belief_of(i).gaussian().landmarks());
+    population_.report().map_size += weight_of(i) * static_cast<double>(belief_of(i).landmarks());
   }
   population_.decide_on_resampling(context);
+}
+
+/// What one detection does not fix all beliefs take a step further in the same scan, so that all of
+/// them weigh by the same detections.
+void GaussianBank::initialise_landmarks(const StepContext& context, Scan scan) {
+  found_.resize(active_.size());
+  context.parallel_for(active_.size(), [&](std::size_t a) {
+    found_[a] = beliefs_[active_[a]].find_advancing(scan);
+  });
+  advancing_.assign(found_.front().begin(), found_.front().end());
+  for (const auto& found : found_) {
+    for (std::size_t k = 0; k < found.size(); ++k) advancing_[k] = advancing_[k] && found[k];
+  }
+  context.parallel_for(active_.size(), [&](std::size_t a) {
+    beliefs_[active_[a]].initialise_landmarks(scan, advancing_);
+  });
 }
 
 /// Every particle's weight is multiplied by what its belief expected of the scan.
@@ -70,7 +84,7 @@ void GaussianBank::weigh() {
   population_.normalise();
   ScanReport& report = population_.report();
   if (!settings_.tells_particles) report.ess = 0.0;
-  innovations_.add_to(report);
+  innovations_.add_to(report, components_of(belief_.sensor).size());
   for (std::size_t i = 0; i < slot_of_.size(); ++i) {
     add(belief_of(i).association().counts(), weight_of(i), report.association);
   }
@@ -120,7 +134,8 @@ void GaussianBank::deal_strata(const StepContext& context) {
 bool GaussianBank::is_due(const JointBelief& belief) const {
   const double variance = belief.gaussian().pose().covariance(2, 2);
   if (settings_.split_beyond) return variance > *settings_.split_beyond * *settings_.split_beyond;
-  return 0.5 * variance * belief.gaussian().extent() > belief_.sigma_range;
+  const double extent = belief.gaussian().extent();
+  return 0.5 * variance * extent > length_deviation(belief_.sensor, belief_, extent);
 }
 
 /// Of particles that share a belief that is due, the first keeps it, the others get copies.

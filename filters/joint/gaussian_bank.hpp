@@ -25,7 +25,7 @@ struct BankSettings {
   Retraction retraction = Retraction::additive;
   /// [rad] a component that knows its heading worse than this after a scan draws it; nothing: where
   /// the second-order error that it makes over the extent D of the map, sigma^2 D / 2, exceeds
-  /// sigma_range
+  /// the noise of a detection [m]
   std::optional<double> split_beyond = std::numeric_limits<double>::infinity();
   double keep = 0.0;   ///< share of the heading's standard deviation that a draw leaves
   int iterations = 0;  ///< of the linearisation, after the first
@@ -59,6 +59,7 @@ class GaussianBank final : public SlamFilter {
   void weigh();
   PoseEstimate mixture() const;
   void gather_innovations(Scan scan);
+  void initialise_landmarks(const StepContext& context, Scan scan);
   bool is_due(const JointBelief& belief) const;
   void deal_strata(const StepContext& context);
   void split(const StepContext& context);
@@ -78,6 +79,8 @@ class GaussianBank final : public SlamFilter {
   std::vector<std::uint32_t> old_slot_of_;    ///< scratch of settle()
   std::vector<std::uint32_t> active_;         ///< the beliefs that some particle has, in order
   mutable std::vector<double> slot_weights_;  ///< scratch of mixture(), map() and joint()
+  std::vector<std::span<const char>> found_;  ///< scratch: {active, detection} may advance
+  std::vector<char> advancing_;               ///< scratch: {detection} in all beliefs
   std::vector<std::uint32_t> idle_;           ///< scratch
   std::vector<char> taken_;                   ///< scratch: {belief} whether a particle keeps it
   std::vector<char> is_due_;                  ///< scratch: {belief} whether it is to be split

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/joint/joint_belief.hpp"
 
-#include "filters/models/eigen_jacobians.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,13 +14,17 @@ constexpr std::size_t kRoomAtFirst = 300;
 }  // namespace
 
 JointBelief::JointBelief(const FilterSetup& setup, Retraction retraction, int iterations)
-    : association_(setup),
+    : sensor_(setup.belief.sensor),
+      association_(setup),
       gaussian_(setup.belief, retraction, std::min(setup.landmarks, kRoomAtFirst)),
+      delayed_(setup.belief),
       iterations_(iterations) {}
 
 void JointBelief::start(const Pose& start) {
   gaussian_.start(start);
   association_.clear();
+  point_of_.clear();
+  delayed_.clear();
   used_detections_.clear();
   outcome_ = {};
 }
@@ -30,6 +32,8 @@ void JointBelief::start(const Pose& start) {
 void JointBelief::become(const JointBelief& other) {
   gaussian_.become(other.gaussian_);
   association_ = other.association_;
+  point_of_ = other.point_of_;
+  delayed_ = other.delayed_;
   used_detections_ = other.used_detections_;
   outcome_ = other.outcome_;
 }
@@ -53,22 +57,50 @@ void JointBelief::update_with(const MotionIncrement& motion, Scan scan) {
 void JointBelief::select_matched() {
   matched_.clear();
   for (const Pairing& pairing : association_.pairings()) {
-    if (pairing.kind == PairingKind::matched) matched_.push_back(pairing.landmark);
+    if (pairing.kind == PairingKind::matched) matched_.push_back(point_of_[pairing.landmark]);
   }
   gaussian_.make_near(matched_);
 }
 
-void JointBelief::initialise_landmarks(Scan scan) {
+std::span<const char> JointBelief::find_advancing(Scan scan) {
+  advancing_.clear();
+  if (fixes_landmark(sensor_)) return advancing_;
+  advancing_.assign(scan.size(), false);
+  matched_.clear();
+  const auto is_fresh = [&](std::size_t k) {
+    return association_.pairings()[k].kind == PairingKind::fresh;
+  };
+  for (std::size_t k = 0; k < scan.size(); ++k) {
+    if (is_fresh(k)) delayed_.add_points_of(scan[k].identity, matched_);
+  }
+  gaussian_.make_near(matched_);
+  for (std::size_t k = 0; k < scan.size(); ++k) {
+    if (is_fresh(k)) advancing_[k] = delayed_.advances(gaussian_, scan[k]);
+  }
+  return advancing_;
+}
+
+void JointBelief::add_landmark(const Detection& fresh, std::uint32_t point) {
+  association_.add(fresh);
+  point_of_.push_back(point);
+}
+
+void JointBelief::initialise_landmarks(Scan scan, std::span<const char> advancing) {
   for (std::size_t k = 0; k < scan.size(); ++k) {
     if (association_.pairings()[k].kind != PairingKind::fresh) continue;
-    association_.add(scan[k]);
-    gaussian_.append(observation_of(scan[k]));
+    if (fixes_landmark(sensor_)) {
+      add_landmark(scan[k], static_cast<std::uint32_t>(gaussian_.landmarks()));
+      gaussian_.append(vector_of(scan[k]));
+    } else if (advancing[k]) {
+      const auto point = delayed_.advance(gaussian_, scan[k]);
+      if (point) add_landmark(scan[k], *point);
+    }
   }
 }
 
 std::optional<LandmarkEstimate> JointBelief::landmark(std::size_t k) const {
-  const std::size_t slot = association_.slot_of(k);
-  return slot < gaussian_.landmarks() ? std::optional(gaussian_.landmark(slot)) : std::nullopt;
+  const std::size_t at = association_.slot_of(k);
+  return at < landmarks() ? std::optional(gaussian_.landmark(point_of_[at])) : std::nullopt;
 }
 
 JointEstimate JointBelief::joint(std::size_t landmarks) const {
@@ -76,10 +108,10 @@ JointEstimate JointBelief::joint(std::size_t landmarks) const {
   rows.reserve(3 + 2 * landmarks);
   places.reserve(3 + 2 * landmarks);
   for (std::size_t k = 0; k < landmarks; ++k) {
-    const std::size_t slot = association_.slot_of(k);
-    if (slot >= gaussian_.landmarks()) continue;
+    const std::size_t at = association_.slot_of(k);
+    if (at >= this->landmarks()) continue;
     for (const Eigen::Index coordinate : {0, 1}) {
-      rows.push_back(3 + row_of(slot) + coordinate);
+      rows.push_back(3 + row_of(point_of_[at]) + coordinate);
       places.push_back(3 + row_of(k) + coordinate);
     }
   }
@@ -97,24 +129,34 @@ JointEstimate JointBelief::joint(std::size_t landmarks) const {
   return joint;
 }
 
+/// [m] from the pose to the farthest place that the scan may be of; 0 where it saw nothing.
+double JointBelief::reach_of(Scan scan) const {
+  double range = 0.0;
+  for (const Detection& detection : scan) {
+    const auto distance = distance_in(components_of(sensor_), detection);
+    range = std::max(range, distance.value_or(std::numeric_limits<double>::infinity()));
+  }
+  return range + sensor_.mounting.distance();
+}
+
 /// Landmark by landmark, since what is expected of one serves all detections. What is beyond both
 /// gates of all of them need not be looked at.
 void JointBelief::pair_nearest(Scan scan) {
   searches_.assign(scan.size(), {});
-  double range = 0.0;
-  for (const Detection& detection : scan) range = std::max(range, detection.range);
+  const double range = reach_of(scan);
   const AssociationSettings& settings = association_.settings();
   const double sigmas = std::sqrt(std::max(settings.gate, settings.new_gate));
   const auto drift = gaussian_.drift();
   ExpectedObservation expected;
-  for (std::uint32_t slot = 0; slot < gaussian_.landmarks(); ++slot) {
+  for (std::uint32_t landmark = 0; landmark < landmarks(); ++landmark) {
+    const std::uint32_t slot = point_of_[landmark];
     if (gaussian_.is_out_of_reach(slot, drift, range, sigmas)) continue;
     if (!look_at(slot, expected)) continue;
     const double log_det = expected.factor.log_det();
     for (std::size_t k = 0; k < scan.size(); ++k) {
       const double distance =
-          expected.factor.whiten(expected.innovation(observation_of(scan[k]))).squaredNorm();
-      searches_[k].offer(slot, distance, distance + log_det, settings.gate);
+          expected.factor.whiten(expected.innovation(vector_of(scan[k]))).squaredNorm();
+      searches_[k].offer(landmark, distance, distance + log_det, settings.gate);
     }
   }
   association_.pair_nearest(scan, searches_);
@@ -130,8 +172,8 @@ bool JointBelief::look_at(std::size_t slot, ExpectedObservation& expected) {
 /// Counted is the innovation against the belief before the detection; weighed by is that of the
 /// last linearisation, with which the density of the detection is that of Laplace.
 void JointBelief::update_with(std::size_t k, const Detection& detection) {
-  const std::size_t slot = association_.pairings()[k].landmark;
-  const RangeBearing<double> detected = observation_of(detection);
+  const std::size_t slot = point_of_[association_.pairings()[k].landmark];
+  const Eigen::Vector2d detected = vector_of(detection);
   ExpectedObservation expected;
   if (!look_at(slot, expected)) {
     outcome_.log_likelihood += association_.unmatched_log_density();
@@ -142,7 +184,8 @@ void JointBelief::update_with(std::size_t k, const Detection& detection) {
   if (trouble == CompressedGaussian::Trouble::faulty) ++outcome_.faults;
   const InnovationFactor& L = expected.factor;
   const double distance = L.whiten(expected.innovation(detected)).squaredNorm();
-  outcome_.log_likelihood += log_normal_density(distance, L);
+  outcome_.log_likelihood +=
+      log_normal_density(distance, L, static_cast<double>(components_of(sensor_).size()));
 }
 
 }  // namespace montecarta::filters

@@ -3,6 +3,7 @@
 
 #include "filters/association/map_association.hpp"
 #include "filters/joint/compressed_gaussian.hpp"
+#include "filters/joint/delayed_initialisation.hpp"
 
 #include <cstdint>
 #include <span>
@@ -22,14 +23,20 @@ class JointBelief {
   /// The vehicle moved by `motion`; decides which landmarks `scan` then shows, and conditions the
   /// Gaussian on them.
   void update_with(const MotionIncrement& motion, Scan scan);
-  /// Adds the landmarks that this scan, just used, shows for the first time. Throws RunError
-  /// where the map has run away.
-  void initialise_landmarks(Scan scan);
+  /// Of each detection of this scan, just used, whether it can take a landmark that is not in the
+  /// map a step further (DelayedInitialisation); empty where one detection fixes a landmark.
+  std::span<const char> find_advancing(Scan scan);
+  /// Adds the landmarks that this scan, just used, shows for the first time; or of those that one
+  /// detection does not fix takes them `advancing` a step further. Throws RunError where the map
+  /// has run away.
+  void initialise_landmarks(Scan scan, std::span<const char> advancing = {});
   void draw_heading(double keep, double normal) { gaussian_.draw_heading(keep, normal); }
   /// Becomes a copy of `other`, which was made of the same setup.
   void become(const JointBelief& other);
 
   const CompressedGaussian& gaussian() const { return gaussian_; }
+  /// In the map.
+  std::size_t landmarks() const { return point_of_.size(); }
   /// The k-th landmark: of identity k with known association, else the k-th initialised.
   std::optional<LandmarkEstimate> landmark(std::size_t k) const;
   /// Of the pose and the first `landmarks` of these; NaN where the map has none.
@@ -51,16 +58,23 @@ class JointBelief {
   std::span<const UsedDetection> used_detections() const { return used_detections_; }
 
  private:
+  double reach_of(Scan scan) const;
   void pair_nearest(Scan scan);
   void select_matched();
   bool look_at(std::size_t slot, ExpectedObservation& expected);
   void update_with(std::size_t k, const Detection& detection);
 
+  void add_landmark(const Detection& fresh, std::uint32_t point);
+
+  Sensor sensor_;
   MapAssociation association_;
   CompressedGaussian gaussian_;
+  std::vector<std::uint32_t> point_of_;  ///< {landmark} its slot in the Gaussian
+  DelayedInitialisation delayed_;
+  std::vector<char> advancing_;  ///< scratch of find_advancing()
   int iterations_;
   std::vector<NearestSearch> searches_;  ///< scratch
-  std::vector<std::uint32_t> matched_;   ///< scratch: slots that the current scan shows
+  std::vector<std::uint32_t> matched_;   ///< scratch: slots that the current scan needs
   std::vector<UsedDetection> used_detections_;
   Outcome outcome_;
 };

@@ -72,6 +72,8 @@ FilterKind ekf_slam_kind() {
           .has_mixture = false,
           .has_joint = true,
           .options = {iterations_option("0"), motion_option("linearised")},
+          .sensors = {},
+          .delays_initialisation = true,
           .make = make_ekf_slam};
 }
 
@@ -83,6 +85,8 @@ FilterKind riekf_slam_kind() {
           .has_mixture = false,
           .has_joint = true,
           .options = {iterations_option("0"), motion_option("linearised")},
+          .sensors = {},
+          .delays_initialisation = true,
           .make = make_riekf_slam};
 }
 
@@ -93,7 +97,7 @@ FilterKind hrb_kind() {
       {number_option("split_beyond_deg", "0", 0, 1e9,
                      "[degrees] a Gaussian that knows its heading worse than this draws it; 0: "
                      "where that bends "
-                     "its map by more than sigma_range"),
+                     "its map by more than the noise of a detection"),
        number_option("keep", "0.95", 0, 0.999,
                      "share of the heading's standard deviation that a draw leaves; 0: none"),
        choice_option("error", "invariant", kErrors,
@@ -105,6 +109,8 @@ FilterKind hrb_kind() {
           .has_mixture = true,
           .has_joint = true,
           .options = std::move(options),
+          .sensors = {},
+          .delays_initialisation = true,
           .make = make_hrb};
 }
 

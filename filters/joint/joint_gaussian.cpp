@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/joint/joint_gaussian.hpp"
 
+#include "engine/errors.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,9 +10,7 @@ namespace montecarta::filters {
 namespace {
 
 Eigen::Matrix2d observation_noise(const Belief& belief) {
-  return Eigen::Vector2d(belief.sigma_range * belief.sigma_range,
-                         belief.sigma_bearing * belief.sigma_bearing)
-      .asDiagonal();
+  return deviations_of(belief.sensor, belief).cwiseAbs2().asDiagonal();
 }
 
 /// How a motion moves a vehicle that heads along `heading`, in the map frame.
@@ -21,7 +21,10 @@ Point way_of(const MotionIncrement& motion, const Direction<double>& heading) {
 }  // namespace
 
 JointGaussian::JointGaussian(const Belief& belief, Retraction retraction, std::size_t room)
-    : belief_(belief), retraction_(retraction) {
+    : belief_(belief),
+      observation_noise_(observation_noise(belief)),
+      wraps_(wraps_of(belief.sensor)),
+      retraction_(retraction) {
   grow(room);
 }
 
@@ -93,40 +96,86 @@ std::optional<InnovationFactor> JointGaussian::innovation_factor(
   const Eigen::Matrix2d& Hf = at.landmark_jacobian;
   const Eigen::Matrix2d mixed = Hf * landmark.cross * Hx.transpose();
   return factor(Hx * pose_.covariance * Hx.transpose() + mixed + mixed.transpose() +
-                Hf * landmark.covariance * Hf.transpose() + observation_noise(belief_));
+                Hf * landmark.covariance * Hf.transpose() + observation_noise_);
 }
 
 JointGaussian::Trouble JointGaussian::look_at(const PointMoments& landmark,
                                               ExpectedObservation& expected) const {
-  const auto at = linearised_observation(pose_.mean, Point{landmark.mean.x(), landmark.mean.y()});
-  if (too_near(at.observation)) return Trouble::too_near;
-  expected = {.pose_jacobian = pose_jacobian(at),
-              .landmark_jacobian = landmark_jacobian(at),
-              .observation = at.observation,
+  const auto at =
+      linearised_detection(belief_.sensor, pose_.mean, Point{landmark.mean.x(), landmark.mean.y()});
+  if (!at) return Trouble::too_near;
+  expected = {.pose_jacobian = at->by_pose,
+              .landmark_jacobian = at->by_landmark,
+              .observation = at->value,
               .factor = {},
-              .ahead = Eigen::Vector2d::Zero()};
+              .ahead = Eigen::Vector2d::Zero(),
+              .wraps = wraps_};
   const auto L = innovation_factor(landmark, expected);
   if (!L) return Trouble::faulty;
   expected.factor = *L;
   return Trouble::none;
 }
 
-void JointGaussian::append(const RangeBearing<double>& observation) {
+void JointGaussian::append(const Eigen::Vector2d& detection) {
+  const auto placed = placed_landmark(belief_.sensor, pose_.mean, detection);
+  expect(placed.has_value(), "a landmark is placed by a detection that does not fix it");
+  const Eigen::Matrix2d& Gz = placed->by_detection;
+  append(NewPoint{.mean = placed->point,
+                  .by_pose = placed->by_pose,
+                  .noise = Gz * observation_noise_ * Gz.transpose()});
+}
+
+void JointGaussian::append(const NewPoint& point) {
   if (packed(n_landmarks_ + 1) > map_.room()) grow(std::max<std::size_t>(8, 2 * n_landmarks_));
-  const auto placed = linearised_place(pose_.mean, observation);
-  const Matrix23 Gx = pose_jacobian(placed);
-  const Eigen::Matrix2d Gz = observation_jacobian(placed);
-  const Eigen::Index row = row_of(n_landmarks_);
-  map_.mean.segment<2>(row) = to_vector(placed.point);
-  map_.covariance.block(row, 0, 2, row).noalias() =
-      Gx.lazyProduct(map_.cross.topRows(row).transpose());
-  mirror_pack(map_.covariance, row);
-  map_.cross.middleRows<2>(row) = Gx * pose_.covariance;
-  Eigen::Matrix2d covariance =
-      Gx * pose_.covariance * Gx.transpose() + Gz * observation_noise(belief_) * Gz.transpose();
-  covariance(0, 1) = covariance(1, 0);
-  map_.covariance.block<2, 2>(row, row) = covariance;
+  put(row_of(n_landmarks_), point);
   ++n_landmarks_;
+}
+
+void JointGaussian::replace(std::size_t slot, const NewPoint& point) {
+  put(row_of(slot), point);
+  mirror_packs(map_.covariance, rows());
+}
+
+/// Linear in what it is made of, so its covariances are sums of theirs. Rows of `seen_`: with the
+/// points that there are.
+void JointGaussian::put(Eigen::Index row, const NewPoint& point) {
+  const Matrix23& Gx = point.by_pose;
+  auto columns = seen_.topRows(rows());
+  columns.noalias() = map_.cross.topRows(rows()).lazyProduct(Gx.transpose());
+  Matrix23 cross = Gx * pose_.covariance;
+  for (const auto& [slot, G] : point.by_points) {
+    auto part = gain_map_.leftCols<2>().topRows(rows());
+    copy_columns(map_.covariance, row_of(slot), rows(), part);
+    columns.noalias() += part.lazyProduct(G.transpose());
+    cross += G * map_.cross.middleRows<2>(row_of(slot));
+  }
+  Eigen::Matrix2d covariance = cross * Gx.transpose() + point.noise;
+  for (const auto& [slot, G] : point.by_points) {
+    covariance += seen_.middleRows<2>(row_of(slot)).transpose() * G.transpose();
+  }
+  covariance(0, 1) = covariance(1, 0);
+  map_.mean.segment<2>(row) = point.mean;
+  map_.cross.middleRows<2>(row) = cross;
+  if (row < row_of(n_landmarks_)) {
+    write_columns(map_.covariance, row, rows(), columns);
+  } else {
+    map_.covariance.block(row, 0, 2, row) = columns.topRows(row).transpose();
+  }
+  mirror_pack(map_.covariance, row);
+  map_.covariance.block<2, 2>(row, row) = covariance;
+}
+
+Matrix7 JointGaussian::covariance_with(std::size_t first, std::size_t second) const {
+  const Eigen::Index a = row_of(first), b = row_of(second);
+  Matrix7 P;
+  P.topLeftCorner<3, 3>() = pose_.covariance;
+  P.block<2, 3>(3, 0) = map_.cross.middleRows<2>(a);
+  P.block<2, 3>(5, 0) = map_.cross.middleRows<2>(b);
+  P.block<2, 2>(3, 3) = map_.covariance.block<2, 2>(a, a);
+  P.block<2, 2>(5, 3) = covariance_of(map_.covariance, b, a);
+  P.block<2, 2>(5, 5) = map_.covariance.block<2, 2>(b, b);
+  P.triangularView<Eigen::StrictlyUpper>() = P.transpose();
+  return P;
 }
 
 }  // namespace montecarta::filters

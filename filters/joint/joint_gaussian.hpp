@@ -14,10 +14,13 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <span>
 
 namespace montecarta::filters {
 
-/// Lower Cholesky factor L of an innovation covariance S = L L' over (range, bearing).
+using Matrix7 = Eigen::Matrix<double, 7, 7>;
+
+/// Lower Cholesky factor L of an innovation covariance S = L L'.
 struct InnovationFactor {
   double l00, l10, l11;
 
@@ -42,25 +45,39 @@ struct InnovationFactor {
   return InnovationFactor{l00, l10, std::sqrt(pivot)};
 }
 
-/// log N(v; S) of a two-dimensional innovation with squared norm D^2 (EQUATIONS (0.1)).
-inline double log_normal_density(double squared_distance, const InnovationFactor& L) {
-  return -0.5 * (squared_distance + L.log_det()) - std::log(kTwoPi);
+/// log N(v; S) of an innovation of so many dimensions with squared norm D^2 (EQUATIONS (0.1)).
+inline double log_normal_density(double squared_distance, const InnovationFactor& L,
+                                 double dimension) {
+  return -0.5 * (squared_distance + L.log_det()) - 0.5 * dimension * std::log(kTwoPi);
 }
 
 /// A detection that is expected of a landmark, linearised: innovation v and its covariance S = H P
-/// H' + R.
+/// H' + R. A component that the sensor does not have is 0 in v and H, 1 in R.
 struct ExpectedObservation {
   Matrix23 pose_jacobian;
   Eigen::Matrix2d landmark_jacobian;
-  RangeBearing<double> observation;  ///< at the point of linearisation
-  InnovationFactor factor;           ///< of S
+  Eigen::Vector2d observation;  ///< at the point of linearisation
+  InnovationFactor factor;      ///< of S
   /// H times the step from the estimate to the point of linearisation; not wrapped
   Eigen::Vector2d ahead = Eigen::Vector2d::Zero();
+  Wraps wraps = {false, true};  ///< of the sensor
 
-  /// v, with the bearing by the shorter way at the point of linearisation.
-  Eigen::Vector2d innovation(const RangeBearing<double>& detected) const {
-    return to_vector(residual(detected, observation)) + ahead;
+  /// v, with angles by the shorter way at the point of linearisation.
+  Eigen::Vector2d innovation(const Eigen::Vector2d& detected) const {
+    return residual(detected, observation, wraps) + ahead;
   }
+};
+
+/// A point for the map, linear in the pose, in some points of the map, and in noise of its own.
+struct NewPoint {
+  struct Part {
+    std::size_t slot;
+    Eigen::Matrix2d derivative;
+  };
+  Eigen::Vector2d mean;            ///< [m]
+  Matrix23 by_pose;                ///< derivative by the pose
+  Eigen::Matrix2d noise;           ///< [m^2] covariance of what comes from that noise
+  std::span<Part> by_points = {};  ///< derivatives by points of the map
 };
 
 /// One Gaussian over the pose and all landmarks: the state of EKF-SLAM (EQUATIONS 15). Its
@@ -109,7 +126,7 @@ class JointGaussian {
   /// (iterated EKF, Bell and Cathey 1993; of invariant errors with the derivative of the
   /// exponential taken for one); `expected` becomes the last linearisation.
   /// Tells what ended the iterations too early, if anything: then the one before stands.
-  Trouble update_with(std::size_t slot, const RangeBearing<double>& detected, int iterations,
+  Trouble update_with(std::size_t slot, const Eigen::Vector2d& detected, int iterations,
                       ExpectedObservation& expected);
   /// Draws the heading's part of all that is uncertain (EQUATIONS 16): N(m, P) is the mean over
   /// standard normal z of N(m + g z, P - g g'), exactly for the additive error and to first order
@@ -117,8 +134,15 @@ class JointGaussian {
   /// axis and h its variance. `keep` in [0, 1) is the share of the heading's standard deviation
   /// that remains; 0 keeps nothing.
   void draw_heading(double keep, double normal);
-  /// Adds a landmark seen so, correlated with everything the pose is correlated with.
-  void append(const RangeBearing<double>& observation);
+  /// Adds a landmark of one detection that fixes it, correlated with everything the pose is
+  /// correlated with.
+  void append(const Eigen::Vector2d& detection);
+  /// Adds a point.
+  void append(const NewPoint& point);
+  /// Puts a point in the place of another, which may be among those that it depends on.
+  void replace(std::size_t slot, const NewPoint& point);
+  /// Covariance of (x, y, heading) and of two points of the map.
+  Matrix7 covariance_with(std::size_t first, std::size_t second) const;
 
  private:
   using Columns2 = Eigen::Matrix<double, Eigen::Dynamic, 2>;
@@ -138,6 +162,7 @@ class JointGaussian {
                const Eigen::Vector2d& innovation) const;
   [[nodiscard]] Trouble linearise_after(const Step& step, std::size_t slot,
                                         ExpectedObservation& expected) const;
+  void put(Eigen::Index row, const NewPoint& point);
   void whiten_gain(std::size_t slot, const ExpectedObservation& expected);
   void condition(const Eigen::Vector2d& white);
   Eigen::Vector2d step(const Eigen::Vector2d& white);
@@ -145,6 +170,8 @@ class JointGaussian {
   void change_map(bool carries_error);
 
   Belief belief_;
+  Eigen::Matrix2d observation_noise_;
+  Wraps wraps_;
   Retraction retraction_;
   PoseMoments pose_;
   std::size_t n_landmarks_ = 0;

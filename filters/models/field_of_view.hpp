@@ -3,6 +3,7 @@
 
 #include "engine/core/pose.hpp"
 #include "engine/numbers/angle.hpp"
+#include "filters/models/mounting.hpp"
 
 #include <Eigen/Core>
 
@@ -18,29 +19,36 @@ struct InView {
   double dx = 0.0;           ///< [m] in the map's axes
   double dy = 0.0;           ///< [m]
   double range = 0.0;        ///< [m]
+  double heading = 0.0;      ///< [rad] of the sensor
 };
 
-/// What a sensor can see: nearer than a range and ahead, both strictly (EQUATIONS 2).
+/// What a sensor can see: nearer than a range and ahead of it, both strictly, and not nearer than
+/// another range (EQUATIONS 2).
 class FieldOfView {
  public:
-  /// `max_range` [m]; `angle` [rad] in full, centred ahead.
-  FieldOfView(double max_range, double angle)
-      : max_range_(max_range), cos_half_(cosine_of_half(angle)) {}
+  /// `max_range` [m]; `angle` [rad] in full, centred where the sensor looks; `min_range` [m].
+  FieldOfView(double max_range, double angle, const Mounting& mounting = {}, double min_range = 0.0)
+      : max_range_(max_range),
+        cos_half_(cosine_of_half(angle)),
+        mounting_(mounting),
+        min_range_(min_range) {}
 
-  /// Calls visit(InView) for every landmark [m] in view from `pose`, in their order.
+  /// Calls visit(InView) for every landmark [m] in view from a vehicle at `vehicle`, in their
+  /// order.
   template <class Visit>
-  void look(const Pose& pose, std::span<const Eigen::Vector2d> landmarks,
+  void look(const Pose& vehicle, std::span<const Eigen::Vector2d> landmarks,
             const Visit& visit) const {
+    const Pose pose = mounting_.pose_of(vehicle);
     const double cosine = std::cos(pose.heading);
     const double sine = std::sin(pose.heading);
     for (std::size_t i = 0; i < landmarks.size(); ++i) {
       const double dx = landmarks[i].x() - pose.x;
       const double dy = landmarks[i].y() - pose.y;
       const double squared = dx * dx + dy * dy;
-      if (squared >= max_range_ * max_range_) continue;
+      if (squared >= max_range_ * max_range_ || squared < min_range_ * min_range_) continue;
       const double range = std::sqrt(squared);
       if (dx * cosine + dy * sine <= range * cos_half_) continue;
-      visit(InView{i, dx, dy, range});
+      visit(InView{i, dx, dy, range, pose.heading});
     }
   }
 
@@ -53,6 +61,8 @@ class FieldOfView {
 
   double max_range_;
   double cos_half_;
+  Mounting mounting_;
+  double min_range_;
 };
 
 }  // namespace montecarta::models

@@ -78,10 +78,10 @@ RangeBearing<Real> residual(const RangeBearing<Real>& detected,
   return {detected.range - predicted.range, wrap(Real(detected.bearing - predicted.bearing))};
 }
 
-/// The measured part of a detection, the same in all lanes.
+/// The measured part of a detection of range and bearing, the same in all lanes.
 template <class Real = double>
 RangeBearing<Real> observation_of(const Detection& detection) {
-  return {Real(detection.range), Real(detection.bearing)};
+  return {Real(detection[0]), Real(detection[1])};
 }
 
 /// g(x, z): where a landmark stands that is seen so from `pose`, with derivatives.

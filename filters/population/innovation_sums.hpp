@@ -49,12 +49,13 @@ class MixtureInnovations {
     return {sums_.data() + task * matched_.size(), weight};
   }
 
-  /// Adds to the NIS every detection that most of the filter takes for the same landmark.
-  void add_to(ScanReport& report) const {
+  /// Adds to the NIS every detection, of so many components, that most of the filter takes for the
+  /// same landmark.
+  void add_to(ScanReport& report, std::size_t components = 2) const {
     for (std::size_t k = 0; k < matched_.size(); ++k) {
       if (matched_[k] < 0.5) continue;
       report.nis += normalised_squared(k);
-      report.nis_dof += 2;
+      report.nis_dof += static_cast<std::uint32_t>(components);
     }
   }
 

@@ -3,6 +3,7 @@
 
 #include "engine/core/slam_filter.hpp"
 #include "filters/models/control_noise.hpp"
+#include "filters/models/sensor.hpp"
 #include "filters/models/vehicle.hpp"
 #include "filters/setup/filter_options.hpp"
 
@@ -20,6 +21,9 @@ struct Belief {
   ControlNoise control{.sigma = {0.3, 0.05}};  ///< e.g. [m/s], [rad]
   double sigma_range = 0.1;                    ///< [m]
   double sigma_bearing = 0.02;                 ///< [rad]
+  double sigma_forward = 0.1;                  ///< [m] of a position in the frame of the sensor
+  double sigma_left = 0.1;                     ///< [m] likewise
+  Sensor sensor = {};                          ///< whose components say which of these four count
 };
 
 enum class Association { known, nearest };
@@ -27,7 +31,7 @@ enum class Association { known, nearest };
 /// Who decides which landmark a detection belongs to (study file: [association]; EQUATIONS 17).
 struct AssociationSettings {
   Association kind = Association::known;
-  double gate = 5.991464547107979;  ///< chi-square, 2 dof: a detection nearer than this may match
+  double gate = 5.991464547107979;  ///< chi-square of the detection: nearer than this it may match
   double new_gate = 25.0;           ///< farther than this from every landmark: a new one
   double log_new_density_offset = 0.0;  ///< added to log p0 of EQUATIONS 17
   std::size_t most_landmarks = 1000;  ///< a map that grows beyond this has run away: the run fails
@@ -50,6 +54,11 @@ struct FilterKind {
   bool has_mixture = false;     ///< whether estimate() carries a mixture ...
   bool has_joint = false;       ///< whether joint() gives anything
   std::vector<Option> options;  ///< in the order in which they are documented
+  /// Sensors that it takes, mounted at the pose; empty: all of them, wherever they are mounted.
+  std::vector<std::string> sensors = {RangeBearingSensor::kName};
+  /// Whether it initialises landmarks itself that one detection does not fix. It then needs to know
+  /// which landmark a detection is of.
+  bool delays_initialisation = false;
   std::function<bool(const FilterOptions&)> drops_mixture = {};  ///< ... but with these options
   std::function<std::unique_ptr<SlamFilter>(const FilterSetup&)> make;
 };

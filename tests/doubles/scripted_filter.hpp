@@ -62,7 +62,7 @@ class ScriptedFilter : public SlamFilter {
     report_.resampled = draw.uniform() < 0.5;
     report_.log_likelihood = draw.normal();
     report_.nis = 0.0;
-    for (const Detection& detection : scan) report_.nis += detection.range;
+    for (const Detection& detection : scan) report_.nis += detection[0];
     report_.nis_dof = static_cast<std::uint32_t>(2 * scan.size());
     report_.association = {.correct = static_cast<double>(scan.size()), .missed = 1.0};
     seen_ = std::min(script_.landmarks, seen_ + scan.size());

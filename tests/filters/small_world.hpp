@@ -27,7 +27,7 @@ struct SmallWorldSettings {
   std::size_t landmarks = 20;
   std::size_t scans = 40;
   std::size_t steps_per_scan = 8;
-  double max_range = 30.0;  ///< [m], in front only
+  double max_range = 30.0;  ///< [m] of the pose, in front only
   Belief noise = {};        ///< of the truth
   /// From scan to scan in turn.
   std::vector<Control> controls = std::vector<Control>(1, Control{3.0, 0.15});
@@ -51,9 +51,16 @@ inline void look_around(const SmallWorldSettings& settings, std::uint32_t step, 
     if (observation.range >= settings.max_range || std::abs(observation.bearing) >= kPi / 2.0)
       continue;
     RngStream draw({settings.seed, 0, step, k, Draw::world_detection});
-    const double range = observation.range + settings.noise.sigma_range * draw.normal();
-    const double bearing = wrap(observation.bearing + settings.noise.sigma_bearing * draw.normal());
-    world.drive.detections.push_back({range, bearing, static_cast<std::int32_t>(k)});
+    const Sensor& sensor = settings.noise.sensor;
+    const Eigen::Vector2d exact = linearised_detection(sensor, truth, Point{f.x(), f.y()})->value;
+    Detection detection{.values = {}, .identity = static_cast<std::int32_t>(k)};
+    std::size_t i = 0;
+    for (const Quantity quantity : components_of(sensor)) {
+      const double value = exact(static_cast<Eigen::Index>(i)) +
+                           deviation_of(quantity, settings.noise) * draw.normal();
+      detection[i++] = name_of(quantity).wraps ? wrap(value) : value;
+    }
+    world.drive.detections.push_back(detection);
   }
   world.drive.scan_begin.push_back(static_cast<std::uint32_t>(world.drive.detections.size()));
 }

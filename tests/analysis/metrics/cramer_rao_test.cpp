@@ -2,7 +2,7 @@
 #include "analysis/metrics/cramer_rao.hpp"
 
 #include "filters/models/ackermann.hpp"
-#include "filters/models/range_bearing.hpp"
+#include "tests/filters/some_sensors.hpp"
 
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
@@ -68,9 +68,9 @@ struct Trajectory {
       for (Eigen::Index l = 0; l < static_cast<Eigen::Index>(landmarks->size()); ++l) {
         const Eigen::Vector2d at =
             (*landmarks)[static_cast<std::size_t>(l)] + unknown.segment<2>(2 * (n + l));
-        const auto observation = predicted_observation(pose, Point{at.x(), at.y()});
-        observations->push_back(observation.range / world->sigma_observation(0));
-        observations->push_back(observation.bearing / world->sigma_observation(1));
+        const auto seen = linearised_detection(world->sensor, pose, Point{at.x(), at.y()});
+        const Eigen::Vector2d weighed = seen->value.cwiseQuotient(world->sigma_observation);
+        observations->insert(observations->end(), weighed.begin(), weighed.end());
       }
     }
     return pose;
@@ -110,16 +110,18 @@ Eigen::Matrix3d reference(const SimulatedWorld& world, const Landmarks& landmark
 
 const Landmarks kAhead = {{30, 3}, {31, -6}, {40, 12}};  // always in view
 
-void expect_information_of_trajectory(const SimulatedWorld& world) {
+/// From the scan on in which what is seen fixes all landmarks.
+void expect_information_of_trajectory(const SimulatedWorld& world, std::size_t first = 0,
+                                      double tolerance = 1e-5) {
   const std::vector<Control> controls = bends(24);
   const CramerRaoBound bound = squared_bound(world, path_of(controls, 4, kAhead, world.vehicle));
   ASSERT_EQ(bound.position.size(), 6u);
-  for (std::size_t s = 0; s < 6; ++s) {
+  for (std::size_t s = first; s < 6; ++s) {
     const std::vector<Control> until(controls.begin(),
                                      controls.begin() + static_cast<std::ptrdiff_t>(4 * (s + 1)));
     const Eigen::Matrix3d P = reference(world, kAhead, until, 4);
-    EXPECT_NEAR(bound.position[s] / (P(0, 0) + P(1, 1)), 1.0, 1e-5) << "scan " << s;
-    EXPECT_NEAR(bound.heading[s] / P(2, 2), 1.0, 1e-5) << "scan " << s;
+    EXPECT_NEAR(bound.position[s] / (P(0, 0) + P(1, 1)), 1.0, tolerance) << "scan " << s;
+    EXPECT_NEAR(bound.heading[s] / P(2, 2), 1.0, tolerance) << "scan " << s;
   }
 }
 
@@ -132,6 +134,19 @@ TEST(CramerRaoBound, IsThatOfARobotWhoseNoiseGrowsWithItsMotion) {
   world.vehicle = DifferentialDrive{};
   world.control_noise.alpha = {0.02, 0.1, 1e-3, 0.5};
   expect_information_of_trajectory(world);
+}
+
+TEST(CramerRaoBound, IsThatOfEverySensorWhereverItIsMounted) {
+  for (const auto& [name, sensor] : some_sensors()) {
+    SCOPED_TRACE(name);
+    SimulatedWorld world = open_world();
+    world.sensor = sensor;
+    world.view = FieldOfView(50.0, kPi, sensor.mounting);
+    const double first = name_of(components_of(sensor)[0]).wraps ? 0.02 : 0.1;
+    world.sigma_observation = {first, fixes_landmark(sensor) ? 0.02 : 1.0};
+    const bool fixes = fixes_landmark(sensor);
+    expect_information_of_trajectory(world, fixes ? 0 : 3, fixes ? 1e-5 : 3e-3);
+  }
 }
 
 // On a straight line towards its only landmark, with an error of the speed alone, the problem is

@@ -26,7 +26,7 @@ std::vector<std::uint64_t> bits_of(const Itinerary& itinerary, const Drive& driv
   for (const std::uint32_t step : itinerary.scan_step) add(step);
   for (const Control& control : drive.controls) add(control[0], control[1]);
   for (const std::uint32_t begin : drive.scan_begin) add(begin);
-  for (const Detection& d : drive.detections) add(d.range, d.bearing, d.identity);
+  for (const Detection& d : drive.detections) add(d[0], d[1], d.identity);
   return bits;
 }
 
@@ -45,7 +45,7 @@ class Export : public Program {
   RecordedDrive exported(const std::string& run) const {
     for (const auto& file : std::filesystem::directory_iterator(folder_ / "drives/truth" / run))
       std::filesystem::copy(file.path(), folder_ / "drives/runs" / run);
-    return {read_log_csv(folder_ / "drives/runs" / run), 1e6, 0.0};
+    return {read_log_csv(folder_ / "drives/runs" / run), {1e6}, 0.0};
   }
 };
 

@@ -28,7 +28,7 @@ Drive drive_of(const SimulatedDrive& source, std::uint64_t run) {
 
 bool same_numbers(const Drive& a, const Drive& b) {
   const auto same_detection = [](const Detection& x, const Detection& y) {
-    return x.range == y.range && x.bearing == y.bearing && x.identity == y.identity;
+    return x[0] == y[0] && x[1] == y[1] && x.identity == y.identity;
   };
   const auto same_control = [](const Control& x, const Control& y) {
     return x[0] == y[0] && x[1] == y[1];
@@ -120,8 +120,8 @@ TEST(SimulatedDrive, DrawsTheNoiseThatTheScenarioNames) {
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Array4d error = {noisy.controls[i][0] - exact.controls[i][0],
                                   noisy.controls[i][1] - exact.controls[i][1],
-                                  noisy.detections[i].range - exact.detections[i].range,
-                                  wrap(noisy.detections[i].bearing - exact.detections[i].bearing)};
+                                  noisy.detections[i][0] - exact.detections[i][0],
+                                  wrap(noisy.detections[i][1] - exact.detections[i][1])};
     sum += error;
     squares += error * error;
   }
@@ -162,8 +162,8 @@ TEST(SimulatedDrive, TurnsWithTheWorld) {
   const Drive turned = drive_of(SimulatedDrive(world, scenario, 2), 0);
   ASSERT_EQ(turned.scan_begin, straight.scan_begin);
   for (std::size_t i = 0; i < straight.detections.size(); ++i) {
-    EXPECT_NEAR(turned.detections[i].range, straight.detections[i].range, 1e-6);
-    EXPECT_NEAR(wrap(turned.detections[i].bearing - straight.detections[i].bearing), 0.0, 1e-6);
+    EXPECT_NEAR(turned.detections[i][0], straight.detections[i][0], 1e-6);
+    EXPECT_NEAR(wrap(turned.detections[i][1] - straight.detections[i][1]), 0.0, 1e-6);
   }
 }
 
@@ -230,7 +230,7 @@ TEST(SimulatedDrive, SeesTheLandmarksOfTheRunsOwnMap) {
       const Pose& pose = drive.truth[source.itinerary().scan_step[s]];
       for (const Detection& seen : drive.scan(s)) {
         const Eigen::Vector2d at = landmarks[static_cast<std::size_t>(seen.identity)];
-        EXPECT_NEAR(std::hypot(at.x() - pose.x, at.y() - pose.y), seen.range, 1e-9);
+        EXPECT_NEAR(std::hypot(at.x() - pose.x, at.y() - pose.y), seen[0], 1e-9);
       }
     }
   }

@@ -38,7 +38,7 @@ TEST(CarPark, ReadsPolesAndSurvey) {
   EXPECT_EQ(log.odometry[1].control[1], 0.2);
   ASSERT_EQ(log.scans.size(), 2U);
   ASSERT_EQ(log.scans[0].detections.size(), 1U);
-  EXPECT_NEAR(log.scans[0].detections[0].range, 10.03, 1e-12);
+  EXPECT_NEAR(log.scans[0].detections[0][0], 10.03, 1e-12);
   EXPECT_TRUE(log.scans[1].detections.empty());
   EXPECT_EQ(log.references.at(0).name, "gps");
   EXPECT_EQ(log.start_time, 45.01);

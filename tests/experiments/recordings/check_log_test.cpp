@@ -60,11 +60,11 @@ TEST(CheckLog, WantsNumbersThatCanBe) {
               HasSubstr("(odometry): record 1: speed nan"));
   EXPECT_THAT(complaint_after([](DriveLog& log) { log.odometry[1].control[1] = 5; }),
               HasSubstr("record 2: steering 5 (radians"));
-  EXPECT_THAT(complaint_after([](DriveLog& log) { log.scans[1].detections[0].range = kNan; }),
+  EXPECT_THAT(complaint_after([](DriveLog& log) { log.scans[1].detections[0][0] = kNan; }),
               HasSubstr("(scans): record 2: range nan"));
-  EXPECT_THAT(complaint_after([](DriveLog& log) { log.scans[1].detections[0].range = 0; }),
+  EXPECT_THAT(complaint_after([](DriveLog& log) { log.scans[1].detections[0][0] = 0; }),
               HasSubstr("record 2: range 0"));
-  EXPECT_THAT(complaint_after([](DriveLog& log) { log.scans[1].detections[0].bearing = 45; }),
+  EXPECT_THAT(complaint_after([](DriveLog& log) { log.scans[1].detections[0][1] = 45; }),
               HasSubstr("record 2: bearing 45 (radians"));
   EXPECT_THAT(complaint_after([](DriveLog& log) { log.references[1].position[0].x() = 5e6; }),
               HasSubstr("(reference gps): record 1: coordinate 5e+06"));

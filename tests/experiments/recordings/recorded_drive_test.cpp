@@ -36,7 +36,7 @@ void expect_near(const std::vector<double>& found, const std::vector<double>& ex
 }
 
 TEST(RecordedDrive, EndsAStepWhereverOdometryOrAScanComesIn) {
-  const RecordedDrive drive(small_log(), 30.0);
+  const RecordedDrive drive(small_log(), {30.0});
   const Itinerary& itinerary = drive.itinerary();
   expect_near(itinerary.step_time, {0.0, 0.1, 0.2, 0.25, 0.3, 0.4});
   EXPECT_THAT(itinerary.scan_step, ElementsAre(0, 2, 3, 5));
@@ -47,20 +47,20 @@ TEST(RecordedDrive, EndsAStepWhereverOdometryOrAScanComesIn) {
 
 TEST(RecordedDrive, DrivesByTheOdometryThatCameInLastAndStandsBeforeTheFirst) {
   Drive drive;
-  RecordedDrive(small_log(), 30.0).generate(0, drive);
+  RecordedDrive(small_log(), {30.0}).generate(0, drive);
   EXPECT_THAT(speeds(drive), ElementsAre(0.0, 0.0, 1.0, 2.0, 2.0, 3.0));
   EXPECT_TRUE(drive.truth.empty());
 }
 
 TEST(RecordedDrive, LeavesOutWhatIsTooFarAndKeepsTheScan) {
   Drive drive;
-  RecordedDrive(small_log(), 30.0).generate(0, drive);
+  RecordedDrive(small_log(), {30.0}).generate(0, drive);
   EXPECT_THAT(drive.scan_begin, ElementsAre(0, 1, 1, 2, 2));
-  EXPECT_EQ(drive.scan(2)[0].range, 7.0);
+  EXPECT_EQ(drive.scan(2)[0][0], 7.0);
 }
 
 TEST(RecordedDrive, AllRunsAreTheSameWhateverTheBufferHeld) {
-  const RecordedDrive source(small_log(), 30.0);
+  const RecordedDrive source(small_log(), {30.0});
   Drive first, second;
   second.truth.resize(3);
   source.generate(0, first);
@@ -74,7 +74,7 @@ TEST(RecordedDrive, BeginsAtTheStartWithTheOdometryThatHoldsThen) {
   DriveLog log = small_log();
   log.start_time = 10.05;
   log.scans.erase(log.scans.begin());
-  const RecordedDrive source(log, 30.0);
+  const RecordedDrive source(log, {30.0});
   Drive drive;
   source.generate(0, drive);
   expect_near(source.itinerary().step_time, {0.05, 0.1, 0.15, 0.25});
@@ -83,7 +83,7 @@ TEST(RecordedDrive, BeginsAtTheStartWithTheOdometryThatHoldsThen) {
 }
 
 TEST(RecordedDrive, TakesScansAsMuchEarlierAsTheyWereLate) {
-  const RecordedDrive drive(small_log(), 30.0, 0.05);
+  const RecordedDrive drive(small_log(), {30.0}, 0.05);
   const Itinerary& itinerary = drive.itinerary();
   expect_near(itinerary.step_time, {0.0, 0.1, 0.15, 0.2, 0.3, 0.35});
   EXPECT_THAT(itinerary.scan_step, ElementsAre(0, 2, 3, 5));

@@ -26,8 +26,8 @@ std::vector<Detection> poles_in(const std::map<std::size_t, double>& echoes) {
 TEST(ReflectorDetector, TakesMeanRangeAndAngleOfBrightEchoes) {
   const auto poles = poles_in({{200, 10.0}, {201, 10.2}, {203, 10.1}});
   ASSERT_EQ(poles.size(), 1U);
-  EXPECT_NEAR(poles[0].range, 10.1 + 0.03, 1e-12) << "the pole's centre is 3 cm behind its face";
-  EXPECT_NEAR(poles[0].bearing, (604.0 / 3 - 180) * kPi / 360, 1e-12);
+  EXPECT_NEAR(poles[0][0], 10.1 + 0.03, 1e-12) << "the pole's centre is 3 cm behind its face";
+  EXPECT_NEAR(poles[0][1], (604.0 / 3 - 180) * kPi / 360, 1e-12);
   EXPECT_EQ(poles[0].identity, Detection::kUnidentified);
 }
 

@@ -18,7 +18,7 @@ inline std::vector<std::uint64_t> bits_of(const DriveLog& log) {
   for (const auto& [time, control] : log.odometry) add(time, control[0], control[1]);
   for (const auto& [time, detections] : log.scans) {
     add(time, detections.size());
-    for (const auto& [range, bearing, identity] : detections) add(range, bearing, identity);
+    for (const auto& [values, identity] : detections) add(values[0], values[1], identity);
   }
   for (const auto& [name, times, positions, headings, covariances] : log.references) {
     add(times.size(), headings.size());

@@ -35,8 +35,8 @@ TEST(TreeDetector, FindsTheCentreOfATrunk) {
   const auto trees = trees_in({{199, 202, 10.0}});
   ASSERT_EQ(trees.size(), 1U);
   const double diameter = 4 * kPi / 360 * 10;
-  EXPECT_NEAR(trees[0].range, 10 + diameter / 2, 1e-12);
-  EXPECT_NEAR(trees[0].bearing, 20.5 * kPi / 360, 1e-12) << "half way, counter-clockwise of ahead";
+  EXPECT_NEAR(trees[0][0], 10 + diameter / 2, 1e-12);
+  EXPECT_NEAR(trees[0][1], 20.5 * kPi / 360, 1e-12) << "half way, counter-clockwise of ahead";
   EXPECT_EQ(trees[0].identity, Detection::kUnidentified);
 }
 
@@ -44,10 +44,10 @@ TEST(TreeDetector, TakesTheTwoMiddleBeamsForTheRange) {
   Ranges ranges = sweep_of({{199, 202, 10.0}});
   ranges[200] = 9.8;
   ranges[201] = 9.7;
-  EXPECT_NEAR(detect_trees(ranges)[0].range, 9.75 + 4 * kPi / 360 * 10 / 2, 1e-12);
+  EXPECT_NEAR(detect_trees(ranges)[0][0], 9.75 + 4 * kPi / 360 * 10 / 2, 1e-12);
   Ranges odd = sweep_of({{199, 201, 10.0}});
   odd[200] = 9.8;
-  EXPECT_NEAR(detect_trees(odd)[0].range, 9.8 + 3 * kPi / 360 * 10 / 2, 1e-12);
+  EXPECT_NEAR(detect_trees(odd)[0][0], 9.8 + 3 * kPi / 360 * 10 / 2, 1e-12);
 }
 
 TEST(TreeDetector, Step1LeavesOutWhatIsTooFar) {
@@ -81,10 +81,10 @@ TEST(TreeDetector, Step3WantsTrunksToStandAlone) {
 TEST(TreeDetector, Step4DiscardsWhatIsPartlyHidden) {
   const auto left_hidden = trees_in({{200, 202, 10}, {203, 203, 20}});
   ASSERT_EQ(left_hidden.size(), 1U);
-  EXPECT_LT(left_hidden[0].range, 11);
+  EXPECT_LT(left_hidden[0][0], 11);
   const auto right_hidden = trees_in({{200, 200, 20}, {201, 203, 10}});
   ASSERT_EQ(right_hidden.size(), 1U);
-  EXPECT_LT(right_hidden[0].range, 11);
+  EXPECT_LT(right_hidden[0][0], 11);
   EXPECT_EQ(trees_in({{200, 202, 10}, {205, 205, 20}}).size(), 2U) << "1.5 deg apart";
 }
 

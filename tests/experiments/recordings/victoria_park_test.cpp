@@ -50,7 +50,7 @@ TEST_F(VictoriaPark, ReadsTheTextRelease) {
   EXPECT_EQ(log.odometry[2].time, 1.025);
   ASSERT_EQ(log.scans.size(), 2U);
   EXPECT_EQ(log.scans[1].detections.size(), 1U);
-  EXPECT_NEAR(log.scans[1].detections[0].bearing, 0.1745, 1e-4) << "10 deg to the left";
+  EXPECT_NEAR(log.scans[1].detections[0][1], 0.1745, 1e-4) << "10 deg to the left";
   ASSERT_EQ(log.references.size(), 2U);
   EXPECT_EQ(log.references[0].name, "gps");
   EXPECT_EQ(log.references[0].position[1], Eigen::Vector2d(3, -2)) << "x is East, the last column";
@@ -75,7 +75,7 @@ TEST_F(VictoriaPark, ReadsSweepsFromEitherRelease) {
   const DriveLog mat = read();
   ASSERT_EQ(mat.scans.size(), 2U);
   EXPECT_EQ(mat.scans[1].time, text.scans[1].time);
-  EXPECT_EQ(mat.scans[1].detections[0].range, text.scans[1].detections[0].range);
+  EXPECT_EQ(mat.scans[1].detections[0][0], text.scans[1].detections[0][0]);
 }
 
 TEST_F(VictoriaPark, DoesWithOneReferenceAndWithoutTheManager) {
@@ -145,7 +145,7 @@ Yield yield_of(const DriveLog& log) {
     yield.all += scan.detections.size();
     yield.most = std::max(yield.most, scan.detections.size());
     yield.empty_scans += scan.detections.empty() ? 1 : 0;
-    for (const Detection& tree : scan.detections) yield.near += tree.range < 30.0 ? 1 : 0;
+    for (const Detection& tree : scan.detections) yield.near += tree[0] < 30.0 ? 1 : 0;
   }
   return yield;
 }

@@ -19,8 +19,18 @@ std::vector<FilterKind> paper_filters() {
   Option weight =
       choice_option("weight", "closed", {"closed", "ratio", "as_printed"}, "which form");
   weight.former_choices = {{"exact", "closed"}};
-  return {{"bold", "Bold filter", "", true, false, false, {particles, threshold, weight}, {}, {}},
-          {"plain", "Plain filter", "", false, false, false, {threshold}, {}, {}}};
+  return {{"bold",
+           "Bold filter",
+           "",
+           true,
+           false,
+           false,
+           {particles, threshold, weight},
+           {},
+           false,
+           {},
+           {}},
+          {"plain", "Plain filter", "", false, false, false, {threshold}, {}, false, {}, {}}};
 }
 
 std::vector<CellSpec> cells_of(const std::vector<FilterKind>& filters,

@@ -54,10 +54,9 @@ TEST(Plan, OfTheResolvedTextIsTheSame) {
   Drive drive_again;
   plan.drives->generate(3, drive);
   again.drives->generate(3, drive_again);
-  EXPECT_TRUE(std::ranges::equal(drive.detections, drive_again.detections,
-                                 [](const Detection& a, const Detection& b) {
-                                   return a.range == b.range && a.bearing == b.bearing;
-                                 }));
+  EXPECT_TRUE(std::ranges::equal(
+      drive.detections, drive_again.detections,
+      [](const Detection& a, const Detection& b) { return a[0] == b[0] && a[1] == b[1]; }));
 }
 
 TEST(Plan, RefusesSettingsThatDoNotFitTogether) {

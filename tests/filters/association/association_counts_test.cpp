@@ -61,9 +61,9 @@ AssociationCounts look(NearestAssociation<double>& association, ParticleMaps<dou
   association.associate(StepContext(1, 0, 0, Parallel::serial()), scan, maps, poses, nullptr);
   const AssociationCounts counts = association.counts(weights);
   for (const auto& fresh : association.new_landmarks(maps)) {
-    const auto& [range, bearing, identity] = fresh.detection;
-    fresh.put(initialised_at(poses[fresh.block].mean.x + range * std::cos(bearing),
-                             range * std::sin(bearing)),
+    const auto& values = fresh.detection.values;
+    fresh.put(initialised_at(poses[fresh.block].mean.x + values[0] * std::cos(values[1]),
+                             values[0] * std::sin(values[1])),
               maps.blocks_of(fresh.slot)[fresh.block]);
   }
   return counts;

@@ -105,5 +105,13 @@ TEST(NewDensity, IsTheGaussianAtTheGateWithTwiceTheSensorNoise) {
   EXPECT_NEAR(log_new_density(shifted, belief), expected - 1.5, 1e-12);
 }
 
+TEST(NewDensity, HasTheDimensionOfADetection) {
+  Belief belief;
+  belief.sigma_range = 0.3;
+  belief.sensor.kind = RangeSensor();
+  const double expected = -0.5 * 6.0 - 0.5 * std::log(2.0 * M_PI * 2.0 * 0.3 * 0.3);
+  EXPECT_NEAR(log_new_density(kNearest, belief), expected, 1e-12);
+}
+
 }  // namespace
 }  // namespace montecarta::filters

@@ -76,14 +76,14 @@ class Driven {
     ExpectedObservation expected;
     if (slot == kUnseen) return;
     if (gaussian.look_at(slot, expected) != JointGaussian::Trouble::none) return;
-    gaussian.update_with(slot, observation_of(detection), setting_.iterations, expected);
+    gaussian.update_with(slot, vector_of(detection), setting_.iterations, expected);
   }
 
   void initialise_landmarks(const Detection& detection) {
     std::uint32_t& slot = slot_of_[static_cast<std::size_t>(detection.identity)];
     if (slot != kUnseen) return;
     slot = static_cast<std::uint32_t>(gaussian.landmarks());
-    gaussian.append(observation_of(detection));
+    gaussian.append(vector_of(detection));
   }
 
   Setting setting_;
@@ -242,7 +242,7 @@ TEST(CompressedGaussian, WhatIsOutOfReachIsBeyondTheGate) {
         ++out;
         ExpectedObservation expected;
         ASSERT_EQ(gaussian.look_at(slot, expected), JointGaussian::Trouble::none);
-        const RangeBearing<double> nearest{kRange, expected.observation.bearing};
+        const Eigen::Vector2d nearest{kRange, expected.observation(1)};
         EXPECT_GT(expected.factor.whiten(expected.innovation(nearest)).norm(), kSigmas);
       }
     }
@@ -278,7 +278,7 @@ TEST(CompressedGaussian, CopiesFarLandmarksThatAreAlone) {
   CompressedGaussian alone(Belief{}, Retraction::invariant, 10);
   alone.start({});
   for (std::size_t k = 0; k < kLandmarks; ++k) {
-    alone.append({5.0 + static_cast<double>(k), 0.01 * static_cast<double>(k)});
+    alone.append(Eigen::Vector2d{5.0 + static_cast<double>(k), 0.01 * static_cast<double>(k)});
   }
   const std::vector<std::uint32_t> first{0};
   alone.make_near(first);

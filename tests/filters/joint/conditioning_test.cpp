@@ -21,7 +21,7 @@ JointGaussian driven(Retraction retraction) {
   MotionIncrement motion;
   for (int step = 0; step < 40; ++step) motion.advance({3.0, 0.2}, 0.025, kRough);
   gaussian.move(motion);
-  for (const Detection& detection : kFirstScan) gaussian.append(observation_of(detection));
+  for (const Detection& detection : kFirstScan) gaussian.append(vector_of(detection));
   gaussian.move(motion);
   return gaussian;
 }
@@ -55,7 +55,7 @@ TEST(JointGaussian, MovedOnceForManyStepsIsTheTextbookFilterMovedAtEach) {
 TEST(JointGaussian, AnIteratedDetectionEndsAtTheTopOfThePosterior) {
   const auto textbook = textbook_driven();
   JointGaussian gaussian = driven(Retraction::additive);
-  const RangeBearing<double> detected{7.0, -1.6};
+  const Eigen::Vector2d detected{7.0, -1.6};
   ExpectedObservation expected;
   ASSERT_EQ(gaussian.look_at(1, expected), JointGaussian::Trouble::none);
   gaussian.update_with(1, detected, 60, expected);
@@ -66,7 +66,8 @@ TEST(JointGaussian, AnIteratedDetectionEndsAtTheTopOfThePosterior) {
   H.middleCols<2>(5) = landmark_jacobian(at);
   const Eigen::Vector2d R(kRough.sigma_range * kRough.sigma_range,
                           kRough.sigma_bearing * kRough.sigma_bearing);
-  const Eigen::Vector2d miss = to_vector(residual(detected, at.observation));
+  const Eigen::Vector2d miss =
+      to_vector(residual(RangeBearing<double>{detected(0), detected(1)}, at.observation));
   // The gradient of the log posterior, times the prior's covariance, which is singular.
   const Eigen::VectorXd slope =
       textbook.covariance * H.transpose() * R.cwiseInverse().asDiagonal() * miss -
@@ -88,11 +89,11 @@ TEST(JointGaussian, AnIteratedDetectionPassesTheBackwardDirection) {
                       .sigma_bearing = 2.0 * kPi / 180.0};
   JointGaussian gaussian(belief, Retraction::additive, 1);
   gaussian.start({});
-  gaussian.append({3.0, 0.0});
+  gaussian.append(Eigen::Vector2d{3.0, 0.0});
   gaussian.move(MotionIncrement(Pose{}, {.xx = 4.0, .yy = 4.0, .hh = 0.01}));
   ExpectedObservation expected;
   ASSERT_EQ(gaussian.look_at(0, expected), JointGaussian::Trouble::none);
-  gaussian.update_with(0, {0.559, 1.107}, 20, expected);
+  gaussian.update_with(0, Eigen::Vector2d{0.559, 1.107}, 20, expected);
   EXPECT_NEAR(gaussian.pose().mean.x, 2.75, 0.2);
   EXPECT_NEAR(gaussian.pose().mean.y, -0.5, 0.2);
 }
@@ -123,8 +124,8 @@ TEST(JointGaussian, AnInvariantDrawTurnsVehicleAndMapAsOne) {
   gaussian.start({});
   const MotionIncrement turn_on_the_spot(Pose{}, {.hh = 0.09});
   gaussian.move(turn_on_the_spot);
-  gaussian.append({10.0, 0.0});
-  gaussian.append({20.0, 1.0});
+  gaussian.append(Eigen::Vector2d{10.0, 0.0});
+  gaussian.append(Eigen::Vector2d{20.0, 1.0});
   const double spread = (gaussian.landmark(0).mean - gaussian.landmark(1).mean).norm();
   gaussian.draw_heading(0.0, 2.0);  // by 0.6 rad
   EXPECT_NEAR(gaussian.pose().mean.heading, 0.6, 1e-12);
@@ -136,14 +137,14 @@ TEST(JointGaussian, AnInvariantDrawTurnsVehicleAndMapAsOne) {
 TEST(JointGaussian, BecomingAnotherLeavesNothingOfWhatItWas) {
   const JointGaussian small = driven(Retraction::additive);
   JointGaussian large = small;
-  for (int k = 0; k < 30; ++k) large.append({5.0 + k, 0.1});
+  for (int k = 0; k < 30; ++k) large.append(Eigen::Vector2d{5.0 + k, 0.1});
   large.become(small);
   JointGaussian copy = small;
   for (JointGaussian* gaussian : {&large, &copy}) {
     for (int k = 0; k < 9; ++k) gaussian->append({4.0 + k, 0.3});
     ExpectedObservation expected;
     ASSERT_EQ(gaussian->look_at(7, expected), JointGaussian::Trouble::none);
-    gaussian->update_with(7, {7.5, 0.28}, 1, expected);
+    gaussian->update_with(7, Eigen::Vector2d{7.5, 0.28}, 1, expected);
   }
   EXPECT_EQ(mean_of(large), mean_of(copy));
   EXPECT_EQ(large.pose().covariance, copy.pose().covariance);

@@ -55,12 +55,12 @@ struct Plain {
       ExpectedObservation expected;
       if (slot == known) continue;
       ASSERT_EQ(gaussian.look_at(slot, expected), JointGaussian::Trouble::none);
-      EXPECT_EQ(gaussian.update_with(slot, observation_of(detection), 0, expected),
+      EXPECT_EQ(gaussian.update_with(slot, vector_of(detection), 0, expected),
                 JointGaussian::Trouble::none);
     }
     for (const Detection& detection : scan) {
       if (std::ranges::find(identities, detection.identity) != identities.end()) continue;
-      gaussian.append(observation_of(detection));
+      gaussian.append(vector_of(detection));
       identities.push_back(detection.identity);
     }
   }

@@ -114,8 +114,8 @@ double heading_variance_left(Make make) {
   for (int look = 0; look < 100; ++look) {
     std::vector<Detection> scan{{10.0, 0.5, 0}, {15.0, -0.6, 1}, {20.0, 0.1, 2}};
     for (Detection& detection : scan) {
-      detection.range += rough().sigma_range * draw.normal();
-      detection.bearing += rough().sigma_bearing * draw.normal();
+      detection[0] += rough().sigma_range * draw.normal();
+      detection[1] += rough().sigma_bearing * draw.normal();
     }
     filter->update(context, scan);
   }

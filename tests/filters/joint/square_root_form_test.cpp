@@ -66,7 +66,7 @@ class SquareRootForm : public testing::TestWithParam<std::pair<Retraction, doubl
     const auto trouble = gaussian.look_at(slot, expected);
     if (trouble == JointGaussian::Trouble::faulty) ++comparison.faults;
     if (trouble != JointGaussian::Trouble::none) return;
-    gaussian.update_with(slot, detected, 0, expected);
+    gaussian.update_with(slot, to_vector(detected), 0, expected);
     root.update_with(3 + 2 * static_cast<Eigen::Index>(slot), detected);
   }
 
@@ -95,7 +95,7 @@ class SquareRootForm : public testing::TestWithParam<std::pair<Retraction, doubl
     }
     for (const Detection& detection : fresh) {
       identities.push_back(detection.identity);
-      gaussian.append(observation_of(detection));
+      gaussian.append(vector_of(detection));
       root.append(observation_of(detection));
     }
   }

@@ -153,8 +153,8 @@ SmallWorld with_echoes(const SmallWorld& world) {
     if (!seen.empty()) {
       RngStream draw({.seed = world.seed, .step = static_cast<std::uint32_t>(scan)});
       Detection echo = seen[0];
-      echo.range += 0.1 * draw.normal();
-      echo.bearing = wrap(echo.bearing + 0.02 * draw.normal());
+      echo[0] += 0.1 * draw.normal();
+      echo[1] = wrap(echo[1] + 0.02 * draw.normal());
       echo.identity = Detection::kClutter;
       other.drive.detections.push_back(echo);
     }

@@ -101,8 +101,8 @@ class InvariantEkfSlam {
     H.leftCols<2>() = -H.middleCols<2>(row(k)).eval();
     const Eigen::Matrix2d S = H * P * H.transpose() + R();
     const Eigen::MatrixXd K = S.ldlt().solve(H * P).transpose();
-    const Eigen::Vector2d innovation(detection.range - b.norm(),
-                                     wrap(detection.bearing - std::atan2(b.y(), b.x())));
+    const Eigen::Vector2d innovation(detection[0] - b.norm(),
+                                     wrap(detection[1] - std::atan2(b.y(), b.x())));
     multiply_by_exponential(K * innovation);
     const Eigen::MatrixXd I_KH = Eigen::MatrixXd::Identity(P.rows(), P.rows()) - K * H;
     P = (I_KH * P * I_KH.transpose() + K * R() * K.transpose()).eval();
@@ -123,17 +123,17 @@ class InvariantEkfSlam {
 
   /// A new landmark shares the vehicle's shift and has the sensor's noise; the heading cancels.
   void append(const Detection& detection) {
-    const double ray = heading + detection.bearing;
+    const double ray = heading + detection[1];
     const Eigen::Vector2d u(std::cos(ray), std::sin(ray));
     const Eigen::Index n = P.rows();
     Eigen::MatrixXd grow = Eigen::MatrixXd::Zero(n + 2, n);
     grow.topRows(n).setIdentity();
     grow.bottomLeftCorner<2, 2>().setIdentity();
     Eigen::Matrix2d by_observation;
-    by_observation << u, detection.range * J() * u;
+    by_observation << u, detection[0] * J() * u;
     P = (grow * P * grow.transpose()).eval();
     P.bottomRightCorner<2, 2>() += by_observation * R() * by_observation.transpose();
-    points.push_back(points[0] + detection.range * u);
+    points.push_back(points[0] + detection[0] * u);
     identities.push_back(detection.identity);
   }
 

@@ -110,8 +110,7 @@ class SharedMapLearning {
   Eigen::Vector2d evolved_place(const StreamIdentity& chance, double heading,
                                 const WeighedPoses& cloud, const Detection& detection,
                                 const Known& known) {
-    const double half =
-        3.0 * std::max(belief_.sigma_range, detection.range * belief_.sigma_bearing);
+    const double half = 3.0 * std::max(belief_.sigma_range, detection[0] * belief_.sigma_bearing);
     std::vector<Eigen::Vector2d> population(settings_.population, Eigen::Vector2d::Zero());
     for (std::uint32_t k = 1; k < population.size(); ++k) {
       RngStream draw(chance, k);

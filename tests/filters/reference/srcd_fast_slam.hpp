@@ -72,7 +72,7 @@ class SrcdFastSlam : public FastSlam2 {
   Landmark initialised(const Eigen::Vector3d& pose, const Detection& detection) const override {
     if (!parts_.map) return FastSlam2::initialised(pose, detection);
     const Eigen::Matrix2d root = R_.cwiseSqrt();
-    const Vector<2> z(detection.range, detection.bearing);
+    const Vector<2> z(detection[0], detection[1]);
     const auto image = central_differences<2, -1>(z, root, parts_.h, PlaceModel{as_pose(pose)});
     Eigen::Matrix<double, 2, 4> columns;
     columns << image.A, image.B;
@@ -117,7 +117,7 @@ class SrcdFastSlam : public FastSlam2 {
     return tria<2, 14>(columns);
   }
   static Vector<2> innovation(const Detection& detection, const Vector<2>& mean) {
-    return difference<1, 2>(Vector<2>(detection.range, detection.bearing), mean);
+    return difference<1, 2>(Vector<2>(detection[0], detection[1]), mean);
   }
   /// A landmark that FastSLAM II keeps has no factor of its own.
   Eigen::Matrix2d factor_of(const Landmark& landmark) const {

@@ -64,7 +64,7 @@ class UFastSlam : public FastSlam2 {
 
   Landmark initialised(const Eigen::Vector3d& pose, const Detection& detection) const override {
     const Eigen::Matrix2d root = R_.cwiseSqrt();
-    const Vector<2> z(detection.range, detection.bearing);
+    const Vector<2> z(detection[0], detection[1]);
     const auto image = unscented<2, -1>(z, root, two_, PlaceModel{as_pose(pose)});
     return {.mean = image.mean, .covariance = image.covariance};
   }
@@ -89,7 +89,7 @@ class UFastSlam : public FastSlam2 {
   }
 
   static Vector<2> innovation(const Detection& detection, const Vector<2>& mean) {
-    return difference<1, 2>(Vector<2>(detection.range, detection.bearing), mean);
+    return difference<1, 2>(Vector<2>(detection[0], detection[1]), mean);
   }
 
   Unscented two_, seven_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/drives/sensor.hpp"
+#include "experiments/drives/simulated_sensor.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ using testing::IsEmpty;
 std::vector<int> seen_from(const Pose& pose, const Scenario& scenario,
                            const std::vector<Eigen::Vector2d>& landmarks) {
   std::vector<int> identities;
-  Sensor(scenario).see(pose, landmarks, [&](const VisibleLandmark& observation) {
+  SimulatedSensor(scenario).see(pose, landmarks, [&](const VisibleLandmark& observation) {
     identities.push_back(observation.identity);
   });
   return identities;
@@ -24,12 +24,12 @@ std::vector<Detection> scan_of(const Scenario& scenario, std::uint32_t step,
   std::vector<Detection> detections;
   const StreamIdentity place{.seed = 3, .run = 1, .step = step};
   for (const VisibleLandmark& observation : observations)
-    Sensor(scenario).detect(observation, place, detections);
-  Sensor(scenario).add_clutter(place, detections);
+    SimulatedSensor(scenario).detect(observation, place, detections);
+  SimulatedSensor(scenario).add_clutter(place, detections);
   return detections;
 }
 
-TEST(Sensor, SeesStrictlyWithinRangeAndView) {
+TEST(SimulatedSensor, SeesStrictlyWithinRangeAndView) {
   const std::vector<Eigen::Vector2d> landmarks = {{10, 0},   {9.99, 0}, {0, 5},
                                                   {0.01, 5}, {-3, 0},   {3, -3.01}};
   EXPECT_THAT(seen_from(Pose{}, {.max_range = 10.0}, landmarks), ElementsAre(1, 3, 5));
@@ -40,25 +40,47 @@ TEST(Sensor, SeesStrictlyWithinRangeAndView) {
   EXPECT_THAT(seen_from(Pose{0, 0, -2.5}, {.max_range = 10.0}, landmarks), ElementsAre(4));
 }
 
-TEST(Sensor, WrapsBearingsAndKeepsRangesPositive) {
+TEST(SimulatedSensor, WrapsBearingsAndKeepsRangesPositive) {
   const Scenario wild{.sigma_range = 5.0, .sigma_bearing = 3.0};
   for (std::uint32_t step = 0; step < 500; ++step) {
-    const Detection detection = scan_of(wild, step, {{0, 0.5, 1.0}}).front();
-    EXPECT_GE(detection.range, kLeastRange);
-    EXPECT_EQ(detection.bearing, wrap(detection.bearing));
+    const Detection detection = scan_of(wild, step, {{0, {0.5, 1.0}}}).front();
+    EXPECT_GE(detection[0], kLeastRange);
+    EXPECT_EQ(detection[1], wrap(detection[1]));
   }
 }
 
-TEST(Sensor, GivesEveryLandmarkItsOwnNoise) {
+TEST(SimulatedSensor, GivesEveryLandmarkItsOwnNoise) {
   const Scenario scenario;
-  const auto both = scan_of(scenario, 7, {{4, 10.0, 0.1}, {9, 12.0, -0.4}});
-  const auto alone = scan_of(scenario, 7, {{9, 12.0, -0.4}});
-  EXPECT_EQ(both[1].range, alone[0].range);
-  EXPECT_EQ(both[1].bearing, alone[0].bearing);
+  const auto both = scan_of(scenario, 7, {{4, {10.0, 0.1}}, {9, {12.0, -0.4}}});
+  const auto alone = scan_of(scenario, 7, {{9, {12.0, -0.4}}});
+  EXPECT_EQ(both[1][0], alone[0][0]);
+  EXPECT_EQ(both[1][1], alone[0][1]);
+}
+
+TEST(SimulatedSensor, SeesFromWhereItIsMountedWhatItMeasures) {
+  Scenario scenario{.max_range = 10.0, .min_range = 2.0};
+  scenario.sigma_forward = scenario.sigma_left = scenario.sigma_range = 0.0;
+  scenario.sensor = {PositionSensor(), {.forward = 1.0, .left = 2.0, .turn = kPi / 2}};
+  const std::vector<Eigen::Vector2d> landmarks = {{-2, 7}, {1, 3}, {20, 7}};
+  const StreamIdentity place{.seed = 3, .run = 1, .step = 0};
+  std::vector<Detection> detections;
+  const SimulatedSensor sensor(scenario);
+  sensor.see(Pose{}, landmarks,
+             [&](const VisibleLandmark& one) { sensor.detect(one, place, detections); });
+  ASSERT_EQ(detections.size(), 1U) << "one is too near, one too far";
+  EXPECT_NEAR(detections[0][0], 5.0, 1e-12);
+  EXPECT_NEAR(detections[0][1], 3.0, 1e-12);
+  scenario.sensor.kind = RangeSensor();
+  detections.clear();
+  SimulatedSensor(scenario).see(Pose{}, landmarks, [&](const VisibleLandmark& one) {
+    SimulatedSensor(scenario).detect(one, place, detections);
+  });
+  EXPECT_NEAR(detections[0][0], std::hypot(5.0, 3.0), 1e-12);
+  EXPECT_EQ(detections[0][1], 0.0);
 }
 
 // Rates within 5 standard errors.
-TEST(Sensor, MissesAndAddsClutterAtTheNamedRates) {
+TEST(SimulatedSensor, MissesAndAddsClutterAtTheNamedRates) {
   const Scenario scenario{.max_range = 20.0, .clutter_rate = 1.5, .miss_probability = 0.25};
   const double n = 20'000;
   double missed = 0.0;
@@ -66,14 +88,14 @@ TEST(Sensor, MissesAndAddsClutterAtTheNamedRates) {
   double mean_square_range = 0.0;
   for (std::uint32_t step = 0; step < 20'000; ++step) {
     missed += 1.0;
-    for (const Detection& detection : scan_of(scenario, step, {{0, 10.0, 0.0}})) {
+    for (const Detection& detection : scan_of(scenario, step, {{0, {10.0, 0.0}}})) {
       if (detection.identity == 0) {
         missed -= 1.0;
         continue;
       }
       clutter += 1.0;
-      mean_square_range += detection.range * detection.range;
-      EXPECT_LE(std::abs(detection.bearing), kPi / 2);
+      mean_square_range += detection[0] * detection[0];
+      EXPECT_LE(std::abs(detection[1]), kPi / 2);
     }
   }
   EXPECT_NEAR(missed / n, 0.25, 5.0 * std::sqrt(0.25 * 0.75 / n));
@@ -82,13 +104,13 @@ TEST(Sensor, MissesAndAddsClutterAtTheNamedRates) {
       << "uniform over the area";
 }
 
-TEST(Sensor, PutsClutterLast) {
-  const auto scan = scan_of({.clutter_rate = 20.0}, 0, {{0, 10.0, 0.0}, {5, 10.0, 0.0}});
+TEST(SimulatedSensor, PutsClutterLast) {
+  const auto scan = scan_of({.clutter_rate = 20.0}, 0, {{0, {10.0, 0.0}}, {5, {10.0, 0.0}}});
   ASSERT_GT(scan.size(), 2U);
   EXPECT_EQ(scan[0].identity, 0);
   EXPECT_EQ(scan[1].identity, 5);
   EXPECT_EQ(scan[2].identity, Detection::kClutter);
-  EXPECT_THAT(scan_of({.miss_probability = 1.0}, 0, {{0, 10.0, 0.0}}), IsEmpty());
+  EXPECT_THAT(scan_of({.miss_probability = 1.0}, 0, {{0, {10.0, 0.0}}}), IsEmpty());
 }
 
 }  // namespace

@@ -19,24 +19,24 @@ namespace montecarta::experiments {
 /// A landmark in view, as a perfect sensor would see it.
 struct VisibleLandmark {
   std::int32_t identity = 0;
-  double range = 0.0;    ///< [m]
-  double bearing = 0.0;  ///< [rad]
+  Eigen::Vector2d detection;  ///< components of the sensor
 };
 
 /// Measured ranges are never below this [m], however large the noise (EQUATIONS 2).
 inline constexpr double kLeastRange = 1e-3;
 
-/// The range-bearing sensor of EQUATIONS 1 and 2.
-class Sensor {
+/// The sensor of a simulated vehicle (EQUATIONS 1 and 2).
+class SimulatedSensor {
  public:
-  explicit Sensor(const Scenario& scenario);
+  explicit SimulatedSensor(const Scenario& scenario);
 
   /// Calls visit(observation) for everything in view from `pose`, in increasing identity.
   template <class Visit>
   void see(const Pose& pose, std::span<const Eigen::Vector2d> landmarks, const Visit& visit) const {
     view_.look(pose, landmarks, [&](const InView& seen) {
-      visit(VisibleLandmark{static_cast<std::int32_t>(seen.landmark), seen.range,
-                            wrap(std::atan2(seen.dy, seen.dx) - pose.heading)});
+      const double bearing = wrap(std::atan2(seen.dy, seen.dx) - seen.heading);
+      visit(VisibleLandmark{static_cast<std::int32_t>(seen.landmark),
+                            detection_of(sensor_, {seen.range, bearing})});
     });
   }
 
@@ -48,11 +48,14 @@ class Sensor {
   void add_clutter(const StreamIdentity& place, std::vector<Detection>& detections) const;
 
  private:
+  Detection noisy(const Eigen::Vector2d& exact, std::int32_t identity, RngStream* noise) const;
+
+  Sensor sensor_;
+  Eigen::Vector2d sigma_;  ///< of the components
   FieldOfView view_;
+  double min_range_;
   double max_range_;
   double field_of_view_;
-  double sigma_range_;
-  double sigma_bearing_;
   double miss_probability_;
   double clutter_rate_;
 };

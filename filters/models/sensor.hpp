@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/models/mounting.hpp"
+#include "filters/models/sensor_kinds.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+namespace montecarta::models {
+
+/// All sensors there are; the first is the default. One more is a struct like these and its name
+/// here. It says
+/// - kName: what study files call it; kComponents: one or two quantities that it measures;
+/// - detection_of(): what it sees of a landmark at a range and bearing of the sensor;
+/// - linearised(): that for a pose of the sensor, with derivatives; nullopt where there are none;
+/// - placed(): where one detection places a landmark; only where it does.
+using SensorKind = std::variant<RangeBearingSensor, BearingSensor, RangeSensor, PositionSensor>;
+
+/// A sensor on its vehicle.
+struct Sensor {
+  SensorKind kind = {};
+  Mounting mounting = {};
+};
+
+/// The components of its detections, in their order.
+inline std::span<const Quantity> components_of(const Sensor& sensor) {
+  return std::visit([](const auto& one) { return std::span<const Quantity>(one.kComponents); },
+                    sensor.kind);
+}
+inline std::string name_of(const Sensor& sensor) {
+  return std::visit([](const auto& one) { return std::string(one.kName); }, sensor.kind);
+}
+
+/// Calls `visit` with one sensor of each kind, in the order of the list.
+template <class Visit>
+void for_each_sensor(const Visit& visit) {
+  const auto each = [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (visit(Sensor{std::variant_alternative_t<I, SensorKind>{}, {}}), ...);
+  };
+  each(std::make_index_sequence<std::variant_size_v<SensorKind>>());
+}
+/// Names of all sensors, the default first.
+inline std::vector<std::string> sensor_names() {
+  std::vector<std::string> names;
+  for_each_sensor([&](const Sensor& sensor) { names.push_back(name_of(sensor)); });
+  return names;
+}
+/// Names of those that measure this.
+inline std::vector<std::string> sensors_with(Quantity quantity) {
+  std::vector<std::string> names;
+  for_each_sensor([&](const Sensor& sensor) {
+    const auto components = components_of(sensor);
+    if (std::ranges::find(components, quantity) != components.end())
+      names.push_back(name_of(sensor));
+  });
+  return names;
+}
+/// The sensor of that name; nullopt where there is none.
+inline std::optional<Sensor> sensor_named(std::string_view name, const Mounting& mounting = {}) {
+  std::optional<Sensor> found;
+  for_each_sensor([&](const Sensor& sensor) {
+    if (name_of(sensor) == name) found = Sensor{sensor.kind, mounting};
+  });
+  return found;
+}
+
+/// Whether one detection fixes a landmark: it then is a Gaussian.
+inline bool fixes_landmark(const Sensor& sensor) {
+  return std::visit(
+      [](const auto& one) {
+        return requires { one.placed(Pose(), Eigen::Vector2d()); };
+      },
+      sensor.kind);
+}
+
+/// What it sees of a landmark at that range and bearing of the sensor.
+inline Eigen::Vector2d detection_of(const Sensor& sensor, const RangeBearing<double>& from) {
+  return std::visit([&](const auto& one) { return one.detection_of(from); }, sensor.kind);
+}
+
+/// What it should see of a landmark from a vehicle at `pose`, with derivatives by that pose;
+/// nullopt where the landmark is too near for them.
+inline std::optional<LinearisedDetection> linearised_detection(const Sensor& sensor,
+                                                               const Pose& pose,
+                                                               const Point& landmark) {
+  auto seen = std::visit(
+      [&](const auto& one) { return one.linearised(sensor.mounting.pose_of(pose), landmark); },
+      sensor.kind);
+  if (seen && !sensor.mounting.is_none()) {
+    seen->by_pose = (seen->by_pose * sensor.mounting.jacobian(pose)).eval();
+  }
+  return seen;
+}
+
+/// Where one detection from a vehicle at `pose` places a landmark, with derivatives by that pose;
+/// nullopt where it does not fix one.
+inline std::optional<PlacedLandmark> placed_landmark(const Sensor& sensor, const Pose& pose,
+                                                     const Eigen::Vector2d& detection) {
+  const Pose from = sensor.mounting.pose_of(pose);
+  auto placed = std::visit(
+      [&](const auto& one) -> std::optional<PlacedLandmark> {
+        if constexpr (requires { one.placed(from, detection); }) {
+          return one.placed(from, detection);
+        } else {
+          return std::nullopt;
+        }
+      },
+      sensor.kind);
+  if (placed && !sensor.mounting.is_none()) {
+    placed->by_pose = (placed->by_pose * sensor.mounting.jacobian(pose)).eval();
+  }
+  return placed;
+}
+
+/// The measured part of a detection.
+inline Eigen::Vector2d vector_of(const Detection& detection) {
+  return {detection[0], detection[1]};
+}
+
+/// Which components are angles.
+using Wraps = std::array<bool, Detection::kMost>;
+inline Wraps wraps_of(const Sensor& sensor) {
+  Wraps wraps{};
+  std::ranges::transform(components_of(sensor), wraps.begin(),
+                         [](Quantity quantity) { return name_of(quantity).wraps; });
+  return wraps;
+}
+/// detected less predicted, angles by the shorter way.
+inline Eigen::Vector2d residual(const Eigen::Vector2d& detected, const Eigen::Vector2d& predicted,
+                                const Wraps& wraps) {
+  Eigen::Vector2d difference = detected - predicted;
+  if (wraps[0]) difference(0) = wrap(difference(0));
+  if (wraps[1]) difference(1) = wrap(difference(1));
+  return difference;
+}
+
+/// [m] from the sensor to what it detected; nullopt where detections of these components do not
+/// say.
+inline std::optional<double> distance_in(std::span<const Quantity> components,
+                                         const Detection& detection) {
+  if (components[0] == Quantity::range) return detection[0];
+  if (components[0] == Quantity::forward) return std::hypot(detection[0], detection[1]);
+  return std::nullopt;
+}
+
+/// Standard deviations that `owner` (a belief, a scenario) has of the components. A component that
+/// the sensor does not have has derivatives of 0 and, here, a deviation of 1: it changes nothing.
+template <class Owner>
+Eigen::Vector2d deviations_of(const Sensor& sensor, const Owner& owner) {
+  Eigen::Vector2d sigma = Eigen::Vector2d::Ones();
+  Eigen::Index i = 0;
+  for (const Quantity quantity : components_of(sensor)) sigma(i++) = deviation_of(quantity, owner);
+  return sigma;
+}
+
+/// [m] that noise shifts a landmark by at that distance [m]; of range and bearing along the range.
+template <class Owner>
+double length_deviation(const Sensor& sensor, const Owner& owner, double distance) {
+  const auto components = components_of(sensor);
+  const double first = deviation_of(components[0], owner);
+  if (components[0] == Quantity::bearing) return first * distance;
+  if (components[0] == Quantity::range) return first;
+  return std::max(first, deviation_of(components[1], owner));
+}
+
+}  // namespace montecarta::models

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/models/eigen_jacobians.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <optional>
+
+/// Where two detections of one number each place a landmark (EQUATIONS 2). The derivatives are
+/// those of the two equations that define the place.
+namespace montecarta::models {
+
+/// A landmark that two detections fix.
+struct TriangulatedLandmark {
+  Eigen::Vector2d point;      ///< [m]
+  Eigen::Matrix2d by_first;   ///< by a point of the map
+  Eigen::Matrix2d by_second;  ///< likewise
+  Matrix23 by_pose;           ///< of the sensor
+  Eigen::Matrix2d noise;      ///< [m^2] from the noise of detections
+};
+
+/// The ray from `first` through `second`, two points of the map, cuts the one that `sensor` sees at
+/// `bearing` [rad] with `variance` [rad^2]; nullopt where they do not meet ahead of both.
+inline std::optional<TriangulatedLandmark> crossing_of_rays(const Eigen::Vector2d& first,
+                                                            const Eigen::Vector2d& second,
+                                                            const Pose& sensor, double bearing,
+                                                            double variance) {
+  const double length = (second - first).norm();
+  const Eigen::Vector2d u = (second - first) / length;
+  const Direction<double> sight = direction_of(sensor.heading + bearing);
+  const Eigen::Vector2d w(sight.cosine, sight.sine);
+  const Eigen::Vector2d between = Eigen::Vector2d(sensor.x, sensor.y) - first;
+  const auto cross = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return a.x() * b.y() - a.y() * b.x();
+  };
+  const double sine = cross(u, w);
+  const double along_first = cross(between, w) / sine, along_second = cross(between, u) / sine;
+  if (!(along_first > 0.0 && along_second > 0.0 && std::isfinite(along_first + along_second)))
+    return std::nullopt;
+  // n'(f - first) = 0 and m'(f - sensor) = 0, with n and m across the rays.
+  const Eigen::RowVector2d n(-u.y(), u.x()), m(-w.y(), w.x());
+  const Eigen::Vector2d by_n = w / sine, by_m = -u / sine;
+  TriangulatedLandmark landmark{first + along_first * u, {}, {}, {}, {}};
+  landmark.by_first = by_n * n * (1.0 - along_first / length);
+  landmark.by_second = by_n * n * (along_first / length);
+  landmark.by_pose << by_m * m, by_m * along_second;
+  landmark.noise = variance * along_second * along_second * by_m * by_m.transpose();
+  return landmark;
+}
+
+/// Two circles about points of the map, of `ranges` [m] each with `variance` [m^2], cut left (side
+/// = 1) or right (-1) of the way from the first to the second; nullopt where they do not cut.
+inline std::optional<TriangulatedLandmark> crossing_of_circles(const Eigen::Vector2d& first,
+                                                               const Eigen::Vector2d& second,
+                                                               const Eigen::Vector2d& ranges,
+                                                               double side, double variance) {
+  const double apart = (second - first).norm();
+  const double along = 0.5 * (apart + (ranges(0) - ranges(1)) * (ranges(0) + ranges(1)) / apart);
+  const double across_squared = ranges(0) * ranges(0) - along * along;
+  if (!(apart > 0.0 && across_squared > 0.0)) return std::nullopt;
+  const Eigen::Vector2d way = (second - first) / apart;
+  const Eigen::Vector2d across(-way.y(), way.x());
+  const Eigen::Vector2d point = first + along * way + side * std::sqrt(across_squared) * across;
+  // u'(f - first) = range of the first, w'(f - second) = that of the second.
+  const Eigen::Vector2d u = (point - first) / ranges(0), w = (point - second) / ranges(1);
+  const double sine = u.x() * w.y() - u.y() * w.x();
+  const Eigen::Vector2d by_u = Eigen::Vector2d(w.y(), -w.x()) / sine;
+  const Eigen::Vector2d by_w = Eigen::Vector2d(-u.y(), u.x()) / sine;
+  return TriangulatedLandmark{point, by_u * u.transpose(), by_w * w.transpose(), Matrix23::Zero(),
+                              variance * (by_u * by_u.transpose() + by_w * by_w.transpose())};
+}
+
+}  // namespace montecarta::models

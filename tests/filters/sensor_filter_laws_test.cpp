@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What holds for every filter with every sensor that it takes, on some vehicles.
+#include "analysis/statistics/nees_bounds.hpp"
+#include "filters/factory.hpp"
+#include "tests/filters/default_options.hpp"
+#include "tests/filters/small_world.hpp"
+#include "tests/filters/some_sensors.hpp"
+#include "tests/filters/some_vehicles.hpp"
+#include "tests/filters/told_bits.hpp"
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace montecarta::filters {
+namespace {
+
+constexpr std::size_t kParticles = 30;
+
+struct Offered {
+  FilterKind kind;
+  SomeSensor sensor;
+  SomeVehicle vehicle;
+
+  std::string name() const { return kind.name + "_" + sensor.name + "_" + vehicle.name; }
+};
+void PrintTo(const Offered& offered, std::ostream* out) { *out << offered.name(); }
+
+bool takes(const FilterKind& kind, const Sensor& sensor) {
+  if (kind.sensors.empty()) return true;
+  return sensor.mounting.is_none() &&
+         std::ranges::find(kind.sensors, name_of(sensor)) != kind.sensors.end();
+}
+
+/// Each sensor but the default at the pose, of which other tests are full.
+std::vector<Offered> all_offered() {
+  std::vector<Offered> all;
+  for (const FilterKind& kind : filter_kinds()) {
+    for (const SomeSensor& sensor : some_sensors()) {
+      if (!takes(kind, sensor.sensor) || sensor.name == RangeBearingSensor::kName) continue;
+      for (const SomeVehicle& vehicle : some_vehicles()) {
+        if (vehicle.name == "rear_wheel" || vehicle.name.ends_with("euler")) continue;
+        all.push_back({kind, sensor, vehicle});
+      }
+    }
+  }
+  return all;
+}
+
+/// An easy world: small noise, many landmarks.
+Belief easy(const SomeVehicle& vehicle, const Sensor& sensor) {
+  Belief noise{.vehicle = vehicle.vehicle, .sigma_range = 0.02, .sigma_bearing = 0.003};
+  for (double& sigma : noise.control.sigma) sigma = 0.02;
+  noise.sigma_forward = 0.02;
+  noise.sigma_left = 0.03;
+  noise.sensor = sensor;
+  return noise;
+}
+
+class EveryFilterAndSensor : public testing::TestWithParam<Offered> {
+ protected:
+  const FilterKind& kind() const { return GetParam().kind; }
+  SmallWorldSettings settings(std::uint64_t seed, std::size_t scans) const {
+    const SomeVehicle& vehicle = GetParam().vehicle;
+    return {.seed = seed,
+            .landmarks = 25,
+            .scans = scans,
+            .noise = easy(vehicle, GetParam().sensor.sensor),
+            .controls = {vehicle.typical}};
+  }
+  std::unique_ptr<SlamFilter> make() const {
+    std::map<std::string, std::string, std::less<>> special;
+    if (kind().has_particles) special["particles"] = std::to_string(kParticles);
+    return kind().make({.belief = settings(1, 1).noise,
+                        .association = {},
+                        .options = default_options(kind(), special),
+                        .landmarks = 25});
+  }
+  std::size_t particles() const { return kind().has_particles ? kParticles : 0; }
+};
+
+TEST_P(EveryFilterAndSensor, TurningTheWorldTurnsTheEstimate) {
+  const SmallWorld world = small_world(settings(1, 60));
+  const Pose start{-30.0, 50.0, 2.0};
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() << std::cos(2.0), -std::sin(2.0), std::sin(2.0), std::cos(2.0);
+  const auto filter = make();
+  std::vector<PoseMoments> unturned;
+  drive_through(*filter, world, Pose(),
+                [&](std::size_t) { unturned.push_back(filter->estimate().spread); });
+  drive_through(*filter, turned(world, start), start, [&](std::size_t scan) {
+    const PoseMoments now = filter->estimate().spread, &was = unturned[scan];
+    EXPECT_LT(boxminus(now.mean, turned(was.mean, start)).norm(), 1e-6) << "scan " << scan;
+    EXPECT_LT((now.covariance - turn * was.covariance * turn.transpose()).norm(), 1e-7);
+  });
+}
+
+TEST_P(EveryFilterAndSensor, GivesTheSameBitsAgain) {
+  const SmallWorld world = small_world(settings(2, 40));
+  const auto filter = make();
+  std::vector<ToldBits> first;
+  drive_through(*filter, world, Pose(),
+                [&](std::size_t) { first.emplace_back(*filter, particles(), 25); });
+  drive_through(*filter, world, Pose(), [&](std::size_t scan) {
+    EXPECT_TRUE(ToldBits(*filter, particles(), 25) == first[scan]) << "scan " << scan;
+  });
+}
+
+TEST_P(EveryFilterAndSensor, BuildsAMapNearTheTruthAndCountsItsInnovations) {
+  if (kind().name == "dead_reckoning") GTEST_SKIP() << "no map";
+  const SmallWorld world = small_world(settings(3, 120));
+  const auto filter = make();
+  double nis = 0.0, dof = 0.0;
+  drive_through(*filter, world, Pose(), [&](std::size_t) {
+    nis += filter->report().nis;
+    dof += filter->report().nis_dof;
+    EXPECT_EQ(filter->report().nis_dof % components_of(GetParam().sensor.sensor).size(), 0U);
+  });
+  std::vector<std::optional<LandmarkEstimate>> map(25);
+  filter->map(map);
+  int held = 0;
+  for (std::size_t k = 0; k < map.size(); ++k) {
+    if (!map[k]) continue;
+    EXPECT_LT((map[k]->mean - world.itinerary.landmarks[k]).norm(), 1.5) << "landmark " << k;
+    ++held;
+  }
+  EXPECT_GE(held, 8);
+  EXPECT_NEAR(filter->report().map_size, held, 1e-9);
+  EXPECT_GT(dof, 300.0);
+  if (kind().has_particles) return;
+  EXPECT_NEAR(nis / dof, 1.0, 5.0 * std::sqrt(2.0 / dof));
+}
+
+/// Of joint filters: particles run out of diversity. Bands of five standard errors, of 60 runs.
+TEST_P(EveryFilterAndSensor, IsConsistentOnAnEasyWorld) {
+  if (kind().has_particles) GTEST_SKIP() << "no joint covariance";
+  constexpr std::uint64_t kRuns = 60;
+  const auto filter = make();
+  double sum = 0.0;
+  for (std::uint64_t run = 0; run < kRuns; ++run) {
+    const SmallWorld world = small_world(settings(100 + run, 60));
+    drive_through(*filter, world, Pose(), [](std::size_t) {});
+    const PoseMoments belief = filter->estimate().spread;
+    const Eigen::Vector3d error = boxminus(world.drive.truth.back(), belief.mean);
+    sum += error.dot(belief.covariance.llt().solve(error));
+  }
+  const analysis::Interval band = analysis::nees_bounds(kRuns, 3, 1.0 - 5.7e-7);
+  EXPECT_GT(sum / kRuns, band.lower);
+  EXPECT_LT(sum / kRuns, band.upper);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryFilterAndSensor, testing::ValuesIn(all_offered()),
+                         [](const auto& instance) { return instance.param.name(); });
+
+}  // namespace
+}  // namespace montecarta::filters
