@@ -6,6 +6,7 @@
 #include "filters/fastslam/fast_slam_filters.hpp"
 #include "filters/joint/joint_filters.hpp"
 #include "filters/marginal/marginal_filter.hpp"
+#include "filters/smoothing/smoother.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -21,10 +22,11 @@ std::vector<FilterKind (*)()>& added_filters() {
 
 std::vector<FilterKind> all_kinds() {
   std::vector<FilterKind> kinds{
-      ekf_slam_kind(),  riekf_slam_kind(),     hrb_kind(),     fastslam1_kind(),
-      fastslam2_kind(), ufastslam_kind(),      srcd_kind(),    srcd_aided_kind(),
-      srcd_pf_kind(),   de_srcd_kind(),        delayed_kind(), marginal_kind(),
-      ampf_de_kind(),   dead_reckoning_kind(),
+      ekf_slam_kind(),  riekf_slam_kind(), hrb_kind(),
+      fastslam1_kind(), fastslam2_kind(),  ufastslam_kind(),
+      srcd_kind(),      srcd_aided_kind(), srcd_pf_kind(),
+      de_srcd_kind(),   delayed_kind(),    marginal_kind(),
+      ampf_de_kind(),   smoother_kind(),   dead_reckoning_kind(),
   };
   for (const auto& make : added_filters()) {
     FilterKind kind = make();

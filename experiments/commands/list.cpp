@@ -48,8 +48,9 @@ std::string fallback_text(const Setting& setting) {
 
 std::string meaning_of(const Setting& setting) {
   std::string meaning = setting.meaning;
-  if (!setting.chosen.empty() && setting.chosen != vehicle_names())
-    meaning += " (" + joined(setting.chosen) + ")";
+  const bool is_of_all =
+      setting.chosen == (setting.chooser == "sensor" ? sensor_names() : vehicle_names());
+  if (!setting.chosen.empty() && !is_of_all) meaning += " (" + joined(setting.chosen) + ")";
   if (!setting.kinds.empty()) meaning += " (" + joined(setting.kinds) + ")";
   return meaning;
 }

@@ -180,7 +180,9 @@ std::string cell_line(const CellSpec& cell) {
   std::string line = cell.filter->name + " label=" + cell.label;
   for (std::size_t i = 0; i < cell.options.size(); ++i) {
     const auto& [key, value] = cell.options[i];
-    const bool is_text = cell.filter->options[i].kind == Option::Kind::text;
+    const Option& option = cell.filter->options[i];
+    if (option.is_quiet && value == option.fallback) continue;
+    const bool is_text = option.kind == Option::Kind::text;
     line += " " + key + "=" + (is_text ? in_quotes(value) : value);
   }
   for (const auto& [key, value] : cell.mismatch) line += " " + key + "=" + value;

@@ -29,6 +29,13 @@ std::uint32_t steps_per_scan(const Settings& settings) {
                    " steps a scan): choose rates whose ratio is a whole number");
 }
 
+double min_range_of(const Settings& s) {
+  const double least = s.number("scenario", "min_range");
+  if (least < s.number("scenario", "max_range")) return least;
+  throw StudyError(s.place("scenario", "min_range") + ": min_range is not below max_range = " +
+                   s.text("scenario", "max_range") + ", so nothing is detected: lower it");
+}
+
 Scenario scenario_of(const Settings& s) {
   Scenario scenario;
   const char* in = "scenario";
@@ -44,7 +51,7 @@ Scenario scenario_of(const Settings& s) {
   scenario.control = control_noise_of(s, in);
   take_sensor(s, in, 1.0, scenario);
   scenario.max_range = s.number(in, "max_range");
-  scenario.min_range = s.number(in, "min_range");
+  scenario.min_range = min_range_of(s);
   scenario.field_of_view = s.radians(in, "field_of_view_deg");
   scenario.waypoint_radius = s.number(in, "waypoint_radius");
   scenario.clutter_rate = s.number(in, "clutter_rate");
@@ -145,7 +152,7 @@ RecordedDrive drive_of(const Settings& s, const DriveLog& log) {
   refuse_early_scans(s, log);
   refuse_impossible_steering(s, log);
   return {judged(s, log),
-          {s.number("scenario", "max_range"), s.number("scenario", "min_range")},
+          {s.number("scenario", "max_range"), min_range_of(s)},
           s.number("scenario", "scan_delay")};
 }
 

@@ -39,8 +39,8 @@ void refuse_mounting(const CellSpec& cell, const Sensor& sensor) {
 
 void refuse_association(const Settings& settings, const CellSpec& cell, const Sensor& sensor) {
   if (settings.text("association", "kind") == "known") return;
-  const bool is_particle_filter = !cell.filter->sensors.empty();
-  if (is_particle_filter && !std::holds_alternative<RangeBearingSensor>(sensor.kind)) {
+  const bool takes_listed_sensors = !cell.filter->sensors.empty();
+  if (takes_listed_sensors && !std::holds_alternative<RangeBearingSensor>(sensor.kind)) {
     throw StudyError(settings.place("association", "kind") + ": association.kind = nearest with " +
                      name_of(sensor) + " (" + cell.filter->name +
                      " takes it where identities are known): set association.kind = known");

@@ -28,8 +28,9 @@ void add_sensor_kind(const char* section, double least, const Add& add) {
   mount("mount_forward", "m", 1000, "of the sensor, ahead of the pose");
   mount("mount_left", "m", 1000, "of the sensor, left of the pose");
   mount("mount_turn_deg", "deg", 360, "where the sensor looks, left of the heading");
-  for (const Quantity q : {Quantity::range, Quantity::bearing, Quantity::forward, Quantity::left}) {
-    add(deviation_setting(section, q, least), name_of(q).example);
+  for (std::size_t i = 0; i < kDetectionNames.size(); ++i) {
+    const auto quantity = static_cast<Quantity>(i);
+    add(deviation_setting(section, quantity, least), name_of(quantity).example);
   }
 }
 

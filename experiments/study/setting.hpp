@@ -26,9 +26,6 @@ struct Setting : Option {
   /// something, by which of its values; empty: always.
   std::string chooser = {};
   std::vector<std::string> chosen = {};
-  /// Left out of the resolved text where it and, for a belief, the scenario have the default: so
-  /// that the text of studies that are older than the setting stays.
-  bool is_quiet = false;
   /// (kind of scenario, its fallback) where that differs. kFromScenario: the scenario's value of
   /// that key; kRequired: must be given.
   std::vector<std::pair<std::string, std::string>> fallback_of_kind = {};

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace montecarta::filters {
 namespace {
@@ -53,6 +54,17 @@ void CompressedGaussian::become(const CompressedGaussian& other) {
   whole_.take(other.whole_, held);
 }
 
+void CompressedGaussian::replace(const PoseMoments& pose, const MapMoments& map) {
+  near_.replace_map(landmarks());
+  near_.replace(pose, map);
+  std::iota(point_of_.begin(), point_of_.end(), 0U);
+  whole_.clear(std::min(rows(), whole_.room()));
+  basis_.clear();
+  stand_ins_ = 0;
+  most_near_ = kSmallMap;
+  updates_ = 0;
+}
+
 Eigen::Vector2d CompressedGaussian::mean_of(std::size_t slot) const {
   if (is_near(slot)) return near_.map().mean.segment<2>(row_of(point_of_[slot]));
   const Eigen::Index row = row_of(slot);
@@ -73,10 +85,13 @@ PointMoments CompressedGaussian::far_point(std::size_t slot) const {
   return point;
 }
 
+PointMoments CompressedGaussian::point(std::size_t slot) const {
+  return is_near(slot) ? near_.point(point_of_[slot]) : far_point(slot);
+}
+
 LandmarkEstimate CompressedGaussian::landmark(std::size_t slot) const {
-  if (is_near(slot)) return near_.landmark(point_of_[slot]);
-  const PointMoments point = far_point(slot);
-  return {point.mean, point.covariance};
+  const PointMoments moments = point(slot);
+  return {moments.mean, moments.covariance};
 }
 
 MapMoments CompressedGaussian::map() const {
@@ -141,8 +156,7 @@ bool CompressedGaussian::is_out_of_reach(std::size_t slot, const Drift& drift, d
 
 JointGaussian::Trouble CompressedGaussian::look_at(std::size_t slot,
                                                    ExpectedObservation& expected) const {
-  if (is_near(slot)) return near_.look_at(point_of_[slot], expected);
-  return near_.look_at(far_point(slot), expected);
+  return near_.look_at(point(slot), expected);
 }
 
 void CompressedGaussian::append(const Eigen::Vector2d& detection) {

@@ -33,12 +33,17 @@ class CompressedGaussian {
   void start(const Pose& start);
   void become(const CompressedGaussian& other);
 
+  /// Takes these moments of the pose and of all its landmarks, in the order of their slots, for
+  /// its own.
+  void replace(const PoseMoments& pose, const MapMoments& map);
+
   const PoseMoments& pose() const { return near_.pose(); }
   PoseMoments pose_after(const MotionIncrement& motion) const { return near_.pose_after(motion); }
   void move(const MotionIncrement& motion) { near_.move(motion); }
 
   std::size_t landmarks() const { return point_of_.size(); }
   LandmarkEstimate landmark(std::size_t slot) const;
+  PointMoments point(std::size_t slot) const;
   /// The whole map, landmarks in the order of their slots.
   MapMoments map() const;
   /// Pose and landmarks together, likewise.

@@ -190,7 +190,10 @@ std::uint32_t DelayedInitialisation::add(CompressedGaussian& gaussian, const New
 std::uint32_t DelayedInitialisation::finish(CompressedGaussian& gaussian, Waiting& waiting,
                                             const Detection& detection) {
   const auto landmark = triangulated(gaussian, waiting, detection, waiting.side);
-  expect(landmark.has_value(), "a landmark is initialised whose sights do not cross");
+  expect(landmark.has_value(),
+         "a landmark is initialised whose lines of sight or circles do not cross");
+  const std::array slots{waiting.first, waiting.second};
+  gaussian.make_near(slots);  // another landmark of this scan may have made them far
   std::array<NewPoint::Part, 2> parts = {
       {{waiting.first, landmark->by_first}, {waiting.second, landmark->by_second}}};
   gaussian.replace(waiting.second, {.mean = landmark->point,

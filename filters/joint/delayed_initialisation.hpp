@@ -14,8 +14,9 @@ namespace montecarta::filters {
 /// Initialises landmarks that one detection does not fix from two (EQUATIONS 15). What a waiting
 /// landmark was seen by is kept in the Gaussian as points of the map: the place of the sensor and,
 /// of a bearing, a point on the ray; so it stays correlated with pose and map, and every detection
-/// is used once. A detection that only decides (whether the sights cross well, on which side of two
-/// places) is not used otherwise: what is chosen by its noise must not be estimated from it.
+/// is used once. A detection that only decides (whether the lines of sight cross well, on which
+/// side of two places) is not used otherwise: what is chosen by its noise must not be estimated
+/// from it.
 class DelayedInitialisation {
  public:
   explicit DelayedInitialisation(const Belief& belief);
@@ -25,7 +26,8 @@ class DelayedInitialisation {
   void add_points_of(std::int32_t identity, std::vector<std::uint32_t>& slots) const;
   /// Whether this detection can take its landmark a step further. The points are near.
   bool advances(const CompressedGaussian& gaussian, const Detection& detection);
-  /// Takes it that step, where advances(). Returns the point that now is the landmark, if any.
+  /// Takes it that step, where advances(). Returns the point that now is the landmark, if any. The
+  /// points of other landmarks may be far then.
   std::optional<std::uint32_t> advance(CompressedGaussian& gaussian, const Detection& detection);
 
  private:

@@ -21,7 +21,8 @@ GaussianBank::GaussianBank(const FilterSetup& setup, const BankSettings& setting
   FilterSetup idle = setup;  // grows when it becomes a copy
   idle.landmarks = 0;
   for (std::size_t i = 0; i < slot_of_.size(); ++i) {
-    beliefs_.emplace_back(i == 0 ? setup : idle, settings.retraction, settings.iterations);
+    beliefs_.emplace_back(i == 0 ? setup : idle, settings.retraction, settings.iterations,
+                          settings.moments);
   }
 }
 
@@ -36,11 +37,7 @@ void GaussianBank::start(const Pose& start) {
 void GaussianBank::predict(const StepContext& /*context*/, const Control& control,
                            double duration) {
   settle();
-  if (settings_.motion == Motion::quadrature) {
-    motion_ = moved_by_quadrature(motion_, control, duration, belief_);
-  } else {
-    motion_.advance(control, duration, belief_);
-  }
+  motion_ = moved(motion_, control, duration, belief_, settings_.motion);
 }
 
 void GaussianBank::update(const StepContext& context, Scan scan) {
@@ -178,7 +175,7 @@ PoseEstimate GaussianBank::mixture() const {
   weigh_beliefs();
   poses_.resize(beliefs_.size());
   for (const std::uint32_t slot : active_) {
-    poses_[slot] = beliefs_[slot].gaussian().pose_after(motion_);
+    poses_[slot] = beliefs_[slot].pose_after(motion_);
   }
   Mixture mixture(poses_[slot_of_[population_.weights().heaviest()]]);
   for (const std::uint32_t slot : active_) mixture.add(slot_weights_[slot], poses_[slot]);
@@ -192,8 +189,7 @@ PoseEstimate GaussianBank::estimate() const {
 }
 
 void GaussianBank::particles(const ParticleColumns& columns) const {
-  population_.tell(columns,
-                   [&](std::size_t i) { return belief_of(i).gaussian().pose_after(motion_).mean; });
+  population_.tell(columns, [&](std::size_t i) { return belief_of(i).pose_after(motion_).mean; });
 }
 
 void GaussianBank::weigh_beliefs() const {

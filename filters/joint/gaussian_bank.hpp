@@ -3,6 +3,7 @@
 
 #include "engine/core/slam_filter.hpp"
 #include "filters/joint/joint_belief.hpp"
+#include "filters/moments/control_motion.hpp"
 #include "filters/population/population.hpp"
 
 #include <cstddef>
@@ -12,12 +13,6 @@
 #include <vector>
 
 namespace montecarta::filters {
-
-/// How the noise of a control reaches the pose.
-enum class Motion {
-  linearised,  ///< EQUATIONS 1
-  quadrature,  ///< moved_by_quadrature()
-};
 
 /// What a bank of joint Gaussians can be told.
 struct BankSettings {
@@ -30,7 +25,8 @@ struct BankSettings {
   double keep = 0.0;   ///< share of the heading's standard deviation that a draw leaves
   int iterations = 0;  ///< of the linearisation, after the first
   Motion motion = Motion::linearised;
-  bool tells_particles = false;  ///< whether there is a mixture to tell of
+  Moments moments = Moments::map;  ///< of what it reports
+  bool tells_particles = false;    ///< whether there is a mixture to tell of
 };
 
 /// A mixture of joint Gaussians over pose and map (EQUATIONS 16). Only the heading is ever drawn,

@@ -13,12 +13,14 @@ constexpr std::size_t kRoomAtFirst = 300;
 
 }  // namespace
 
-JointBelief::JointBelief(const FilterSetup& setup, Retraction retraction, int iterations)
+JointBelief::JointBelief(const FilterSetup& setup, Retraction retraction, int iterations,
+                         Moments moments)
     : sensor_(setup.belief.sensor),
       association_(setup),
       gaussian_(setup.belief, retraction, std::min(setup.landmarks, kRoomAtFirst)),
       delayed_(setup.belief),
-      iterations_(iterations) {}
+      iterations_(iterations),
+      moments_(moments) {}
 
 void JointBelief::start(const Pose& start) {
   gaussian_.start(start);
@@ -98,9 +100,17 @@ void JointBelief::initialise_landmarks(Scan scan, std::span<const char> advancin
   }
 }
 
+PoseMoments JointBelief::pose_after(const MotionIncrement& motion) const {
+  const PoseMoments pose = gaussian_.pose_after(motion);
+  return moments_ == Moments::pushed ? pushed(pose) : pose;
+}
+
 std::optional<LandmarkEstimate> JointBelief::landmark(std::size_t k) const {
   const std::size_t at = association_.slot_of(k);
-  return at < landmarks() ? std::optional(gaussian_.landmark(point_of_[at])) : std::nullopt;
+  if (at >= landmarks()) return std::nullopt;
+  const std::size_t slot = point_of_[at];
+  if (moments_ == Moments::map) return gaussian_.landmark(slot);
+  return pushed(gaussian_.point(slot), gaussian_.pose().covariance(2, 2));
 }
 
 JointEstimate JointBelief::joint(std::size_t landmarks) const {
@@ -126,6 +136,7 @@ JointEstimate JointBelief::joint(std::size_t landmarks) const {
       joint.covariance(places[a], places[b]) = by_order.covariance(rows[a], rows[b]);
     }
   }
+  if (moments_ == Moments::pushed) push_moments(joint.mean, joint.covariance);
   return joint;
 }
 

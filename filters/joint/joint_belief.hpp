@@ -4,6 +4,7 @@
 #include "filters/association/map_association.hpp"
 #include "filters/joint/compressed_gaussian.hpp"
 #include "filters/joint/delayed_initialisation.hpp"
+#include "filters/joint/pushed_moments.hpp"
 
 #include <cstdint>
 #include <span>
@@ -15,8 +16,9 @@ namespace montecarta::filters {
 /// are taken for. Detections are used one by one in the order of the scan.
 class JointBelief {
  public:
-  /// `iterations`: of CompressedGaussian::update_with().
-  JointBelief(const FilterSetup& setup, Retraction retraction, int iterations);
+  /// `iterations`: of CompressedGaussian::update_with(); `moments`: of all that it reports.
+  JointBelief(const FilterSetup& setup, Retraction retraction, int iterations,
+              Moments moments = Moments::map);
 
   /// The vehicle stands at `start`, no landmarks.
   void start(const Pose& start);
@@ -30,11 +32,15 @@ class JointBelief {
   /// detection does not fix takes them `advancing` a step further. Throws RunError where the map
   /// has run away.
   void initialise_landmarks(Scan scan, std::span<const char> advancing = {});
+  /// CompressedGaussian::replace().
+  void replace(const PoseMoments& pose, const MapMoments& map) { gaussian_.replace(pose, map); }
   void draw_heading(double keep, double normal) { gaussian_.draw_heading(keep, normal); }
   /// Becomes a copy of `other`, which was made of the same setup.
   void become(const JointBelief& other);
 
   const CompressedGaussian& gaussian() const { return gaussian_; }
+  /// What the pose would be after `motion`.
+  PoseMoments pose_after(const MotionIncrement& motion) const;
   /// In the map.
   std::size_t landmarks() const { return point_of_.size(); }
   /// The k-th landmark: of identity k with known association, else the k-th initialised.
@@ -73,6 +79,7 @@ class JointBelief {
   DelayedInitialisation delayed_;
   std::vector<char> advancing_;  ///< scratch of find_advancing()
   int iterations_;
+  Moments moments_;
   std::vector<NearestSearch> searches_;  ///< scratch
   std::vector<std::uint32_t> matched_;   ///< scratch: slots that the current scan needs
   std::vector<UsedDetection> used_detections_;

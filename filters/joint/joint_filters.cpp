@@ -9,24 +9,14 @@ namespace {
 
 // In the order of the enumerators.
 const std::vector<std::string> kErrors{"additive", "invariant"};
-const std::vector<std::string> kMotions{"linearised", "quadrature"};
 
 Option iterations_option(const char* fallback) {
   return count_option("iterations", fallback, 0, 100,
                       "times a detection is linearised again where it has moved the estimate to");
 }
 
-Option motion_option(const char* fallback) {
-  return choice_option("motion", fallback, kMotions,
-                       "how noise of the control reaches the pose: by derivatives or averaged");
-}
-
 int iterations(const FilterOptions& options) {
   return static_cast<int>(options.integer("iterations"));
-}
-
-Motion motion(const FilterOptions& options) {
-  return chosen<Motion>(options.choice("motion"), kMotions);
 }
 
 /// [rad]; nothing for 0.
@@ -39,7 +29,8 @@ std::optional<double> split_beyond(const FilterOptions& options) {
 std::unique_ptr<SlamFilter> one_gaussian(const FilterSetup& setup, Retraction retraction) {
   return std::make_unique<GaussianBank>(setup, BankSettings{.retraction = retraction,
                                                             .iterations = iterations(setup.options),
-                                                            .motion = motion(setup.options)});
+                                                            .motion = motion_of(setup.options),
+                                                            .moments = moments_of(setup.options)});
 }
 
 }  // namespace
@@ -60,7 +51,8 @@ std::unique_ptr<SlamFilter> make_hrb(const FilterSetup& setup) {
                           .split_beyond = split_beyond(options),
                           .keep = options.number("keep"),
                           .iterations = iterations(options),
-                          .motion = motion(options),
+                          .motion = motion_of(options),
+                          .moments = moments_of(options),
                           .tells_particles = true});
 }
 
@@ -71,7 +63,7 @@ FilterKind ekf_slam_kind() {
           .has_particles = false,
           .has_mixture = false,
           .has_joint = true,
-          .options = {iterations_option("0"), motion_option("linearised")},
+          .options = {iterations_option("0"), motion_option("linearised"), moments_option("map")},
           .sensors = {},
           .delays_initialisation = true,
           .make = make_ekf_slam};
@@ -84,7 +76,7 @@ FilterKind riekf_slam_kind() {
           .has_particles = false,
           .has_mixture = false,
           .has_joint = true,
-          .options = {iterations_option("0"), motion_option("linearised")},
+          .options = {iterations_option("0"), motion_option("linearised"), moments_option("map")},
           .sensors = {},
           .delays_initialisation = true,
           .make = make_riekf_slam};
@@ -102,7 +94,7 @@ FilterKind hrb_kind() {
                      "share of the heading's standard deviation that a draw leaves; 0: none"),
        choice_option("error", "invariant", kErrors,
                      "what the covariance is of: additive (EKF-SLAM) or invariant (RI-EKF-SLAM)"),
-       iterations_option("5"), motion_option("quadrature")});
+       iterations_option("5"), motion_option("quadrature"), moments_option("map")});
   return {.name = "hrb",
           .long_name = "heading-split bank",
           .source = "EQUATIONS 16",

@@ -49,6 +49,11 @@ void JointGaussian::become(const JointGaussian& other) {
   replace_map(other.n_landmarks_).take(other.map_, other.rows());
 }
 
+void JointGaussian::replace(const PoseMoments& pose, const MapMoments& map) {
+  pose_ = pose;
+  map_.take(map, rows());
+}
+
 MapMoments& JointGaussian::replace_map(std::size_t n_points) {
   map_.clear(rows());
   if (map_.room() < packed(n_points)) grow(n_points);

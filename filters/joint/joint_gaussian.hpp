@@ -64,7 +64,7 @@ struct ExpectedObservation {
 
   /// v, with angles by the shorter way at the point of linearisation.
   Eigen::Vector2d innovation(const Eigen::Vector2d& detected) const {
-    return residual(detected, observation, wraps) + ahead;
+    return models::residual(detected, observation, wraps) + ahead;
   }
 };
 
@@ -111,6 +111,8 @@ class JointGaussian {
   LandmarkEstimate landmark(std::size_t slot) const;
   PointMoments point(std::size_t slot) const;
   const MapMoments& map() const { return map_; }
+  /// Takes these moments of the pose and of all its landmarks for its own.
+  void replace(const PoseMoments& pose, const MapMoments& map);
   /// Leaves the pose and puts n points in the place of the map, all zero, for the caller to fill
   /// in.
   MapMoments& replace_map(std::size_t n_points);

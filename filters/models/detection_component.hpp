@@ -48,9 +48,17 @@ constexpr const DetectionName& name_of(Quantity quantity) {
 /// The standard deviation that `owner` (a belief, a scenario) has of a quantity.
 template <class Owner>
 auto& deviation_of(Quantity quantity, Owner& owner) {
-  if (quantity == Quantity::range) return owner.sigma_range;
-  if (quantity == Quantity::bearing) return owner.sigma_bearing;
-  return quantity == Quantity::forward ? owner.sigma_forward : owner.sigma_left;
+  switch (quantity) {
+    case Quantity::range:
+      return owner.sigma_range;
+    case Quantity::bearing:
+      return owner.sigma_bearing;
+    case Quantity::forward:
+      return owner.sigma_forward;
+    case Quantity::left:
+      break;
+  }
+  return owner.sigma_left;
 }
 
 }  // namespace montecarta::models

@@ -127,7 +127,7 @@ struct LinearisedPosition : Linearised {
       PoseGaussian<Real>& pose, const PositionSight<Real>& s, const RangeBearing<Real>& value,
       const LandmarkGaussian<Real>& landmark, const SensorNoise& noise, const Mask& matched,
       Evidence<Real>& evidence) {
-    const Innovation<Real> v = innovation_of(pose.covariance, s, value, landmark.covariance, noise);
+    Innovation<Real> v = innovation_of(pose.covariance, s, value, landmark.covariance, noise);
     weigh(condition(pose, v, usable<Real>(matched)), matched, evidence);
     return v;
   }

@@ -36,6 +36,9 @@ struct Option {
   std::vector<std::pair<std::string, std::string>> former_choices = {};
   std::string meaning = {};  ///< one line, with unit and equation
   std::string example = {};  ///< offered as remedy where there is no fallback
+  /// Left out of the resolved text where it and, for a belief, the scenario have the default: so
+  /// that the text of studies that are older than the option stays.
+  bool is_quiet = false;
 };
 
 inline Option number_option(const char* key, const char* fallback, double least, double most,

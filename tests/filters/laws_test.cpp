@@ -237,7 +237,8 @@ TEST_P(EveryFilter, TurningTheWorldTurnsTheEstimate) {
   const SmallWorld world = small_world(settings);
   const Pose start{-30.0, 50.0, 2.0};
   const SmallWorld other = turned(world, start);
-  const auto filter = make_default(GetParam(), 30, settings);
+  const auto filter =
+      make_default(GetParam(), 30, settings, Association::known, {{"moments", "pushed"}});
   std::vector<PoseEstimate> unturned;
   drive_through(*filter, world, Pose(),
                 [&](std::size_t) { unturned.push_back(filter->estimate()); });

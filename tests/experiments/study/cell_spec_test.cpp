@@ -19,18 +19,21 @@ std::vector<FilterKind> paper_filters() {
   Option weight =
       choice_option("weight", "closed", {"closed", "ratio", "as_printed"}, "which form");
   weight.former_choices = {{"exact", "closed"}};
-  return {{"bold",
-           "Bold filter",
-           "",
-           true,
-           false,
-           false,
-           {particles, threshold, weight},
-           {},
-           false,
-           {},
-           {}},
-          {"plain", "Plain filter", "", false, false, false, {threshold}, {}, false, {}, {}}};
+  Option younger = choice_option("younger", "no", {"no", "yes"}, "of a later version");
+  younger.is_quiet = true;
+  return {
+      {"bold",
+       "Bold filter",
+       "",
+       true,
+       false,
+       false,
+       {particles, threshold, weight},
+       {},
+       false,
+       {},
+       {}},
+      {"plain", "Plain filter", "", false, false, false, {threshold, younger}, {}, false, {}, {}}};
 }
 
 std::vector<CellSpec> cells_of(const std::vector<FilterKind>& filters,
@@ -81,6 +84,13 @@ TEST(Cells, FillInTheOptionsNotGiven) {
   const CellSpec cell = cells_of(filters, {"bold threshold=0.750"}).at(0);
   EXPECT_EQ(cell_line(cell), "bold label=bold_m100 particles=100 threshold=0.75 weight=closed");
   EXPECT_EQ(cell.distinction, "100 particles");
+}
+
+TEST(Cells, LeaveAYoungerOptionOutOfTheTextWhereItHasItsDefault) {
+  const auto filters = paper_filters();
+  const auto cells = cells_of(filters, {"plain younger=no,yes"});
+  EXPECT_EQ(cell_line(cells[0]), "plain label=plain_younger_no threshold=0.5");
+  EXPECT_EQ(cell_line(cells[1]), "plain label=plain_younger_yes threshold=0.5 younger=yes");
 }
 
 TEST(Cells, ReadAChoiceOfEarlierVersions) {

@@ -127,5 +127,13 @@ TEST_F(BearingLog, InDegreesIsRefused) {
               HasSubstr("record 1: bearing 45 (radians relative to the heading)"));
 }
 
+TEST(SensorStudy, SomethingIsInReach) {
+  EXPECT_THAT(
+      engine::complaint_of([] {
+        drives_of(parsed(of_cell("ekf_slam"), {"scenario.max_range=5", "scenario.min_range=5"}), 1);
+      }),
+      AllOf(HasSubstr("min_range is not below max_range = 5"), HasSubstr("lower it")));
+}
+
 }  // namespace
 }  // namespace montecarta::experiments

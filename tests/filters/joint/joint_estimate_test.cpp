@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Law: what a bank says of pose and map together has, as its parts, what it says of each.
 #include "filters/joint/joint_filters.hpp"
+#include "filters/smoothing/smoother.hpp"
 #include "tests/filters/default_options.hpp"
 #include "tests/filters/small_world.hpp"
 
@@ -61,11 +62,16 @@ int expect_parts(SlamFilter& filter, const SmallWorld& world, bool heaviest_only
 
 TEST(JointEstimate, OfOneGaussianHasItsParts) {
   const SmallWorld world = small_world({.seed = 31, .scans = 60});
-  for (const auto association : {Association::known, Association::nearest}) {
-    const auto filter = make_ekf_slam(setup_of(ekf_slam_kind(), association, {}));
-    EXPECT_GT(expect_parts(*filter, world, false), 100);
-    const Eigen::Matrix3d P = filter->estimate().spread.covariance;
-    EXPECT_TRUE((filter->joint(kLandmarks)->covariance.topLeftCorner<3, 3>().isApprox(P, 1e-12)));
+  for (const FilterKind& kind : {ekf_slam_kind(), riekf_slam_kind(), smoother_kind()}) {
+    for (const auto association : {Association::known, Association::nearest}) {
+      for (const char* moments : {"map", "pushed"}) {
+        const auto filter = kind.make(setup_of(kind, association, {{"moments", moments}}));
+        EXPECT_GT(expect_parts(*filter, world, false), 100);
+        const Eigen::Matrix3d P = filter->estimate().spread.covariance;
+        const Eigen::MatrixXd joint = filter->joint(kLandmarks)->covariance;
+        EXPECT_TRUE((joint.topLeftCorner<3, 3>().isApprox(P, 1e-12))) << kind.name << moments;
+      }
+    }
   }
 }
 

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Each cell beside the study's cell of full smoothing: what it loses by linearising once.
+#include "analysis/metrics/metric.hpp"
+#include "analysis/metrics/paired_runs.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/output/number_text.hpp"
+#include "analysis/statistics/means.hpp"
+#include "analysis/statistics/t_quantile.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace montecarta::analysis {
+namespace {
+
+/// nullptr where the study has none, or nothing beside it.
+const CellAnalysis* smoother_of(const StudyAnalysis& study) {
+  const auto smooths = [](const CellAnalysis& cell) {
+    return cell.filter == "smoother" && cell.complete > 0;
+  };
+  const auto found = std::ranges::find_if(study.cells, smooths);
+  return found == study.cells.end() || study.cells.size() < 2 ? nullptr : &*found;
+}
+
+/// Root of the ratio of two mean squares, the smoother's by the cell's, of the runs that both
+/// completed, with its interval (STATISTICS 21).
+std::string efficiency_text(const CellAnalysis& cell, const CellAnalysis& smoother,
+                            const char* mean_square, double level) {
+  const PairedRuns runs = paired_runs(smoother, cell, *find_score(mean_square));
+  const double above = mean_of(runs.left), below = mean_of(runs.right);
+  if (!(below > 0.0) || !(above > 0.0)) return "-";
+  const double efficiency = std::sqrt(above / below);
+  if (runs.left.size() < 2) return readable(efficiency);
+  SummaryOf differences;  // of the half logarithm, to first order
+  for (std::size_t k = 0; k < runs.left.size(); ++k) {
+    differences.add(0.5 * (runs.left[k] / above - runs.right[k] / below));
+  }
+  const double half_width =
+      t_quantile(runs.left.size(), level) * differences.result().standard_error();
+  if (!(half_width > 0.0)) return readable(efficiency);  // the same estimates in every run
+  return with_interval(efficiency,
+                       {efficiency * std::exp(-half_width), efficiency * std::exp(half_width)});
+}
+
+std::vector<std::string> row_beside(const CellAnalysis& cell, const CellAnalysis& smoother,
+                                    double level) {
+  const auto cpu = [](const CellAnalysis& of) { return of.over_runs("cpu_seconds").mean; };
+  const auto is_judged = [](const CellAnalysis& of) {
+    return of.consistency().verdict != Verdict::untested;
+  };
+  return {cell.label, efficiency_text(cell, smoother, "position_mse", level),
+          efficiency_text(cell, smoother, "heading_mse", level),
+          is_judged(cell) && is_judged(smoother)
+              ? compact(cell.consistency().mean / smoother.consistency().mean)
+              : "-",
+          readable(cpu(cell) / cpu(smoother))};
+}
+
+std::vector<Section> smoother_sections(const StudyAnalysis& study) {
+  const CellAnalysis* smoother = smoother_of(study);
+  if (smoother == nullptr || !study.has_truth) return {};
+  TextTable table;
+  table.headings = {{"cell", Align::left},
+                    {"position RMSE, smoother's / own"},
+                    {"heading RMSE, smoother's / own"},
+                    {"ANEES / smoother's"},
+                    {"CPU / smoother's"}};
+  for (const CellAnalysis& cell : study.cells) {
+    if (&cell != smoother) table.rows.push_back(row_beside(cell, *smoother, study.level));
+  }
+  Section section{"smoother", "Against full smoothing"};
+  section.add("smoother", table);
+  section.add(
+      {"Efficiency against " + smoother->label +
+       ": its root mean square error by that of the cell, of the runs that both completed; "
+       "1 is as good as what linearises everything again and again. What is missing to 1 is "
+       "what the filter loses by linearising once, or by its particles."});
+  return {section};
+}
+
+}  // namespace
+
+Metric smoother_metric() { return {.sections = smoother_sections}; }
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/moments/control_motion.hpp"
+
+#include <string>
+#include <vector>
+
+namespace montecarta::filters {
+namespace {
+
+// In the order of the enumerators.
+const std::vector<std::string> kMotions{"linearised", "quadrature", "unbiased"};
+
+}  // namespace
+
+Option motion_option(const char* fallback) {
+  return choice_option(
+      "motion", fallback, kMotions,
+      "how noise of the control reaches the pose: by derivatives, averaged, or as the noise "
+      "of a measurement of the true control");
+}
+
+Motion motion_of(const FilterOptions& options) {
+  return chosen<Motion>(options.choice("motion"), kMotions);
+}
+
+MotionIncrement moved(const MotionIncrement& before, const Control& control, double duration,
+                      const Belief& belief, Motion motion) {
+  switch (motion) {
+    case Motion::quadrature:
+      return moved_by_quadrature(before, control, duration, belief);
+    case Motion::unbiased:
+      return moved_by_unbiased_controls(before, control, duration, belief);
+    case Motion::linearised:
+      break;
+  }
+  MotionIncrement after = before;
+  after.advance(control, duration, belief);
+  return after;
+}
+
+}  // namespace montecarta::filters

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/moments/motion_increment.hpp"
+#include "filters/setup/filter_options.hpp"
+
+namespace montecarta::filters {
+
+/// How the noise of a control reaches the pose (option `motion`).
+enum class Motion {
+  linearised,  ///< EQUATIONS 1
+  quadrature,  ///< moved_by_quadrature()
+  unbiased     ///< moved_by_unbiased_controls()
+};
+
+/// The option `motion` of a filter, and what a user chose.
+Option motion_option(const char* fallback);
+Motion motion_of(const FilterOptions& options);
+
+/// One control step of `duration` [s] whose control is a measurement of the true one, rather than
+/// what noise is added to: mean and covariance have no bias, given the true control (EQUATIONS 3).
+/// Where that is no covariance, as of a vehicle that is slower than the noise of its speed, pivots
+/// of its Cholesky factor that are negative count as zero.
+MotionIncrement moved_by_unbiased_controls(const MotionIncrement& before, const Control& control,
+                                           double duration, const Belief& belief);
+
+/// One control step of `duration` [s], as `motion` says.
+MotionIncrement moved(const MotionIncrement& before, const Control& control, double duration,
+                      const Belief& belief, Motion motion);
+
+}  // namespace montecarta::filters

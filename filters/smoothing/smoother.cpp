@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/smoothing/smoother.hpp"
+
+#include "filters/setup/filter_options.hpp"
+
+#include <algorithm>
+
+namespace montecarta::filters {
+namespace {
+
+/// A solution is settled where the next step is less than a hundredth of a standard deviation.
+constexpr double kTolerance = 1e-4;
+/// Solutions for the sake of landmarks in view are this share of all scans apart, or more: so the
+/// cost of all of them together is linear in the scans.
+constexpr double kSpacing = 0.02;
+
+}  // namespace
+
+Smoother::Smoother(const FilterSetup& setup)
+    : model_(setup.belief),
+      motion_kind_(motion_of(setup.options)),
+      share_(setup.options.number("relinearise")),
+      belief_(setup, Retraction::invariant, static_cast<int>(setup.options.integer("iterations")),
+              moments_of(setup.options)),
+      solver_(SensorNoise::of(setup.belief)) {}
+
+void Smoother::start(const Pose& start) {
+  belief_.start(start);
+  motion_.restart();
+  graph_.start(start);
+  estimate_.clear();
+  linearised_at_.clear();
+  solved_poses_ = 0;
+  report_ = {};
+}
+
+void Smoother::predict(const StepContext& /*context*/, const Control& control, double duration) {
+  motion_ = moved(motion_, control, duration, model_, motion_kind_);
+}
+
+void Smoother::update(const StepContext& /*context*/, Scan scan) {
+  belief_.update_with(motion_, scan);
+  tell();
+  belief_.initialise_landmarks(scan);
+  report_.map_size = static_cast<double>(belief_.gaussian().landmarks());
+  add_factors(scan);
+  motion_.restart();
+  if (is_due()) solve();
+}
+
+void Smoother::tell() {
+  report_ = {};
+  report_.log_likelihood = belief_.outcome().log_likelihood;
+  report_.numerical_faults = belief_.outcome().faults;
+  report_.association = belief_.association().counts();
+  for (const JointBelief::UsedDetection& used : belief_.used_detections()) {
+    if (const auto L = factor(used.covariance)) {
+      report_.nis += L->whiten(used.innovation).squaredNorm();
+      report_.nis_dof += static_cast<std::uint32_t>(components_of(model_.sensor).size());
+    }
+  }
+}
+
+void Smoother::add_factors(Scan scan) {
+  graph_.add_pose(motion_);
+  estimate_.add_pose(graph_, belief_.gaussian().pose().mean);
+  for (const JointBelief::UsedDetection& used : belief_.used_detections()) {
+    const std::uint32_t landmark = belief_.association().pairings()[used.detection].landmark;
+    graph_.add_observation(landmark, observation_of(scan[used.detection]));
+  }
+  for (std::size_t k = 0; k < scan.size(); ++k) {
+    if (belief_.association().pairings()[k].kind != PairingKind::fresh) continue;
+    const std::size_t landmark = graph_.landmarks();
+    const Eigen::Vector2d place = belief_.gaussian().landmark(landmark).mean;
+    graph_.add_observation(static_cast<std::uint32_t>(landmark), observation_of(scan[k]));
+    estimate_.add_landmark({place.x(), place.y()});
+    linearised_at_.push_back(place);
+  }
+}
+
+/// Landmarks in view settle by themselves and may wait; those that move unseen do so where a loop
+/// closes. Far ones (CompressedGaussian) move with those around the vehicle.
+bool Smoother::is_due() const {
+  const bool may_wait = static_cast<double>(graph_.poses() - solved_poses_) <
+                        kSpacing * static_cast<double>(graph_.poses());
+  const auto scan = graph_.observations_of(graph_.poses() - 1);
+  const auto is_seen = [&](std::size_t l) {
+    return std::ranges::find(scan, l, &FactorGraph::Observation::landmark) != scan.end();
+  };
+  for (std::size_t l = 0; l < linearised_at_.size(); ++l) {
+    if (belief_.gaussian().is_near(l) && has_moved(l) && !(may_wait && is_seen(l))) return true;
+  }
+  return false;
+}
+
+bool Smoother::has_moved(std::size_t landmark) const {
+  const LandmarkEstimate now = belief_.gaussian().landmark(landmark);
+  const auto L = factor(now.covariance);
+  return L && L->whiten(now.mean - linearised_at_[landmark]).norm() > share_;
+}
+
+void Smoother::solve() {
+  if (!solver_.solve(graph_, kTolerance, estimate_)) {
+    ++report_.numerical_faults;
+    return;
+  }
+  PoseMoments pose{estimate_.poses.back(), {}};
+  solver_.elimination().covariance(pose.covariance, map_);
+  for (std::size_t l = 0; l < estimate_.landmarks.size(); ++l) {
+    linearised_at_[l] = to_vector(estimate_.landmarks[l]);
+    map_.mean.segment<2>(row_of(l)) = linearised_at_[l];
+  }
+  belief_.replace(pose, map_);
+  solved_poses_ = graph_.poses();
+}
+
+PoseEstimate Smoother::estimate() const { return {belief_.pose_after(motion_), std::nullopt}; }
+
+void Smoother::map(std::span<std::optional<LandmarkEstimate>> landmarks) const {
+  for (std::size_t k = 0; k < landmarks.size(); ++k) landmarks[k] = belief_.landmark(k);
+}
+
+std::optional<JointEstimate> Smoother::joint(std::size_t landmarks) const {
+  return belief_.joint(landmarks);
+}
+
+FilterKind smoother_kind() {
+  return {.name = "smoother",
+          .long_name = "full smoothing",
+          .source = "Dellaert, Kaess 2006; EQUATIONS 21",
+          .has_particles = false,
+          .has_mixture = false,
+          .has_joint = true,
+          .options = {number_option("relinearise", "0.5", 0, 1e9,
+                                    "standard deviations that a landmark may move before all is "
+                                    "linearised again; 0: however little"),
+                      count_option("iterations", "5", 0, 100,
+                                   "times a detection is linearised again between two solutions"),
+                      motion_option("quadrature"), moments_option("pushed")},
+          .sensors = {RangeBearingSensor::kName},
+          .make = [](const FilterSetup& setup) { return std::make_unique<Smoother>(setup); }};
+}
+
+}  // namespace montecarta::filters

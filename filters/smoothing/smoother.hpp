@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/core/slam_filter.hpp"
+#include "filters/joint/joint_belief.hpp"
+#include "filters/moments/control_motion.hpp"
+#include "filters/smoothing/gauss_newton.hpp"
+
+#include <vector>
+
+namespace montecarta::filters {
+
+/// Full smoothing (EQUATIONS 21): keeps all poses at scans and all landmarks, and linearises what
+/// was measured again where the estimate has moved. While a linearisation stands, the newest pose
+/// and the map, all else integrated out, are a Gaussian that the joint filter carries from scan to
+/// scan; so a scan between two solutions costs what EKF-SLAM costs.
+class Smoother final : public SlamFilter {
+ public:
+  explicit Smoother(const FilterSetup& setup);
+
+  void start(const Pose& start) override;
+  void predict(const StepContext& context, const Control& control, double duration) override;
+  void update(const StepContext& context, Scan scan) override;
+  PoseEstimate estimate() const override;
+  const ScanReport& report() const override { return report_; }
+  void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override;
+  std::optional<JointEstimate> joint(std::size_t landmarks) const override;
+
+ private:
+  void add_factors(Scan scan);
+  void tell();
+  bool is_due() const;
+  bool has_moved(std::size_t landmark) const;
+  void solve();
+
+  Belief model_;
+  Motion motion_kind_;
+  double share_;  ///< of a standard deviation that an estimate may move
+  JointBelief belief_;
+  MotionIncrement motion_;  ///< since the last scan
+  FactorGraph graph_;
+  GraphEstimate estimate_;
+  GaussNewton solver_;
+  std::vector<Eigen::Vector2d> linearised_at_;  ///< {landmark} [m]
+  std::size_t solved_poses_ = 0;                ///< at the last solution
+  MapMoments map_;                              ///< scratch
+  ScanReport report_;
+};
+
+/// Its line in the table of filters.
+FilterKind smoother_kind();
+
+}  // namespace montecarta::filters

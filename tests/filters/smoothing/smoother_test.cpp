@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/smoothing/smoother.hpp"
+
+#include "filters/joint/joint_filters.hpp"
+#include "tests/filters/default_options.hpp"
+#include "tests/filters/fine_noise.hpp"
+#include "tests/filters/same_runs.hpp"
+#include "tests/filters/smoothing/small_graph.hpp"
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+namespace montecarta::filters {
+namespace {
+
+using Others = std::map<std::string, std::string, std::less<>>;
+
+std::unique_ptr<SlamFilter> make(const FilterKind& kind, const SmallWorldSettings& settings,
+                                 const Others& others = {}) {
+  return kind.make({.belief = settings.noise,
+                    .association = {},
+                    .options = default_options(kind, others),
+                    .landmarks = settings.landmarks});
+}
+
+TEST(Smoother, IsTheIteratedInvariantFilterWhereItNeverLinearisesAgain) {
+  const SmallWorldSettings settings{.seed = 44, .scans = 120};
+  const SmallWorld world = small_world(settings);
+  const auto smoother =
+      make(smoother_kind(), settings, {{"relinearise", "1e9"}, {"moments", "map"}});
+  const auto filter =
+      make(riekf_slam_kind(), settings, {{"iterations", "5"}, {"motion", "quadrature"}});
+  expect_same_run(*smoother, *filter, world, 1e-12);
+}
+
+TEST(Smoother, LinearisingAtEveryScanIsTheBatchEstimate) {
+  const SmallWorldSettings settings{.seed = 45, .scans = 80};
+  const SmallWorld world = small_world(settings);
+  const auto smoother = make(smoother_kind(), settings, {{"relinearise", "0"}, {"moments", "map"}});
+  drive_through(*smoother, world, {}, [](std::size_t) {});
+  SmallGraph batch = small_graph(world, settings.noise, Beginning::truth);
+  GaussNewton solver(SensorNoise::of(settings.noise));
+  ASSERT_TRUE(solver.solve(batch.graph, 1e-12, batch.estimate));
+  // Settled is a hundredth of a standard deviation, and here these are less than 0.3 m.
+  const PoseMoments now = smoother->estimate().spread;
+  EXPECT_LT(boxminus(now.mean, batch.estimate.poses.back()).norm(), 1e-4);
+  std::vector<std::optional<LandmarkEstimate>> map(settings.landmarks);
+  smoother->map(map);
+  for (std::size_t l = 0; l < batch.identities.size(); ++l) {
+    const auto& landmark = map[static_cast<std::size_t>(batch.identities[l])];
+    ASSERT_TRUE(landmark);
+    EXPECT_LT((landmark->mean - to_vector(batch.estimate.landmarks[l])).norm(), 1e-4);
+  }
+}
+
+// With noise so fine that all models are linear it is the Kalman filter, by way of all poses.
+TEST(Smoother, IsTheKalmanFilterOnALinearModel) {
+  SmallWorldSettings settings{.seed = 46, .scans = 60};
+  settings.noise = fine();
+  const SmallWorld world = small_world(settings);
+  const auto smoother = make(smoother_kind(), settings, {{"relinearise", "0"}});
+  const auto kalman = make(ekf_slam_kind(), settings);
+  std::vector<PoseMoments> expected;
+  drive_through(*kalman, world, {},
+                [&](std::size_t) { expected.push_back(kalman->estimate().spread); });
+  drive_through(*smoother, world, {}, [&](std::size_t scan) {
+    const PoseMoments now = smoother->estimate().spread;
+    const Eigen::LLT<Eigen::Matrix3d> L(expected[scan].covariance);
+    const Eigen::Vector3d way = boxminus(now.mean, expected[scan].mean);
+    EXPECT_LT(L.matrixL().solve(way).norm(), 0.02) << "scan " << scan;
+    EXPECT_TRUE(now.covariance.isApprox(expected[scan].covariance, 1e-3)) << "scan " << scan;
+  });
+}
+
+}  // namespace
+}  // namespace montecarta::filters
