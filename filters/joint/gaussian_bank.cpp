@@ -37,7 +37,7 @@ void GaussianBank::start(const Pose& start) {
 void GaussianBank::predict(const StepContext& /*context*/, const Control& control,
                            double duration) {
   settle();
-  motion_ = moved(motion_, control, duration, belief_, settings_.motion);
+  advance(motion_, control, duration, belief_, settings_.motion);
 }
 
 void GaussianBank::update(const StepContext& context, Scan scan) {

@@ -101,8 +101,8 @@ void JointBelief::initialise_landmarks(Scan scan, std::span<const char> advancin
 }
 
 PoseMoments JointBelief::pose_after(const MotionIncrement& motion) const {
-  const PoseMoments pose = gaussian_.pose_after(motion);
-  return moments_ == Moments::pushed ? pushed(pose) : pose;
+  if (moments_ == Moments::map) return gaussian_.pose_after(motion);
+  return pushed(gaussian_.pose_after(motion));
 }
 
 std::optional<LandmarkEstimate> JointBelief::landmark(std::size_t k) const {

@@ -23,19 +23,19 @@ Motion motion_of(const FilterOptions& options) {
   return chosen<Motion>(options.choice("motion"), kMotions);
 }
 
-MotionIncrement moved(const MotionIncrement& before, const Control& control, double duration,
-                      const Belief& belief, Motion motion) {
+void advance(MotionIncrement& increment, const Control& control, double duration,
+             const Belief& belief, Motion motion) {
   switch (motion) {
-    case Motion::quadrature:
-      return moved_by_quadrature(before, control, duration, belief);
-    case Motion::unbiased:
-      return moved_by_unbiased_controls(before, control, duration, belief);
     case Motion::linearised:
+      increment.advance(control, duration, belief);
+      break;
+    case Motion::quadrature:
+      increment = moved_by_quadrature(increment, control, duration, belief);
+      break;
+    case Motion::unbiased:
+      increment = moved_by_unbiased_controls(increment, control, duration, belief);
       break;
   }
-  MotionIncrement after = before;
-  after.advance(control, duration, belief);
-  return after;
 }
 
 }  // namespace montecarta::filters

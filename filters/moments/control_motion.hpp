@@ -24,8 +24,8 @@ Motion motion_of(const FilterOptions& options);
 MotionIncrement moved_by_unbiased_controls(const MotionIncrement& before, const Control& control,
                                            double duration, const Belief& belief);
 
-/// One control step of `duration` [s], as `motion` says.
-MotionIncrement moved(const MotionIncrement& before, const Control& control, double duration,
-                      const Belief& belief, Motion motion);
+/// Adds one control step of `duration` [s], as `motion` says.
+void advance(MotionIncrement& increment, const Control& control, double duration,
+             const Belief& belief, Motion motion);
 
 }  // namespace montecarta::filters

@@ -35,7 +35,7 @@ void Smoother::start(const Pose& start) {
 }
 
 void Smoother::predict(const StepContext& /*context*/, const Control& control, double duration) {
-  motion_ = moved(motion_, control, duration, model_, motion_kind_);
+  advance(motion_, control, duration, model_, motion_kind_);
 }
 
 void Smoother::update(const StepContext& /*context*/, Scan scan) {

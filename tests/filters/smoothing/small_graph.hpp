@@ -26,8 +26,8 @@ inline SmallGraph small_graph(const SmallWorld& world, const Belief& belief, Beg
   MotionIncrement motion;
   Pose at = world.itinerary.start;
   for (std::size_t step = 0, scan = 0; step < world.itinerary.steps(); ++step) {
-    motion = moved(motion, world.drive.controls[step], world.itinerary.duration(step), belief,
-                   Motion::quadrature);
+    advance(motion, world.drive.controls[step], world.itinerary.duration(step), belief,
+            Motion::quadrature);
     if (world.itinerary.scan_step[scan] != step) continue;
     small.graph.add_pose(motion);
     at = beginning == Beginning::truth ? world.drive.truth[step] : composed(at, motion.pose());
