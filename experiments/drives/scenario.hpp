@@ -17,6 +17,12 @@ enum class NoiseMode {
   matched,           ///< the truth obeys a noisy control; the filter is given the nominal one
 };
 
+/// What a simulated vehicle steers by, where noise moves the truth (EQUATIONS 1).
+enum class Pilot {
+  closed_loop,  ///< its true pose: controls tell of the truth
+  open_loop     ///< nothing: the controls of the noise-free drive
+};
+
 /// Where landmarks stand.
 enum class MapPlacement {
   fixed,  ///< where the world has them, in every run
@@ -26,6 +32,7 @@ enum class MapPlacement {
 /// How a simulated vehicle drives through a world and what it sees (study file: [scenario]).
 struct Scenario {
   NoiseMode noise = NoiseMode::measured_control;
+  Pilot pilot = Pilot::closed_loop;
   MapPlacement map = MapPlacement::fixed;
   double map_shift = 10.0;           ///< [m] greatest displacement of a landmark of a random map
   std::uint32_t loops = 1;           ///< times round the way-points

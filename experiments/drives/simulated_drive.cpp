@@ -137,11 +137,12 @@ void SimulatedDrive::generate_measured(std::uint64_t run, Drive& drive) const {
 }
 
 void SimulatedDrive::generate_matched(std::uint64_t run, Landmarks landmarks, Drive& drive) const {
+  const bool is_open = scenario_.pilot == Pilot::open_loop;
   WaypointPilot pilot(world_.waypoints, scenario_);
   Pose pose = scenario_.start;
   for (std::size_t k = 0; k < itinerary_.steps(); ++k) {
     pilot.look_ahead(pose);
-    drive.controls[k] = pilot.steer(pose);
+    drive.controls[k] = is_open ? nominal_[k] : pilot.steer(pose);
     pose = move(pose, noisy(drive.controls[k], run, k), 1.0 / scenario_.control_rate,
                 scenario_.vehicle);
     drive.truth[k] = pose;

@@ -75,17 +75,10 @@ void take_word(const std::string& word, const FilterKind& filter, CellSpec& cell
   }
 }
 
-/// Every cell once for each value that the line lists for an option, or with its default.
+/// Every cell once for each of `values`.
 template <class Take>
-void multiply(const Option& option, const Lists& lists, const Take& take,
+void multiply(const std::vector<std::string>& values, const Take& take,
               std::vector<CellSpec>& cells) {
-  const auto given = lists.find(option.key);
-  std::vector<std::string> values;
-  if (given == lists.end()) {
-    values = {checked_value(option, option.fallback.value_or(""), cells.front().place)};
-  } else {
-    values = given->second;
-  }
   std::vector<CellSpec> longer;
   for (const CellSpec& cell : cells) {
     for (const std::string& value : values) {
@@ -96,20 +89,27 @@ void multiply(const Option& option, const Lists& lists, const Take& take,
   cells = std::move(longer);
 }
 
-/// All combinations, the last option varying fastest.
-std::vector<CellSpec> combinations(const CellSpec& line, const Lists& lists) {
+/// All combinations, the last option varying fastest; one that the line leaves out has its default.
+std::vector<CellSpec> combinations(const CellSpec& line, const Lists& lists,
+                                   bool controls_are_measured) {
   std::vector<CellSpec> cells{line};
+  const auto values_of = [&](const Option& option) {
+    if (const auto given = lists.find(option.key); given != lists.end()) return given->second;
+    const bool has_own = controls_are_measured && option.fallback_if_measured;
+    const auto& fallback = has_own ? option.fallback_if_measured : option.fallback;
+    return std::vector{checked_value(option, fallback.value_or(""), line.place)};
+  };
   for (const Option& option : line.filter->options) {
     const auto take = [&](CellSpec& cell, const std::string& value) {
       cell.options.emplace_back(option.key, value);
     };
-    multiply(option, lists, take, cells);
+    multiply(values_of(option), take, cells);
   }
   for (const Option& option : mismatch_options()) {
     const auto take = [&](CellSpec& cell, const std::string& value) {
       if (value != *option.fallback) cell.mismatch.emplace_back(option.key, value);
     };
-    multiply(option, lists, take, cells);
+    multiply(values_of(option), take, cells);
   }
   return cells;
 }
@@ -123,7 +123,8 @@ std::vector<std::string> words_in(const IniEntry& entry) {
   }
 }
 
-std::vector<CellSpec> read_line(const IniEntry& entry, std::span<const FilterKind> filters) {
+std::vector<CellSpec> read_line(const IniEntry& entry, std::span<const FilterKind> filters,
+                                bool controls_are_measured) {
   const std::vector<std::string> words = words_in(entry);
   if (words.empty()) {
     throw StudyError(entry.place +
@@ -137,7 +138,7 @@ std::vector<CellSpec> read_line(const IniEntry& entry, std::span<const FilterKin
                 .place = entry.place};
   Lists lists;
   for (std::size_t i = 1; i < words.size(); ++i) take_word(words[i], *line.filter, line, lists);
-  std::vector<CellSpec> cells = combinations(line, lists);
+  std::vector<CellSpec> cells = combinations(line, lists, controls_are_measured);
   if (!line.label.empty() && cells.size() > 1) {
     throw StudyError(entry.place + ": one label for " + std::to_string(cells.size()) +
                      " cells (labels are unique): remove label or the lists");
@@ -158,7 +159,7 @@ void refuse_equal_labels(const std::vector<CellSpec>& cells) {
 }  // namespace
 
 std::vector<CellSpec> read_cells(std::span<const IniEntry> entries, const std::string& name,
-                                 std::span<const FilterKind> filters) {
+                                 std::span<const FilterKind> filters, bool controls_are_measured) {
   std::vector<CellSpec> cells;
   for (const IniEntry& entry : entries) {
     if (entry.section != "cells") continue;
@@ -166,7 +167,8 @@ std::vector<CellSpec> read_cells(std::span<const IniEntry> entries, const std::s
       throw StudyError(entry.place + ": unknown key cells." + entry.key +
                        " (a cell is cell = FILTER key=value ...): did you mean cell?");
     }
-    for (CellSpec& cell : read_line(entry, filters)) cells.push_back(std::move(cell));
+    for (CellSpec& cell : read_line(entry, filters, controls_are_measured))
+      cells.push_back(std::move(cell));
   }
   if (cells.empty()) {
     throw StudyError(name + ": no cells (nothing to run): add [cells] with e.g. cell = ekf_slam");

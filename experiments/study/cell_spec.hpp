@@ -33,9 +33,10 @@ double mismatch_of(const CellSpec& cell, std::string_view name);
 
 /// The cells of all `cell = FILTER key=value,... label=NAME` lines: one for every combination of
 /// listed values; a value that is a text is no list and stands in quotes where it holds blanks.
+/// What a line leaves out has its default, which may be another where `controls_are_measured`.
 /// Throws StudyError at unknown filters, options and values, and where two cells are the same.
 std::vector<CellSpec> read_cells(std::span<const IniEntry> entries, const std::string& name,
-                                 std::span<const FilterKind> filters);
+                                 std::span<const FilterKind> filters, bool controls_are_measured);
 
 /// Gives every cell a label made of what distinguishes it, unless it has one.
 void label_cells(std::vector<CellSpec>& cells);

@@ -41,6 +41,7 @@ Scenario scenario_of(const Settings& s) {
   const char* in = "scenario";
   scenario.noise =
       s.text(in, "noise") == "matched" ? NoiseMode::matched : NoiseMode::measured_control;
+  if (s.has(in, "pilot") && s.text(in, "pilot") == "open_loop") scenario.pilot = Pilot::open_loop;
   scenario.map = s.text(in, "map") == "random" ? MapPlacement::random : MapPlacement::fixed;
   scenario.map_shift = s.number(in, "map_shift");
   scenario.loops = static_cast<std::uint32_t>(s.count(in, "loops"));

@@ -44,6 +44,11 @@ void add_drive(std::vector<Setting>& table) {
   add(count(s, "loops", "1", 1, 10'000, "times round the way-points"));
   add(choice(s, "noise", {"measured-control", "matched"},
              "noise on the controls the filter is given, or on the truth's motion (EQUATIONS 1)"));
+  Setting pilot = choice(s, "pilot", {"closed_loop", "open_loop"},
+                         "steers by the true pose, or takes the controls of the noise-free drive");
+  pilot.chooser = "noise";
+  pilot.chosen = {"matched"};
+  add(quiet(pilot));
   add(choice(s, "map", {"fixed", "random"},
              "landmarks where the world has them, or displaced anew in every run"));
   add(number(s, "map_shift", "m", "10", 0, 1e4, "farthest that a random map displaces one"));

@@ -22,8 +22,8 @@ struct Setting : Option {
   std::string section = {};
   /// Kinds of scenario (scenario.kind) that it says something of; empty: all.
   std::vector<std::string> kinds = {};
-  /// "vehicle" or "sensor": the setting of the same section that decides whether this one says
-  /// something, by which of its values; empty: always.
+  /// "vehicle", "sensor" or "noise": the setting of the same section that decides whether this one
+  /// says something, by which of its values; empty: always.
   std::string chooser = {};
   std::vector<std::string> chosen = {};
   /// (kind of scenario, its fallback) where that differs. kFromScenario: the scenario's value of

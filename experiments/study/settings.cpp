@@ -113,7 +113,7 @@ const Settings::Value& Settings::at(std::string_view section, std::string_view k
   return found->second;
 }
 
-/// Vehicle and sensor of a section come before what depends on them.
+/// What chooses comes before what depends on it.
 bool Settings::is_for_choice(const Setting& setting) const {
   return setting.chooser.empty() || setting.is_for_choice(text(setting.section, setting.chooser));
 }

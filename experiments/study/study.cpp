@@ -92,12 +92,12 @@ Study parse_study(const std::string& text, const std::string& name,
   IniText ini = read_ini(text, name);
   apply(overrides, ini);
   refuse_unknown_sections(ini);
-  Study study{Settings(ini.entries, name),
-              read_cells(ini.entries, name, known_filters()),
-              {},
-              {},
-              {},
-              {},
+  const Settings settings(ini.entries, name);
+  const bool controls_are_measured = settings.scenario_kind() == "simulated" &&
+                                     settings.text("scenario", "noise") == "measured-control";
+  Study study{settings, read_cells(ini.entries, name, known_filters(), controls_are_measured),
+              {},       {},
+              {},       {},
               {}};
   study.printed = read_printed(ini.entries, study.cells);
   if (study.settings.scenario_kind() == "simulated") {

@@ -63,7 +63,7 @@ FilterKind ekf_slam_kind() {
           .has_particles = false,
           .has_mixture = false,
           .has_joint = true,
-          .options = {iterations_option("0"), motion_option("linearised"), moments_option("map")},
+          .options = {iterations_option("0"), linearised_motion_option(), moments_option("map")},
           .sensors = {},
           .delays_initialisation = true,
           .make = make_ekf_slam};
@@ -76,7 +76,7 @@ FilterKind riekf_slam_kind() {
           .has_particles = false,
           .has_mixture = false,
           .has_joint = true,
-          .options = {iterations_option("0"), motion_option("linearised"), moments_option("map")},
+          .options = {iterations_option("0"), linearised_motion_option(), moments_option("map")},
           .sensors = {},
           .delays_initialisation = true,
           .make = make_riekf_slam};
@@ -94,7 +94,7 @@ FilterKind hrb_kind() {
                      "share of the heading's standard deviation that a draw leaves; 0: none"),
        choice_option("error", "invariant", kErrors,
                      "what the covariance is of: additive (EKF-SLAM) or invariant (RI-EKF-SLAM)"),
-       iterations_option("5"), motion_option("quadrature"), moments_option("map")});
+       iterations_option("5"), fitting_motion_option(), moments_option("map")});
   return {.name = "hrb",
           .long_name = "heading-split bank",
           .source = "EQUATIONS 16",

@@ -10,13 +10,21 @@ namespace {
 // In the order of the enumerators.
 const std::vector<std::string> kMotions{"linearised", "quadrature", "unbiased"};
 
-}  // namespace
-
 Option motion_option(const char* fallback) {
   return choice_option(
       "motion", fallback, kMotions,
       "how noise of the control reaches the pose: by derivatives, averaged, or as the noise "
       "of a measurement of the true control");
+}
+
+}  // namespace
+
+Option linearised_motion_option() { return motion_option("linearised"); }
+
+Option fitting_motion_option() {
+  Option option = motion_option("quadrature");
+  option.fallback_if_measured = "unbiased";
+  return option;
 }
 
 Motion motion_of(const FilterOptions& options) {

@@ -13,8 +13,11 @@ enum class Motion {
   unbiased     ///< moved_by_unbiased_controls()
 };
 
-/// The option `motion` of a filter, and what a user chose.
-Option motion_option(const char* fallback);
+/// The option `motion` of a filter, whose default is textbook linearisation whatever the noise is,
+/// or what fits the noise: quadrature, or unbiased where controls were measured.
+Option linearised_motion_option();
+Option fitting_motion_option();
+/// What a user chose.
 Motion motion_of(const FilterOptions& options);
 
 /// One control step of `duration` [s] whose control is a measurement of the true one, rather than

@@ -39,6 +39,9 @@ struct Option {
   /// Left out of the resolved text where it and, for a belief, the scenario have the default: so
   /// that the text of studies that are older than the option stays.
   bool is_quiet = false;
+  /// The default of a filter's option where its controls are noisy measurements of the true ones
+  /// (scenario.noise = measured-control), if that differs.
+  std::optional<std::string> fallback_if_measured = {};
 };
 
 inline Option number_option(const char* key, const char* fallback, double least, double most,

@@ -136,7 +136,7 @@ FilterKind smoother_kind() {
                                     "linearised again; 0: however little"),
                       count_option("iterations", "5", 0, 100,
                                    "times a detection is linearised again between two solutions"),
-                      motion_option("quadrature"), moments_option("pushed")},
+                      fitting_motion_option(), moments_option("pushed")},
           .sensors = {RangeBearingSensor::kName},
           .make = [](const FilterSetup& setup) { return std::make_unique<Smoother>(setup); }};
 }

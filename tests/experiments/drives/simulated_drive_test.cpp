@@ -149,6 +149,28 @@ TEST(SimulatedDrive, MovesTheTruthByTheNoiseWhereMatched) {
             SimulatedDrive(find_world("web_loop"), Scenario{}, 9).itinerary().steps());
 }
 
+TEST(SimulatedDrive, OpenLoopControlsTellNothingOfTheTruth) {
+  const auto drive_with = [](Pilot pilot, double sigma, std::uint64_t run) {
+    const Scenario scenario{.noise = NoiseMode::matched,
+                            .pilot = pilot,
+                            .control = {.sigma = {sigma, sigma}},
+                            .sigma_range = 0.0};
+    return drive_of(SimulatedDrive(find_world("web_loop"), scenario, 9), run);
+  };
+  const auto has_controls_of = [](const Drive& a, const Drive& b) {
+    return std::ranges::equal(a.controls, b.controls, [](const Control& x, const Control& y) {
+      return x[0] == y[0] && x[1] == y[1];
+    });
+  };
+  const Drive nominal = drive_with(Pilot::closed_loop, 0.0, 0);
+  const Drive first = drive_with(Pilot::open_loop, 0.05, 0);
+  const Drive second = drive_with(Pilot::open_loop, 0.05, 1);
+  EXPECT_TRUE(has_controls_of(first, nominal));
+  EXPECT_TRUE(has_controls_of(second, nominal));
+  EXPECT_FALSE(has_controls_of(drive_with(Pilot::closed_loop, 0.05, 0), nominal));
+  EXPECT_GT(boxminus(first.truth.back(), second.truth.back()).norm(), 0.1);
+}
+
 TEST(SimulatedDrive, TurnsWithTheWorld) {
   const double turn = 1.1;
   const Eigen::Vector2d shift(40.0, -7.0);

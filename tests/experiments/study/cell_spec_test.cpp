@@ -37,11 +37,12 @@ std::vector<FilterKind> paper_filters() {
 }
 
 std::vector<CellSpec> cells_of(const std::vector<FilterKind>& filters,
-                               const std::vector<std::string>& lines) {
+                               const std::vector<std::string>& lines,
+                               bool controls_are_measured = false) {
   std::vector<IniEntry> entries;
   for (const std::string& line : lines)
     entries.push_back({"cells", "cell", line, "x.ini:" + std::to_string(entries.size() + 1)});
-  return read_cells(entries, "x.ini", filters);
+  return read_cells(entries, "x.ini", filters, controls_are_measured);
 }
 
 std::vector<std::string> labels_of(const std::vector<std::string>& lines) {
@@ -58,6 +59,19 @@ std::string complaint_about(const std::string& line) {
     return error.what();
   }
   return "nothing";
+}
+
+TEST(Cells, TakeAnotherDefaultWhereControlsAreMeasured) {
+  auto filters = paper_filters();
+  Option& option = filters.back().options.back();
+  option.fallback_if_measured = option.choices.back();
+  const auto value_of = [&](const std::string& line, bool measured) {
+    return cells_of(filters, {line}, measured).at(0).options.back().second;
+  };
+  const std::string plain = filters.back().name;
+  EXPECT_EQ(value_of(plain, false), *option.fallback);
+  EXPECT_EQ(value_of(plain, true), option.choices.back());
+  EXPECT_EQ(value_of(plain + " " + option.key + "=" + *option.fallback, true), *option.fallback);
 }
 
 TEST(Cells, AreLabelledByWhatDistinguishesThem) {

@@ -61,6 +61,14 @@ TEST(VehicleStudy, WhatIsOfAnotherVehicleIsRefused) {
               HasSubstr("belief.sigma_steer_deg says nothing of a vehicle differential_drive"));
 }
 
+TEST(VehicleStudy, ThePilotIsOfMatchedNoise) {
+  EXPECT_THAT(complaint(kRobot, {"scenario.noise=measured-control", "scenario.pilot=open_loop"}),
+              HasSubstr("scenario.pilot says nothing of a noise measured-control"));
+  const Study study = parsed(kRobot, {"scenario.noise=matched", "scenario.pilot=open_loop"});
+  EXPECT_EQ(study.settings.text("scenario", "pilot"), "open_loop");
+  EXPECT_THAT(resolved_text(study), HasSubstr("pilot = open_loop\n"));
+}
+
 TEST(VehicleStudy, AFilterThatBelievesInOtherControlsIsRefused) {
   const auto plan = [](const Study& study) {
     return complaint_of([&] { make_plan(study, std::nullopt, ExternalPrograms::refused); });
