@@ -35,7 +35,7 @@ class BlockedCholesky {
   Eigen::Index rows() const { return n_; }
 
   /// b <- A^-1 b.
-  void solve_in_place(Eigen::Ref<Eigen::VectorXd> b) const {
+  void solve_in_place(Eigen::VectorXd& b) const {
     const auto L = L_.topLeftCorner(n_, n_).triangularView<Eigen::Lower>();
     L.solveInPlace(b);
     L.transpose().solveInPlace(b);

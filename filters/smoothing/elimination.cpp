@@ -8,7 +8,6 @@
 #include <Eigen/LU>
 
 #include <algorithm>
-#include <ranges>
 
 namespace montecarta::filters {
 namespace {
@@ -174,7 +173,8 @@ void Elimination::filter_links() {
 
 void Elimination::smooth_links() {
   Eigen::Vector3d adjoint = Eigen::Vector3d::Zero();
-  for (Link& link : std::views::reverse(links())) {
+  for (std::size_t i = n_links_; i-- > 0;) {
+    Link& link = links_[i];
     link.adjoint = adjoint;
     adjoint = link.segment.given().middleRows<3>(Segment::kPoseRow) * adjoint;
     link.smoothed = link.filtered + link.covariance * adjoint;
