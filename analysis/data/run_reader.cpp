@@ -172,6 +172,7 @@ void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
   read_scans("nis_dof", 1, i, rows.nis_dof);
   read_path(i, rows.path);
   read_scans("map_size", 1, i, rows.map_size);
+  read_scans("rotation_information", 1, i, rows.rotation_information);
   read_final_map(i, rows, scratch);
   read_cloud(i, rows.cloud, scratch);
   read_whole("joint_mean", i, rows.joint.mean);

@@ -89,7 +89,8 @@ struct RunRows {
   std::vector<double> path;      ///< {row, 3} [m, m, rad] leading mean, also between scans; only
                                  ///< where the drive has references
   std::vector<double> map_size;  ///< {scan} landmarks in the map
-  std::optional<FinalMap> final_map;  ///< at the last scan, if stored and whole
+  std::vector<double> rotation_information;  ///< [1/rad^2] {scan}; empty where not stored
+  std::optional<FinalMap> final_map;         ///< at the last scan, if stored and whole
   CloudRows cloud;
   JointRows joint;
   ErrorRows error;                         ///< of imported estimates: what NEES is made of

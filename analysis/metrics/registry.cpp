@@ -25,6 +25,7 @@ Metric beacons_metric();
 Metric bound_metric();
 Metric map_metric();
 Metric joint_nees_metric();
+Metric observability_metric();
 Metric error_anatomy_metric();
 Metric survival_metric();
 Metric innovations_metric();
@@ -43,7 +44,7 @@ std::span<const Metric> all_metrics() {
       joint_nees_metric(),       error_anatomy_metric(), survival_metric(),
       innovations_metric(),      diversity_metric(),     calibration_metric(),
       mismatch_metric(),         cost_metric(),          nees_batches_metric(),
-      convention_hints_metric(), smoother_metric()};
+      convention_hints_metric(), smoother_metric(),      observability_metric()};
   return all;
 }
 

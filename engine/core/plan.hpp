@@ -29,6 +29,7 @@ struct ColumnSelection {
   bool map = false;          ///< map_mean, map_covariance, map_seen, at every scan
   bool final_map = false;    ///< final_map_mean, final_map_covariance, final_map_seen, at the last
   bool joint = false;        ///< joint_mean, joint_covariance of filters that have a joint estimate
+  bool observability = false;    ///< rotation_information of filters that tell it
   std::size_t joint_scans = 16;  ///< record.joint_scans: at so many scans (joint_scans_of())
   bool scans_only = false;       ///< record.rate = scan: rows of `time` only where a scan was taken
 };
@@ -36,12 +37,13 @@ struct ColumnSelection {
 /// One filter in one setting, repeated in runs: one curve of a figure.
 struct Cell {
   std::string label;  ///< unique in the study, made of what distinguishes it, e.g. "fastslam2_m100"
-  std::string filter;         ///< name as users type it, e.g. "fastslam2"
-  std::string long_name;      ///< e.g. "FastSLAM II, 100 particles"
-  std::size_t particles = 0;  ///< 0: not a particle filter
-  bool mixture = false;       ///< whether estimate() has a mixture between sampling
-  bool joint = false;         ///< whether joint() gives anything
-  std::size_t landmarks = 0;  ///< how many rows the map columns have
+  std::string filter;                 ///< name as users type it, e.g. "fastslam2"
+  std::string long_name;              ///< e.g. "FastSLAM II, 100 particles"
+  std::size_t particles = 0;          ///< 0: not a particle filter
+  bool mixture = false;               ///< whether estimate() has a mixture between sampling
+  bool joint = false;                 ///< whether joint() gives anything
+  bool rotation_information = false;  ///< whether ScanReport has it
+  std::size_t landmarks = 0;          ///< how many rows the map columns have
   /// Components of the error that is stored of an estimate of another program; 0: a filter of ours.
   std::size_t error_components = 0;
   bool innovations = true;  ///< of such an estimate: whether its NIS is stored too

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -52,6 +53,9 @@ struct ScanReport {
       0;  ///< factorisations that failed and were answered by a fallback
   AssociationCounts association = {};
   double map_size = 0.0;  ///< landmarks in the map; mean over the weighted particles
+  /// [1/rad^2] what all detections since the start are taken to tell of the heading of the whole,
+  /// which nobody can observe (EQUATIONS (15.11)); NaN of a filter that does not say.
+  double rotation_information = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Where a filter writes its particles; an empty span means that nobody wants that column.

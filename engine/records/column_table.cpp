@@ -18,12 +18,14 @@ constexpr ColumnGroup kGroups[] = {{"pose", nullptr},
                                    {"association", &ColumnSelection::association},
                                    {"map", &ColumnSelection::map},
                                    {"final_map", &ColumnSelection::final_map},
-                                   {"joint", &ColumnSelection::joint}};
+                                   {"joint", &ColumnSelection::joint},
+                                   {"observability", &ColumnSelection::observability}};
 
 bool has_mixture(const Cell& cell) { return cell.mixture; }
 bool has_particles(const Cell& cell) { return cell.particles > 0; }
 bool has_map(const Cell& cell) { return cell.landmarks > 0; }
 bool has_joint(const Cell& cell) { return cell.joint; }
+bool has_rotation_information(const Cell& cell) { return cell.rotation_information; }
 bool has_pose(const Cell& cell) { return cell.poses; }
 bool is_imported(const Cell& cell) { return cell.error_components > 0; }
 bool has_conventions(const Cell& cell) { return is_imported(cell) && cell.several_conventions; }
@@ -129,7 +131,15 @@ std::vector<ColumnKind> make_table() {
       column("joint_mean", "joint", f64, {joint, state}, "m, m, rad, m",
              "estimated pose and landmarks together", has_joint),
       column("joint_covariance", "joint", f64, {joint, state, state_column}, "(m, m, rad, m)^2",
-             "covariance of the pose and all landmarks together", has_joint)};
+             "covariance of the pose and all landmarks together", has_joint),
+      {"rotation_information",
+       "observability",
+       f64,
+       {scan},
+       "rad-2",
+       "information about the heading of the whole that detections since the start are taken for",
+       has_rotation_information,
+       [](Report r) { return r.rotation_information; }}};
 }
 
 }  // namespace

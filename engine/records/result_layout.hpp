@@ -13,7 +13,7 @@ namespace montecarta::engine {
 namespace format {
 inline constexpr std::string_view kFiletype = "montecarta-results";
 inline constexpr std::uint64_t kMajor = 1;           ///< grows when a meaning changes
-inline constexpr std::uint64_t kMinor = 7;           ///< grows when something is added
+inline constexpr std::uint64_t kMinor = 8;           ///< grows when something is added
 inline constexpr std::size_t kSittingsBytes = 4096;  ///< room for the log of resumptions
 /// Fact of /provenance: --force allowed finishing to replace what had the final name.
 inline constexpr std::string_view kReplaces = "replaces";

@@ -114,6 +114,8 @@ Cell cell_of(const CellSpec& spec, const Study& study, ExternalPrograms programs
           .mixture =
               filter.has_mixture && !(filter.drops_mixture && filter.drops_mixture(setup.options)),
           .joint = filter.has_joint,
+          .rotation_information =
+              filter.tells_rotation_information && fixes_landmark(setup.belief.sensor),
           .landmarks = map_rows_of(setup, study.settings),
           .settings = settings_of(spec),
           .make_filter = maker_of(spec, setup, programs)};

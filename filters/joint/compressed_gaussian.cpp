@@ -154,14 +154,15 @@ bool CompressedGaussian::is_out_of_reach(std::size_t slot, const Drift& drift, d
   return distance - share * drift.mean - range > sigmas * (spread + noise);
 }
 
-JointGaussian::Trouble CompressedGaussian::look_at(std::size_t slot,
-                                                   ExpectedObservation& expected) const {
-  return near_.look_at(point(slot), expected);
+JointGaussian::Trouble CompressedGaussian::look_at(
+    std::size_t slot, ExpectedObservation& expected,
+    const std::optional<ObservationPoint>& at) const {
+  return near_.look_at(point(slot), expected, at);
 }
 
-void CompressedGaussian::append(const Eigen::Vector2d& detection) {
+void CompressedGaussian::append(const Eigen::Vector2d& detection, const Eigen::Vector2d& behind) {
   point_of_.push_back(static_cast<std::uint32_t>(near_.landmarks()));
-  near_.append(detection);
+  near_.append(detection, behind);
 }
 
 void CompressedGaussian::use_near_slots(NewPoint& point) const {

@@ -38,11 +38,16 @@ class CompressedGaussian {
   void replace(const PoseMoments& pose, const MapMoments& map);
 
   const PoseMoments& pose() const { return near_.pose(); }
-  PoseMoments pose_after(const MotionIncrement& motion) const { return near_.pose_after(motion); }
+  LinearisedMotion linearised(const MotionIncrement& motion) const {
+    return near_.linearised(motion);
+  }
+  PoseMoments pose_after(const LinearisedMotion& motion) const { return near_.pose_after(motion); }
+  void move(const LinearisedMotion& motion) { near_.move(motion); }
   void move(const MotionIncrement& motion) { near_.move(motion); }
 
   std::size_t landmarks() const { return point_of_.size(); }
   LandmarkEstimate landmark(std::size_t slot) const;
+  Eigen::Vector2d mean_of(std::size_t slot) const;
   PointMoments point(std::size_t slot) const;
   /// The whole map, landmarks in the order of their slots.
   MapMoments map() const;
@@ -61,7 +66,8 @@ class CompressedGaussian {
   /// Whether no detection up to `range` [m] from the pose can come within so many standard
   /// deviations of a landmark, of which it is far. Quicker than looking at it.
   bool is_out_of_reach(std::size_t slot, const Drift& drift, double range, double sigmas) const;
-  [[nodiscard]] Trouble look_at(std::size_t slot, ExpectedObservation& expected) const;
+  [[nodiscard]] Trouble look_at(std::size_t slot, ExpectedObservation& expected,
+                                const std::optional<ObservationPoint>& at = {}) const;
 
   /// Makes landmarks near, and others around the vehicle with them; does nothing where they are.
   void make_near(std::span<const std::uint32_t> slots);
@@ -73,7 +79,8 @@ class CompressedGaussian {
     return near_.update_with(point_of_[slot], detected, iterations, expected);
   }
   void draw_heading(double keep, double normal) { near_.draw_heading(keep, normal); }
-  void append(const Eigen::Vector2d& detection);
+  void append(const Eigen::Vector2d& detection,
+              const Eigen::Vector2d& behind = Eigen::Vector2d::Zero());
   /// JointGaussian::append(), replace() and covariance_with() of points that are near.
   void append(NewPoint point);
   void replace(std::size_t slot, NewPoint point);
@@ -101,7 +108,6 @@ class CompressedGaussian {
         .covariance.block(stand_ins_, stand_ins_, basis_.size(), basis_.size())
         .selfadjointView<Eigen::Lower>();
   }
-  Eigen::Vector2d mean_of(std::size_t slot) const;
   PointMoments far_point(std::size_t slot) const;
   bool is_time_to_choose() const;
   void choose(std::span<const std::uint32_t> wanted);

@@ -22,7 +22,7 @@ GaussianBank::GaussianBank(const FilterSetup& setup, const BankSettings& setting
   idle.landmarks = 0;
   for (std::size_t i = 0; i < slot_of_.size(); ++i) {
     beliefs_.emplace_back(i == 0 ? setup : idle, settings.retraction, settings.iterations,
-                          settings.moments);
+                          settings.moments, settings.linearisation);
   }
 }
 
@@ -80,7 +80,10 @@ void GaussianBank::weigh() {
   }
   population_.normalise();
   ScanReport& report = population_.report();
-  if (!settings_.tells_particles) report.ess = 0.0;
+  if (!settings_.tells_particles) {  // one Gaussian
+    report.ess = 0.0;
+    report.rotation_information = beliefs_.front().rotation_information();
+  }
   innovations_.add_to(report, components_of(belief_.sensor).size());
   for (std::size_t i = 0; i < slot_of_.size(); ++i) {
     add(belief_of(i).association().counts(), weight_of(i), report.association);

@@ -26,7 +26,8 @@ struct BankSettings {
   int iterations = 0;  ///< of the linearisation, after the first
   Motion motion = Motion::linearised;
   Moments moments = Moments::map;  ///< of what it reports
-  bool tells_particles = false;    ///< whether there is a mixture to tell of
+  Linearisation linearisation = Linearisation::estimate;
+  bool tells_particles = false;  ///< whether there is a mixture to tell of
 };
 
 /// A mixture of joint Gaussians over pose and map (EQUATIONS 16). Only the heading is ever drawn,

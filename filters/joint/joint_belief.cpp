@@ -14,19 +14,24 @@ constexpr std::size_t kRoomAtFirst = 300;
 }  // namespace
 
 JointBelief::JointBelief(const FilterSetup& setup, Retraction retraction, int iterations,
-                         Moments moments)
+                         Moments moments, Linearisation linearisation)
     : sensor_(setup.belief.sensor),
       association_(setup),
       gaussian_(setup.belief, retraction, std::min(setup.landmarks, kRoomAtFirst)),
       delayed_(setup.belief),
       iterations_(iterations),
-      moments_(moments) {}
+      moments_(moments),
+      linearisation_(linearisation),
+      retraction_(retraction),
+      sigma_(deviations_of(setup.belief.sensor, setup.belief)) {}
 
 void JointBelief::start(const Pose& start) {
   gaussian_.start(start);
   association_.clear();
   point_of_.clear();
   delayed_.clear();
+  points_.start(start);
+  rotation_information_ = 0.0;
   used_detections_.clear();
   outcome_ = {};
 }
@@ -36,6 +41,8 @@ void JointBelief::become(const JointBelief& other) {
   association_ = other.association_;
   point_of_ = other.point_of_;
   delayed_ = other.delayed_;
+  points_ = other.points_;
+  rotation_information_ = other.rotation_information_;
   used_detections_ = other.used_detections_;
   outcome_ = other.outcome_;
 }
@@ -43,7 +50,7 @@ void JointBelief::become(const JointBelief& other) {
 void JointBelief::update_with(const MotionIncrement& motion, Scan scan) {
   outcome_ = {};
   used_detections_.clear();
-  gaussian_.move(motion);
+  move(motion);
   association_.known() ? association_.pair_by_identity(scan) : pair_nearest(scan);
   select_matched();
   for (std::size_t k = 0; k < scan.size(); ++k) {
@@ -87,12 +94,20 @@ void JointBelief::add_landmark(const Detection& fresh, std::uint32_t point) {
   point_of_.push_back(point);
 }
 
+void JointBelief::place_landmark(const Detection& fresh) {
+  const std::size_t slot = gaussian_.landmarks();
+  add_landmark(fresh, static_cast<std::uint32_t>(slot));
+  Eigen::Vector2d behind = Eigen::Vector2d::Zero();
+  if (has_own_points()) behind = points_.behind(gaussian_.pose().mean);
+  gaussian_.append(vector_of(fresh), behind);
+  points_.append(gaussian_.mean_of(slot) - place_of(gaussian_.pose().mean) + behind);
+}
+
 void JointBelief::initialise_landmarks(Scan scan, std::span<const char> advancing) {
   for (std::size_t k = 0; k < scan.size(); ++k) {
     if (association_.pairings()[k].kind != PairingKind::fresh) continue;
     if (fixes_landmark(sensor_)) {
-      add_landmark(scan[k], static_cast<std::uint32_t>(gaussian_.landmarks()));
-      gaussian_.append(vector_of(scan[k]));
+      place_landmark(scan[k]);
     } else if (advancing[k]) {
       const auto point = delayed_.advance(gaussian_, scan[k]);
       if (point) add_landmark(scan[k], *point);
@@ -101,8 +116,8 @@ void JointBelief::initialise_landmarks(Scan scan, std::span<const char> advancin
 }
 
 PoseMoments JointBelief::pose_after(const MotionIncrement& motion) const {
-  if (moments_ == Moments::map) return gaussian_.pose_after(motion);
-  return pushed(gaussian_.pose_after(motion));
+  const PoseMoments pose = gaussian_.pose_after(linearised(motion));
+  return moments_ == Moments::map ? pose : pushed(pose);
 }
 
 std::optional<LandmarkEstimate> JointBelief::landmark(std::size_t k) const {
@@ -175,7 +190,7 @@ void JointBelief::pair_nearest(Scan scan) {
 
 /// False where the landmark gives nothing to weigh by; a fault is counted.
 bool JointBelief::look_at(std::size_t slot, ExpectedObservation& expected) {
-  const auto trouble = gaussian_.look_at(slot, expected);
+  const auto trouble = gaussian_.look_at(slot, expected, observation_point(slot));
   if (trouble == CompressedGaussian::Trouble::faulty) ++outcome_.faults;
   return trouble == CompressedGaussian::Trouble::none;
 }
@@ -190,9 +205,13 @@ void JointBelief::update_with(std::size_t k, const Detection& detection) {
     outcome_.log_likelihood += association_.unmatched_log_density();
     return;
   }
+  const ObservationPoint turning = rotation_point(slot);
   used_detections_.push_back({k, expected.innovation(detected), expected.factor.covariance()});
   const auto trouble = gaussian_.update_with(slot, detected, iterations_, expected);
   if (trouble == CompressedGaussian::Trouble::faulty) ++outcome_.faults;
+  rotation_information_ += turned(expected, place_of(turning.pose), turning.landmark)
+                               .cwiseQuotient(sigma_)
+                               .squaredNorm();
   const InnovationFactor& L = expected.factor;
   const double distance = L.whiten(expected.innovation(detected)).squaredNorm();
   outcome_.log_likelihood +=

@@ -4,9 +4,11 @@
 #include "filters/association/map_association.hpp"
 #include "filters/joint/compressed_gaussian.hpp"
 #include "filters/joint/delayed_initialisation.hpp"
+#include "filters/joint/linearisation_points.hpp"
 #include "filters/joint/pushed_moments.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -18,7 +20,8 @@ class JointBelief {
  public:
   /// `iterations`: of CompressedGaussian::update_with(); `moments`: of all that it reports.
   JointBelief(const FilterSetup& setup, Retraction retraction, int iterations,
-              Moments moments = Moments::map);
+              Moments moments = Moments::map,
+              Linearisation linearisation = Linearisation::estimate);
 
   /// The vehicle stands at `start`, no landmarks.
   void start(const Pose& start);
@@ -55,6 +58,12 @@ class JointBelief {
   };
   const Outcome& outcome() const { return outcome_; }
   const MapAssociation& association() const { return association_; }
+  /// [1/rad^2] what all detections since the start are taken to tell of the heading of the whole,
+  /// which none of them can (EQUATIONS (15.11)); NaN of a sensor that does not fix landmarks.
+  double rotation_information() const {
+    return fixes_landmark(sensor_) ? rotation_information_
+                                   : std::numeric_limits<double>::quiet_NaN();
+  }
   /// A detection that updated it.
   struct UsedDetection {
     std::size_t detection;  ///< its place in the scan
@@ -64,6 +73,12 @@ class JointBelief {
   std::span<const UsedDetection> used_detections() const { return used_detections_; }
 
  private:
+  bool has_own_points() const { return linearisation_ != Linearisation::estimate; }
+  Eigen::Vector2d shift_of_points() const;
+  LinearisedMotion linearised(const MotionIncrement& motion) const;
+  void move(const MotionIncrement& motion);
+  std::optional<ObservationPoint> observation_point(std::size_t slot) const;
+  ObservationPoint rotation_point(std::size_t slot) const;
   double reach_of(Scan scan) const;
   void pair_nearest(Scan scan);
   void select_matched();
@@ -71,6 +86,7 @@ class JointBelief {
   void update_with(std::size_t k, const Detection& detection);
 
   void add_landmark(const Detection& fresh, std::uint32_t point);
+  void place_landmark(const Detection& fresh);
 
   Sensor sensor_;
   MapAssociation association_;
@@ -80,6 +96,11 @@ class JointBelief {
   std::vector<char> advancing_;  ///< scratch of find_advancing()
   int iterations_;
   Moments moments_;
+  Linearisation linearisation_;
+  Retraction retraction_;
+  LinearisationPoints points_;  ///< of a sensor that fixes landmarks
+  Eigen::Vector2d sigma_;       ///< of the components of a detection
+  double rotation_information_ = 0.0;
   std::vector<NearestSearch> searches_;  ///< scratch
   std::vector<std::uint32_t> matched_;   ///< scratch: slots that the current scan needs
   std::vector<UsedDetection> used_detections_;

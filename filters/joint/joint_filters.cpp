@@ -33,6 +33,14 @@ std::unique_ptr<SlamFilter> one_gaussian(const FilterSetup& setup, Retraction re
                                                             .moments = moments_of(setup.options)});
 }
 
+/// EKF-SLAM that linearises elsewhere than at the estimate.
+template <Linearisation kLinearisation>
+std::unique_ptr<SlamFilter> linearised_elsewhere(const FilterSetup& setup) {
+  return std::make_unique<GaussianBank>(setup, BankSettings{.motion = motion_of(setup.options),
+                                                            .moments = moments_of(setup.options),
+                                                            .linearisation = kLinearisation});
+}
+
 }  // namespace
 
 std::unique_ptr<SlamFilter> make_ekf_slam(const FilterSetup& setup) {
@@ -63,6 +71,7 @@ FilterKind ekf_slam_kind() {
           .has_particles = false,
           .has_mixture = false,
           .has_joint = true,
+          .tells_rotation_information = true,
           .options = {iterations_option("0"), linearised_motion_option(), moments_option("map")},
           .sensors = {},
           .delays_initialisation = true,
@@ -76,10 +85,37 @@ FilterKind riekf_slam_kind() {
           .has_particles = false,
           .has_mixture = false,
           .has_joint = true,
+          .tells_rotation_information = true,
           .options = {iterations_option("0"), linearised_motion_option(), moments_option("map")},
           .sensors = {},
           .delays_initialisation = true,
           .make = make_riekf_slam};
+}
+
+FilterKind fej_ekf_slam_kind() {
+  return {.name = "fej_ekf_slam",
+          .long_name = "first-estimates Jacobian EKF-SLAM",
+          .source = "Huang, Mourikis, Roumeliotis 2008",
+          .has_particles = false,
+          .has_mixture = false,
+          .has_joint = true,
+          .tells_rotation_information = true,
+          .options = {linearised_motion_option(), moments_option("map")},
+          .sensors = {RangeBearingSensor::kName, PositionSensor::kName},
+          .make = linearised_elsewhere<Linearisation::first>};
+}
+
+FilterKind oc_ekf_slam_kind() {
+  return {.name = "oc_ekf_slam",
+          .long_name = "observability-constrained EKF-SLAM",
+          .source = "Huang, Mourikis, Roumeliotis 2010",
+          .has_particles = false,
+          .has_mixture = false,
+          .has_joint = true,
+          .tells_rotation_information = true,
+          .options = {linearised_motion_option(), moments_option("map")},
+          .sensors = {RangeBearingSensor::kName, PositionSensor::kName},
+          .make = linearised_elsewhere<Linearisation::constrained>};
 }
 
 FilterKind hrb_kind() {

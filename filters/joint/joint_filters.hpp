@@ -23,6 +23,9 @@ std::unique_ptr<SlamFilter> make_hrb(const FilterSetup& setup);
 /// Their lines in the table of filters.
 FilterKind ekf_slam_kind();
 FilterKind riekf_slam_kind();
+/// EKF-SLAM whose linearised system has the right unobservable directions (EQUATIONS 15).
+FilterKind fej_ekf_slam_kind();
+FilterKind oc_ekf_slam_kind();
 FilterKind hrb_kind();
 
 }  // namespace montecarta::filters

@@ -61,26 +61,28 @@ MapMoments& JointGaussian::replace_map(std::size_t n_points) {
   return map_;
 }
 
-PoseMoments JointGaussian::pose_after(const MotionIncrement& motion) const {
+LinearisedMotion JointGaussian::linearised(const MotionIncrement& motion) const {
   const Direction<double> heading = direction_of(pose_.mean.heading);
   const Point way = way_of(motion, heading);
-  Eigen::Matrix3d F = Eigen::Matrix3d::Identity(), turn = Eigen::Matrix3d::Identity();
-  F(0, 2) = -way.y;
-  F(1, 2) = way.x;
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   turn.topLeftCorner<2, 2>() << heading.cosine, -heading.sine, heading.sine, heading.cosine;
-  PoseMoments moved;
-  moved.mean = {pose_.mean.x + way.x, pose_.mean.y + way.y,
-                wrap(pose_.mean.heading + motion.pose().heading)};
-  moved.covariance = F * pose_.covariance * F.transpose() +
-                     turn * symmetric(motion.covariance()) * turn.transpose();
+  return {.mean = {pose_.mean.x + way.x, pose_.mean.y + way.y,
+                   wrap(pose_.mean.heading + motion.pose().heading)},
+          .by_heading = {-way.y, way.x},
+          .noise = turn * symmetric(motion.covariance()) * turn.transpose()};
+}
+
+PoseMoments JointGaussian::pose_after(const LinearisedMotion& motion) const {
+  Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
+  F.topRightCorner<2, 1>() = motion.by_heading;
+  PoseMoments moved{motion.mean, F * pose_.covariance * F.transpose() + motion.noise};
   mirror_lower(moved.covariance);
   return moved;
 }
 
-void JointGaussian::move(const MotionIncrement& motion) {
-  const Point way = way_of(motion, direction_of(pose_.mean.heading));
-  map_.cross.col(0).head(rows()) -= way.y * map_.cross.col(2).head(rows());
-  map_.cross.col(1).head(rows()) += way.x * map_.cross.col(2).head(rows());
+void JointGaussian::move(const LinearisedMotion& motion) {
+  map_.cross.col(0).head(rows()) += motion.by_heading(0) * map_.cross.col(2).head(rows());
+  map_.cross.col(1).head(rows()) += motion.by_heading(1) * map_.cross.col(2).head(rows());
   pose_ = pose_after(motion);
 }
 
@@ -105,13 +107,17 @@ std::optional<InnovationFactor> JointGaussian::innovation_factor(
 }
 
 JointGaussian::Trouble JointGaussian::look_at(const PointMoments& landmark,
-                                              ExpectedObservation& expected) const {
-  const auto at =
-      linearised_detection(belief_.sensor, pose_.mean, Point{landmark.mean.x(), landmark.mean.y()});
-  if (!at) return Trouble::too_near;
-  expected = {.pose_jacobian = at->by_pose,
-              .landmark_jacobian = at->by_landmark,
-              .observation = at->value,
+                                              ExpectedObservation& expected,
+                                              const std::optional<ObservationPoint>& at) const {
+  const auto linearised = [&](const Pose& pose, const Eigen::Vector2d& point) {
+    return linearised_detection(belief_.sensor, pose, Point{point.x(), point.y()});
+  };
+  const auto here = linearised(pose_.mean, landmark.mean);
+  const auto there = at ? linearised(at->pose, at->landmark) : here;
+  if (!here || !there) return Trouble::too_near;
+  expected = {.pose_jacobian = there->by_pose,
+              .landmark_jacobian = there->by_landmark,
+              .observation = here->value,
               .factor = {},
               .ahead = Eigen::Vector2d::Zero(),
               .wraps = wraps_};
@@ -121,10 +127,11 @@ JointGaussian::Trouble JointGaussian::look_at(const PointMoments& landmark,
   return Trouble::none;
 }
 
-void JointGaussian::append(const Eigen::Vector2d& detection) {
-  const auto placed = placed_landmark(belief_.sensor, pose_.mean, detection);
+void JointGaussian::append(const Eigen::Vector2d& detection, const Eigen::Vector2d& behind) {
+  auto placed = placed_landmark(belief_.sensor, pose_.mean, detection);
   expect(placed.has_value(), "a landmark is placed by a detection that does not fix it");
   const Eigen::Matrix2d& Gz = placed->by_detection;
+  placed->by_pose.col(2) += quarter_turn() * behind;
   append(NewPoint{.mean = placed->point,
                   .by_pose = placed->by_pose,
                   .noise = Gz * observation_noise_ * Gz.transpose()});

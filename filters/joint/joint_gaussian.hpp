@@ -68,6 +68,19 @@ struct ExpectedObservation {
   }
 };
 
+/// A motion from the present pose, linearised there or elsewhere.
+struct LinearisedMotion {
+  Pose mean;                   ///< of the pose after it
+  Eigen::Vector2d by_heading;  ///< [m/rad] derivative of the place by the heading before it
+  Eigen::Matrix3d noise;       ///< what it adds to the covariance
+};
+
+/// Where an observation is linearised.
+struct ObservationPoint {
+  Pose pose;
+  Eigen::Vector2d landmark;  ///< [m]
+};
+
 /// A point for the map, linear in the pose, in some points of the map, and in noise of its own.
 struct NewPoint {
   struct Part {
@@ -101,11 +114,14 @@ class JointGaussian {
 
   const Belief& belief() const { return belief_; }
   const PoseMoments& pose() const { return pose_; }
+  /// `motion`, linearised at the estimate. Fx of several steps is again [1 0 a; 0 1 b; 0 0 1] with
+  /// a and b their sums, so one motion for many steps is exact.
+  LinearisedMotion linearised(const MotionIncrement& motion) const;
   /// What the pose would be after `motion`.
-  PoseMoments pose_after(const MotionIncrement& motion) const;
-  /// The vehicle moved by `motion`. Fx of several steps is again [1 0 a; 0 1 b; 0 0 1] with a and b
-  /// their sums, so one motion for many steps is exact.
-  void move(const MotionIncrement& motion);
+  PoseMoments pose_after(const LinearisedMotion& motion) const;
+  /// The vehicle moved by `motion`.
+  void move(const LinearisedMotion& motion);
+  void move(const MotionIncrement& motion) { move(linearised(motion)); }
 
   std::size_t landmarks() const { return n_landmarks_; }
   LandmarkEstimate landmark(std::size_t slot) const;
@@ -117,9 +133,11 @@ class JointGaussian {
   /// in.
   MapMoments& replace_map(std::size_t n_points);
 
-  /// What a detection of landmark `slot` is weighed by; `faulty` where S is not positive definite.
+  /// What a detection of `landmark` is weighed by; `faulty` where S is not positive definite. With
+  /// derivatives at another point than the estimate where `at` names one.
   enum class Trouble { none, too_near, faulty };
-  [[nodiscard]] Trouble look_at(const PointMoments& landmark, ExpectedObservation& expected) const;
+  [[nodiscard]] Trouble look_at(const PointMoments& landmark, ExpectedObservation& expected,
+                                const std::optional<ObservationPoint>& at = {}) const;
   [[nodiscard]] Trouble look_at(std::size_t slot, ExpectedObservation& expected) const {
     return look_at(point(slot), expected);
   }
@@ -137,8 +155,10 @@ class JointGaussian {
   /// that remains; 0 keeps nothing.
   void draw_heading(double keep, double normal);
   /// Adds a landmark of one detection that fixes it, correlated with everything the pose is
-  /// correlated with.
-  void append(const Eigen::Vector2d& detection);
+  /// correlated with. `behind` [m]: from where its place is linearised by the heading to the
+  /// estimate of the vehicle's place.
+  void append(const Eigen::Vector2d& detection,
+              const Eigen::Vector2d& behind = Eigen::Vector2d::Zero());
   /// Adds a point.
   void append(const NewPoint& point);
   /// Puts a point in the place of another, which may be among those that it depends on.

@@ -47,13 +47,14 @@ struct FilterSetup {
 
 /// A filter by name: one line in the table of factory.cpp.
 struct FilterKind {
-  std::string name;             ///< as users type it
-  std::string long_name;        ///< for legends
-  std::string source;           ///< paper and equation
-  bool has_particles = true;    ///< whether it takes the option `particles` (always listed first)
-  bool has_mixture = false;     ///< whether estimate() carries a mixture ...
-  bool has_joint = false;       ///< whether joint() gives anything
-  std::vector<Option> options;  ///< in the order in which they are documented
+  std::string name;           ///< as users type it
+  std::string long_name;      ///< for legends
+  std::string source;         ///< paper and equation
+  bool has_particles = true;  ///< whether it takes the option `particles` (always listed first)
+  bool has_mixture = false;   ///< whether estimate() carries a mixture ...
+  bool has_joint = false;     ///< whether joint() gives anything
+  bool tells_rotation_information = false;  ///< where a detection fixes a landmark (ScanReport)
+  std::vector<Option> options;              ///< in the order in which they are documented
   /// Sensors that it takes, mounted at the pose; empty: all of them, wherever they are mounted.
   std::vector<std::string> sensors = {RangeBearingSensor::kName};
   /// Whether it initialises landmarks itself that one detection does not fix. It then needs to know

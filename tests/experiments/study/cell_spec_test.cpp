@@ -21,19 +21,18 @@ std::vector<FilterKind> paper_filters() {
   weight.former_choices = {{"exact", "closed"}};
   Option younger = choice_option("younger", "no", {"no", "yes"}, "of a later version");
   younger.is_quiet = true;
-  return {
-      {"bold",
-       "Bold filter",
-       "",
-       true,
-       false,
-       false,
-       {particles, threshold, weight},
-       {},
-       false,
-       {},
-       {}},
-      {"plain", "Plain filter", "", false, false, false, {threshold, younger}, {}, false, {}, {}}};
+  const auto kind = [](const char* name, const char* long_name, bool has_particles,
+                       std::vector<Option> options) {
+    FilterKind made;
+    made.name = name;
+    made.long_name = long_name;
+    made.has_particles = has_particles;
+    made.options = std::move(options);
+    made.sensors = {};
+    return made;
+  };
+  return {kind("bold", "Bold filter", true, {particles, threshold, weight}),
+          kind("plain", "Plain filter", false, {threshold, younger})};
 }
 
 std::vector<CellSpec> cells_of(const std::vector<FilterKind>& filters,

@@ -95,7 +95,8 @@ TEST_P(OnALinearModel, EkfEqualsKalman) {
 INSTANTIATE_TEST_SUITE_P(
     All, OnALinearModel,
     testing::Values(std::pair{ekf_slam_kind(), "0"}, std::pair{ekf_slam_kind(), "5"},
-                    std::pair{riekf_slam_kind(), "0"}, std::pair{riekf_slam_kind(), "5"}),
+                    std::pair{riekf_slam_kind(), "0"}, std::pair{riekf_slam_kind(), "5"},
+                    std::pair{fej_ekf_slam_kind(), "0"}, std::pair{oc_ekf_slam_kind(), "0"}),
     [](const auto& instance) { return instance.param.first.name + "_" + instance.param.second; });
 
 }  // namespace

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Information about the heading of the whole, which no detection can give (STATISTICS 22).
+#include "analysis/metrics/cell_panels.hpp"
+#include "analysis/metrics/measured_run.hpp"
+#include "analysis/metrics/metric.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/output/number_text.hpp"
+#include "analysis/statistics/means.hpp"
+#include "engine/numbers/angle.hpp"
+
+#include <cmath>
+
+namespace montecarta::analysis {
+namespace {
+
+constexpr Score kObservabilityScores[] = {
+    {"rotation_information", "rad-2", "information about the heading of the whole at the end",
+     [](const MeasuredRun& run) {
+       const auto& information = run.rows.rotation_information;
+       return information.empty() ? kNaN : information.back();
+     }},
+};
+
+constexpr ScanSeries kObservabilitySeries[] = {
+    {"rotation_information", "rad-2",
+     [](const MeasuredRun& run) { return run.rows.rotation_information; }},
+};
+
+/// Beyond a full turn a standard deviation says nothing.
+std::string heading_of(double information) {
+  const double degrees = 180.0 / kPi / std::sqrt(information);
+  return degrees > 360.0 ? "nothing" : readable(degrees);
+}
+
+TextTable observability_table(const StudyAnalysis& study) {
+  TextTable table;
+  table.headings = {
+      {"cell", Align::left}, {"information [1/rad^2]"}, {"heading that it alone would tell [deg]"}};
+  for (const CellAnalysis& cell : study.cells) {
+    const double information = cell.over_runs("rotation_information").mean;
+    if (std::isnan(information)) continue;
+    table.rows.push_back({cell.label, readable(information), heading_of(information)});
+  }
+  return table;
+}
+
+std::vector<Section> observability_sections(const StudyAnalysis& study) {
+  const TextTable table = observability_table(study);
+  if (table.rows.empty()) return {};
+  Section section{"observability", "Information about what nobody can observe"};
+  section.add("observability", table);
+  section.add(std::vector<std::string>{
+      "Detections tell where landmarks are relative to the vehicle, never how the whole, path and "
+      "map, is turned. A filter whose linearised system is taken to tell it becomes overconfident: "
+      "the information about that turn which all detections of a run add up to (mean over runs; 0 "
+      "is right), and the standard deviation of a heading known by it alone."});
+  return {section};
+}
+
+std::vector<Figure> observability_figures(const StudyAnalysis& study) {
+  Figure figure{"observability", "Does the filter learn what nobody can observe?", ""};
+  figure.sentence =
+      "Information about how path and map are turned as a whole, which the filter's linearised "
+      "detections add up to, mean over runs: 0 is right. Where a curve rises, the filter becomes "
+      "sure of a heading that no detection has told.";
+  const CellValues values = [](const CellAnalysis& cell) {
+    return cell.over_time("rotation_information");
+  };
+  add_panels({{"rotation_information",
+               "information [1/rad^2]",
+               cell_curves(study, values),
+               {},
+               Scale::from_zero}},
+             study.times, figure);
+  return {figure};
+}
+
+}  // namespace
+
+Metric observability_metric() {
+  return {.scores = kObservabilityScores,
+          .scan_series = kObservabilitySeries,
+          .sections = observability_sections,
+          .figures = observability_figures};
+}
+
+}  // namespace montecarta::analysis
