@@ -139,6 +139,14 @@ void expect_joint_estimates(const Study& study) {
   throw StudyError(study.settings.place("record", "columns") + ": joint " + objection);
 }
 
+void expect_rotation_information(const StudyPlan& plan, const Study& study) {
+  if (std::ranges::any_of(plan.cells, &Cell::rotation_information)) return;
+  throw StudyError(study.settings.place("record", "columns") +
+                   ": observability (no cell tells what its detections are taken for about the "
+                   "heading of the whole): take observability out, or add a cell of ekf_slam or "
+                   "riekf_slam with a sensor of which one detection fixes a landmark");
+}
+
 /// Cells that stop by their verdict need one.
 void expect_verdict(const Study& study) {
   if (!study.until || study.until->score != nullptr) return;
@@ -194,6 +202,7 @@ StudyPlan make_plan(const Study& study, std::optional<RunRange> range, ExternalP
   for (const CellSpec& spec : study.cells) plan.cells.push_back(cell_of(spec, study, programs));
   plan.columns = columns_of(settings);
   if (plan.columns.joint) expect_joint_estimates(study);
+  if (plan.columns.observability) expect_rotation_information(plan, study);
   plan.drives = drives_of(study, plan.seed);
   if (study.until) plan.is_enough = rule_of(*study.until);
   plan.own_landmarks = own_landmarks_of(study, plan.seed);

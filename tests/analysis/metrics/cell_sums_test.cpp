@@ -6,6 +6,7 @@
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/statistics/means.hpp"
 #include "analysis/statistics/survival.hpp"
+#include "tests/analysis/reported.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
 
 #include <gtest/gtest.h>
@@ -258,6 +259,31 @@ TEST(CellSums, SumsAssociationsOverARunAndAveragesOverRuns) {
   EXPECT_DOUBLE_EQ(cell.over_runs("association_missed").mean, 1.0);
   EXPECT_DOUBLE_EQ(cell.over_runs("association_clutter").mean, 2.0);
   EXPECT_DOUBLE_EQ(cell.scores.column("association_wrong")[1], 4.5);
+}
+
+TEST(CellSums, AveragesTheInformationAboutTheUnobservable) {
+  Sums sums({0.2, 0.4});
+  RunRows rows;
+  rows.truth.assign(6, 0.0);
+  rows.spread.mean.assign(6, 0.0);
+  for (const double last : {4.0, 6.0}) {
+    rows.rotation_information = {1.0, last};
+    sums.add(rows);
+  }
+  const CellAnalysis cell = sums.result();
+  EXPECT_DOUBLE_EQ(cell.over_runs("rotation_information").mean, 5.0);
+  EXPECT_EQ(cell.over_time("rotation_information"), (std::vector{1.0, 5.0}));
+  StudyAnalysis study;
+  study.times = {0.2, 0.4};
+  study.cells = {cell};
+  const TextTable table = reported_table(study, "observability");
+  ASSERT_EQ(table.rows.size(), 1u);
+  EXPECT_EQ(table.rows[0][1], "5.00");
+  EXPECT_EQ(table.rows[0][2], "25.6");  // degrees of 1 / sqrt(5)
+  EXPECT_FALSE(reported_figure(study, "observability").data.empty());
+  study.cells = {CellAnalysis()};
+  EXPECT_TRUE(reported_table(study, "observability").rows.empty());
+  EXPECT_TRUE(reported_figure(study, "observability").data.empty());
 }
 
 }  // namespace

@@ -127,6 +127,19 @@ TEST_F(BearingLog, InDegreesIsRefused) {
               HasSubstr("record 1: bearing 45 (radians relative to the heading)"));
 }
 
+TEST(SensorStudy, ObservabilityIsOfFiltersThatTellItAndSensorsThatFixLandmarks) {
+  const auto refusal = [](const char* filter, const char* sensor) {
+    const std::string chosen = std::string("scenario.sensor=") + sensor;
+    const Study study = parsed(of_cell(filter), {chosen, "record.columns=pose, observability"});
+    return complaint_of([&] { make_plan(study); });
+  };
+  EXPECT_THAT(refusal("dead_reckoning", "range_bearing"),
+              HasSubstr("observability (no cell tells"));
+  EXPECT_THAT(refusal("ekf_slam", "bearing_only"), HasSubstr("observability (no cell tells"));
+  EXPECT_EQ(refusal("ekf_slam", "position"), "nothing");
+  EXPECT_EQ(refusal("fej_ekf_slam", "range_bearing"), "nothing");
+}
+
 TEST(SensorStudy, SomethingIsInReach) {
   EXPECT_THAT(
       engine::complaint_of([] {
