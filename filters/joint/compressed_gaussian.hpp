@@ -41,6 +41,9 @@ class CompressedGaussian {
   LinearisedMotion linearised(const MotionIncrement& motion) const {
     return near_.linearised(motion);
   }
+  LinearisedMotion regressed(const MotionIncrement& motion) const {
+    return near_.regressed(motion);
+  }
   PoseMoments pose_after(const LinearisedMotion& motion) const { return near_.pose_after(motion); }
   void move(const LinearisedMotion& motion) { near_.move(motion); }
   void move(const MotionIncrement& motion) { near_.move(motion); }
@@ -68,6 +71,10 @@ class CompressedGaussian {
   bool is_out_of_reach(std::size_t slot, const Drift& drift, double range, double sigmas) const;
   [[nodiscard]] Trouble look_at(std::size_t slot, ExpectedObservation& expected,
                                 const std::optional<ObservationPoint>& at = {}) const;
+  [[nodiscard]] Trouble look_by_sigma_points(std::size_t slot,
+                                             ExpectedObservation& expected) const {
+    return near_.look_by_sigma_points(point(slot), expected);
+  }
 
   /// Makes landmarks near, and others around the vehicle with them; does nothing where they are.
   void make_near(std::span<const std::uint32_t> slots);

@@ -61,9 +61,9 @@ JointGaussian::Trouble JointGaussian::linearise_after(const Step& step, std::siz
     next.pose_jacobian.col(2) += next.pose_jacobian.leftCols<2>() * (quarter_turn() * pose_way) +
                                  next.landmark_jacobian * (quarter_turn() * landmark_way);
   }
-  const auto L = innovation_factor(point(slot), next);
-  if (!L) return Trouble::faulty;
-  next.factor = *L;
+  if (const auto trouble = weigh(point(slot), Eigen::Matrix2d::Zero(), next);
+      trouble != Trouble::none)
+    return trouble;
   next.ahead = next.pose_jacobian * step.pose + next.landmark_jacobian * step.landmark;
   expected = next;
   return Trouble::none;

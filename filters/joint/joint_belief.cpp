@@ -190,7 +190,8 @@ void JointBelief::pair_nearest(Scan scan) {
 
 /// False where the landmark gives nothing to weigh by; a fault is counted.
 bool JointBelief::look_at(std::size_t slot, ExpectedObservation& expected) {
-  const auto trouble = gaussian_.look_at(slot, expected, observation_point(slot));
+  const auto trouble = regresses() ? gaussian_.look_by_sigma_points(slot, expected)
+                                   : gaussian_.look_at(slot, expected, observation_point(slot));
   if (trouble == CompressedGaussian::Trouble::faulty) ++outcome_.faults;
   return trouble == CompressedGaussian::Trouble::none;
 }

@@ -73,7 +73,10 @@ class JointBelief {
   std::span<const UsedDetection> used_detections() const { return used_detections_; }
 
  private:
-  bool has_own_points() const { return linearisation_ != Linearisation::estimate; }
+  bool has_own_points() const {
+    return linearisation_ == Linearisation::first || linearisation_ == Linearisation::constrained;
+  }
+  bool regresses() const { return linearisation_ == Linearisation::regression; }
   Eigen::Vector2d shift_of_points() const;
   LinearisedMotion linearised(const MotionIncrement& motion) const;
   void move(const MotionIncrement& motion);

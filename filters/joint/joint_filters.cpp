@@ -41,6 +41,21 @@ std::unique_ptr<SlamFilter> linearised_elsewhere(const FilterSetup& setup) {
                                                             .linearisation = kLinearisation});
 }
 
+template <Linearisation kLinearisation>
+FilterKind linearised_elsewhere_kind(const char* name, const char* long_name, const char* source,
+                                     Option motion) {
+  return {.name = name,
+          .long_name = long_name,
+          .source = source,
+          .has_particles = false,
+          .has_mixture = false,
+          .has_joint = true,
+          .tells_rotation_information = true,
+          .options = {std::move(motion), moments_option("map")},
+          .sensors = {RangeBearingSensor::kName, PositionSensor::kName},
+          .make = linearised_elsewhere<kLinearisation>};
+}
+
 }  // namespace
 
 std::unique_ptr<SlamFilter> make_ekf_slam(const FilterSetup& setup) {
@@ -93,29 +108,21 @@ FilterKind riekf_slam_kind() {
 }
 
 FilterKind fej_ekf_slam_kind() {
-  return {.name = "fej_ekf_slam",
-          .long_name = "first-estimates Jacobian EKF-SLAM",
-          .source = "Huang, Mourikis, Roumeliotis 2008",
-          .has_particles = false,
-          .has_mixture = false,
-          .has_joint = true,
-          .tells_rotation_information = true,
-          .options = {linearised_motion_option(), moments_option("map")},
-          .sensors = {RangeBearingSensor::kName, PositionSensor::kName},
-          .make = linearised_elsewhere<Linearisation::first>};
+  return linearised_elsewhere_kind<Linearisation::first>(
+      "fej_ekf_slam", "first-estimates Jacobian EKF-SLAM", "Huang, Mourikis, Roumeliotis 2008",
+      linearised_motion_option());
 }
 
 FilterKind oc_ekf_slam_kind() {
-  return {.name = "oc_ekf_slam",
-          .long_name = "observability-constrained EKF-SLAM",
-          .source = "Huang, Mourikis, Roumeliotis 2010",
-          .has_particles = false,
-          .has_mixture = false,
-          .has_joint = true,
-          .tells_rotation_information = true,
-          .options = {linearised_motion_option(), moments_option("map")},
-          .sensors = {RangeBearingSensor::kName, PositionSensor::kName},
-          .make = linearised_elsewhere<Linearisation::constrained>};
+  return linearised_elsewhere_kind<Linearisation::constrained>(
+      "oc_ekf_slam", "observability-constrained EKF-SLAM", "Huang, Mourikis, Roumeliotis 2010",
+      linearised_motion_option());
+}
+
+FilterKind ukf_slam_kind() {
+  return linearised_elsewhere_kind<Linearisation::regression>(
+      "ukf_slam", "unscented Kalman filter SLAM", "Huang, Mourikis, Roumeliotis 2009",
+      fitting_motion_option());
 }
 
 FilterKind hrb_kind() {

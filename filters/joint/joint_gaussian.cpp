@@ -97,13 +97,17 @@ PointMoments JointGaussian::point(std::size_t slot) const {
           map_.covariance.block<2, 2>(at, at)};
 }
 
-std::optional<InnovationFactor> JointGaussian::innovation_factor(
-    const PointMoments& landmark, const ExpectedObservation& at) const {
-  const Matrix23& Hx = at.pose_jacobian;
-  const Eigen::Matrix2d& Hf = at.landmark_jacobian;
+JointGaussian::Trouble JointGaussian::weigh(const PointMoments& landmark,
+                                            const Eigen::Matrix2d& more,
+                                            ExpectedObservation& expected) const {
+  const Matrix23& Hx = expected.pose_jacobian;
+  const Eigen::Matrix2d& Hf = expected.landmark_jacobian;
   const Eigen::Matrix2d mixed = Hf * landmark.cross * Hx.transpose();
-  return factor(Hx * pose_.covariance * Hx.transpose() + mixed + mixed.transpose() +
-                Hf * landmark.covariance * Hf.transpose() + observation_noise_);
+  const auto L = factor(Hx * pose_.covariance * Hx.transpose() + mixed + mixed.transpose() +
+                        Hf * landmark.covariance * Hf.transpose() + more + observation_noise_);
+  if (!L) return Trouble::faulty;
+  expected.factor = *L;
+  return Trouble::none;
 }
 
 JointGaussian::Trouble JointGaussian::look_at(const PointMoments& landmark,
@@ -121,10 +125,7 @@ JointGaussian::Trouble JointGaussian::look_at(const PointMoments& landmark,
               .factor = {},
               .ahead = Eigen::Vector2d::Zero(),
               .wraps = wraps_};
-  const auto L = innovation_factor(landmark, expected);
-  if (!L) return Trouble::faulty;
-  expected.factor = *L;
-  return Trouble::none;
+  return weigh(landmark, Eigen::Matrix2d::Zero(), expected);
 }
 
 void JointGaussian::append(const Eigen::Vector2d& detection, const Eigen::Vector2d& behind) {

@@ -117,6 +117,8 @@ class JointGaussian {
   /// `motion`, linearised at the estimate. Fx of several steps is again [1 0 a; 0 1 b; 0 0 1] with
   /// a and b their sums, so one motion for many steps is exact.
   LinearisedMotion linearised(const MotionIncrement& motion) const;
+  /// The same by sigma points of the heading before it.
+  LinearisedMotion regressed(const MotionIncrement& motion) const;
   /// What the pose would be after `motion`.
   PoseMoments pose_after(const LinearisedMotion& motion) const;
   /// The vehicle moved by `motion`.
@@ -141,6 +143,10 @@ class JointGaussian {
   [[nodiscard]] Trouble look_at(std::size_t slot, ExpectedObservation& expected) const {
     return look_at(point(slot), expected);
   }
+  /// The same by sigma points of the landmark as seen from the pose: mean and slopes of the
+  /// regression, S with what is not linear.
+  [[nodiscard]] Trouble look_by_sigma_points(const PointMoments& landmark,
+                                             ExpectedObservation& expected) const;
   /// Conditions the Gaussian on `detected`, expected as `expected`. The model is linearised
   /// again where the detection has moved the estimate to, until that settles or `iterations` times
   /// (iterated EKF, Bell and Cathey 1993; of invariant errors with the derivative of the
@@ -178,8 +184,9 @@ class JointGaussian {
 
   Eigen::Index rows() const;
   void grow(std::size_t room);
-  std::optional<InnovationFactor> innovation_factor(const PointMoments& landmark,
-                                                    const ExpectedObservation& at) const;
+  /// Fills in the factor of S = H P H' + `more` + R.
+  [[nodiscard]] Trouble weigh(const PointMoments& landmark, const Eigen::Matrix2d& more,
+                              ExpectedObservation& expected) const;
   Step step_of(std::size_t slot, const ExpectedObservation& expected,
                const Eigen::Vector2d& innovation) const;
   [[nodiscard]] Trouble linearise_after(const Step& step, std::size_t slot,

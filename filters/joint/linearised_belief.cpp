@@ -21,6 +21,7 @@ Eigen::Vector2d JointBelief::shift_of_points() const {
 
 /// A vehicle that has not moved keeps its point, and nothing is linearised.
 LinearisedMotion JointBelief::linearised(const MotionIncrement& motion) const {
+  if (regresses()) return gaussian_.regressed(motion);
   LinearisedMotion linearised = gaussian_.linearised(motion);
   if (!has_own_points() || stands_still(motion)) return linearised;
   linearised.by_heading +=
