@@ -85,7 +85,8 @@ concept Associator = requires(A a, const A decided, const StepContext& context, 
   // log p0 for every detection that a particle has not matched (EQUATIONS 17)
   { decided.unmatched_log_weight(block) } -> Is<Real>;
 
-  // adds slots to the maps, for the caller to fill
+  // adds slots to the maps, for the caller to fill; one that has initialise(maps, poses) is asked
+  // that instead, and fills them itself
   { a.new_landmarks(maps) } -> std::convertible_to<std::span<const FreshLandmark<Real>>>;
   a.resample(/*parents*/ std::span<const std::uint32_t>());
   // for reports

@@ -18,8 +18,11 @@ template <class Real, class Proposal, class Associating>
 requires Associator<Associating, Real> && PoseProposal<Proposal, Real, Associating>
 class FastSlam final : public SlamFilter {
  public:
-  FastSlam(const PopulationSettings& settings, Proposal proposal, Associating association)
-      : proposal_(std::move(proposal)),
+  /// Detections have so many `components`.
+  FastSlam(const PopulationSettings& settings, std::size_t components, Proposal proposal,
+           Associating association)
+      : components_(components),
+        proposal_(std::move(proposal)),
         association_(std::move(association)),
         population_(settings),
         poses_(population_.blocks()),
@@ -84,7 +87,7 @@ class FastSlam final : public SlamFilter {
               [&](std::size_t task, std::size_t b) { weigh_and_draw_block(context, task, b); });
     proposal_.end_scan();
     population_.normalise();
-    innovations_.add_to(population_.report());
+    innovations_.add_to(population_.report(), components_);
   }
 
   void weigh_and_draw_block(const StepContext& context, std::size_t task, std::size_t b) {
@@ -99,6 +102,8 @@ class FastSlam final : public SlamFilter {
   }
 
   void initialise_landmarks() {
+    if constexpr (requires { association_.initialise(maps_, poses_); })
+      return association_.initialise(maps_, poses_);
     for (const FreshLandmark<Real>& fresh : association_.new_landmarks(maps_))
       proposal_.initialise(fresh, poses_[fresh.block], maps_);
   }
@@ -117,6 +122,7 @@ class FastSlam final : public SlamFilter {
     proposal_.begin_step(parents);
   }
 
+  std::size_t components_;
   Proposal proposal_;
   Associating association_;
   Population<Real> population_;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/fast_slam_filters.hpp"
 
-#include "filters/fastslam/fastslam2_position.hpp"
-
 #include <string>
 
 namespace montecarta::filters {
@@ -74,7 +72,9 @@ FilterKind fastslam1_kind() {
           .long_name = "FastSLAM I",
           .source = "Montemerlo et al. 2002; EQUATIONS 5",
           .options = population_options(),
-          .make = make_fastslam1<Lanes>};
+          .sensors = {},
+          .delays_initialisation = true,
+          .make = make_fastslam1_of_sensor};
 }
 
 FilterKind fastslam2_kind() {
@@ -85,13 +85,10 @@ FilterKind fastslam2_kind() {
           .options = joined({population_options(),
                              {choice_option("weights", "closed", kWeightForms,
                                             "form of the importance weight (EQUATIONS 6)")}}),
-          .sensors = {RangeBearingSensor::kName, PositionSensor::kName},
+          .sensors = {},
+          .delays_initialisation = true,
           .drops_mixture = weighs_by_ratio,
-          .make = [](const FilterSetup& setup) {
-            return std::holds_alternative<PositionSensor>(setup.belief.sensor.kind)
-                       ? make_fastslam2_position<Lanes>(setup)
-                       : make_fastslam2<Lanes>(setup);
-          }};
+          .make = make_fastslam2_of_sensor};
 }
 
 FilterKind ufastslam_kind() {
@@ -112,8 +109,12 @@ FilterKind ufastslam_kind() {
                           "second spread: alpha^2 (n + kappa) is the square of the points' "
                           "distance"),
             map_uncertainty_option()}}),
+      .sensors = {},
+      .delays_initialisation = true,
       .drops_mixture = weighs_by_ratio,
-      .make = make_ufastslam<Lanes>};
+      .make = [](const FilterSetup& setup) {
+        return make_refined_of_sensor(setup, unscented_points(setup));
+      }};
 }
 
 FilterKind srcd_kind() {
@@ -125,8 +126,13 @@ FilterKind srcd_kind() {
                              {weights_of_sigma_points_option()},
                              central_difference_options(),
                              {map_uncertainty_option()}}),
+          .sensors = {},
+          .delays_initialisation = true,
           .drops_mixture = weighs_by_ratio,
-          .make = make_srcd<Lanes>};
+          .make = [](const FilterSetup& setup) {
+            return make_refined_of_sensor(
+                setup, central_difference_points(setup, map_uncertainty(setup.options)));
+          }};
 }
 
 FilterKind srcd_aided_kind() {

@@ -1,29 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "filters/fastslam/delayed_known_association.hpp"
 #include "filters/fastslam/fast_slam.hpp"
 #include "filters/fastslam/gaussian_proposal.hpp"
 #include "filters/fastslam/known_association.hpp"
 #include "filters/fastslam/motion_sampling.hpp"
 #include "filters/fastslam/nearest_association.hpp"
+#include "filters/fastslam/seen_by.hpp"
 
 #include <memory>
 #include <utility>
 
 namespace montecarta::filters {
 
-/// FastSLAM with a proposal of the caller's making; the association is the setup's.
-template <class Real, class Proposal>
+/// FastSLAM with a proposal of the caller's making; the association is the setup's. `SeenBy`:
+/// AtPose or OnMounting, as the setup's sensor is.
+template <class Real, class SeenBy = AtPose, class Proposal>
 std::unique_ptr<SlamFilter> make_fast_slam(const FilterSetup& setup,
                                            const PopulationSettings& settings, Proposal proposal) {
-  if (setup.association.kind == Association::known) {
-    using Known = KnownAssociation<Real>;
-    return std::make_unique<FastSlam<Real, Proposal, Known>>(settings, std::move(proposal),
-                                                             Known(setup.landmarks));
+  const auto with = [&](auto association) -> std::unique_ptr<SlamFilter> {
+    return std::make_unique<FastSlam<Real, Proposal, decltype(association)>>(
+        settings, components_of(setup.belief.sensor).size(), std::move(proposal),
+        std::move(association));
+  };
+  const bool is_known = setup.association.kind == Association::known;
+  if constexpr (FixesLandmark<typename SeenBy::Kind>) {
+    if (is_known) return with(KnownAssociation<Real>(setup.landmarks));
+    return with(
+        NearestAssociation<Real, SeenBy>(settings.particles, setup.association, setup.belief));
+  } else {
+    expect(is_known, "delayed initialisation knows identities");
+    return with(DelayedKnownAssociation<Real>(setup.landmarks, settings.particles, setup.belief));
   }
-  using Nearest = NearestAssociation<Real>;
-  return std::make_unique<FastSlam<Real, Proposal, Nearest>>(
-      settings, std::move(proposal), Nearest(settings.particles, setup.association, setup.belief));
 }
 
 /// Reads the option `weights`.
@@ -31,16 +40,21 @@ WeightForm weight_form(const FilterOptions& options);
 /// Whether the option `weights` is `ratio`, which leaves no mixture (FilterKind::drops_mixture).
 bool weighs_by_ratio(const FilterOptions& options);
 
-/// FastSLAM whose poses are refined by the scan, each Gaussian carried by a transform of its own.
-template <class Real, class PoseTransform, class MapTransform>
+/// FastSLAM whose poses are refined by the scan, each Gaussian carried by a transform of its own,
+/// given as that of range and bearing.
+template <class Real, class SeenBy = AtPose, class PoseTransform, class MapTransform>
 std::unique_ptr<SlamFilter> make_refined(const FilterSetup& setup,
                                          const PoseTransform& pose_transform,
                                          const MapTransform& map_transform) {
   const PopulationSettings settings = population_settings(setup.options);
-  return make_fast_slam<Real>(setup, settings,
-                              GaussianProposal<Real, PoseTransform, MapTransform>(
-                                  settings.particles, setup.belief, weight_form(setup.options),
-                                  pose_transform, map_transform));
+  const SeenBy seen_by(setup.belief.sensor);
+  const auto for_pose = seen_by.transform(pose_transform);
+  const auto for_map = seen_by.transform(map_transform);
+  using Proposal =
+      GaussianProposal<Real, std::decay_t<decltype(for_pose)>, std::decay_t<decltype(for_map)>>;
+  return make_fast_slam<Real, SeenBy>(
+      setup, settings,
+      Proposal(settings.particles, setup.belief, weight_form(setup.options), for_pose, for_map));
 }
 
 /// Whether the landmark's covariance is part of the pose's innovation (EQUATIONS 7).
@@ -56,29 +70,31 @@ SigmaPoints central_difference_points(const FilterSetup& setup, MapUncertainty m
 SigmaPoints unscented_points(const FilterSetup& setup);
 
 /// `Real` = double is the same filter one particle at a time, for tests.
-template <class Real>
+template <class Real, class SeenBy = AtPose>
 std::unique_ptr<SlamFilter> make_fastslam1(const FilterSetup& setup) {
-  return make_fast_slam<Real>(setup, population_settings(setup.options),
-                              MotionSampling<Real>(setup.belief));
+  const auto transform = SeenBy(setup.belief.sensor).transform(Linearised());
+  return make_fast_slam<Real, SeenBy>(
+      setup, population_settings(setup.options),
+      MotionSampling<Real, std::decay_t<decltype(transform)>>(setup.belief, transform));
 }
-template <class Real>
+template <class Real, class SeenBy = AtPose>
 std::unique_ptr<SlamFilter> make_fastslam2(const FilterSetup& setup) {
-  return make_refined<Real>(setup, Linearised(), Linearised());
+  return make_refined<Real, SeenBy>(setup, Linearised(), Linearised());
 }
 /// Unscented FastSLAM (Kim 2008): FastSLAM II with every Gaussian carried by the unscented
 /// transform.
-template <class Real>
+template <class Real, class SeenBy = AtPose>
 std::unique_ptr<SlamFilter> make_ufastslam(const FilterSetup& setup) {
   const SigmaPoints unscented = unscented_points(setup);
-  return make_refined<Real>(setup, unscented, unscented);
+  return make_refined<Real, SeenBy>(setup, unscented, unscented);
 }
 /// SRCD-FastSLAM (Ankishan 2016; EQUATIONS 8): FastSLAM II with every Gaussian carried by central
 /// differences. Covariances are kept, and the factor is taken where points are drawn: the same
 /// numbers as the square-root recursion, to rounding.
-template <class Real>
+template <class Real, class SeenBy = AtPose>
 std::unique_ptr<SlamFilter> make_srcd(const FilterSetup& setup) {
   const SigmaPoints points = central_difference_points(setup, map_uncertainty(setup.options));
-  return make_refined<Real>(setup, points, points);
+  return make_refined<Real, SeenBy>(setup, points, points);
 }
 /// SRCD-aided FastSLAM (EQUATIONS 8): the poses of FastSLAM II, landmarks by central differences.
 template <class Real>
@@ -102,6 +118,12 @@ extern template std::unique_ptr<SlamFilter> make_srcd_pf<Lanes>(const FilterSetu
 extern template std::unique_ptr<SlamFilter> make_refined<Lanes>(const FilterSetup&,
                                                                 const SigmaPoints&,
                                                                 const SigmaPoints&);
+
+/// Of the setup's sensor, whichever it is.
+std::unique_ptr<SlamFilter> make_fastslam1_of_sensor(const FilterSetup& setup);
+std::unique_ptr<SlamFilter> make_fastslam2_of_sensor(const FilterSetup& setup);
+std::unique_ptr<SlamFilter> make_refined_of_sensor(const FilterSetup& setup,
+                                                   const SigmaPoints& points);
 
 /// Lines for the table of factory.cpp.
 FilterKind fastslam1_kind();

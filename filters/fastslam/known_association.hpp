@@ -73,8 +73,7 @@ class KnownAssociation {
   const std::vector<FreshLandmark<Real>>& new_landmarks(ParticleMaps<Real>& maps) {
     fresh_.clear();
     for (const Detection& detection : new_) {
-      const std::uint32_t slot = maps.add();
-      slot_of_[static_cast<std::size_t>(detection.identity)] = static_cast<std::int32_t>(slot);
+      const std::uint32_t slot = add_slot(detection, maps);
       for (std::size_t b = 0; b < maps.blocks(); ++b)
         fresh_.push_back({detection, b, slot, std::nullopt});
     }
@@ -88,6 +87,15 @@ class KnownAssociation {
     if (j >= slot_of_.size() || slot_of_[j] == kUnseen) return std::nullopt;
     maps.copy_slot(static_cast<std::uint32_t>(slot_of_[j]), source_, copied_);
     return mixture_of_landmarks(weights, copied_);
+  }
+
+ protected:
+  /// Detections of the scan whose landmarks are not in the maps.
+  const std::vector<Detection>& new_detections() const { return new_; }
+  std::uint32_t add_slot(const Detection& detection, ParticleMaps<Real>& maps) {
+    const std::uint32_t slot = maps.add();
+    slot_of_[static_cast<std::size_t>(detection.identity)] = static_cast<std::int32_t>(slot);
+    return slot;
   }
 
  private:

@@ -5,6 +5,7 @@
 #include "engine/random/normals.hpp"
 #include "filters/fastslam/concepts.hpp"
 #include "filters/models/ackermann.hpp"
+#include "filters/moments/moment_transforms.hpp"
 #include "filters/population/cloud_moments.hpp"
 
 #include <vector>
@@ -13,13 +14,13 @@ namespace montecarta::filters {
 
 /// FastSLAM I (EQUATIONS 5): every particle moves with control noise of its own at every step; the
 /// scan only weighs it, by the likelihood at its pose.
-template <class Real>
+template <class Real, MomentTransform<Real> MapTransform>
 class MotionSampling {
  public:
   using Refined = BasicPose<Real>;
 
-  explicit MotionSampling(const Belief& belief)
-      : belief_(belief), noise_(SensorNoise::of(belief)) {}
+  MotionSampling(const Belief& belief, const MapTransform& map_transform)
+      : belief_(belief), noise_(SensorNoise::of(belief)), map_transform_(map_transform) {}
 
   void start() {}
   void predict(const StepContext& context, const Control& control, double duration,
@@ -64,7 +65,8 @@ class MotionSampling {
     for (std::size_t k = 0; k < association.matches(); ++k) {
       auto match = association.match(b, k);
       innovations.add(
-          k, update_landmark(match.landmark, pose, match.seen, noise_, match.mask, likelihood),
+          k,
+          map_transform_.update(match.landmark, pose, match.seen, noise_, match.mask, likelihood),
           match.mask);
       association.store(b, k, match);
     }
@@ -74,7 +76,7 @@ class MotionSampling {
   void end_scan() {}
   void initialise(const FreshLandmark<Real>& fresh, const BasicPose<Real>& pose,
                   ParticleMaps<Real>& maps) const {
-    fresh.put(new_landmark(pose, observation_of<Real>(fresh.detection), noise_),
+    fresh.put(map_transform_.initialise(pose, observation_of<Real>(fresh.detection), noise_),
               maps.blocks_of(fresh.slot)[fresh.block]);
   }
   void begin_step(std::span<const std::uint32_t> /*parents*/) {}
@@ -100,6 +102,7 @@ class MotionSampling {
 
   Belief belief_;
   SensorNoise noise_;
+  MapTransform map_transform_;
 };
 
 }  // namespace montecarta::filters

@@ -5,6 +5,7 @@
 #include "filters/association/association_counts.hpp"
 #include "filters/association/nearest.hpp"
 #include "filters/fastslam/concepts.hpp"
+#include "filters/fastslam/seen_by.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -16,13 +17,14 @@ namespace montecarta::filters {
 /// Every particle decides for itself which landmark of its own map a detection is (EQUATIONS 17),
 /// with the covariance of its predicted pose in the innovation. Particle i owns slots 0 to count(i)
 /// - 1.
-template <class Real>
+template <class Real, class SeenBy = AtPose>
 class NearestAssociation {
  public:
   NearestAssociation(std::size_t particles, const AssociationSettings& settings,
                      const Belief& belief)
       : particles_(particles),
         settings_(settings),
+        seen_by_(belief.sensor),
         noise_(SensorNoise::of(belief)),
         log_new_density_(log_new_density(settings, belief)),
         counts_(blocks_for<Real>(particles), Real(0.0)),
@@ -45,8 +47,9 @@ class NearestAssociation {
     maps.open(slots_, opened_);
     pairings_.resize(maps.blocks() * kLanes * seen_.size());
     searches_.resize(pairings_.size());
-    context.parallel_for(maps.blocks(),
-                         [&](std::size_t b) { judge_block(b, predicted[b], joint); });
+    context.parallel_for(maps.blocks(), [&](std::size_t b) {
+      judge_block(b, seen_by_.sensor(predicted[b]), joint);
+    });
     matched_slots_.clear();
     for (const Pairing& pairing : pairings_) {
       if (pairing.kind == PairingKind::matched) matched_slots_.push_back(pairing.landmark);
@@ -171,18 +174,16 @@ class NearestAssociation {
     }
   }
 
-  /// Offers landmark j to every detection of the scan; `searches` {detection, lane}.
+  /// Offers landmark j to every detection of the scan from the pose of the sensor; `searches`
+  /// {detection, lane}.
   void offer(std::size_t b, std::uint32_t j, const LandmarkGaussian<Real>& landmark,
              const PoseGaussian<Real>& pose, const DelayedMap<Real>* joint,
              std::span<NearestSearch> searches) const {
-    const LineOfSight<Real> s = line_of_sight(pose.mean, landmark.mean);
+    const auto s = sight(typename SeenBy::Kind(), pose.mean, landmark.mean);
     const auto owned = Real(static_cast<double>(j)) < counts_[b];
     const Real never(std::numeric_limits<double>::infinity());
     // Only the innovation itself differs from detection to detection; most lie far away.
-    const Symmetric2<Real> S =
-        joint && joint->holds(j)
-            ? joint->covariance(j, b, pose, landmark, s, noise_)
-            : innovation_of(pose.covariance, s, {}, landmark.covariance, noise_).S;
+    const Symmetric2<Real> S = covariance(j, b, landmark, pose, s, joint);
     const Real determinant = S.determinant();
     for (std::size_t k = 0; k < seen_.size(); ++k) {
       const RangeBearing<Real> v = residual(seen_[k], s);
@@ -193,6 +194,18 @@ class NearestAssociation {
         searches[k * kLanes + lane].offer(j, get(distance, lane), get(cost, lane), settings_.gate);
       }
     }
+  }
+
+  /// Of the innovation of landmark j.
+  template <class Sight>
+  [[gnu::always_inline]] Symmetric2<Real> covariance(std::uint32_t j, std::size_t b,
+                                                     const LandmarkGaussian<Real>& landmark,
+                                                     const PoseGaussian<Real>& pose, const Sight& s,
+                                                     const DelayedMap<Real>* joint) const {
+    if constexpr (std::is_same_v<SeenBy, AtPose>) {
+      if (joint && joint->holds(j)) return joint->covariance(j, b, pose, landmark, s, noise_);
+    }
+    return innovation_of(pose.covariance, s, {}, landmark.covariance, noise_).S;
   }
 
   /// 1 for the lanes that matched detection k, else 0.
@@ -233,6 +246,7 @@ class NearestAssociation {
 
   std::size_t particles_;
   AssociationSettings settings_;
+  SeenBy seen_by_;
   SensorNoise noise_;
   double log_new_density_;
   std::vector<Real> counts_, resampled_counts_;

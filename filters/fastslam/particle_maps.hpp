@@ -16,11 +16,12 @@
 namespace montecarta::filters {
 
 /// Every particle's own map. Landmarks are kept in slots: slot j of all particles lies together, in
-/// blocks. After a resampling a slot is rearranged only when it is next opened.
-template <class Real>
+/// blocks. After a resampling a slot is rearranged only when it is next opened. `Held`: what is
+/// kept of a landmark, a struct of Reals.
+template <class Real, class Held = LandmarkGaussian<Real>>
 class ParticleMaps {
  public:
-  using Landmark = LandmarkGaussian<Real>;
+  using Landmark = Held;
 
   explicit ParticleMaps(std::size_t particles)
       : blocks_(blocks_for<Real>(particles)), genealogy_(blocks_ * kLanesOf<Real>) {}

@@ -3,8 +3,6 @@
 
 #include "engine/errors.hpp"
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,15 +11,6 @@
 namespace montecarta::filters {
 namespace {
 
-/// A crossing is good where its standard deviation, from the place of the first detection, is at
-/// most this share of the distances: what the second order adds then is small against it.
-constexpr double kMostRelative = 0.1;
-/// And of ranges where an error across them changes a range by no more than this share of its
-/// standard deviation: in the first order it does not.
-constexpr double kMostCurvature = 0.25;
-/// Of two places the one is taken that a detection fits, D^2 at most the first, and that it fits so
-/// much better than the other.
-constexpr double kFits = 9.0, kFitsBetter = 25.0;
 /// [m] of the point on a ray from the sensor; no result depends on it but by rounding.
 constexpr double kRayLength = 1.0;
 
@@ -120,10 +109,7 @@ bool DelayedInitialisation::crosses_well(const CompressedGaussian& gaussian, con
   const Eigen::Vector2d here = place_of(belief_.sensor.mounting.pose_of(gaussian.pose().mean));
   const double nearest = std::min((landmark->point - gaussian.landmark(waiting.first).mean).norm(),
                                   (landmark->point - here).norm());
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread, Eigen::EigenvaluesOnly);
-  const double largest = axes.eigenvalues()(1);
-  if (std::sqrt(largest) > kMostRelative * nearest) return false;
-  return is_bearing() || largest / (2.0 * nearest) <= kMostCurvature * std::sqrt(variance_);
+  return models::crosses_well(spread, nearest, is_bearing(), variance_);
 }
 
 /// D^2 of a range, were the landmark on that side.
@@ -148,10 +134,8 @@ double DelayedInitialisation::squared_distance(const CompressedGaussian& gaussia
 std::optional<double> DelayedInitialisation::decided_side(const CompressedGaussian& gaussian,
                                                           const Waiting& waiting,
                                                           const Detection& detection) const {
-  const double left = squared_distance(gaussian, waiting, detection, 1.0);
-  const double right = squared_distance(gaussian, waiting, detection, -1.0);
-  if (std::min(left, right) > kFits || std::abs(left - right) < kFitsBetter) return std::nullopt;
-  return left < right ? 1.0 : -1.0;
+  return chosen_side(squared_distance(gaussian, waiting, detection, 1.0),
+                     squared_distance(gaussian, waiting, detection, -1.0));
 }
 
 bool DelayedInitialisation::advances(const CompressedGaussian& gaussian,

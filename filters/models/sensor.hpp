@@ -72,12 +72,13 @@ inline std::optional<Sensor> sensor_named(std::string_view name, const Mounting&
 }
 
 /// Whether one detection fixes a landmark: it then is a Gaussian.
+template <class Kind>
+concept FixesLandmark = requires {
+  Kind::placed(Pose(), Eigen::Vector2d());
+};
 inline bool fixes_landmark(const Sensor& sensor) {
-  return std::visit(
-      [](const auto& one) {
-        return requires { one.placed(Pose(), Eigen::Vector2d()); };
-      },
-      sensor.kind);
+  return std::visit([]<class Kind>(const Kind& /*one*/) { return FixesLandmark<Kind>; },
+                    sensor.kind);
 }
 
 /// What it sees of a landmark at that range and bearing of the sensor.

@@ -4,8 +4,10 @@
 #include "filters/models/eigen_jacobians.hpp"
 
 #include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -71,6 +73,30 @@ inline std::optional<TriangulatedLandmark> crossing_of_circles(const Eigen::Vect
   const Eigen::Vector2d by_w = Eigen::Vector2d(-u.y(), u.x()) / sine;
   return TriangulatedLandmark{point, by_u * u.transpose(), by_w * w.transpose(), Matrix23::Zero(),
                               variance * (by_u * by_u.transpose() + by_w * by_w.transpose())};
+}
+
+/// Whether a place is determined well by two bearings or two ranges, each with `variance`: its
+/// covariance [m^2], from the first detection, is small enough for a Gaussian. `nearest` [m]: the
+/// smaller distance from which it was seen.
+inline bool crosses_well(const Eigen::Matrix2d& covariance, double nearest, bool of_bearings,
+                         double variance) {
+  // Standard deviation by the distance: what the second order adds then is small against it.
+  constexpr double kMostRelative = 0.1;
+  // Of ranges an error across them changes a range by no more than this share of its standard
+  // deviation: in the first order it does not.
+  constexpr double kMostCurvature = 0.25;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance, Eigen::EigenvaluesOnly);
+  const double largest = axes.eigenvalues()(1);
+  if (std::sqrt(largest) > kMostRelative * nearest) return false;
+  return of_bearings || largest / (2.0 * nearest) <= kMostCurvature * std::sqrt(variance);
+}
+
+/// On which of two sides (1, -1) a landmark is, by D^2 of a detection for either: that which it
+/// fits, and so much better than the other; nullopt where it does not tell.
+inline std::optional<double> chosen_side(double left, double right) {
+  constexpr double kFits = 9.0, kFitsBetter = 25.0;
+  if (std::min(left, right) > kFits || std::abs(left - right) < kFitsBetter) return std::nullopt;
+  return left < right ? 1.0 : -1.0;
 }
 
 }  // namespace montecarta::models

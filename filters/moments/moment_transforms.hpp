@@ -89,6 +89,10 @@ class SigmaPoints {
     return new_landmark_by_sigma_points(pose, seen, noise, rules_.landmark, ray_);
   }
 
+ protected:
+  const Rules& rules() const { return rules_; }
+  MapUncertainty map_uncertainty() const { return map_uncertainty_; }
+
  private:
   Rules rules_;
   MapUncertainty map_uncertainty_;

@@ -76,5 +76,25 @@ TEST(Allocation, EvolutionOfAPopulationOfParticlesAllocatesNothingInASecondRun) 
     expect_no_allocation("de_srcd", "mode", mode);
 }
 
+TEST(Allocation, DelayedInitialisationInParticlesAllocatesNothingInASecondRun) {
+  for (const SensorKind& kind : {SensorKind(BearingSensor()), SensorKind(RangeSensor())}) {
+    SmallWorldSettings settings{.scans = 80};
+    settings.noise.sensor.kind = kind;
+    const SmallWorld world = small_world(settings);
+    for (const char* name : {"fastslam1", "fastslam2", "ufastslam"}) {
+      const auto filter = std::ranges::find(filter_kinds(), name, &FilterKind::name);
+      const auto made = filter->make({.belief = settings.noise,
+                                      .association = {},
+                                      .options = default_options(*filter),
+                                      .landmarks = settings.landmarks});
+      drive_through(*made, world, Pose(), [](std::size_t) {});
+      EXPECT_GT(made->report().map_size, 1.0);
+      const std::size_t before = n_allocations;
+      drive_through(*made, world, Pose(), [](std::size_t) {});
+      EXPECT_EQ(n_allocations, before) << name;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace montecarta::filters

@@ -18,7 +18,7 @@
 namespace montecarta::filters {
 namespace {
 
-constexpr std::size_t kParticles = 30;
+constexpr std::size_t kParticles = 30, kManyParticles = 100;
 
 struct Offered {
   FilterKind kind;
@@ -60,6 +60,12 @@ Belief easy(const SomeVehicle& vehicle, const Sensor& sensor) {
   return noise;
 }
 
+/// Of the poses at the end of some runs.
+struct FinalErrors {
+  double squared = 0.0;  ///< mean of squared distances [m^2]
+  double anees = 0.0;    ///< mean NEES
+};
+
 class EveryFilterAndSensor : public testing::TestWithParam<Offered> {
  protected:
   const FilterKind& kind() const { return GetParam().kind; }
@@ -71,13 +77,26 @@ class EveryFilterAndSensor : public testing::TestWithParam<Offered> {
             .noise = easy(vehicle, GetParam().sensor.sensor),
             .controls = {vehicle.typical}};
   }
-  std::unique_ptr<SlamFilter> make() const {
+  std::unique_ptr<SlamFilter> make(std::size_t n = kParticles) const { return made(kind(), n); }
+  std::unique_ptr<SlamFilter> made(const FilterKind& of, std::size_t n) const {
     std::map<std::string, std::string, std::less<>> special;
-    if (kind().has_particles) special["particles"] = std::to_string(kParticles);
-    return kind().make({.belief = settings(1, 1).noise,
-                        .association = {},
-                        .options = default_options(kind(), special),
-                        .landmarks = 25});
+    if (of.has_particles) special["particles"] = std::to_string(n);
+    return of.make({.belief = settings(1, 1).noise,
+                    .association = {},
+                    .options = default_options(of, special),
+                    .landmarks = 25});
+  }
+  FinalErrors final_errors(SlamFilter& filter, std::uint64_t runs) const {
+    FinalErrors mean;
+    for (std::uint64_t run = 0; run < runs; ++run) {
+      const SmallWorld world = small_world(settings(100 + run, 60));
+      drive_through(filter, world, Pose(), [](std::size_t) {});
+      const PoseMoments belief = filter.estimate().spread;
+      const Eigen::Vector3d error = boxminus(world.drive.truth.back(), belief.mean);
+      mean.squared += error.head<2>().squaredNorm() / static_cast<double>(runs);
+      mean.anees += error.dot(belief.covariance.llt().solve(error)) / static_cast<double>(runs);
+    }
+    return mean;
   }
   std::size_t particles() const { return kind().has_particles ? kParticles : 0; }
 };
@@ -114,42 +133,49 @@ TEST_P(EveryFilterAndSensor, BuildsAMapNearTheTruthAndCountsItsInnovations) {
   const SmallWorld world = small_world(settings(3, 120));
   const auto filter = make();
   double nis = 0.0, dof = 0.0;
-  drive_through(*filter, world, Pose(), [&](std::size_t) {
+  std::size_t fullest = 0;
+  drive_through(*filter, world, Pose(), [&](std::size_t scan) {
     nis += filter->report().nis;
     dof += filter->report().nis_dof;
-    EXPECT_EQ(filter->report().nis_dof % components_of(GetParam().sensor.sensor).size(), 0U);
+    // Once all landmarks in view are held, every detection counts by its components.
+    const std::size_t most =
+        components_of(GetParam().sensor.sensor).size() * world.drive.scan(scan).size();
+    EXPECT_LE(filter->report().nis_dof, most);
+    fullest = std::max(fullest, filter->report().nis_dof == most ? most : 0);
   });
+  EXPECT_GT(fullest, 0U);
   std::vector<std::optional<LandmarkEstimate>> map(25);
   filter->map(map);
-  int held = 0;
+  int held = 0, astray = 0;
   for (std::size_t k = 0; k < map.size(); ++k) {
     if (!map[k]) continue;
-    EXPECT_LT((map[k]->mean - world.itinerary.landmarks[k]).norm(), 1.5) << "landmark " << k;
     ++held;
+    if ((map[k]->mean - world.itinerary.landmarks[k]).norm() > 1.5) ++astray;
   }
   EXPECT_GE(held, 8);
+  EXPECT_LE(astray, kind().has_particles ? held / 5 : 0);  // paths of few particles are coarse
   EXPECT_NEAR(filter->report().map_size, held, 1e-9);
   EXPECT_GT(dof, 300.0);
   if (kind().has_particles) return;
   EXPECT_NEAR(nis / dof, 1.0, 5.0 * std::sqrt(2.0 / dof));
 }
 
-/// Of joint filters: particles run out of diversity. Bands of five standard errors, of 60 runs.
+/// Of joint filters: particles run out of diversity. Bands of five standard errors.
 TEST_P(EveryFilterAndSensor, IsConsistentOnAnEasyWorld) {
   if (kind().has_particles) GTEST_SKIP() << "no joint covariance";
   constexpr std::uint64_t kRuns = 60;
-  const auto filter = make();
-  double sum = 0.0;
-  for (std::uint64_t run = 0; run < kRuns; ++run) {
-    const SmallWorld world = small_world(settings(100 + run, 60));
-    drive_through(*filter, world, Pose(), [](std::size_t) {});
-    const PoseMoments belief = filter->estimate().spread;
-    const Eigen::Vector3d error = boxminus(world.drive.truth.back(), belief.mean);
-    sum += error.dot(belief.covariance.llt().solve(error));
-  }
+  const double anees = final_errors(*make(), kRuns).anees;
   const analysis::Interval band = analysis::nees_bounds(kRuns, 3, 1.0 - 5.7e-7);
-  EXPECT_GT(sum / kRuns, band.lower);
-  EXPECT_LT(sum / kRuns, band.upper);
+  EXPECT_GT(anees, band.lower);
+  EXPECT_LT(anees, band.upper);
+}
+
+TEST_P(EveryFilterAndSensor, ErrsByLessThanTwiceTheKalmanFilterOnAnEasyWorld) {
+  if (!kind().has_particles) GTEST_SKIP() << "is one, or has no map";
+  constexpr std::uint64_t kRuns = 60;
+  const auto kalman = std::ranges::find(filter_kinds(), "ekf_slam", &FilterKind::name);
+  const double expected = final_errors(*made(*kalman, 0), kRuns).squared;
+  EXPECT_LT(final_errors(*make(kManyParticles), kRuns).squared, 4.0 * expected);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryFilterAndSensor, testing::ValuesIn(all_offered()),

@@ -58,12 +58,9 @@ TEST(SensorStudy, WhatAFilterDoesNotTakeIsRefused) {
   EXPECT_THAT(complaint(of_cell("marginal"), {"scenario.sensor=range_only"}),
               AllOf(HasSubstr("marginal takes no sensor range_only (it takes range_bearing)"),
                     HasSubstr("ekf_slam, riekf_slam, hrb")));
-  EXPECT_THAT(
-      complaint(of_cell("fastslam2"), {"scenario.sensor=position", "association.kind=nearest"}),
-      HasSubstr("association.kind = nearest with position (fastslam2"));
-  EXPECT_EQ(complaint(of_cell("fastslam2"), {"scenario.sensor=position"}), "nothing");
-  EXPECT_THAT(complaint(of_cell("fastslam1"), {"scenario.mount_left=1"}),
-              HasSubstr("fastslam1 takes no sensor that is mounted elsewhere"));
+  EXPECT_THAT(complaint(of_cell("de_srcd"), {"scenario.mount_left=1"}),
+              AllOf(HasSubstr("de_srcd takes no sensor that is mounted elsewhere"),
+                    HasSubstr("fastslam1, fastslam2, ufastslam, srcd")));
   EXPECT_THAT(
       complaint(of_cell("ekf_slam"), {"scenario.sensor=bearing_only", "association.kind=nearest"}),
       HasSubstr("association.kind = nearest with bearing_only"));
@@ -73,6 +70,23 @@ TEST(SensorStudy, WhatAFilterDoesNotTakeIsRefused) {
   EXPECT_EQ(complaint(of_cell("dead_reckoning"),
                       {"scenario.sensor=bearing_only", "association.kind=nearest"}),
             "nothing");
+}
+
+TEST(SensorStudy, ParticleFiltersTakeEverySensorButNeedToKnowWhatTheyDelay) {
+  for (const char* filter : {"fastslam1", "fastslam2", "ufastslam", "srcd"}) {
+    for (const std::string& sensor : sensor_names()) {
+      const std::string kind = "scenario.sensor=" + sensor;
+      EXPECT_EQ(complaint(of_cell(filter), {kind, "scenario.mount_left=1"}), "nothing");
+      const std::string refusal =
+          complaint(of_cell(filter), {kind, "association.kind=nearest", "scenario.mount_left=1"});
+      if (fixes_landmark(*sensor_named(sensor))) {
+        EXPECT_EQ(refusal, "nothing") << filter << ", " << sensor;
+      } else {
+        EXPECT_THAT(refusal, AllOf(HasSubstr("association.kind = nearest with " + sensor),
+                                   HasSubstr("set association.kind = known")));
+      }
+    }
+  }
 }
 
 TEST(SensorStudy, ABeliefInOtherDetectionsIsRefused) {

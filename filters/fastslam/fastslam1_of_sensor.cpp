@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/fastslam/fast_slam_filters.hpp"
+
+std::unique_ptr<montecarta::engine::SlamFilter> montecarta::filters::make_fastslam1_of_sensor(
+    const FilterSetup& setup) {
+  return with_sensor(setup.belief.sensor, [&](const auto& seen_by) {
+    return make_fastslam1<Lanes, std::decay_t<decltype(seen_by)>>(setup);
+  });
+}
