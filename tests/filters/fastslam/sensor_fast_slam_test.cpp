@@ -116,6 +116,30 @@ TEST(SensorFastSlam, AMountingOfNothingIsNoMounting) {
   }
 }
 
+TEST(SensorFastSlam, FindsWhichLandmarkADetectionIs) {
+  for (const SensorKind& sensor :
+       {SensorKind(RangeBearingSensor()), SensorKind(PositionSensor())}) {
+    SmallWorldSettings settings = two_scans_of({sensor, kMounted});
+    settings.seed = 3;
+    settings.landmarks = 20;
+    settings.scans = 100;
+    const SmallWorld world = small_world(settings);
+    for (const FilterKind& kind : {fastslam1_kind(), fastslam2_kind(), ufastslam_kind()}) {
+      const FilterSetup setup{.belief = settings.noise,
+                              .association = {.kind = Association::nearest, .gate = 13.8},
+                              .options = default_options(kind, {{"particles", "100"}}),
+                              .landmarks = 20};
+      const auto filter = kind.make(setup);
+      AssociationCounts counts;
+      drive_through(*filter, world, {},
+                    [&](std::size_t) { add(filter->report().association, 1.0, counts); });
+      EXPECT_GT(counts.correct, 20.0 * counts.wrong) << kind.name;
+      EXPECT_GT(filter->report().map_size, 5.0) << kind.name;
+      EXPECT_LT(filter->report().map_size, 20.5) << kind.name;
+    }
+  }
+}
+
 TEST(SensorFastSlam, GivesTheSameBitsOnAnyNumberOfThreads) {
   for (const Sensor& sensor : {Sensor{PositionSensor(), kMounted}, Sensor{BearingSensor(), {}},
                                Sensor{RangeSensor(), kMounted}}) {
