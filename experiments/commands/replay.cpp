@@ -44,6 +44,7 @@ std::string all_columns(const Study& study) {
   }
   if (identities_of(study) == 0) std::erase(columns, "association");
   if (!objection_to_joint(study).empty()) std::erase(columns, "joint");
+  if (!objection_to_observability(study).empty()) std::erase(columns, "observability");
   return joined(columns, ", ");
 }
 

@@ -100,6 +100,10 @@ std::function<std::unique_ptr<SlamFilter>()> maker_of(const CellSpec& spec,
   return make;
 }
 
+bool tells_rotation_information(const CellSpec& spec, const Settings& s) {
+  return spec.filter->tells_rotation_information && fixes_landmark(sensor_of(s, "belief"));
+}
+
 Cell cell_of(const CellSpec& spec, const Study& study, ExternalPrograms programs) {
   std::map<std::string, std::string, std::less<>> values(spec.options.begin(), spec.options.end());
   const FilterSetup setup{.belief = belief_of(study.settings, spec),
@@ -114,8 +118,7 @@ Cell cell_of(const CellSpec& spec, const Study& study, ExternalPrograms programs
           .mixture =
               filter.has_mixture && !(filter.drops_mixture && filter.drops_mixture(setup.options)),
           .joint = filter.has_joint,
-          .rotation_information =
-              filter.tells_rotation_information && fixes_landmark(setup.belief.sensor),
+          .rotation_information = tells_rotation_information(spec, study.settings),
           .landmarks = map_rows_of(setup, study.settings),
           .settings = settings_of(spec),
           .make_filter = maker_of(spec, setup, programs)};
@@ -139,12 +142,10 @@ void expect_joint_estimates(const Study& study) {
   throw StudyError(study.settings.place("record", "columns") + ": joint " + objection);
 }
 
-void expect_rotation_information(const StudyPlan& plan, const Study& study) {
-  if (std::ranges::any_of(plan.cells, &Cell::rotation_information)) return;
-  throw StudyError(study.settings.place("record", "columns") +
-                   ": observability (no cell tells what its detections are taken for about the "
-                   "heading of the whole): take observability out, or add a cell of ekf_slam or "
-                   "riekf_slam with a sensor of which one detection fixes a landmark");
+void expect_rotation_information(const Study& study) {
+  const std::string objection = objection_to_observability(study);
+  if (objection.empty()) return;
+  throw StudyError(study.settings.place("record", "columns") + ": observability " + objection);
 }
 
 /// Cells that stop by their verdict need one.
@@ -188,6 +189,16 @@ std::string objection_to_joint(const Study& study) {
          "large): take joint out, or set association.kind = known in a simulation";
 }
 
+std::string objection_to_observability(const Study& study) {
+  const auto tells = [&study](const CellSpec& cell) {
+    return tells_rotation_information(cell, study.settings);
+  };
+  if (std::ranges::any_of(study.cells, tells)) return {};
+  return "(no cell tells what its detections are taken for about the heading of the whole): take "
+         "observability out, or add a cell of ekf_slam or riekf_slam with a sensor of which one "
+         "detection fixes a landmark";
+}
+
 StudyPlan make_plan(const Study& study, std::optional<RunRange> range, ExternalPrograms programs) {
   if (range && study.until) refuse_part(study);
   expect_verdict(study);
@@ -202,7 +213,7 @@ StudyPlan make_plan(const Study& study, std::optional<RunRange> range, ExternalP
   for (const CellSpec& spec : study.cells) plan.cells.push_back(cell_of(spec, study, programs));
   plan.columns = columns_of(settings);
   if (plan.columns.joint) expect_joint_estimates(study);
-  if (plan.columns.observability) expect_rotation_information(plan, study);
+  if (plan.columns.observability) expect_rotation_information(study);
   plan.drives = drives_of(study, plan.seed);
   if (study.until) plan.is_enough = rule_of(*study.until);
   plan.own_landmarks = own_landmarks_of(study, plan.seed);

@@ -15,6 +15,9 @@ namespace montecarta::experiments {
 /// where it can.
 std::string objection_to_joint(const Study& study);
 
+/// The same of the column observability.
+std::string objection_to_observability(const Study& study);
+
 /// The study made ready to run: drives simulated, filters at hand. Without `range` all its runs.
 /// Filters that are programs cannot be made unless those are allowed. Throws StudyError where
 /// settings that are right alone do not fit together, or there is no such program.
