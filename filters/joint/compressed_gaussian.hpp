@@ -44,7 +44,7 @@ class CompressedGaussian {
   LinearisedMotion regressed(const MotionIncrement& motion) const {
     return near_.regressed(motion);
   }
-  PoseMoments pose_after(const LinearisedMotion& motion) const { return near_.pose_after(motion); }
+  PoseMoments pose_after(const auto& motion) const { return near_.pose_after(motion); }
   void move(const LinearisedMotion& motion) { near_.move(motion); }
   void move(const MotionIncrement& motion) { near_.move(motion); }
 

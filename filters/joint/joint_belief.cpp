@@ -116,7 +116,9 @@ void JointBelief::initialise_landmarks(Scan scan, std::span<const char> advancin
 }
 
 PoseMoments JointBelief::pose_after(const MotionIncrement& motion) const {
-  const PoseMoments pose = gaussian_.pose_after(linearised(motion));
+  const PoseMoments pose = linearisation_ == Linearisation::estimate
+                               ? gaussian_.pose_after(motion)  // asked at every control
+                               : gaussian_.pose_after(linearised(motion));
   return moments_ == Moments::map ? pose : pushed(pose);
 }
 

@@ -80,6 +80,10 @@ PoseMoments JointGaussian::pose_after(const LinearisedMotion& motion) const {
   return moved;
 }
 
+PoseMoments JointGaussian::pose_after(const MotionIncrement& motion) const {
+  return pose_after(linearised(motion));
+}
+
 void JointGaussian::move(const LinearisedMotion& motion) {
   map_.cross.col(0).head(rows()) += motion.by_heading(0) * map_.cross.col(2).head(rows());
   map_.cross.col(1).head(rows()) += motion.by_heading(1) * map_.cross.col(2).head(rows());
@@ -116,15 +120,14 @@ JointGaussian::Trouble JointGaussian::look_at(const PointMoments& landmark,
   const auto linearised = [&](const Pose& pose, const Eigen::Vector2d& point) {
     return linearised_detection(belief_.sensor, pose, Point{point.x(), point.y()});
   };
-  const auto here = linearised(pose_.mean, landmark.mean);
-  const auto there = at ? linearised(at->pose, at->landmark) : here;
-  if (!here || !there) return Trouble::too_near;
-  expected = {.pose_jacobian = there->by_pose,
-              .landmark_jacobian = there->by_landmark,
-              .observation = here->value,
-              .factor = {},
-              .ahead = Eigen::Vector2d::Zero(),
-              .wraps = wraps_};
+  auto seen = linearised(pose_.mean, landmark.mean);
+  if (!seen) return Trouble::too_near;
+  expected.observation = seen->value;
+  if (at && !(seen = linearised(at->pose, at->landmark))) return Trouble::too_near;
+  expected.pose_jacobian = seen->by_pose;
+  expected.landmark_jacobian = seen->by_landmark;
+  expected.ahead.setZero();
+  expected.wraps = wraps_;
   return weigh(landmark, Eigen::Matrix2d::Zero(), expected);
 }
 

@@ -121,6 +121,7 @@ class JointGaussian {
   LinearisedMotion regressed(const MotionIncrement& motion) const;
   /// What the pose would be after `motion`.
   PoseMoments pose_after(const LinearisedMotion& motion) const;
+  PoseMoments pose_after(const MotionIncrement& motion) const;
   /// The vehicle moved by `motion`.
   void move(const LinearisedMotion& motion);
   void move(const MotionIncrement& motion) { move(linearised(motion)); }

@@ -40,7 +40,7 @@ class LinearisationPoints {
   /// The vehicle moved by `motion`, as it was linearised.
   void move(const LinearisedMotion& motion);
   /// A landmark was initialised that far from the vehicle's point.
-  void append(const Eigen::Vector2d& away) { landmarks_.push_back(place_of(pose_) + away); }
+  void append(const Eigen::Vector2d& away) { landmarks_.emplace_back(place_of(pose_) + away); }
 
  private:
   Pose pose_;  ///< and the heading that it is linearised at

@@ -28,7 +28,7 @@ template <class Real, class Mask>
   const Symmetric2<Real>& M = landmark.covariance;
   PoseGaussian<Real> place{{landmark.mean.x, landmark.mean.y, Real(0.0)},
                            {M.xx, M.xy, M.yy, Real(0.0), Real(0.0), Real(0.0)}};
-  const Density<Real> density = condition(place, v, use);
+  Density<Real> density = condition(place, v, use);
   landmark = {{place.mean.x, place.mean.y},
               {place.covariance.xx, place.covariance.xy, place.covariance.yy}};
   return density;
@@ -89,7 +89,7 @@ struct LinearisedSensor : Linearised {
       PoseGaussian<Real>& pose, const SensorSight<Kind, Real>& s, const RangeBearing<Real>& value,
       const LandmarkGaussian<Real>& landmark, const SensorNoise& noise, const Mask& matched,
       Evidence<Real>& evidence) {
-    const Innovation<Real> v = innovation_of(pose.covariance, s, value, landmark.covariance, noise);
+    Innovation<Real> v = innovation_of(pose.covariance, s, value, landmark.covariance, noise);
     const auto use = matched && is_usable(s);
     weigh(Kind(), condition(pose, v, use), use, matched, evidence);
     return v;

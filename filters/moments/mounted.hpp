@@ -63,7 +63,7 @@ class Mounted {
                                                  const SensorNoise& noise, const Mask& matched,
                                                  Evidence<Real>& evidence) const {
     PoseGaussian<Real> sensor = mounting_.sensor(pose);
-    const Innovation<Real> v = transform_.refine(sensor, landmark, seen, noise, matched, evidence);
+    Innovation<Real> v = transform_.refine(sensor, landmark, seen, noise, matched, evidence);
     pose = mounting_.vehicle(sensor);
     return v;
   }

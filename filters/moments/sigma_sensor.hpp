@@ -89,7 +89,7 @@ struct SigmaPointsOf : SigmaPoints {
     ObservationMoments<Real> both = own;
     for (const Column3<Real>& column : s.columns(in_plane(landmark.covariance)))
       s.add(column, both);
-    const Innovation<Real> whole = s.innovation(seen, both);
+    Innovation<Real> whole = s.innovation(seen, both);
     Innovation<Real> proposal =
         map_uncertainty() == MapUncertainty::on ? whole : s.innovation(seen, own);
     proposal.range = s.in_map(first), proposal.bearing = s.in_map(second);

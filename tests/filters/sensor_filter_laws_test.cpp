@@ -138,9 +138,10 @@ TEST_P(EveryFilterAndSensor, BuildsAMapNearTheTruthAndCountsItsInnovations) {
     nis += filter->report().nis;
     dof += filter->report().nis_dof;
     // Once all landmarks in view are held, every detection counts by its components.
-    const std::size_t most =
-        components_of(GetParam().sensor.sensor).size() * world.drive.scan(scan).size();
+    const std::size_t components = components_of(GetParam().sensor.sensor).size();
+    const std::size_t most = components * world.drive.scan(scan).size();
     EXPECT_LE(filter->report().nis_dof, most);
+    EXPECT_EQ(filter->report().nis_dof % components, 0U);
     fullest = std::max(fullest, filter->report().nis_dof == most ? most : 0);
   });
   EXPECT_GT(fullest, 0U);

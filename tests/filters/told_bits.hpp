@@ -46,7 +46,7 @@ class ToldBits {
     for (const double number :
          {r.ess, static_cast<double>(r.resampled), r.log_likelihood, r.nis,
           static_cast<double>(r.nis_dof), static_cast<double>(r.numerical_faults), a.correct,
-          a.wrong, a.new_again, a.missed, a.clutter, r.map_size}) {
+          a.wrong, a.new_again, a.missed, a.clutter, r.map_size, r.rotation_information}) {
       tell(number);
     }
   }

@@ -8,7 +8,10 @@
 #include "tests/experiments/recordings/small_drives.hpp"
 #include "tests/experiments/study/study_text.hpp"
 
+#include <boost/math/distributions/chi_squared.hpp>
 #include <gmock/gmock.h>
+
+#include <cmath>
 
 namespace montecarta::experiments {
 namespace {
@@ -93,6 +96,25 @@ TEST(SensorStudy, ABeliefInOtherDetectionsIsRefused) {
   const Study study = parsed(of_cell("ekf_slam"), {"belief.sensor=position"});
   EXPECT_THAT(complaint_of([&] { drives_of(study, 1); }),
               HasSubstr("belief.sensor = position has other detections than the drive"));
+}
+
+TEST(SensorStudy, GatesAcceptAsOftenWhateverTheDimensionOfADetection) {
+  for (const std::string& sensor : sensor_names()) {
+    Study study = parsed(of_cell("dead_reckoning"),
+                         {"scenario.sensor=" + sensor, "association.gate_sigma=2.5"});
+    AssociationSettings given;
+    FilterKind asking = *study.cells[0].filter;
+    asking.make = [&given, make = asking.make](const FilterSetup& setup) {
+      given = setup.association;
+      return make(setup);
+    };
+    study.cells[0].filter = &asking;
+    make_plan(study).cells[0].make_filter();
+    const auto dimension = static_cast<double>(components_of(*sensor_named(sensor)).size());
+    const double accepted = std::erf(2.5 / std::sqrt(2.0));
+    EXPECT_NEAR(given.gate, quantile(boost::math::chi_squared(dimension), accepted), 1e-9)
+        << sensor;
+  }
 }
 
 /// A log of bearings, as a folder.
