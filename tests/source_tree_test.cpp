@@ -213,6 +213,29 @@ TEST(SourceTree, NothingIsInvertedAndNothingIsLeftToDo) {
   EXPECT_THAT(faults(sources(), "inverse() or left to do", broken), IsEmpty());
 }
 
+/// Numbers that several equations of one document have.
+std::vector<std::string> numbers_given_twice(const Lines& document) {
+  static const std::regex number(R"(\\tag\{([^}]*)\})");
+  std::vector<std::string> numbers, twice;
+  for (const std::string& line : document) {
+    std::smatch found;
+    if (std::regex_search(line, found, number)) numbers.push_back(found[1]);
+  }
+  std::ranges::sort(numbers);
+  for (std::size_t i = 1; i < numbers.size(); ++i) {
+    if (numbers[i] == numbers[i - 1]) twice.push_back(numbers[i]);
+  }
+  return twice;
+}
+
+TEST(SourceTree, EquationsHaveNumbersOfTheirOwn) {
+  const Lines equations = read_lines(fs::path(MONTECARTA_SOURCE_DIR) / "filters/EQUATIONS.md");
+  EXPECT_THAT(equations, testing::Contains(HasSubstr("\\tag{1.1}")));
+  EXPECT_THAT(numbers_given_twice(equations), IsEmpty());
+  EXPECT_THAT(numbers_given_twice({"a \\tag{1.2}", "b \\tag{1.3}", "c \\tag{1.2}"}),
+              ElementsAre("1.2"));
+}
+
 TEST(SourceTree, TheTreeThatIsReadIsWhole) {
   for (const char* path : {"engine/errors.hpp", "tests/run", "filters/CMakeLists.txt",
                            "analysis/page/script/player.js"}) {

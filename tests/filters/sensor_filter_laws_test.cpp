@@ -171,7 +171,7 @@ TEST_P(EveryFilterAndSensor, IsConsistentOnAnEasyWorld) {
   EXPECT_LT(anees, band.upper);
 }
 
-TEST_P(EveryFilterAndSensor, ErrsByLessThanTwiceTheKalmanFilterOnAnEasyWorld) {
+TEST_P(EveryFilterAndSensor, SlowErrsByLessThanTwiceTheKalmanFilterOnAnEasyWorld) {
   if (!kind().has_particles) GTEST_SKIP() << "is one, or has no map";
   constexpr std::uint64_t kRuns = 60;
   const auto kalman = std::ranges::find(filter_kinds(), "ekf_slam", &FilterKind::name);
