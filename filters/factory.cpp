@@ -22,12 +22,25 @@ std::vector<FilterKind (*)()>& added_filters() {
 
 std::vector<FilterKind> all_kinds() {
   std::vector<FilterKind> kinds{
-      ekf_slam_kind(),    riekf_slam_kind(), fej_ekf_slam_kind(),
-      oc_ekf_slam_kind(), ukf_slam_kind(),   hrb_kind(),
-      fastslam1_kind(),   fastslam2_kind(),  ufastslam_kind(),
-      srcd_kind(),        srcd_aided_kind(), srcd_pf_kind(),
-      de_srcd_kind(),     delayed_kind(),    marginal_kind(),
-      ampf_de_kind(),     smoother_kind(),   dead_reckoning_kind(),
+      ekf_slam_kind(),
+      riekf_slam_kind(),
+      fej_ekf_slam_kind(),
+      oc_ekf_slam_kind(),
+      robocentric_ekf_slam_kind(),
+      ukf_slam_kind(),
+      hrb_kind(),
+      fastslam1_kind(),
+      fastslam2_kind(),
+      ufastslam_kind(),
+      srcd_kind(),
+      srcd_aided_kind(),
+      srcd_pf_kind(),
+      de_srcd_kind(),
+      delayed_kind(),
+      marginal_kind(),
+      ampf_de_kind(),
+      smoother_kind(),
+      dead_reckoning_kind(),
   };
   for (const auto& make : added_filters()) {
     FilterKind kind = make();

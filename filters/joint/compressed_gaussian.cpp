@@ -65,6 +65,11 @@ void CompressedGaussian::replace(const PoseMoments& pose, const MapMoments& map)
   updates_ = 0;
 }
 
+void CompressedGaussian::centre_on_pose() {
+  if (std::ranges::find(point_of_, kFar) != point_of_.end()) replace(pose(), map());
+  near_.centre_on_pose();
+}
+
 Eigen::Vector2d CompressedGaussian::mean_of(std::size_t slot) const {
   if (is_near(slot)) return near_.map().mean.segment<2>(row_of(point_of_[slot]));
   const Eigen::Index row = row_of(slot);

@@ -86,6 +86,8 @@ class CompressedGaussian {
     return near_.update_with(point_of_[slot], detected, iterations, expected);
   }
   void draw_heading(double keep, double normal) { near_.draw_heading(keep, normal); }
+  /// JointGaussian::centre_on_pose(); makes all landmarks near.
+  void centre_on_pose();
   void append(const Eigen::Vector2d& detection,
               const Eigen::Vector2d& behind = Eigen::Vector2d::Zero());
   /// JointGaussian::append(), replace() and covariance_with() of points that are near.

@@ -167,6 +167,28 @@ bool JointGaussian::carry_error(const Eigen::Vector2d& pose_step) {
   return true;
 }
 
+/// With D the derivative of the points by the pose and C their covariance with it, P <- P - D C' -
+/// C D' + D P_x D' = P - D G' - G D' with G = C - D P_x / 2.
+void JointGaussian::centre_on_pose() {
+  auto D = moved_.topRows(rows()), G = halved_.topRows(rows());
+  D.setZero();
+  for (std::size_t slot = 0; slot < n_landmarks_; ++slot) {
+    const Eigen::Index row = row_of(slot);
+    D.middleRows<2>(row) << 1.0, 0.0, pose_.mean.y - map_.mean(row + 1), 0.0, 1.0,
+        map_.mean(row) - pose_.mean.x;
+  }
+  G = map_.cross.topRows(rows());
+  G -= D.lazyProduct(0.5 * pose_.covariance);
+  for (Eigen::Index j = 0; j < row_of(n_landmarks_); ++j) {
+    const Eigen::Index first = pack_of(j), count = rows() - first;
+    map_.covariance.col(j).segment(first, count) -=
+        D.middleRows(first, count).lazyProduct(G.row(j).transpose()) +
+        G.middleRows(first, count).lazyProduct(D.row(j).transpose());
+  }
+  pose_.covariance.setZero();
+  map_.cross.topRows(rows()).setZero();
+}
+
 /// The landmarks' covariance, in one pass: P <- P - W W' and, where the error was carried, - b b' +
 /// a a'. Whole packs in one order: exactly symmetric.
 void JointGaussian::change_map(bool carries_error) {

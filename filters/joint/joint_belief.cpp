@@ -27,6 +27,7 @@ JointBelief::JointBelief(const FilterSetup& setup, Retraction retraction, int it
 
 void JointBelief::start(const Pose& start) {
   gaussian_.start(start);
+  if (is_robocentric()) frame_.start(start, gaussian_);
   association_.clear();
   point_of_.clear();
   delayed_.clear();
@@ -42,6 +43,7 @@ void JointBelief::become(const JointBelief& other) {
   point_of_ = other.point_of_;
   delayed_ = other.delayed_;
   points_ = other.points_;
+  frame_ = other.frame_;
   rotation_information_ = other.rotation_information_;
   used_detections_ = other.used_detections_;
   outcome_ = other.outcome_;
@@ -60,6 +62,7 @@ void JointBelief::update_with(const MotionIncrement& motion, Scan scan) {
       outcome_.log_likelihood += association_.unmatched_log_density();  // as every belief does
     }
   }
+  if (is_robocentric()) frame_.centre(gaussian_);
 }
 
 /// Readies the Gaussian for the landmarks that the scan shows.
@@ -119,6 +122,7 @@ PoseMoments JointBelief::pose_after(const MotionIncrement& motion) const {
   const PoseMoments pose = linearisation_ == Linearisation::estimate
                                ? gaussian_.pose_after(motion)  // asked at every control
                                : gaussian_.pose_after(linearised(motion));
+  if (is_robocentric()) return frame_.in_map(pose);
   return moments_ == Moments::map ? pose : pushed(pose);
 }
 
@@ -126,6 +130,7 @@ std::optional<LandmarkEstimate> JointBelief::landmark(std::size_t k) const {
   const std::size_t at = association_.slot_of(k);
   if (at >= landmarks()) return std::nullopt;
   const std::size_t slot = point_of_[at];
+  if (is_robocentric()) return frame_.in_map(gaussian_, slot);
   if (moments_ == Moments::map) return gaussian_.landmark(slot);
   return pushed(gaussian_.point(slot), gaussian_.pose().covariance(2, 2));
 }
@@ -142,7 +147,8 @@ JointEstimate JointBelief::joint(std::size_t landmarks) const {
       places.push_back(3 + row_of(k) + coordinate);
     }
   }
-  const JointEstimate by_order = gaussian_.joint();
+  JointEstimate by_order = gaussian_.joint();
+  if (is_robocentric()) frame_.put_in_map(by_order);
   const Eigen::Index size = 3 + row_of(landmarks);
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   JointEstimate joint{Eigen::VectorXd::Constant(size, unknown),

@@ -6,6 +6,7 @@
 #include "filters/joint/delayed_initialisation.hpp"
 #include "filters/joint/linearisation_points.hpp"
 #include "filters/joint/pushed_moments.hpp"
+#include "filters/joint/robocentric_frame.hpp"
 
 #include <cstdint>
 #include <limits>
@@ -76,6 +77,7 @@ class JointBelief {
   bool has_own_points() const {
     return linearisation_ == Linearisation::first || linearisation_ == Linearisation::constrained;
   }
+  bool is_robocentric() const { return linearisation_ == Linearisation::relative; }
   bool regresses() const { return linearisation_ == Linearisation::regression; }
   Eigen::Vector2d shift_of_points() const;
   LinearisedMotion linearised(const MotionIncrement& motion) const;
@@ -102,6 +104,7 @@ class JointBelief {
   Linearisation linearisation_;
   Retraction retraction_;
   LinearisationPoints points_;  ///< of a sensor that fixes landmarks
+  RobocentricFrame frame_;      ///< where errors are relative to the vehicle
   Eigen::Vector2d sigma_;       ///< of the components of a detection
   double rotation_information_ = 0.0;
   std::vector<NearestSearch> searches_;  ///< scratch

@@ -41,6 +41,12 @@ std::unique_ptr<SlamFilter> linearised_elsewhere(const FilterSetup& setup) {
                                                             .linearisation = kLinearisation});
 }
 
+std::unique_ptr<SlamFilter> make_robocentric(const FilterSetup& setup) {
+  return std::make_unique<GaussianBank>(
+      setup,
+      BankSettings{.motion = motion_of(setup.options), .linearisation = Linearisation::relative});
+}
+
 template <Linearisation kLinearisation>
 FilterKind linearised_elsewhere_kind(const char* name, const char* long_name, const char* source,
                                      Option motion) {
@@ -123,6 +129,19 @@ FilterKind ukf_slam_kind() {
   return linearised_elsewhere_kind<Linearisation::regression>(
       "ukf_slam", "unscented Kalman filter SLAM", "Huang, Mourikis, Roumeliotis 2009",
       fitting_motion_option());
+}
+
+FilterKind robocentric_ekf_slam_kind() {
+  return {.name = "robocentric_ekf_slam",
+          .long_name = "robocentric EKF-SLAM",
+          .source = "Castellanos, Martinez-Cantin, Tardos, Neira 2007",
+          .has_particles = false,
+          .has_mixture = false,
+          .has_joint = true,
+          .tells_rotation_information = true,
+          .options = {linearised_motion_option()},
+          .sensors = {RangeBearingSensor::kName, PositionSensor::kName},
+          .make = make_robocentric};
 }
 
 FilterKind hrb_kind() {

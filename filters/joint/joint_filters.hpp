@@ -26,6 +26,8 @@ FilterKind riekf_slam_kind();
 /// EKF-SLAM whose linearised system has the right unobservable directions (EQUATIONS 15).
 FilterKind fej_ekf_slam_kind();
 FilterKind oc_ekf_slam_kind();
+/// EKF-SLAM in the frame of the vehicle.
+FilterKind robocentric_ekf_slam_kind();
 /// EKF-SLAM by sigma points instead of derivatives.
 FilterKind ukf_slam_kind();
 FilterKind hrb_kind();

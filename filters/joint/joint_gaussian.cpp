@@ -33,6 +33,8 @@ void JointGaussian::grow(std::size_t room) {
   map_.make_room(wanted);
   seen_.resize(wanted, 2);
   gain_map_.resize(wanted, 4);
+  moved_.resize(wanted, 3);
+  halved_.resize(wanted, 3);
   map_step_.resize(2, wanted / 2);
 }
 

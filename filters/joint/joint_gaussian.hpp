@@ -170,11 +170,15 @@ class JointGaussian {
   void append(const NewPoint& point);
   /// Puts a point in the place of another, which may be among those that it depends on.
   void replace(std::size_t slot, const NewPoint& point);
+  /// Takes errors for relative to the pose from now on: that of a point p becomes e_p - e_x - J (p
+  /// - x) e_heading, the pose has none.
+  void centre_on_pose();
   /// Covariance of (x, y, heading) and of two points of the map.
   Matrix7 covariance_with(std::size_t first, std::size_t second) const;
 
  private:
   using Columns2 = Eigen::Matrix<double, Eigen::Dynamic, 2>;
+  using Columns3 = Eigen::Matrix<double, Eigen::Dynamic, 3>;
   using Columns4 = Eigen::Matrix<double, Eigen::Dynamic, 4>;
 
   /// A step of the pose and of one landmark, and where it leads.
@@ -209,6 +213,7 @@ class JointGaussian {
   Columns2 seen_;                          ///< scratch: the columns of one landmark
   Eigen::Matrix<double, 3, 2> gain_pose_;  ///< P H' L^-T, rows of the pose
   Columns4 gain_map_;          ///< the same, rows of the map, and two columns of carry_error()
+  Columns3 moved_, halved_;    ///< scratch of centre_on_pose()
   Eigen::Matrix2Xd map_step_;  ///< [m] how one detection moves the landmarks
 };
 

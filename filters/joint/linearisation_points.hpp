@@ -16,6 +16,7 @@ enum class Linearisation {
   estimate,     ///< at the latest estimate: EKF-SLAM
   first,        ///< at the first estimates: Huang, Mourikis, Roumeliotis, ICRA 2008
   constrained,  ///< at these, shifted together to the latest ones: the same, IJRR 2010
+  relative,     ///< at the latest estimate, errors relative to the vehicle: Castellanos et al. 2007
   regression    ///< nowhere: by regression on sigma points, as in the unscented Kalman filter
 };
 

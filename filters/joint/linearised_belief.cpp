@@ -41,9 +41,10 @@ std::optional<ObservationPoint> JointBelief::observation_point(std::size_t slot)
   return ObservationPoint{points_.pose(), points_.landmark(slot)};
 }
 
-/// The invariant error's turn is about the estimate, to which it is carried after every detection.
+/// The invariant error's turn is about the estimate, to which it is carried after every detection;
+/// of errors relative to the vehicle a turn of the whole turns the frame of the map alone.
 ObservationPoint JointBelief::rotation_point(std::size_t slot) const {
-  if (retraction_ == Retraction::invariant || !fixes_landmark(sensor_))
+  if (retraction_ == Retraction::invariant || is_robocentric() || !fixes_landmark(sensor_))
     return {gaussian_.pose().mean, gaussian_.mean_of(slot)};
   return {points_.pose(), points_.landmark(slot)};
 }

@@ -97,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(std::pair{ekf_slam_kind(), "0"}, std::pair{ekf_slam_kind(), "5"},
                     std::pair{riekf_slam_kind(), "0"}, std::pair{riekf_slam_kind(), "5"},
                     std::pair{fej_ekf_slam_kind(), "0"}, std::pair{oc_ekf_slam_kind(), "0"},
-                    std::pair{ukf_slam_kind(), "0"}),
+                    std::pair{robocentric_ekf_slam_kind(), "0"}, std::pair{ukf_slam_kind(), "0"}),
     [](const auto& instance) { return instance.param.first.name + "_" + instance.param.second; });
 
 }  // namespace

@@ -49,7 +49,8 @@ TEST_P(RightUnobservableDirections, LearnNothingOfTheHeadingOfTheWhole) {
 
 INSTANTIATE_TEST_SUITE_P(All, RightUnobservableDirections,
                          testing::Values(Case{fej_ekf_slam_kind()}, Case{oc_ekf_slam_kind()},
-                                         Case{riekf_slam_kind()}, Case{riekf_slam_kind(), "5"},
+                                         Case{robocentric_ekf_slam_kind()}, Case{riekf_slam_kind()},
+                                         Case{riekf_slam_kind(), "5"},
                                          Case{fej_ekf_slam_kind(), "0", PositionSensor()},
                                          Case{oc_ekf_slam_kind(), "0", PositionSensor()},
                                          Case{riekf_slam_kind(), "0", PositionSensor()}));
