@@ -30,25 +30,32 @@ struct LiteralRobocentric {
   void update(const StepContext&, Scan scan) { filter.update(scan); }
 };
 
-class RobocentricEkf : public testing::TestWithParam<std::size_t> {};
+struct MapSize {
+  std::size_t landmarks, scans;
+  double least;  ///< landmarks in the map at the end
+};
+class RobocentricEkf : public testing::TestWithParam<MapSize> {};
 
 TEST_P(RobocentricEkf, EqualsTheLiteralFilter) {
-  SmallWorldSettings settings{.seed = 5, .landmarks = GetParam(), .scans = 250};
+  const auto& [landmarks, scans, least] = GetParam();
+  SmallWorldSettings settings{.seed = 5, .landmarks = landmarks, .scans = scans};
   settings.noise.sigma_bearing = 0.05;
   const SmallWorld world = small_world(settings);
   std::vector<PoseMoments> expected;
   LiteralRobocentric literal{reference::RobocentricEkfSlam(settings.noise)};
   drive_through(literal, world, {4.0, -3.0, 0.5},
                 [&](std::size_t) { expected.push_back(literal.filter.pose()); });
-  const auto filter = robocentric(settings.noise, GetParam());
+  const auto filter = robocentric(settings.noise, landmarks);
   drive_through(*filter, world, {4.0, -3.0, 0.5}, [&](std::size_t s) {
     const PoseMoments& pose = filter->estimate().spread;
     EXPECT_LT(boxminus(pose.mean, expected[s].mean).norm(), 1e-9) << "scan " << s;
     EXPECT_LT((pose.covariance - expected[s].covariance).norm(), 1e-9) << "scan " << s;
   });
+  EXPECT_GE(filter->report().map_size, least);
 }
 
-INSTANTIATE_TEST_SUITE_P(SmallAndLargeMaps, RobocentricEkf, testing::Values(21, 150));
+INSTANTIATE_TEST_SUITE_P(SmallAndLargeMaps, RobocentricEkf,
+                         testing::Values(MapSize{21, 250, 15}, MapSize{300, 50, 101}));
 
 TEST(RobocentricEkfSlam, TellsPoseAndLandmarksAsTheirJointDoes) {
   const SmallWorld world = small_world({.seed = 6, .landmarks = 12, .scans = 120});
