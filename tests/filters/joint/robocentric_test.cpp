@@ -36,7 +36,7 @@ struct MapSize {
 };
 class RobocentricEkf : public testing::TestWithParam<MapSize> {};
 
-TEST_P(RobocentricEkf, EqualsTheLiteralFilter) {
+TEST_P(RobocentricEkf, SlowEqualsTheLiteralFilter) {
   const auto& [landmarks, scans, least] = GetParam();
   SmallWorldSettings settings{.seed = 5, .landmarks = landmarks, .scans = scans};
   settings.noise.sigma_bearing = 0.05;
