@@ -58,8 +58,8 @@ JointGaussian::Trouble JointGaussian::linearise_after(const Step& step, std::siz
                            .ahead = {},
                            .wraps = wraps_};
   if (retraction_ == Retraction::invariant) {  // the error at the estimate before
-    next.pose_jacobian.col(2) += next.pose_jacobian.leftCols<2>() * (quarter_turn() * pose_way) +
-                                 next.landmark_jacobian * (quarter_turn() * landmark_way);
+    next.pose_jacobian.col(2) += next.pose_jacobian.leftCols<2>() * quarter_turned(pose_way) +
+                                 next.landmark_jacobian * quarter_turned(landmark_way);
   }
   if (const auto trouble = weigh(point(slot), Eigen::Matrix2d::Zero(), next);
       trouble != Trouble::none)
@@ -150,7 +150,7 @@ bool JointGaussian::carry_error(const Eigen::Vector2d& pose_step) {
   const double variance = pose_.covariance(2, 2);
   if (!(variance > 0.0)) return false;
   const double sigma = std::sqrt(variance);
-  const Eigen::Vector2d d = quarter_turn() * pose_step;
+  const Eigen::Vector2d d = quarter_turned(pose_step);
   apply(quarter_turn(), map_step_.leftCols(rows() / 2));
   const auto map_d = map_step_.reshaped().head(rows());
   const Eigen::Vector3d heading_row = pose_.covariance.row(2).transpose();

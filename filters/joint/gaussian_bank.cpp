@@ -50,7 +50,10 @@ void GaussianBank::update(const StepContext& context, Scan scan) {
   weigh();
   estimate_of_scan_ = mixture();
   split(context);
-  initialise_landmarks(context, scan);
+  if (!fixes_landmark(belief_.sensor)) find_advancing(context, scan);
+  context.parallel_for(active_.size(), [&](std::size_t a) {
+    beliefs_[active_[a]].initialise_landmarks(scan, advancing_);
+  });
   for (std::size_t i = 0; i < slot_of_.size(); ++i) {
     population_.report().map_size += weight_of(i) * static_cast<double>(belief_of(i).landmarks());
   }
@@ -59,18 +62,15 @@ void GaussianBank::update(const StepContext& context, Scan scan) {
 
 /// What one detection does not fix all beliefs take a step further in the same scan, so that all of
 /// them weigh by the same detections.
-void GaussianBank::initialise_landmarks(const StepContext& context, Scan scan) {
+void GaussianBank::find_advancing(const StepContext& context, Scan scan) {
   found_.resize(active_.size());
   context.parallel_for(active_.size(), [&](std::size_t a) {
     found_[a] = beliefs_[active_[a]].find_advancing(scan);
   });
-  advancing_.assign(found_.front().begin(), found_.front().end());
+  advancing_.assign(scan.size(), true);
   for (const auto& found : found_) {
-    for (std::size_t k = 0; k < found.size(); ++k) advancing_[k] = advancing_[k] && found[k];
+    for (std::size_t k = 0; k < scan.size(); ++k) advancing_[k] = advancing_[k] && found[k];
   }
-  context.parallel_for(active_.size(), [&](std::size_t a) {
-    beliefs_[active_[a]].initialise_landmarks(scan, advancing_);
-  });
 }
 
 /// Every particle's weight is multiplied by what its belief expected of the scan.
@@ -175,6 +175,7 @@ void GaussianBank::settle() {
 }
 
 PoseEstimate GaussianBank::mixture() const {
+  if (!settings_.tells_particles) return {beliefs_.front().pose_after(motion_), std::nullopt};
   weigh_beliefs();
   poses_.resize(beliefs_.size());
   for (const std::uint32_t slot : active_) {
@@ -183,7 +184,6 @@ PoseEstimate GaussianBank::mixture() const {
   Mixture mixture(poses_[slot_of_[population_.weights().heaviest()]]);
   for (const std::uint32_t slot : active_) mixture.add(slot_weights_[slot], poses_[slot]);
   const PoseMoments whole = mixture.result();
-  if (!settings_.tells_particles) return {whole, std::nullopt};
   return {whole, whole};
 }
 

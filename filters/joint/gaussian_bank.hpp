@@ -56,7 +56,7 @@ class GaussianBank final : public SlamFilter {
   void weigh();
   PoseEstimate mixture() const;
   void gather_innovations(Scan scan);
-  void initialise_landmarks(const StepContext& context, Scan scan);
+  void find_advancing(const StepContext& context, Scan scan);
   bool is_due(const JointBelief& belief) const;
   void deal_strata(const StepContext& context);
   void split(const StepContext& context);

@@ -75,8 +75,6 @@ void JointBelief::select_matched() {
 }
 
 std::span<const char> JointBelief::find_advancing(Scan scan) {
-  advancing_.clear();
-  if (fixes_landmark(sensor_)) return advancing_;
   advancing_.assign(scan.size(), false);
   matched_.clear();
   const auto is_fresh = [&](std::size_t k) {
@@ -119,9 +117,9 @@ void JointBelief::initialise_landmarks(Scan scan, std::span<const char> advancin
 }
 
 PoseMoments JointBelief::pose_after(const MotionIncrement& motion) const {
-  const PoseMoments pose = linearisation_ == Linearisation::estimate
-                               ? gaussian_.pose_after(motion)  // asked at every control
-                               : gaussian_.pose_after(linearised(motion));
+  if (linearisation_ == Linearisation::estimate && moments_ == Moments::map)
+    return gaussian_.pose_after(motion);  // asked at every control
+  const PoseMoments pose = gaussian_.pose_after(linearised(motion));
   if (is_robocentric()) return frame_.in_map(pose);
   return moments_ == Moments::map ? pose : pushed(pose);
 }

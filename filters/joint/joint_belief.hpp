@@ -30,7 +30,7 @@ class JointBelief {
   /// Gaussian on them.
   void update_with(const MotionIncrement& motion, Scan scan);
   /// Of each detection of this scan, just used, whether it can take a landmark that is not in the
-  /// map a step further (DelayedInitialisation); empty where one detection fixes a landmark.
+  /// map a step further (DelayedInitialisation). Of a sensor whose detections do not fix landmarks.
   std::span<const char> find_advancing(Scan scan);
   /// Adds the landmarks that this scan, just used, shows for the first time; or of those that one
   /// detection does not fix takes them `advancing` a step further. Throws RunError where the map

@@ -38,8 +38,6 @@ void JointGaussian::grow(std::size_t room) {
   map_step_.resize(2, wanted / 2);
 }
 
-Eigen::Index JointGaussian::rows() const { return packed(n_landmarks_); }
-
 void JointGaussian::start(const Pose& start) {
   pose_ = {start, Eigen::Matrix3d::Zero()};
   map_.clear(rows());
@@ -82,7 +80,8 @@ PoseMoments JointGaussian::pose_after(const LinearisedMotion& motion) const {
   return moved;
 }
 
-PoseMoments JointGaussian::pose_after(const MotionIncrement& motion) const {
+/// Asked at every control: in one piece.
+[[gnu::flatten]] PoseMoments JointGaussian::pose_after(const MotionIncrement& motion) const {
   return pose_after(linearised(motion));
 }
 
@@ -137,7 +136,7 @@ void JointGaussian::append(const Eigen::Vector2d& detection, const Eigen::Vector
   auto placed = placed_landmark(belief_.sensor, pose_.mean, detection);
   expect(placed.has_value(), "a landmark is placed by a detection that does not fix it");
   const Eigen::Matrix2d& Gz = placed->by_detection;
-  placed->by_pose.col(2) += quarter_turn() * behind;
+  placed->by_pose.col(2) += quarter_turned(behind);
   append(NewPoint{.mean = placed->point,
                   .by_pose = placed->by_pose,
                   .noise = Gz * observation_noise_ * Gz.transpose()});

@@ -187,7 +187,7 @@ class JointGaussian {
     Eigen::Vector2d landmark;
   };
 
-  Eigen::Index rows() const;
+  Eigen::Index rows() const { return packed(n_landmarks_); }
   void grow(std::size_t room);
   /// Fills in the factor of S = H P H' + `more` + R.
   [[nodiscard]] Trouble weigh(const PointMoments& landmark, const Eigen::Matrix2d& more,

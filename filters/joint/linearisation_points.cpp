@@ -27,14 +27,14 @@ void LinearisationPoints::shift(const Eigen::Vector2d& way) {
 }
 
 void LinearisationPoints::move(const LinearisedMotion& motion) {
-  const Eigen::Vector2d way = quarter_turn().transpose() * motion.by_heading;
+  const Eigen::Vector2d way = -quarter_turned(motion.by_heading);
   pose_ = {pose_.x + way(0), pose_.y + way(1), motion.mean.heading};
 }
 
 Eigen::Vector2d turned(const ExpectedObservation& expected, const Eigen::Vector2d& place,
                        const Eigen::Vector2d& landmark) {
-  return expected.pose_jacobian.leftCols<2>() * (quarter_turn() * place) +
-         expected.pose_jacobian.col(2) + expected.landmark_jacobian * (quarter_turn() * landmark);
+  return expected.pose_jacobian.leftCols<2>() * quarter_turned(place) +
+         expected.pose_jacobian.col(2) + expected.landmark_jacobian * quarter_turned(landmark);
 }
 
 }  // namespace montecarta::filters

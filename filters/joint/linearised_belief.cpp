@@ -25,13 +25,14 @@ LinearisedMotion JointBelief::linearised(const MotionIncrement& motion) const {
   LinearisedMotion linearised = gaussian_.linearised(motion);
   if (!has_own_points() || stands_still(motion)) return linearised;
   linearised.by_heading +=
-      quarter_turn() * (points_.behind(gaussian_.pose().mean) - shift_of_points());
+      quarter_turned(points_.behind(gaussian_.pose().mean) - shift_of_points());
   return linearised;
 }
 
 void JointBelief::move(const MotionIncrement& motion) {
   const LinearisedMotion how = linearised(motion);
-  if (!stands_still(motion)) points_.shift(shift_of_points());
+  if (linearisation_ == Linearisation::constrained && !stands_still(motion))
+    points_.shift(shift_of_points());
   gaussian_.move(how);
   points_.move(how);
 }

@@ -30,6 +30,9 @@ inline Eigen::Matrix2d exponential_jacobian(double turn) {
 /// J: a turn to the left by 90 degrees; J p is how far p moves when the plane turns by 1 rad.
 inline Eigen::Matrix2d quarter_turn() { return Eigen::Matrix2d{{0.0, -1.0}, {1.0, 0.0}}; }
 
+/// J p.
+inline Eigen::Vector2d quarter_turned(const Eigen::Vector2d& p) { return {-p.y(), p.x()}; }
+
 /// Multiplies every column by A.
 inline void apply(const Eigen::Matrix2d& A, Eigen::Ref<Eigen::Matrix2Xd> vectors) {
   for (auto vector : vectors.colwise()) vector = (A * vector).eval();
