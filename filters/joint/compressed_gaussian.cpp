@@ -120,7 +120,7 @@ JointEstimate CompressedGaussian::joint() const {
 }
 
 /// Far landmarks are asked for their mean only where the bounds leave it open which is farthest.
-double CompressedGaussian::extent() const {
+double CompressedGaussian::extent(std::span<const std::uint32_t> slots) const {
   const double moved = coefficients_of_mean().norm();
   double least = 0.0;
   const auto distance = [&](std::size_t slot) {
@@ -128,11 +128,11 @@ double CompressedGaussian::extent() const {
         is_near(slot) ? mean_of(slot) : Eigen::Vector2d(whole_.mean.segment<2>(row_of(slot)));
     return std::sqrt(distance_squared(pose().mean, place));
   };
-  for (std::size_t slot = 0; slot < landmarks(); ++slot) {
+  for (const std::uint32_t slot : slots) {
     const double margin = is_near(slot) ? 0.0 : far_[slot].share * moved;
     least = std::max(least, distance(slot) - margin);
   }
-  for (std::size_t slot = 0; slot < landmarks(); ++slot) {
+  for (const std::uint32_t slot : slots) {
     if (is_near(slot) || distance(slot) + far_[slot].share * moved < least) continue;
     least = std::max(least, std::sqrt(distance_squared(pose().mean, mean_of(slot))));
   }

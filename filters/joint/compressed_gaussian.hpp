@@ -56,8 +56,8 @@ class CompressedGaussian {
   MapMoments map() const;
   /// Pose and landmarks together, likewise.
   JointEstimate joint() const;
-  /// [m] from the vehicle to the farthest landmark.
-  double extent() const;
+  /// [m] from the vehicle to the farthest of these landmarks, 0 of none.
+  double extent(std::span<const std::uint32_t> slots) const;
   bool is_near(std::size_t slot) const { return point_of_[slot] != kFar; }
 
   /// Bounds on what has become of a far landmark, for a unit of its `Far::share`.

@@ -134,7 +134,7 @@ void GaussianBank::deal_strata(const StepContext& context) {
 bool GaussianBank::is_due(const JointBelief& belief) const {
   const double variance = belief.gaussian().pose().covariance(2, 2);
   if (settings_.split_beyond) return variance > *settings_.split_beyond * *settings_.split_beyond;
-  const double extent = belief.gaussian().extent();
+  const double extent = belief.extent();
   return 0.5 * variance * extent > length_deviation(belief_.sensor, belief_, extent);
 }
 

@@ -47,6 +47,8 @@ class JointBelief {
   PoseMoments pose_after(const MotionIncrement& motion) const;
   /// In the map.
   std::size_t landmarks() const { return point_of_.size(); }
+  /// [m] from the vehicle to the farthest landmark in the map.
+  double extent() const { return gaussian_.extent(point_of_); }
   /// The k-th landmark: of identity k with known association, else the k-th initialised.
   std::optional<LandmarkEstimate> landmark(std::size_t k) const;
   /// Of the pose and the first `landmarks` of these; NaN where the map has none.
