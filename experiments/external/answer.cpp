@@ -16,7 +16,7 @@
 namespace montecarta::experiments {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 constexpr int kDeepest = 4;  // of brackets within brackets; no answer needs more
 /// Of a correlation matrix: what rounding leaves of an eigenvalue that is zero.
@@ -40,18 +40,18 @@ bool is_too_deep(std::string_view line) {
   return false;
 }
 
-json parsed_answer(std::string_view line) {
+Json parsed_answer(std::string_view line) {
   if (is_too_deep(line)) refuse_answer("answer has too many brackets within brackets");
-  json answer = json::parse(line, nullptr, false);
+  Json answer = Json::parse(line, nullptr, false);
   if (!answer.is_discarded()) return answer;
   if (names_no_number(line)) refuse_answer("answer holds NaN or Infinity");
   refuse_answer("answer is not JSON: " + excerpt(line));
 }
 
 /// The object in a line that answers message `id` and has no members but those.
-json object_in(std::string_view line, std::uint64_t id,
+Json object_in(std::string_view line, std::uint64_t id,
                std::initializer_list<std::string_view> members) {
-  json answer = parsed_answer(line);
+  Json answer = parsed_answer(line);
   if (!answer.is_object()) refuse_answer("answer is no JSON object: " + excerpt(line));
   const auto number = answer.find("id");
   if (number == answer.end() || !number->is_number_unsigned() || *number != id)
@@ -63,7 +63,7 @@ json object_in(std::string_view line, std::uint64_t id,
   return answer;
 }
 
-double finite_number(const json& value, const std::string& what) {
+double finite_number(const Json& value, const std::string& what) {
   if (value.is_null()) refuse_answer(what + " is not a number");
   if (!value.is_number()) refuse_answer(what + " is not a number: " + excerpt(value.dump()));
   const double number = value.get<double>();
@@ -71,13 +71,13 @@ double finite_number(const json& value, const std::string& what) {
   return number;
 }
 
-const json& member(const json& answer, const char* name) {
+const Json& member(const Json& answer, const char* name) {
   const auto found = answer.find(name);
   if (found == answer.end()) refuse_answer(std::string("answer has no ") + name);
   return *found;
 }
 
-void expect_array(const json& value, std::size_t size, const std::string& what) {
+void expect_array(const Json& value, std::size_t size, const std::string& what) {
   if (value.is_array() && value.size() == size) return;
   refuse_answer(what + " is no array of " + std::to_string(size));
 }
@@ -102,11 +102,11 @@ void expect_covariance(const Eigen::Matrix<double, N, N>& C, const std::string& 
   if (!(least >= -kEigenvalueRounding)) refuse_answer(what + " is not positive definite");
 }
 
-Eigen::Matrix3d covariance_in(const json& value) {
+Eigen::Matrix3d covariance_in(const Json& value) {
   expect_array(value, 3, "covariance");
   Eigen::Matrix3d C;
   for (int i = 0; i < 3; ++i) {
-    const json& row = value[static_cast<std::size_t>(i)];
+    const Json& row = value[static_cast<std::size_t>(i)];
     expect_array(row, 3, "a row of the covariance");
     for (int j = 0; j < 3; ++j)
       C(i, j) = finite_number(row[static_cast<std::size_t>(j)], "covariance");
@@ -123,12 +123,12 @@ Eigen::Matrix3d covariance_in(const json& value) {
   return C;
 }
 
-double optional_number(const json& answer, const char* name) {
+double optional_number(const Json& answer, const char* name) {
   const auto found = answer.find(name);
   return found == answer.end() ? 0.0 : finite_number(*found, name);
 }
 
-std::uint32_t optional_count(const json& answer, const char* name) {
+std::uint32_t optional_count(const Json& answer, const char* name) {
   const auto found = answer.find(name);
   if (found == answer.end()) return 0;
   const bool fits = found->is_number_unsigned() &&
@@ -139,7 +139,7 @@ std::uint32_t optional_count(const json& answer, const char* name) {
 }
 
 /// One row of a map: number, x, y, xx, xy, yy.
-std::pair<std::size_t, LandmarkEstimate> landmark_in(const json& row) {
+std::pair<std::size_t, LandmarkEstimate> landmark_in(const Json& row) {
   expect_array(row, 6, "a landmark of the map");
   if (!row[0].is_number_unsigned())
     refuse_answer("a landmark's number is no whole number from 0: " + excerpt(row[0].dump()));
@@ -156,9 +156,9 @@ std::pair<std::size_t, LandmarkEstimate> landmark_in(const json& row) {
 void read_started(std::string_view line, std::uint64_t id) { object_in(line, id, {}); }
 
 ProgramEstimate read_estimate(std::string_view line, std::uint64_t id) {
-  const json answer = object_in(
+  const Json answer = object_in(
       line, id, {"mean", "covariance", "log_likelihood", "nis", "nis_dof", "ess", "map_size"});
-  const json& mean = member(answer, "mean");
+  const Json& mean = member(answer, "mean");
   expect_array(mean, 3, "mean");
   ProgramEstimate estimate;
   estimate.pose.mean = {.x = finite_number(mean[0], "mean"),
@@ -175,10 +175,10 @@ ProgramEstimate read_estimate(std::string_view line, std::uint64_t id) {
 
 void read_map(std::string_view line, std::uint64_t id, Association association,
               std::span<std::optional<LandmarkEstimate>> landmarks) {
-  const json answer = object_in(line, id, {"map"});
-  const json& map = member(answer, "map");
+  const Json answer = object_in(line, id, {"map"});
+  const Json& map = member(answer, "map");
   if (!map.is_array()) refuse_answer("map is no array");
-  for (const json& row : map) {
+  for (const Json& row : map) {
     const auto [number, landmark] = landmark_in(row);
     if (number >= landmarks.size()) {
       if (association == Association::nearest) continue;
