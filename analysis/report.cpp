@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/report.hpp"
 
-#include "analysis/comparison/comparison_csv.hpp"
-#include "analysis/comparison/pareto_figure.hpp"
+#include "analysis/comparison/pareto.hpp"
+#include "analysis/comparison/study_comparison.hpp"
 #include "analysis/figures/ancestry_figure.hpp"
 #include "analysis/figures/path_figure.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/output/csv_file.hpp"
-#include "analysis/page/markdown.hpp"
 #include "analysis/page/page.hpp"
-#include "analysis/page/sections.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
 

@@ -68,4 +68,14 @@ Comparisons compare_cells(const StudyAnalysis& study, const std::string& baselin
 /// Accuracy, consistency and cost; without a true path the distance to the leading reference.
 std::vector<const Score*> usual_scores(bool has_truth);
 
+/// Every cell against every other by one score.
+struct WinMatrix {
+  const Score* score = nullptr;
+  std::vector<std::string> cells;       ///< that can be judged by the score
+  std::vector<std::vector<Wins>> wins;  ///< {row, column}: of the row; empty on the diagonal
+};
+
+/// Tests are adjusted for all pairs of the matrix.
+WinMatrix win_matrix(const StudyAnalysis& study, const Score& score);
+
 }  // namespace montecarta::analysis

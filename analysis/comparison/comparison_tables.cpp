@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/comparison_tables.hpp"
 
-#include "analysis/output/named_rows.hpp"
+#include "analysis/output/csv_file.hpp"
 #include "analysis/output/number_text.hpp"
 
 #include <cmath>

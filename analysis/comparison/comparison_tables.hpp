@@ -3,7 +3,6 @@
 
 #include "analysis/comparison/cell_comparison.hpp"
 #include "analysis/comparison/pareto.hpp"
-#include "analysis/comparison/win_matrix.hpp"
 #include "analysis/metrics/verdict_table.hpp"
 
 #include <span>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/metrics/study_analysis.hpp"
+#include "analysis/output/figure.hpp"
 
 #include <cstddef>
 #include <span>
@@ -35,5 +36,9 @@ struct CellValue {
 
 /// Of the cells with complete runs; none where nobody knows the true path.
 std::vector<CellValue> cell_values(const StudyAnalysis& study);
+
+/// Position RMSE and NEES distance against CPU time of a run, a labelled point a cell, with both
+/// Pareto fronts. Without data where fewer than two cells have a cost.
+Figure pareto_figure(std::span<const CellValue> values);
 
 }  // namespace montecarta::analysis

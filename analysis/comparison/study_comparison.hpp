@@ -3,8 +3,8 @@
 
 #include "analysis/comparison/cell_comparison.hpp"
 #include "analysis/comparison/pareto.hpp"
-#include "analysis/comparison/win_matrix.hpp"
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,5 +20,14 @@ struct StudyComparison {
 
 StudyComparison compare_study(const StudyAnalysis& study, const std::string& baseline,
                               std::span<const Score* const> scores);
+
+/// Names of the files that write_comparison_csv() makes.
+std::vector<std::string> comparison_csv_names();
+
+/// Writes comparison.csv (one row a cell and score), wins.csv (one row a score and ordered pair of
+/// cells) and pareto.csv (one row a cell) into `directory`, which is made where it is missing.
+/// Throws RunError naming the file that cannot be written.
+void write_comparison_csv(const StudyComparison& comparison,
+                          const std::filesystem::path& directory);
 
 }  // namespace montecarta::analysis

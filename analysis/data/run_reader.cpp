@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/data/run_reader.hpp"
 
-#include "analysis/data/met_drive.hpp"
 #include "engine/errors.hpp"
 
 #include <algorithm>

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/figures/ancestry_figure.hpp"
 
-#include "analysis/data/met_drive.hpp"
 #include "analysis/data/run_reader.hpp"
-#include "analysis/figures/chosen_run.hpp"
+#include "analysis/figures/path_data.hpp"
 #include "analysis/metrics/ancestry_tree.hpp"
 #include "analysis/output/number_text.hpp"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/figures/path_data.hpp"
 
-#include "analysis/data/met_drive.hpp"
-#include "analysis/figures/ellipse.hpp"
+#include "analysis/data/run_reader.hpp"
 #include "analysis/figures/stored_map.hpp"
+#include "engine/errors.hpp"
 
 #include <algorithm>
 #include <span>
@@ -12,6 +12,18 @@
 
 namespace montecarta::analysis {
 namespace {
+
+/// In how many cells each run is complete.
+std::vector<std::size_t> completeness(const ResultFile& file) {
+  std::vector<std::size_t> cells(file.runs().size());
+  for (const StoredCell& cell : file.cells()) {
+    const auto status = file.status(cell);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      cells[i] += status[i] == RunStatus::complete ? 1 : 0;
+    }
+  }
+  return cells;
+}
 
 constexpr std::size_t kMostPoints = 500;
 constexpr std::size_t kMostRecorded = 1500;  // a recorded drive is kilometres long
@@ -38,6 +50,21 @@ FigureData recorded_path(const ResultFile& file, const StoredCell& cell, const R
 }
 
 }  // namespace
+
+std::optional<std::size_t> chosen_run(const ResultFile& file, std::optional<std::uint64_t> run) {
+  if (run) {
+    const auto found = std::ranges::find(file.runs(), *run);
+    if (found == file.runs().end()) {
+      throw StudyError(file.path().string() + ": run " + std::to_string(*run) +
+                       " (the file does not hold it): choose another with --run");
+    }
+    return static_cast<std::size_t>(found - file.runs().begin());
+  }
+  const auto cells = completeness(file);
+  const auto best = std::ranges::max_element(cells);
+  if (best == cells.end() || *best == 0) return std::nullopt;
+  return static_cast<std::size_t>(best - cells.begin());
+}
 
 FigureData path_data(const ResultFile& file, const StoredCell& cell, const RunRows& run) {
   if (run.truth.empty()) return recorded_path(file, cell, run);

@@ -1,13 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/figures/stored_map.hpp"
 
-#include "analysis/data/met_drive.hpp"
+#include "analysis/data/run_reader.hpp"
+#include "engine/numbers/angle.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <string>
 
 namespace montecarta::analysis {
+
+Ellipse two_sigma_ellipse(double x, double y, double xx, double xy, double yy) {
+  const double middle = 0.5 * (xx + yy);
+  const double half_spread = std::hypot(0.5 * (xx - yy), xy);
+  const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);
+  const auto diameter = [](double variance) { return 4.0 * std::sqrt(variance); };
+  return {x, y, diameter(middle + half_spread), diameter(middle - half_spread),
+          angle * 180.0 / kPi};
+}
 
 StoredMap::StoredMap(const ResultFile& file, const StoredCell& cell, std::size_t run)
     : final_only_(!cell.has("map_seen")) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Landmarks in the map, and the surveyed ones among them.
-#include "analysis/metrics/beacon_scores.hpp"
+#include "analysis/metrics/map_scores.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/statistics/means.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The Cramer-Rao bound of the study, and how near cells come to it.
-#include "analysis/metrics/efficiency.hpp"
+#include "analysis/metrics/cramer_rao.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/output/csv_file.hpp"

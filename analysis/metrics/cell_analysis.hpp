@@ -5,7 +5,7 @@
 #include "analysis/metrics/mismatch.hpp"
 #include "analysis/metrics/moments.hpp"
 #include "analysis/metrics/score.hpp"
-#include "analysis/output/named_rows.hpp"
+#include "analysis/output/csv_file.hpp"
 #include "analysis/statistics/means.hpp"
 #include "analysis/statistics/spread.hpp"
 

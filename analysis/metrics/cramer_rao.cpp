@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/cramer_rao.hpp"
 
+#include "analysis/metrics/cell_analysis.hpp"
 #include "analysis/metrics/joint_bound.hpp"
 #include "filters/models/ackermann.hpp"
 #include "filters/models/control_of.hpp"
@@ -119,6 +120,12 @@ CramerRaoBound none_for(const std::string& reason) {
   return bound;
 }
 
+double mean_square(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return sum / static_cast<double>(values.size());
+}
+
 }  // namespace
 
 CramerRaoBound squared_bound(const SimulatedWorld& world, const TruePath& path) {
@@ -158,6 +165,13 @@ CramerRaoBound cramer_rao_bound(const ResultFile& file, const Parallel& parallel
   CramerRaoBound bound = root_mean(squares);
   bound.is_bound = world->same_path;
   return bound;
+}
+
+Efficiency efficiency_of(const CellAnalysis& cell, const CramerRaoBound& bound) {
+  if (bound.empty() || !bound.is_bound || cell.complete == 0) return {};
+  return {.position = std::sqrt(mean_square(bound.position) / cell.over_runs("position_mse").mean),
+          .heading = std::sqrt(mean_square(bound.heading) / cell.over_runs("heading_mse").mean),
+          .map = bound.map / std::sqrt(mean_square(cell.scores.column("landmark_rms")))};
 }
 
 }  // namespace montecarta::analysis

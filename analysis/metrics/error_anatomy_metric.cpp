@@ -3,7 +3,7 @@
 #include "analysis/metrics/cell_panels.hpp"
 #include "analysis/metrics/credibility.hpp"
 #include "analysis/metrics/error_anatomy.hpp"
-#include "analysis/metrics/lineage_sums.hpp"
+#include "analysis/metrics/lineages.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"

@@ -2,9 +2,8 @@
 #include "analysis/metrics/first_values.hpp"
 
 #include "analysis/metrics/cell_sums.hpp"
-#include "analysis/statistics/heavy_tail.hpp"
 #include "analysis/statistics/means.hpp"
-#include "analysis/statistics/t_quantile.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <limits>
 

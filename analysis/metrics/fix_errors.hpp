@@ -4,7 +4,7 @@
 #include "analysis/data/run_rows.hpp"
 #include "analysis/metrics/moments.hpp"
 #include "analysis/metrics/path_at_fixes.hpp"
-#include "analysis/statistics/lag_sums.hpp"
+#include "analysis/statistics/correlation.hpp"
 
 #include <cstddef>
 #include <span>

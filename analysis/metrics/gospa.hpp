@@ -3,9 +3,16 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <span>
+#include <vector>
 
 namespace montecarta::analysis {
+
+/// The cheapest way to give every row a column of its own: which one, row by row. `cost` is finite,
+/// with no more rows than columns. Shortest augmenting paths (Jonker and Volgenant 1987), at most
+/// cubic; quadratic where most rows have a cheapest column to themselves, as a good map has.
+std::vector<std::size_t> cheapest_assignment(const Eigen::MatrixXd& cost);
 
 /// A landmark farther than this [m] from where it is believed to be counts as missed and spurious.
 inline constexpr double kGospaCutoff = 5.0;

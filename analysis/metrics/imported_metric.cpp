@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Estimates of another program: errors and deviations of each component, in the stated convention.
-#include "analysis/metrics/convention_hints.hpp"
-#include "analysis/metrics/imported_notes.hpp"
+#include "analysis/metrics/imported_estimates.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/verdict_table.hpp"

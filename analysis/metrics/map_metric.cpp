@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How far final maps are from the true landmarks.
-#include "analysis/metrics/efficiency.hpp"
+#include "analysis/metrics/cramer_rao.hpp"
 #include "analysis/metrics/gospa.hpp"
 #include "analysis/metrics/map_errors.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
-#include "analysis/output/named_rows.hpp"
+#include "analysis/output/csv_file.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/means.hpp"
 

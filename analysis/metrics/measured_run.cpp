@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/measured_run.hpp"
 
-#include "analysis/data/met_drive.hpp"
+#include "analysis/data/run_reader.hpp"
 #include "analysis/data/study_settings.hpp"
 #include "analysis/metrics/simulated_world.hpp"
 #include "analysis/statistics/group_sequential.hpp"

@@ -3,7 +3,6 @@
 
 #include "analysis/data/printed.hpp"
 #include "analysis/data/run_reader.hpp"
-#include "analysis/metrics/beacon_scores.hpp"
 #include "analysis/metrics/consistency.hpp"
 #include "analysis/metrics/drive_scores.hpp"
 #include "analysis/metrics/joint_nees.hpp"

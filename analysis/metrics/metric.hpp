@@ -2,7 +2,7 @@
 #pragma once
 
 #include "analysis/metrics/score.hpp"
-#include "analysis/output/named_rows.hpp"
+#include "analysis/output/csv_file.hpp"
 #include "analysis/output/section.hpp"
 
 #include <filesystem>

@@ -3,7 +3,7 @@
 
 #include "analysis/metrics/cell_analysis.hpp"
 #include "analysis/metrics/run_metrics.hpp"
-#include "analysis/statistics/neighbour_correlation.hpp"
+#include "analysis/statistics/correlation.hpp"
 #include "analysis/statistics/quantile_table.hpp"
 #include "analysis/statistics/whole_run_band.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // NEES of the pose and its parts: what the verdict is made of.
 #include "analysis/metrics/cell_panels.hpp"
-#include "analysis/metrics/efficiency.hpp"
-#include "analysis/metrics/imported_notes.hpp"
+#include "analysis/metrics/cramer_rao.hpp"
+#include "analysis/metrics/imported_estimates.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/nees_accumulator.hpp"

@@ -3,7 +3,7 @@
 
 #include "analysis/metrics/cell_panels.hpp"
 #include "analysis/metrics/reference_analysis.hpp"
-#include "analysis/metrics/reference_table.hpp"
+#include "analysis/metrics/reference_report.hpp"
 
 #include <algorithm>
 #include <limits>

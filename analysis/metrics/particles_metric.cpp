@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Effective number of particles, and how many distinct ancestors they have (Diversity).
 #include "analysis/metrics/cell_panels.hpp"
-#include "analysis/metrics/lineage_sums.hpp"
+#include "analysis/metrics/lineages.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/pit.hpp"
 
-#include "analysis/metrics/drawn_poses.hpp"
+#include "analysis/metrics/moments.hpp"
 #include "analysis/statistics/means.hpp"
 #include "engine/numbers/angle.hpp"
 

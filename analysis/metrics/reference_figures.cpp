@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/reference_figures.hpp"
-
 #include "analysis/metrics/cell_panels.hpp"
 #include "analysis/metrics/particle_curves.hpp"
 #include "analysis/metrics/reference_analysis.hpp"
+#include "analysis/metrics/reference_report.hpp"
 
 #include <algorithm>
 #include <cmath>

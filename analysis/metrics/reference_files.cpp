@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/reference_files.hpp"
-
 #include "analysis/metrics/reference_analysis.hpp"
+#include "analysis/metrics/reference_report.hpp"
 #include "analysis/output/csv_file.hpp"
-#include "analysis/output/named_rows.hpp"
 #include "analysis/statistics/means.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/beacon_scores.hpp"
+#include "analysis/metrics/map_scores.hpp"
 #include "analysis/metrics/reference_analysis.hpp"
-#include "analysis/metrics/reference_table.hpp"
+#include "analysis/metrics/reference_report.hpp"
 #include "analysis/output/number_text.hpp"
 
 #include <algorithm>

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "analysis/metrics/path_at_fixes.hpp"
-#include "analysis/metrics/rigid_alignment.hpp"
+
+#include <Eigen/Core>
 
 #include <cmath>
 #include <limits>
@@ -10,6 +11,20 @@
 #include <vector>
 
 namespace montecarta::analysis {
+
+/// A turn of the plane and then a shift: neither stretches nor mirrors.
+struct RigidMotion {
+  double angle = 0.0;                               ///< [rad] counter-clockwise
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  ///< [m]
+
+  Eigen::Vector2d operator()(const Eigen::Vector2d& point) const;
+};
+
+/// The rigid motion that brings the points `from` [m] nearest to the points `onto` [m], pair by
+/// pair, in the sum of squared distances: in the plane in closed form (Umeyama 1991 without scale).
+/// One point is only shifted, none stays where it is.
+RigidMotion rigid_alignment(std::span<const Eigen::Vector2d> from,
+                            std::span<const Eigen::Vector2d> onto);
 
 /// A fix counts for gated numbers where its error is at most so many times the run's own median
 /// error: a GPS fix may be 136 m off. To be read with the share: a filter that leaves the path half

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/reference_table.hpp"
-
 #include "analysis/metrics/reference_analysis.hpp"
+#include "analysis/metrics/reference_report.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/means.hpp"
 #include "engine/numbers/angle.hpp"

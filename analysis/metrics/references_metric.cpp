@@ -3,9 +3,7 @@
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/reference_analysis.hpp"
-#include "analysis/metrics/reference_figures.hpp"
-#include "analysis/metrics/reference_files.hpp"
-#include "analysis/metrics/reference_table.hpp"
+#include "analysis/metrics/reference_report.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/statistics/means.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/run_metrics.hpp"
 
-#include "analysis/metrics/drawn_poses.hpp"
+#include "analysis/metrics/moments.hpp"
 #include "analysis/metrics/nees.hpp"
 #include "analysis/statistics/means.hpp"
 #include "analysis/statistics/sampler_scale.hpp"

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/study_analysis.hpp"
 
-#include "analysis/data/met_drive.hpp"
 #include "analysis/data/run_reader.hpp"
 #include "analysis/data/study_settings.hpp"
 #include "analysis/metrics/cell_sums.hpp"
-#include "analysis/metrics/efficiency.hpp"
-#include "analysis/metrics/imported_notes.hpp"
+#include "analysis/metrics/cramer_rao.hpp"
+#include "analysis/metrics/imported_estimates.hpp"
 #include "engine/errors.hpp"
 
 #include <algorithm>

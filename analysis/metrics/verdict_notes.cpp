@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/imported_notes.hpp"
+#include "analysis/metrics/imported_estimates.hpp"
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/number_text.hpp"
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/verdict_table.hpp"
 
-#include "analysis/metrics/efficiency.hpp"
+#include "analysis/metrics/cramer_rao.hpp"
 #include "analysis/metrics/nees.hpp"
 #include "analysis/output/number_text.hpp"
-#include "analysis/statistics/heavy_tail.hpp"
 #include "analysis/statistics/means.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "analysis/statistics/survival.hpp"

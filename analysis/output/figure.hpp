@@ -2,14 +2,27 @@
 #pragma once
 
 #include "analysis/output/chart.hpp"
-#include "analysis/output/thinning.hpp"
+#include "analysis/output/csv_file.hpp"
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace montecarta::analysis {
+
+/// Series over one common time, short enough to draw.
+struct ThinnedSeries {
+  std::vector<double> times;  ///< [s]
+  std::vector<NamedSeries> series;
+};
+
+/// Leaves at most 2 x `buckets` values of each series: the least and the greatest of every stretch
+/// of time, in the order in which they occur, so no peak is lost. Times are those of the stretch's
+/// beginning and middle. A stretch without a number stays NaN. Short series come back as they are.
+ThinnedSeries thin(std::span<const double> times, const std::vector<NamedSeries>& series,
+                   std::size_t buckets);
 
 /// A file of the numbers behind a figure: headings with units, and rows.
 struct FigureData {

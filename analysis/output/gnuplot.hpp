@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/output/chart.hpp"
+
+#include <cstddef>
 #include <filesystem>
 #include <string>
 
@@ -14,5 +17,28 @@ void run_gnuplot(const std::filesystem::path& directory, const std::string& name
 
 /// A text constant of gnuplot: quoted, printed as it stands.
 std::string gnuplot_quoted(const std::string& text);
+
+/// How a panel's bands, curves and marks are plotted.
+struct PanelPlots {
+  std::string numbers;   ///< data blocks
+  std::string commands;  ///< behind "plot"
+};
+
+PanelPlots panel_plots(const Chart& chart, std::size_t panel);
+
+/// How gnuplot draws each, behind "with": for plots and legends.
+std::string band_style();
+std::string curve_style(std::size_t style);
+std::string mark_style(const ChartMarks& marks);
+
+/// A chart as gnuplot draws it.
+struct GnuplotChart {
+  std::string numbers;     ///< data blocks, once for all terminals
+  std::string commands;    ///< behind terminal and style
+  std::size_t height = 0;  ///< [px]
+};
+
+/// `width` [px].
+GnuplotChart gnuplot_chart(const Chart& chart, std::size_t width);
 
 }  // namespace montecarta::analysis

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/output/gnuplot_chart.hpp"
-
 #include "analysis/output/gnuplot.hpp"
-#include "analysis/output/gnuplot_marks.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/output/print_layout.hpp"
 #include "engine/errors.hpp"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/output/gnuplot_marks.hpp"
-
+#include "analysis/output/gnuplot.hpp"
 #include "analysis/output/number_text.hpp"
 
 #include <algorithm>

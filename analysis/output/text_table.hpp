@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -17,5 +18,11 @@ struct TextTable {
   std::vector<Heading> headings;
   std::vector<std::vector<std::string>> rows;
 };
+
+/// A table for a terminal: columns below each other.
+void print_table(std::ostream& out, const TextTable& table);
+
+/// A sentence broken into lines that a terminal holds.
+void print_wrapped(std::ostream& out, const std::string& sentence);
 
 }  // namespace montecarta::analysis

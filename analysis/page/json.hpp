@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/output/chart.hpp"
+
 #include <concepts>
 #include <ranges>
 #include <string>
@@ -54,5 +56,8 @@ class JsonWriter {
   std::string text_;
   bool first_ = true;  ///< nothing stands before the next value that a comma must part it from
 };
+
+/// A chart as the page's script reads it (page/script/chart.js).
+std::string chart_json(const Chart& chart);
 
 }  // namespace montecarta::analysis

@@ -1,17 +1,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/comparison/study_comparison.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/output/section.hpp"
+#include "engine/records/result_description.hpp"
+#include "engine/records/result_file.hpp"
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace montecarta::analysis {
+
+// The parts of a report that belong to no metric.
+
+/// The page's heading: which study, how much of it.
+Section title_section(const StudyAnalysis& study);
+/// Which runs failed, and why.
+Section failure_section(const StudyAnalysis& study);
+/// A player that replays one run, chosen as chosen_run() does, as far as the file holds it.
+Section replay_section(const ResultFile& file, std::optional<std::uint64_t> run);
+/// Every cell beside the first one, and what each is worth; where two cells have truth.
+Section comparison_section(const StudyAnalysis& study, const StudyComparison& comparison);
+/// Study, scenario and provenance.
+Section origin_section(const ResultFile& file, const StudyAnalysis& study);
+/// What a paper printed beside what was measured.
+Section printed_section(const StudyAnalysis& study);
 
 /// Writes index.html with these sections in their order, their figures below figures/ and data/ and
 /// their tables below tables/ into `directory`.
 void write_page(const StudyAnalysis& study, const std::vector<Section>& sections,
                 const std::filesystem::path& directory);
+
+/// A table as Markdown, special characters escaped; numbers are set to the right.
+std::string markdown_table(const TextTable& table);
+
+/// A report in one short page of Markdown: the study, where and when it ran, failed runs, the
+/// tables of the terminal, the first figure over time (figures/NAME.svg) and, where a paper is
+/// repeated, its numbers beside the measured ones. `sections` in their order of reading.
+std::string markdown_page(const StudyAnalysis& study, const std::vector<Section>& sections,
+                          const TextPairs& provenance);
 
 }  // namespace montecarta::analysis

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The short ones; the player is in replay/replay_section.cpp.
-#include "analysis/page/sections.hpp"
-
 #include "analysis/comparison/comparison_tables.hpp"
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/page/html.hpp"
+#include "analysis/page/page.hpp"
 #include "analysis/printed/comparison.hpp"
 
 namespace montecarta::analysis {

@@ -4,7 +4,7 @@
 #include "analysis/output/number_text.hpp"
 #include "analysis/printed/run_samples.hpp"
 #include "analysis/statistics/means.hpp"
-#include "analysis/statistics/t_quantile.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <algorithm>
 #include <cmath>

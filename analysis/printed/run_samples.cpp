@@ -4,7 +4,7 @@
 #include "analysis/metrics/nees_batches.hpp"
 #include "analysis/metrics/paired_runs.hpp"
 #include "analysis/statistics/means.hpp"
-#include "analysis/statistics/t_quantile.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include "analysis/statistics/bootstrap.hpp"
 
 #include "analysis/statistics/means.hpp"
-#include "analysis/statistics/t_quantile.hpp"
+#include "analysis/statistics/spread.hpp"
 #include "engine/errors.hpp"
 #include "engine/random/normals.hpp"
 #include "engine/random/stream.hpp"

@@ -4,6 +4,7 @@
 #include "analysis/statistics/means.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 
+#include <cstddef>
 #include <limits>
 #include <span>
 #include <vector>
@@ -28,5 +29,14 @@ Interval median_interval(const std::vector<double>& sorted, double level);
 
 /// `values` in the order of the runs. NaN, all but their number, where one of them is NaN.
 Spread spread_of(std::span<const double> values);
+
+/// Two-sided quantile of Student's t with n - 1 degrees of freedom, n > 1.
+double t_quantile(std::size_t n, double level);
+
+/// Whether no interval of the mean of such values is to be trusted (STATISTICS 6): a single value
+/// may decide the mean, or values of that size may lie where none was drawn yet. Of a log-normal
+/// with a deviation of 1.5 nearly always, of an exponential in half of samples of 20 and in 7 % of
+/// samples of 100; never of fewer than three values, of equal ones or where one is not finite.
+bool is_heavy_tailed(std::span<const double> values);
 
 }  // namespace montecarta::analysis

@@ -2,7 +2,6 @@
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/csv_file.hpp"
-#include "analysis/output/named_rows.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/printed/comparison.hpp"
 #include "analysis/tables/tables.hpp"

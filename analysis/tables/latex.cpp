@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/tables/latex.hpp"
-
 #include "analysis/tables/tables.hpp"
 
 #include <string_view>

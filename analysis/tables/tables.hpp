@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/metrics/study_analysis.hpp"
+#include "analysis/metrics/verdict_table.hpp"
 
 #include <filesystem>
 #include <iosfwd>
@@ -9,6 +10,15 @@
 #include <vector>
 
 namespace montecarta::analysis {
+
+/// Plain text as LaTeX prints it: special characters escaped, +- set as a symbol.
+std::string latex_escape(const std::string& text);
+
+/// A tabular in booktabs style, without float or caption.
+std::string latex_tabular(const TextTable& table);
+
+/// The same below a comment that says which study it is of.
+std::string latex_table(const StudyAnalysis& study, const TextTable& table);
 
 /// Whether sentences say how tables are read.
 enum class Explanations { hidden, shown };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/imported_notes.hpp"
+#include "analysis/metrics/imported_estimates.hpp"
 #include "analysis/metrics/metric.hpp"
-#include "analysis/metrics/reference_table.hpp"
+#include "analysis/metrics/reference_report.hpp"
 #include "analysis/metrics/verdict_table.hpp"
-#include "analysis/output/print_table.hpp"
+#include "analysis/output/text_table.hpp"
 #include "analysis/printed/comparison.hpp"
 #include "analysis/tables/tables.hpp"
 

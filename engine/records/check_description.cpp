@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/records/check_description.hpp"
-
 #include "engine/errors.hpp"
 #include "engine/records/column_table.hpp"
-#include "engine/records/error_conventions.hpp"
+#include "engine/records/columns.hpp"
+#include "engine/records/result_layout.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include "engine/records/column_table.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/records/error_conventions.hpp"
+#include "engine/records/columns.hpp"
 
 #include <algorithm>
 #include <string_view>

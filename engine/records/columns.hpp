@@ -3,6 +3,7 @@
 
 #include "engine/namespaces.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -11,6 +12,22 @@
 #include <vector>
 
 namespace montecarta::engine {
+
+/// What error the covariance of an imported pose may be the covariance of (STATISTICS 19).
+struct StoredConvention {
+  const char* name;     ///< as users type it
+  const char* column;   ///< of the NEES by it
+  const char* meaning;  ///< of that column
+};
+
+/// All of them, in the order of files and tables.
+inline constexpr std::array kErrorConventions = {
+    StoredConvention{"world", "nees_world",
+                     "imported: NEES if the covariance were of the error world"},
+    StoredConvention{"body", "nees_body",
+                     "imported: NEES if the covariance were of the error body"},
+    StoredConvention{"right-invariant", "nees_right_invariant",
+                     "imported: NEES if the covariance were of the error right-invariant"}};
 
 enum class Element : std::uint8_t { f64, u8, u16, u32, u64 };
 std::size_t size_of(Element element);

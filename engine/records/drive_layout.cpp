@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is stored of recorded drives: references, and where every run is a drive of its own its
 // times (analysis/FORMAT.md).
-#include "engine/records/drive_layout.hpp"
-
 #include "engine/records/h5.hpp"
 #include "engine/records/read_numbers.hpp"
 #include "engine/records/result_layout.hpp"

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/records/fingerprint.hpp"
 
+#include "engine/errors.hpp"
+
 // Inlined so that it is compiled for the same instruction set as the rest: three times the shared
 // library's speed.
 #define XXH_INLINE_ALL
+#include <openssl/evp.h>
 #include <xxhash.h>
 
+#include <array>
 #include <memory>
 
 namespace montecarta::engine {
@@ -29,6 +33,21 @@ void Fingerprint::add(std::span<const std::byte> bytes) {
 std::uint64_t Fingerprint::value() const {
   const std::uint64_t digest = XXH3_64bits_digest(reinterpret_cast<const XXH3_state_t*>(state_));
   return digest == 0 ? 1 : digest;
+}
+
+std::string sha256(std::string_view text) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned length = 0;
+  const int done =
+      EVP_Digest(text.data(), text.size(), digest.data(), &length, EVP_sha256(), nullptr);
+  expect(done == 1 && length == 32, "libcrypto has no SHA-256");
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string hexadecimal;
+  for (unsigned i = 0; i < length; ++i) {
+    hexadecimal += digits[digest[i] >> 4U];
+    hexadecimal += digits[digest[i] & 15U];
+  }
+  return hexadecimal;
 }
 
 }  // namespace montecarta::engine

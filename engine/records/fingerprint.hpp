@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <string_view>
 
 namespace montecarta::engine {
 
@@ -24,5 +26,8 @@ class Fingerprint {
  private:
   alignas(64) std::byte state_[640];
 };
+
+/// SHA-256 in lower-case hexadecimal, 64 characters, as sha256sum prints it.
+std::string sha256(std::string_view text);
 
 }  // namespace montecarta::engine

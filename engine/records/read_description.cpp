@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/records/read_description.hpp"
-
 #include "engine/errors.hpp"
-#include "engine/records/check_description.hpp"
-#include "engine/records/drive_layout.hpp"
 #include "engine/records/read_numbers.hpp"
 #include "engine/records/result_layout.hpp"
 

@@ -2,8 +2,8 @@
 #include "engine/records/result_description.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/records/fingerprint.hpp"
 #include "engine/records/record_layout.hpp"
-#include "engine/records/sha256.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -4,7 +4,7 @@
 #include "engine/errors.hpp"
 #include "engine/records/h5.hpp"
 #include "engine/records/posix_file.hpp"
-#include "engine/records/read_description.hpp"
+#include "engine/records/result_layout.hpp"
 #include "engine/records/run_record.hpp"
 #include "engine/records/seal.hpp"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/records/result_layout.hpp"
 
-#include "engine/records/drive_layout.hpp"
 #include "engine/records/h5.hpp"
 #include "engine/records/labelled_dataset.hpp"
 #include "engine/records/run_record.hpp"

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/records/h5.hpp"
+#include "engine/records/labelled_dataset.hpp"
 #include "engine/records/result_description.hpp"
 
 #include <cstddef>
 #include <filesystem>
 #include <string_view>
+#include <vector>
 
 namespace montecarta::engine {
 
@@ -27,5 +30,24 @@ inline constexpr const char* kDrives = "drives";
 /// attributes and scales, and for every dataset its final place. Throws RunError where the disk
 /// fails.
 void lay_out(const std::filesystem::path& path, const ResultDescription& description);
+
+/// Group `references` in `scenario`, or in one of its drives; nothing where there are none.
+void add_references(const h5::Handle& scenario, const std::vector<ReferencePath>& references,
+                    Scales& scales);
+/// Group `drives` in `scenario`, with a group for each; nothing where there are none.
+void add_own_drives(const h5::Handle& scenario, const std::vector<OwnDrive>& drives,
+                    Scales& scales);
+
+std::vector<ReferencePath> read_references(const h5::Handle& scenario);
+std::vector<OwnDrive> read_own_drives(const h5::Handle& scenario);
+
+/// Throws RunError unless all that a file says of itself goes together: every number in it that is
+/// an index, a count or a time of others is one, and all columns of a cell have the same axes.
+void check_description(const ResultDescription& description, const std::filesystem::path& path);
+
+/// What an open result file says of itself. Throws StudyError where it is no montecarta result of a
+/// known major version, RunError where something that must be there cannot be read, or contradicts
+/// what else is there (check_description()).
+ResultDescription read_description(const h5::Handle& file, const std::filesystem::path& path);
 
 }  // namespace montecarta::engine

@@ -2,7 +2,7 @@
 #include "engine/records/shard.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/records/read_description.hpp"
+#include "engine/records/result_layout.hpp"
 #include "engine/records/seal.hpp"
 
 #include <algorithm>

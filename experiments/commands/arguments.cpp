@@ -2,7 +2,6 @@
 #include "experiments/commands/arguments.hpp"
 
 #include "engine/errors.hpp"
-#include "experiments/text/numbers.hpp"
 #include "experiments/text/words.hpp"
 
 #include <boost/program_options.hpp>

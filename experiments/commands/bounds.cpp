@@ -2,8 +2,8 @@
 #include "analysis/statistics/nees_bounds.hpp"
 #include "engine/errors.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/text/numbers.hpp"
 #include "experiments/text/table.hpp"
+#include "experiments/text/words.hpp"
 
 #include <array>
 #include <cstdio>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/comparison/comparison_csv.hpp"
 #include "analysis/comparison/comparison_tables.hpp"
+#include "analysis/comparison/study_comparison.hpp"
 #include "analysis/data/study_settings.hpp"
-#include "analysis/output/print_table.hpp"
+#include "analysis/output/text_table.hpp"
 #include "engine/errors.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_guard.hpp"

@@ -4,7 +4,6 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/study/study.hpp"
-#include "experiments/study/study_of_log.hpp"
 
 #include <iostream>
 

@@ -4,7 +4,7 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/plan_arguments.hpp"
 #include "experiments/recordings/log_csv.hpp"
-#include "experiments/recordings/log_of_drive.hpp"
+#include "experiments/recordings/recorded_drive.hpp"
 #include "experiments/study/make_drives.hpp"
 
 #include <algorithm>

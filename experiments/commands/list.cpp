@@ -3,14 +3,14 @@
 #include "engine/records/column_table.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/external/external_kind.hpp"
-#include "experiments/files/shipped_files.hpp"
+#include "experiments/files/files.hpp"
 #include "experiments/study/cell_spec.hpp"
 #include "experiments/study/ini_text.hpp"
 #include "experiments/study/setting.hpp"
 #include "experiments/study/settings.hpp"
 #include "experiments/text/table.hpp"
 #include "experiments/text/words.hpp"
-#include "experiments/worlds/world_file.hpp"
+#include "experiments/worlds/world.hpp"
 #include "filters/models/vehicle_settings.hpp"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "engine/errors.hpp"
 #include "engine/records/provenance.hpp"
 #include "engine/threads/thread_budget.hpp"
-#include "experiments/files/shipped_files.hpp"
+#include "experiments/files/files.hpp"
 #include "experiments/study/make_plan.hpp"
 
 #include <filesystem>

@@ -6,7 +6,6 @@
 #include "experiments/commands/output_guard.hpp"
 #include "experiments/commands/plan_arguments.hpp"
 #include "experiments/commands/stored_result.hpp"
-#include "experiments/commands/stored_study.hpp"
 #include "experiments/recordings/find_recording.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/study/make_plan.hpp"

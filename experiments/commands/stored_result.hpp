@@ -2,6 +2,8 @@
 #pragma once
 
 #include "engine/records/result_file.hpp"
+#include "experiments/commands/arguments.hpp"
+#include "experiments/study/study.hpp"
 #include "experiments/text/table.hpp"
 
 #include <string>
@@ -27,5 +29,14 @@ StatusCounts count_status(const std::vector<RunStatus>& status);
 /// A table whose last column is of spared runs, without it where no cell spared any: most studies
 /// make all.
 std::vector<TableRow> without_idle_spared(std::vector<TableRow> rows);
+
+/// --data FOLDER, where the drive of a study lies: a result file holds all of a study but what was
+/// recorded.
+OptionSpec data_option();
+
+/// The study that a result file holds, its recorded drive read from --data or where
+/// $MONTECARTA_DATA says. Tells on standard error where this build may round otherwise than the one
+/// that made the file. Throws StudyError where the drive is missing or another one.
+Study study_in(const ResultFile& file, const Arguments& arguments);
 
 }  // namespace montecarta::experiments

@@ -5,7 +5,6 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/plan_arguments.hpp"
 #include "experiments/commands/stored_result.hpp"
-#include "experiments/commands/stored_study.hpp"
 #include "experiments/study/make_plan.hpp"
 
 #include <algorithm>

@@ -2,8 +2,10 @@
 #include "experiments/drives/simulated_drive.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/numbers/angle.hpp"
+#include "engine/random/stream.hpp"
 #include "experiments/drives/waypoint_pilot.hpp"
-#include "experiments/text/numbers.hpp"
+#include "experiments/text/words.hpp"
 #include "filters/models/ackermann.hpp"
 
 #include <cmath>
@@ -41,6 +43,21 @@ double time_limit(const Pose& pose, const Eigen::Vector2d& waypoint, const Scena
 }
 
 }  // namespace
+
+std::vector<Eigen::Vector2d> RandomMap::operator()(std::uint64_t run) const {
+  std::vector<Eigen::Vector2d> landmarks;
+  StreamIdentity identity{
+      .seed = seed_, .run = run, .step = 0, .index = 0, .purpose = Draw::world_landmark};
+  for (const Eigen::Vector2d& place : places_) {
+    RngStream draw(identity);
+    ++identity.index;
+    const double distance = shift_ * std::sqrt(draw.uniform());  // even over the disc
+    const double direction = kTwoPi * draw.uniform();
+    landmarks.emplace_back(place.x() + distance * std::cos(direction),
+                           place.y() + distance * std::sin(direction));
+  }
+  return landmarks;
+}
 
 SimulatedDrive::SimulatedDrive(World world, const Scenario& scenario, std::uint64_t seed)
     : world_(std::move(world)), scenario_(scenario), seed_(seed), sensor_(scenario) {

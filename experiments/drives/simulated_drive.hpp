@@ -2,10 +2,11 @@
 #pragma once
 
 #include "engine/core/drive.hpp"
-#include "experiments/drives/random_map.hpp"
 #include "experiments/drives/scenario.hpp"
 #include "experiments/drives/simulated_sensor.hpp"
 #include "experiments/worlds/world.hpp"
+
+#include <Eigen/Core>
 
 #include <cstdint>
 #include <optional>
@@ -13,6 +14,23 @@
 #include <vector>
 
 namespace montecarta::experiments {
+
+/// Draws the map of a run: every landmark displaced from where the world has it, uniformly within a
+/// distance. A pure function of (study seed, run).
+class RandomMap {
+ public:
+  /// `places` [m] in the world; `shift` [m] at most.
+  RandomMap(std::vector<Eigen::Vector2d> places, double shift, std::uint64_t seed)
+      : places_(std::move(places)), shift_(shift), seed_(seed) {}
+
+  /// [m] by identity.
+  std::vector<Eigen::Vector2d> operator()(std::uint64_t run) const;
+
+ private:
+  std::vector<Eigen::Vector2d> places_;
+  double shift_;
+  std::uint64_t seed_;
+};
 
 /// More steps than this in one run would not fit a result file; a study of so many is a slip of the
 /// pen.

@@ -3,7 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "experiments/external/external_filter.hpp"
-#include "experiments/text/quoted_words.hpp"
+#include "experiments/text/words.hpp"
 
 #include <vector>
 

@@ -2,8 +2,7 @@
 #include "experiments/files/csv_rows.hpp"
 
 #include "engine/errors.hpp"
-#include "experiments/files/whole_file.hpp"
-#include "experiments/text/numbers.hpp"
+#include "experiments/files/files.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

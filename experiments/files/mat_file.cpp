@@ -2,8 +2,8 @@
 #include "experiments/files/mat_file.hpp"
 
 #include "engine/errors.hpp"
+#include "experiments/files/files.hpp"
 #include "experiments/files/mat_elements.hpp"
-#include "experiments/files/whole_file.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

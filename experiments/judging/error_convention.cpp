@@ -3,7 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/numbers/angle.hpp"
-#include "engine/records/error_conventions.hpp"
+#include "engine/records/columns.hpp"
 #include "filters/joint/retraction.hpp"
 
 #include <Eigen/Geometry>

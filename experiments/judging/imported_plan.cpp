@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/judging/imported_plan.hpp"
-
 #include "engine/errors.hpp"
-#include "engine/records/sha256.hpp"
-#include "experiments/files/whole_file.hpp"
-#include "experiments/judging/innovation_rows.hpp"
+#include "engine/records/fingerprint.hpp"
+#include "experiments/files/files.hpp"
+#include "experiments/judging/judged_study.hpp"
+#include "experiments/judging/state_rows.hpp"
 #include "experiments/judging/tum_rows.hpp"
-#include "experiments/text/numbers.hpp"
 #include "experiments/text/words.hpp"
 
 #include <memory>

@@ -4,9 +4,8 @@
 #include "analysis/metrics/nees.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/posix_file.hpp"
-#include "experiments/judging/imported_plan.hpp"
-#include "experiments/judging/innovation_rows.hpp"
-#include "experiments/text/numbers.hpp"
+#include "experiments/judging/state_rows.hpp"
+#include "experiments/text/words.hpp"
 
 #include <algorithm>
 #include <cmath>

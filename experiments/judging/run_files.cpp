@@ -2,7 +2,6 @@
 #include "experiments/judging/run_files.hpp"
 
 #include "engine/errors.hpp"
-#include "experiments/text/numbers.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

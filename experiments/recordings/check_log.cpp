@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/recordings/check_log.hpp"
-
 #include "engine/errors.hpp"
-#include "experiments/text/numbers.hpp"
+#include "experiments/recordings/drive_log.hpp"
 #include "experiments/text/words.hpp"
 #include "experiments/worlds/world.hpp"
 

@@ -2,7 +2,7 @@
 #include "experiments/recordings/find_recording.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/records/sha256.hpp"
+#include "engine/records/fingerprint.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

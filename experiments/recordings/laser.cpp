@@ -2,7 +2,7 @@
 #include "experiments/recordings/laser.hpp"
 
 #include "engine/errors.hpp"
-#include "experiments/text/numbers.hpp"
+#include "experiments/text/words.hpp"
 
 namespace montecarta::experiments {
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/drive.hpp"
+
 #include <cstddef>
 #include <numbers>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace montecarta::experiments {
 
@@ -35,5 +38,14 @@ inline double bearing_of(double angle) { return angle - std::numbers::pi / 2; }
 /// Throws StudyError, beginning with `place` (file and scan), unless each range is a number and not
 /// negative.
 void check_sweep(LaserSweep ranges, const std::string& place);
+
+/// The trunks of trees in one sweep of ranges [m]: centre of the trunk, by increasing bearing, none
+/// identified. The detector of every code on the Victoria Park data (J. Guivant, ACFR), step by
+/// step as in [trees] of experiments/RECORDED_DRIVES.md.
+std::vector<Detection> detect_trees(LaserSweep ranges);
+
+/// The reflecting poles in one sweep of ranges [m] and intensities: centre of the pole, by
+/// increasing bearing, none identified. See [reflectors] of experiments/RECORDED_DRIVES.md.
+std::vector<Detection> detect_reflectors(LaserSweep ranges, LaserSweep intensities);
 
 }  // namespace montecarta::experiments

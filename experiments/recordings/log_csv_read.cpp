@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/errors.hpp"
 #include "experiments/files/csv_rows.hpp"
-#include "experiments/recordings/check_log.hpp"
+#include "experiments/recordings/drive_log.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/recordings/log_csv_names.hpp"
-#include "experiments/recordings/reference_csv.hpp"
-#include "experiments/text/numbers.hpp"
 #include "experiments/text/words.hpp"
 #include "filters/models/vehicle_settings.hpp"
 

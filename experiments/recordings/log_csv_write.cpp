@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/output/csv_file.hpp"
 #include "engine/errors.hpp"
-#include "experiments/recordings/check_log.hpp"
+#include "experiments/recordings/drive_log.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/recordings/log_csv_names.hpp"
-#include "experiments/recordings/reference_csv.hpp"
-#include "experiments/text/numbers.hpp"
+#include "experiments/text/words.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 #include "experiments/recordings/mat_drive.hpp"
 
 #include "engine/errors.hpp"
-#include "experiments/recordings/check_log.hpp"
+#include "experiments/recordings/drive_log.hpp"
 
 #include <utility>
 

@@ -1,11 +1,74 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/recordings/recorded_drive.hpp"
 
+#include "engine/errors.hpp"
+#include "experiments/recordings/log_csv_names.hpp"
+#include "experiments/text/words.hpp"
+
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <string>
+#include <utility>
 
 namespace montecarta::experiments {
+namespace {
+
+/// "gps (headings, errors)" of each reference.
+std::string references_in_words(const Itinerary& itinerary) {
+  std::vector<std::string> all;
+  for (const ReferencePath& path : itinerary.references) {
+    all.push_back(path.name + (path.heading.empty() ? " without" : " with") + " headings, " +
+                  (path.covariance.empty() ? "without" : "with") + " errors of its own");
+  }
+  return joined(all, "; ");
+}
+
+void expect_alike(const Itinerary& first, const Itinerary& other, std::size_t number) {
+  const std::string drive = "drive " + std::to_string(number + 1);
+  if (references_in_words(first) != references_in_words(other)) {
+    throw StudyError(drive + " has the references " + references_in_words(other) +
+                     " (the first one has " + references_in_words(first) +
+                     ", and one verdict is by one reference): give all drives files of the same "
+                     "names and columns, or name one by scenario.reference");
+  }
+  if (first.landmarks == other.landmarks) return;
+  throw StudyError(drive +
+                   " has other surveyed landmarks than the first one (drives of one scenario have "
+                   "one map): give all the same landmarks.csv, or none");
+}
+
+/// A control holds from its time to that of the next one; the last record ends the last step.
+std::vector<Odometry> odometry_rows(const Itinerary& itinerary, const Drive& drive) {
+  std::vector<Odometry> odometry;
+  double begin = 0.0;
+  for (std::size_t k = 0; k < itinerary.steps(); ++k) {
+    odometry.push_back({begin, drive.controls[k]});
+    begin = itinerary.step_time[k];
+  }
+  odometry.push_back({begin, {}});
+  return odometry;
+}
+
+LoggedScan scan_of(double time, Scan scan, Identities identities) {
+  LoggedScan logged{time, {scan.begin(), scan.end()}};
+  if (identities == Identities::told) return logged;
+  for (Detection& detection : logged.detections) detection.identity = Detection::kUnidentified;
+  return logged;
+}
+
+ReferencePath truth_path(const Itinerary& itinerary, const Drive& drive) {
+  ReferencePath path{
+      .name = log_csv::kLeading, .time = itinerary.step_time, .position = {}, .heading = {}};
+  for (const Pose& pose : drive.truth) {
+    path.position.emplace_back(pose.x, pose.y);
+    path.heading.push_back(pose.heading);
+  }
+  return path;
+}
+
+}  // namespace
+
 RecordedDrive::RecordedDrive(const DriveLog& log, const Reach& reach, double scan_delay) {
   itinerary_.start = {log.start.x, log.start.y, wrap(log.start.heading)};
   itinerary_.has_truth = false;
@@ -62,5 +125,39 @@ void RecordedDrive::take_scan(const LoggedScan& scan, std::span<const Quantity> 
 }
 
 void RecordedDrive::generate(std::uint64_t /*run*/, Drive& drive) const { drive = drive_; }
+
+SeveralDrives::SeveralDrives(std::vector<RecordedDrive> drives) : drives_(std::move(drives)) {
+  expect(!drives_.empty(), "several drives are at least one");
+  const auto scans = [](const RecordedDrive& drive) { return drive.itinerary().scans(); };
+  itinerary_ = std::ranges::max_element(drives_, {}, scans)->itinerary();
+  itinerary_.references.clear();
+  for (std::size_t k = 1; k < drives_.size(); ++k)
+    expect_alike(drives_.front().itinerary(), drives_[k].itinerary(), k);
+}
+
+const Itinerary& SeveralDrives::itinerary_of(std::uint64_t run) const {
+  return drives_.at(run).itinerary();
+}
+
+void SeveralDrives::generate(std::uint64_t run, Drive& drive) const {
+  drives_.at(run).generate(run, drive);
+}
+
+DriveLog log_of(const Itinerary& itinerary, const Drive& drive,
+                std::span<const ControlName> controls, std::vector<Eigen::Vector2d> landmarks,
+                Identities identities) {
+  expect(itinerary.has_truth, "a log is made of a drive whose truth is unknown");
+  DriveLog log;
+  log.start = itinerary.start;
+  log.controls = controls;
+  log.odometry = odometry_rows(itinerary, drive);
+  for (std::size_t s = 0; s < itinerary.scans(); ++s) {
+    log.scans.push_back(
+        scan_of(itinerary.step_time[itinerary.scan_step[s]], drive.scan(s), identities));
+  }
+  log.references.push_back(truth_path(itinerary, drive));
+  log.landmarks = std::move(landmarks);
+  return log;
+}
 
 }  // namespace montecarta::experiments

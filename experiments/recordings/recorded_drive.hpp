@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/drive.hpp"
 #include "experiments/recordings/drive_log.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace montecarta::experiments {
 
@@ -32,5 +37,34 @@ class RecordedDrive final : public DriveSource {
   Itinerary itinerary_;
   Drive drive_;
 };
+
+/// Several recorded drives of one scenario: run k meets drive k. Their lengths, starts and fixes
+/// are their own; references have the same names and tell the same of themselves, and surveyed
+/// landmarks are those of all.
+class SeveralDrives final : public DriveSource {
+ public:
+  /// As RecordedDrive has them; at least one. Throws StudyError where two do not belong together.
+  explicit SeveralDrives(std::vector<RecordedDrive> drives);
+
+  const Itinerary& itinerary() const override { return itinerary_; }
+  std::size_t own_drives() const override { return drives_.size(); }
+  const Itinerary& itinerary_of(std::uint64_t run) const override;
+  void generate(std::uint64_t run, Drive& drive) const override;
+
+ private:
+  std::vector<RecordedDrive> drives_;
+  Itinerary itinerary_;  ///< of the drive with most scans, without references
+};
+
+/// Whether a log tells which landmark each detection is of.
+enum class Identities { told, withheld };
+
+/// A drive with known truth as if it had been recorded: RecordedDrive makes the same steps,
+/// controls and scans of it, bit for bit, while no detection is beyond its max_range. Times count
+/// from the start. The truth after every step is its only reference, `landmarks` its survey,
+/// `controls` what its controls are.
+DriveLog log_of(const Itinerary& itinerary, const Drive& drive,
+                std::span<const ControlName> controls, std::vector<Eigen::Vector2d> landmarks,
+                Identities identities);
 
 }  // namespace montecarta::experiments

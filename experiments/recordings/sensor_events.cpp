@@ -2,7 +2,7 @@
 #include "experiments/recordings/sensor_events.hpp"
 
 #include "engine/errors.hpp"
-#include "experiments/text/numbers.hpp"
+#include "experiments/text/words.hpp"
 
 #include <cmath>
 #include <cstddef>

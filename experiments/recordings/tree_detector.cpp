@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/recordings/tree_detector.hpp"
-
 #include "engine/numbers/angle.hpp"
+#include "experiments/recordings/laser.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/recordings/victoria_park.hpp"
-
 #include "engine/errors.hpp"
 #include "experiments/files/mat_file.hpp"
 #include "experiments/files/number_records.hpp"
-#include "experiments/recordings/check_log.hpp"
+#include "experiments/recordings/drive_log.hpp"
+#include "experiments/recordings/laser.hpp"
 #include "experiments/recordings/mat_drive.hpp"
+#include "experiments/recordings/published_drives.hpp"
 #include "experiments/recordings/sensor_events.hpp"
-#include "experiments/recordings/tree_detector.hpp"
 
 #include <array>
 #include <cmath>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "experiments/study/ini_text.hpp"
+#include "experiments/study/settings.hpp"
 #include "filters/factory.hpp"
 
 #include <span>
@@ -43,5 +44,10 @@ void label_cells(std::vector<CellSpec>& cells);
 
 /// The line that reads back as this cell: "fastslam2 label=fastslam2_m100 particles=100 ...".
 std::string cell_line(const CellSpec& cell);
+
+/// Throws StudyError where a cell's filter does not take the sensor of [belief], where that is
+/// mounted elsewhere than the filter can, or where it would have to find out which landmark a
+/// detection is of that does not fix one.
+void refuse_sensors(const Settings& settings, std::span<const CellSpec> cells);
 
 }  // namespace montecarta::experiments

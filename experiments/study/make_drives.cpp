@@ -4,8 +4,6 @@
 #include "engine/errors.hpp"
 #include "experiments/drives/simulated_drive.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
-#include "experiments/recordings/several_drives.hpp"
-#include "experiments/text/numbers.hpp"
 #include "experiments/text/words.hpp"
 #include "filters/models/vehicle_settings.hpp"
 

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/study/recorded_study.hpp"
-
 #include "engine/errors.hpp"
-#include "experiments/recordings/car_park.hpp"
 #include "experiments/recordings/find_recording.hpp"
 #include "experiments/recordings/log_csv.hpp"
-#include "experiments/recordings/victoria_park.hpp"
+#include "experiments/recordings/published_drives.hpp"
+#include "experiments/study/make_drives.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

@@ -4,7 +4,6 @@
 #include "engine/errors.hpp"
 #include "engine/numbers/angle.hpp"
 #include "experiments/study/setting.hpp"
-#include "experiments/text/numbers.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

@@ -3,12 +3,12 @@
 
 #include "engine/errors.hpp"
 #include "experiments/external/external_kind.hpp"
-#include "experiments/study/inline_world.hpp"
-#include "experiments/study/printed_section.hpp"
-#include "experiments/study/recorded_study.hpp"
-#include "experiments/study/refuse_sensors.hpp"
+#include "experiments/study/cell_spec.hpp"
+#include "experiments/study/make_drives.hpp"
+#include "experiments/study/setting.hpp"
+#include "experiments/study/study_sections.hpp"
 #include "experiments/text/words.hpp"
-#include "experiments/worlds/world_file.hpp"
+#include "experiments/worlds/world.hpp"
 
 #include <algorithm>
 #include <fstream>
@@ -85,6 +85,22 @@ void refuse_world(const IniText& ini, const Settings& settings) {
                    "[world]");
 }
 
+/// Whether "key = value" is a setting that a scenario of kind log does not have.
+bool is_foreign(const std::string& line) {
+  return std::ranges::any_of(study_settings(), [&](const Setting& setting) {
+    return setting.section == "scenario" && !setting.is_for("log") &&
+           line.starts_with(setting.key + " = ");
+  });
+}
+
+/// The text of studies that make all runs, store no joint estimates, or have the usual margin, is
+/// what it was before a study could do otherwise.
+bool is_default_noted(const Study& study, const std::string& key, const std::string& value) {
+  if (key == "joint_scans") return study.settings.lists("record", "columns", "joint");
+  if (key == "within") return value != kUsualWithin;
+  return key != "until" || !value.empty();
+}
+
 }  // namespace
 
 Study parse_study(const std::string& text, const std::string& name,
@@ -128,6 +144,40 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
         ": cannot be read (missing, empty, or no permission): check the path of the study");
   }
   return parse_study(text.str(), path.string(), path.parent_path(), overrides);
+}
+
+std::string study_of_log(const Study& study) {
+  expect(study.log != nullptr, "a log is asked for where nothing was recorded");
+  std::istringstream resolved(resolved_text(study));
+  std::string text, section;
+  for (std::string line; std::getline(resolved, line);) {
+    if (line.starts_with("[")) section = line;
+    if (section == "[scenario]") {
+      if (is_foreign(line)) continue;
+      if (line.starts_with("kind = ")) line = "kind = log";
+      if (line.starts_with("path = ")) line = "path = .";
+    }
+    text += line + "\n";
+  }
+  return text;
+}
+
+std::string resolved_text(const Study& study) {
+  std::string text;
+  for (const std::string& section : study_sections()) {
+    if (section == "printed" && study.printed.empty()) continue;
+    if (section == "world" && study.log != nullptr) continue;
+    text += "[" + section + "]\n";
+    for (const auto& [key, value] : study.settings.section(section)) {
+      if (is_default_noted(study, key, value)) text += key + " = " + value + "\n";
+    }
+    if (section == "cells") {
+      for (const CellSpec& cell : study.cells) text += "cell = " + cell_line(cell) + "\n";
+    }
+    if (section == "printed") text += printed_text(study.printed);
+    if (section == "world") text += inline_world_text(study.world);
+  }
+  return text;
 }
 
 }  // namespace montecarta::experiments

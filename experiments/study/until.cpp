@@ -8,7 +8,6 @@
 #include "engine/errors.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/runs/rounds.hpp"
-#include "experiments/text/numbers.hpp"
 #include "experiments/text/words.hpp"
 
 namespace montecarta::experiments {

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/text/words.hpp"
 
+#include "engine/errors.hpp"
+
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <charconv>
+#include <cmath>
 #include <sstream>
+#include <system_error>
 
 namespace montecarta::experiments {
 namespace {
@@ -11,6 +17,29 @@ namespace {
 constexpr std::string_view kWhite = " \t\r\n\f\v";
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
+
+template <class Number>
+std::optional<Number> whole_text_as(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+constexpr std::string_view kBlank = " \t\r\n\f\v";
+
+/// The text in the quotes that begin at `at`, which becomes the place behind them.
+std::string between_quotes(std::string_view text, std::size_t& at) {
+  const char quote = text[at];
+  std::string inside;
+  while (++at < text.size() && text[at] != quote) {
+    const bool escapes = quote == '"' && text[at] == '\\' && at + 1 < text.size();
+    inside += text[escapes ? ++at : at];
+  }
+  if (at++ < text.size()) return inside;
+  throw StudyError(std::string("a quote ") + quote +
+                   " is not closed (# begins a comment, in quotes too): close it");
+}
 
 }  // namespace
 
@@ -87,6 +116,49 @@ std::string nearest_spelling(std::string_view word, std::span<const std::string>
     return "did you mean " + *nearest + "?";
   }
   return "known: " + joined(known);
+}
+
+std::optional<double> to_number(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  const std::optional<double> value = whole_text_as<double>(text);
+  if (!value || !std::isfinite(*value)) return std::nullopt;
+  return value;
+}
+
+std::optional<std::uint64_t> to_count(std::string_view text) {
+  return whole_text_as<std::uint64_t>(text);
+}
+
+std::string to_text(double value) {
+  std::array<char, 32> buffer;
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return std::string(buffer.data(), error == std::errc() ? end : buffer.data());
+}
+
+std::vector<std::string> quoted_words(std::string_view text) {
+  std::vector<std::string> words;
+  std::size_t at = 0;
+  while ((at = text.find_first_not_of(kBlank, at)) != std::string_view::npos) {
+    std::string word;
+    while (at < text.size() && kBlank.find(text[at]) == std::string_view::npos) {
+      if (text[at] == '"' || text[at] == '\'') {
+        word += between_quotes(text, at);
+      } else {
+        word += text[at++];
+      }
+    }
+    words.push_back(word);
+  }
+  return words;
+}
+
+std::string in_quotes(std::string_view word) {
+  std::string quoted = "\"";
+  for (const char c : word) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + '"';
 }
 
 }  // namespace montecarta::experiments

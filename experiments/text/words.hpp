@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -26,5 +28,22 @@ std::string excerpt(std::string_view text);
 std::size_t edit_distance(std::string_view a, std::string_view b);
 /// "did you mean X?" for the known spelling nearest to `word`, else "known: a, b, c".
 std::string nearest_spelling(std::string_view word, std::span<const std::string> known);
+
+/// The number that all of `text` spells, in the C locale; nullopt where it is not one or not
+/// finite.
+std::optional<double> to_number(std::string_view text);
+/// Likewise for whole numbers without sign; nullopt where 64 bits do not hold it.
+std::optional<std::uint64_t> to_count(std::string_view text);
+/// The shortest text that reads back as exactly `value`.
+std::string to_text(double value);
+
+/// The parts of `text` between runs of white space, where quotes, '...' or "...", hold a part or
+/// some of it together and are dropped. Within "..." a backslash takes the character behind it as
+/// it is, everywhere else it is a character like any other. Nothing is expanded. Throws StudyError,
+/// worded "(why): remedy", where a quote is not closed.
+std::vector<std::string> quoted_words(std::string_view text);
+
+/// `word` in double quotes, so that quoted_words() reads it back.
+std::string in_quotes(std::string_view word);
 
 }  // namespace montecarta::experiments

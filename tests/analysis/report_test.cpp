@@ -2,7 +2,7 @@
 #include "analysis/report.hpp"
 
 #include "analysis/metrics/study_analysis.hpp"
-#include "analysis/page/markdown.hpp"
+#include "analysis/page/page.hpp"
 #include "engine/errors.hpp"
 #include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/synthetic_result.hpp"

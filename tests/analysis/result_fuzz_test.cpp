@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Damaged result files: refused with the name of the file, or analysed to the end.
 #include "analysis/metrics/study_analysis.hpp"
-#include "analysis/page/replay/read_replay.hpp"
+#include "analysis/page/replay/replay.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
-#include "engine/records/read_description.hpp"
+#include "engine/records/result_layout.hpp"
 #include "engine/records/seal.hpp"
 #include "tests/analysis/synthetic_result.hpp"
 #include "tests/doubles/damage.hpp"

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/page/replay/read_replay.hpp"
-
-#include "analysis/data/met_drive.hpp"
 #include "analysis/data/run_reader.hpp"
 #include "analysis/figures/path_data.hpp"
 #include "analysis/figures/stored_map.hpp"
-#include "analysis/page/replay/thin_particles.hpp"
+#include "analysis/page/replay/replay.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/figures/ellipse.hpp"
+#include "analysis/figures/stored_map.hpp"
+#include "engine/records/result_file.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -51,5 +53,38 @@ struct Replay {
   std::vector<std::pair<double, double>> fixes = {};      ///< [m] of a recorded drive's reference
   std::vector<ReplayCell> cells = {};
 };
+
+/// What is stored of a cell's particles in one run.
+struct StoredParticles {
+  std::size_t count = 0;                    ///< particles
+  std::span<const double> pose;             ///< {scan, particle, 3}
+  std::span<const std::uint32_t> ancestor;  ///< {scan, particle}; empty: not stored
+};
+
+/// At most `most` particles a frame; `scans`, increasing, are those of the frames. The last frame
+/// shows particles evenly over their indices, every earlier one the parents of the frame behind it
+/// and, evenly, as many others as there is room for.
+ReplayParticles thin_particles(const StoredParticles& stored, std::span<const std::size_t> scans,
+                               std::size_t most);
+
+/// How much of a run a page can carry: some megabytes over all cells.
+struct ReplaySize {
+  std::size_t frames = 400;         ///< at most
+  std::size_t particles = 100;      ///< of a cell in a frame, at most
+  std::size_t positions = 300'000;  ///< of particles, over all cells and frames
+  std::size_t ellipses = 30'000;    ///< of landmarks, over all cells and frames
+};
+
+/// Reads run index `run` of every cell that completed it or failed in it, thinned in time to equal
+/// steps from scan to scan.
+Replay read_replay(const ResultFile& file, std::size_t run, const ReplaySize& size = {});
+
+/// The landmarks a cell had, at as many of the frames, evenly, as `ellipses` in all allow; where
+/// only the final map is stored that one, at the last frame; else nothing.
+std::vector<ReplayMap> read_maps(const ResultFile& file, const StoredCell& cell, std::size_t run,
+                                 std::span<const std::size_t> frame_scans, std::size_t ellipses);
+
+/// A run as the page's player reads it (page/script/replay.js).
+std::string replay_json(const Replay& replay);
 
 }  // namespace montecarta::analysis

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/page/replay/replay_json.hpp"
-
 #include "analysis/output/figure.hpp"
 #include "analysis/page/json.hpp"
+#include "analysis/page/replay/replay.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/figures/chosen_run.hpp"
+#include "analysis/figures/path_data.hpp"
 #include "analysis/page/html.hpp"
-#include "analysis/page/replay/read_replay.hpp"
-#include "analysis/page/replay/replay_json.hpp"
-#include "analysis/page/sections.hpp"
+#include "analysis/page/page.hpp"
+#include "analysis/page/replay/replay.hpp"
 
 #include <algorithm>
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/page/replay/thin_particles.hpp"
-
+#include "analysis/page/replay/replay.hpp"
 #include "engine/errors.hpp"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/pareto.hpp"
 
-#include "analysis/comparison/pareto_figure.hpp"
 #include "tests/analysis/comparison/compared_cells.hpp"
 
 #include <gmock/gmock.h>

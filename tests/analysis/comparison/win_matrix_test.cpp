@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/comparison/win_matrix.hpp"
-
+#include "analysis/comparison/cell_comparison.hpp"
 #include "analysis/comparison/comparison_tables.hpp"
 #include "tests/analysis/comparison/compared_cells.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/figures/path_chart.hpp"
+#include "analysis/figures/path_figure.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/assignment.hpp"
-
+#include "analysis/metrics/gospa.hpp"
 #include "engine/random/stream.hpp"
 
 #include <gtest/gtest.h>

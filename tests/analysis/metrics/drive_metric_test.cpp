@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/cell_sums.hpp"
 #include "analysis/metrics/drive_consistency.hpp"
-#include "analysis/metrics/reference_table.hpp"
+#include "analysis/metrics/reference_report.hpp"
 #include "engine/random/stream.hpp"
 #include "tests/analysis/reported.hpp"
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/efficiency.hpp"
-
+#include "analysis/metrics/cramer_rao.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "tests/analysis/studied_result.hpp"
 #include "tests/analysis/synthetic_result.hpp"

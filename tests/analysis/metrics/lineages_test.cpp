@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/lineages.hpp"
 
-#include "analysis/metrics/lineage_sums.hpp"
 #include "engine/random/stream.hpp"
 
 #include <gtest/gtest.h>

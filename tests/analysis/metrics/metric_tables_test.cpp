@@ -2,7 +2,7 @@
 #include "analysis/metrics/credibility.hpp"
 #include "analysis/metrics/error_anatomy.hpp"
 #include "analysis/metrics/innovations.hpp"
-#include "analysis/metrics/lineage_sums.hpp"
+#include "analysis/metrics/lineages.hpp"
 #include "analysis/statistics/means.hpp"
 #include "tests/analysis/reported.hpp"
 

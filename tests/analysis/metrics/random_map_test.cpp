@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/cell_calibration.hpp"
-#include "analysis/metrics/efficiency.hpp"
+#include "analysis/metrics/cramer_rao.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "engine/records/merge.hpp"
 #include "tests/analysis/studied_result.hpp"

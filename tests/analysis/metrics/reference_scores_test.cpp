@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/reference_scores.hpp"
 
-#include "analysis/metrics/rigid_alignment.hpp"
 #include "engine/random/stream.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/rigid_alignment.hpp"
-
+#include "analysis/metrics/reference_scores.hpp"
 #include "engine/numbers/angle.hpp"
 #include "engine/random/stream.hpp"
 

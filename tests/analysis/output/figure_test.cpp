@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/output/figure.hpp"
 
-#include "analysis/figures/ellipse.hpp"
+#include "analysis/figures/stored_map.hpp"
 #include "analysis/output/csv_file.hpp"
 #include "analysis/output/gnuplot.hpp"
 #include "engine/errors.hpp"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/output/thinning.hpp"
-
+#include "analysis/output/figure.hpp"
 #include "analysis/statistics/means.hpp"
 #include "engine/random/stream.hpp"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/page/chart_json.hpp"
-
 #include "analysis/output/panel.hpp"
+#include "analysis/page/json.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 
 #include "analysis/metrics/nees_batches.hpp"
 #include "analysis/printed/run_samples.hpp"
-#include "analysis/statistics/t_quantile.hpp"
+#include "analysis/statistics/spread.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/random/stream.hpp"
 

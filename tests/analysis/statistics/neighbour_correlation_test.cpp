@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/statistics/neighbour_correlation.hpp"
-
+#include "analysis/statistics/correlation.hpp"
 #include "engine/random/stream.hpp"
 
 #include <gtest/gtest.h>

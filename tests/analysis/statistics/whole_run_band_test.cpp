@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/whole_run_band.hpp"
 
-#include "analysis/statistics/t_quantile.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <gtest/gtest.h>
 

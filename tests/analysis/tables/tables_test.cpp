@@ -4,7 +4,6 @@
 #include "analysis/output/csv_file.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/means.hpp"
-#include "analysis/tables/latex.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/h5.hpp"
 #include "tests/doubles/scratch_folder.hpp"

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Files without a seal whose numbers contradict each other: refused when they are opened.
-#include "engine/records/check_description.hpp"
-
 #include "engine/errors.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/records/result_layout.hpp"

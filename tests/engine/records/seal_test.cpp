@@ -3,7 +3,6 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/merge.hpp"
-#include "engine/records/read_description.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/records/result_layout.hpp"
 #include "tests/doubles/damage.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/records/sha256.hpp"
+#include "engine/records/fingerprint.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/runs/progress_line.hpp"
+#include "engine/runs/progress.hpp"
 
 #include <gtest/gtest.h>
 

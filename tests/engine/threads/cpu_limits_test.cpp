@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/threads/cpu_limits.hpp"
+#include "engine/threads/thread_budget.hpp"
 
 #include <gtest/gtest.h>
 

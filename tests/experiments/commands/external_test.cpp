@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Who starts a program that a study names, and what verify finds out about it.
-#include "experiments/text/quoted_words.hpp"
+#include "experiments/text/words.hpp"
 #include "tests/experiments/commands/program.hpp"
 
 #include <gmock/gmock.h>

@@ -3,7 +3,7 @@
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "engine/records/result_file.hpp"
-#include "experiments/text/numbers.hpp"
+#include "experiments/text/words.hpp"
 #include "tests/experiments/commands/program.hpp"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/drives/random_map.hpp"
+#include "experiments/drives/simulated_drive.hpp"
 
 #include <gtest/gtest.h>
 

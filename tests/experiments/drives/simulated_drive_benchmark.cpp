@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/drives/simulated_drive.hpp"
-#include "experiments/worlds/world_file.hpp"
+#include "experiments/worlds/world.hpp"
 
 #include <benchmark/benchmark.h>
 

@@ -2,7 +2,7 @@
 #include "experiments/drives/simulated_drive.hpp"
 
 #include "engine/errors.hpp"
-#include "experiments/worlds/world_file.hpp"
+#include "experiments/worlds/world.hpp"
 #include "filters/models/ackermann.hpp"
 #include "tests/doubles/published_data.hpp"
 

@@ -2,7 +2,7 @@
 // Vehicles other than cars, simulated.
 #include "engine/errors.hpp"
 #include "experiments/drives/simulated_drive.hpp"
-#include "experiments/worlds/world_file.hpp"
+#include "experiments/worlds/world.hpp"
 #include "tests/filters/some_vehicles.hpp"
 
 #include <gmock/gmock.h>

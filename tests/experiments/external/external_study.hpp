@@ -4,7 +4,7 @@
 #include "engine/records/result_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
 #include "experiments/study/make_plan.hpp"
-#include "experiments/text/quoted_words.hpp"
+#include "experiments/text/words.hpp"
 #include "tests/analysis/studied_result.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 

@@ -3,7 +3,7 @@
 // on recorded drives whose reference is the truth.
 #include "analysis/metrics/study_analysis.hpp"
 #include "experiments/recordings/log_csv.hpp"
-#include "experiments/text/numbers.hpp"
+#include "experiments/text/words.hpp"
 #include "tests/doubles/csv_table.hpp"
 #include "tests/doubles/reader_program.hpp"
 #include "tests/experiments/commands/program.hpp"

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Damaged studies, worlds and estimates: read, or refused with the name of the file. (Damaged
 // recorded drives: recordings/readers_fuzz_test.cpp.)
-#include "experiments/judging/innovation_rows.hpp"
 #include "experiments/judging/state_rows.hpp"
 #include "experiments/study/study.hpp"
-#include "experiments/worlds/world_file.hpp"
+#include "experiments/worlds/world.hpp"
 #include "tests/doubles/complaint.hpp"
 #include "tests/doubles/damage.hpp"
 #include "tests/doubles/scratch_folder.hpp"

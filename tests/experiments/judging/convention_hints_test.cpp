@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/convention_hints.hpp"
-
+#include "analysis/metrics/imported_estimates.hpp"
 #include "analysis/metrics/nees.hpp"
 #include "tests/analysis/verdict_studies.hpp"
 #include "tests/experiments/judging/drawn_errors.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/judging/innovation_rows.hpp"
-
 #include "engine/errors.hpp"
+#include "experiments/judging/state_rows.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/recordings/car_park.hpp"
-
+#include "experiments/recordings/published_drives.hpp"
 #include "tests/doubles/complaint.hpp"
 #include "tests/doubles/published_data.hpp"
 #include "tests/doubles/scratch_folder.hpp"

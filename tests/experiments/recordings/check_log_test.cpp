@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/recordings/check_log.hpp"
-
+#include "experiments/recordings/drive_log.hpp"
 #include "tests/doubles/complaint.hpp"
 #include "tests/experiments/recordings/small_drives.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/beacon_scores.hpp"
+#include "analysis/metrics/map_scores.hpp"
 #include "analysis/metrics/reference_scores.hpp"
 #include "engine/core/step_context.hpp"
 #include "experiments/study/make_plan.hpp"

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Damaged files: each reader gives a log that passes its check, or says what is wrong.
-#include "experiments/recordings/car_park.hpp"
-#include "experiments/recordings/check_log.hpp"
+#include "experiments/recordings/drive_log.hpp"
 #include "experiments/recordings/log_csv.hpp"
-#include "experiments/recordings/victoria_park.hpp"
+#include "experiments/recordings/published_drives.hpp"
 #include "tests/doubles/complaint.hpp"
 #include "tests/doubles/damage.hpp"
 #include "tests/doubles/scratch_folder.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/recordings/reference_csv.hpp"
-
 #include "experiments/recordings/find_recording.hpp"
+#include "experiments/recordings/log_csv.hpp"
 #include "tests/doubles/complaint.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 #include "tests/experiments/recordings/small_drives.hpp"

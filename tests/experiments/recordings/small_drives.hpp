@@ -2,7 +2,7 @@
 #pragma once
 
 #include "experiments/recordings/drive_log.hpp"
-#include "experiments/text/numbers.hpp"
+#include "experiments/text/words.hpp"
 
 #include <matio.h>
 

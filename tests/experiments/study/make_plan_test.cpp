@@ -3,7 +3,7 @@
 
 #include "analysis/data/study_settings.hpp"
 #include "experiments/study/setting.hpp"
-#include "experiments/text/numbers.hpp"
+#include "experiments/text/words.hpp"
 #include "tests/experiments/study/study_text.hpp"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/study/printed_section.hpp"
-
+#include "experiments/study/study_sections.hpp"
 #include "tests/experiments/study/study_text.hpp"
 
 #include <gmock/gmock.h>

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/study/recorded_study.hpp"
-
 #include "experiments/recordings/find_recording.hpp"
 #include "experiments/recordings/log_csv.hpp"
+#include "experiments/study/make_drives.hpp"
 #include "experiments/study/make_plan.hpp"
-#include "experiments/study/study_of_log.hpp"
+#include "experiments/study/study.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 #include "tests/experiments/recordings/small_drives.hpp"
 #include "tests/experiments/study/study_text.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/study/run_range.hpp"
-
 #include "engine/errors.hpp"
+#include "experiments/study/make_plan.hpp"
 
 #include <gtest/gtest.h>
 

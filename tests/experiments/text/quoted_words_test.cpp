@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/text/quoted_words.hpp"
-
 #include "engine/random/stream.hpp"
+#include "experiments/text/words.hpp"
 #include "tests/doubles/complaint.hpp"
 
 #include <gmock/gmock.h>

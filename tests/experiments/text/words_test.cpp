@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/text/words.hpp"
 
-#include "experiments/text/numbers.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

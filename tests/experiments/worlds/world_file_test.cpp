@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/worlds/world_file.hpp"
-
 #include "engine/errors.hpp"
+#include "experiments/worlds/world.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

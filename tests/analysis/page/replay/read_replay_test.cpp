@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/page/replay/read_replay.hpp"
-
+#include "analysis/page/replay/replay.hpp"
 #include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/synthetic_result.hpp"
 #include "tests/doubles/scratch_folder.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/page/replay/replay_json.hpp"
+#include "analysis/page/replay/replay.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace montecarta::analysis {
+
+/// A vector of a few components at equal steps: {component}{sample}, equally long.
+using VectorSeries = std::vector<std::vector<double>>;
+
+/// Squared Frobenius norm of the correlation matrix of samples `lag` steps apart about zero, over
+/// components x (mean square)^2: 1 at lag 0 of a white series with equal components, at most 1 as
+/// returned. {lag}, as many as samples. Correlations between two components count where they are
+/// more than twice as large as by chance.
+std::vector<double> squared_correlations(const VectorSeries& series);
+
+/// Semivariance of each component: half of the mean squared difference of samples `lag` steps
+/// apart. {component}{lag}
+VectorSeries semivariances(const VectorSeries& series);
+
+/// How many independent samples have an average of squares that varies as much, if the components
+/// are Gaussian with mean zero: n / (1 + 2 sum (1 - lag / n) squared correlation), summed up to the
+/// first lag beyond five times the sum (A. Sokal: Monte Carlo methods in statistical mechanics,
+/// 1997). In [1, n].
+double effective_samples(std::span<const double> squared_correlations);
+
+/// How a number of every scan goes together with that of the next scan, over runs: what a band over
+/// a whole run depends on. Memory depends on the scans alone.
+class NeighbourCorrelation {
+ public:
+  explicit NeighbourCorrelation(std::size_t scans) : pairs_(scans < 2 ? 0 : scans - 1) {}
+
+  /// One run, {scan}; values above `cap` count as `cap`, so that a run that went astray does not
+  /// speak for all. Pairs with a NaN are left out.
+  void add(std::span<const double> values, double cap);
+  /// {scan - 1} in [0, 1): correlation over runs of each scan with the next, pooled over an eighth
+  /// of all scans to either side. 0, which makes the widest band, where nothing is known.
+  std::vector<double> result() const;
+
+ private:
+  struct Pair {
+    double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
+  };
+  std::vector<Pair> pairs_;
+};
+
+}  // namespace montecarta::analysis
