@@ -20,7 +20,7 @@ std::string general_help(const std::vector<Command>& commands) {
          "...\n\n" +
          aligned(rows) +
          "\nmontecarta COMMAND --help says more; montecarta --version names this build.\n"
-         "Begin with: montecarta run experiments/studies/first_study.ini -o first_study.h5\n";
+         "Begin with: montecarta run first_study\n";
 }
 
 const Command& find_command(const std::vector<Command>& commands, const std::string& name) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/study_analysis.hpp"
+#include "analysis/report.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/posix_file.hpp"
@@ -41,18 +42,32 @@ std::string resuming_command(const Arguments& arguments) {
   return arguments.has("attempt") ? line : line + " --resume";
 }
 
-RunOptions options_of(const Arguments& arguments) {
-  const auto output = arguments.text("output");
-  if (!output)
-    throw StudyError("run: -o OUT.h5 is missing (results need a name): add e.g. -o results.h5");
+/// Without -o: by the name of the study, where the command is called.
+std::filesystem::path output_of(const Study& study, const Arguments& arguments) {
+  if (const auto output = arguments.text("output")) return *output;
+  if (arguments.has("shard"))
+    throw StudyError("run: -o OUT.h5 is missing (each shard needs a name): add e.g. -o shard0.h5");
+  return study.settings.text("study", "name") + ".h5";
+}
+
+/// The folder of the report with which a study without -o ends.
+std::optional<std::filesystem::path> report_folder(const RunOptions& options,
+                                                   const Arguments& arguments) {
+  if (arguments.has("output") || options.quiet) return std::nullopt;
+  std::filesystem::path folder = options.output.stem() += "_report";
+  if (!options.force) refuse_existing(folder, {"index.html"});
+  return folder;
+}
+
+RunOptions options_of(const Study& study, const Arguments& arguments) {
   if (arguments.has("force") && (arguments.has("resume") || arguments.has("attempt"))) {
     throw StudyError("--force and " +
                      std::string(arguments.has("resume") ? "--resume" : "--attempt") +
                      ": one contradicts the other (go on, or begin anew?): remove one of them");
   }
-  refuse_to_replace_other_kinds(*output);
   RunOptions options;
-  options.output = *output;
+  options.output = output_of(study, arguments);
+  refuse_to_replace_other_kinds(options.output);
   options.parallel = parallel_of(arguments);
   options.resume = arguments.has("resume");
   options.force = arguments.has("force");
@@ -64,36 +79,57 @@ RunOptions options_of(const Arguments& arguments) {
   return options;
 }
 
-void tell_how_to_resume(const RunOutcome& outcome, const Arguments& arguments) {
+void tell_how_to_resume(const RunOutcome& outcome, const RunOptions& options,
+                        const Arguments& arguments) {
   std::cerr << "montecarta: stopped, " << outcome.missing()
-            << " runs are missing; what is done is safe in "
-            << part_of(arguments.text("output").value()).string() << ". Go on with:\n  "
-            << resuming_command(arguments) << "\n";
+            << " runs are missing; what is done is safe in " << part_of(options.output).string()
+            << ". Go on with:\n  " << resuming_command(arguments) << "\n";
 }
 
-void print_first_verdict(const RunOptions& options) {
+/// Results are safe by now: a report that cannot be drawn, e.g. without gnuplot, is no failure of
+/// the study.
+void draw_report(const ResultFile& file, const std::filesystem::path& folder,
+                 const RunOptions& options) {
+  analysis::ReportOptions how;
+  how.existing =
+      options.force ? analysis::ExistingReport::replace : analysis::ExistingReport::refuse;
+  how.parallel = &options.parallel;
+  try {
+    analysis::write_report(file, folder, how);
+    std::cout << "Report: " << (folder / "index.html").string() << "\n";
+  } catch (const std::exception& error) {
+    std::cerr << "montecarta: no report: " << error.what() << "\n";
+  }
+}
+
+void tell_results(const RunOptions& options, const std::optional<std::filesystem::path>& report) {
   if (std::filesystem::file_size(options.output) > kLargestVerdict) {
-    std::cout << "The verdict: montecarta analyze " << shell_quoted(options.output.string())
-              << "\n";
+    const std::string name = shell_quoted(options.output.string());
+    std::cout << "The verdict: montecarta analyze " << name << "\n";
+    if (report)
+      std::cout << "The report: montecarta report " << name << " -o "
+                << shell_quoted(report->string()) << "\n";
     return;
   }
   const ResultFile file(options.output);
   print_tables(std::cout, analyze(file, 0.95, options.parallel));
   tell_what_explains(options.output.string());
+  if (report) draw_report(file, *report, options);
 }
 
 int run(const Arguments& arguments) {
-  const RunOptions options = options_of(arguments);
   const Study study = study_of(arguments);
+  const RunOptions options = options_of(study, arguments);
+  const auto report = report_folder(options, arguments);
   programs_of(study, arguments);
   const StudyPlan plan = plan_of(study, arguments);
   const RunOutcome outcome = run_study(plan, options);
   if (outcome.missing() > 0) {
-    tell_how_to_resume(outcome, arguments);
+    tell_how_to_resume(outcome, options, arguments);
     return exit_code(outcome, runs_under_scheduler());
   }
   if (!options.quiet) {
-    print_first_verdict(options);
+    tell_results(options, report);
     std::cerr << "montecarta: " << outcome.runs_here << " runs in "
               << duration_text(outcome.seconds) << ", stored in " << options.output.string()
               << "\n";
@@ -108,7 +144,11 @@ Command run_command() {
       .name = "run",
       .summary = "runs a study and stores every run in one HDF5 file",
       .operands = {{"STUDY.ini"}},
-      .options = {{"output", "o", {"OUT.h5"}, "where results go; OUT.h5.part until complete"}},
+      .options = {{"output",
+                   "o",
+                   {"OUT.h5"},
+                   "where results go; OUT.h5.part until complete. Default: by the name of the "
+                   "study, and a report beside"}},
       .details =
           "Results depend on the study file alone, not on threads, backend, shards or "
           "interruptions.\n"
@@ -117,7 +157,7 @@ Command run_command() {
           "some runs failed, 85 stopped at a checkpoint, 130 or 143 interrupted, 2 wrong input, 1 "
           "failed.\n\n"
           "examples:\n"
-          "  montecarta run experiments/studies/first_study.ini -o first_study.h5\n"
+          "  montecarta run first_study          verdict, first_study.h5, first_study_report/\n"
           "  montecarta run study.ini -o out.h5 --set study.runs=500 --set scenario.noise=matched\n"
           "  montecarta run study.ini -o shard0.h5 --shard 0/4\n"};
   for (const OptionSpec& option : plan_options()) spec.options.push_back(option);

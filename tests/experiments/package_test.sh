@@ -22,16 +22,15 @@ mkdir elsewhere
 cd elsewhere
 export PATH=$folder/root/usr/bin:$PATH PYTHONPATH=$folder/root/usr/lib/python3/dist-packages
 grep -q first_study <<<"$(montecarta list studies)" || fail "no studies"
-verdict=$(montecarta run first_study -o first.h5 --runs 0:2) || fail "run first_study"
+verdict=$(montecarta run first_study --runs 0:2) || fail "run first_study"
 grep -q 'ekf_slam' <<<"$verdict" || fail "no verdict: $verdict"
-montecarta report first.h5 -o report >/dev/null || fail "report"
-[ -s report/index.html ] || fail "no page"
+[ -s first_study_report/index.html ] || fail "no page"
 for file in worlds/web_loop.csv studies/first_study.ini external/python/ekf_slam.py; do
   [ -s "$folder/root/usr/share/montecarta/$file" ] || fail "$file is not in the package"
 done
 /usr/bin/python3 -B -c 'import montecarta_filter' || fail "montecarta_filter.py"
 if /usr/bin/python3 -B -c 'import h5py' 2>/dev/null; then
-  /usr/bin/python3 -B -c 'import montecarta; print(montecarta.open("first.h5").labels)' |
+  /usr/bin/python3 -B -c 'import montecarta; print(montecarta.open("first_study.h5").labels)' |
     grep -q ekf_slam || fail "montecarta.py"
 fi
 

@@ -60,7 +60,7 @@ TEST_F(Commands, AShippedStudyIsKnownByItsName) {
 
 TEST_F(Commands, WrongInputIsNamedWithItsRemedy) {
   expect_wrong({"rnu"}, "rnu: unknown command (see montecarta --help): did you mean run?");
-  expect_wrong({"run", "blink.ini"}, "-o OUT.h5 is missing");
+  expect_wrong({"run", "blink.ini", "--shard", "0/3"}, "-o OUT.h5 is missing");
   expect_wrong({"run", "-o", "out.h5"}, "STUDY.ini is missing");
   expect_wrong({"run", "blink.ini", "-o", "out.h5", "--thrads", "2"}, "did you mean --threads?");
   expect_wrong({"run", "blink.ini", "-o", "out.h5", "stray"}, "stray: stray argument");
@@ -102,6 +102,27 @@ TEST_F(Commands, RunStoresAndTellsWhereAndOverwritesNothing) {
   const Called quiet = call({"run", "blink.ini", "-o", "out.h5", "--force", "--quiet"});
   EXPECT_EQ(quiet.code, 0);
   EXPECT_THAT(quiet.err + quiet.out, IsEmpty());
+}
+
+TEST_F(Commands, RunWithoutANameForResultsTakesTheStudysAndEndsWithAReport) {
+  const Called ran = call({"run", "blink.ini"});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(exists("blink.h5"));
+  EXPECT_THAT(ran.out, HasSubstr("ekf_slam"));
+  if (ran.err.find("gnuplot") != std::string::npos) GTEST_SKIP() << "no gnuplot: no report";
+  EXPECT_THAT(ran.out, HasSubstr("Report: blink_report/index.html"));
+  EXPECT_TRUE(exists("blink_report/index.html"));
+  std::filesystem::remove(folder_ / "blink.h5");
+  expect_refused({"run", "blink.ini"}, "blink_report/index.html: is there already");
+  EXPECT_FALSE(exists("blink.h5")) << "refused before a run is computed";
+  EXPECT_EQ(call({"run", "blink.ini", "--force"}).code, 0);
+}
+
+TEST_F(Commands, RunWithoutGnuplotKeepsItsResults) {
+  const Called ran = call({"run", "blink.ini"}, "PATH=/nowhere ");
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("no report: gnuplot"));
+  EXPECT_TRUE(exists("blink.h5"));
 }
 
 TEST_F(Commands, TimeBudgetEndsAtACheckpointAndTheCommandPrintedGoesOn) {
