@@ -107,15 +107,17 @@ inline Lanes exp(const Lanes& a) {
                      a, b, c);
 }
 inline Lanes max(const Lanes& a, const Lanes& b) {
-  return by_register([](const auto& x, const auto& y) { return xsimd::max(x, y); }, a, b);
+  return by_register([](const auto& x, const auto& y) { return register_math::greater(x, y); }, a,
+                     b);
 }
 inline double max(double a, double b) { return a < b ? b : a; }
 inline Lanes min(const Lanes& a, const Lanes& b) {
-  return by_register([](const auto& x, const auto& y) { return xsimd::min(x, y); }, a, b);
+  return by_register([](const auto& x, const auto& y) { return register_math::lesser(x, y); }, a,
+                     b);
 }
 inline double min(double a, double b) { return b < a ? b : a; }
 inline Lanes floor(const Lanes& a) {
-  return by_register([](const auto& x) { return xsimd::floor(x); }, a);
+  return by_register([](const auto& x) { return register_math::rounded_down(x); }, a);
 }
 
 /// The same turn by the shorter way: `angle` [rad] less the nearest whole number of turns, in [-pi,
@@ -139,7 +141,7 @@ inline Lanes wrap(const Lanes& angle) {
       [](const auto& x) {
         using Register = Lanes::Register;
         const Register turns = xsimd::nearbyint(x * Register(1.0 / kTwoPi));
-        const Register wrapped = xsimd::min(
+        const Register wrapped = register_math::lesser(
             register_math::negative_multiply_add(turns, Register(kTwoPi), x), Register(kPi));
         return xsimd::select(wrapped > Register(-kPi), wrapped, Register(kPi));
       },

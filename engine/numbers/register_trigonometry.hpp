@@ -48,12 +48,12 @@ template <class R>
 template <class R>
 [[gnu::always_inline]] inline R atan2(const R& y, const R& x) {
   const R ax = xsimd::abs(x), ay = xsimd::abs(y);
-  const R big = xsimd::max(ax, ay), small = xsimd::min(ax, ay);
+  const R big = greater(ax, ay), small = lesser(ax, ay);
   const auto steep = ay > ax;
   const auto middle = small > R(0.41421356237309503) * big;
   const R numerator = xsimd::select(middle, small - big, small);
   const R denominator =
-      xsimd::max(xsimd::select(middle, small + big, big), R(std::numeric_limits<double>::min()));
+      greater(xsimd::select(middle, small + big, big), R(std::numeric_limits<double>::min()));
   const R t = numerator / denominator;
   const R z = t * t;
   const R p = polynomial(z, -0.01917392228554793, 0.03922923713835943, -0.05085365922344248,

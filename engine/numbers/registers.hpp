@@ -24,8 +24,8 @@ using Register = xsimd::batch<double>;
 template <class R>
 using BitsOf = xsimd::batch<std::uint64_t, typename R::arch_type>;
 
-// xsimd 8 rounds fma() twice on AVX-512 and on plain SSE. The names differ from those of xsimd,
-// which argument-dependent look-up would prefer.
+// xsimd 8 rounds fma() twice on AVX-512 and on plain SSE, fnma() on ARM. The names differ from
+// those of xsimd, which argument-dependent look-up would prefer.
 
 /// a b + c, rounded once.
 template <class R>
@@ -48,6 +48,9 @@ template <class R>
 #ifdef __FMA__
   if constexpr (R::size == 2) return R(_mm_fnmadd_pd(a.data, b.data, c.data));
 #endif
+#ifdef __aarch64__
+  if constexpr (R::size == 2) return R(vfmsq_f64(c.data, a.data, b.data));
+#endif
   return xsimd::fnma(a, b, c);
 }
 
@@ -55,6 +58,34 @@ template <class R>
 template <class R>
 [[gnu::always_inline]] inline R negative(const R& x) {
   return x ^ R(-0.0);
+}
+
+/// The lesser and the greater; b where one is not a number, or both are zero. ARM's own give what
+/// is not a number.
+template <class R>
+[[gnu::always_inline]] inline R lesser(const R& a, const R& b) {
+#ifdef __aarch64__
+  return xsimd::select(a < b, a, b);
+#else
+  return xsimd::min(a, b);
+#endif
+}
+template <class R>
+[[gnu::always_inline]] inline R greater(const R& a, const R& b) {
+#ifdef __aarch64__
+  return xsimd::select(a > b, a, b);
+#else
+  return xsimd::max(a, b);
+#endif
+}
+
+/// The greatest whole number that is not above x; -0 of -0, of which xsimd makes 0 on ARM.
+template <class R>
+[[gnu::always_inline]] inline R rounded_down(const R& x) {
+#ifdef __aarch64__
+  if constexpr (R::size == 2) return R(vrndmq_f64(x.data));
+#endif
+  return xsimd::floor(x);
 }
 
 /// The product of the low halves of all lanes with `b`, exactly. xsimd multiplies 64-bit lanes in
@@ -69,6 +100,9 @@ template <class B>
 #endif
 #ifdef __SSE2__
   if constexpr (B::size == 2) return B(_mm_mul_epu32(a.data, _mm_set1_epi64x(b)));
+#endif
+#ifdef __aarch64__
+  if constexpr (B::size == 2) return B(vmull_n_u32(vmovn_u64(a.data), b));
 #endif
   return (a & B(std::uint64_t{0xffffffffU})) * B(std::uint64_t{b});
 }
