@@ -42,6 +42,7 @@ inline FilterKind dead_reckoning_kind() {
           .source = "EQUATIONS 1",
           .has_particles = false,
           .has_mixture = false,
+          .has_map = false,
           .options = {},
           .sensors = {},
           .make = [](const FilterSetup& setup) { return std::make_unique<DeadReckoning>(setup); }};

@@ -58,6 +58,10 @@ std::span<const FilterKind> filter_kinds() {
   return kinds;
 }
 
+std::span<const FilterKind> added_filter_kinds() {
+  return filter_kinds().last(added_filters().size());
+}
+
 bool add_filter(FilterKind (*make)()) {
   added_filters().push_back(make);
   return true;

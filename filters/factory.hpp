@@ -11,6 +11,9 @@ namespace montecarta::filters {
 /// have one name.
 std::span<const FilterKind> filter_kinds();
 
+/// Those of them that add_filter() added.
+std::span<const FilterKind> added_filter_kinds();
+
 /// Adds a filter of another source tree; before main(), by a static variable that its answer, true,
 /// is put into. `make` is called later, when all static variables have their values.
 bool add_filter(FilterKind (*make)());

@@ -12,3 +12,13 @@ function(montecarta_add_program name)
   add_executable(${name} ${ARGN} ${objects})
   target_link_libraries(${name} PRIVATE ${library})
 endfunction()
+
+# montecarta_add_laws(NAME SOURCE...): a test program, which ctest runs, that holds the filters which
+# these sources add to what every filter is held to; the sources may have tests of their own.
+function(montecarta_add_laws name)
+  find_package(GTest REQUIRED)
+  include(GoogleTest)
+  add_executable(${name} ${ARGN} $<TARGET_OBJECTS:montecarta::montecarta_laws>)
+  target_link_libraries(${name} PRIVATE montecarta::montecarta_experiments GTest::gtest_main)
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60)
+endfunction()

@@ -41,6 +41,10 @@ cmake --build mine >build.log 2>&1 || { cat build.log; fail "the program with a 
 grep -q my_filter <<<"$(mine/my_montecarta list filters)" || fail "its filter is not there"
 mine/my_montecarta run first_study -o mine.h5 --set cells.cell=my_filter --runs 0:2 --quiet ||
   fail "its filter does not run"
+mine/my_laws >laws.log || { cat laws.log; fail "its filter breaks a law"; }
+grep -q 'OK.*ForgetsADifferentRunBefore/my_filter' laws.log || fail "no laws: $(tail laws.log)"
+! mine/broken_laws >laws.log || fail "a filter that forgets nothing breaks no law"
+grep -q 'FAILED.*ForgetsADifferentRunBefore/remembering' laws.log || fail "$(tail laws.log)"
 for program in montecarta mine/my_montecarta; do  # the shipped filters have the same bits in both
   $program run first_study -o "same_$(basename $program).h5" --runs 0:2 --quiet || fail "$program"
 done

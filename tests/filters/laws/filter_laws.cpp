@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// What every filter is held to, as a newcomer would get it.
 #include "filters/factory.hpp"
-#include "filters/population/cloud_moments.hpp"
 #include "tests/filters/default_options.hpp"
+#include "tests/filters/laws/filters_held_to_laws.hpp"
 #include "tests/filters/small_world.hpp"
 #include "tests/filters/told_bits.hpp"
 
@@ -11,17 +12,12 @@
 #include <algorithm>
 #include <barrier>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <ostream>
 #include <string>
 #include <vector>
 
 namespace montecarta::filters {
-
-/// So that a test is listed by the filter's name.
-void PrintTo(const FilterKind& kind, std::ostream* out) { *out << kind.name; }
 
 namespace {
 
@@ -35,33 +31,6 @@ std::unique_ptr<SlamFilter> make_default(
                     .association = {.kind = association},
                     .options = default_options(kind, special),
                     .landmarks = world.landmarks});
-}
-
-TEST(CloudMoments, MoveAsEveryPoseDoesHoweverWideTheCloud) {
-  for (const double width : {0.01, 1.0, kPi}) {
-    RngStream draw({3, 0, 0, 0, Draw::test});
-    Weights<double> weights(9);
-    std::vector<BasicPose<double>> poses(9);
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      poses[i] = {10 * draw.normal(), 10 * draw.normal(),
-                  wrap(3.0 + width * (2 * draw.uniform() - 1))};
-      weights.multiply(i, draw.normal());
-    }
-    weights.normalise();
-    MotionIncrement motion;
-    for (int k = 0; k < 5; ++k) motion.advance({3.0, 0.3}, 0.1, Belief{});
-    const PoseEstimate closed = CloudMoments(weights, poses).moved_by(motion);
-    std::vector<PoseGaussian<double>> moved;
-    std::vector<BasicPose<double>> centres;
-    for (const auto& pose : poses) {
-      moved.push_back(motion.from(pose));
-      centres.push_back(moved.back().mean);
-    }
-    const PoseMoments spread = spread_of(weights, centres), mixture = mixture_of(weights, moved);
-    EXPECT_LT((closed.spread.covariance - spread.covariance).norm(), 1e-9) << width;
-    EXPECT_LT((closed.mixture->covariance - mixture.covariance).norm(), 1e-9) << width;
-    EXPECT_LT(boxminus(closed.spread.mean, spread.mean).norm(), 1e-9) << width;
-  }
 }
 
 /// Every filter there is, as a newcomer would get it.
@@ -250,21 +219,8 @@ TEST_P(EveryFilter, TurningTheWorldTurnsTheEstimate) {
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EveryFilter,
-                         testing::ValuesIn(filter_kinds().begin(), filter_kinds().end()),
+INSTANTIATE_TEST_SUITE_P(All, EveryFilter, testing::ValuesIn(filters_held_to_laws()),
                          [](const auto& instance) { return instance.param.name; });
-
-std::string text_of(const std::string& path) {
-  std::ifstream file(std::string(MONTECARTA_SOURCE_DIR) + "/" + path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-TEST(OwnFilterPage, QuotesTheExampleThatIsCompiled) {
-  const std::string example = text_of("filters/dead_reckoning.hpp");
-  ASSERT_FALSE(example.empty());
-  EXPECT_NE(text_of("filters/WRITE_YOUR_OWN.md").find(example), std::string::npos)
-      << "filters/WRITE_YOUR_OWN.md must quote filters/dead_reckoning.hpp as it stands";
-}
 
 }  // namespace
 }  // namespace montecarta::filters

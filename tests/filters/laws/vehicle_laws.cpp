@@ -2,6 +2,7 @@
 // What holds for every filter with every vehicle. The path turns on the spot again and again.
 #include "filters/factory.hpp"
 #include "tests/filters/default_options.hpp"
+#include "tests/filters/laws/filters_held_to_laws.hpp"
 #include "tests/filters/small_world.hpp"
 #include "tests/filters/some_vehicles.hpp"
 #include "tests/filters/told_bits.hpp"
@@ -80,8 +81,7 @@ TEST_P(EveryFilterAndVehicle, GivesTheSameBitsAgain) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryFilterAndVehicle,
-                         testing::Combine(testing::ValuesIn(filter_kinds().begin(),
-                                                            filter_kinds().end()),
+                         testing::Combine(testing::ValuesIn(filters_held_to_laws()),
                                           testing::ValuesIn(some_vehicles())),
                          [](const auto& instance) {
                            return std::get<0>(instance.param).name + "_" +
