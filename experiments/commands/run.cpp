@@ -47,7 +47,11 @@ std::filesystem::path output_of(const Study& study, const Arguments& arguments) 
   if (const auto output = arguments.text("output")) return *output;
   if (arguments.has("shard"))
     throw StudyError("run: -o OUT.h5 is missing (each shard needs a name): add e.g. -o shard0.h5");
-  return study.settings.text("study", "name") + ".h5";
+  const std::string& name = study.settings.text("study", "name");
+  if (name.find('/') != std::string::npos)
+    throw StudyError("run: -o OUT.h5 is missing (the study's name '" + name +
+                     "' names no file here): add e.g. -o results.h5");
+  return name + ".h5";
 }
 
 /// The folder of the report with which a study without -o ends.

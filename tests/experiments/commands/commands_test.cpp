@@ -61,6 +61,7 @@ TEST_F(Commands, AShippedStudyIsKnownByItsName) {
 TEST_F(Commands, WrongInputIsNamedWithItsRemedy) {
   expect_wrong({"rnu"}, "rnu: unknown command (see montecarta --help): did you mean run?");
   expect_wrong({"run", "blink.ini", "--shard", "0/3"}, "-o OUT.h5 is missing");
+  expect_wrong({"run", "blink.ini", "--set", "study.name=../a"}, "'../a' names no file here");
   expect_wrong({"run", "-o", "out.h5"}, "STUDY.ini is missing");
   expect_wrong({"run", "blink.ini", "-o", "out.h5", "--thrads", "2"}, "did you mean --threads?");
   expect_wrong({"run", "blink.ini", "-o", "out.h5", "stray"}, "stray: stray argument");
