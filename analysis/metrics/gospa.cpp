@@ -11,7 +11,7 @@ namespace montecarta::analysis {
 namespace {
 
 constexpr Eigen::Index kUnassigned = -1;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnreached = std::numeric_limits<double>::infinity();
 
 /// Prices of rows and columns, none above what a pair costs and equal to it for every pair that is
 /// assigned: as long as that holds, what is assigned is assigned as cheaply as can be.
@@ -49,7 +49,7 @@ void assign_cheapest(Assignment& assignment) {
 /// The cheapest ways from one row to all columns (Dijkstra), until one ends at a free column.
 struct Search {
   Search(const Assignment& assignment, Eigen::Index start)
-      : distance(static_cast<std::size_t>(assignment.cost->cols()), kInfinity),
+      : distance(static_cast<std::size_t>(assignment.cost->cols()), kUnreached),
         previous(distance.size(), kUnassigned),
         done(distance.size(), false) {
     Eigen::Index row = start, last = kUnassigned;

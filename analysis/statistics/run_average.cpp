@@ -11,7 +11,6 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLeastVariation = 1e-9;      // of run averages that are equal
 constexpr double kOverdispersedErrors = 3.0;  // standard errors
 
@@ -43,7 +42,7 @@ double without_skew(double deviate, double c) {
 }  // namespace
 
 Interval AverageLaw::bounds() const {
-  if (runs < 3.0) return {0.0, kInfinity};
+  if (runs < 3.0) return {0.0, std::numeric_limits<double>::infinity()};
   // A gamma of this variance has a skewness of 2 sqrt(variation), which its quantiles know of.
   const double c = (skew - 1.0) * std::sqrt(variation / runs) / 3.0;
   return {gamma_quantile(variation / runs, without_skew(-deviate, c)),
@@ -70,7 +69,7 @@ bool is_overdispersed(std::span<const double> run_averages, std::size_t dimensio
 
 Interval least_ratios(const AverageLaw& law, double power) {
   const Interval bounds = law.bounds();
-  if (law.runs < 3.0) return {0.0, kInfinity};
+  if (law.runs < 3.0) return {0.0, std::numeric_limits<double>::infinity()};
   const double deviate = boost::math::quantile(boost::math::normal(), power);
   const double variance = law.variation / law.runs;
   return {bounds.lower / gamma_quantile(variance, deviate),
