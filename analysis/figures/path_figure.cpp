@@ -4,6 +4,7 @@
 #include "analysis/data/run_reader.hpp"
 #include "analysis/figures/path_bounds.hpp"
 #include "analysis/figures/path_data.hpp"
+#include "engine/numbers/real.hpp"
 
 #include <cmath>
 #include <string>
@@ -54,7 +55,7 @@ void add_paths(const DrawnPath& cell, ChartPanel& panel) {
     truth.facts = estimate.facts;
     std::vector<double> errors;
     for (const auto& row : cell.path.rows) {
-      errors.push_back(std::hypot(row[3] - row[1], row[4] - row[2]));
+      errors.push_back(length(row[3] - row[1], row[4] - row[2]));
     }
     estimate.facts.push_back({"position error [m]", errors});
     panel.marks.push_back(std::move(truth));

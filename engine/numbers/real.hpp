@@ -61,6 +61,12 @@ inline void set(Lanes& value, std::size_t lane, double number) {
   reinterpret_cast<double*>(value.part.data())[lane] = number;
 }
 
+/// sqrt(x^2 + y^2). The hypot() of a C library rounds otherwise on other processors.
+template <class Real>
+Real length(const Real& x, const Real& y) {
+  return sqrt(Real(x * x + y * y));
+}
+
 /// The sum over all lanes, in their order.
 template <class Real>
 double sum_of_lanes(const Real& a) {

@@ -91,4 +91,8 @@ Pair<Real> normal_pairs(const StreamIdentity& identity, std::uint32_t block) {
 /// The number that a standard normal variable stays below with `probability` in (0, 1).
 double normal_quantile(double probability);
 
+/// Share of a normal variable that lies farther than `deviations` standard deviations from its
+/// mean, on either side.
+double normal_tails(double deviations);
+
 }  // namespace montecarta::engine

@@ -2,7 +2,7 @@
 #include "experiments/drives/simulated_drive.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/numbers/angle.hpp"
+#include "engine/numbers/real.hpp"
 #include "engine/random/stream.hpp"
 #include "experiments/drives/waypoint_pilot.hpp"
 #include "experiments/text/words.hpp"
@@ -18,7 +18,7 @@ double step_length(const Scenario& scenario) { return scenario.speed / scenario.
 
 /// How far [m] a vehicle may drive towards one way-point before it is clear that it misses it.
 double time_limit(const Pose& pose, const Eigen::Vector2d& waypoint, const Scenario& scenario) {
-  const double distance = std::hypot(waypoint.x() - pose.x, waypoint.y() - pose.y);
+  const double distance = length(waypoint.x() - pose.x, waypoint.y() - pose.y);
   return 3.0 * distance + 10.0 * way_to_turn(scenario.vehicle, scenario.speed);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/numbers/angle.hpp"
+#include "engine/numbers/real.hpp"
 #include "experiments/recordings/laser.hpp"
 
 #include <algorithm>
@@ -65,7 +65,7 @@ std::vector<Segment> segments_of(std::span<const Echo> echoes) {
 double distance(const Echo& a, const Echo& b) {
   const double dx = b.range * std::cos(b.angle) - a.range * std::cos(a.angle);
   const double dy = b.range * std::sin(b.angle) - a.range * std::sin(a.angle);
-  return std::hypot(dx, dy);
+  return length(dx, dy);
 }
 
 /// Step 3: a trunk stands alone.

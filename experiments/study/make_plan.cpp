@@ -2,6 +2,7 @@
 #include "experiments/study/make_plan.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/random/normals.hpp"
 #include "engine/records/column_table.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/text/words.hpp"
@@ -29,7 +30,7 @@ Belief belief_of(const Settings& s, const CellSpec& spec) {
 /// the quantile at p = erf(k / sqrt 2), which is k^2 or -2 ln(1 - p).
 double gate_of(double sigmas, std::size_t dimension) {
   if (dimension == 1) return sigmas * sigmas;
-  return -2.0 * std::log(std::erfc(sigmas / std::sqrt(2.0)));
+  return -2.0 * std::log(engine::normal_tails(sigmas));
 }
 
 AssociationSettings association_of(const Settings& s) {

@@ -77,10 +77,10 @@ class MapLearning {
     for (int k = 0; k < kMostSteps; ++k) {
       const Point step = gauss_newton_step(place);
       const Point next{place.x + step.x, place.y + step.y};
-      const double length = std::hypot(step.x, step.y), there = cost(next);
-      if (!(there < here) && !(length < kSurelyGood)) return place;
+      const double way = length(step.x, step.y), there = cost(next);
+      if (!(there < here) && !(way < kSurelyGood)) return place;
       place = next, here = there;
-      if (length < kShortStep) return place;
+      if (way < kShortStep) return place;
     }
     return place;
   }

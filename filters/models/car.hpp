@@ -91,7 +91,7 @@ struct Car {
   /// travel() turned round. A car that did not move has an unknown steering angle: 0.
   Control control_of(const BodyStep<double>& step, double duration) const {
     if (kind == Kind::front_axle) {
-      return {std::hypot(step.forward, step.left) / duration, std::atan2(step.left, step.forward)};
+      return {length(step.forward, step.left) / duration, std::atan2(step.left, step.forward)};
     }
     const double of_axle = step.forward + sensor_left * step.turn;
     if (of_axle == 0.0) return {};

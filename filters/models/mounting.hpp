@@ -19,7 +19,7 @@ struct Mounting {
 
   bool is_none() const { return forward == 0.0 && left == 0.0 && turn == 0.0; }
   /// [m] from the pose.
-  double distance() const { return std::hypot(forward, left); }
+  double distance() const { return length(forward, left); }
 
   /// Of the sensor, on a vehicle at `pose`.
   Pose pose_of(const Pose& pose) const {

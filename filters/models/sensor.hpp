@@ -147,7 +147,7 @@ inline Eigen::Vector2d residual(const Eigen::Vector2d& detected, const Eigen::Ve
 inline std::optional<double> distance_in(std::span<const Quantity> components,
                                          const Detection& detection) {
   if (components[0] == Quantity::range) return detection[0];
-  if (components[0] == Quantity::forward) return std::hypot(detection[0], detection[1]);
+  if (components[0] == Quantity::forward) return length(detection[0], detection[1]);
   return std::nullopt;
 }
 

@@ -20,7 +20,7 @@ template <class Real>
                                                               const BasicPoint<Real>& landmark) {
   const Real dx = landmark.x - pose.x;
   const Real dy = landmark.y - pose.y;
-  const Real range = max(sqrt(dx * dx + dy * dy), Real(kLeastDistance));
+  const Real range = max(length(dx, dy), Real(kLeastDistance));
   const Real per_range = 1.0 / range;
   return {{range, atan2(dy, dx) - pose.heading}, dx * per_range, dy * per_range, per_range};
 }

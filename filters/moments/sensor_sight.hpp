@@ -35,7 +35,7 @@ template <class Real>
 template <class Real>
 [[gnu::always_inline]] inline RangeBearing<Real> observed(RangeSensor, const Real& forward,
                                                           const Real& left) {
-  return {sqrt(forward * forward + left * left), Real(0.0)};
+  return {length(forward, left), Real(0.0)};
 }
 
 template <class Real>

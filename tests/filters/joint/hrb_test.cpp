@@ -181,11 +181,5 @@ TEST(Hrb, SplitsBySizeWhereATurnBendsTheMapByMoreThanTheSensorErrs) {
   }
 }
 
-TEST(NormalQuantile, IsWhereTheNormalDistributionHasItsShare) {
-  for (const double z : {-6.0, -1.3, 0.0, 0.4, 5.0}) {
-    EXPECT_NEAR(normal_quantile(0.5 * std::erfc(-z / std::sqrt(2.0))), z, 1e-9) << z;
-  }
-}
-
 }  // namespace
 }  // namespace montecarta::filters
