@@ -17,13 +17,16 @@ files=(shards/shard_*.h5)
 echo "merge: ${#files[@]} of $shards shards are there"
 if [ ! -e result.h5 ]; then
   "$program" merge result.h5 "${files[@]}" || {
-    echo "merge: no result: the same cluster/submit command again computes what is missing or damaged"
+    echo "merge: no result: the same cluster/submit command again computes what is missing or" \
+      "damaged"
     exit 1
   }
 fi
-"$program" analyze result.h5 --csv tables --force >verdict.txt.new && mv verdict.txt.new verdict.txt || exit 1
+"$program" analyze result.h5 --csv tables --force >verdict.txt.new &&
+  mv verdict.txt.new verdict.txt || exit 1
 if command -v gnuplot >/dev/null; then
   "$program" report result.h5 -o report --force || exit 1
 else
-  echo "merge: no gnuplot on $(hostname): draw where there is one: montecarta report $dir/result.h5 -o report"
+  echo "merge: no gnuplot on $(hostname): draw where there is one:" \
+    "montecarta report $dir/result.h5 -o report"
 fi

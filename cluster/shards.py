@@ -70,7 +70,8 @@ def read_plan(folder):
     try:
         return Plan(**json.loads(path.read_text()))
     except FileNotFoundError:
-        raise Problem(f"{folder}: holds no plan (no plan.json): make one with cluster/submit") from None
+        raise Problem(f"{folder}: holds no plan (no plan.json): make one with "
+                      "cluster/submit") from None
     except (OSError, ValueError, TypeError) as error:
         raise Problem(f"{path}: cannot be read ({error}): submit into another folder") from None
 
@@ -102,7 +103,8 @@ def index_of(name):
 
 def survey(folder, plan, whole=False):
     """({index: Stored} of final names, {index: Stored} of the best unfinished work)."""
-    paths = sorted(p for p in (folder / "shards").glob("shard_*.h5*") if index_of(p.name)[0] is not None)
+    paths = sorted(p for p in (folder / "shards").glob("shard_*.h5*")
+                   if index_of(p.name)[0] is not None)
     if not paths:
         return {}, {}
     words = [program(), "status", "--each"] + (["--whole"] if whole else [])

@@ -23,7 +23,7 @@ case $code in
   0 | 3)  # complete; 3: some runs failed, which is a result
     rm -f "$dir/logs/$shard.log"
     exit 0 ;;
-  85)     # stopped in time. Whom the user cancelled, or the scheduler starts again itself, must not ask
+  85)     # stopped in time. Who was cancelled, or the scheduler starts again itself, must not ask
     echo "task: checkpoint of shard $SLURM_ARRAY_TASK_ID on $(hostname), job $me"
     case $(scontrol show job --oneliner "$me" 2>/dev/null) in
       *JobState=RUNNING* | *JobState=TIMEOUT*) scontrol requeue "$me" ;;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -40,8 +41,15 @@ inline bool is_cpp(const std::string& path) {
 inline bool is_script(const Lines& lines) { return !lines.empty() && lines[0].starts_with("#!"); }
 
 inline bool is_source(const std::string& path, const Lines& lines) {
-  return is_cpp(path) || path.ends_with("CMakeLists.txt") || path.ends_with(".py") ||
-         path.ends_with(".js") || path.ends_with(".css") || is_script(lines);
+  const auto ends = [&](const char* with) { return path.ends_with(with); };
+  return is_cpp(path) || is_script(lines) ||
+         std::ranges::any_of(std::array{"CMakeLists.txt", ".cmake", ".py", ".m", ".js", ".css"},
+                             ends);
+}
+
+/// Of UTF-8, in which one may have several bytes.
+inline std::ptrdiff_t characters_in(const std::string& line) {
+  return std::ranges::count_if(line, [](char byte) { return (byte & 0xC0) != 0x80; });
 }
 
 /// Every source file below the folders at the top.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rules of the source tree that a compiler does not enforce: who may include whom, sizes, licence
-// lines.
+// Rules that a compiler does not enforce: who may include whom, sizes, licence lines.
 #include "tests/source_tree.hpp"
 
 #include <gmock/gmock.h>
@@ -121,13 +120,21 @@ std::vector<std::string> too_long(const Tree& tree, std::size_t limit) {
   return found;
 }
 
+std::vector<std::string> too_wide(const Tree& tree, std::ptrdiff_t limit) {
+  const auto is_wide = [&](const std::string& line) { return characters_in(line) > limit; };
+  std::vector<std::string> found;
+  for (const auto& [path, lines] : tree) {
+    if (std::ranges::any_of(lines, is_wide)) found.push_back(path);
+  }
+  return found;
+}
+
 std::vector<std::string> without_licence(const Tree& tree) {
   std::vector<std::string> found;
   for (const auto& [path, lines] : tree) {
     const std::size_t at = is_script(lines) ? 1 : 0;
-    if (lines.size() <= at || !lines[at].ends_with("SPDX-License-Identifier: BSD-3-Clause")) {
+    if (lines.size() <= at || !lines[at].ends_with("SPDX-License-Identifier: BSD-3-Clause"))
       found.push_back(path);
-    }
   }
   return found;
 }
@@ -180,6 +187,8 @@ TEST(SourceTree, Hdf5IsUsedInItsWrapperOnly) {
 }
 
 TEST(SourceTree, NoFileIsLongerThan300Lines) { EXPECT_THAT(too_long(sources(), 300), IsEmpty()); }
+
+TEST(SourceTree, NoLineIsTooLong) { EXPECT_THAT(too_wide(sources(), 100), IsEmpty()); }
 
 TEST(SourceTree, EverySourceNamesItsLicence) { EXPECT_THAT(without_licence(sources()), IsEmpty()); }
 
@@ -268,12 +277,14 @@ TEST(SourceTree, BrokenRulesAreFound) {
       {"engine/a.cpp", {"#include \"filters/factory.hpp\"", "#include <hdf5.h>", "rand();"}},
       {"engine/c.cpp", {"// SPDX-License-Identifier: BSD-3-Clause", "namespace montecarta {"}},
       {"analysis/b.hpp", Lines(301, "#include <experiments/study.hpp>")},
+      {"analysis/c.py", {"# SPDX-License-Identifier: BSD-3-Clause", std::string(101, 'x')}},
       {"tests/run", {"#!/bin/bash", "true"}}};
   EXPECT_THAT(forbidden_includes(broken), testing::Contains(HasSubstr("engine/a.cpp")));
   EXPECT_THAT(forbidden_includes(broken), testing::Contains(HasSubstr("analysis/b.hpp")));
   EXPECT_THAT(users_of(broken, "hdf5"), ElementsAre("engine/a.cpp"));
   EXPECT_THAT(in_other_namespaces(broken), ElementsAre("engine/c.cpp"));
   EXPECT_THAT(too_long(broken, 300), ElementsAre("analysis/b.hpp"));
+  EXPECT_THAT(too_wide(broken, 100), ElementsAre("analysis/c.py"));
   EXPECT_THAT(without_licence(broken), ElementsAre("analysis/b.hpp", "engine/a.cpp", "tests/run"));
   EXPECT_THAT(strays({"engine", "notes.txt", "build-dev"}), ElementsAre("notes.txt"));
   const auto uses_rand = [](const std::string& line) { return line.starts_with("rand"); };

@@ -16,7 +16,8 @@ function(append_text name files)
       math(EXPR at "${at} + 16000")
     endwhile()
   endforeach()
-  file(APPEND ${SOURCE} "\nstd::string_view ${name}() {\n  static constexpr char kText[] = \"\"${pieces};\n"
+  file(APPEND ${SOURCE} "\nstd::string_view ${name}() {\n"
+                        "  static constexpr char kText[] = \"\"${pieces};\n"
                         "  return {kText, sizeof kText - 1};\n}\n")
 endfunction()
 

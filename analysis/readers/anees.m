@@ -2,13 +2,13 @@
 % Prints the ANEES of every cell as `montecarta analyze` has it: anees('out.h5')
 %
 % At scans, over complete runs (status 1). Mean and covariance are the Gaussian mixture's where the
-% file has them, else the spread of the particles (or the one Gaussian's own): rows `mixture`, or else
-% `spread`, of consistency.csv. (What is called `corrected` there allows for few particles, and is not
-% made here.) A singular covariance
-% (a variance below 1e-10 of the floor's, or a pivot of the correlation matrix below 1e-12) gets the
-% floor diag(1e-4 m, 1e-4 m, 1e-5 rad)^2 added. What is not a number is left out. Mean over the scans
-% of a run, then over runs. Of imported estimates it is that of their stored errors, of any
-% dimension, without a floor. Only functions that Octave and MATLAB both have.
+% file has them, else the spread of the particles (or the one Gaussian's own): rows `mixture`, or
+% else `spread`, of consistency.csv. (What is called `corrected` there allows for few particles, and
+% is not made here.) A singular covariance (a variance below 1e-10 of the floor's, or a pivot of the
+% correlation matrix below 1e-12) gets the floor diag(1e-4 m, 1e-4 m, 1e-5 rad)^2 added. What is not
+% a number is left out. Mean over the scans of a run, then over runs. Of imported estimates it is
+% that of their stored errors, of any dimension, without a floor. Only functions that Octave and
+% MATLAB both have.
 function anees(path)
   s = load_results(path);
   labels = fieldnames(s.cells);

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Prints the ANEES of every cell as `montecarta analyze` has it: python3 anees.py out.h5 [--xarray]
 
-At scans, over complete runs (status 1). Mean and covariance are the Gaussian mixture's where the file
-has them, else the spread of the particles (or the one Gaussian's own): rows `mixture`, or else `spread`,
-of consistency.csv. (What is called `corrected` there allows for few particles, and is not made here.)
+At scans, over complete runs (status 1). Mean and covariance are the Gaussian mixture's where the
+file has them, else the spread of the particles (or the one Gaussian's own): rows `mixture`, or else
+`spread`, of consistency.csv. (What is called `corrected` there allows for few particles, and is not
+made here.)
 Of imported estimates it is that of their stored errors, of any dimension, without a floor.
-A singular covariance (a variance below 1e-10 of the floor's, or a pivot of the correlation matrix below
-1e-12) gets the floor diag(1e-4 m, 1e-4 m, 1e-5 rad)^2 added. What is not a number is left out. Mean over
-the scans of a run, then over runs."""
+A singular covariance (a variance below 1e-10 of the floor's, or a pivot of the correlation matrix
+below 1e-12) gets the floor diag(1e-4 m, 1e-4 m, 1e-5 rad)^2 added. What is not a number is left
+out. Mean over the scans of a run, then over runs."""
 import sys
 
 import numpy as np
@@ -25,12 +26,14 @@ def quadratic_form(e, P, least_variance=1e-10 * np.diag(FLOOR)):
     L, y = np.zeros_like(P), np.zeros_like(e)
     for i in range(e.shape[-1]):
         for j in range(i):
-            rest = P[..., i, j] / (scale[..., i] * scale[..., j]) - (L[..., i, :j] * L[..., j, :j]).sum(-1)
+            correlation = P[..., i, j] / (scale[..., i] * scale[..., j])
+            rest = correlation - (L[..., i, :j] * L[..., j, :j]).sum(-1)
             L[..., i, j] = rest / L[..., j, j]
         pivot = 1.0 - (L[..., i, :i] ** 2).sum(-1)
         regular &= pivot > 1e-12
         L[..., i, i] = np.sqrt(pivot)
-        y[..., i] = (e[..., i] / scale[..., i] - (L[..., i, :i] * y[..., :i]).sum(-1)) / L[..., i, i]
+        rest = e[..., i] / scale[..., i] - (L[..., i, :i] * y[..., :i]).sum(-1)
+        y[..., i] = rest / L[..., i, i]
     return np.where(regular, (y**2).sum(-1), np.nan)
 
 
@@ -67,5 +70,7 @@ if __name__ == "__main__":
     results, arrays = montecarta.open(sys.argv[1]), montecarta.arrays(sys.argv[1])
     for label in results.labels:
         cell = results[label] if sys.argv[2:] == ["--xarray"] else arrays["cells"][label]
-        truth = None if "error" in cell else cell["truth"] if "truth" in cell else arrays["truth"]["pose"]
+        truth = None
+        if "error" not in cell:
+            truth = cell["truth"] if "truth" in cell else arrays["truth"]["pose"]
         print(label, repr(float(anees(cell, truth, arrays["scan_row"]))))

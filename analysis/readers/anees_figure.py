@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws the ANEES of the pose over time with the band of a consistent filter, as the README shows it:
-python3 anees_figure.py out.h5 figure.svg [montecarta]
+"""Draws the ANEES of the pose over time with the band of a consistent filter, as the README shows
+it: python3 anees_figure.py out.h5 figure.svg [montecarta]
 
 The last argument is the program, where it is not on the path. Needs matplotlib."""
 import sys
@@ -15,9 +15,11 @@ import montecarta
 path, figure, *program = sys.argv[1:]
 results = montecarta.open(path)
 tables = results.tables(*program)
-verdicts = tables["consistency"].query("error == 'pose' and verdict.notna()").groupby("cell").first()
+judged = tables["consistency"].query("error == 'pose' and verdict.notna()")
+verdicts = judged.groupby("cell").first()
 
-axes = plt.figure(figsize=(8, 4.5)).add_subplot(yscale="log", xlabel="time [s]", ylabel="ANEES of the pose")
+axes = plt.figure(figsize=(8, 4.5)).add_subplot(yscale="log", xlabel="time [s]",
+                                                ylabel="ANEES of the pose")
 for label in results.labels:
     if label not in verdicts.index:
         continue

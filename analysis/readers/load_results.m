@@ -1,8 +1,8 @@
 % SPDX-License-Identifier: BSD-3-Clause
 % Reads a montecarta result file (analysis/FORMAT.md) into nested structs, axes turned round:
 %   s = load_results('out.h5'); s.cells.ekf_slam.pose_mean(component, time, run)
-% Tested with Octave. MATLAB reads HDF5 by h5info and h5read, which Octave does not have: that branch
-% uses nothing else that Octave lacks, but has not been run.
+% Tested with Octave. MATLAB reads HDF5 by h5info and h5read, which Octave does not have: that
+% branch uses nothing else that Octave lacks, but has not been run.
 function s = load_results(path)
   if exist('OCTAVE_VERSION', 'builtin')
     s = load('-hdf5', path);

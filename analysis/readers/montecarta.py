@@ -31,18 +31,22 @@ class Results:
         self.path = os.fspath(path)
         with h5py.File(self.path, "r") as file:
             if file.attrs.get("filetype") not in ("montecarta-results", b"montecarta-results"):
-                raise ValueError(f"{self.path}: no montecarta result file: name one that `montecarta run` wrote")
+                raise ValueError(f"{self.path}: no montecarta result file: name one that "
+                                 "`montecarta run` wrote")
             self.labels = tuple(file["cells"])
             self.attrs = _plain(file.attrs)
             self.study = file["provenance/study"].asstr()[()]
-            self.scenario, self.provenance = _plain(file["scenario"].attrs), _plain(file["provenance"].attrs)
-            self._settings = {label: _plain(file["cells"][label]["settings"].attrs) for label in self.labels}
+            self.scenario = _plain(file["scenario"].attrs)
+            self.provenance = _plain(file["provenance"].attrs)
+            self._settings = {label: _plain(cell["settings"].attrs)
+                              for label, cell in file["cells"].items()}
 
     def __getitem__(self, label):
-        """One cell as an xarray.Dataset: every dataset of it, `truth` and `truth_*` where true paths
-        are stored, `scan_row`; coordinates run, time [s], scan [s], component (x, y, heading). Runs that
-        are drives of their own have no common times: without the coordinates time and scan.
-        `attrs` holds the filter and its settings. Raises KeyError where there is no such cell."""
+        """One cell as an xarray.Dataset: every dataset of it, `truth` and `truth_*` where true
+        paths are stored, `scan_row`; coordinates run, time [s], scan [s], component (x, y,
+        heading). Runs that are drives of their own have no common times: without the coordinates
+        time and scan. `attrs` holds the filter and its settings. Raises KeyError where there is no
+        such cell."""
         import xarray
 
         if label not in self.labels:
@@ -55,21 +59,25 @@ class Results:
         else:
             cell = cell.assign_coords(time=root.time, scan=root.scan)
         cell.attrs = self._settings[label] | cell.attrs
-        truth = xarray.open_dataset(self.path, engine="netcdf4", group="truth") if self._has("truth/pose") else {}
-        cell = cell.assign({"truth" if name == "pose" else "truth_" + name: truth[name] for name in truth})
+        if self._has("truth/pose"):
+            truth = xarray.open_dataset(self.path, engine="netcdf4", group="truth")
+            cell = cell.assign({"truth" if name == "pose" else "truth_" + name: truth[name]
+                                for name in truth})
         if "failure_reason" in cell:
             texts = [row.tobytes().rstrip(b"\0").decode() for row in cell.failure_reason.values]
             cell = cell.drop_dims("character").assign(failure_reason=("run", texts))
-        names = {axis: POSE for axis in ("component", "component_column") if cell.sizes.get(axis) == 3}
+        names = {axis: POSE for axis in ("component", "component_column")
+                 if cell.sizes.get(axis) == 3}
         if "error_component" in cell.sizes:
             components = cell.attrs["components"].replace(",", " ").split()
             names |= {axis: components for axis in ("error_component", "error_component_column")}
         return cell.assign_coords(names)
 
     def tables(self, program="montecarta", *options):
-        """What `montecarta analyze` says, as {name: pandas.DataFrame}: "consistency" has the verdicts,
-        "cells" errors and costs, "series_LABEL" everything over time. `options` as for the command, e.g.
-        "--within", "1.2". Raises subprocess.CalledProcessError where the program fails."""
+        """What `montecarta analyze` says, as {name: pandas.DataFrame}: "consistency" has the
+        verdicts, "cells" errors and costs, "series_LABEL" everything over time. `options` as for
+        the command, e.g. "--within", "1.2". Raises subprocess.CalledProcessError where the program
+        fails."""
         with tempfile.TemporaryDirectory() as folder:
             subprocess.run([program, "analyze", self.path, "--csv", folder, "--force", *options],
                            check=True, stdout=subprocess.DEVNULL)
@@ -84,8 +92,8 @@ class Results:
 
 
 def open(path):  # noqa: A001, the name that Python's own readers have
-    """The result file `path` as Results. Raises OSError where it cannot be read, ValueError where it
-    is none of ours."""
+    """The result file `path` as Results. Raises OSError where it cannot be read, ValueError where
+    it is none of ours."""
     return Results(path)
 
 
@@ -95,14 +103,15 @@ def arrays(path):
     import h5py
 
     def read(group):
-        return {name: read(item) if isinstance(item, h5py.Group) else item[()] for name, item in group.items()}
+        return {name: read(item) if isinstance(item, h5py.Group) else item[()]
+                for name, item in group.items()}
 
     with h5py.File(path, "r") as file:
         return read(file)
 
 
 def at_scans(cell):
-    """The complete runs of a cell at its scans: what is stored by time has the axis `scan` instead."""
+    """The complete runs of a cell at its scans: what is stored by time has the axis `scan`."""
     rows = cell.scan_row.values
     cell = cell.isel(run=np.flatnonzero(cell.status.values == 1))
 
@@ -118,7 +127,8 @@ def at_scans(cell):
 def pose_error(truth, estimate):
     """estimate - truth, as STATISTICS (1.1) has it; heading in [-pi, pi]."""
     error = estimate - truth
-    return error.where(error.component != "heading", error - 2 * np.pi * np.round(error / (2 * np.pi)))
+    turns = np.round(error / (2 * np.pi))
+    return error.where(error.component != "heading", error - 2 * np.pi * turns)
 
 
 def _table(path):
@@ -131,4 +141,5 @@ def _table(path):
 
 
 def _plain(attributes):
-    return {name: value.decode() if isinstance(value, bytes) else value for name, value in attributes.items()}
+    return {name: value.decode() if isinstance(value, bytes) else value
+            for name, value in attributes.items()}

@@ -13,8 +13,8 @@ function(montecarta_add_program name)
   target_link_libraries(${name} PRIVATE ${library})
 endfunction()
 
-# montecarta_add_laws(NAME SOURCE...): a test program, which ctest runs, that holds the filters which
-# these sources add to what every filter is held to; the sources may have tests of their own.
+# montecarta_add_laws(NAME SOURCE...): a test program, which ctest runs, that holds the filters
+# which these sources add to what every filter is held to; the sources may have tests of their own.
 function(montecarta_add_laws name)
   find_package(GTest REQUIRED)
   include(GoogleTest)

@@ -91,7 +91,8 @@ for label in results.labels:
     theirs = tables["series_" + label]["position_rmse [m]"].values
     assert abs(rmse / theirs - 1).max() < 1e-12, label
     print(label, *verdicts.query("cell == @label and error == 'pose'").anees_mean[:1])
-for wrong, error in [(lambda: results["none"], KeyError), (lambda: montecarta.open("/none"), OSError)]:
+for wrong, error in [(lambda: results["none"], KeyError),
+                     (lambda: montecarta.open("/none"), OSError)]:
     try:
         wrong()
         sys.exit("nothing was raised")

@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Recomputes from a result file, by other people's software and formulas, what montecarta says of it.
+"""Recomputes from a result file, by other people's software and formulas, what montecarta says.
 
 usage: recompute.py OUT.h5 ANALYZE_CSV COMPARE_CSV BOUNDS.csv BASELINE
 
-ANALYZE_CSV and COMPARE_CSV are what `montecarta analyze --csv` and `montecarta compare --csv` wrote,
-BOUNDS.csv has columns runs, dimension, level, lower, upper. Prints every number that differs by more
-than 1e-12 of itself and ends with 1 where there is one. The formulas are written out here from
+ANALYZE_CSV and COMPARE_CSV are what `montecarta analyze --csv` and `montecarta compare --csv`
+wrote, BOUNDS.csv has columns runs, dimension, level, lower, upper. Prints every number that differs
+by more than 1e-12 of itself and ends with 1 where there is one. The formulas are written out here
+from
 - SciPy (scipy.stats.chi2, binomtest, wilcoxon),
 - FilterPy's filterpy.stats.NESS: x' inv(P) x,
 - navlie's GaussianResult (nees = e' solve(P, e), ees = e' e) and MonteCarloResult (average_nees,
@@ -61,9 +62,9 @@ def effective_draws(particles, ess):
 
 
 class Corrected:
-    """The NEES by the spread on the chi-square's scale: montecarta has it in a table, linear between
-    steps of 1 / freedom and eighths of an octave, which this builds once more and compares with the
-    formula itself."""
+    """The NEES by the spread on the chi-square's scale: montecarta has it in a table, linear
+    between steps of 1 / freedom and eighths of an octave, which this builds once more and compares
+    with the formula itself."""
 
     def __init__(self, dof):
         self.dof = dof
@@ -71,13 +72,15 @@ class Corrected:
         self.octaves = -16 + np.arange(int((last + 16) * 8) + 1) / 8
         c, freedom = 2**self.octaves, 1 / (0.5 * np.arange(1, 129) / 128)
         above, below = stats.chi2.sf(c, dof), stats.chi2.cdf(c, dof)
-        f = np.where(above < 0.5, stats.f.isf(above, dof, freedom[:, None]), stats.f.ppf(below, dof, freedom[:, None]))
+        f = np.where(above < 0.5, stats.f.isf(above, dof, freedom[:, None]),
+                     stats.f.ppf(below, dof, freedom[:, None]))
         self.log_ratios = np.vstack([np.zeros_like(c), np.log2(dof * f / c)])
         for draws in (dof + 2.1, 10.0, 60.0):
             f = stats.f.isf(np.array([0.9, 0.5, 0.1, 1e-3]), dof, draws - dof)
             nees = f * dof * (draws + 1) / (draws - dof)
             table = self(nees, np.full(4, draws), np.full(4, draws))
-            check(f"table for {dof} of {draws}", table, stats.chi2.isf([0.9, 0.5, 0.1, 1e-3], dof), 1e-3)
+            check(f"table for {dof} of {draws}", table,
+                  stats.chi2.isf([0.9, 0.5, 0.1, 1e-3], dof), 1e-3)
 
     def __call__(self, nees, of_mean, of_variance):
         """NaN where there are too few draws."""
@@ -88,7 +91,8 @@ class Corrected:
             f = nees[at] * (of_mean[at] - 1) / (of_mean[at] + 1) * freedom / (of_variance[at] - 1)
             place = min(1 / (freedom * 0.5), 1) * 128
             row = min(int(place), 127)
-            ratios = self.log_ratios[row] + (place - row) * (self.log_ratios[row + 1] - self.log_ratios[row])
+            lower, upper = self.log_ratios[row : row + 2]
+            ratios = lower + (place - row) * (upper - lower)
             octaves, log_f = self.octaves + ratios, np.log2(f)
             if log_f <= octaves[0]:
                 result[at] = f / 2 ** ratios[0]
@@ -126,18 +130,20 @@ class Cell:
         self.scores = self.make_scores()
 
     def make_joint(self, file, cell):
-        """(joint NEES, components) {run, joint} of the landmarks in the map; None where not stored."""
+        """(joint NEES, components) {run, joint} of the landmarks in the map; None if not stored."""
         if "joint_mean" not in cell:
             return None
         mean, covariance = cell["joint_mean"][:][self.runs], cell["joint_covariance"][:][self.runs]
         pose = file["truth/pose"][:][self.runs][:, file["scan_row"][:][file["joint_scan"][:]]]
         world = file["scenario/landmarks"][:].ravel()
-        errors = mean - np.concatenate([pose, np.broadcast_to(world, pose.shape[:2] + world.shape)], axis=-1)
+        world = np.broadcast_to(world, pose.shape[:2] + world.shape)
+        errors = mean - np.concatenate([pose, world], axis=-1)
         errors[..., 2] = np.arctan2(np.sin(errors[..., 2]), np.cos(errors[..., 2]))
         nees, components = np.empty(mean.shape[:2]), np.empty(mean.shape[:2])
         for at in np.ndindex(nees.shape):
             seen = ~np.isnan(mean[at])
-            nees[at] = errors[at][seen] @ np.linalg.solve(covariance[at][np.ix_(seen, seen)], errors[at][seen])
+            error = errors[at][seen]
+            nees[at] = error @ np.linalg.solve(covariance[at][np.ix_(seen, seen)], error)
             components[at] = seen.sum()
         return nees, components
 
@@ -184,15 +190,18 @@ def check_cell(cell, folder):
                 n = np.count_nonzero(np.isfinite(values), axis=0)  # the others have too few draws
                 average = np.where(n > 0, np.nansum(values, axis=0) / np.maximum(n, 1), np.nan)
                 tolerance = 1e-9 if moments == "corrected" else TOLERANCE  # quantiles of F
-                check(f"{cell.label} anees_{name} {by.__name__}", column(series, "anees_" + name), average, tolerance)
+                check(f"{cell.label} anees_{name} {by.__name__}",
+                      column(series, "anees_" + name), average, tolerance)
             judged = n > 0
             n = n[judged]
             for end, quantile in (("lower", stats.chi2.ppf), ("upper", stats.chi2.isf)):
                 ours = column(series, f"{end}_{name}")[judged]
                 check(f"{cell.label} {end}_{name}", ours, quantile(0.025, n * dof) / n)
     ees = cell.errors**2
-    check(f"{cell.label} rmse", column(series, "position_rmse [m]"), np.sqrt(ees[..., :2].sum(-1).mean(axis=0)))
-    check(f"{cell.label} rmse", column(series, "heading_rmse [rad]"), np.sqrt(ees[..., 2].mean(axis=0)))
+    check(f"{cell.label} rmse", column(series, "position_rmse [m]"),
+          np.sqrt(ees[..., :2].sum(-1).mean(axis=0)))
+    check(f"{cell.label} rmse", column(series, "heading_rmse [rad]"),
+          np.sqrt(ees[..., 2].mean(axis=0)))
     numbers = {row["cell"]: row for row in rows_of(f"{folder}/cells.csv")}[cell.label]
     for name, unit in (("position_rmse", "m"), ("heading_rmse", "rad")):
         values = cell.scores[name]
@@ -203,9 +212,10 @@ def check_cell(cell, folder):
         nees, components = cell.joint
         ours = [row for row in rows_of(f"{folder}/joint_nees.csv") if row["cell"] == cell.label]
         n, rows = components.sum(axis=0), nees.shape[1]
-        check(f"{cell.label} joint", column(ours, "nees_per_component"), nees.sum(axis=0) / n, 1e-10)
-        check(f"{cell.label} joint lower", column(ours, "lower"), stats.chi2.ppf(0.025 / rows, n) / n)
-        check(f"{cell.label} joint upper", column(ours, "upper"), stats.chi2.isf(0.025 / rows, n) / n)
+        check(f"{cell.label} joint", column(ours, "nees_per_component"), nees.sum(axis=0) / n,
+              1e-10)
+        for end, quantile in ("lower", stats.chi2.ppf), ("upper", stats.chi2.isf):
+            check(f"{cell.label} joint {end}", column(ours, end), quantile(0.025 / rows, n) / n)
 
 
 def holm(p):
@@ -221,8 +231,10 @@ def wins(cell, other, metric):
     mine, its = cell.scores[metric], other.scores[metric]
     both = np.intersect1d(cell.runs, other.runs)
     difference = mine[np.searchsorted(cell.runs, both)] - its[np.searchsorted(other.runs, both)]
-    won = np.count_nonzero(difference < 0) + np.count_nonzero((cell.status == 1) & (other.status == 2))
-    lost = np.count_nonzero(difference > 0) + np.count_nonzero((cell.status == 2) & (other.status == 1))
+    only_mine = np.count_nonzero((cell.status == 1) & (other.status == 2))
+    only_its = np.count_nonzero((cell.status == 2) & (other.status == 1))
+    won = np.count_nonzero(difference < 0) + only_mine
+    lost = np.count_nonzero(difference > 0) + only_its
     return difference, won, lost
 
 
@@ -239,7 +251,9 @@ def check_comparison(cells, folder, baseline):
         moved = difference[difference != 0]
         ties = len(np.unique(np.abs(moved))) < len(moved) or len(moved) < len(difference)
         exact = len(moved) <= 50 and not ties
-        rank = stats.wilcoxon(difference, method="exact" if exact else "approx").pvalue if len(moved) else 1.0
+        rank = 1.0
+        if len(moved):
+            rank = stats.wilcoxon(difference, method="exact" if exact else "approx").pvalue
         tolerance = 1e-9 if row["metric"] == "nees_distance" else TOLERANCE  # quantiles of F
         check(name + ": difference", float(row["difference"]), difference.mean(), tolerance)
         check(name + ": won, lost", [float(row["won"]), float(row["lost"])], [won, lost])
@@ -250,7 +264,8 @@ def check_comparison(cells, folder, baseline):
     check("Holm", ours, holm(p_values))
     for row in rows_of(f"{folder}/wins.csv"):
         _, won, lost = wins(cells[row["cell"]], cells[row["beaten"]], row["metric"])
-        check(f"wins by {row['metric']}", [float(row["won"]), float(row["p_sign"])], [won, sign_p(won, lost)])
+        check(f"wins by {row['metric']}", [float(row["won"]), float(row["p_sign"])],
+              [won, sign_p(won, lost)])
 
 
 def main(result, analyzed, compared, bounds, baseline):

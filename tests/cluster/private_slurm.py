@@ -109,11 +109,12 @@ class PrivateSlurm:
         port = free_ports(nodes + 2)
         for sub in ("state", "log"):
             (self.folder / sub).mkdir(parents=True)
-        text = CONFIGURATION.format(folder=self.folder, user=pwd.getpwuid(os.getuid()).pw_name, port=port,
-                                    node_port=port + 1)
+        text = CONFIGURATION.format(folder=self.folder, user=pwd.getpwuid(os.getuid()).pw_name,
+                                    port=port, node_port=port + 1)
         for i, name in enumerate(self.names):
             (self.folder / "spool" / name).mkdir(parents=True)
-            text += f"NodeName={name} NodeHostname=localhost NodeAddr=127.0.0.1 Port={port + 2 + i}\n"
+            text += (f"NodeName={name} NodeHostname=localhost NodeAddr=127.0.0.1 "
+                     f"Port={port + 2 + i}\n")
         for name, (of, options) in partitions.items():
             text += f"PartitionName={name} Nodes={of} MaxTime=INFINITE State=UP {options}\n"
         (self.folder / "slurm.conf").write_text(text)
@@ -134,7 +135,8 @@ class PrivateSlurm:
         key.write_bytes(os.urandom(128))
         self.folder.chmod(0o755)
         self.start("munged", ["munged", "--foreground", "--force", f"--key-file={key}",
-                              f"--socket={self.folder}/munge.sock", f"--pid-file={self.folder}/munge.pid",
+                              f"--socket={self.folder}/munge.sock",
+                              f"--pid-file={self.folder}/munge.pid",
                               f"--log-file={self.folder}/log/munge", "--num-threads=2",
                               f"--seed-file={self.folder}/munge.seed"])
         wait_for("munged", (self.folder / "munge.sock").exists, 10)

@@ -106,7 +106,8 @@ def preempted(ground):
 
 def walltime(ground):
     case = Case(ground, "short", shards=1)
-    case.submit("--time=1", "--signal=B:TERM@28")  # Slurm takes up to 30 s more: soon after the start
+    # Slurm takes up to 30 s more: soon after the start.
+    case.submit("--time=1", "--signal=B:TERM@28")
     case.checkpointed(*case.caught("n11"))
     case.finish()
 
@@ -202,17 +203,18 @@ class Slurm(unittest.TestCase):
     def test_1_wrong_input_is_named(self):
         case = Case(self.ground, "wrong", shards=102, partition="main")
         self.assertIn("more runs", case.submit(code=2).replace("one of the study's", "more runs"))
-        (self.ground.folder / "many.ini").write_text(STUDY.format(particles=10).replace("runs = 24", "runs = 900"))
-        many = call([TOP / "cluster/submit", self.ground.folder / "many.ini", "-o", case.folder, "--shards", "102"],
-                    2)
+        study = self.ground.folder / "many.ini"
+        study.write_text(STUDY.format(particles=10).replace("runs = 24", "runs = 900"))
+        submit = [TOP / "cluster/submit", study, "-o", case.folder, "--shards"]
+        many = call(submit + ["102"], 2)
         self.assertIn("MaxArraySize is 101", many)
         self.assertIn("choose --shards 101 or fewer, of 9 runs or more", many)
         self.assertFalse(case.folder.exists())
-        early = call([TOP / "cluster/submit", self.ground.folder / "many.ini", "-o", case.folder, "--shards", "4",
-                      "--set", "study.until=position_rmse < 1"], 2)
+        early = call(submit + ["4", "--set", "study.until=position_rmse < 1"], 2)
         self.assertIn("--set study.until=", early)
         named = self.ground.folder / "named.ini"
-        named.write_text(STUDY.format(particles=10).replace("ekf_slam", "external command=true label=mine"))
+        named.write_text(STUDY.format(particles=10).replace(
+            "ekf_slam", "external command=true label=mine"))
         words = [TOP / "cluster/submit", named, "-o", case.folder, "--shards", "4", "--dry-run"]
         self.assertIn("add --allow-external", call(words, 2))
         self.assertRegex(call(words + ["--allow-external"], 0), r"task\.sh .* --allow-external\n")

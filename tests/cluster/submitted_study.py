@@ -83,7 +83,9 @@ class Case:
     def half_done(self, shard):
         """Whether an attempt at a shard has stored some of its runs and not all."""
         files = self.attempts(shard)
-        lines = call([self.ground.program, "status", "--each"] + files).splitlines() if files else []
+        if not files:
+            return False
+        lines = call([self.ground.program, "status", "--each"] + files).splitlines()
         return any(line.split("\t")[1] == "unfinished" and line.split("\t")[3] != "0"
                    for line in lines)
 
@@ -110,7 +112,8 @@ class Case:
 
     def checkpointed(self, pid, shard):
         """Lets a frozen task hear the SIGTERM that is due, and waits for its checkpoint."""
-        wait_for(f"{self.name}: SIGTERM", lambda: private_slurm.is_pending(pid, signal.SIGTERM), LIMIT)
+        wait_for(f"{self.name}: SIGTERM",
+                 lambda: private_slurm.is_pending(pid, signal.SIGTERM), LIMIT)
         if private_slurm.is_alive(pid):  # Slurm may have woken it up itself
             began = time.monotonic()
             kill(pid, signal.SIGCONT)
@@ -130,7 +133,8 @@ class Case:
         try:
             wait_for(f"{self.name}: an end", self.at_rest, LIMIT)
         except TimeoutError as error:
-            raise TimeoutError(f"{error}: {self.tasks()}, nodes {self.ground.slurm.states()}") from None
+            raise TimeoutError(f"{error}: {self.tasks()}, nodes "
+                               f"{self.ground.slurm.states()}") from None
 
     def finish(self):
         """Nothing is left to the scheduler; submit again until the result is there; compare."""

@@ -12,9 +12,11 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 fail() { echo "package_test: $*" >&2; exit 1; }
 
-cpack --config "$build/CPackConfig.cmake" -B "$folder" >cpack.log || { cat cpack.log; fail "cpack"; }
+cpack --config "$build/CPackConfig.cmake" -B "$folder" >cpack.log ||
+  { cat cpack.log; fail "cpack"; }
 package=$(ls "$folder"/montecarta_*_*.deb)
-grep -q libhdf5 <<<"$(dpkg-deb -f "$package" Depends)" || fail "dependencies: $(dpkg-deb -f "$package")"
+grep -q libhdf5 <<<"$(dpkg-deb -f "$package" Depends)" ||
+  fail "dependencies: $(dpkg-deb -f "$package")"
 dpkg-deb -x "$package" root
 
 # What is shipped is found beside the program, not in the source tree.
@@ -37,7 +39,8 @@ fi
 # A program with a filter of its own, built of what the package holds.
 cmake -S "$source/outside_filter" -B mine -DCMAKE_PREFIX_PATH="$folder/root/usr" >cmake.log 2>&1 ||
   { cat cmake.log; fail "find_package"; }
-cmake --build mine >build.log 2>&1 || { cat build.log; fail "the program with a filter of its own"; }
+cmake --build mine >build.log 2>&1 ||
+  { cat build.log; fail "the program with a filter of its own"; }
 grep -q my_filter <<<"$(mine/my_montecarta list filters)" || fail "its filter is not there"
 mine/my_montecarta run first_study -o mine.h5 --set cells.cell=my_filter --runs 0:2 --quiet ||
   fail "its filter does not run"
@@ -48,7 +51,8 @@ grep -q 'FAILED.*ForgetsADifferentRunBefore/remembering' laws.log || fail "$(tai
 for program in montecarta mine/my_montecarta; do  # the shipped filters have the same bits in both
   $program run first_study -o "same_$(basename $program).h5" --runs 0:2 --quiet || fail "$program"
 done
-h5diff same_montecarta.h5 same_my_montecarta.h5 /cells /cells || fail "other bits in the program of one's own"
+h5diff same_montecarta.h5 same_my_montecarta.h5 /cells /cells ||
+  fail "other bits in the program of one's own"
 
 # Completion of commands, options and shipped studies.
 complete_words() {
@@ -63,7 +67,8 @@ grep -q -- '--within' <<<"$(complete_words analyze --w)" || fail "completion of 
 grep -q first_study <<<"$(complete_words run first)" || fail "completion of studies"
 
 if command -v help2man >/dev/null; then
-  zcat -f "$folder"/root/usr/share/man/man1/montecarta.1* | grep -q 'analyze' || fail "no manual page"
+  zcat -f "$folder"/root/usr/share/man/man1/montecarta.1* | grep -q 'analyze' ||
+    fail "no manual page"
 fi
 
 # On a processor that is too old the program says so.

@@ -52,7 +52,8 @@ class ChartFigure {
     this.shown = this.plots.filter(isShown);
     for (const plot of this.plots) plot.group.toggleAttribute("hidden", !isShown(plot));
     const {columns: most = 1, least = 0, aspect} = this.data;
-    const columns = clamp(Math.floor(this.width / least), 1, Math.min(most, this.shown.length || 1));
+    const fit = Math.floor(this.width / least);
+    const columns = clamp(fit, 1, Math.min(most, this.shown.length || 1));
     const each = Math.min(this.width / columns, aspect ? CHART.widest : Infinity);
     const room = this.width < CHART.narrow ? 44 : 58;
     const width = each - room - CHART.right;
@@ -73,7 +74,8 @@ class ChartFigure {
   }
 
   draw() {
-    for (const plot of this.shown) plot.draw(this.horizontal, (curve) => this.legend.isHidden(curve));
+    const isHidden = (curve) => this.legend.isHidden(curve);
+    for (const plot of this.shown) plot.draw(this.horizontal, isHidden);
     this.svg.dataset.from = this.horizontal.from;
     this.svg.dataset.to = this.horizontal.to;
     this.all.hidden = this.isWhole();

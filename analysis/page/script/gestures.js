@@ -17,7 +17,8 @@ class Gestures {
     this.drag = drag;
     this.fingers = new Map();
     this.corner = null;
-    const listen = (type, call, options) => surface.addEventListener(type, call.bind(this), options);
+    const listen = (type, call, options) =>
+      surface.addEventListener(type, call.bind(this), options);
     listen("pointerdown", this.down);
     listen("pointermove", this.moved);
     listen("pointerup", this.up);
@@ -117,7 +118,8 @@ class Gestures {
       "-": () => this.handler.zoom(middle, 1 / 0.7),
       Escape: () => this.handler.reset(),
     };
-    if (this.drag === "move" || !(event.key in actions) || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (this.drag === "move" || !(event.key in actions)) return;
     event.preventDefault();
     actions[event.key]();
   }

@@ -24,7 +24,8 @@ const SHAPES = {
       const goes_on = i > 0 && marks.x[i - 1] !== null && marks.y[i - 1] !== null;
       path += `${goes_on ? "L" : "M"}${px(plot.x(x))} ${px(plot.y(marks.y[i]))}`;
     });
-    svgElement("path", {class: marks.thickness ? "curve behind" : "curve", d: path, ...lineStyle(marks),
+    svgElement("path", {class: marks.thickness ? "curve behind" : "curve", d: path,
+      ...lineStyle(marks),
       ...(marks.thickness ? {style: `stroke-width: ${marks.thickness}`} : {})}, parent);
   },
 
@@ -61,8 +62,8 @@ const SHAPES = {
         width: px(right - left), height: px(Math.max(bottom - top, 0)),
         style: `fill: ${colour}`, stroke: marks.fill ? "none" : colour}, parent);
       if (!marks.text) continue;
-      svgElement("text", {class: "x inside", x: px((left + right) / 2), y: px((top + bottom) / 2 + 4),
-        text: marks.text[i]}, parent);
+      svgElement("text", {class: "x inside", x: px((left + right) / 2),
+        y: px((top + bottom) / 2 + 4), text: marks.text[i]}, parent);
     }
   },
 };
@@ -130,7 +131,8 @@ function markAt(plot, at, isHidden, {is_map, x_label}) {
     const [name, text] = nameAndText(label, value, 4);
     return {name, text};
   };
-  const places = is_map ? [row(x_label, marks.x[i]), row(x_label.replace("x", "y"), marks.y[i])] : [];
+  const places = is_map
+    ? [row(x_label, marks.x[i]), row(x_label.replace("x", "y"), marks.y[i])] : [];
   const rows = [...places, ...marks.facts.filter(({values}) => values[i] !== null)
     .map(({label, values}) => row(label, values[i]))];
   const outline = marks.shape === "boxes"

@@ -115,7 +115,8 @@ class Plot {
     const {x} = this.panel;
     const known = x.map((_, i) => i).filter((i) => curve.y[i] !== null);
     const at = (i, value) => `M${this.x(x[i]).toFixed(1)} ${this.y(value).toFixed(1)}`;
-    const bars = known.map((i) => `${at(i, curve.least[i])}V${this.y(curve.greatest[i]).toFixed(1)}`);
+    const bars = known.map((i) =>
+      `${at(i, curve.least[i])}V${this.y(curve.greatest[i]).toFixed(1)}`);
     svgElement("path", {class: "curve", d: bars.join(""), stroke: lineStyle(curve).stroke}, parent);
     svgElement("path", {class: "curve dots", d: known.map((i) => `${at(i, curve.y[i])}h0`).join(""),
       stroke: lineStyle(curve).stroke}, parent);

@@ -22,7 +22,8 @@ function b = predict(b, speed, steer, duration)
   dx = way * cos(c);
   dy = way * sin(c);
   F = [1 0 -dy; 0 1 dx; 0 0 1];
-  G = duration * [cos(c) -speed*sin(c); sin(c) speed*cos(c); [sin(steer) speed*cos(steer)] / b.wheelbase];
+  G = duration * [cos(c) -speed*sin(c); sin(c) speed*cos(c); ...
+                  [sin(steer) speed*cos(steer)] / b.wheelbase];
   b.m(1:3) = b.m(1:3) + [dx; dy; way * sin(steer) / b.wheelbase];
   b.m(3) = wrapped(b.m(3));
   b.P(1:3, :) = F * b.P(1:3, :);

@@ -46,7 +46,8 @@ class Filter:
         return {}
 
     def map(self):
-        """Landmarks as rows (identity, x, y, xx, xy, yy) with the covariance; else by initialisation."""
+        """Landmarks as rows (identity, x, y, xx, xy, yy) with the covariance; else by
+        initialisation."""
         return []
 
 

@@ -22,9 +22,11 @@ class Maps(OnPage):
         i = len(estimate["x"]) // 3
         self.page.hover(self.place_of("paths", 1, estimate["x"][i], estimate["y"][i]))
         title, facts = self.said("paths")
-        self.assertIn(title, ("fastslam2_m20: estimate", "true path", "fastslam2_m20: 2 sigma of the pose"))
-        self.assertAlmostEqual(float(facts["x"].replace("−", "-").split()[0]), estimate["x"][i], delta=0.5)
-        self.assertAlmostEqual(float(facts["y"].replace("−", "-").split()[0]), estimate["y"][i], delta=0.5)
+        self.assertIn(title, ("fastslam2_m20: estimate", "true path",
+                              "fastslam2_m20: 2 sigma of the pose"))
+        for axis in ("x", "y"):
+            told = float(facts[axis].replace("−", "-").split()[0])
+            self.assertAlmostEqual(told, estimate[axis][i], delta=0.5)
         self.page.hover(self.page.middle("h1"))
         self.assertIsNone(self.said("paths"))
 
@@ -79,14 +81,16 @@ class Points(OnPage):
                 self.assertEqual(title, mark["legend"])
                 for fact in mark["facts"]:
                     name, unit = fact["label"].rstrip("]").split(" [")
-                    self.assertAlmostEqual(float(facts[name].split()[0]) / fact["values"][0], 1, delta=1e-3)
+                    ratio = float(facts[name].split()[0]) / fact["values"][0]
+                    self.assertAlmostEqual(ratio, 1, delta=1e-3)
                     self.assertTrue(facts[name].endswith(unit))
 
 
 class Tree(OnPage):
 
     def ends(self):
-        return [float(self.ask("#figure_ancestry svg.chart", f"dataset.{end}")) for end in ("from", "to")]
+        return [float(self.ask("#figure_ancestry svg.chart", f"dataset.{end}"))
+                for end in ("from", "to")]
 
     def test_begins_where_all_lines_have_met_and_shows_the_whole_run_when_asked(self):
         chart = self.chart("ancestry")
@@ -121,7 +125,8 @@ class Tiles(OnPage):
             tile = f"#figure_mismatch rect.tile:nth-of-type({i + 1})"
             self.page.hover(self.page.middle(tile))
             facts = self.said("mismatch")[1]
-            self.assertEqual((facts["motion noise"], facts["sensor noise"]), (str(x + 1), str(y + 1)))
+            self.assertEqual((facts["motion noise"], facts["sensor noise"]),
+                             (str(x + 1), str(y + 1)))
             value = tiles["facts"][2]["values"][i]
             self.assertAlmostEqual(float(facts["ANEES by components"]) / value, 1, delta=1e-3)
 

@@ -102,10 +102,12 @@ class OnPage(unittest.TestCase):
         self.page.middle(f"#figure_{figure} svg.chart")
         return self.page.evaluate(f"""(() => {{
             const svg = document.querySelector("#figure_{figure} svg.chart");
-            const group = svg.querySelectorAll("g.panel")[{panel}], box = svg.getBoundingClientRect();
+            const group = svg.querySelectorAll("g.panel")[{panel}];
+            const box = svg.getBoundingClientRect();
             const along = (name, attribute, wanted) => {{
                 const ticks = [...group.querySelectorAll(`.${{name}}.tick`)].map(tick =>
-                    [Number(tick.textContent.replace("−", "-")), Number(tick.getAttribute(attribute))]);
+                    [Number(tick.textContent.replace("−", "-")),
+                     Number(tick.getAttribute(attribute))]);
                 const [[a, at_a], [b, at_b]] = [ticks[0], ticks.at(-1)];
                 return at_a + (wanted - a) / (b - a) * (at_b - at_a);
             }};
@@ -113,12 +115,13 @@ class OnPage(unittest.TestCase):
         }})()""")
 
     def said(self, figure):
-        """(title, {name: text}) of a figure's readout, as it stands there; None where there is none."""
+        """(title, {name: text}) of a figure's readout, as it stands there; None where none is."""
         return self.page.evaluate(f"""(() => {{
             const box = document.querySelector("#figure_{figure} .readout");
             if (box.hidden) return null;
             return [box.firstChild.textContent, Object.fromEntries(
-                [...box.querySelectorAll("tr")].map(row => [...row.cells].map(c => c.textContent)))];
+                [...box.querySelectorAll("tr")].map(row =>
+                    [...row.cells].map(c => c.textContent)))];
         }})()""")
 
     def chart(self, figure):

@@ -36,4 +36,5 @@ class Opening(OnPage):
         self.assertEqual(self.count("svg.chart"), 0)
 
     def test_same_file_same_page(self):
-        self.assertEqual(self.html.read_bytes(), (self.html.parent.parent / "b/index.html").read_bytes())
+        again = self.html.parent.parent / "b/index.html"
+        self.assertEqual(self.html.read_bytes(), again.read_bytes())

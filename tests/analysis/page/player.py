@@ -15,7 +15,8 @@ class Player(OnPage):
         return self.ask(".player canvas", "toDataURL()")
 
     def wait_for_another_picture(self, before):
-        self.wait_for(f"document.querySelector('.player canvas').toDataURL() !== {json.dumps(before)}")
+        self.wait_for("document.querySelector('.player canvas').toDataURL() !== "
+                      f"{json.dumps(before)}")
 
     def focus(self):
         self.page.evaluate("document.querySelector('.player canvas').focus()")

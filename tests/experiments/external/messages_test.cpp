@@ -26,14 +26,14 @@ TEST(ExternalMessages, AStartWithAllThatIsBelieved) {
   FilterSetup setup{.belief = {}, .association = {}, .options = FilterOptions({}), .landmarks = 35};
   setup.belief.vehicle = Car{.kind = Car::Kind::rear_wheel, .wheelbase = 2.83};
   setup.association.kind = Association::nearest;
-  EXPECT_EQ(
-      start_message(0, {.run = 12, .seed = 4'000'000'000, .pose = {1.0, -2.5, 0.0}}, setup),
-      R"({"id":0,"type":"start","run":12,"seed":4000000000,"start":[1.0,-2.5,0.0],)"
-      R"("settings":{"vehicle":"rear_wheel","wheelbase":2.83,"wheel_left":0.0,)"
-      R"("sensor_ahead":0.0,"sensor_left":0.0,"controls":["speed","steer"],"sigma_speed":0.3,"sigma_steer":0.05,)"
-      R"("sensor":"range_bearing","sigma_range":0.1,"sigma_bearing":0.02,)"
-      R"("association":"nearest",)"
-      R"("gate":5.991464547107979,"new_gate":25.0,"landmarks":35}})");
+  EXPECT_EQ(start_message(0, {.run = 12, .seed = 4'000'000'000, .pose = {1.0, -2.5, 0.0}}, setup),
+            R"({"id":0,"type":"start","run":12,"seed":4000000000,"start":[1.0,-2.5,0.0],)"
+            R"("settings":{"vehicle":"rear_wheel","wheelbase":2.83,"wheel_left":0.0,)"
+            R"("sensor_ahead":0.0,"sensor_left":0.0,"controls":["speed","steer"],)"
+            R"("sigma_speed":0.3,"sigma_steer":0.05,)"
+            R"("sensor":"range_bearing","sigma_range":0.1,"sigma_bearing":0.02,)"
+            R"("association":"nearest",)"
+            R"("gate":5.991464547107979,"new_gate":25.0,"landmarks":35}})");
 }
 
 TEST(ExternalMessages, SayWhichControlsARobotHas) {
