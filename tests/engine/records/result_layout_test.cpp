@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/records/result_layout.hpp"
 
+#include "engine/records/column_table.hpp"
 #include "engine/records/h5.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 #include "tests/doubles/scripted_result.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -45,22 +47,42 @@ void list(const h5::Handle& group, const std::string& path, std::ostream& out) {
   }
 }
 
-/// Renewed on purpose only: MONTECARTA_UPDATE_GOLDEN=1 rewrites and fails.
-TEST(ResultLayout, IsThatOfTheGoldenFile) {
-  const std::filesystem::path golden =
-      std::filesystem::path(MONTECARTA_SOURCE_DIR) / "tests/engine/records/golden/result_1_5.txt";
-  const ScratchFolder folder;
+/// Every column there is, of a particle filter, a Kalman filter and an imported estimate.
+StudyPlan plan_of_every_column() {
   StudyPlan plan = small_result_plan();
-  plan.cells[1].particles = 0;  // a Kalman filter
-  plan.cells[1].mixture = false;
   plan.columns.association = true;
   plan.columns.final_map = true;
   plan.columns.joint = true;
   plan.columns.joint_scans = 2;
-  plan.cells[1].joint = true;
-  lay_out(folder / "out.h5", describe(plan, {{"host", "nowhere"}}));
+  plan.columns.observability = true;
+  Cell& kalman = plan.cells[1];
+  kalman.particles = 0;
+  kalman.mixture = false;
+  kalman.joint = true;
+  kalman.rotation_information = true;
+  Cell imported;
+  imported.label = imported.filter = "imported";
+  imported.error_components = 3;
+  imported.several_conventions = true;
+  plan.cells.push_back(imported);
+  return plan;
+}
+
+std::string version_of(const h5::Handle& file) {
+  const auto version = h5::numbers(file, "format_version");
+  return std::to_string(version.at(0)) + "." + std::to_string(version.at(1));
+}
+
+/// Renewed on purpose only: MONTECARTA_UPDATE_GOLDEN=1 rewrites and fails.
+TEST(ResultLayout, IsThatOfTheGoldenFile) {
+  const std::filesystem::path golden =
+      std::filesystem::path(MONTECARTA_SOURCE_DIR) / "tests/engine/records/golden/result.txt";
+  const ScratchFolder folder;
+  lay_out(folder / "out.h5", describe(plan_of_every_column(), {{"host", "nowhere"}}));
+  const h5::Handle file = h5::open_file(folder / "out.h5");
   std::ostringstream listing;
-  list(h5::open_file(folder / "out.h5"), "", listing);
+  listing << "version " << version_of(file) << "\n";
+  list(file, "", listing);
   if (std::getenv("MONTECARTA_UPDATE_GOLDEN") != nullptr) {
     std::ofstream(golden) << listing.str();
     FAIL() << golden
@@ -71,6 +93,16 @@ TEST(ResultLayout, IsThatOfTheGoldenFile) {
   const std::string expected((std::istreambuf_iterator<char>(stream)), {});
   EXPECT_EQ(listing.str(), expected) << "the format changed: raise its version (analysis/FORMAT.md "
                                         "says which part), then renew the golden file";
+}
+
+TEST(ResultLayout, TheGoldenFileHasEveryColumn) {
+  const StudyPlan plan = plan_of_every_column();
+  for (const ColumnKind& kind : column_table()) {
+    const bool is_there = std::ranges::any_of(plan.cells, [&](const Cell& cell) {
+      return is_selected(kind, plan.columns) && (kind.applies == nullptr || kind.applies(cell));
+    });
+    EXPECT_TRUE(is_there) << kind.name;
+  }
 }
 
 TEST(ResultLayout, EveryNumberHasUnitNameAndAxes) {
