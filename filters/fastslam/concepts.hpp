@@ -9,6 +9,7 @@
 
 #include <concepts>
 #include <optional>
+#include <utility>
 #include <vector>
 
 // What the arguments of the FastSLAM templates must offer, and what passes between them.
@@ -18,22 +19,38 @@ namespace montecarta::filters {
 template <class T, class U>
 concept Is = std::same_as<T, U>;
 
-/// Carries the Gaussians of poses and landmarks through motion and observation: `Linearised` and
-/// `SigmaPoints` of moments/moment_transforms.hpp.
+/// Carries the Gaussian of a pose through motion and observation: `Linearised` and `SigmaPoints` of
+/// moments/moment_transforms.hpp.
 template <class T, class Real>
-concept MomentTransform = requires(const T t, MotionIncrement& motion, PoseGaussian<Real>& pose,
-                                   LandmarkGaussian<Real>& landmark, const RangeBearing<Real>& seen,
-                                   const SensorNoise& R, Evidence<Real>& evidence,
-                                   const Belief& belief) {
+concept CarriesPoses = requires(const T t, MotionIncrement& motion, PoseGaussian<Real>& pose,
+                                const LandmarkGaussian<Real>& landmark,
+                                const RangeBearing<Real>& seen, const SensorNoise& R,
+                                Evidence<Real>& evidence, const Belief& belief) {
   // one control step of `duration`
   t.advance(motion, Control(), /*duration*/ 0.1, belief);
-  // pose, or landmark seen from a known pose, is updated with one detection: its innovation before
+  // updates the pose with one detection: its innovation before
   { t.refine(pose, landmark, seen, R, Everywhere(), evidence) } -> Is<Innovation<Real>>;
-  { t.update(landmark, pose.mean, seen, R, Everywhere(), evidence) } -> Is<Innovation<Real>>;
   // whether it can refine a pose by a whole scan with fixed Jacobians, refine_in_batch()
   { T::kRefinesInBatch } -> std::convertible_to<bool>;
+};
+
+/// What `MapTransform` keeps of a landmark.
+template <class MapTransform, class Real>
+using HeldBy = decltype(std::declval<const MapTransform&>().initialise(
+    BasicPose<Real>(), RangeBearing<Real>(), SensorNoise()));
+
+/// Keeps landmarks, those two and any other: as a LandmarkGaussian, or in a form of its own that
+/// gaussian_of() gives as one. A form is a struct of Reals; one that was never seen, `{}`, must be
+/// finite.
+template <class T, class Real>
+concept KeepsLandmarks = requires(const T t, const BasicPose<Real>& pose, HeldBy<T, Real>& landmark,
+                                  const RangeBearing<Real>& seen, const SensorNoise& R,
+                                  Evidence<Real>& evidence) {
   // a landmark seen for the first time from a known pose
-  { t.initialise(pose.mean, seen, R) } -> Is<LandmarkGaussian<Real>>;
+  t.initialise(pose, seen, R);
+  // updates it with one detection from a known pose: its innovation before
+  { t.update(landmark, pose, seen, R, Everywhere(), evidence) } -> Is<Innovation<Real>>;
+  { gaussian_of(landmark) } -> std::convertible_to<LandmarkGaussian<Real>>;
 };
 
 /// A detection, and the landmark that the particles of one block take it for.
@@ -61,7 +78,7 @@ struct FreshLandmark {
 /// Decides which landmark of its map a particle takes a detection for.
 template <class A, class Real>
 concept Associator = requires(A a, const A decided, const StepContext& context, Scan scan,
-                              ParticleMaps<Real>& maps,
+                              typename A::Maps& maps,
                               const std::vector<PoseGaussian<Real>>& predicted,
                               const DelayedMap<Real>* joint, const Weights<Real>& weights,
                               std::size_t block, std::size_t k) {
@@ -100,7 +117,7 @@ template <class P, class Real, class A>
 concept PoseProposal = requires(P p, const P now, const StepContext& context, std::size_t block,
                                 std::vector<BasicPose<Real>>& poses,
                                 const std::vector<PoseGaussian<Real>>& predicted, const A& a,
-                                const Weights<Real>& weights, ParticleMaps<Real>& maps,
+                                const Weights<Real>& weights, typename A::Maps& maps,
                                 const typename MixtureInnovations<Real>::OfBlock& innovations,
                                 typename P::Refined& refined, const FreshLandmark<Real>& fresh) {
   // a run, and a control step of `duration`

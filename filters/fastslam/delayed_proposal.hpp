@@ -26,6 +26,7 @@ template <class Real>
 class DelayedProposal {
  public:
   using Immediate = GaussianProposal<Real, Linearised, Linearised>;
+  using Landmark = LandmarkGaussian<Real>;
   using Refined = typename Immediate::Refined;
 
   DelayedProposal(std::size_t particles, const Belief& belief, const DrawTimes& times)

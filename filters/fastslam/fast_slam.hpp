@@ -128,7 +128,7 @@ class FastSlam final : public SlamFilter {
   Population<Real> population_;
   std::vector<BasicPose<Real>> poses_, resampled_poses_;
   std::vector<PoseGaussian<Real>> predicted_;  ///< by the motion, of the scan's poses
-  ParticleMaps<Real> maps_;
+  typename Associating::Maps maps_;
   MixtureInnovations<Real> innovations_;
 };
 

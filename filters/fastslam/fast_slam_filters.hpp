@@ -26,9 +26,10 @@ std::unique_ptr<SlamFilter> make_fast_slam(const FilterSetup& setup,
   };
   const bool is_known = setup.association.kind == Association::known;
   if constexpr (FixesLandmark<typename SeenBy::Kind>) {
-    if (is_known) return with(KnownAssociation<Real>(setup.landmarks));
-    return with(
-        NearestAssociation<Real, SeenBy>(settings.particles, setup.association, setup.belief));
+    using Held = typename Proposal::Landmark;
+    if (is_known) return with(KnownAssociation<Real, Held>(setup.landmarks));
+    return with(NearestAssociation<Real, SeenBy, Held>(settings.particles, setup.association,
+                                                       setup.belief));
   } else {
     expect(is_known, "delayed initialisation knows identities");
     return with(DelayedKnownAssociation<Real>(setup.landmarks, settings.particles, setup.belief));

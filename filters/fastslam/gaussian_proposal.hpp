@@ -82,7 +82,7 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
       PoseGaussian<Real> refined = predicted;
       for (std::size_t k = 0; k < association.matches(); ++k) {
         const auto& [landmark, seen, mask] = association.match(b, k);
-        this->pose_transform().refine_in_batch(refined, predicted.mean, landmark, seen,
+        this->pose_transform().refine_in_batch(refined, predicted.mean, gaussian_of(landmark), seen,
                                                this->noise(), mask, evidence);
       }
     }

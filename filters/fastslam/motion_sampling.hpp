@@ -14,9 +14,10 @@ namespace montecarta::filters {
 
 /// FastSLAM I (EQUATIONS 5): every particle moves with control noise of its own at every step; the
 /// scan only weighs it, by the likelihood at its pose.
-template <class Real, MomentTransform<Real> MapTransform>
+template <class Real, KeepsLandmarks<Real> MapTransform>
 class MotionSampling {
  public:
+  using Landmark = HeldBy<MapTransform, Real>;
   using Refined = BasicPose<Real>;
 
   MotionSampling(const Belief& belief, const MapTransform& map_transform)
@@ -75,7 +76,7 @@ class MotionSampling {
 
   void end_scan() {}
   void initialise(const FreshLandmark<Real>& fresh, const BasicPose<Real>& pose,
-                  ParticleMaps<Real>& maps) const {
+                  ParticleMaps<Real, Landmark>& maps) const {
     fresh.put(map_transform_.initialise(pose, observation_of<Real>(fresh.detection), noise_),
               maps.blocks_of(fresh.slot)[fresh.block]);
   }

@@ -17,9 +17,10 @@ namespace montecarta::filters {
 /// Every particle decides for itself which landmark of its own map a detection is (EQUATIONS 17),
 /// with the covariance of its predicted pose in the innovation. Particle i owns slots 0 to count(i)
 /// - 1.
-template <class Real, class SeenBy = AtPose>
+template <class Real, class SeenBy = AtPose, class Held = LandmarkGaussian<Real>>
 class NearestAssociation {
  public:
+  using Maps = ParticleMaps<Real, Held>;
   NearestAssociation(std::size_t particles, const AssociationSettings& settings,
                      const Belief& belief)
       : particles_(particles),
@@ -37,7 +38,7 @@ class NearestAssociation {
   }
 
   /// Judges every detection by every particle's map.
-  void associate(const StepContext& context, Scan scan, ParticleMaps<Real>& maps,
+  void associate(const StepContext& context, Scan scan, Maps& maps,
                  const std::vector<PoseGaussian<Real>>& predicted, const DelayedMap<Real>* joint) {
     scan_ = scan;
     seen_.clear();
@@ -78,7 +79,7 @@ class NearestAssociation {
 
   /// Was done to judge.
   void fetch(std::size_t /*b*/) const {}
-  using Matched = Match<Real, LandmarkGaussian<Real>, decltype(Real() > Real())>;
+  using Matched = Match<Real, Held, decltype(Real() > Real())>;
   Matched match(std::size_t b, std::size_t k) const {
     return {collect(b, k), seen_[k], matched(b, k) > Real(0.5)};
   }
@@ -118,7 +119,7 @@ class NearestAssociation {
   }
 
   /// Landmarks of a map, mean over the weighted particles.
-  double map_size(const ParticleMaps<Real>& /*maps*/, const Weights<Real>& weights) const {
+  double map_size(const Maps& /*maps*/, const Weights<Real>& weights) const {
     double mean = 0.0;
     for (std::size_t i = 0; i < particles_; ++i) {
       mean += weights.linear_scalars()[i] * static_cast<double>(count_of(i));
@@ -127,7 +128,7 @@ class NearestAssociation {
   }
 
   /// Gives every particle a slot of its own for each detection that is new to it.
-  const std::vector<FreshLandmark<Real>>& new_landmarks(ParticleMaps<Real>& maps) {
+  const std::vector<FreshLandmark<Real>>& new_landmarks(Maps& maps) {
     fresh_.clear();
     for (std::size_t k = 0; k < seen_.size(); ++k) {
       for (std::size_t i = 0; i < particles_; ++i) {
@@ -142,7 +143,7 @@ class NearestAssociation {
     made_of_.resample(parents);
   }
   /// In order of initialisation, of the heaviest particle: particles do not share slots.
-  std::optional<LandmarkEstimate> landmark(std::size_t j, const ParticleMaps<Real>& maps,
+  std::optional<LandmarkEstimate> landmark(std::size_t j, const Maps& maps,
                                            const Weights<Real>& weights) const {
     const std::size_t heaviest = weights.heaviest();
     if (j >= count_of(heaviest)) return std::nullopt;
@@ -164,7 +165,7 @@ class NearestAssociation {
         std::span(searches_).subspan(b * kLanes * seen_.size(), kLanes * seen_.size());
     std::ranges::fill(searches, NearestSearch{});
     for (std::uint32_t j = 0; j < opened_.size(); ++j)
-      offer(b, j, opened_[j].fetch(b), pose, joint, searches);
+      offer(b, j, gaussian_of(opened_[j].fetch(b)), pose, joint, searches);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::span<Pairing> pairings = pairings_of(b * kLanes + lane);
       for (std::size_t k = 0; k < seen_.size(); ++k) {
@@ -218,8 +219,8 @@ class NearestAssociation {
   }
 
   /// The landmark each lane matched with detection k; a lane without a match gets a harmless one.
-  LandmarkGaussian<Real> collect(std::size_t b, std::size_t k) const {
-    LandmarkGaussian<Real> landmark{};
+  Held collect(std::size_t b, std::size_t k) const {
+    Held landmark{};
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const Pairing& pairing = pairings_of(b * kLanes + lane)[k];
       if (pairing.kind == PairingKind::matched)
@@ -232,7 +233,7 @@ class NearestAssociation {
   std::size_t count_of(std::size_t particle) const {
     return static_cast<std::size_t>(get(counts_[particle / kLanes], particle % kLanes));
   }
-  void add_slot(const Detection& detection, std::size_t particle, ParticleMaps<Real>& maps) {
+  void add_slot(const Detection& detection, std::size_t particle, Maps& maps) {
     const auto slot = static_cast<std::uint32_t>(count_of(particle));
     if (slot >= settings_.most_landmarks) {
       throw RunError("the map of a particle grew beyond " +
@@ -256,7 +257,7 @@ class NearestAssociation {
   std::vector<std::uint32_t> slots_, matched_slots_;
   std::vector<Pairing> pairings_;        ///< {particle, detection}
   std::vector<NearestSearch> searches_;  ///< {block, detection, lane}
-  std::vector<typename ParticleMaps<Real>::OpenSlot> opened_;
+  std::vector<typename Maps::OpenSlot> opened_;
   std::vector<FreshLandmark<Real>> fresh_;
 };
 

@@ -99,23 +99,22 @@ class ParticleMaps {
   /// What one particle believes about the landmark of slot j.
   LandmarkEstimate landmark_of(std::uint32_t j, std::uint32_t particle) const {
     const std::uint32_t then = genealogy_.trace(slots_[j].generation, particle);
-    const Landmark& block = slots_[j].blocks[then / kLanesOf<Real>];
+    const auto& [mean, P] = gaussian_of(slots_[j].blocks[then / kLanesOf<Real>]);
     const std::size_t lane = then % kLanesOf<Real>;
-    const Symmetric2<Real>& P = block.covariance;
     return {
-        {get(block.mean.x, lane), get(block.mean.y, lane)},
+        {get(mean.x, lane), get(mean.y, lane)},
         Eigen::Matrix2d{{get(P.xx, lane), get(P.xy, lane)}, {get(P.xy, lane), get(P.yy, lane)}}};
   }
 
   /// Slot j with today's particles in order, brought into `blocks` without a trace.
   void copy_slot(std::uint32_t j, std::vector<std::uint32_t>& source,
-                 std::vector<Landmark>& blocks) const {
+                 std::vector<LandmarkGaussian<Real>>& blocks) const {
     source.resize(blocks_ * kLanesOf<Real>);
     blocks.resize(blocks_);
     genealogy_.trace(slots_[j].generation, source);
     const std::span<const Landmark> from = slots_[j].blocks;
     for (std::size_t b = 0; b < blocks_; ++b) {
-      blocks[b] = gather_block<Real, Landmark>(from, source, b);
+      blocks[b] = gaussian_of(gather_block<Real, Landmark>(from, source, b));
     }
   }
 

@@ -19,9 +19,10 @@ enum class WeightTime { before_draw, after_draw };
 /// What filters have in common whose poses are drawn from Gaussians that the scan refined
 /// (EQUATIONS 4): prediction, refinement, maps, and the estimate between scans. The transforms
 /// carry the Gaussians: `PoseTransform` those of the pose, `MapTransform` those of the landmarks.
-template <class Real, MomentTransform<Real> PoseTransform, MomentTransform<Real> MapTransform>
+template <class Real, CarriesPoses<Real> PoseTransform, KeepsLandmarks<Real> MapTransform>
 class RefinedCloud {
  public:
+  using Landmark = HeldBy<MapTransform, Real>;
   RefinedCloud(std::size_t particles, const Belief& belief, WeightTime weighed,
                const PoseTransform& pose_transform, const MapTransform& map_transform)
       : belief_(belief),
@@ -52,7 +53,7 @@ class RefinedCloud {
     is_drawn_ = true;
   }
   void initialise(const FreshLandmark<Real>& fresh, const BasicPose<Real>& pose,
-                  ParticleMaps<Real>& maps) const {
+                  ParticleMaps<Real, Landmark>& maps) const {
     fresh.put(map_transform_.initialise(pose, observation_of<Real>(fresh.detection), noise_),
               maps.blocks_of(fresh.slot)[fresh.block]);
   }
@@ -89,8 +90,9 @@ class RefinedCloud {
                                          Evidence<Real>& evidence) const {
     for (std::size_t k = 0; k < association.matches(); ++k) {
       const auto& [landmark, seen, mask] = association.match(b, k);
-      innovations.add(k, pose_transform_.refine(pose, landmark, seen, noise_, mask, evidence),
-                      mask);
+      innovations.add(
+          k, pose_transform_.refine(pose, gaussian_of(landmark), seen, noise_, mask, evidence),
+          mask);
     }
   }
   /// Updates the landmarks of block b with the scan, seen from `pose`.

@@ -151,6 +151,13 @@ struct LandmarkGaussian {
   Symmetric2<Real> covariance{};
 };
 
+/// A landmark in the map, whatever a filter keeps of it: here that itself.
+template <class Real>
+[[gnu::always_inline]] inline const LandmarkGaussian<Real>& gaussian_of(
+    const LandmarkGaussian<Real>& landmark) {
+  return landmark;
+}
+
 /// P plus `weight` times column column'.
 [[gnu::always_inline]] inline void add_outer(Symmetric3<double>& P, double weight,
                                              const Column3<double>& column) {

@@ -10,7 +10,9 @@ namespace montecarta::filters {
 
 const std::string& FilterOptions::choice(std::string_view name) const {
   const auto found = values_.find(name);
-  expect(found != values_.end(), "a filter asks for an option that it does not declare");
+  const std::string missing = "a filter asks for the option '" + std::string(name) +
+                              "', which its FilterKind does not list";
+  expect(found != values_.end(), missing.c_str());
   return found->second;
 }
 
