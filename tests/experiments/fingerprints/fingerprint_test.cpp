@@ -4,12 +4,14 @@
 #include "engine/records/h5.hpp"
 #include "engine/records/provenance.hpp"
 #include "engine/records/result_file.hpp"
+#include "filters/factory.hpp"
 #include "tests/experiments/commands/program.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cstdint>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <span>
 #include <sstream>
@@ -100,6 +102,13 @@ void write_stored(const fs::path& path, const std::string& toolchain,
 }
 
 using SameBits = Program;
+
+TEST(SameBitsStudy, HasEveryFilter) {
+  std::ifstream file(kFolder / "every_filter.ini");
+  const std::string study((std::istreambuf_iterator<char>(file)), {});
+  for (const filters::FilterKind& kind : filters::filter_kinds())
+    EXPECT_NE(study.find("cell = " + kind.name + " "), std::string::npos) << kind.name;
+}
 
 TEST_F(SameBits, OfEveryFilterOnEveryProcessor) {
   const std::string here = toolchain();
