@@ -46,6 +46,7 @@ mine/my_montecarta run first_study -o mine.h5 --set cells.cell=my_filter --runs 
   fail "its filter does not run"
 mine/my_laws >laws.log || { cat laws.log; fail "its filter breaks a law"; }
 grep -q 'OK.*ForgetsADifferentRunBefore/my_filter' laws.log || fail "no laws: $(tail laws.log)"
+grep -q 'OK.*MyFilter' laws.log || fail "no test of its own: $(tail laws.log)"
 ! mine/broken_laws >laws.log || fail "a filter that forgets nothing breaks no law"
 grep -q 'FAILED.*ForgetsADifferentRunBefore/remembering' laws.log || fail "$(tail laws.log)"
 for program in montecarta mine/my_montecarta; do  # the shipped filters have the same bits in both
