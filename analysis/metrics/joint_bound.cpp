@@ -145,10 +145,4 @@ double JointBound::mean_map_variance() const {
   return count == 0.0 ? std::numeric_limits<double>::quiet_NaN() : sum / count;
 }
 
-Eigen::MatrixXd JointBound::covariance() const {
-  Eigen::MatrixXd P = joint_.topLeftCorner(size_, size_).selfadjointView<Eigen::Lower>();
-  P.topLeftCorner<3, 3>() = pose_;
-  return P;
-}
-
 }  // namespace montecarta::analysis

@@ -41,8 +41,6 @@ class JointBound {
   /// [m^2] Mean of the squared position error over the landmarks whose place the detections fix;
   /// NaN where there is none.
   double mean_map_variance() const;
-  /// All that is known, pose first, landmarks in the order of their first observation.
-  Eigen::MatrixXd covariance() const;
 
  private:
   void finish_motion();

@@ -69,8 +69,4 @@ std::string latex_table(const StudyAnalysis& study, const TextTable& table) {
          study.study_sha256 + "; needs \\usepackage{booktabs}\n" + latex_tabular(table);
 }
 
-std::string latex_table(const StudyAnalysis& study) {
-  return latex_table(study, verdict_table(study));
-}
-
 }  // namespace montecarta::analysis

@@ -38,9 +38,6 @@ void write_csv(const StudyAnalysis& study, const std::filesystem::path& director
 /// Names of the files that write_csv() makes of cells with these labels.
 std::vector<std::string> csv_names(const std::vector<std::string>& labels);
 
-/// The verdict table for \input in a LaTeX document with the package booktabs.
-std::string latex_table(const StudyAnalysis& study);
-
 /// Writes everything as HDF5: one group a cell below /cells, series over the scale `time`. Replaces
 /// `path` when all is written. Throws RunError where it cannot, and leaves what was there.
 void write_analysis_file(const StudyAnalysis& study, const std::filesystem::path& path);

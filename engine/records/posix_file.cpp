@@ -93,12 +93,6 @@ PosixFile::~PosixFile() {
 PosixFile::PosixFile(PosixFile&& other) noexcept
     : path_(std::move(other.path_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
 
-PosixFile& PosixFile::operator=(PosixFile&& other) noexcept {
-  std::swap(path_, other.path_);
-  std::swap(descriptor_, other.descriptor_);
-  return *this;
-}
-
 std::uint64_t PosixFile::size() const {
   struct stat status {};
   if (::fstat(descriptor_, &status) != 0) fail_to_read(path_, reason(errno));

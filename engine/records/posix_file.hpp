@@ -21,7 +21,6 @@ class PosixFile {
   PosixFile(std::filesystem::path path, Mode mode);
   ~PosixFile();
   PosixFile(PosixFile&& other) noexcept;
-  PosixFile& operator=(PosixFile&& other) noexcept;
 
   const std::filesystem::path& path() const { return path_; }
   std::uint64_t size() const;

@@ -69,7 +69,6 @@ ResultFile::ResultFile(const std::filesystem::path& path)
     : contents_(std::make_unique<Contents>(existing(path))) {}
 ResultFile::~ResultFile() = default;
 ResultFile::ResultFile(ResultFile&&) noexcept = default;
-ResultFile& ResultFile::operator=(ResultFile&&) noexcept = default;
 
 const std::filesystem::path& ResultFile::path() const { return contents_->path; }
 const ResultDescription& ResultFile::description() const { return contents_->description; }
@@ -100,7 +99,6 @@ bool ResultFile::has_errors() const {
 const TextPairs& ResultFile::scenario() const { return description().scenario; }
 const TextPairs& ResultFile::provenance() const { return description().provenance; }
 const std::vector<StoredCell>& ResultFile::cells() const { return description().cells; }
-std::uint64_t ResultFile::bytes() const { return std::filesystem::file_size(path()); }
 
 std::vector<RunStatus> ResultFile::status(const StoredCell& cell) const {
   auto statuses = contents_->per_run<RunStatus>("cells/" + cell.label + "/status", Element::u8);

@@ -27,7 +27,6 @@ class ResultFile {
   explicit ResultFile(const std::filesystem::path& path);
   ~ResultFile();
   ResultFile(ResultFile&&) noexcept;
-  ResultFile& operator=(ResultFile&&) noexcept;
 
   const std::filesystem::path& path() const;
   /// All of it in one piece; the members below name its parts.
@@ -59,7 +58,6 @@ class ResultFile {
   std::vector<double> cpu_seconds(const StoredCell& cell)
       const;                    ///< [s] of the run's own thread over its steps; NaN where missing
   double wall_seconds() const;  ///< [s] of all sittings
-  std::uint64_t bytes() const;  ///< size of the file
 
   /// Copies {axes of the column} of run index `i` (0-based in this file), converted to double.
   /// `out` must fit.

@@ -54,7 +54,6 @@ struct ResultWriter::Work {
 ResultWriter::ResultWriter(std::unique_ptr<Work> work) : work_(std::move(work)) {}
 ResultWriter::~ResultWriter() = default;
 ResultWriter::ResultWriter(ResultWriter&&) noexcept = default;
-ResultWriter& ResultWriter::operator=(ResultWriter&&) noexcept = default;
 
 ResultWriter ResultWriter::create(const std::filesystem::path& path, const StudyPlan& plan,
                                   const TextPairs& provenance, Existing existing) {

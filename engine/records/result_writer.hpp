@@ -43,7 +43,6 @@ class ResultWriter {
                               const TextPairs& provenance);
   ~ResultWriter();
   ResultWriter(ResultWriter&&) noexcept;
-  ResultWriter& operator=(ResultWriter&&) noexcept;
 
   /// Whether this run of this cell is in the file. Thread-safe.
   RunStatus status(std::size_t cell, std::size_t run_index) const;

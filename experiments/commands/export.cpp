@@ -51,7 +51,6 @@ int export_drives(const Arguments& arguments) {
                      ": the drive of this study was recorded (it is the same in all runs): "
                      "montecarta convert writes it as CSV");
   }
-  arguments.choice("format", {"csv"});
   const fs::path folder = output_of(arguments);
   const StudyPlan plan = plan_of(study, arguments);
   const bool known = study.settings.text("association", "kind") == "known";
@@ -84,7 +83,6 @@ Command export_command() {
        .operands = {{"STUDY.ini"}},
        .options =
            {{"output", "o", {"DIR"}, "where to; new or empty"},
-            {"format", "", {"csv"}, "how they are written"},
             {"set", "", {"SECTION.KEY=VALUE"}, "override a setting of the study; repeatable", true},
             {"runs", "", {"A:B"}, "only runs A to B-1"},
             {"shard", "", {"I/N"}, "only part I (from 0) of N"}},

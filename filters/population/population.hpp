@@ -3,11 +3,11 @@
 
 #include "engine/particles/resampling.hpp"
 #include "engine/particles/weights.hpp"
-#include "engine/particles/write_particle_columns.hpp"
 #include "filters/moments/evidence.hpp"
 #include "filters/population/innovation_sums.hpp"
 #include "filters/setup/filter_setup.hpp"
 
+#include <algorithm>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -105,9 +105,18 @@ class Population {
   /// Every particle is its own ancestor.
   void forget_ancestors() { std::iota(ancestors_.begin(), ancestors_.end(), 0U); }
 
+  /// Writes what was asked for of the particles, the pose of each as `pose_of(i)`.
   template <class PoseOf>
   void tell(const ParticleColumns& columns, const PoseOf& pose_of) const {
-    write_particle_columns(columns, pose_of, weights_.log_scalars(), ancestors_);
+    for (std::size_t i = 0; i < columns.pose.size() / 3; ++i) {
+      const Pose pose = pose_of(i);
+      columns.pose[3 * i] = pose.x;
+      columns.pose[3 * i + 1] = pose.y;
+      columns.pose[3 * i + 2] = pose.heading;
+    }
+    std::copy_n(weights_.log_scalars().begin(), columns.log_weight.size(),
+                columns.log_weight.begin());
+    std::copy_n(ancestors_.begin(), columns.ancestor.size(), columns.ancestor.begin());
   }
 
  private:
