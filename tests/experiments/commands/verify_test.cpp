@@ -37,11 +37,14 @@ class Verify : public Program {
     const ResultSlabs slabs = find_slabs(path, file);
     const Slab& slab = slabs.cells[static_cast<std::size_t>(cell - file.cells.begin())]
                            .columns[static_cast<std::size_t>(found - cell->columns.begin())];
-    const PosixFile writable(path, PosixFile::Mode::write);
+    flip_bit_at(slab.at(run));
+  }
+  void flip_bit_at(std::uint64_t place) const {
+    const PosixFile writable(folder_ / "out.h5", PosixFile::Mode::write);
     std::byte byte{};
-    writable.read_at(slab.at(run), std::span(&byte, 1));
+    writable.read_at(place, std::span(&byte, 1));
     byte ^= std::byte{1};
-    writable.write_at(slab.at(run), std::span(&byte, 1));
+    writable.write_at(place, std::span(&byte, 1));
   }
 };
 
@@ -57,6 +60,17 @@ TEST_F(Verify, ShardsAndRowsAtScansOnly) {
   EXPECT_THAT(
       call({"verify", "out.h5", "--sample", "5", "--seed", "17"}).out,
       StartsWith("5 of 5 runs computed again are the same bytes, out of 6 stored (sample 17)"));
+}
+
+TEST_F(Verify, RunsWithLandmarksOfTheirOwn) {
+  run({"--set", "scenario.map=random", "--set", "scenario.map_shift=1"});
+  EXPECT_THAT(call({"verify", "out.h5", "--sample", "100"}).out, StartsWith("9 of 9 runs"));
+  const std::filesystem::path path = folder_ / "out.h5";
+  const ResultSlabs slabs = find_slabs(path, read_description(h5::open_file(path), path));
+  flip_bit_at(slabs.truth->landmarks->at(1));
+  const Called called = call({"verify", "out.h5", "--sample", "100"});
+  EXPECT_EQ(called.code, 4);
+  EXPECT_THAT(called.out + called.err, HasSubstr("landmarks"));
 }
 
 TEST_F(Verify, OneAlteredBitIsFoundNamedAndExitCode4) {

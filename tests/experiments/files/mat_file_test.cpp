@@ -16,6 +16,31 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
+template <class Number>
+void expect_extremes(const ScratchFolder& folder, matio_classes kind, matio_types type) {
+  const Number least = std::numeric_limits<Number>::lowest(),
+               most = std::numeric_limits<Number>::max();
+  const auto path = folder / ("class_" + std::to_string(kind) + ".mat");
+  add_matrix<Number>(path, "v", {least, most}, 1, kind, type, MAT_COMPRESSION_NONE);
+  EXPECT_THAT(MatFile(path).series("v"),
+              ElementsAre(static_cast<double>(least), static_cast<double>(most)))
+      << kind;
+}
+
+TEST(MatFile, ReadsEveryClassOfNumbers) {
+  const ScratchFolder folder;
+  expect_extremes<std::int8_t>(folder, MAT_C_INT8, MAT_T_INT8);
+  expect_extremes<std::uint8_t>(folder, MAT_C_UINT8, MAT_T_UINT8);
+  expect_extremes<std::int16_t>(folder, MAT_C_INT16, MAT_T_INT16);
+  expect_extremes<std::uint16_t>(folder, MAT_C_UINT16, MAT_T_UINT16);
+  expect_extremes<std::int32_t>(folder, MAT_C_INT32, MAT_T_INT32);
+  expect_extremes<std::uint32_t>(folder, MAT_C_UINT32, MAT_T_UINT32);
+  expect_extremes<std::int64_t>(folder, MAT_C_INT64, MAT_T_INT64);
+  expect_extremes<std::uint64_t>(folder, MAT_C_UINT64, MAT_T_UINT64);
+  expect_extremes<float>(folder, MAT_C_SINGLE, MAT_T_SINGLE);
+  expect_extremes<double>(folder, MAT_C_DOUBLE, MAT_T_DOUBLE);
+}
+
 TEST(MatFile, ReadsEachClassCompressedOrNot) {
   const ScratchFolder folder;
   for (const auto compression : {MAT_COMPRESSION_NONE, MAT_COMPRESSION_ZLIB}) {
