@@ -45,7 +45,9 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
     return {predicted, posterior, evidence, faults};
   }
 
-  BasicPose<Real> draw(const StepContext& context, std::size_t b, Refined& refined) {
+  /// One function: its factor and its normals do not wait for each other.
+  [[gnu::flatten]] BasicPose<Real> draw(const StepContext& context, std::size_t b,
+                                        Refined& refined) {
     const PoseFactor<Real> factor(refined.posterior);
     refined.faults += factor.L.faults;
     this->keep(b, refined.posterior);
