@@ -35,6 +35,7 @@ class Weights {
     std::fill(log_.begin(), log_.end(), Real(std::log(share)));
     std::fill(linear_.begin(), linear_.end(), Real(share));
     clear_padding();
+    effective_ = 1.0 / sum_of_squares();
   }
 
   /// Multiplies a block of weights by exp(increment); normalise() must follow.
@@ -61,17 +62,19 @@ class Weights {
       log_[b] -= Real(log_sum);
     }
     clear_padding();
+    effective_ = 1.0 / sum_of_squares();
     return log_sum;
   }
 
   /// Effective number of particles, 1 / sum of squares (Kong, Liu and Wong 1994).
-  double effective() const {
-    double squares = 0.0;
-    for (double weight : linear_scalars()) squares += weight * weight;
-    return 1.0 / squares;
-  }
+  double effective() const { return effective_; }
 
  private:
+  double sum_of_squares() const {
+    double squares = 0.0;
+    for (double weight : linear_scalars()) squares += weight * weight;
+    return squares;
+  }
   void clear_padding() {
     for (std::size_t i = particles_; i < scalars(log_).size(); ++i) {
       scalars(log_)[i] = -std::numeric_limits<double>::infinity();
@@ -81,6 +84,7 @@ class Weights {
 
   std::size_t particles_;
   std::size_t heaviest_ = 0;
+  double effective_ = 0.0;
   std::vector<Real> log_;
   std::vector<Real> linear_;
 };

@@ -13,7 +13,8 @@
 
 namespace montecarta::engine {
 
-/// One 32-bit word in each 64-bit lane of a register.
+/// One 32-bit word in the low half of each 64-bit lane of a register; what the high halves hold
+/// means nothing.
 struct WordRegister {
   using Batch = register_math::BitsOf<register_math::Register>;
   Batch lanes;
@@ -21,9 +22,8 @@ struct WordRegister {
 
 /// The exact product lane by lane.
 inline Halves<WordRegister> multiply_words(const WordRegister& a, std::uint32_t b) {
-  using Batch = WordRegister::Batch;
-  const Batch product = register_math::multiply_low_halves(a.lanes, b);
-  return {{product >> 32}, {product & Batch(std::uint64_t{0xffffffffU})}};
+  const WordRegister::Batch product = register_math::multiply_low_halves(a.lanes, b);
+  return {{product >> 32}, {product}};
 }
 inline WordRegister operator^(const WordRegister& a, const WordRegister& b) {
   return {a.lanes ^ b.lanes};
@@ -53,7 +53,8 @@ inline Pair<Lanes> uniform_pairs(const StreamIdentity& identity, std::uint32_t b
   using Batch = WordRegister::Batch;
   const auto same = [](std::uint64_t word) { return WordRegister{Batch(word)}; };
   const auto uniform = [](const WordRegister& low, const WordRegister& high) {
-    const Batch bits = (low.lanes | (high.lanes << 32)) >> 12;
+    const Batch low_half = low.lanes & Batch(std::uint64_t{0xffffffffU});
+    const Batch bits = (low_half | (high.lanes << 32)) >> 12;
     return xsimd::bitwise_cast<Lanes::Register>(bits | Batch(std::uint64_t{0x3ff0000000000000U})) -
            Lanes::Register(1.0 - 0x1p-53);
   };
