@@ -93,6 +93,14 @@ class BlockTasks {
       for (std::size_t b = task * per_task_; b < end; ++b) body(task, b);
     });
   }
+  /// Calls body(first, n) for the n blocks of every task.
+  template <class Body>
+  void run_together(const StepContext& context, const Body& body) const {
+    context.parallel_for(count(), [&](std::size_t task) {
+      const std::size_t first = task * per_task_;
+      body(first, std::min(blocks_ - first, per_task_));
+    });
+  }
 
  private:
   std::size_t blocks_, per_task_;

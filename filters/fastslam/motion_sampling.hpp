@@ -26,14 +26,13 @@ class MotionSampling {
   void start() {}
   void predict(const StepContext& context, const Control& control, double duration,
                std::vector<BasicPose<Real>>& poses) {
-    constexpr std::size_t kBlocksPerTask = 1024 / kLanesOf<Real>;
     const auto sigma = deviations_of(belief_.control, control, belief_.vehicle);
     const auto move_all = [&](const auto& vehicle) {
-      BlockTasks<Real>(poses.size(), kBlocksPerTask)
-          .run(context, [&](std::size_t /*task*/, std::size_t b) {
+      BlockTasks<Real>(poses.size(), kTogether)
+          .run_together(context, [&](std::size_t b, std::size_t n) {
             const auto first = static_cast<std::uint32_t>(b * kLanesOf<Real>);
             const StreamIdentity noise = context.identity(Draw::motion_sample, first);
-            poses[b] = moved(vehicle, poses[b], control, sigma, noise, duration);
+            sample_motion(vehicle, std::span(poses).subspan(b, n), control, sigma, noise, duration);
           });
     };
     std::visit(move_all, belief_.vehicle);
@@ -87,18 +86,24 @@ class MotionSampling {
   }
 
  private:
-  /// One control step with noise of its own in each lane.
+  static constexpr std::size_t kTogether = 1024 / kLanesOf<Real>;
+
+  /// One control step of `poses`, with noise of its own in each lane.
   template <class V>
-  [[gnu::flatten]] static BasicPose<Real> moved(const V& vehicle, const BasicPose<Real>& pose,
-                                                const Control& control,
-                                                const std::array<double, Control::kMost>& sigma,
-                                                const StreamIdentity& noise, double duration) {
-    const auto [e0, e1] = normal_pairs<Real>(noise, 0);
-    ControlOf<Real> sample{control[0] + sigma[0] * e0, control[1] + sigma[1] * e1, Real(0.0)};
-    if constexpr (kControlsOf < V >> 2) {
-      sample[2] = control[2] + sigma[2] * normal_pairs<Real>(noise, 1).first;
+  [[gnu::flatten]] static void sample_motion(const V& vehicle, std::span<BasicPose<Real>> poses,
+                                             const Control& control,
+                                             const std::array<double, Control::kMost>& sigma,
+                                             const StreamIdentity& noise, double duration) {
+    constexpr std::size_t kPairs = (kControlsOf<V> + 1) / 2;
+    std::array<std::array<Pair<Real>, kTogether>, kPairs> e;
+    for (std::uint32_t k = 0; k < kPairs; ++k)
+      fill_normal_pairs(std::span(e[k]).first(poses.size()), noise, k);
+    for (std::size_t b = 0; b < poses.size(); ++b) {
+      ControlOf<Real> sample{control[0] + sigma[0] * e[0][b].first,
+                             control[1] + sigma[1] * e[0][b].second, Real(0.0)};
+      if constexpr (kPairs > 1) sample[2] = control[2] + sigma[2] * e[1][b].first;
+      poses[b] = moved_by(poses[b], body_step_of(vehicle, sample, duration));
     }
-    return moved_by(pose, body_step_of(vehicle, sample, duration));
   }
 
   Belief belief_;
