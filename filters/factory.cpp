@@ -6,6 +6,7 @@
 #include "filters/fastslam/fast_slam_filters.hpp"
 #include "filters/joint/joint_filters.hpp"
 #include "filters/marginal/marginal_filter.hpp"
+#include "filters/relative/relative_ekf_slam.hpp"
 #include "filters/smoothing/smoother.hpp"
 
 #include <algorithm>
@@ -39,6 +40,7 @@ std::vector<FilterKind> all_kinds() {
       delayed_kind(),
       marginal_kind(),
       ampf_de_kind(),
+      relative_ekf_slam_kind(),
       smoother_kind(),
       dead_reckoning_kind(),
   };

@@ -26,18 +26,6 @@ std::span<const FactorGraph::Observation> FactorGraph::observations_of(std::size
   return std::span(observations_).subspan(begin_[pose], begin_[pose + 1] - begin_[pose]);
 }
 
-Pose relative_to(const Pose& origin, const Pose& pose) {
-  const Direction<double> d = direction_of(origin.heading);
-  const double dx = pose.x - origin.x, dy = pose.y - origin.y;
-  return {d.cosine * dx + d.sine * dy, d.cosine * dy - d.sine * dx,
-          wrap(pose.heading - origin.heading)};
-}
-
-Pose composed(const Pose& origin, const Pose& displacement) {
-  const Point way = in_world(direction_of(origin.heading), displacement.x, displacement.y);
-  return {origin.x + way.x, origin.y + way.y, wrap(origin.heading + displacement.heading)};
-}
-
 void GraphEstimate::clear() {
   displacements.clear();
   in_frame.clear();

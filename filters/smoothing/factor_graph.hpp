@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "filters/models/displacement.hpp"
 #include "filters/moments/motion_increment.hpp"
 #include "filters/moments/sensor_noise.hpp"
 
@@ -68,9 +69,5 @@ struct GraphEstimate {
   /// Poses and landmarks in the map frame, of those in relative coordinates.
   void compose(const FactorGraph& graph);
 };
-
-/// `pose` in the frame of `origin`, and back.
-Pose relative_to(const Pose& origin, const Pose& pose);
-Pose composed(const Pose& origin, const Pose& displacement);
 
 }  // namespace montecarta::filters

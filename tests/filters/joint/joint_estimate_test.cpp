@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Law: what a bank says of pose and map together has, as its parts, what it says of each.
 #include "filters/joint/joint_filters.hpp"
+#include "filters/relative/relative_ekf_slam.hpp"
 #include "filters/smoothing/smoother.hpp"
 #include "tests/filters/default_options.hpp"
 #include "tests/filters/small_world.hpp"
@@ -62,7 +63,8 @@ int expect_parts(SlamFilter& filter, const SmallWorld& world, bool heaviest_only
 
 TEST(JointEstimate, OfOneGaussianHasItsParts) {
   const SmallWorld world = small_world({.seed = 31, .scans = 60});
-  for (const FilterKind& kind : {ekf_slam_kind(), riekf_slam_kind(), smoother_kind()}) {
+  for (const FilterKind& kind :
+       {ekf_slam_kind(), riekf_slam_kind(), smoother_kind(), relative_ekf_slam_kind()}) {
     for (const auto association : {Association::known, Association::nearest}) {
       for (const char* moments : {"map", "pushed"}) {
         const auto filter = kind.make(setup_of(kind, association, {{"moments", moments}}));

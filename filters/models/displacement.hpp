@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/core/pose.hpp"
+#include "engine/numbers/real.hpp"
+#include "filters/models/point.hpp"
+
+namespace montecarta::models {
+
+/// `pose` in the frame of `origin`.
+inline Pose relative_to(const Pose& origin, const Pose& pose) {
+  const Direction<double> d = direction_of(origin.heading);
+  const double dx = pose.x - origin.x, dy = pose.y - origin.y;
+  return {d.cosine * dx + d.sine * dy, d.cosine * dy - d.sine * dx,
+          wrap(pose.heading - origin.heading)};
+}
+
+/// The pose whose displacement in the frame of `origin` is `displacement`.
+inline Pose composed(const Pose& origin, const Pose& displacement) {
+  const Direction<double> d = direction_of(origin.heading);
+  const double x = d.cosine * displacement.x - d.sine * displacement.y;
+  const double y = d.sine * displacement.x + d.cosine * displacement.y;
+  return {origin.x + x, origin.y + y, wrap(origin.heading + displacement.heading)};
+}
+
+}  // namespace montecarta::models

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/relative/relative_conditioning.hpp"
+
+#include "filters/joint/products.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <cmath>
+
+namespace montecarta::filters {
+namespace {
+
+/// The step is settled where it changes what is expected by less than this, in standard deviations
+/// of what is measured.
+constexpr double kSettled = 1e-2;
+constexpr int kMostHalvings = 8;
+/// Rises of the sum by less than this share are rounding.
+constexpr double kRounding = 1e-12;
+/// What is exact is so up to this share of the variance that it had.
+constexpr double kExact = 1e-6;
+
+using Lower = Eigen::LLT<Eigen::MatrixXd>;
+
+/// The iteration. Where it is, is known by the step from the mean, P y, and y' P y, the square of
+/// that step in standard deviations; y itself is not needed.
+class Iteration {
+ public:
+  Iteration(const RelativeChain& chain, const RelativeMeasurement& measurement,
+            const Eigen::VectorXd& mean, const Eigen::MatrixXd& P)
+      : chain_(chain), measurement_(measurement), mean_(mean), P_(P) {}
+
+  /// False where a matrix is not positive definite or there are no derivatives.
+  bool run(int iterations, RelativeOutcome& outcome) {
+    step_ = Eigen::VectorXd::Zero(mean_.size());
+    if (!linearise(step_, vehicle_, pairs_)) return false;
+    for (int i = 0;; ++i) {
+      if (!weigh(i == 0)) return false;
+      const Eigen::VectorXd before = vehicle_.rows(chain_, pairs_, step_);
+      const Eigen::VectorXd innovation = pairs_.residual + before;
+      const Eigen::VectorXd weights = S_.solve(innovation);
+      tell(innovation, i == 0, outcome);
+      const Eigen::VectorXd change = HPH_ * weights - before;
+      if (i >= iterations || R_.matrixL().solve(change).norm() < kSettled) {
+        step_ = PH_ * weights;
+        return true;
+      }
+      const double crossed = weights.dot(before), full = weights.dot(HPH_ * weights);
+      if (!take_step(PH_ * weights, crossed, full)) return false;
+    }
+  }
+
+  const Eigen::VectorXd& step() const { return step_; }
+  /// P H' L^-T, S = L L'.
+  Eigen::MatrixXd gain() const {
+    const Eigen::MatrixXd L = S_.matrixL();
+    Eigen::MatrixXd W = PH_;
+    for (Eigen::Index k = 0; k < W.cols(); ++k) {
+      for (Eigen::Index j = 0; j < k; ++j) W.col(k) -= L(k, j) * W.col(j);
+      W.col(k) /= L(k, k);
+    }
+    return W;
+  }
+
+ private:
+  bool linearise(const Eigen::VectorXd& step, VehicleInFrames& vehicle,
+                 LinearisedPairs& pairs) const {
+    const Eigen::VectorXd at = mean_ + step;
+    vehicle.linearise(chain_, at, measurement_.oldest_frame);
+    return measurement_.linearise(at, vehicle, pairs);
+  }
+
+  bool weigh(bool is_first) {
+    vehicle_.columns(chain_, P_, pairs_, PH_);
+    HPH_ = vehicle_.rows(chain_, pairs_, PH_);
+    if (is_first) {
+      noise_ = kExact * HPH_;
+      if (measurement_.variances.size() > 0) noise_ = measurement_.variances.asDiagonal();
+      R_.compute(noise_);
+    }
+    S_.compute(HPH_ + noise_);
+    return R_.info() == Eigen::Success && S_.info() == Eigen::Success;
+  }
+
+  void tell(const Eigen::VectorXd& innovation, bool is_first, RelativeOutcome& outcome) const {
+    const double distance = S_.matrixL().solve(innovation).squaredNorm();
+    if (is_first) {
+      outcome.nis = distance;
+      outcome.dof = static_cast<std::uint32_t>(innovation.size());
+    }
+    const double log_root = S_.matrixLLT().diagonal().array().log().sum();
+    outcome.log_likelihood =
+        -0.5 * (distance + static_cast<double>(innovation.size()) * std::log(kTwoPi)) - log_root;
+  }
+
+  double squares(const LinearisedPairs& pairs, double prior) const {
+    return R_.matrixL().solve(pairs.residual).squaredNorm() + prior;
+  }
+
+  /// Towards `full_step`, whose square is `full`; `crossed`: its product with the step so far.
+  bool take_step(const Eigen::VectorXd& full_step, double crossed, double full) {
+    const double now = squares(pairs_, prior_);
+    double share = 1.0;
+    for (int halvings = 0; halvings <= kMostHalvings; ++halvings, share *= 0.5) {
+      const double rest = 1.0 - share;
+      const Eigen::VectorXd tried = rest * step_ + share * full_step;
+      const double prior =
+          rest * rest * prior_ + 2.0 * share * rest * crossed + share * share * full;
+      if (!linearise(tried, tried_vehicle_, tried_pairs_)) continue;
+      if (squares(tried_pairs_, prior) > now * (1.0 + kRounding) && halvings < kMostHalvings)
+        continue;
+      step_ = tried;
+      prior_ = prior;
+      std::swap(vehicle_, tried_vehicle_);
+      std::swap(pairs_, tried_pairs_);
+      return true;
+    }
+    return false;
+  }
+
+  const RelativeChain& chain_;
+  const RelativeMeasurement& measurement_;
+  const Eigen::VectorXd& mean_;
+  const Eigen::MatrixXd& P_;
+  VehicleInFrames vehicle_, tried_vehicle_;
+  LinearisedPairs pairs_, tried_pairs_;
+  Eigen::VectorXd step_;
+  double prior_ = 0.0;
+  Eigen::MatrixXd PH_, HPH_, noise_;
+  Lower R_, S_;
+};
+
+}  // namespace
+
+RelativeOutcome condition(const RelativeChain& chain, const RelativeMeasurement& measurement,
+                          int iterations, Eigen::VectorXd& mean, Eigen::MatrixXd& P) {
+  Iteration iteration(chain, measurement, mean, P);
+  RelativeOutcome outcome;
+  if (!iteration.run(iterations, outcome)) return {.is_faulty = true};
+  const Eigen::MatrixXd W = iteration.gain();
+  mean += iteration.step();
+  for (const Eigen::Index row : chain.displacements) mean(row + 2) = wrap(mean(row + 2));
+  add_product(W, -W, Part::whole, P);
+  return outcome;
+}
+
+}  // namespace montecarta::filters

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/relative/relative_ekf_slam.hpp"
+
+#include "filters/joint/joint_gaussian.hpp"
+#include "filters/relative/chain_moments.hpp"
+#include "filters/setup/filter_options.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace montecarta::filters {
+
+RelativeEkfSlam::RelativeEkfSlam(const FilterSetup& setup)
+    : model_(setup.belief),
+      motion_kind_(motion_of(setup.options)),
+      most_frames_(setup.options.integer("frames")),
+      iterations_(static_cast<int>(setup.options.integer("iterations"))),
+      most_bend_(setup.options.number("bend") *
+                 length_deviation(setup.belief.sensor, setup.belief, 0.0)),
+      lag_(setup.options.integer("lag")),
+      association_(setup),
+      gaussian_(SensorNoise::of(setup.belief)) {}
+
+void RelativeEkfSlam::start(const Pose& start) {
+  association_.clear();
+  motion_.restart();
+  is_at_scan_ = true;
+  gaussian_.start(start);
+  joined_.reset();
+  report_ = {};
+}
+
+void RelativeEkfSlam::predict(const StepContext& /*context*/, const Control& control,
+                              double duration) {
+  is_at_scan_ = false;
+  advance(motion_, control, duration, model_, motion_kind_);
+}
+
+void RelativeEkfSlam::update(const StepContext& /*context*/, Scan scan) {
+  report_ = {};
+  gaussian_.move(motion_);
+  if (joined_) joined_->move(motion_);
+  motion_.restart();
+  is_at_scan_ = true;
+  association_.known() ? association_.pair_by_identity(scan) : pair_nearest(scan);
+  report_.association = association_.counts();
+  condition(scan);
+  initialise_landmarks(scan);
+  join();
+  report_.map_size = static_cast<double>(gaussian_.chain().landmarks.size());
+}
+
+/// Whether the way to a landmark is so uncertain that a detection of it is far from linear.
+bool RelativeEkfSlam::is_bent(std::size_t landmark) const {
+  const auto& [first, again] = gaussian_.chain().landmarks[landmark];
+  return !again && bends_[first.frame] > most_bend_;
+}
+
+/// Conditions on what is seen of landmarks whose way is straight enough; the others are to be
+/// initialised again.
+void RelativeEkfSlam::condition(Scan scan) {
+  std::vector<RelativeGaussian::Seen> seen;
+  again_.clear();
+  bends_ = gaussian_.bends();
+  for (std::size_t k = 0; k < scan.size(); ++k) {
+    const Pairing& pairing = association_.pairings()[k];
+    if (pairing.kind != PairingKind::matched) {
+      report_.log_likelihood += association_.unmatched_log_density();
+      continue;
+    }
+    (is_bent(pairing.landmark) ? again_ : seen)
+        .push_back({pairing.landmark, observation_of(scan[k])});
+  }
+  const RelativeOutcome outcome = gaussian_.see(seen, iterations_);
+  if (outcome.is_faulty) ++report_.numerical_faults;
+  report_.nis = outcome.nis;
+  report_.nis_dof = outcome.dof;
+  report_.log_likelihood += outcome.log_likelihood;
+}
+
+void RelativeEkfSlam::initialise_landmarks(Scan scan) {
+  const auto is_fresh = [](const Pairing& pairing) { return pairing.kind == PairingKind::fresh; };
+  const bool any = !again_.empty() || std::ranges::any_of(association_.pairings(), is_fresh);
+  const bool has_room = gaussian_.chain().displacements.size() < most_frames_;
+  if (any && !gaussian_.is_at_newest_frame() && (has_room || gaussian_.drop_empty_frame()))
+    gaussian_.add_frame();
+  if (!gaussian_.has_again()) waited_ = 0;
+  for (const RelativeGaussian::Seen& seen : again_) gaussian_.add_again(seen);
+  for (std::size_t k = 0; k < scan.size(); ++k) {
+    if (!is_fresh(association_.pairings()[k])) continue;
+    association_.add(scan[k]);
+    gaussian_.add_landmark(observation_of(scan[k]));
+  }
+}
+
+/// Of landmarks that wait the reports know already which they are.
+void RelativeEkfSlam::join() {
+  joined_.reset();
+  if (!gaussian_.has_again()) return;
+  if (waited_++ < lag_) {
+    joined_ = gaussian_;
+    if (joined_->join(iterations_).is_faulty) ++report_.numerical_faults;
+  } else if (gaussian_.join(iterations_).is_faulty) {
+    ++report_.numerical_faults;
+  }
+}
+
+/// By what the reports know.
+void RelativeEkfSlam::pair_nearest(Scan scan) {
+  searches_.assign(scan.size(), {});
+  const AssociationSettings& settings = association_.settings();
+  reported().expect_all([&](std::size_t landmark, const RangeBearing<double>& expected,
+                            const Eigen::Matrix2d& covariance) {
+    const auto L = factor(covariance);
+    if (!L) {
+      ++report_.numerical_faults;
+      return;
+    }
+    for (std::size_t k = 0; k < scan.size(); ++k) {
+      const Eigen::Vector2d innovation = to_vector(residual(observation_of(scan[k]), expected));
+      const double distance = L->whiten(innovation).squaredNorm();
+      searches_[k].offer(static_cast<std::uint32_t>(landmark), distance, distance + L->log_det(),
+                         settings.gate);
+    }
+  });
+  association_.pair_nearest(scan, searches_);
+}
+
+PoseEstimate RelativeEkfSlam::estimate() const {
+  std::optional<RelativeGaussian> moved;
+  if (!is_at_scan_) {
+    moved = reported();
+    moved->move(motion_);
+  }
+  const RelativeGaussian& now = moved ? *moved : reported();
+  const JointEstimate pose = chain_moments(now.chain(), now.mean(), now.covariance(), {});
+  return {PoseMoments{Pose{pose.mean(0), pose.mean(1), pose.mean(2)}, pose.covariance},
+          std::nullopt};
+}
+
+void RelativeEkfSlam::map(std::span<std::optional<LandmarkEstimate>> landmarks) const {
+  const JointEstimate all = *joint(landmarks.size());
+  for (std::size_t k = 0; k < landmarks.size(); ++k) {
+    const Eigen::Index row = 3 + row_of(k);
+    landmarks[k].reset();
+    if (std::isnan(all.mean(row))) continue;
+    landmarks[k] = LandmarkEstimate{all.mean.segment<2>(row), all.covariance.block<2, 2>(row, row)};
+  }
+}
+
+std::optional<JointEstimate> RelativeEkfSlam::joint(std::size_t landmarks) const {
+  std::vector<RelativeChain::Point> points;
+  std::vector<Eigen::Index> places{0, 1, 2};  ///< of the rows that there are, in the result
+  for (std::size_t k = 0; k < landmarks; ++k) {
+    const std::size_t at = association_.slot_of(k);
+    if (at >= reported().chain().landmarks.size()) continue;
+    points.push_back(reported().point(at));
+    places.push_back(3 + row_of(k));
+    places.push_back(4 + row_of(k));
+  }
+  const RelativeGaussian& now = reported();
+  const JointEstimate known = chain_moments(now.chain(), now.mean(), now.covariance(), points);
+  const Eigen::Index size = 3 + row_of(landmarks);
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  JointEstimate joint{Eigen::VectorXd::Constant(size, unknown),
+                      Eigen::MatrixXd::Constant(size, size, unknown)};
+  for (Eigen::Index a = 0; a < known.mean.size(); ++a) {
+    const Eigen::Index row = places[static_cast<std::size_t>(a)];
+    joint.mean(row) = known.mean(a);
+    for (Eigen::Index b = 0; b < known.mean.size(); ++b)
+      joint.covariance(row, places[static_cast<std::size_t>(b)]) = known.covariance(a, b);
+  }
+  return joint;
+}
+
+FilterKind relative_ekf_slam_kind() {
+  return {
+      .name = "relative_ekf_slam",
+      .long_name = "EKF-SLAM in relative coordinates",
+      .source = "EQUATIONS 22",
+      .has_particles = false,
+      .has_mixture = false,
+      .has_joint = true,
+      .options = {count_option("frames", "40", 1, 10000,
+                               "poses at most whose frames landmarks are held in; later ones "
+                               "are held in the last"),
+                  number_option("bend", "0.3", 0, 1e9,
+                                "standard deviations of a detection that uncertain headings "
+                                "may bend the way to a landmark by; beyond it is initialised "
+                                "again"),
+                  count_option("lag", "50", 0, 1000000,
+                               "scans before landmarks that were initialised again are "
+                               "joined with what they were"),
+                  count_option("iterations", "20", 0, 100,
+                               "times a scan is linearised again where it has moved the "
+                               "estimate to"),
+                  fitting_motion_option()},
+      .sensors = {RangeBearingSensor::kName},
+      .make = [](const FilterSetup& setup) { return std::make_unique<RelativeEkfSlam>(setup); }};
+}
+
+}  // namespace montecarta::filters

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/core/slam_filter.hpp"
+#include "filters/association/map_association.hpp"
+#include "filters/moments/control_motion.hpp"
+#include "filters/relative/relative_gaussian.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace montecarta::filters {
+
+/// EKF-SLAM in relative coordinates (EQUATIONS 22): a joint Gaussian of the displacements between
+/// the poses that saw landmarks first, and of the landmarks in the frames of these poses, where all
+/// of them are nearly Gaussian however uncertain the heading in the map is. It forgets all other
+/// poses and linearises nothing twice.
+class RelativeEkfSlam final : public SlamFilter {
+ public:
+  explicit RelativeEkfSlam(const FilterSetup& setup);
+
+  void start(const Pose& start) override;
+  void predict(const StepContext& context, const Control& control, double duration) override;
+  void update(const StepContext& context, Scan scan) override;
+  PoseEstimate estimate() const override;
+  const ScanReport& report() const override { return report_; }
+  void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override;
+  std::optional<JointEstimate> joint(std::size_t landmarks) const override;
+
+ private:
+  void pair_nearest(Scan scan);
+  void condition(Scan scan);
+  bool is_bent(std::size_t landmark) const;
+  void initialise_landmarks(Scan scan);
+  void join();
+  const RelativeGaussian& reported() const { return joined_ ? *joined_ : gaussian_; }
+
+  Belief model_;
+  Motion motion_kind_;
+  std::size_t most_frames_;
+  int iterations_;
+  double most_bend_;  ///< [m]
+  std::size_t lag_;   ///< [scans]
+  MapAssociation association_;
+  MotionIncrement motion_;  ///< since the last scan
+  bool is_at_scan_ = true;  ///< nothing came after it
+  RelativeGaussian gaussian_;
+  /// With the landmarks that were initialised again joined, where there are any.
+  std::optional<RelativeGaussian> joined_;
+  std::size_t waited_ = 0;                     ///< [scans] since the first of them
+  std::vector<RelativeGaussian::Seen> again_;  ///< of this scan, to be initialised again
+  std::vector<double> bends_;                  ///< {frame} RelativeGaussian::bends()
+  std::vector<NearestSearch> searches_;        ///< scratch
+  ScanReport report_;
+};
+
+/// Its line in the table of filters.
+FilterKind relative_ekf_slam_kind();
+
+}  // namespace montecarta::filters

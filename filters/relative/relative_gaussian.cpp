@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/relative/relative_gaussian.hpp"
+
+#include "filters/joint/map_moments.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace montecarta::filters {
+namespace {
+
+using Point = RelativeChain::Point;
+using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+
+}  // namespace
+
+void RelativeGaussian::start(const Pose& start) {
+  chain_ = {.start = start, .displacements = {0}, .landmarks = {}};
+  rows_ = 3;
+  mean_ = Eigen::VectorXd::Zero(kPack);
+  P_ = Eigen::MatrixXd::Zero(kPack, kPack);
+}
+
+void RelativeGaussian::move(const MotionIncrement& motion) {
+  const PoseGaussian<double> moved = motion.from(Pose{mean_(0), mean_(1), mean_(2)});
+  const double x = mean_(1) - moved.mean.y, y = moved.mean.x - mean_(0);
+  mean_.head<3>() << moved.mean.x, moved.mean.y, moved.mean.heading;
+  P_.col(0) += x * P_.col(2);
+  P_.col(1) += y * P_.col(2);
+  P_.row(0) += x * P_.row(2);
+  P_.row(1) += y * P_.row(2);
+  P_.topLeftCorner<3, 3>() += symmetric(moved.covariance);
+  P_.topRows<3>() = P_.leftCols<3>().transpose().eval();
+  P_(0, 1) = P_(1, 0);
+}
+
+/// Half the variance of the heading before it times the way behind it is how far a displacement
+/// over the frame is from linear.
+bool RelativeGaussian::drop_empty_frame() {
+  std::vector<char> is_empty(chain_.displacements.size(), true);
+  for (const auto& [first, again] : chain_.landmarks) {
+    is_empty[first.frame] = false;
+    if (again) is_empty[again->frame] = false;
+  }
+  std::size_t straightest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 1; k < is_empty.size(); ++k) {
+    const Eigen::Index before = chain_.displacements[k - 1] + 2;
+    const Pose way = displacement(chain_, k, mean_);
+    const double bend = 0.5 * P_(before, before) * std::hypot(way.x, way.y);
+    if (!is_empty[k] || bend >= least) continue;
+    least = bend;
+    straightest = k;
+  }
+  if (straightest > 0) drop_frame(straightest);
+  return straightest > 0;
+}
+
+/// The displacements to and from it become one, which takes the rows of the second.
+void RelativeGaussian::drop_frame(std::size_t frame) {
+  const Eigen::Index from = chain_.displacements[frame - 1], to = chain_.displacements[frame];
+  const auto both = linearised_composition(displacement(chain_, frame - 1, mean_),
+                                           displacement(chain_, frame, mean_));
+  const Columns columns = P_.middleCols<3>(from).lazyProduct(both.by_first.transpose()) +
+                          P_.middleCols<3>(to).lazyProduct(both.by_second.transpose());
+  const Eigen::Matrix3d own =
+      both.by_first * columns.middleRows<3>(from) + both.by_second * columns.middleRows<3>(to);
+  mean_.segment<3>(to) << both.pose.x, both.pose.y, both.pose.heading;
+  P_.middleCols<3>(to) = columns;
+  P_.middleRows<3>(to) = columns.transpose();
+  P_.block<3, 3>(to, to) = own.selfadjointView<Eigen::Lower>();
+  chain_.displacements.erase(chain_.displacements.begin() + static_cast<std::ptrdiff_t>(frame) - 1);
+  for (auto& [first, again] : chain_.landmarks) {
+    if (first.frame >= frame) --first.frame;
+    if (again && again->frame >= frame) --again->frame;
+  }
+  std::vector<char> is_kept(static_cast<std::size_t>(mean_.size()), true);
+  std::fill_n(is_kept.begin() + from, 3, false);
+  keep_rows(is_kept);
+}
+
+bool RelativeGaussian::is_at_newest_frame() const {
+  return mean_.head<3>().isZero(0.0) && P_.topLeftCorner<3, 3>().isZero(0.0);
+}
+
+void RelativeGaussian::add_frame() {
+  const Eigen::Index row = add_rows(3);
+  mean_.segment<3>(row) = mean_.head<3>();
+  mean_.head<3>().setZero();
+  P_.middleCols<3>(row) = P_.leftCols<3>();
+  P_.middleRows<3>(row) = P_.topRows<3>();
+  P_.block<3, 3>(row, row) = P_.topLeftCorner<3, 3>();
+  P_.leftCols<3>().setZero();
+  P_.topRows<3>().setZero();
+  chain_.displacements.back() = row;
+  chain_.displacements.push_back(0);
+}
+
+void RelativeGaussian::add_landmark(const RangeBearing<double>& observed) {
+  chain_.landmarks.push_back({add_point(observed), std::nullopt});
+}
+
+void RelativeGaussian::add_again(const Seen& seen) {
+  chain_.landmarks[seen.landmark].again = add_point(seen.observed);
+}
+
+/// Where the vehicle is the frame, range and bearing are the coordinates and so exactly Gaussian.
+Point RelativeGaussian::add_point(const RangeBearing<double>& observed) {
+  const bool is_polar = is_at_newest_frame();
+  const Eigen::Index row = add_rows(2);
+  const Eigen::Vector2d variances(noise_.range, noise_.bearing);
+  const Point point{row, chain_.newest_frame(), is_polar};
+  if (is_polar) {
+    mean_.segment<2>(row) << observed.range, observed.bearing;
+    P_.block<2, 2>(row, row) = variances.asDiagonal();
+    return point;
+  }
+  const auto place = linearised_place(Pose{mean_(0), mean_(1), mean_(2)}, observed);
+  const Matrix23 G = pose_jacobian(place);
+  const Eigen::Matrix2d Gz = observation_jacobian(place);
+  mean_.segment<2>(row) = to_vector(place.point);
+  P_.middleCols<2>(row) = P_.leftCols<3>().lazyProduct(G.transpose());
+  P_.middleRows<2>(row) = P_.middleCols<2>(row).transpose();
+  P_.block<2, 2>(row, row) =
+      G * P_.topLeftCorner<3, 3>() * G.transpose() + Gz * variances.asDiagonal() * Gz.transpose();
+  P_(row, row + 1) = P_(row + 1, row);
+  return point;
+}
+
+const Point& RelativeGaussian::point(std::size_t landmark) const {
+  const auto& [first, again] = chain_.landmarks[landmark];
+  return again ? *again : first;
+}
+
+bool RelativeGaussian::has_again() const {
+  return std::ranges::any_of(chain_.landmarks,
+                             [](const auto& landmark) { return landmark.again.has_value(); });
+}
+
+std::vector<double> RelativeGaussian::bends() const {
+  std::vector<double> bends(chain_.displacements.size());
+  Eigen::VectorXd with_heading = Eigen::VectorXd::Zero(mean_.size());
+  double variance = 0.0, farthest = 0.0;
+  Pose vehicle{};
+  for (std::size_t k = bends.size(); k-- > 0;) {
+    const Eigen::Index row = chain_.displacements[k] + 2;
+    variance += P_(row, row) + 2.0 * with_heading(row);
+    with_heading += P_.col(row);
+    vehicle = composed(displacement(chain_, k, mean_), vehicle);
+    farthest = std::max(farthest, std::hypot(vehicle.x, vehicle.y));
+    bends[k] = 0.5 * variance * farthest;
+  }
+  return bends;
+}
+
+Eigen::Index RelativeGaussian::add_rows(Eigen::Index count) {
+  const Eigen::Index first = std::exchange(rows_, rows_ + count), held = mean_.size();
+  const Eigen::Index room = (rows_ + kPack - 1) / kPack * kPack;
+  if (room > held) {
+    mean_.conservativeResize(room);
+    mean_.tail(room - held).setZero();
+    P_.conservativeResize(room, room);
+    P_.bottomRows(room - held).setZero();
+    P_.rightCols(room - held).setZero();
+  }
+  return first;
+}
+
+void RelativeGaussian::keep_rows(const std::vector<char>& is_kept) {
+  std::vector<Eigen::Index> kept, now(static_cast<std::size_t>(rows_));
+  for (Eigen::Index row = 0; row < rows_; ++row) {
+    now[static_cast<std::size_t>(row)] = static_cast<Eigen::Index>(kept.size());
+    if (is_kept[static_cast<std::size_t>(row)]) kept.push_back(row);
+  }
+  const Eigen::VectorXd mean = mean_(kept);
+  const Eigen::MatrixXd P = P_(kept, kept);
+  rows_ = static_cast<Eigen::Index>(kept.size());
+  mean_.setZero((rows_ + kPack - 1) / kPack * kPack);
+  mean_.head(rows_) = mean;
+  P_.setZero(mean_.size(), mean_.size());
+  P_.topLeftCorner(rows_, rows_) = P;
+  for (Eigen::Index& row : chain_.displacements) row = now[static_cast<std::size_t>(row)];
+  for (auto& [first, again] : chain_.landmarks) {
+    first.row = now[static_cast<std::size_t>(first.row)];
+    if (again) again->row = now[static_cast<std::size_t>(again->row)];
+  }
+}
+
+}  // namespace montecarta::filters

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/moments/motion_increment.hpp"
+#include "filters/moments/sensor_noise.hpp"
+#include "filters/relative/relative_conditioning.hpp"
+
+#include <Eigen/Core>
+
+#include <span>
+
+namespace montecarta::filters {
+
+/// One Gaussian over displacements along a chain of frames and landmarks in these frames (EQUATIONS
+/// 22). Nothing in it depends on where the start is in the map.
+class RelativeGaussian {
+ public:
+  /// A detection of a landmark.
+  struct Seen {
+    std::size_t landmark;
+    RangeBearing<double> observed;
+  };
+
+  explicit RelativeGaussian(const SensorNoise& noise) : noise_(noise) {}
+
+  void start(const Pose& start);
+  void move(const MotionIncrement& motion);
+  /// Conditions on detections, together; those too near for a derivative are left out.
+  RelativeOutcome see(std::span<const Seen> scan, int iterations);
+  /// Whether the vehicle is for certain where the newest frame is.
+  bool is_at_newest_frame() const;
+  /// The pose of the vehicle becomes the newest frame.
+  void add_frame();
+  /// Drops the frame without landmarks that costs least; false where all have some.
+  bool drop_empty_frame();
+  /// The next landmark, in the newest frame.
+  void add_landmark(const RangeBearing<double>& observed);
+  /// Initialises a landmark a second time, by itself.
+  void add_again(const Seen& seen);
+  /// Both of each landmark that was initialised again become one. Where that fails the first is
+  /// forgotten, and the outcome is faulty.
+  RelativeOutcome join(int iterations);
+
+  const RelativeChain& chain() const { return chain_; }
+  const Eigen::VectorXd& mean() const { return mean_; }
+  const Eigen::MatrixXd& covariance() const { return P_; }
+  /// The point of a landmark that detections are of.
+  const RelativeChain::Point& point(std::size_t landmark) const;
+  bool has_again() const;
+  /// {frame} [m] how far the uncertain headings on the way to each frame bend it: half the variance
+  /// of the heading of the vehicle there times the farthest that the way leads from the vehicle.
+  std::vector<double> bends() const;
+  /// Calls expect(landmark, expected observation, covariance of the innovation) for all landmarks
+  /// but those too near.
+  void expect_all(const std::function<void(std::size_t, const RangeBearing<double>&,
+                                           const Eigen::Matrix2d&)>& expect) const;
+
+ private:
+  RelativeChain::Point add_point(const RangeBearing<double>& observed);
+  Eigen::Index add_rows(Eigen::Index count);
+  void drop_frame(std::size_t frame);
+  void keep_rows(const std::vector<char>& is_kept);
+
+  SensorNoise noise_;
+  RelativeChain chain_;
+  Eigen::Index rows_ = 0;  ///< used; those behind are zero
+  Eigen::VectorXd mean_;
+  Eigen::MatrixXd P_;
+};
+
+}  // namespace montecarta::filters

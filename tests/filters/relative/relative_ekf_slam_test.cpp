@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/relative/relative_ekf_slam.hpp"
+
+#include "filters/joint/joint_filters.hpp"
+#include "filters/smoothing/smoother.hpp"
+#include "tests/filters/default_options.hpp"
+#include "tests/filters/fine_noise.hpp"
+#include "tests/filters/small_world.hpp"
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+namespace montecarta::filters {
+namespace {
+
+using Others = std::map<std::string, std::string, std::less<>>;
+
+std::unique_ptr<SlamFilter> make(const FilterKind& kind, const SmallWorldSettings& settings,
+                                 const Others& others = {},
+                                 Association association = Association::known) {
+  return kind.make({.belief = settings.noise,
+                    .association = {.kind = association},
+                    .options = default_options(kind, others),
+                    .landmarks = settings.landmarks});
+}
+
+std::vector<PoseMoments> estimates_of(SlamFilter& filter, const SmallWorld& world) {
+  std::vector<PoseMoments> estimates;
+  drive_through(filter, world, {},
+                [&](std::size_t) { estimates.push_back(filter.estimate().spread); });
+  return estimates;
+}
+
+void expect_close(const std::vector<PoseMoments>& these, const std::vector<PoseMoments>& those,
+                  double deviations, double share) {
+  ASSERT_EQ(these.size(), those.size());
+  for (std::size_t scan = 0; scan < these.size(); ++scan) {
+    const Eigen::LLT<Eigen::Matrix3d> L(those[scan].covariance);
+    const Eigen::Vector3d way = boxminus(these[scan].mean, those[scan].mean);
+    EXPECT_LT(L.matrixL().solve(way).norm(), deviations) << "scan " << scan;
+    EXPECT_TRUE(these[scan].covariance.isApprox(those[scan].covariance, share)) << "scan " << scan;
+  }
+}
+
+// With noise so fine that all models are linear.
+TEST(RelativeEkfSlam, IsTheKalmanFilterOnALinearModel) {
+  SmallWorldSettings settings{.seed = 46, .scans = 60};
+  settings.noise = fine();
+  const SmallWorld world = small_world(settings);
+  for (const auto association : {Association::known, Association::nearest}) {
+    const auto kalman = make(ekf_slam_kind(), settings, {}, association);
+    const auto filter = make(relative_ekf_slam_kind(), settings, {}, association);
+    expect_close(estimates_of(*filter, world), estimates_of(*kalman, world), 0.02, 1e-3);
+  }
+}
+
+TEST(RelativeEkfSlam, IsThatAlsoWhereEveryLandmarkIsInitialisedAgain) {
+  SmallWorldSettings settings{.seed = 47, .scans = 60};
+  settings.noise = fine();
+  const SmallWorld world = small_world(settings);
+  const auto expected = estimates_of(*make(ekf_slam_kind(), settings), world);
+  for (const char* lag : {"0", "3"}) {
+    const auto filter =
+        make(relative_ekf_slam_kind(), settings, {{"bend", "0"}, {"lag", lag}, {"frames", "8"}});
+    expect_close(estimates_of(*filter, world), expected, 0.02, 2e-3);
+  }
+}
+
+/// Noise with which the heading is lost and a loop of 27 m closes far from where it began.
+SmallWorldSettings rough() {
+  SmallWorldSettings settings{.seed = 42, .scans = 330};
+  settings.noise = {.control = {.sigma = {1.0, 10.0 * kPi / 180.0}},
+                    .sigma_range = 0.5,
+                    .sigma_bearing = 5.0 * kPi / 180.0};
+  return settings;
+}
+
+TEST(RelativeEkfSlam, IsNearFullSmoothingBehindALoop) {
+  const SmallWorldSettings settings = rough();
+  const SmallWorld world = small_world(settings);
+  const auto expected = estimates_of(*make(smoother_kind(), settings), world);
+  const auto now =
+      estimates_of(*make(relative_ekf_slam_kind(), settings, {{"bend", "0.05"}}), world);
+  for (std::size_t scan = 0; scan < now.size(); ++scan) {
+    const Eigen::LLT<Eigen::Matrix3d> L(expected[scan].covariance);
+    const Eigen::Vector3d way = boxminus(now[scan].mean, expected[scan].mean);
+    EXPECT_LT(L.matrixL().solve(way).norm(), 0.5) << "scan " << scan;
+    EXPECT_NEAR(now[scan].covariance(2, 2) / expected[scan].covariance(2, 2), 1.0, 0.2);
+  }
+}
+
+// Between two scans it is predicted, from what the scan before told.
+TEST(RelativeEkfSlam, EstimatesBetweenScans) {
+  const SmallWorldSettings settings;
+  const SmallWorld world = small_world(settings);
+  const auto filter = make(relative_ekf_slam_kind(), settings);
+  drive_through(*filter, world, {}, [](std::size_t) {});
+  const StepContext context(1, 0, 999, Parallel::serial());
+  const PoseMoments before = filter->estimate().spread;
+  filter->predict(context, {3.0, 0.0}, 0.2);
+  const PoseMoments moved = filter->estimate().spread;
+  EXPECT_NEAR(std::hypot(moved.mean.x - before.mean.x, moved.mean.y - before.mean.y), 0.6, 0.02);
+  EXPECT_GT(moved.covariance.determinant(), before.covariance.determinant());
+  filter->update(context, {});
+  const PoseMoments after = filter->estimate().spread;
+  EXPECT_LT(boxminus(after.mean, moved.mean).norm(), 1e-12);
+  EXPECT_LT((after.covariance - moved.covariance).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace montecarta::filters
