@@ -49,7 +49,7 @@ bool RelativeGaussian::drop_empty_frame() {
   for (std::size_t k = 1; k < is_empty.size(); ++k) {
     const Eigen::Index before = chain_.displacements[k - 1] + 2;
     const Pose way = displacement(chain_, k, mean_);
-    const double bend = 0.5 * P_(before, before) * std::hypot(way.x, way.y);
+    const double bend = 0.5 * P_(before, before) * length(way.x, way.y);
     if (!is_empty[k] || bend >= least) continue;
     least = bend;
     straightest = k;
@@ -149,7 +149,7 @@ std::vector<double> RelativeGaussian::bends() const {
     variance += P_(row, row) + 2.0 * with_heading(row);
     with_heading += P_.col(row);
     vehicle = composed(displacement(chain_, k, mean_), vehicle);
-    farthest = std::max(farthest, std::hypot(vehicle.x, vehicle.y));
+    farthest = std::max(farthest, length(vehicle.x, vehicle.y));
     bends[k] = 0.5 * variance * farthest;
   }
   return bends;
