@@ -82,4 +82,19 @@ inline std::vector<std::string> includes_of(const Lines& lines) {
   return names;
 }
 
+/// Numbers that several equations of one document have.
+inline std::vector<std::string> numbers_given_twice(const Lines& document) {
+  static const std::regex number(R"(\\tag\{([^}]*)\})");
+  std::vector<std::string> numbers, twice;
+  for (const std::string& line : document) {
+    std::smatch found;
+    if (std::regex_search(line, found, number)) numbers.push_back(found[1]);
+  }
+  std::ranges::sort(numbers);
+  for (std::size_t i = 1; i < numbers.size(); ++i) {
+    if (numbers[i] == numbers[i - 1]) twice.push_back(numbers[i]);
+  }
+  return twice;
+}
+
 }  // namespace montecarta::sources

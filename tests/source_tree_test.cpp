@@ -230,21 +230,6 @@ TEST(SourceTree, NothingIsInvertedAndNothingIsLeftToDo) {
   EXPECT_THAT(faults(sources(), "inverse() or left to do", broken), IsEmpty());
 }
 
-/// Numbers that several equations of one document have.
-std::vector<std::string> numbers_given_twice(const Lines& document) {
-  static const std::regex number(R"(\\tag\{([^}]*)\})");
-  std::vector<std::string> numbers, twice;
-  for (const std::string& line : document) {
-    std::smatch found;
-    if (std::regex_search(line, found, number)) numbers.push_back(found[1]);
-  }
-  std::ranges::sort(numbers);
-  for (std::size_t i = 1; i < numbers.size(); ++i) {
-    if (numbers[i] == numbers[i - 1]) twice.push_back(numbers[i]);
-  }
-  return twice;
-}
-
 TEST(SourceTree, EquationsHaveNumbersOfTheirOwn) {
   const Lines equations = read_lines(fs::path(MONTECARTA_SOURCE_DIR) / "filters/EQUATIONS.md");
   EXPECT_THAT(equations, testing::Contains(HasSubstr("\\tag{1.1}")));
