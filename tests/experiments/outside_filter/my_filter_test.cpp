@@ -5,16 +5,18 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace montecarta::filters {
 namespace {
 
 TEST(MyFilter, EndsWhereTheNoiseOfTheControlsLeavesIt) {
   const SmallWorldSettings settings;
   const SmallWorld world = small_world(settings);
-  FilterSetup setup;
-  setup.belief = settings.noise;
-  setup.landmarks = settings.landmarks;
-  DeadReckoning filter(setup);
+  DeadReckoning filter({.belief = settings.noise,
+                        .association = {},
+                        .options = FilterOptions({}),
+                        .landmarks = settings.landmarks});
   drive_through(filter, world, world.itinerary.start, [](std::size_t /*scan*/) {});
   const auto [mean, covariance] = filter.estimate().spread;
   const Pose& truth = world.drive.truth.back();
