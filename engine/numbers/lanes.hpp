@@ -36,14 +36,6 @@ struct alignas(64) Lanes {
   ~Lanes() = default;
   Lanes(double value) { part.fill(Register(value)); }  // NOLINT: a number is the same in every lane
 
-  /// Eight doubles from memory aligned to 64 bytes.
-  static Lanes load(const double* memory) {
-    Lanes lanes;
-    for (std::size_t k = 0; k < kRegisters; ++k) {
-      lanes.part[k] = Register::load_aligned(memory + k * Register::size);
-    }
-    return lanes;
-  }
   /// Eight doubles from anywhere.
   [[gnu::always_inline]] static Lanes load_unaligned(const double* memory) {
     Lanes lanes;

@@ -35,13 +35,6 @@ using std::sqrt;
 inline double select(bool mask, double a, double b) { return mask ? a : b; }
 inline bool any(bool mask) { return mask; }
 
-inline double load(const double* memory, double /*like*/) { return *memory; }
-inline Lanes load(const double* memory, const Lanes& /*like*/) { return Lanes::load(memory); }
-/// `kLanesOf<Real>` consecutive doubles, aligned for Real.
-template <class Real>
-Real load_real(const double* memory) {
-  return load(memory, Real());
-}
 /// number(lane) in every lane.
 template <class Real, class Function>
 [[gnu::always_inline]] inline Real composed(const Function& number) {
