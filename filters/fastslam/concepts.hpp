@@ -39,7 +39,7 @@ template <class MapTransform, class Real>
 using HeldBy = decltype(std::declval<const MapTransform&>().initialise(
     BasicPose<Real>(), RangeBearing<Real>(), SensorNoise()));
 
-/// Keeps landmarks, those two and any other: as a LandmarkGaussian, or in a form of its own that
+/// Keeps landmarks, as those two do: each as a LandmarkGaussian, or in a form of its own that
 /// gaussian_of() gives as one. A form is a struct of Reals; one that was never seen, `{}`, must be
 /// finite.
 template <class T, class Real>
