@@ -11,6 +11,11 @@ namespace {
 using Complex = std::complex<double>;
 constexpr Complex kI(0.0, 1.0);
 
+/// Of finite numbers: operator* looks for others.
+Complex product(const Complex& a, const Complex& b) {
+  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+
 /// One turned displacement T = exp(i psi) a of a place, psi and a Gaussian. Terms 0, 1, ... are the
 /// displacements from frame to frame, that to the vehicle last, then the points in their frames.
 struct Term {
@@ -38,7 +43,15 @@ class Terms {
   JointEstimate estimate() const {
     std::vector<Eigen::Index> rows{2 * vehicle_, 2 * vehicle_ + 1, 2 * size()};
     for (Eigen::Index i = 2 * vehicle_ + 2; i < 2 * size(); ++i) rows.push_back(i);
-    return {places_(rows), covariance_(rows, rows)};
+    Eigen::MatrixXd columns = covariance_(Eigen::all, rows);
+    for (auto column : columns.colwise()) {
+      for (Eigen::Index i = 0; i < size(); ++i) {
+        const Eigen::Index before = term(i).before;
+        if (before >= 0) column.segment<2>(2 * i) += column.segment<2>(2 * before);
+      }
+    }
+    const Eigen::MatrixXd P = columns(rows, Eigen::all);
+    return {places_(rows), P.selfadjointView<Eigen::Lower>()};
   }
 
  private:
@@ -95,32 +108,36 @@ class Terms {
     const Complex l(K(0, 0) + K(1, 1), K(1, 0) - K(0, 1));
     const Complex c = kI * with_heading(i, j), d = kI * with_heading(j, i);
     const double apart = std::expm1(headings_(i, j)), together = -apart / (1.0 + apart);
-    const Complex product =
-        s.turn * t.turn *
-        (together * ((s.way + c) * (t.way + d) + k) + c * t.way + s.way * d + c * d + k);
-    const Complex conjugate = s.turn * std::conj(t.turn) *
-                              (apart * ((s.way - c) * std::conj(t.way - d) + l) -
-                               c * std::conj(t.way) - s.way * std::conj(d) + c * std::conj(d) + l);
+    const Complex more = product(c, t.way) + product(s.way + c, d) + k;
+    const Complex less = l - product(c, std::conj(t.way)) - product(s.way - c, std::conj(d));
+    const Complex plain =
+        product(product(s.turn, t.turn), together * (product(s.way, t.way) + more) + more);
+    const Complex conjugate = product(product(s.turn, std::conj(t.turn)),
+                                      apart * (product(s.way, std::conj(t.way)) + less) + less);
     Eigen::Matrix2d B;
-    B << product.real() + conjugate.real(), product.imag() - conjugate.imag(),
-        product.imag() + conjugate.imag(), conjugate.real() - product.real();
+    B << plain.real() + conjugate.real(), plain.imag() - conjugate.imag(),
+        plain.imag() + conjugate.imag(), conjugate.real() - plain.real();
     return 0.5 * B;
   }
 
-  /// Of the terms, lower triangle, and in the last row with the vehicle's heading.
+  /// Of the terms, and in the last row and column with the vehicle's heading.
   void gather_covariances() {
     const Eigen::Index n = size();
-    covariance_.setZero(2 * n + 1, 2 * n + 1);
+    covariance_.resize(2 * n + 1, 2 * n + 1);
     for (Eigen::Index j = 0; j < n; ++j) {
-      for (Eigen::Index i = j; i < n; ++i) covariance_.block<2, 2>(2 * i, 2 * j) = covariance(i, j);
+      for (Eigen::Index i = j; i < n; ++i) {
+        const Eigen::Matrix2d B = covariance(i, j);
+        covariance_.block<2, 2>(2 * j, 2 * i) = B.transpose();
+        covariance_.block<2, 2>(2 * i, 2 * j) = B;
+      }
       const Complex c = term(j).turn * (kI * headings_(j, n) * term(j).way + with_heading(j, n));
-      covariance_.block<1, 2>(2 * n, 2 * j) << c.real(), c.imag();
+      covariance_.col(2 * n).segment<2>(2 * j) << c.real(), c.imag();
     }
+    covariance_.row(2 * n) = covariance_.col(2 * n).transpose();
     covariance_(2 * n, 2 * n) = headings_(n, n);
-    covariance_ = Eigen::MatrixXd(covariance_.selfadjointView<Eigen::Lower>());
   }
 
-  /// From terms to places, which are sums of them.
+  /// From terms to places, which are sums of them: means, and columns of covariances.
   void gather_places(const Pose& start) {
     const Eigen::Index n = size();
     places_.resize(2 * n + 1);
@@ -135,12 +152,7 @@ class Terms {
         covariance_.middleCols<2>(2 * i) += covariance_.middleCols<2>(2 * before);
       }
     }
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const Eigen::Index before = term(i).before;
-      if (before >= 0) covariance_.middleRows<2>(2 * i) += covariance_.middleRows<2>(2 * before);
-    }
     places_(2 * n) = wrap(heading_);
-    covariance_ = Eigen::MatrixXd(covariance_.selfadjointView<Eigen::Lower>());
   }
 
   const Eigen::VectorXd& mean_;
@@ -151,7 +163,7 @@ class Terms {
   Eigen::MatrixXd by_heading_;  ///< {row, term} Cov(component, psi); behind the terms: heading
   Eigen::MatrixXd headings_;    ///< {term, term} Cov(psi, psi), likewise
   Eigen::VectorXd places_;      ///< {2 term}, then the heading
-  Eigen::MatrixXd covariance_;  ///< likewise
+  Eigen::MatrixXd covariance_;  ///< of the terms with the places, likewise
 };
 
 }  // namespace

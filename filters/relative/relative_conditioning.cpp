@@ -11,8 +11,9 @@ namespace montecarta::filters {
 namespace {
 
 /// The step is settled where it changes what is expected by less than this, in standard deviations
-/// of what is measured.
+/// of what is measured or, where that is exact, of what stays.
 constexpr double kSettled = 1e-2;
+constexpr double kSettledExactly = 1.0;
 constexpr int kMostHalvings = 8;
 /// Rises of the sum by less than this share are rounding.
 constexpr double kRounding = 1e-12;
@@ -40,7 +41,8 @@ class Iteration {
       const Eigen::VectorXd weights = S_.solve(innovation);
       tell(innovation, i == 0, outcome);
       const Eigen::VectorXd change = HPH_ * weights - before;
-      if (i >= iterations || R_.matrixL().solve(change).norm() < kSettled) {
+      if (i >= iterations ||
+          R_.matrixL().solve(change).norm() < (is_exact() ? kSettledExactly : kSettled)) {
         step_ = PH_ * weights;
         return true;
       }
@@ -62,6 +64,8 @@ class Iteration {
   }
 
  private:
+  bool is_exact() const { return measurement_.variances.size() == 0; }
+
   bool linearise(const Eigen::VectorXd& step, VehicleInFrames& vehicle,
                  LinearisedPairs& pairs) const {
     const Eigen::VectorXd at = mean_ + step;
@@ -74,7 +78,7 @@ class Iteration {
     HPH_ = vehicle_.rows(chain_, pairs_, PH_);
     if (is_first) {
       noise_ = kExact * HPH_;
-      if (measurement_.variances.size() > 0) noise_ = measurement_.variances.asDiagonal();
+      if (!is_exact()) noise_ = measurement_.variances.asDiagonal();
       R_.compute(noise_);
     }
     S_.compute(HPH_ + noise_);

@@ -94,16 +94,17 @@ void RelativeEkfSlam::initialise_landmarks(Scan scan) {
   }
 }
 
-/// Of landmarks that wait the reports know already which they are.
 void RelativeEkfSlam::join() {
   joined_.reset();
   if (!gaussian_.has_again()) return;
+  bool is_joined;
   if (waited_++ < lag_) {
     joined_ = gaussian_;
-    if (joined_->join(iterations_).is_faulty) ++report_.numerical_faults;
-  } else if (gaussian_.join(iterations_).is_faulty) {
-    ++report_.numerical_faults;
+    is_joined = joined_->equate(iterations_);
+  } else {
+    is_joined = gaussian_.join(iterations_);
   }
+  if (!is_joined) ++report_.numerical_faults;
 }
 
 /// By what the reports know.

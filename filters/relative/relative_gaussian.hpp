@@ -37,9 +37,11 @@ class RelativeGaussian {
   void add_landmark(const RangeBearing<double>& observed);
   /// Initialises a landmark a second time, by itself.
   void add_again(const Seen& seen);
-  /// Both of each landmark that was initialised again become one. Where that fails the first is
-  /// forgotten, and the outcome is faulty.
-  RelativeOutcome join(int iterations);
+  /// Conditions on that all landmarks that were initialised again are what they were; false where
+  /// that fails and nothing was changed.
+  [[nodiscard]] bool equate(int iterations);
+  /// Likewise, and forgets the second coordinates; where it fails, the first ones.
+  [[nodiscard]] bool join(int iterations);
 
   const RelativeChain& chain() const { return chain_; }
   const Eigen::VectorXd& mean() const { return mean_; }
@@ -50,12 +52,16 @@ class RelativeGaussian {
   /// {frame} [m] how far the uncertain headings on the way to each frame bend it: half the variance
   /// of the heading of the vehicle there times the farthest that the way leads from the vehicle.
   std::vector<double> bends() const;
-  /// Calls expect(landmark, expected observation, covariance of the innovation) for all landmarks
-  /// but those too near.
-  void expect_all(const std::function<void(std::size_t, const RangeBearing<double>&,
-                                           const Eigen::Matrix2d&)>& expect) const;
+  using Expect =
+      std::function<void(std::size_t landmark, const RangeBearing<double>& expected,
+                         const Eigen::Matrix2d& covariance)>;  ///< that of the innovation
+  /// Calls `expect` for all landmarks but those too near for a derivative.
+  void expect_all(const Expect& expect) const;
 
  private:
+  bool linearise(std::span<const Seen> scan, const Eigen::VectorXd& mean,
+                 const VehicleInFrames& vehicle, LinearisedPairs& pairs) const;
+  void expect_one(std::size_t landmark, const VehicleGaussian& vehicle, const Expect& expect) const;
   RelativeChain::Point add_point(const RangeBearing<double>& observed);
   Eigen::Index add_rows(Eigen::Index count);
   void drop_frame(std::size_t frame);

@@ -44,4 +44,16 @@ class VehicleInFrames {
   std::vector<LinearisedComposition> steps_;  ///< {frame} pose: of the vehicle
 };
 
+/// The vehicle's pose in one frame after the other, newest first, as a Gaussian: for what is asked
+/// of all frames.
+struct VehicleGaussian {
+  Pose pose = {};
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  Eigen::Matrix<double, Eigen::Dynamic, 3> with_all;  ///< covariance of all rows with the pose
+
+  /// From that in frame k + 1, or the vehicle's own, for which all is zero.
+  void become_that_in_frame(std::size_t k, const RelativeChain& chain, const Eigen::VectorXd& mean,
+                            const Eigen::MatrixXd& P);
+};
+
 }  // namespace montecarta::filters

@@ -66,6 +66,18 @@ TEST(RelativeEkfSlam, IsThatAlsoWhereEveryLandmarkIsInitialisedAgain) {
   }
 }
 
+// What is seen of them is used by the reports alone.
+TEST(RelativeEkfSlam, LandmarksBehindABentWayWait) {
+  SmallWorldSettings settings{.seed = 48, .scans = 2};
+  settings.noise = fine();
+  const SmallWorld world = small_world(settings);
+  const auto waiting = make(relative_ekf_slam_kind(), settings, {{"bend", "0"}});
+  const auto using_all = make(relative_ekf_slam_kind(), settings, {{"bend", "1e9"}});
+  expect_close(estimates_of(*waiting, world), estimates_of(*using_all, world), 0.01, 1e-3);
+  EXPECT_EQ(waiting->report().nis_dof, 0U);
+  EXPECT_GT(using_all->report().nis_dof, 4U);
+}
+
 /// Noise with which the heading is lost and a loop of 27 m closes far from where it began.
 SmallWorldSettings rough() {
   SmallWorldSettings settings{.seed = 42, .scans = 330};

@@ -122,7 +122,7 @@ TEST(RelativeGaussian, JoiningALandmarkThatWasInitialisedAgainIsSeeingIt) {
   for (const auto& one : scan) joined.add_again(one);
   EXPECT_TRUE(joined.has_again());
   EXPECT_EQ(joined.point(0).frame, 2U);
-  ASSERT_FALSE(joined.join(20).is_faulty);
+  ASSERT_TRUE(joined.join(20));
   EXPECT_FALSE(joined.has_again());
   EXPECT_EQ(joined.point(0).frame, 0U);
   ASSERT_EQ(joined.mean().size(), seen.mean().size());
