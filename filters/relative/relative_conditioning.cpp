@@ -27,8 +27,15 @@ using Lower = Eigen::LLT<Eigen::MatrixXd>;
 class Iteration {
  public:
   Iteration(const RelativeChain& chain, const RelativeMeasurement& measurement,
-            const Eigen::VectorXd& mean, const Eigen::MatrixXd& P)
-      : chain_(chain), measurement_(measurement), mean_(mean), P_(P) {}
+            const Eigen::VectorXd& mean, const Eigen::MatrixXd& P, ConditioningScratch& scratch)
+      : chain_(chain),
+        measurement_(measurement),
+        mean_(mean),
+        P_(P),
+        vehicle_(scratch.vehicle),
+        tried_vehicle_(scratch.tried_vehicle),
+        pairs_(scratch.pairs),
+        tried_pairs_(scratch.tried_pairs) {}
 
   /// False where a matrix is not positive definite or there are no derivatives.
   bool run(int iterations, RelativeOutcome& outcome) {
@@ -125,8 +132,8 @@ class Iteration {
   const RelativeMeasurement& measurement_;
   const Eigen::VectorXd& mean_;
   const Eigen::MatrixXd& P_;
-  VehicleInFrames vehicle_, tried_vehicle_;
-  LinearisedPairs pairs_, tried_pairs_;
+  VehicleInFrames &vehicle_, &tried_vehicle_;
+  LinearisedPairs &pairs_, &tried_pairs_;
   Eigen::VectorXd step_;
   double prior_ = 0.0;
   Eigen::MatrixXd PH_, HPH_, noise_;
@@ -136,8 +143,9 @@ class Iteration {
 }  // namespace
 
 RelativeOutcome condition(const RelativeChain& chain, const RelativeMeasurement& measurement,
-                          int iterations, Eigen::VectorXd& mean, Eigen::MatrixXd& P) {
-  Iteration iteration(chain, measurement, mean, P);
+                          int iterations, ConditioningScratch& scratch, Eigen::VectorXd& mean,
+                          Eigen::MatrixXd& P) {
+  Iteration iteration(chain, measurement, mean, P, scratch);
   RelativeOutcome outcome;
   if (!iteration.run(iterations, outcome)) return {.is_faulty = true};
   const Eigen::MatrixXd W = iteration.gain();

@@ -30,10 +30,17 @@ struct RelativeOutcome {
   double log_likelihood = 0.0;  ///< Laplace's, at the last linearisation
 };
 
+/// What one conditioning leaves to the next, so that none allocates.
+struct ConditioningScratch {
+  VehicleInFrames vehicle, tried_vehicle;
+  LinearisedPairs pairs, tried_pairs;
+};
+
 /// Conditions (`mean`, `P`) on `measurement` by Gauss and Newton, at most `iterations` more
 /// linearisations than one; a step is halved while the sum of squares rises (EQUATIONS (22.4)).
 /// Rows of P are a multiple of eight, those that are not used zero.
 RelativeOutcome condition(const RelativeChain& chain, const RelativeMeasurement& measurement,
-                          int iterations, Eigen::VectorXd& mean, Eigen::MatrixXd& P);
+                          int iterations, ConditioningScratch& scratch, Eigen::VectorXd& mean,
+                          Eigen::MatrixXd& P);
 
 }  // namespace montecarta::filters

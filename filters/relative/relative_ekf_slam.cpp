@@ -2,7 +2,6 @@
 #include "filters/relative/relative_ekf_slam.hpp"
 
 #include "filters/joint/joint_gaussian.hpp"
-#include "filters/relative/chain_moments.hpp"
 #include "filters/setup/filter_options.hpp"
 
 #include <algorithm>
@@ -20,14 +19,15 @@ RelativeEkfSlam::RelativeEkfSlam(const FilterSetup& setup)
                  length_deviation(setup.belief.sensor, setup.belief, 0.0)),
       lag_(setup.options.integer("lag")),
       association_(setup),
-      gaussian_(SensorNoise::of(setup.belief)) {}
+      gaussian_(SensorNoise::of(setup.belief)),
+      joined_(gaussian_),
+      moved_(gaussian_) {}
 
 void RelativeEkfSlam::start(const Pose& start) {
   association_.clear();
   motion_.restart();
   is_at_scan_ = true;
   gaussian_.start(start);
-  joined_.reset();
   report_ = {};
 }
 
@@ -39,8 +39,8 @@ void RelativeEkfSlam::predict(const StepContext& /*context*/, const Control& con
 
 void RelativeEkfSlam::update(const StepContext& /*context*/, Scan scan) {
   report_ = {};
+  if (gaussian_.has_again()) joined_.move(motion_);
   gaussian_.move(motion_);
-  if (joined_) joined_->move(motion_);
   motion_.restart();
   is_at_scan_ = true;
   association_.known() ? association_.pair_by_identity(scan) : pair_nearest(scan);
@@ -60,19 +60,19 @@ bool RelativeEkfSlam::is_bent(std::size_t landmark) const {
 /// Conditions on what is seen of landmarks whose way is straight enough; the others are to be
 /// initialised again.
 void RelativeEkfSlam::condition(Scan scan) {
-  std::vector<RelativeGaussian::Seen> seen;
+  seen_.clear();
   again_.clear();
-  bends_ = gaussian_.bends();
+  gaussian_.bends(bends_);
   for (std::size_t k = 0; k < scan.size(); ++k) {
     const Pairing& pairing = association_.pairings()[k];
     if (pairing.kind != PairingKind::matched) {
       report_.log_likelihood += association_.unmatched_log_density();
       continue;
     }
-    (is_bent(pairing.landmark) ? again_ : seen)
+    (is_bent(pairing.landmark) ? again_ : seen_)
         .push_back({pairing.landmark, observation_of(scan[k])});
   }
-  const RelativeOutcome outcome = gaussian_.see(seen, iterations_);
+  const RelativeOutcome outcome = gaussian_.see(seen_, iterations_);
   if (outcome.is_faulty) ++report_.numerical_faults;
   report_.nis = outcome.nis;
   report_.nis_dof = outcome.dof;
@@ -95,12 +95,11 @@ void RelativeEkfSlam::initialise_landmarks(Scan scan) {
 }
 
 void RelativeEkfSlam::join() {
-  joined_.reset();
   if (!gaussian_.has_again()) return;
   bool is_joined;
   if (waited_++ < lag_) {
     joined_ = gaussian_;
-    is_joined = joined_->equate(iterations_);
+    is_joined = joined_.equate(iterations_);
   } else {
     is_joined = gaussian_.join(iterations_);
   }
@@ -110,7 +109,6 @@ void RelativeEkfSlam::join() {
 /// By what the reports know.
 void RelativeEkfSlam::pair_nearest(Scan scan) {
   searches_.assign(scan.size(), {});
-  const AssociationSettings& settings = association_.settings();
   reported().expect_all([&](std::size_t landmark, const RangeBearing<double>& expected,
                             const Eigen::Matrix2d& covariance) {
     const auto L = factor(covariance);
@@ -122,20 +120,24 @@ void RelativeEkfSlam::pair_nearest(Scan scan) {
       const Eigen::Vector2d innovation = to_vector(residual(observation_of(scan[k]), expected));
       const double distance = L->whiten(innovation).squaredNorm();
       searches_[k].offer(static_cast<std::uint32_t>(landmark), distance, distance + L->log_det(),
-                         settings.gate);
+                         association_.settings().gate);
     }
   });
   association_.pair_nearest(scan, searches_);
 }
 
+/// Of the pose and of `points_`.
+JointEstimate RelativeEkfSlam::moments_of(const RelativeGaussian& gaussian) const {
+  return moments_.of(gaussian.chain(), gaussian.mean(), gaussian.covariance(), points_);
+}
+
 PoseEstimate RelativeEkfSlam::estimate() const {
-  std::optional<RelativeGaussian> moved;
+  points_.clear();
   if (!is_at_scan_) {
-    moved = reported();
-    moved->move(motion_);
+    moved_ = reported();
+    moved_.move(motion_);
   }
-  const RelativeGaussian& now = moved ? *moved : reported();
-  const JointEstimate pose = chain_moments(now.chain(), now.mean(), now.covariance(), {});
+  const JointEstimate pose = moments_of(is_at_scan_ ? reported() : moved_);
   return {PoseMoments{Pose{pose.mean(0), pose.mean(1), pose.mean(2)}, pose.covariance},
           std::nullopt};
 }
@@ -151,26 +153,26 @@ void RelativeEkfSlam::map(std::span<std::optional<LandmarkEstimate>> landmarks) 
 }
 
 std::optional<JointEstimate> RelativeEkfSlam::joint(std::size_t landmarks) const {
-  std::vector<RelativeChain::Point> points;
-  std::vector<Eigen::Index> places{0, 1, 2};  ///< of the rows that there are, in the result
+  points_.clear();
+  places_.clear();  // of the rows that there are, in the result
+  for (const Eigen::Index row : {0, 1, 2}) places_.push_back(row);
   for (std::size_t k = 0; k < landmarks; ++k) {
     const std::size_t at = association_.slot_of(k);
     if (at >= reported().chain().landmarks.size()) continue;
-    points.push_back(reported().point(at));
-    places.push_back(3 + row_of(k));
-    places.push_back(4 + row_of(k));
+    points_.push_back(reported().point(at));
+    places_.push_back(3 + row_of(k));
+    places_.push_back(4 + row_of(k));
   }
-  const RelativeGaussian& now = reported();
-  const JointEstimate known = chain_moments(now.chain(), now.mean(), now.covariance(), points);
+  const JointEstimate known = moments_of(reported());
   const Eigen::Index size = 3 + row_of(landmarks);
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   JointEstimate joint{Eigen::VectorXd::Constant(size, unknown),
                       Eigen::MatrixXd::Constant(size, size, unknown)};
   for (Eigen::Index a = 0; a < known.mean.size(); ++a) {
-    const Eigen::Index row = places[static_cast<std::size_t>(a)];
+    const Eigen::Index row = places_[static_cast<std::size_t>(a)];
     joint.mean(row) = known.mean(a);
     for (Eigen::Index b = 0; b < known.mean.size(); ++b)
-      joint.covariance(row, places[static_cast<std::size_t>(b)]) = known.covariance(a, b);
+      joint.covariance(row, places_[static_cast<std::size_t>(b)]) = known.covariance(a, b);
   }
   return joint;
 }

@@ -4,6 +4,7 @@
 #include "engine/core/slam_filter.hpp"
 #include "filters/association/map_association.hpp"
 #include "filters/moments/control_motion.hpp"
+#include "filters/relative/chain_moments.hpp"
 #include "filters/relative/relative_gaussian.hpp"
 
 #include <optional>
@@ -33,7 +34,8 @@ class RelativeEkfSlam final : public SlamFilter {
   bool is_bent(std::size_t landmark) const;
   void initialise_landmarks(Scan scan);
   void join();
-  const RelativeGaussian& reported() const { return joined_ ? *joined_ : gaussian_; }
+  const RelativeGaussian& reported() const { return gaussian_.has_again() ? joined_ : gaussian_; }
+  JointEstimate moments_of(const RelativeGaussian& gaussian) const;
 
   Belief model_;
   Motion motion_kind_;
@@ -45,12 +47,16 @@ class RelativeEkfSlam final : public SlamFilter {
   MotionIncrement motion_;  ///< since the last scan
   bool is_at_scan_ = true;  ///< nothing came after it
   RelativeGaussian gaussian_;
-  /// With the landmarks that were initialised again joined, where there are any.
-  std::optional<RelativeGaussian> joined_;
-  std::size_t waited_ = 0;                     ///< [scans] since the first of them
+  RelativeGaussian joined_;  ///< where landmarks were initialised again: with them joined
+  std::size_t waited_ = 0;   ///< [scans] since the first of them
   std::vector<RelativeGaussian::Seen> again_;  ///< of this scan, to be initialised again
   std::vector<double> bends_;                  ///< {frame} RelativeGaussian::bends()
-  std::vector<NearestSearch> searches_;        ///< scratch
+  std::vector<RelativeGaussian::Seen> seen_;   ///< likewise, to be used
+  std::vector<NearestSearch> searches_;        ///< scratch, as what follows
+  mutable RelativeGaussian moved_;
+  mutable ChainMoments moments_;
+  mutable std::vector<RelativeChain::Point> points_;
+  mutable std::vector<Eigen::Index> places_;
   ScanReport report_;
 };
 

@@ -17,7 +17,9 @@ using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 }  // namespace
 
 void RelativeGaussian::start(const Pose& start) {
-  chain_ = {.start = start, .displacements = {0}, .landmarks = {}};
+  chain_.start = start;
+  chain_.displacements.assign(1, 0);
+  chain_.landmarks.clear();
   rows_ = 3;
   mean_ = Eigen::VectorXd::Zero(kPack);
   P_ = Eigen::MatrixXd::Zero(kPack, kPack);
@@ -39,7 +41,8 @@ void RelativeGaussian::move(const MotionIncrement& motion) {
 /// Half the variance of the heading before it times the way behind it is how far a displacement
 /// over the frame is from linear.
 bool RelativeGaussian::drop_empty_frame() {
-  std::vector<char> is_empty(chain_.displacements.size(), true);
+  std::vector<char>& is_empty = scratch_.is_empty;
+  is_empty.assign(chain_.displacements.size(), true);
   for (const auto& [first, again] : chain_.landmarks) {
     is_empty[first.frame] = false;
     if (again) is_empty[again->frame] = false;
@@ -76,9 +79,9 @@ void RelativeGaussian::drop_frame(std::size_t frame) {
     if (first.frame >= frame) --first.frame;
     if (again && again->frame >= frame) --again->frame;
   }
-  std::vector<char> is_kept(static_cast<std::size_t>(mean_.size()), true);
-  std::fill_n(is_kept.begin() + from, 3, false);
-  keep_rows(is_kept);
+  scratch_.is_kept.assign(static_cast<std::size_t>(rows_), true);
+  std::fill_n(scratch_.is_kept.begin() + from, 3, false);
+  keep_rows();
 }
 
 bool RelativeGaussian::is_at_newest_frame() const {
@@ -139,8 +142,8 @@ bool RelativeGaussian::has_again() const {
                              [](const auto& landmark) { return landmark.again.has_value(); });
 }
 
-std::vector<double> RelativeGaussian::bends() const {
-  std::vector<double> bends(chain_.displacements.size());
+void RelativeGaussian::bends(std::vector<double>& bends) const {
+  bends.resize(chain_.displacements.size());
   Eigen::VectorXd with_heading = Eigen::VectorXd::Zero(mean_.size());
   double variance = 0.0, farthest = 0.0;
   Pose vehicle{};
@@ -152,7 +155,6 @@ std::vector<double> RelativeGaussian::bends() const {
     farthest = std::max(farthest, length(vehicle.x, vehicle.y));
     bends[k] = 0.5 * variance * farthest;
   }
-  return bends;
 }
 
 Eigen::Index RelativeGaussian::add_rows(Eigen::Index count) {
@@ -168,19 +170,26 @@ Eigen::Index RelativeGaussian::add_rows(Eigen::Index count) {
   return first;
 }
 
-void RelativeGaussian::keep_rows(const std::vector<char>& is_kept) {
-  std::vector<Eigen::Index> kept, now(static_cast<std::size_t>(rows_));
+/// Those of scratch_.is_kept.
+void RelativeGaussian::keep_rows() {
+  std::vector<Eigen::Index>&kept = scratch_.kept, &now = scratch_.now;
+  kept.clear();
+  now.clear();
   for (Eigen::Index row = 0; row < rows_; ++row) {
-    now[static_cast<std::size_t>(row)] = static_cast<Eigen::Index>(kept.size());
-    if (is_kept[static_cast<std::size_t>(row)]) kept.push_back(row);
+    now.push_back(static_cast<Eigen::Index>(kept.size()));
+    if (scratch_.is_kept[static_cast<std::size_t>(row)]) kept.push_back(row);
   }
-  const Eigen::VectorXd mean = mean_(kept);
-  const Eigen::MatrixXd P = P_(kept, kept);
   rows_ = static_cast<Eigen::Index>(kept.size());
-  mean_.setZero((rows_ + kPack - 1) / kPack * kPack);
-  mean_.head(rows_) = mean;
-  P_.setZero(mean_.size(), mean_.size());
-  P_.topLeftCorner(rows_, rows_) = P;
+  const Eigen::Index room = (rows_ + kPack - 1) / kPack * kPack;
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(room);
+  Eigen::MatrixXd P = Eigen::MatrixXd::Zero(room, room);
+  for (Eigen::Index j = 0; j < rows_; ++j) {
+    const Eigen::Index from = kept[static_cast<std::size_t>(j)];
+    mean(j) = mean_(from);
+    for (Eigen::Index i = 0; i < rows_; ++i) P(i, j) = P_(kept[static_cast<std::size_t>(i)], from);
+  }
+  mean_.swap(mean);
+  P_.swap(P);
   for (Eigen::Index& row : chain_.displacements) row = now[static_cast<std::size_t>(row)];
   for (auto& [first, again] : chain_.landmarks) {
     first.row = now[static_cast<std::size_t>(first.row)];

@@ -7,7 +7,10 @@
 
 #include <Eigen/Core>
 
+#include <functional>
 #include <span>
+#include <utility>
+#include <vector>
 
 namespace montecarta::filters {
 
@@ -49,9 +52,10 @@ class RelativeGaussian {
   /// The point of a landmark that detections are of.
   const RelativeChain::Point& point(std::size_t landmark) const;
   bool has_again() const;
-  /// {frame} [m] how far the uncertain headings on the way to each frame bend it: half the variance
-  /// of the heading of the vehicle there times the farthest that the way leads from the vehicle.
-  std::vector<double> bends() const;
+  /// Writes {frame} [m] how far the uncertain headings on the way to each frame bend it: half the
+  /// variance of the heading of the vehicle there times the farthest that the way leads from the
+  /// vehicle.
+  void bends(std::vector<double>& bends) const;
   using Expect =
       std::function<void(std::size_t landmark, const RangeBearing<double>& expected,
                          const Eigen::Matrix2d& covariance)>;  ///< that of the innovation
@@ -59,19 +63,33 @@ class RelativeGaussian {
   void expect_all(const Expect& expect) const;
 
  private:
+  /// So that a second run allocates nothing; a copy begins with its own.
+  struct Scratch {
+    Scratch() = default;
+    Scratch(const Scratch& /*other*/) {}
+    Scratch& operator=(const Scratch& /*other*/) { return *this; }
+
+    std::vector<Seen> used;
+    std::vector<std::pair<RelativeChain::Point, RelativeChain::Point>> twice;
+    std::vector<char> is_empty, is_kept;
+    std::vector<Eigen::Index> kept, now;
+    ConditioningScratch conditioning;
+  };
+
   bool linearise(std::span<const Seen> scan, const Eigen::VectorXd& mean,
                  const VehicleInFrames& vehicle, LinearisedPairs& pairs) const;
   void expect_one(std::size_t landmark, const VehicleGaussian& vehicle, const Expect& expect) const;
   RelativeChain::Point add_point(const RangeBearing<double>& observed);
   Eigen::Index add_rows(Eigen::Index count);
   void drop_frame(std::size_t frame);
-  void keep_rows(const std::vector<char>& is_kept);
+  void keep_rows();
 
   SensorNoise noise_;
   RelativeChain chain_;
   Eigen::Index rows_ = 0;  ///< used; those behind are zero
   Eigen::VectorXd mean_;
   Eigen::MatrixXd P_;
+  Scratch scratch_;
 };
 
 }  // namespace montecarta::filters

@@ -2,8 +2,7 @@
 #include "filters/relative/relative_gaussian.hpp"
 
 #include <algorithm>
-#include <functional>
-#include <utility>
+#include <tuple>
 
 // What a RelativeGaussian expects of detections, and how it is conditioned.
 
@@ -13,9 +12,12 @@ namespace {
 using Point = RelativeChain::Point;
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
-/// Newest frame first; within a frame as given, so that sums have one order.
+/// Newest frame first; within a frame in one order, so that sums have one.
 void sort_parts(LinearisedPairs& pairs) {
-  std::ranges::stable_sort(pairs.parts, std::greater(), &LinearisedPairs::Part::frame);
+  using Part = LinearisedPairs::Part;
+  std::ranges::sort(pairs.parts, [](const Part& a, const Part& b) {
+    return std::tie(b.frame, a.pair, a.row) < std::tie(a.frame, b.pair, b.row);
+  });
 }
 
 /// A landmark in the frame of the vehicle; `sign` of its derivatives.
@@ -40,9 +42,10 @@ Eigen::Vector2d add_place(const Point& point, const Eigen::VectorXd& mean,
 RelativeOutcome RelativeGaussian::see(std::span<const Seen> scan, int iterations) {
   std::size_t oldest = chain_.newest_frame();
   for (const Seen& seen : scan) oldest = std::min(oldest, point(seen.landmark).frame);
-  VehicleInFrames now;
+  VehicleInFrames& now = scratch_.conditioning.vehicle;
   now.linearise(chain_, mean_, oldest);
-  std::vector<Seen> used;
+  std::vector<Seen>& used = scratch_.used;
+  used.clear();
   for (const Seen& seen : scan) {
     const Point& p = point(seen.landmark);
     const LinearisedPoint at = linearised_point(p, mean_);
@@ -55,7 +58,7 @@ RelativeOutcome RelativeGaussian::see(std::span<const Seen> scan, int iterations
       .linearise = [&](const Eigen::VectorXd& mean, const VehicleInFrames& vehicle,
                        LinearisedPairs& pairs) { return linearise(used, mean, vehicle, pairs); },
       .variances = variances.replicate(static_cast<Eigen::Index>(used.size()), 1)};
-  return condition(chain_, measurement, iterations, mean_, P_);
+  return condition(chain_, measurement, iterations, scratch_.conditioning, mean_, P_);
 }
 
 bool RelativeGaussian::linearise(std::span<const Seen> scan, const Eigen::VectorXd& mean,
@@ -77,7 +80,8 @@ bool RelativeGaussian::linearise(std::span<const Seen> scan, const Eigen::Vector
 }
 
 bool RelativeGaussian::equate(int iterations) {
-  std::vector<std::pair<Point, Point>> twice;
+  auto& twice = scratch_.twice;
+  twice.clear();
   std::size_t oldest = chain_.newest_frame();
   for (const auto& [first, again] : chain_.landmarks) {
     if (!again) continue;
@@ -99,20 +103,19 @@ bool RelativeGaussian::equate(int iterations) {
   };
   const RelativeMeasurement measurement{
       .oldest_frame = oldest, .linearise = linearise, .variances = {}};
-  return !condition(chain_, measurement, iterations, mean_, P_).is_faulty;
+  return !condition(chain_, measurement, iterations, scratch_.conditioning, mean_, P_).is_faulty;
 }
 
 bool RelativeGaussian::join(int iterations) {
   const bool are_equal = equate(iterations);
-  std::vector<char> is_kept(static_cast<std::size_t>(mean_.size()), true);
+  scratch_.is_kept.assign(static_cast<std::size_t>(rows_), true);
   for (auto& [first, again] : chain_.landmarks) {
     if (!again) continue;
     if (!are_equal) std::swap(first, *again);
-    is_kept[static_cast<std::size_t>(again->row)] = false;
-    is_kept[static_cast<std::size_t>(again->row + 1)] = false;
+    std::fill_n(scratch_.is_kept.begin() + again->row, 2, false);
     again.reset();
   }
-  keep_rows(is_kept);
+  keep_rows();
   return are_equal;
 }
 

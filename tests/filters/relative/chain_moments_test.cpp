@@ -87,7 +87,7 @@ TEST(ChainMoments, AreThoseOfQuadrature) {
   some.chain.landmarks = {{{3, 1, true}, {}}, {{13, 0, false}, {}}};
   const std::vector<Eigen::Index> order{2, 7, 4, 0, 1, 3, 5, 6, 13, 14};
   const Quadrature expected(some, order, 3);
-  const JointEstimate now = chain_moments(some.chain, some.mean, some.P, points_of(some.chain));
+  const JointEstimate now = ChainMoments().of(some.chain, some.mean, some.P, points_of(some.chain));
   EXPECT_LT((now.mean - expected.mean).norm(), 1e-8);
   EXPECT_LT((now.covariance - expected.covariance).norm(), 1e-7);
   EXPECT_GT((now.mean - in_map(some.chain, some.mean)).norm(), 0.1) << "bends nothing";
@@ -102,7 +102,7 @@ TEST(ChainMoments, AreThoseOfTheDerivativesWhereUncertaintyIsSmall) {
     const Eigen::VectorXd way = 1e-5 * Eigen::VectorXd::Unit(16, i);
     J.col(i) = (in_map(some.chain, some.mean + way) - in_map(some.chain, some.mean - way)) / 2e-5;
   }
-  const JointEstimate now = chain_moments(some.chain, some.mean, some.P, points_of(some.chain));
+  const JointEstimate now = ChainMoments().of(some.chain, some.mean, some.P, points_of(some.chain));
   const Eigen::MatrixXd expected = J * some.P * J.transpose();
   EXPECT_LT((now.mean - at).norm(), 1e-8);
   EXPECT_LT((now.covariance - expected).norm(), 1e-8 * expected.norm());
@@ -111,7 +111,7 @@ TEST(ChainMoments, AreThoseOfTheDerivativesWhereUncertaintyIsSmall) {
 TEST(ChainMoments, OfACertainChainAreItself) {
   const SomeChain some = some_chain(0.0);
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(16, 16);
-  const JointEstimate now = chain_moments(some.chain, some.mean, none, points_of(some.chain));
+  const JointEstimate now = ChainMoments().of(some.chain, some.mean, none, points_of(some.chain));
   EXPECT_LT((now.mean - in_map(some.chain, some.mean)).norm(), 1e-14 * now.mean.norm());
   EXPECT_TRUE(now.covariance.isZero(0.0));
 }

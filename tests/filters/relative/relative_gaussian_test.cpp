@@ -145,7 +145,7 @@ TEST(RelativeGaussian, DroppingAFrameWithoutLandmarksKeepsThePlaces) {
   const auto moments = [&] {
     std::vector<RelativeChain::Point> points;
     for (std::size_t l = 0; l < 4; ++l) points.push_back(gaussian.point(l));
-    return chain_moments(gaussian.chain(), gaussian.mean(), gaussian.covariance(), points);
+    return ChainMoments().of(gaussian.chain(), gaussian.mean(), gaussian.covariance(), points);
   };
   const JointEstimate before = moments();
   ASSERT_TRUE(gaussian.drop_empty_frame());
