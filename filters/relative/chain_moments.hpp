@@ -12,9 +12,10 @@
 
 namespace montecarta::filters {
 
-/// Mean and covariance in the map frame of a Gaussian over a relative chain (EQUATIONS (22.5)).
-/// Exact, the heading unwrapped: a place is a sum of displacements, each turned by a sum of
-/// headings, and all of these are Gaussian together.
+/// Mean and covariance in the map frame of a Gaussian over a relative chain (EQUATIONS (22.5),
+/// (22.6)). Exact, the heading unwrapped: a place is a sum of displacements, each turned by a sum
+/// of headings, and all of these are Gaussian together. Covariances of headings are below 700
+/// rad^2.
 class ChainMoments {
  public:
   /// Of the vehicle's pose and then of `points`, of the Gaussian (`mean`, `P`).

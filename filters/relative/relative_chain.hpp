@@ -11,9 +11,9 @@
 
 namespace montecarta::filters {
 
-/// What the rows of a joint Gaussian mean that knows places relative to each other only (EQUATIONS
-/// 22). Frame 0 is the start; displacement k leads from frame k to frame k + 1, the last one from
-/// the newest frame to the vehicle.
+/// The layout of the state of a joint Gaussian that knows places relative to each other only
+/// (EQUATIONS 22). Frame 0 is the start; displacement k leads from frame k to frame k + 1, the last
+/// one from the newest frame to the vehicle.
 struct RelativeChain {
   /// A landmark in a frame.
   struct Point {

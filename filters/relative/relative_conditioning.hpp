@@ -36,9 +36,9 @@ struct ConditioningScratch {
   LinearisedPairs pairs, tried_pairs;
 };
 
-/// Conditions (`mean`, `P`) on `measurement` by Gauss and Newton, at most `iterations` more
-/// linearisations than one; a step is halved while the sum of squares rises (EQUATIONS (22.4)).
-/// Rows of P are a multiple of eight, those that are not used zero.
+/// Conditions (`mean`, `P`) on `measurement` by the Gauss-Newton method, at most `iterations` more
+/// linearisations than one; a step is halved while the sum of squares rises, eight times at most
+/// (EQUATIONS (22.3)). Rows of P are a multiple of eight, those that are not used zero.
 RelativeOutcome condition(const RelativeChain& chain, const RelativeMeasurement& measurement,
                           int iterations, ConditioningScratch& scratch, Eigen::VectorXd& mean,
                           Eigen::MatrixXd& P);

@@ -186,12 +186,12 @@ FilterKind relative_ekf_slam_kind() {
       .has_mixture = false,
       .has_joint = true,
       .options = {count_option("frames", "40", 1, 10000,
-                               "poses at most whose frames landmarks are held in; later ones "
-                               "are held in the last"),
+                               "poses at most whose frames landmarks are held in; with landmarks "
+                               "in all of them it goes on as EKF-SLAM in the last"),
                   number_option("bend", "0.3", 0, 1e9,
-                                "standard deviations of a detection that uncertain headings "
-                                "may bend the way to a landmark by; beyond it is initialised "
-                                "again"),
+                                "standard deviations of a range that uncertain headings may bend "
+                                "the way to a landmark by; beyond it is initialised again "
+                                "(EQUATIONS (22.4))"),
                   count_option("lag", "50", 0, 1000000,
                                "scans before landmarks that were initialised again are "
                                "joined with what they were"),

@@ -13,9 +13,9 @@
 namespace montecarta::filters {
 
 /// EKF-SLAM in relative coordinates (EQUATIONS 22): a joint Gaussian of the displacements between
-/// the poses that saw landmarks first, and of the landmarks in the frames of these poses, where all
-/// of them are nearly Gaussian however uncertain the heading in the map is. It forgets all other
-/// poses and linearises nothing twice.
+/// the poses that initialised landmarks, and of the landmarks in the frames of these poses, where
+/// all of them are nearly Gaussian however uncertain the heading in the map is. All other poses are
+/// integrated out, and a scan is linearised when it is conditioned on, never afterwards.
 class RelativeEkfSlam final : public SlamFilter {
  public:
   explicit RelativeEkfSlam(const FilterSetup& setup);

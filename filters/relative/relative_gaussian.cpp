@@ -38,8 +38,8 @@ void RelativeGaussian::move(const MotionIncrement& motion) {
   P_(0, 1) = P_(1, 0);
 }
 
-/// Half the variance of the heading before it times the way behind it is how far a displacement
-/// over the frame is from linear.
+/// A displacement that leads over a frame bends by half the variance of the heading before it times
+/// the length behind it.
 bool RelativeGaussian::drop_empty_frame() {
   std::vector<char>& is_empty = scratch_.is_empty;
   is_empty.assign(chain_.displacements.size(), true);

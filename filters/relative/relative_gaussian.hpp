@@ -52,9 +52,7 @@ class RelativeGaussian {
   /// The point of a landmark that detections are of.
   const RelativeChain::Point& point(std::size_t landmark) const;
   bool has_again() const;
-  /// Writes {frame} [m] how far the uncertain headings on the way to each frame bend it: half the
-  /// variance of the heading of the vehicle there times the farthest that the way leads from the
-  /// vehicle.
+  /// Writes {frame} [m] how far uncertain headings bend the way to each frame (EQUATIONS (22.4)).
   void bends(std::vector<double>& bends) const;
   using Expect =
       std::function<void(std::size_t landmark, const RangeBearing<double>& expected,

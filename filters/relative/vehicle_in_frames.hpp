@@ -26,7 +26,7 @@ struct LinearisedPairs {
 
 /// The vehicle's pose in each frame from some frame on (EQUATIONS (22.2)), and products with the
 /// derivatives of LinearisedPairs, H. One walk from the newest frame back to the oldest gives each:
-/// H itself has as many columns as there are frames on the way.
+/// H itself has three columns for each frame on the way.
 class VehicleInFrames {
  public:
   /// At `mean`, back to frame `oldest`.

@@ -14,12 +14,12 @@ namespace {
 
 constexpr SensorNoise kFine{1e-8, 1e-10}, kRough{0.04, 4e-4};
 
-/// A motion with noise, which is `fine` or a thousand times that.
+/// A motion with noise of that scale.
 MotionIncrement motion(double x, double y, double heading, double scale) {
   return {Pose{x, y, heading}, scale * Symmetric3<double>{4.0, 0.3, 1.0, 0.02, 0.03, 1e-2}};
 }
 
-/// Sees two landmarks from the start, moves on by two frames, and meets one of them again.
+/// Two landmarks seen from the start, one from the frame behind it, and the vehicle on its way.
 RelativeGaussian gaussian_of(const SensorNoise& noise, double scale) {
   RelativeGaussian gaussian(noise);
   gaussian.start({1.0, 2.0, 0.5});
@@ -154,6 +154,52 @@ TEST(RelativeGaussian, DroppingAFrameWithoutLandmarksKeepsThePlaces) {
   EXPECT_LT((after.mean - before.mean).norm(), 1e-6);
   EXPECT_LT((after.covariance - before.covariance).norm(), 1e-5 * before.covariance.norm());
   EXPECT_FALSE(gaussian.drop_empty_frame()) << "all have landmarks";
+}
+
+TEST(RelativeGaussian, OfSeveralFramesWithoutLandmarksTheStraightestIsDropped) {
+  RelativeGaussian gaussian(kFine);
+  gaussian.start({});
+  gaussian.add_landmark({9.0, 0.4});
+  for (const double way : {2.0, 1.0, 9.0}) {
+    gaussian.move(motion(way, 0.0, 0.0, 1e-4));
+    gaussian.add_frame();
+  }
+  gaussian.add_again({0, {5.0, 0.1}});  // in the newest frame, which so is not empty
+  ASSERT_TRUE(gaussian.drop_empty_frame());
+  ASSERT_EQ(gaussian.chain().displacements.size(), 3U);
+  EXPECT_NEAR(displacement(gaussian.chain(), 0, gaussian.mean()).x, 3.0, 1e-12);
+  EXPECT_NEAR(displacement(gaussian.chain(), 1, gaussian.mean()).x, 9.0, 1e-12);
+  EXPECT_EQ(gaussian.point(0).frame, 2U);
+}
+
+TEST(RelativeGaussian, AWayBendsByTheVarianceOfTheHeadingAndItsLength) {
+  const RelativeGaussian gaussian = gaussian_of(kRough, 0.01);
+  std::vector<double> bends;
+  gaussian.bends(bends);
+  ASSERT_EQ(bends.size(), 2U);
+  VehicleGaussian vehicle{.with_all = Eigen::MatrixXd::Zero(gaussian.mean().size(), 3)};
+  double farthest = 0.0;
+  for (std::size_t k = 2; k-- > 0;) {
+    vehicle.become_that_in_frame(k, gaussian.chain(), gaussian.mean(), gaussian.covariance());
+    farthest = std::max(
+        farthest, std::sqrt(vehicle.pose.x * vehicle.pose.x + vehicle.pose.y * vehicle.pose.y));
+    EXPECT_NEAR(bends[k], 0.5 * vehicle.covariance(2, 2) * farthest, 1e-12) << "frame " << k;
+    EXPECT_GT(bends[k], 1e-5);
+  }
+}
+
+TEST(RelativeGaussian, WhereJoiningFailsTheFirstCoordinatesAreForgotten) {
+  RelativeGaussian gaussian = gaussian_of({-1.0, 4e-4}, 1e-8);
+  gaussian.add_frame();
+  const Eigen::Index rows = gaussian.mean().size();
+  gaussian.add_again({0, {5.0, 0.1}});
+  EXPECT_FALSE(gaussian.join(20));
+  EXPECT_FALSE(gaussian.has_again());
+  EXPECT_EQ(gaussian.mean().size(), rows);
+  EXPECT_EQ(gaussian.point(0).frame, 2U);
+  EXPECT_EQ(gaussian.mean()(gaussian.point(0).row), 5.0);
+  EXPECT_EQ(gaussian.point(1).frame, 0U);
+  EXPECT_EQ(gaussian.mean()(gaussian.point(1).row), 7.0);
 }
 
 TEST(RelativeGaussian, ALandmarkSeenAwayFromTheFrameIsWhereItIsSeen) {
