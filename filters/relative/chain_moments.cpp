@@ -9,7 +9,7 @@ namespace {
 using Complex = std::complex<double>;
 constexpr Complex kI(0.0, 1.0);
 
-/// Of finite numbers: operator* looks for others.
+/// Of finite numbers; operator* would also look for infinities and NaN.
 Complex product(const Complex& a, const Complex& b) {
   return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
