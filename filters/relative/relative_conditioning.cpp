@@ -47,13 +47,13 @@ class Iteration {
       const Eigen::VectorXd innovation = pairs_.residual + before;
       const Eigen::VectorXd weights = S_.solve(innovation);
       tell(innovation, i == 0, outcome);
-      const Eigen::VectorXd change = HPH_ * weights - before;
+      const Eigen::VectorXd change = projected_ * weights - before;
       if (i >= iterations ||
           R_.matrixL().solve(change).norm() < (is_exact() ? kSettledExactly : kSettled)) {
         step_ = PH_ * weights;
         return true;
       }
-      const double crossed = weights.dot(before), full = weights.dot(HPH_ * weights);
+      const double crossed = weights.dot(before), full = weights.dot(projected_ * weights);
       if (!take_step(PH_ * weights, crossed, full)) return false;
     }
   }
@@ -82,13 +82,13 @@ class Iteration {
 
   bool weigh(bool is_first) {
     vehicle_.columns(chain_, P_, pairs_, PH_);
-    HPH_ = vehicle_.rows(chain_, pairs_, PH_);
+    projected_ = vehicle_.rows(chain_, pairs_, PH_);
     if (is_first) {
-      noise_ = kExact * HPH_;
+      noise_ = kExact * projected_;
       if (!is_exact()) noise_ = measurement_.variances.asDiagonal();
       R_.compute(noise_);
     }
-    S_.compute(HPH_ + noise_);
+    S_.compute(projected_ + noise_);
     return R_.info() == Eigen::Success && S_.info() == Eigen::Success;
   }
 
@@ -136,7 +136,9 @@ class Iteration {
   LinearisedPairs &pairs_, &tried_pairs_;
   Eigen::VectorXd step_;
   double prior_ = 0.0;
-  Eigen::MatrixXd PH_, HPH_, noise_;
+  Eigen::MatrixXd PH_;         ///< P H'
+  Eigen::MatrixXd projected_;  ///< H P H'
+  Eigen::MatrixXd noise_;
   Lower R_, S_;
 };
 
