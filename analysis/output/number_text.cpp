@@ -60,9 +60,10 @@ std::string interval_text(const Interval& interval) {
 std::string with_interval(double mean, const Interval& interval) {
   const double half = 0.5 * (interval.upper - interval.lower);
   if (std::isnan(mean) || !std::isfinite(half) || half <= 0.0) return compact(mean);
+  const int decimals = std::max(0, 1 - magnitude(half));
   const auto each = [&](double value) {
     if (std::abs(mean) >= 1e4) return compact(value);
-    return printed("%.*f", std::clamp(1 - magnitude(half), 0, 12), value);
+    return decimals > 12 ? readable(value, 2) : printed("%.*f", decimals, value);
   };
   return each(mean) + " [" + each(interval.lower) + ", " + each(interval.upper) + "]";
 }
