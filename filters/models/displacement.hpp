@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/pose.hpp"
-#include "engine/numbers/real.hpp"
-#include "filters/models/point.hpp"
+#include "filters/models/ackermann.hpp"
 
 namespace montecarta::models {
 
@@ -17,10 +15,8 @@ inline Pose relative_to(const Pose& origin, const Pose& pose) {
 
 /// The pose whose displacement in the frame of `origin` is `displacement`.
 inline Pose composed(const Pose& origin, const Pose& displacement) {
-  const Direction<double> d = direction_of(origin.heading);
-  const double x = d.cosine * displacement.x - d.sine * displacement.y;
-  const double y = d.sine * displacement.x + d.cosine * displacement.y;
-  return {origin.x + x, origin.y + y, wrap(origin.heading + displacement.heading)};
+  const Point way = in_world(direction_of(origin.heading), displacement.x, displacement.y);
+  return {origin.x + way.x, origin.y + way.y, wrap(origin.heading + displacement.heading)};
 }
 
 }  // namespace montecarta::models

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/relative/relative_chain.hpp"
 
-#include "engine/numbers/real.hpp"
-
 namespace montecarta::filters {
 
 LinearisedComposition linearised_composition(const Pose& first, const Pose& second) {
   const Direction<double> d = direction_of(first.heading);
-  const double x = d.cosine * second.x - d.sine * second.y;
-  const double y = d.sine * second.x + d.cosine * second.y;
+  const auto [x, y] = in_world(d, second.x, second.y);
   LinearisedComposition both;
   both.pose = {first.x + x, first.y + y, wrap(first.heading + second.heading)};
   both.by_first << 1.0, 0.0, -y, 0.0, 1.0, x, 0.0, 0.0, 1.0;
