@@ -40,9 +40,8 @@ JointEstimate ChainMoments::estimate() const {
   JointEstimate joint;
   joint.mean.resize(n);
   joint.covariance.resize(n, n);
-  Eigen::VectorXd column(covariance_.rows());
   for (Eigen::Index j = 0; j < n; ++j) {
-    column = covariance_.col(row_of(j));
+    Eigen::VectorXd column = covariance_.col(row_of(j));
     for (Eigen::Index i = 0; i < size(); ++i) {
       const Eigen::Index before = term(i).before;
       if (before >= 0) column.segment<2>(2 * i) += column.segment<2>(2 * before);
