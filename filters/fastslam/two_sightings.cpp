@@ -10,9 +10,7 @@
 namespace montecarta::filters {
 namespace {
 
-Eigen::Vector2d point_of(const Sighting& sighting) {
-  return {sighting.sensor.x, sighting.sensor.y};
-}
+Eigen::Vector2d point_of(const Sighting& sighting) { return place_of(sighting.sensor); }
 
 Crossing crossing_of(const TriangulatedLandmark& landmark) {
   return {landmark.point, landmark.noise};

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kSmallMap = 100;
 
 double distance_squared(const Pose& pose, const Eigen::Vector2d& place) {
-  return (place - Eigen::Vector2d(pose.x, pose.y)).squaredNorm();
+  return (place - place_of(pose)).squaredNorm();
 }
 
 }  // namespace

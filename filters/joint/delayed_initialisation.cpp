@@ -14,8 +14,6 @@ namespace {
 /// [m] of the point on a ray from the sensor; no result depends on it but by rounding.
 constexpr double kRayLength = 1.0;
 
-Eigen::Vector2d place_of(const Pose& pose) { return {pose.x, pose.y}; }
-
 /// Derivatives by (pose, first, second) side by side.
 Eigen::Matrix<double, 2, 7> stacked(const TriangulatedLandmark& landmark) {
   Eigen::Matrix<double, 2, 7> J;

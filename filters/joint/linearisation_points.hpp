@@ -20,8 +20,6 @@ enum class Linearisation {
   regression    ///< nowhere: by regression on sigma points, as in the unscented Kalman filter
 };
 
-inline Eigen::Vector2d place_of(const Pose& pose) { return {pose.x, pose.y}; }
-
 /// The rotation of the whole in the linearised system: where the true system turns every point p of
 /// vehicle and map by J p, its linearisation turns the points held here, whichever way it is
 /// linearised (EQUATIONS (15.9)). A system that is linearised at these points has the right

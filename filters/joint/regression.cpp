@@ -67,7 +67,7 @@ std::optional<Differences> differences(const Observe& observe, const Eigen::Vect
 
 JointGaussian::Trouble JointGaussian::look_by_sigma_points(const PointMoments& landmark,
                                                            ExpectedObservation& expected) const {
-  const Eigen::Vector2d away = landmark.mean - Eigen::Vector2d(pose_.mean.x, pose_.mean.y);
+  const Eigen::Vector2d away = landmark.mean - place_of(pose_.mean);
   const Matrix35 T = line_of_sight(away);
   Eigen::Matrix<double, 5, 5> P;
   P << pose_.covariance, landmark.cross.transpose(), landmark.cross, landmark.covariance;

@@ -100,7 +100,7 @@ struct PositionSensor {
   static PlacedLandmark placed(const Pose& sensor, const Eigen::Vector2d& detection) {
     const Eigen::Matrix2d to_map = axes_of(sensor);
     const Eigen::Vector2d way = to_map * detection;
-    PlacedLandmark at{way + Eigen::Vector2d(sensor.x, sensor.y), Matrix23::Zero(), to_map};
+    PlacedLandmark at{way + place_of(sensor), Matrix23::Zero(), to_map};
     at.by_pose << Eigen::Matrix2d::Identity(), Eigen::Vector2d(-way.y(), way.x());
     return at;
   }

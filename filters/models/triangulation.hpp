@@ -34,7 +34,7 @@ inline std::optional<TriangulatedLandmark> crossing_of_rays(const Eigen::Vector2
   const Eigen::Vector2d u = (second - first) / length;
   const Direction<double> sight = direction_of(sensor.heading + bearing);
   const Eigen::Vector2d w(sight.cosine, sight.sine);
-  const Eigen::Vector2d between = Eigen::Vector2d(sensor.x, sensor.y) - first;
+  const Eigen::Vector2d between = place_of(sensor) - first;
   const auto cross = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     return a.x() * b.y() - a.y() * b.x();
   };

@@ -141,7 +141,7 @@ void ChainMoments::gather_places(const Pose& start) {
     places_.segment<2>(2 * i) << mean.real(), mean.imag();
     const Eigen::Index before = term(i).before;
     if (before < 0) {
-      places_.segment<2>(2 * i) += Eigen::Vector2d(start.x, start.y);
+      places_.segment<2>(2 * i) += place_of(start);
     } else {
       places_.segment<2>(2 * i) += places_.segment<2>(2 * before);
       covariance_.middleCols<2>(2 * i) += covariance_.middleCols<2>(2 * before);

@@ -8,8 +8,6 @@
 namespace montecarta::filters {
 namespace {
 
-Eigen::Vector2d place_of(const Pose& pose) { return {pose.x, pose.y}; }
-
 /// L^-1 A.
 template <int N>
 Eigen::Matrix<double, 2, N> whitened(const InnovationFactor& L, Eigen::Matrix<double, 2, N> A) {
