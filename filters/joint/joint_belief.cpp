@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/joint/joint_belief.hpp"
 
+#include "filters/association/joint_report.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace montecarta::filters {
 namespace {
@@ -134,29 +135,11 @@ std::optional<LandmarkEstimate> JointBelief::landmark(std::size_t k) const {
 }
 
 JointEstimate JointBelief::joint(std::size_t landmarks) const {
-  std::vector<Eigen::Index> rows{0, 1, 2}, places{0, 1, 2};  ///< and where they go in the result
-  rows.reserve(3 + 2 * landmarks);
-  places.reserve(3 + 2 * landmarks);
-  for (std::size_t k = 0; k < landmarks; ++k) {
-    const std::size_t at = association_.slot_of(k);
-    if (at >= this->landmarks()) continue;
-    for (const Eigen::Index coordinate : {0, 1}) {
-      rows.push_back(3 + row_of(point_of_[at]) + coordinate);
-      places.push_back(3 + row_of(k) + coordinate);
-    }
-  }
-  JointEstimate by_order = gaussian_.joint();
-  if (is_robocentric()) frame_.put_in_map(by_order);
-  const Eigen::Index size = 3 + row_of(landmarks);
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
-  JointEstimate joint{Eigen::VectorXd::Constant(size, unknown),
-                      Eigen::MatrixXd::Constant(size, size, unknown)};
-  for (std::size_t a = 0; a < rows.size(); ++a) {
-    joint.mean(places[a]) = by_order.mean(rows[a]);
-    for (std::size_t b = 0; b < rows.size(); ++b) {
-      joint.covariance(places[a], places[b]) = by_order.covariance(rows[a], rows[b]);
-    }
-  }
+  JointEstimate held = gaussian_.joint();
+  if (is_robocentric()) frame_.put_in_map(held);
+  JointEstimate joint = joint_report(held, association_, landmarks, [&](std::size_t slot) {
+    return slot < this->landmarks() ? 3 + row_of(point_of_[slot]) : Eigen::Index{-1};
+  });
   if (moments_ == Moments::pushed) push_moments(joint.mean, joint.covariance);
   return joint;
 }

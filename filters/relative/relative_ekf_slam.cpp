@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/relative/relative_ekf_slam.hpp"
 
+#include "filters/association/joint_report.hpp"
 #include "filters/joint/joint_gaussian.hpp"
 #include "filters/setup/filter_options.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace montecarta::filters {
 
@@ -143,38 +143,30 @@ PoseEstimate RelativeEkfSlam::estimate() const {
 }
 
 void RelativeEkfSlam::map(std::span<std::optional<LandmarkEstimate>> landmarks) const {
-  const JointEstimate all = *joint(landmarks.size());
+  const JointEstimate held = held_joint();
   for (std::size_t k = 0; k < landmarks.size(); ++k) {
-    const Eigen::Index row = 3 + row_of(k);
+    const std::size_t slot = association_.slot_of(k);
     landmarks[k].reset();
-    if (std::isnan(all.mean(row))) continue;
-    landmarks[k] = LandmarkEstimate{all.mean.segment<2>(row), all.covariance.block<2, 2>(row, row)};
+    if (slot >= points_.size()) continue;
+    const Eigen::Index row = 3 + row_of(slot);
+    landmarks[k] =
+        LandmarkEstimate{held.mean.segment<2>(row), held.covariance.block<2, 2>(row, row)};
   }
 }
 
 std::optional<JointEstimate> RelativeEkfSlam::joint(std::size_t landmarks) const {
+  const JointEstimate held = held_joint();
+  return joint_report(held, association_, landmarks, [&](std::size_t slot) {
+    return slot < points_.size() ? 3 + row_of(slot) : Eigen::Index{-1};
+  });
+}
+
+/// Of the pose and all landmarks in the order of initialisation, which `points_` are then.
+JointEstimate RelativeEkfSlam::held_joint() const {
   points_.clear();
-  places_.clear();  // of the rows that there are, in the result
-  for (const Eigen::Index row : {0, 1, 2}) places_.push_back(row);
-  for (std::size_t k = 0; k < landmarks; ++k) {
-    const std::size_t at = association_.slot_of(k);
-    if (at >= reported().chain().landmarks.size()) continue;
-    points_.push_back(reported().point(at));
-    places_.push_back(3 + row_of(k));
-    places_.push_back(4 + row_of(k));
-  }
-  const JointEstimate known = moments_of(reported());
-  const Eigen::Index size = 3 + row_of(landmarks);
-  const double unknown = std::numeric_limits<double>::quiet_NaN();
-  JointEstimate joint{Eigen::VectorXd::Constant(size, unknown),
-                      Eigen::MatrixXd::Constant(size, size, unknown)};
-  for (Eigen::Index a = 0; a < known.mean.size(); ++a) {
-    const Eigen::Index row = places_[static_cast<std::size_t>(a)];
-    joint.mean(row) = known.mean(a);
-    for (Eigen::Index b = 0; b < known.mean.size(); ++b)
-      joint.covariance(row, places_[static_cast<std::size_t>(b)]) = known.covariance(a, b);
-  }
-  return joint;
+  for (std::size_t slot = 0; slot < reported().chain().landmarks.size(); ++slot)
+    points_.push_back(reported().point(slot));
+  return moments_of(reported());
 }
 
 FilterKind relative_ekf_slam_kind() {

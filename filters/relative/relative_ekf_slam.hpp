@@ -36,6 +36,7 @@ class RelativeEkfSlam final : public SlamFilter {
   void join();
   const RelativeGaussian& reported() const { return gaussian_.has_again() ? joined_ : gaussian_; }
   JointEstimate moments_of(const RelativeGaussian& gaussian) const;
+  JointEstimate held_joint() const;
 
   Belief model_;
   Motion motion_kind_;
@@ -56,7 +57,6 @@ class RelativeEkfSlam final : public SlamFilter {
   mutable RelativeGaussian moved_;
   mutable ChainMoments moments_;
   mutable std::vector<RelativeChain::Point> points_;
-  mutable std::vector<Eigen::Index> places_;
   ScanReport report_;
 };
 

@@ -189,16 +189,14 @@ void Elimination::place_landmarks(const FactorGraph& graph, const GraphEstimate&
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
   std::size_t l = 0;
   for (std::size_t t = 0; t < graph.poses(); ++t) {
-    const Pose& before = t == 0 ? graph.start() : estimate.poses[t - 1];
     const Pose& mean = graph.motion(t).pose();
     const Pose& now = minimum.displacements[t];
-    const Point noise = in_world(direction_of(before.heading), now.x - mean.x, now.y - mean.y);
+    const Point noise = in_world(estimate.directions[t], now.x - mean.x, now.y - mean.y);
     links_[t / kSegment].segment.advance(t, {noise.x, noise.y, wrap(now.heading - mean.heading)},
                                          x);
     const Pose& pose = estimate.poses[t];
     for (; l < graph.landmarks() && graph.first_pose_of(l) == t; ++l) {
-      const Eigen::Vector2d away =
-          to_vector(estimate.landmarks[l]) - Eigen::Vector2d(pose.x, pose.y);
+      const Eigen::Vector2d away = to_vector(estimate.landmarks[l]) - place_of(pose);
       const Eigen::Vector2d step =
           step_.segment<2>(row_of(l)) - x.head<2>() - quarter_turn() * away * x(2);
       const Pose moved = relative_to({0.0, 0.0, pose.heading}, {step.x(), step.y(), 0.0});

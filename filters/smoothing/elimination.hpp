@@ -25,6 +25,11 @@ class Elimination {
   void minimise(const FactorGraph& graph, const GraphEstimate& estimate, GraphMinimum& minimum);
   /// Its covariance of the newest pose and the map, in the map frame; writes no means.
   void covariance(Eigen::Matrix3d& pose, MapMoments& map) const;
+  /// Rows of the landmarks there.
+  Eigen::Index map_rows() const { return factor_.rows(); }
+  /// The segments of the last linearisation, in order; the newest pose ends the last one.
+  std::size_t segments() const { return n_links_; }
+  const Segment& segment(std::size_t i) const { return links_[i].segment; }
 
  private:
   /// A segment, and the pose before it.

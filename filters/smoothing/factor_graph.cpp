@@ -31,11 +31,14 @@ void GraphEstimate::clear() {
   in_frame.clear();
   multipliers.clear();
   poses.clear();
+  directions.clear();
   landmarks.clear();
 }
 
 void GraphEstimate::add_pose(const FactorGraph& graph, const Pose& pose) {
-  displacements.push_back(relative_to(poses.empty() ? graph.start() : poses.back(), pose));
+  const Pose& before = poses.empty() ? graph.start() : poses.back();
+  displacements.push_back(relative_to(before, pose));
+  directions.push_back(direction_of(before.heading));
   poses.push_back(pose);
 }
 
@@ -48,7 +51,10 @@ void GraphEstimate::add_landmark(const Point& landmark) {
 void GraphEstimate::compose(const FactorGraph& graph) {
   Pose at = graph.start();
   for (std::size_t t = 0; t < displacements.size(); ++t) {
-    at = poses[t] = composed(at, displacements[t]);
+    directions[t] = direction_of(at.heading);
+    const Pose& d = displacements[t];
+    const Point way = in_world(directions[t], d.x, d.y);
+    at = poses[t] = {at.x + way.x, at.y + way.y, wrap(at.heading + d.heading)};
   }
   for (std::size_t l = 0; l < in_frame.size(); ++l) {
     const Pose& from = poses[graph.first_pose_of(l)];

@@ -59,7 +59,9 @@ struct GraphEstimate {
   /// {pose} m of displacement = mean + covariance m, of all but the newest poses: the step of
   /// Gauss and Newton gives it, and no covariance needs to be inverted.
   std::vector<Eigen::Vector3d> multipliers;
-  std::vector<Pose> poses;       ///< {pose} in the map frame
+  std::vector<Pose> poses;  ///< {pose} in the map frame
+  /// {pose} of the heading of the pose before.
+  std::vector<Direction<double>> directions;
   std::vector<Point> landmarks;  ///< {landmark} likewise [m]
 
   void clear();

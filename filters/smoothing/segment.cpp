@@ -25,7 +25,7 @@ void Segment::linearise(const FactorGraph& graph, const GraphEstimate& estimate,
   Pose before = begin == 0 ? graph.start() : estimate.poses[begin - 1];
   for (std::size_t t = begin; t < end; ++t) {
     const Pose& pose = estimate.poses[t];
-    carry(graph.motion(t), before, pose);
+    carry(graph.motion(t), before, pose, estimate.directions[t]);
     for (const FactorGraph::Observation& observation : graph.observations_of(t)) {
       condition(observation, pose, estimate.landmarks[observation.landmark], noise, scratch);
     }
@@ -63,8 +63,8 @@ void Segment::start(const FactorGraph& graph, SegmentScratch& scratch) {
 }
 
 /// x <- A x + offset + noise.
-void Segment::carry(const MotionIncrement& motion, const Pose& before, const Pose& after) {
-  const Direction<double> heading = direction_of(before.heading);
+void Segment::carry(const MotionIncrement& motion, const Pose& before, const Pose& after,
+                    const Direction<double>& heading) {
   const Eigen::Vector2d moved = place_of(after) - place_of(before);
   const Eigen::Vector2d expected =
       to_vector(in_world(heading, motion.pose().x, motion.pose().y)) - moved;
@@ -157,8 +157,7 @@ void Segment::smooth_poses(const FactorGraph& graph, const GraphEstimate& estima
       const LinearObservation& seen = observations_[k - first];
       adjoint += seen.pose.transpose() * (seen.innovation - seen.gain.transpose() * adjoint);
     }
-    const Pose& before = t == 0 ? graph.start() : estimate.poses[t - 1];
-    const Direction<double> heading = direction_of(before.heading);
+    const Direction<double>& heading = estimate.directions[t];
     Eigen::Vector3d& multiplier = minimum.multipliers[t];
     multiplier << heading.cosine * adjoint(0) + heading.sine * adjoint(1),
         heading.cosine * adjoint(1) - heading.sine * adjoint(0), adjoint(2);

@@ -42,6 +42,7 @@ class Segment {
   /// lower triangle.
   void linearise(const FactorGraph& graph, const GraphEstimate& estimate, std::size_t begin,
                  std::size_t end, const SensorNoise& noise, SegmentScratch& scratch);
+  std::size_t last_pose() const { return end_ - 1; }
   /// That it sees, in the order of their rows.
   std::span<const std::uint32_t> landmarks() const { return landmarks_; }
   /// {row, 3} of the last pose: row 0 g, then G'.
@@ -76,7 +77,8 @@ class Segment {
   };
 
   void start(const FactorGraph& graph, SegmentScratch& scratch);
-  void carry(const MotionIncrement& motion, const Pose& before, const Pose& after);
+  void carry(const MotionIncrement& motion, const Pose& before, const Pose& after,
+             const Direction<double>& heading);
   void condition(const FactorGraph::Observation& observation, const Pose& pose,
                  const Point& landmark, const SensorNoise& noise, SegmentScratch& scratch);
   void add_rows(const LinearObservation& seen, Eigen::Index row, SegmentScratch& scratch);

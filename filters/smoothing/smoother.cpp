@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/smoothing/smoother.hpp"
 
+#include "filters/association/joint_report.hpp"
 #include "filters/setup/filter_options.hpp"
+#include "filters/smoothing/relative_laplace.hpp"
 
 #include <algorithm>
 
 namespace montecarta::filters {
 namespace {
 
-/// A solution is settled where the next step is less than a hundredth of a standard deviation.
-constexpr double kTolerance = 1e-4;
+/// A solution is settled by a step of less than a tenth of a standard deviation; what is left
+/// behind it is of second order.
+constexpr double kTolerance = 1e-2;
 /// Solutions for the sake of landmarks in view are this share of all scans apart, or more: so the
 /// cost of all of them together is linear in the scans.
 constexpr double kSpacing = 0.02;
@@ -19,9 +22,10 @@ constexpr double kSpacing = 0.02;
 Smoother::Smoother(const FilterSetup& setup)
     : model_(setup.belief),
       motion_kind_(motion_of(setup.options)),
+      moments_(moments_of(setup.options)),
       share_(setup.options.number("relinearise")),
       belief_(setup, Retraction::invariant, static_cast<int>(setup.options.integer("iterations")),
-              moments_of(setup.options)),
+              moments_),
       solver_(SensorNoise::of(setup.belief)) {}
 
 void Smoother::start(const Pose& start) {
@@ -121,7 +125,20 @@ void Smoother::map(std::span<std::optional<LandmarkEstimate>> landmarks) const {
 }
 
 std::optional<JointEstimate> Smoother::joint(std::size_t landmarks) const {
-  return belief_.joint(landmarks);
+  const auto held = moments_ == Moments::pushed ? solved_joint() : std::nullopt;
+  if (!held) return belief_.joint(landmarks);
+  return joint_report(*held, belief_.association(), landmarks, [&](std::size_t slot) {
+    return slot < graph_.landmarks() ? 3 + row_of(slot) : Eigen::Index{-1};
+  });
+}
+
+/// Of the newest pose and the landmarks in the order of the graph.
+std::optional<JointEstimate> Smoother::solved_joint() const {
+  if (graph_.landmarks() == 0) return std::nullopt;
+  GraphEstimate solved = estimate_;
+  GaussNewton solver(SensorNoise::of(model_));
+  if (!solver.solve(graph_, kTolerance, solved)) return std::nullopt;
+  return RelativeLaplace().of(graph_, solved, solver.elimination());
 }
 
 FilterKind smoother_kind() {

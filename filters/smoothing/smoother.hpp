@@ -24,6 +24,8 @@ class Smoother final : public SlamFilter {
   PoseEstimate estimate() const override;
   const ScanReport& report() const override { return report_; }
   void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override;
+  /// With `moments = pushed` of a solution of its own, by Laplace in relative coordinates; else,
+  /// and where there is none, of the Gaussian that the next scan is conditioned on.
   std::optional<JointEstimate> joint(std::size_t landmarks) const override;
 
  private:
@@ -32,9 +34,11 @@ class Smoother final : public SlamFilter {
   bool is_due() const;
   bool has_moved(std::size_t landmark) const;
   void solve();
+  std::optional<JointEstimate> solved_joint() const;
 
   Belief model_;
   Motion motion_kind_;
+  Moments moments_;
   double share_;  ///< of a standard deviation that an estimate may move
   JointBelief belief_;
   MotionIncrement motion_;  ///< since the last scan

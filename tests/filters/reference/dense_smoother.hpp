@@ -6,6 +6,8 @@
 
 #include <Eigen/Dense>
 
+#include <vector>
+
 namespace montecarta::filters::reference {
 
 /// The maximum a posteriori estimate of a factor graph by Gauss and Newton on one dense system,
@@ -28,12 +30,17 @@ class DenseSmoother {
     }
     for (int step = 0; step < steps; ++step) take_step();
   }
-  /// Of the newest pose and the landmarks.
-  Eigen::MatrixXd covariance() const {
-    const Eigen::Index n = x.size(), rows = 3 + 2 * landmarks();
+  /// Of the poses `chosen`, and all landmarks.
+  Eigen::MatrixXd covariance(const std::vector<std::size_t>& chosen) const {
+    const Eigen::Index n = x.size();
+    std::vector<Eigen::Index> rows;
+    for (const std::size_t t : chosen) {
+      for (const Eigen::Index i : {0, 1, 2}) rows.push_back(row_of_pose(t) + i);
+    }
+    for (Eigen::Index row = 3 * poses(); row < n; ++row) rows.push_back(row);
     const Eigen::MatrixXd whole =
         (J_.transpose() * J_).ldlt().solve(Eigen::MatrixXd::Identity(n, n));
-    return whole.bottomRightCorner(rows, rows);
+    return whole(rows, rows);
   }
   Pose pose(std::size_t t) const {
     const Eigen::Vector3d v = x.segment<3>(row_of_pose(t));

@@ -53,6 +53,27 @@ TEST(Smoother, LinearisingAtEveryScanIsTheBatchEstimate) {
   }
 }
 
+// The joint is of a solution of its own, whatever the filter linearised before.
+TEST(Smoother, JointDoesNotDependOnWhenAllWasLinearisedAgain) {
+  const SmallWorldSettings settings{.seed = 47, .scans = 120};
+  const SmallWorld world = small_world(settings);
+  const auto always = make(smoother_kind(), settings, {{"relinearise", "0"}});
+  const auto never = make(smoother_kind(), settings, {{"relinearise", "1e9"}});
+  drive_through(*always, world, {}, [](std::size_t) {});
+  drive_through(*never, world, {}, [](std::size_t) {});
+  const JointEstimate a = *always->joint(settings.landmarks);
+  const JointEstimate b = *never->joint(settings.landmarks);
+  EXPECT_EQ(b.covariance.topLeftCorner(3, 3), b.covariance.topLeftCorner(3, 3).transpose());
+  const PoseMoments carried = never->estimate().spread;
+  EXPECT_GT((b.mean.head<2>() - place_of(carried.mean)).norm(), 1e-4) << "was not solved anew";
+  for (Eigen::Index i = 0; i < a.mean.size(); ++i) {
+    const double sigma = std::sqrt(a.covariance(i, i));
+    EXPECT_EQ(std::isnan(a.mean(i)), std::isnan(b.mean(i)));
+    if (std::isnan(a.mean(i))) continue;
+    EXPECT_LT(std::abs(a.mean(i) - b.mean(i)), 0.02 * sigma);
+  }
+}
+
 // With noise so fine that all models are linear it is the Kalman filter, by way of all poses.
 TEST(Smoother, IsTheKalmanFilterOnALinearModel) {
   SmallWorldSettings settings{.seed = 46, .scans = 60};

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/smoothing/relative_laplace.hpp"
+
+#include "filters/joint/map_moments.hpp"
+#include "filters/joint/retraction.hpp"
+
+#include <algorithm>
+
+namespace montecarta::filters {
+namespace {
+
+/// Poses whose frames landmarks are held in, at most.
+constexpr std::size_t kMostFrames = 40;
+
+/// Derivatives of `place`, in the frame of an origin of that heading, by origin and place.
+struct PlaceDerivatives {
+  Matrix23 by_origin;
+  Eigen::Matrix2d by_place;
+};
+PlaceDerivatives derivatives_in_frame(double heading, const Eigen::Vector2d& place) {
+  const auto [cosine, sine] = direction_of(heading);
+  PlaceDerivatives d;
+  d.by_place << cosine, sine, -sine, cosine;
+  d.by_origin << -d.by_place, -quarter_turned(place);
+  return d;
+}
+
+}  // namespace
+
+JointEstimate RelativeLaplace::of(const FactorGraph& graph, const GraphEstimate& estimate,
+                                  const Elimination& elimination) {
+  choose_frames(graph, elimination);
+  const std::size_t n = frames_.size() + 1;
+  mean_.resize(row_of_pose(n) + row_of(graph.landmarks()));
+  by_map_.clear();
+  chain_ = {.start = graph.start(), .displacements = {}, .landmarks = {}};
+  points_.clear();
+  for (std::size_t frame = 0; frame < n; ++frame) add_displacement(graph, estimate, frame);
+  for (std::size_t l = 0; l < graph.landmarks(); ++l) add_landmark(graph, estimate, l);
+  const Eigen::MatrixXd P = poses_given_map_.covariance(elimination, ends_);
+  Eigen::SparseMatrix<double, Eigen::RowMajor> T(mean_.size(), P.rows());
+  T.setFromTriplets(by_map_.begin(), by_map_.end());
+  const Eigen::MatrixXd TP = T * P;
+  return moments_.of(chain_, mean_, T * TP.transpose(), points_);
+}
+
+/// Of the segments before the last one in which landmarks were seen first, all or every other,
+/// every third, ...
+void RelativeLaplace::choose_frames(const FactorGraph& graph, const Elimination& elimination) {
+  std::vector<std::size_t> first;
+  for (std::size_t i = 0, l = 0; i + 1 < elimination.segments(); ++i) {
+    const std::size_t before = l;
+    while (l < graph.landmarks() && graph.first_pose_of(l) <= elimination.segment(i).last_pose())
+      ++l;
+    if (l > before) first.push_back(i);
+  }
+  const std::size_t stride = (first.size() + kMostFrames - 1) / kMostFrames;
+  ends_.clear();
+  frames_.clear();
+  for (std::size_t i = 0; i < first.size(); i += stride) {
+    ends_.push_back(first[i]);
+    frames_.push_back(elimination.segment(first[i]).last_pose());
+  }
+  ends_.push_back(elimination.segments() - 1);
+  newest_ = graph.poses() - 1;
+}
+
+void RelativeLaplace::add_derivative(Eigen::Index row, Eigen::Index column,
+                                     const Eigen::MatrixXd& block) {
+  for (Eigen::Index i = 0; i < block.rows(); ++i) {
+    for (Eigen::Index j = 0; j < block.cols(); ++j)
+      by_map_.emplace_back(static_cast<int>(row + i), static_cast<int>(column + j), block(i, j));
+  }
+}
+
+/// To that frame, from the one before it; behind the last frame, to the newest pose.
+void RelativeLaplace::add_displacement(const FactorGraph& graph, const GraphEstimate& estimate,
+                                       std::size_t frame) {
+  const Eigen::Index row = row_of_pose(frame);
+  const Pose& origin = frame == 0 ? graph.start() : estimate.poses[frames_[frame - 1]];
+  const Pose& end = estimate.poses[frame < frames_.size() ? frames_[frame] : newest_];
+  const Pose way = relative_to(origin, end);
+  mean_.segment<3>(row) << way.x, way.y, way.heading;
+  chain_.displacements.push_back(row);
+  const auto [by_origin, by_place] = derivatives_in_frame(origin.heading, place_of(way));
+  if (frame > 0) {
+    add_derivative(row, row_of_pose(frame - 1), by_origin);
+    by_map_.emplace_back(row + 2, row_of_pose(frame - 1) + 2, -1.0);
+  }
+  add_derivative(row, row_of_pose(frame), by_place);
+  by_map_.emplace_back(row + 2, row_of_pose(frame) + 2, 1.0);
+}
+
+/// In the first frame behind the pose that saw it first, or the last frame there is; that of the
+/// start has the number 0.
+void RelativeLaplace::add_landmark(const FactorGraph& graph, const GraphEstimate& estimate,
+                                   std::size_t landmark) {
+  const auto behind = static_cast<std::size_t>(
+      std::ranges::lower_bound(frames_, graph.first_pose_of(landmark)) - frames_.begin());
+  const std::size_t frame = std::min(behind + 1, frames_.size());
+  const Pose& origin = frame == 0 ? graph.start() : estimate.poses[frames_[frame - 1]];
+  const Point& place = estimate.landmarks[landmark];
+  const auto at = linearised_observation(origin, place);
+  const bool is_polar = !too_near(at.observation);
+  const Eigen::Index row = row_of_pose(frames_.size() + 1) + row_of(landmark);
+  points_.push_back({row, frame, is_polar});
+  PlaceDerivatives d;
+  if (is_polar) {
+    mean_.segment<2>(row) = to_vector(at.observation);
+    d = {pose_jacobian(at), landmark_jacobian(at)};
+  } else {
+    const Pose in_frame = relative_to(origin, {place.x, place.y, 0.0});
+    mean_.segment<2>(row) = place_of(in_frame);
+    d = derivatives_in_frame(origin.heading, place_of(in_frame));
+  }
+  if (frame > 0) add_derivative(row, row_of_pose(frame - 1), d.by_origin);
+  add_derivative(row, row_of_pose(ends_.size()) + row_of(landmark), d.by_place);
+}
+
+}  // namespace montecarta::filters

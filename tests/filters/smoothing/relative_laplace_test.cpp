@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/smoothing/relative_laplace.hpp"
+
+#include "filters/smoothing/gauss_newton.hpp"
+#include "tests/filters/fine_noise.hpp"
+#include "tests/filters/reference/dense_smoother.hpp"
+#include "tests/filters/smoothing/small_graph.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace montecarta::filters {
+namespace {
+
+/// A small world's graph with its estimate of least squares.
+struct Solved {
+  explicit Solved(const SmallWorldSettings& settings)
+      : small(small_graph(small_world(settings), settings.noise, Beginning::truth)),
+        solver(SensorNoise::of(settings.noise)) {
+    EXPECT_TRUE(solver.solve(small.graph, 0.0, small.estimate));
+  }
+  JointEstimate relative_laplace() const {
+    return RelativeLaplace().of(small.graph, small.estimate, solver.elimination());
+  }
+  SmallGraph small;
+  GaussNewton solver;
+};
+
+/// Largest difference of covariances, as a share of the standard deviations.
+double largest_difference(const Eigen::MatrixXd& P, const Eigen::MatrixXd& expected) {
+  const Eigen::VectorXd sigma = expected.diagonal().cwiseSqrt().cwiseInverse();
+  return (sigma.asDiagonal() * (P - expected) * sigma.asDiagonal()).cwiseAbs().maxCoeff();
+}
+
+TEST(PosesGivenMap, CovarianceIsThatOfTheDenseSmoother) {
+  const SmallWorldSettings settings{.seed = 51, .landmarks = 21, .scans = 110};
+  const Solved solved(settings);
+  reference::DenseSmoother dense(solved.small.graph, SensorNoise::of(settings.noise));
+  dense.solve(solved.small.estimate, 1);
+  const std::vector<std::size_t> chosen{0, 1, 3, 4};
+  std::vector<std::size_t> poses;
+  for (const std::size_t i : chosen)
+    poses.push_back(solved.solver.elimination().segment(i).last_pose());
+  ASSERT_EQ(poses.back(), 109U);
+  const Eigen::MatrixXd P = PosesGivenMap().covariance(solved.solver.elimination(), chosen);
+  EXPECT_LT(largest_difference(P, dense.covariance(poses)), 1e-9);
+}
+
+/// To the covariance in map coordinates.
+double difference(const Solved& solved) {
+  const Elimination& elimination = solved.solver.elimination();
+  const std::vector<std::size_t> newest{elimination.segments() - 1};
+  return largest_difference(solved.relative_laplace().covariance,
+                            PosesGivenMap().covariance(elimination, newest));
+}
+
+// Noise so fine that coordinates do not matter; in the first segment the start is the only frame.
+TEST(RelativeLaplace, IsLaplaceInMapCoordinatesWhereAllIsLinear) {
+  for (const std::size_t scans : {20, 24, 25, 100}) {
+    EXPECT_LT(difference(Solved({.seed = 52, .landmarks = 21, .scans = scans, .noise = fine()})),
+              1e-3);
+  }
+}
+
+TEST(RelativeLaplace, HoldsLandmarksInFewerFramesWhereThereAreTooMany) {
+  const Solved solved({.seed = 53,
+                       .landmarks = 900,
+                       .scans = 1440,
+                       .steps_per_scan = 1,
+                       .max_range = 3.0,
+                       .noise = fine()});
+  std::set<std::size_t> segments;
+  for (std::size_t l = 0; l < solved.small.graph.landmarks(); ++l)
+    segments.insert(solved.small.graph.first_pose_of(l) / 24);
+  ASSERT_GT(segments.size(), 40U);
+  EXPECT_LT(difference(solved), 1e-3);
+}
+
+// The vehicle turned half around in noise of ten degrees a step: the mean heading is the
+// estimate's, the mean place lies nearer to the start than the most probable one.
+TEST(RelativeLaplace, ShortensTheWayThatAnUncertainHeadingBends) {
+  SmallWorldSettings settings{.seed = 55, .landmarks = 4, .scans = 60};
+  settings.noise = {.control = {.sigma = {0.3, 20.0 * kPi / 180.0}},
+                    .sigma_range = 0.1,
+                    .sigma_bearing = 4.0 * kPi / 180.0};
+  const Solved solved(settings);
+  const JointEstimate joint = solved.relative_laplace();
+  const Pose& estimate = solved.small.estimate.poses.back();
+  EXPECT_NEAR(wrap(joint.mean(2) - estimate.heading), 0.0, 1e-9);
+  EXPECT_LT(joint.mean.head<2>().norm(), std::hypot(estimate.x, estimate.y));
+}
+
+}  // namespace
+}  // namespace montecarta::filters
