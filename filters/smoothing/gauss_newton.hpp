@@ -11,8 +11,9 @@ class GaussNewton {
  public:
   explicit GaussNewton(const SensorNoise& noise) : noise_(noise), elimination_(noise) {}
 
-  /// Moves `estimate` to the least sum of squares: until the next step is expected to lower it by
-  /// less than `tolerance`, the square of a step in standard deviations, or 20 steps. False where
+  /// Moves `estimate` to the least sum of squares: the last step, from where the elimination was
+  /// linearised, is one expected to lower it by less than `tolerance`, the square of a step in
+  /// standard deviations, or the 20th. False where
   /// the landmarks are not determined or a number is none; then the estimate is what it was.
   [[nodiscard]] bool solve(const FactorGraph& graph, double tolerance, GraphEstimate& estimate);
   /// Of the last linearisation; see Elimination.

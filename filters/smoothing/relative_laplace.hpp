@@ -15,8 +15,8 @@ namespace montecarta::filters {
 /// segments, and of each landmark in range and bearing of one of these.
 class RelativeLaplace {
  public:
-  /// At `estimate`, which has the least sum of squares and is where the graph, with at least one
-  /// landmark, was linearised; the landmarks in the order of the graph.
+  /// At `estimate`, which has the least sum of squares; the graph, with at least one landmark, was
+  /// linearised there or one last step before. The landmarks in the order of the graph.
   JointEstimate of(const FactorGraph& graph, const GraphEstimate& estimate,
                    const Elimination& elimination);
 

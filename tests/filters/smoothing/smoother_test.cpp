@@ -41,7 +41,7 @@ TEST(Smoother, LinearisingAtEveryScanIsTheBatchEstimate) {
   SmallGraph batch = small_graph(world, settings.noise, Beginning::truth);
   GaussNewton solver(SensorNoise::of(settings.noise));
   ASSERT_TRUE(solver.solve(batch.graph, 1e-12, batch.estimate));
-  // Settled is a hundredth of a standard deviation, and here these are less than 0.3 m.
+  // Settled is a tenth of a standard deviation before the last step, which leaves far less.
   const PoseMoments now = smoother->estimate().spread;
   EXPECT_LT(boxminus(now.mean, batch.estimate.poses.back()).norm(), 1e-4);
   std::vector<std::optional<LandmarkEstimate>> map(settings.landmarks);
