@@ -12,6 +12,9 @@ namespace {
 /// Poses whose frames landmarks are held in, at most.
 constexpr std::size_t kMostFrames = 40;
 
+/// A place is nearly a Gaussian in range and bearing where it is so many standard deviations away.
+constexpr double kPolarBeyond = 5.0;
+
 /// Derivatives of `place`, in the frame of an origin of that heading, by origin and place.
 struct PlaceDerivatives {
   Matrix23 by_origin;
@@ -25,6 +28,20 @@ PlaceDerivatives derivatives_in_frame(double heading, const Eigen::Vector2d& pla
   return d;
 }
 
+/// Trace of the covariance of a landmark's place in that frame [m^2]; P: of poses and landmarks,
+/// its rows from `in_map`.
+double spread_in_frame(const Eigen::MatrixXd& P, std::size_t frame, Eigen::Index in_map,
+                       const PlaceDerivatives& d) {
+  Eigen::Matrix2d S = d.by_place * P.block<2, 2>(in_map, in_map) * d.by_place.transpose();
+  if (frame > 0) {
+    const Eigen::Index of_pose = row_of_pose(frame - 1);
+    const Matrix23 by_origin = d.by_origin * P.block<3, 3>(of_pose, of_pose);
+    S += by_origin * d.by_origin.transpose();
+    S += 2.0 * d.by_origin * P.block<3, 2>(of_pose, in_map) * d.by_place.transpose();
+  }
+  return S.trace();
+}
+
 }  // namespace
 
 JointEstimate RelativeLaplace::of(const FactorGraph& graph, const GraphEstimate& estimate,
@@ -36,8 +53,8 @@ JointEstimate RelativeLaplace::of(const FactorGraph& graph, const GraphEstimate&
   chain_ = {.start = graph.start(), .displacements = {}, .landmarks = {}};
   points_.clear();
   for (std::size_t frame = 0; frame < n; ++frame) add_displacement(graph, estimate, frame);
-  for (std::size_t l = 0; l < graph.landmarks(); ++l) add_landmark(graph, estimate, l);
   const Eigen::MatrixXd P = poses_given_map_.covariance(elimination, ends_);
+  for (std::size_t l = 0; l < graph.landmarks(); ++l) add_landmark(graph, estimate, P, l);
   Eigen::SparseMatrix<double, Eigen::RowMajor> T(mean_.size(), P.rows());
   T.setFromTriplets(by_map_.begin(), by_map_.end());
   const Eigen::MatrixXd TP = T * P;
@@ -94,27 +111,27 @@ void RelativeLaplace::add_displacement(const FactorGraph& graph, const GraphEsti
 /// In the first frame behind the pose that saw it first, or the last frame there is; that of the
 /// start has the number 0.
 void RelativeLaplace::add_landmark(const FactorGraph& graph, const GraphEstimate& estimate,
-                                   std::size_t landmark) {
+                                   const Eigen::MatrixXd& P, std::size_t landmark) {
   const auto behind = static_cast<std::size_t>(
       std::ranges::lower_bound(frames_, graph.first_pose_of(landmark)) - frames_.begin());
   const std::size_t frame = std::min(behind + 1, frames_.size());
   const Pose& origin = frame == 0 ? graph.start() : estimate.poses[frames_[frame - 1]];
   const Point& place = estimate.landmarks[landmark];
-  const auto at = linearised_observation(origin, place);
-  const bool is_polar = !too_near(at.observation);
   const Eigen::Index row = row_of_pose(frames_.size() + 1) + row_of(landmark);
+  const Eigen::Index in_map = row_of_pose(ends_.size()) + row_of(landmark);
+  const Eigen::Vector2d in_frame = place_of(relative_to(origin, {place.x, place.y, 0.0}));
+  PlaceDerivatives d = derivatives_in_frame(origin.heading, in_frame);
+  const bool is_polar =
+      in_frame.squaredNorm() > kPolarBeyond * kPolarBeyond * spread_in_frame(P, frame, in_map, d);
   points_.push_back({row, frame, is_polar});
-  PlaceDerivatives d;
+  mean_.segment<2>(row) = in_frame;
   if (is_polar) {
+    const auto at = linearised_observation(origin, place);
     mean_.segment<2>(row) = to_vector(at.observation);
     d = {pose_jacobian(at), landmark_jacobian(at)};
-  } else {
-    const Pose in_frame = relative_to(origin, {place.x, place.y, 0.0});
-    mean_.segment<2>(row) = place_of(in_frame);
-    d = derivatives_in_frame(origin.heading, place_of(in_frame));
   }
   if (frame > 0) add_derivative(row, row_of_pose(frame - 1), d.by_origin);
-  add_derivative(row, row_of_pose(ends_.size()) + row_of(landmark), d.by_place);
+  add_derivative(row, in_map, d.by_place);
 }
 
 }  // namespace montecarta::filters

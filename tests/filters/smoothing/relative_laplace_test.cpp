@@ -77,6 +77,39 @@ TEST(RelativeLaplace, HoldsLandmarksInFewerFramesWhereThereAreTooMany) {
   EXPECT_LT(difference(solved), 1e-3);
 }
 
+// The vehicle drives straight on, over the first of three landmarks at the pose whose frame that is
+// in: as polar coordinates there, its covariance would be no number.
+TEST(RelativeLaplace, KeepsALandmarkNearAFrameInCartesianCoordinates) {
+  const Belief belief{
+      .control = {.sigma = {0.01, 0.001}}, .sigma_range = 0.01, .sigma_bearing = 0.2 * kPi / 180.0};
+  const std::vector<Point> landmarks{{24.0002, 0.0}, {10.0, 8.0}, {30.0, -6.0}};
+  SmallGraph small;
+  small.graph.start({});
+  for (int scan = 1; scan <= 30; ++scan) {
+    MotionIncrement motion;
+    advance(motion, {1.0, 0.0}, 1.0, belief, Motion::quadrature);
+    small.graph.add_pose(motion);
+    const Pose pose{static_cast<double>(scan), 0.0, 0.0};
+    small.estimate.add_pose(small.graph, pose);
+    for (std::uint32_t l = 0; l < landmarks.size(); ++l) {
+      const Point& place = landmarks[l];
+      if (std::hypot(place.x - pose.x, place.y) < 0.5) continue;
+      small.graph.add_observation(l, linearised_observation(pose, place).observation);
+      if (scan == 1) small.estimate.add_landmark(place);
+    }
+  }
+  GaussNewton solver(SensorNoise::of(belief));
+  ASSERT_TRUE(solver.solve(small.graph, 0.0, small.estimate));
+  const std::vector<std::size_t> newest{1};
+  const JointEstimate joint =
+      RelativeLaplace().of(small.graph, small.estimate, solver.elimination());
+  EXPECT_LT(largest_difference(joint.covariance,
+                               PosesGivenMap().covariance(solver.elimination(), newest)),
+            0.05);
+  EXPECT_NEAR(joint.mean(3), landmarks[0].x, 0.01);
+  EXPECT_NEAR(joint.mean(4), landmarks[0].y, 0.01);
+}
+
 // The vehicle turned half around in noise of ten degrees a step: the mean heading is the
 // estimate's, the mean place lies nearer to the start than the most probable one.
 TEST(RelativeLaplace, ShortensTheWayThatAnUncertainHeadingBends) {
