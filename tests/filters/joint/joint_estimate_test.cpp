@@ -80,6 +80,33 @@ TEST(JointEstimate, OfOneGaussianHasItsParts) {
   }
 }
 
+// The joint is solved anew and in other coordinates than the map: near it, not equal to it.
+TEST(JointEstimate, OfFullSmoothingIsNearItsMap) {
+  const SmallWorld world = small_world({.seed = 33, .scans = 60});
+  for (const auto association : {Association::known, Association::nearest}) {
+    const auto smoother = smoother_kind().make(setup_of(smoother_kind(), association, {}));
+    int seen = 0;
+    drive_through(*smoother, world, {}, [&](std::size_t scan) {
+      const auto joint = smoother->joint(kLandmarks);
+      ASSERT_TRUE(joint);
+      std::vector<std::optional<LandmarkEstimate>> map(kLandmarks);
+      smoother->map(map);
+      for (std::size_t l = 0; l < kLandmarks; ++l) {
+        const auto row = static_cast<Eigen::Index>(3 + 2 * l);
+        ASSERT_EQ(map[l].has_value(), !std::isnan(joint->mean(row))) << "scan " << scan;
+        if (!map[l]) continue;
+        ++seen;
+        const Eigen::Vector2d sigma = map[l]->covariance.diagonal().cwiseSqrt();
+        const Eigen::Vector2d shift = joint->mean.segment<2>(row) - map[l]->mean;
+        EXPECT_LT(shift.cwiseQuotient(sigma).norm(), 0.5) << "scan " << scan;
+        const Eigen::Vector2d solved = joint->covariance.diagonal().segment<2>(row).cwiseSqrt();
+        EXPECT_TRUE(solved.isApprox(sigma, 0.1)) << "scan " << scan;
+      }
+    });
+    EXPECT_GT(seen, 100);
+  }
+}
+
 TEST(JointEstimate, OfABankThatSplitsHasItsParts) {
   const SmallWorld world = small_world({.seed = 32, .scans = 60});
   const std::map<std::string, std::string, std::less<>> often{{"particles", "9"},
