@@ -63,7 +63,7 @@ Option moments_option(const char* fallback) {
   Option option =
       choice_option("moments", fallback, kMoments,
                     "reported mean and covariance: of the Gaussian in map coordinates, or those "
-                    "that follow from it in the right-invariant chart (EQUATIONS 19)");
+                    "that follow from it in the right-invariant chart (EQUATIONS 19, 21)");
   option.is_quiet = true;
   return option;
 }

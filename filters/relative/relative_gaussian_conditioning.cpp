@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "filters/models/sensor_kinds.hpp"
 #include "filters/relative/relative_gaussian.hpp"
 
 #include <algorithm>
@@ -24,17 +25,12 @@ void sort_parts(LinearisedPairs& pairs) {
 Eigen::Vector2d add_place(const Point& point, const Eigen::VectorXd& mean,
                           const VehicleInFrames& vehicle, Eigen::Index pair, double sign,
                           LinearisedPairs& pairs) {
-  const Pose& pose = vehicle.in(point.frame);
   const LinearisedPoint at = linearised_point(point, mean);
-  const Pose place = relative_to(pose, {at.place.x, at.place.y, 0.0});
-  const Direction<double> d = direction_of(pose.heading);
-  Eigen::Matrix2d R;
-  R << d.cosine, d.sine, -d.sine, d.cosine;
-  Matrix23 by_pose;
-  by_pose << -R, Eigen::Vector2d(place.y, -place.x);
-  pairs.parts.push_back(
-      {pair, point.frame, point.row, sign * by_pose, sign * R * at.by_coordinates});
-  return {place.x, place.y};
+  const LinearisedDetection seen =
+      PositionSensor::linearised(vehicle.in(point.frame), at.place).value();
+  pairs.parts.push_back({pair, point.frame, point.row, sign * seen.by_pose,
+                         sign * seen.by_landmark * at.by_coordinates});
+  return seen.value;
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ class GaussNewton {
 
   /// Moves `estimate` to the least sum of squares: the last step, from where the elimination was
   /// linearised, is one expected to lower it by less than `tolerance`, the square of a step in
-  /// standard deviations, or the 20th. False where
-  /// the landmarks are not determined or a number is none; then the estimate is what it was.
+  /// standard deviations, or the 20th. False where the landmarks are not determined or a number is
+  /// none; then the estimate is what it was.
   [[nodiscard]] bool solve(const FactorGraph& graph, double tolerance, GraphEstimate& estimate);
   /// Of the last linearisation; see Elimination.
   const Elimination& elimination() const { return elimination_; }

@@ -2,7 +2,7 @@
 #include "filters/smoothing/relative_laplace.hpp"
 
 #include "filters/joint/map_moments.hpp"
-#include "filters/joint/retraction.hpp"
+#include "filters/models/sensor_kinds.hpp"
 
 #include <algorithm>
 
@@ -15,29 +15,16 @@ constexpr std::size_t kMostFrames = 40;
 /// A place is nearly a Gaussian in range and bearing where it is so many standard deviations away.
 constexpr double kPolarBeyond = 5.0;
 
-/// Derivatives of `place`, in the frame of an origin of that heading, by origin and place.
-struct PlaceDerivatives {
-  Matrix23 by_origin;
-  Eigen::Matrix2d by_place;
-};
-PlaceDerivatives derivatives_in_frame(double heading, const Eigen::Vector2d& place) {
-  const auto [cosine, sine] = direction_of(heading);
-  PlaceDerivatives d;
-  d.by_place << cosine, sine, -sine, cosine;
-  d.by_origin << -d.by_place, -quarter_turned(place);
-  return d;
-}
-
 /// Trace of the covariance of a landmark's place in that frame [m^2]; P: of poses and landmarks,
 /// its rows from `in_map`.
 double spread_in_frame(const Eigen::MatrixXd& P, std::size_t frame, Eigen::Index in_map,
-                       const PlaceDerivatives& d) {
-  Eigen::Matrix2d S = d.by_place * P.block<2, 2>(in_map, in_map) * d.by_place.transpose();
+                       const LinearisedDetection& place) {
+  const auto& [value, by_pose, by_landmark] = place;
+  Eigen::Matrix2d S = by_landmark * P.block<2, 2>(in_map, in_map) * by_landmark.transpose();
   if (frame > 0) {
     const Eigen::Index of_pose = row_of_pose(frame - 1);
-    const Matrix23 by_origin = d.by_origin * P.block<3, 3>(of_pose, of_pose);
-    S += by_origin * d.by_origin.transpose();
-    S += 2.0 * d.by_origin * P.block<3, 2>(of_pose, in_map) * d.by_place.transpose();
+    S += by_pose * P.block<3, 3>(of_pose, of_pose) * by_pose.transpose();
+    S += 2.0 * by_pose * P.block<3, 2>(of_pose, in_map) * by_landmark.transpose();
   }
   return S.trace();
 }
@@ -96,15 +83,14 @@ void RelativeLaplace::add_displacement(const FactorGraph& graph, const GraphEsti
   const Eigen::Index row = row_of_pose(frame);
   const Pose& origin = frame == 0 ? graph.start() : estimate.poses[frames_[frame - 1]];
   const Pose& end = estimate.poses[frame < frames_.size() ? frames_[frame] : newest_];
-  const Pose way = relative_to(origin, end);
-  mean_.segment<3>(row) << way.x, way.y, way.heading;
+  const LinearisedDetection way = PositionSensor::linearised(origin, {end.x, end.y}).value();
+  mean_.segment<3>(row) << way.value, wrap(end.heading - origin.heading);
   chain_.displacements.push_back(row);
-  const auto [by_origin, by_place] = derivatives_in_frame(origin.heading, place_of(way));
   if (frame > 0) {
-    add_derivative(row, row_of_pose(frame - 1), by_origin);
+    add_derivative(row, row_of_pose(frame - 1), way.by_pose);
     by_map_.emplace_back(row + 2, row_of_pose(frame - 1) + 2, -1.0);
   }
-  add_derivative(row, row_of_pose(frame), by_place);
+  add_derivative(row, row_of_pose(frame), way.by_landmark);
   by_map_.emplace_back(row + 2, row_of_pose(frame) + 2, 1.0);
 }
 
@@ -119,19 +105,15 @@ void RelativeLaplace::add_landmark(const FactorGraph& graph, const GraphEstimate
   const Point& place = estimate.landmarks[landmark];
   const Eigen::Index row = row_of_pose(frames_.size() + 1) + row_of(landmark);
   const Eigen::Index in_map = row_of_pose(ends_.size()) + row_of(landmark);
-  const Eigen::Vector2d in_frame = place_of(relative_to(origin, {place.x, place.y, 0.0}));
-  PlaceDerivatives d = derivatives_in_frame(origin.heading, in_frame);
-  const bool is_polar =
-      in_frame.squaredNorm() > kPolarBeyond * kPolarBeyond * spread_in_frame(P, frame, in_map, d);
+  LinearisedDetection at = PositionSensor::linearised(origin, place).value();
+  const double nearest = kPolarBeyond * kPolarBeyond * spread_in_frame(P, frame, in_map, at);
+  const auto polar = RangeBearingSensor::linearised(origin, place);
+  const bool is_polar = polar && at.value.squaredNorm() > nearest;
   points_.push_back({row, frame, is_polar});
-  mean_.segment<2>(row) = in_frame;
-  if (is_polar) {
-    const auto at = linearised_observation(origin, place);
-    mean_.segment<2>(row) = to_vector(at.observation);
-    d = {pose_jacobian(at), landmark_jacobian(at)};
-  }
-  if (frame > 0) add_derivative(row, row_of_pose(frame - 1), d.by_origin);
-  add_derivative(row, in_map, d.by_place);
+  if (is_polar) at = *polar;
+  mean_.segment<2>(row) = at.value;
+  if (frame > 0) add_derivative(row, row_of_pose(frame - 1), at.by_pose);
+  add_derivative(row, in_map, at.by_landmark);
 }
 
 }  // namespace montecarta::filters
