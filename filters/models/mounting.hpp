@@ -2,12 +2,9 @@
 #pragma once
 
 #include "engine/core/pose.hpp"
-#include "engine/numbers/angle.hpp"
 #include "engine/numbers/real.hpp"
 
 #include <Eigen/Core>
-
-#include <cmath>
 
 namespace montecarta::models {
 
@@ -22,26 +19,12 @@ struct Mounting {
   double distance() const { return length(forward, left); }
 
   /// Of the sensor, on a vehicle at `pose`.
-  Pose pose_of(const Pose& pose) const {
-    if (is_none()) return pose;
-    const Eigen::Vector2d arm = arm_of(pose);
-    return {pose.x + arm.x(), pose.y + arm.y(), wrap(pose.heading + turn)};
-  }
+  Pose pose_of(const Pose& pose) const;
   /// Derivative of pose_of() by the pose.
-  Eigen::Matrix3d jacobian(const Pose& pose) const {
-    const Eigen::Vector2d arm = arm_of(pose);
-    Eigen::Matrix3d M = Eigen::Matrix3d::Identity();
-    M(0, 2) = -arm.y();
-    M(1, 2) = arm.x();
-    return M;
-  }
+  Eigen::Matrix3d jacobian(const Pose& pose) const;
 
  private:
-  Eigen::Vector2d arm_of(const Pose& pose) const {
-    const Direction<double> heading = direction_of(pose.heading);
-    return {heading.cosine * forward - heading.sine * left,
-            heading.sine * forward + heading.cosine * left};
-  }
+  Eigen::Vector2d arm_of(const Pose& pose) const;
 };
 
 }  // namespace montecarta::models

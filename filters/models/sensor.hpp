@@ -30,13 +30,8 @@ struct Sensor {
 };
 
 /// The components of its detections, in their order.
-inline std::span<const Quantity> components_of(const Sensor& sensor) {
-  return std::visit([](const auto& one) { return std::span<const Quantity>(one.kComponents); },
-                    sensor.kind);
-}
-inline std::string name_of(const Sensor& sensor) {
-  return std::visit([](const auto& one) { return std::string(one.kName); }, sensor.kind);
-}
+std::span<const Quantity> components_of(const Sensor& sensor);
+std::string name_of(const Sensor& sensor);
 
 /// Calls `visit` with one sensor of each kind, in the order of the list.
 template <class Visit>
@@ -47,78 +42,31 @@ void for_each_sensor(const Visit& visit) {
   each(std::make_index_sequence<std::variant_size_v<SensorKind>>());
 }
 /// Names of all sensors, the default first.
-inline std::vector<std::string> sensor_names() {
-  std::vector<std::string> names;
-  for_each_sensor([&](const Sensor& sensor) { names.push_back(name_of(sensor)); });
-  return names;
-}
+std::vector<std::string> sensor_names();
 /// Names of those that measure this.
-inline std::vector<std::string> sensors_with(Quantity quantity) {
-  std::vector<std::string> names;
-  for_each_sensor([&](const Sensor& sensor) {
-    const auto components = components_of(sensor);
-    if (std::ranges::find(components, quantity) != components.end())
-      names.push_back(name_of(sensor));
-  });
-  return names;
-}
+std::vector<std::string> sensors_with(Quantity quantity);
 /// The sensor of that name; nullopt where there is none.
-inline std::optional<Sensor> sensor_named(std::string_view name, const Mounting& mounting = {}) {
-  std::optional<Sensor> found;
-  for_each_sensor([&](const Sensor& sensor) {
-    if (name_of(sensor) == name) found = Sensor{sensor.kind, mounting};
-  });
-  return found;
-}
+std::optional<Sensor> sensor_named(std::string_view name, const Mounting& mounting = {});
 
 /// Whether one detection fixes a landmark: it then is a Gaussian.
 template <class Kind>
 concept FixesLandmark = requires {
   Kind::placed(Pose(), Eigen::Vector2d());
 };
-inline bool fixes_landmark(const Sensor& sensor) {
-  return std::visit([]<class Kind>(const Kind& /*one*/) { return FixesLandmark<Kind>; },
-                    sensor.kind);
-}
+bool fixes_landmark(const Sensor& sensor);
 
 /// What it sees of a landmark at that range and bearing of the sensor.
-inline Eigen::Vector2d detection_of(const Sensor& sensor, const RangeBearing<double>& from) {
-  return std::visit([&](const auto& one) { return one.detection_of(from); }, sensor.kind);
-}
+Eigen::Vector2d detection_of(const Sensor& sensor, const RangeBearing<double>& from);
 
 /// What it should see of a landmark from a vehicle at `pose`, with derivatives by that pose;
 /// nullopt where the landmark is too near for them.
-inline std::optional<LinearisedDetection> linearised_detection(const Sensor& sensor,
-                                                               const Pose& pose,
-                                                               const Point& landmark) {
-  auto seen = std::visit(
-      [&](const auto& one) { return one.linearised(sensor.mounting.pose_of(pose), landmark); },
-      sensor.kind);
-  if (seen && !sensor.mounting.is_none()) {
-    seen->by_pose = (seen->by_pose * sensor.mounting.jacobian(pose)).eval();
-  }
-  return seen;
-}
+std::optional<LinearisedDetection> linearised_detection(const Sensor& sensor, const Pose& pose,
+                                                        const Point& landmark);
 
 /// Where one detection from a vehicle at `pose` places a landmark, with derivatives by that pose;
 /// nullopt where it does not fix one.
-inline std::optional<PlacedLandmark> placed_landmark(const Sensor& sensor, const Pose& pose,
-                                                     const Eigen::Vector2d& detection) {
-  const Pose from = sensor.mounting.pose_of(pose);
-  auto placed = std::visit(
-      [&](const auto& one) -> std::optional<PlacedLandmark> {
-        if constexpr (requires { one.placed(from, detection); }) {
-          return one.placed(from, detection);
-        } else {
-          return std::nullopt;
-        }
-      },
-      sensor.kind);
-  if (placed && !sensor.mounting.is_none()) {
-    placed->by_pose = (placed->by_pose * sensor.mounting.jacobian(pose)).eval();
-  }
-  return placed;
-}
+std::optional<PlacedLandmark> placed_landmark(const Sensor& sensor, const Pose& pose,
+                                              const Eigen::Vector2d& detection);
 
 /// The measured part of a detection.
 inline Eigen::Vector2d vector_of(const Detection& detection) {
@@ -127,29 +75,14 @@ inline Eigen::Vector2d vector_of(const Detection& detection) {
 
 /// Which components are angles.
 using Wraps = std::array<bool, Detection::kMost>;
-inline Wraps wraps_of(const Sensor& sensor) {
-  Wraps wraps{};
-  std::ranges::transform(components_of(sensor), wraps.begin(),
-                         [](Quantity quantity) { return name_of(quantity).wraps; });
-  return wraps;
-}
+Wraps wraps_of(const Sensor& sensor);
 /// detected less predicted, angles by the shorter way.
-inline Eigen::Vector2d residual(const Eigen::Vector2d& detected, const Eigen::Vector2d& predicted,
-                                const Wraps& wraps) {
-  Eigen::Vector2d difference = detected - predicted;
-  if (wraps[0]) difference(0) = wrap(difference(0));
-  if (wraps[1]) difference(1) = wrap(difference(1));
-  return difference;
-}
+Eigen::Vector2d residual(const Eigen::Vector2d& detected, const Eigen::Vector2d& predicted,
+                         const Wraps& wraps);
 
 /// [m] from the sensor to what it detected; nullopt where detections of these components do not
 /// say.
-inline std::optional<double> distance_in(std::span<const Quantity> components,
-                                         const Detection& detection) {
-  if (components[0] == Quantity::range) return detection[0];
-  if (components[0] == Quantity::forward) return length(detection[0], detection[1]);
-  return std::nullopt;
-}
+std::optional<double> distance_in(std::span<const Quantity> components, const Detection& detection);
 
 /// Standard deviations that `owner` (a belief, a scenario) has of the components. A component that
 /// the sensor does not have has derivatives of 0 and, here, a deviation of 1: it changes nothing.

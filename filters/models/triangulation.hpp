@@ -4,11 +4,7 @@
 #include "filters/models/eigen_jacobians.hpp"
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
 
 /// Where two detections of one number each place a landmark (EQUATIONS 2). The derivatives are
@@ -26,77 +22,26 @@ struct TriangulatedLandmark {
 
 /// The ray from `first` through `second`, two points of the map, cuts the one that `sensor` sees at
 /// `bearing` [rad] with `variance` [rad^2]; nullopt where they do not meet ahead of both.
-inline std::optional<TriangulatedLandmark> crossing_of_rays(const Eigen::Vector2d& first,
-                                                            const Eigen::Vector2d& second,
-                                                            const Pose& sensor, double bearing,
-                                                            double variance) {
-  const double length = (second - first).norm();
-  const Eigen::Vector2d u = (second - first) / length;
-  const Direction<double> sight = direction_of(sensor.heading + bearing);
-  const Eigen::Vector2d w(sight.cosine, sight.sine);
-  const Eigen::Vector2d between = place_of(sensor) - first;
-  const auto cross = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return a.x() * b.y() - a.y() * b.x();
-  };
-  const double sine = cross(u, w);
-  const double along_first = cross(between, w) / sine, along_second = cross(between, u) / sine;
-  if (!(along_first > 0.0 && along_second > 0.0 && std::isfinite(along_first + along_second)))
-    return std::nullopt;
-  // n'(f - first) = 0 and m'(f - sensor) = 0, with n and m across the rays.
-  const Eigen::RowVector2d n(-u.y(), u.x()), m(-w.y(), w.x());
-  const Eigen::Vector2d by_n = w / sine, by_m = -u / sine;
-  TriangulatedLandmark landmark{first + along_first * u, {}, {}, {}, {}};
-  landmark.by_first = by_n * n * (1.0 - along_first / length);
-  landmark.by_second = by_n * n * (along_first / length);
-  landmark.by_pose << by_m * m, by_m * along_second;
-  landmark.noise = variance * along_second * along_second * by_m * by_m.transpose();
-  return landmark;
-}
+std::optional<TriangulatedLandmark> crossing_of_rays(const Eigen::Vector2d& first,
+                                                     const Eigen::Vector2d& second,
+                                                     const Pose& sensor, double bearing,
+                                                     double variance);
 
 /// Two circles about points of the map, of `ranges` [m] each with `variance` [m^2], cut left (side
 /// = 1) or right (-1) of the way from the first to the second; nullopt where they do not cut.
-inline std::optional<TriangulatedLandmark> crossing_of_circles(const Eigen::Vector2d& first,
-                                                               const Eigen::Vector2d& second,
-                                                               const Eigen::Vector2d& ranges,
-                                                               double side, double variance) {
-  const double apart = (second - first).norm();
-  const double along = 0.5 * (apart + (ranges(0) - ranges(1)) * (ranges(0) + ranges(1)) / apart);
-  const double across_squared = ranges(0) * ranges(0) - along * along;
-  if (!(apart > 0.0 && across_squared > 0.0)) return std::nullopt;
-  const Eigen::Vector2d way = (second - first) / apart;
-  const Eigen::Vector2d across(-way.y(), way.x());
-  const Eigen::Vector2d point = first + along * way + side * std::sqrt(across_squared) * across;
-  // u'(f - first) = range of the first, w'(f - second) = that of the second.
-  const Eigen::Vector2d u = (point - first) / ranges(0), w = (point - second) / ranges(1);
-  const double sine = u.x() * w.y() - u.y() * w.x();
-  const Eigen::Vector2d by_u = Eigen::Vector2d(w.y(), -w.x()) / sine;
-  const Eigen::Vector2d by_w = Eigen::Vector2d(-u.y(), u.x()) / sine;
-  return TriangulatedLandmark{point, by_u * u.transpose(), by_w * w.transpose(), Matrix23::Zero(),
-                              variance * (by_u * by_u.transpose() + by_w * by_w.transpose())};
-}
+std::optional<TriangulatedLandmark> crossing_of_circles(const Eigen::Vector2d& first,
+                                                        const Eigen::Vector2d& second,
+                                                        const Eigen::Vector2d& ranges, double side,
+                                                        double variance);
 
 /// Whether a place is determined well by two bearings or two ranges, each with `variance`: its
 /// covariance [m^2], from the first detection, is small enough for a Gaussian. `nearest` [m]: the
 /// smaller distance from which it was seen.
-inline bool crosses_well(const Eigen::Matrix2d& covariance, double nearest, bool of_bearings,
-                         double variance) {
-  // Standard deviation by the distance: what the second order adds then is small against it.
-  constexpr double kMostRelative = 0.1;
-  // Of ranges an error across them changes a range by no more than this share of its standard
-  // deviation: in the first order it does not.
-  constexpr double kMostCurvature = 0.25;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance, Eigen::EigenvaluesOnly);
-  const double largest = axes.eigenvalues()(1);
-  if (std::sqrt(largest) > kMostRelative * nearest) return false;
-  return of_bearings || largest / (2.0 * nearest) <= kMostCurvature * std::sqrt(variance);
-}
+bool crosses_well(const Eigen::Matrix2d& covariance, double nearest, bool of_bearings,
+                  double variance);
 
 /// On which of two sides (1, -1) a landmark is, by D^2 of a detection for either: that which it
 /// fits, and so much better than the other; nullopt where it does not tell.
-inline std::optional<double> chosen_side(double left, double right) {
-  constexpr double kFits = 9.0, kFitsBetter = 25.0;
-  if (std::min(left, right) > kFits || std::abs(left - right) < kFitsBetter) return std::nullopt;
-  return left < right ? 1.0 : -1.0;
-}
+std::optional<double> chosen_side(double left, double right);
 
 }  // namespace montecarta::models

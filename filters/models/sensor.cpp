@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/models/sensor.hpp"
+
+#include "engine/numbers/angle.hpp"
+
+#include <algorithm>
+
+namespace montecarta::models {
+
+std::span<const Quantity> components_of(const Sensor& sensor) {
+  return std::visit([](const auto& one) { return std::span<const Quantity>(one.kComponents); },
+                    sensor.kind);
+}
+
+std::string name_of(const Sensor& sensor) {
+  return std::visit([](const auto& one) { return std::string(one.kName); }, sensor.kind);
+}
+
+std::vector<std::string> sensor_names() {
+  std::vector<std::string> names;
+  for_each_sensor([&](const Sensor& sensor) { names.push_back(name_of(sensor)); });
+  return names;
+}
+
+std::vector<std::string> sensors_with(Quantity quantity) {
+  std::vector<std::string> names;
+  for_each_sensor([&](const Sensor& sensor) {
+    const auto components = components_of(sensor);
+    if (std::ranges::find(components, quantity) != components.end())
+      names.push_back(name_of(sensor));
+  });
+  return names;
+}
+
+std::optional<Sensor> sensor_named(std::string_view name, const Mounting& mounting) {
+  std::optional<Sensor> found;
+  for_each_sensor([&](const Sensor& sensor) {
+    if (name_of(sensor) == name) found = Sensor{sensor.kind, mounting};
+  });
+  return found;
+}
+
+bool fixes_landmark(const Sensor& sensor) {
+  return std::visit([]<class Kind>(const Kind& /*one*/) { return FixesLandmark<Kind>; },
+                    sensor.kind);
+}
+
+Eigen::Vector2d detection_of(const Sensor& sensor, const RangeBearing<double>& from) {
+  return std::visit([&](const auto& one) { return one.detection_of(from); }, sensor.kind);
+}
+
+std::optional<LinearisedDetection> linearised_detection(const Sensor& sensor, const Pose& pose,
+                                                        const Point& landmark) {
+  auto seen = std::visit(
+      [&](const auto& one) { return one.linearised(sensor.mounting.pose_of(pose), landmark); },
+      sensor.kind);
+  if (seen && !sensor.mounting.is_none()) {
+    seen->by_pose = (seen->by_pose * sensor.mounting.jacobian(pose)).eval();
+  }
+  return seen;
+}
+
+std::optional<PlacedLandmark> placed_landmark(const Sensor& sensor, const Pose& pose,
+                                              const Eigen::Vector2d& detection) {
+  const Pose from = sensor.mounting.pose_of(pose);
+  auto placed = std::visit(
+      [&](const auto& one) -> std::optional<PlacedLandmark> {
+        if constexpr (requires { one.placed(from, detection); }) {
+          return one.placed(from, detection);
+        } else {
+          return std::nullopt;
+        }
+      },
+      sensor.kind);
+  if (placed && !sensor.mounting.is_none()) {
+    placed->by_pose = (placed->by_pose * sensor.mounting.jacobian(pose)).eval();
+  }
+  return placed;
+}
+
+Wraps wraps_of(const Sensor& sensor) {
+  Wraps wraps{};
+  std::ranges::transform(components_of(sensor), wraps.begin(),
+                         [](Quantity quantity) { return name_of(quantity).wraps; });
+  return wraps;
+}
+
+Eigen::Vector2d residual(const Eigen::Vector2d& detected, const Eigen::Vector2d& predicted,
+                         const Wraps& wraps) {
+  Eigen::Vector2d difference = detected - predicted;
+  if (wraps[0]) difference(0) = wrap(difference(0));
+  if (wraps[1]) difference(1) = wrap(difference(1));
+  return difference;
+}
+
+std::optional<double> distance_in(std::span<const Quantity> components,
+                                  const Detection& detection) {
+  if (components[0] == Quantity::range) return detection[0];
+  if (components[0] == Quantity::forward) return length(detection[0], detection[1]);
+  return std::nullopt;
+}
+
+}  // namespace montecarta::models
