@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/models/sensor.hpp"
 
-#include "engine/numbers/angle.hpp"
+#include "engine/numbers/real.hpp"
 
 #include <algorithm>
 
@@ -49,8 +49,9 @@ Eigen::Vector2d detection_of(const Sensor& sensor, const RangeBearing<double>& f
   return std::visit([&](const auto& one) { return one.detection_of(from); }, sensor.kind);
 }
 
-std::optional<LinearisedDetection> linearised_detection(const Sensor& sensor, const Pose& pose,
-                                                        const Point& landmark) {
+[[gnu::flatten]] std::optional<LinearisedDetection> linearised_detection(const Sensor& sensor,
+                                                                         const Pose& pose,
+                                                                         const Point& landmark) {
   auto seen = std::visit(
       [&](const auto& one) { return one.linearised(sensor.mounting.pose_of(pose), landmark); },
       sensor.kind);
@@ -83,14 +84,6 @@ Wraps wraps_of(const Sensor& sensor) {
   std::ranges::transform(components_of(sensor), wraps.begin(),
                          [](Quantity quantity) { return name_of(quantity).wraps; });
   return wraps;
-}
-
-Eigen::Vector2d residual(const Eigen::Vector2d& detected, const Eigen::Vector2d& predicted,
-                         const Wraps& wraps) {
-  Eigen::Vector2d difference = detected - predicted;
-  if (wraps[0]) difference(0) = wrap(difference(0));
-  if (wraps[1]) difference(1) = wrap(difference(1));
-  return difference;
 }
 
 std::optional<double> distance_in(std::span<const Quantity> components,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/numbers/angle.hpp"
 #include "filters/models/mounting.hpp"
 #include "filters/models/sensor_kinds.hpp"
 
@@ -77,8 +78,13 @@ inline Eigen::Vector2d vector_of(const Detection& detection) {
 using Wraps = std::array<bool, Detection::kMost>;
 Wraps wraps_of(const Sensor& sensor);
 /// detected less predicted, angles by the shorter way.
-Eigen::Vector2d residual(const Eigen::Vector2d& detected, const Eigen::Vector2d& predicted,
-                         const Wraps& wraps);
+inline Eigen::Vector2d residual(const Eigen::Vector2d& detected, const Eigen::Vector2d& predicted,
+                                const Wraps& wraps) {
+  Eigen::Vector2d difference = detected - predicted;
+  if (wraps[0]) difference(0) = wrap(difference(0));
+  if (wraps[1]) difference(1) = wrap(difference(1));
+  return difference;
+}
 
 /// [m] from the sensor to what it detected; nullopt where detections of these components do not
 /// say.
