@@ -4,7 +4,7 @@
 #include "experiments/external/child_process.hpp"
 #include "experiments/text/words.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <array>
@@ -84,22 +84,22 @@ void expect_array(const Json& value, std::size_t size, const std::string& what) 
 
 /// Throws unless C is a covariance: no variance and no eigenvalue of the correlations negative but
 /// for rounding. Singular it may be: a pose that is known exactly is.
-template <int N>
-void expect_covariance(const Eigen::Matrix<double, N, N>& C, const std::string& what) {
-  Eigen::Matrix<double, N, 1> scale;
-  for (int i = 0; i < N; ++i) {
+void expect_covariance(const Eigen::MatrixXd& C, const std::string& what) {
+  const Eigen::Index n = C.rows();
+  Eigen::VectorXd scale(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
     if (C(i, i) < 0.0) refuse_answer(what + " is not positive definite: a variance is negative");
     scale(i) = C(i, i) > 0.0 ? 1.0 / std::sqrt(C(i, i)) : 0.0;
     if (C(i, i) == 0.0 && !C.row(i).isZero(0.0))
       refuse_answer(what + " is not positive definite: correlation with a variance of zero");
   }
-  const Eigen::Matrix<double, N, N> correlations = scale.asDiagonal() * C * scale.asDiagonal();
+  const Eigen::MatrixXd correlations = scale.asDiagonal() * C * scale.asDiagonal();
   if (!correlations.allFinite())
     refuse_answer(what + " is not positive definite: beyond all bounds");
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> solver(correlations,
-                                                                          Eigen::EigenvaluesOnly);
-  const double least = solver.eigenvalues().minCoeff();
-  if (!(least >= -kEigenvalueRounding)) refuse_answer(what + " is not positive definite");
+  // Positive definite when raised by the tolerance: no eigenvalue is below its negative.
+  const Eigen::MatrixXd raised =
+      correlations + kEigenvalueRounding * Eigen::MatrixXd::Identity(n, n);
+  if (raised.llt().info() != Eigen::Success) refuse_answer(what + " is not positive definite");
 }
 
 Eigen::Matrix3d covariance_in(const Json& value) {

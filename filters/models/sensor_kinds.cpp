@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/models/sensor_kinds.hpp"
 
-#include "engine/numbers/angle.hpp"
+#include "engine/numbers/real.hpp"
 
 #include <cmath>
 

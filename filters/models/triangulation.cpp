@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/models/triangulation.hpp"
 
-#include <Eigen/Eigenvalues>
+#include "engine/numbers/real.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -62,9 +62,11 @@ bool crosses_well(const Eigen::Matrix2d& covariance, double nearest, bool of_bea
   // Of ranges an error across them changes a range by no more than this share of its standard
   // deviation: in the first order it does not.
   constexpr double kMostCurvature = 0.25;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance, Eigen::EigenvaluesOnly);
-  const double largest = axes.eigenvalues()(1);
-  if (std::sqrt(largest) > kMostRelative * nearest) return false;
+  const double half_sum = 0.5 * covariance.trace();
+  const double half_difference = 0.5 * (covariance(0, 0) - covariance(1, 1));
+  // The larger eigenvalue.
+  const double largest = half_sum + length(half_difference, covariance(0, 1));
+  if (!(std::sqrt(largest) <= kMostRelative * nearest)) return false;
   return of_bearings || largest / (2.0 * nearest) <= kMostCurvature * std::sqrt(variance);
 }
 

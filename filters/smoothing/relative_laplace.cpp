@@ -106,9 +106,10 @@ void RelativeLaplace::add_landmark(const FactorGraph& graph, const GraphEstimate
   const Eigen::Index row = row_of_pose(frames_.size() + 1) + row_of(landmark);
   const Eigen::Index in_map = row_of_pose(ends_.size()) + row_of(landmark);
   LinearisedDetection at = PositionSensor::linearised(origin, place).value();
-  const double nearest = kPolarBeyond * kPolarBeyond * spread_in_frame(P, frame, in_map, at);
+  const double nearest_squared =
+      kPolarBeyond * kPolarBeyond * spread_in_frame(P, frame, in_map, at);
   const auto polar = RangeBearingSensor::linearised(origin, place);
-  const bool is_polar = polar && at.value.squaredNorm() > nearest;
+  const bool is_polar = polar && at.value.squaredNorm() > nearest_squared;
   points_.push_back({row, frame, is_polar});
   if (is_polar) at = *polar;
   mean_.segment<2>(row) = at.value;

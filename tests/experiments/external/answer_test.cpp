@@ -85,6 +85,7 @@ TEST(Answer, WhatIsWrongIsSaid) {
       {with_covariance("[[1,0.5,0],[0.4,1,0],[0,0,1]]"), "covariance is not symmetric"},
       {with_covariance("[[1,0,0],[0,-1,0],[0,0,1]]"), "not positive definite"},
       {with_covariance("[[1,2,0],[2,1,0],[0,0,1]]"), "not positive definite"},
+      {with_covariance("[[1,1.000000002,0],[1.000000002,1,0],[0,0,1]]"), "not positive definite"},
       {with_covariance("[[1,1e-3,0],[1e-3,0,0],[0,0,1]]"), "correlation with a variance of zero"},
       {with_covariance("[[1e300,1e300,0],[1e300,1e-300,0],[0,0,1]]"), "beyond all bounds"},
       {kGood + R"(,"nis_dof":-1})", "nis_dof is no whole number from 0: -1"},
@@ -96,6 +97,7 @@ TEST(Answer, WhatIsWrongIsSaid) {
 TEST(Answer, ASingularCovarianceIsOne) {
   EXPECT_EQ(reason(with_covariance("[[0,0,0],[0,0,0],[0,0,0]]")), "none");
   EXPECT_EQ(reason(with_covariance("[[1,1,0],[1,1,0],[0,0,1e-12]]")), "none");
+  EXPECT_EQ(reason(with_covariance("[[1,1.0000000005,0],[1.0000000005,1,0],[0,0,1]]")), "none");
   EXPECT_EQ(reason(with_covariance("[[1e-300,0,0],[0,1e300,0],[0,0,1]]")), "none");
 }
 
