@@ -51,10 +51,12 @@ Column3<double> column_of(const BodyStep<double>& step) {
   return {step.forward, step.left, step.turn};
 }
 
-/// The motion of a vehicle of type V.
+/// The motion of a vehicle of type V. What it calls is inlined: out of line it passes through
+/// memory.
 template <class V>
-MotionIncrement moved(const V& vehicle, const MotionIncrement& before, const Control& control,
-                      double duration, const ControlOf<double>& sigma, const SigmaRule& rule) {
+[[gnu::flatten]] MotionIncrement moved(const V& vehicle, const MotionIncrement& before,
+                                       const Control& control, double duration,
+                                       const ControlOf<double>& sigma, const SigmaRule& rule) {
   constexpr std::size_t kLinear = kLinearOf<V>;
   const Pose& from = before.pose();
   const Column3<double> column = heading_column(before.covariance());

@@ -6,7 +6,6 @@
 #include "filters/setup/filter_options.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace montecarta::filters {
 
