@@ -78,6 +78,7 @@ struct LandmarkEstimate {
 struct JointEstimate {
   Eigen::VectorXd mean;
   Eigen::MatrixXd covariance;
+  std::uint32_t numerical_faults = 0;  ///< as ScanReport's, on the way to this estimate
 };
 
 /// The interface of engine and filters: estimation only, no threads, no files, no clock, no global

@@ -50,6 +50,7 @@ Recorder::Recorder(RunRecord& record) : layout_(&record.layout()), scans_(record
                         column<std::uint8_t>(record, "final_map_seen")};
   columns_.joint_mean = column<double>(record, "joint_mean");
   columns_.joint_covariance = column<double>(record, "joint_covariance");
+  columns_.numerical_faults = column<std::uint32_t>(record, "numerical_faults");
   const bool any = !columns_.map.mean.empty() || !columns_.final_map.mean.empty();
   landmarks_.resize(any ? layout_->landmarks() : 0);
   find_reported(record);
@@ -155,6 +156,7 @@ void Recorder::record_joint(const SlamFilter& filter, std::size_t scan) {
   std::ranges::copy(joint->mean, row_of(columns_.joint_mean, row, states).begin());
   std::ranges::copy(joint->covariance.reshaped(),  // symmetric: the order is one and the same
                     row_of(columns_.joint_covariance, row, states * states).begin());
+  columns_.numerical_faults[scan] += joint->numerical_faults;
 }
 
 void Recorder::write_map(const MapColumns& columns, std::size_t row) const {

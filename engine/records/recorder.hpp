@@ -46,6 +46,7 @@ class Recorder {
     std::span<std::uint16_t> ancestor_narrow;
     MapColumns map, final_map;
     std::span<double> joint_mean, joint_covariance;
+    std::span<std::uint32_t> numerical_faults;
   };
 
   /// A number of every scan that the filter reports.

@@ -125,16 +125,19 @@ void Smoother::map(std::span<std::optional<LandmarkEstimate>> landmarks) const {
 }
 
 std::optional<JointEstimate> Smoother::joint(std::size_t landmarks) const {
-  const auto held = moments_ == Moments::pushed ? solved_joint() : std::nullopt;
-  if (!held) return belief_.joint(landmarks);
-  return joint_report(*held, belief_.association(), landmarks, [&](std::size_t slot) {
-    return slot < graph_.landmarks() ? 3 + row_of(slot) : Eigen::Index{-1};
-  });
+  if (moments_ != Moments::pushed || graph_.landmarks() == 0) return belief_.joint(landmarks);
+  if (const auto solved = solved_joint()) {
+    return joint_report(*solved, belief_.association(), landmarks, [&](std::size_t slot) {
+      return slot < graph_.landmarks() ? 3 + row_of(slot) : Eigen::Index{-1};
+    });
+  }
+  JointEstimate carried = belief_.joint(landmarks);
+  carried.numerical_faults = 1;
+  return carried;
 }
 
 /// Of the newest pose and the landmarks in the order of the graph.
 std::optional<JointEstimate> Smoother::solved_joint() const {
-  if (graph_.landmarks() == 0) return std::nullopt;
   GraphEstimate solved = estimate_;
   GaussNewton solver(SensorNoise::of(model_));
   if (!solver.solve(graph_, kTolerance, solved)) return std::nullopt;

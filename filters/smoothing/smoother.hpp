@@ -25,7 +25,8 @@ class Smoother final : public SlamFilter {
   const ScanReport& report() const override { return report_; }
   void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override;
   /// With `moments = pushed` of a solution of its own, by Laplace in relative coordinates; else,
-  /// and where there is none, of the Gaussian that the next scan is conditioned on.
+  /// and (a numerical fault) where there is none, of the Gaussian that the next scan is conditioned
+  /// on.
   std::optional<JointEstimate> joint(std::size_t landmarks) const override;
 
  private:

@@ -102,13 +102,14 @@ class ScriptedFilter : public SlamFilter {
       landmarks[l] = {{particles_.front().x, static_cast<double>(l)}, Eigen::Matrix2d::Identity()};
   }
 
-  /// A covariance that says which element it is.
+  /// A covariance that says which element it is, on the way to which one factorisation failed.
   std::optional<JointEstimate> joint(std::size_t landmarks) const override {
     const auto size = static_cast<Eigen::Index>(3 + 2 * landmarks);
     JointEstimate joint{Eigen::VectorXd::LinSpaced(size, 0.0, static_cast<double>(size - 1)),
                         Eigen::MatrixXd::Identity(size, size)};
     joint.mean(0) = static_cast<double>(seen_);
     joint.covariance(size - 1, 0) = joint.covariance(0, size - 1) = 0.5;
+    joint.numerical_faults = 1;
     return joint;
   }
 

@@ -199,6 +199,8 @@ TEST(Recorder, StoresJointEstimatesAtTheEndOfEachPartOfTheRun) {
   EXPECT_EQ(mean[17], 8.0);
   EXPECT_EQ(covariance[81 + 8], 0.5);
   EXPECT_EQ(covariance[81 + 10], 1.0);
+  EXPECT_THAT(record.column<std::uint32_t>(*layout.find("numerical_faults")),
+              ElementsAre(0u, 1u, 0u, 1u, 0u, 1u));
 }
 
 TEST(JointScans, AreTheLastOfEqualParts) {

@@ -74,6 +74,21 @@ TEST(Smoother, JointDoesNotDependOnWhenAllWasLinearisedAgain) {
   }
 }
 
+// The information about a range measured without noise is infinite.
+TEST(Smoother, JointOfTheCarriedBeliefInsteadOfASolutionIsANumericalFault) {
+  SmallWorldSettings settings{.seed = 48, .scans = 3};
+  const SmallWorld world = small_world(settings);
+  settings.noise.sigma_range = 1e-200;
+  const auto pushed = make(smoother_kind(), settings);
+  const auto carried = make(smoother_kind(), settings, {{"moments", "map"}});
+  drive_through(*pushed, world, {}, [](std::size_t) {});
+  drive_through(*carried, world, {}, [](std::size_t) {});
+  const JointEstimate held = *carried->joint(settings.landmarks);
+  EXPECT_EQ(held.numerical_faults, 0u);
+  EXPECT_TRUE(held.mean.head(3).allFinite());
+  EXPECT_EQ(pushed->joint(settings.landmarks)->numerical_faults, 1u);
+}
+
 // With noise so fine that all models are linear it is the Kalman filter, by way of all poses.
 TEST(Smoother, IsTheKalmanFilterOnALinearModel) {
   SmallWorldSettings settings{.seed = 46, .scans = 60};
