@@ -68,7 +68,7 @@ struct CellAnalysis {
   std::size_t looks_planned = 0;  ///< at its verdict, where cells stop by it, else 0
   std::size_t looks_made = 0;     ///< of them
   std::vector<FailedRun> failures;
-  Moments leading = Moments::spread;      ///< of errors and verdict: the first of kMoments there is
+  Moments leading = Moments::spread;      ///< of the verdict: the first of kMoments there is
   std::vector<NeesResult> nees;           ///< leading first; pose, position, heading; may be empty
   std::vector<std::uint64_t> runs;        ///< numbers of the complete runs, increasing
   ScoreTable scores;                      ///< of each of them

@@ -96,16 +96,16 @@ RunPits pits_of(const RunRows& rows, std::size_t particles, std::uint64_t run,
                 std::span<const Eigen::Vector2d> landmarks) {
   RunPits pits;
   if (rows.truth.empty()) return pits;
-  const MomentRows& leading = rows.mixture.mean.empty() ? rows.spread : rows.mixture;
+  const MomentRows& estimate = estimate_of(rows);
   const auto scans = calibration_scans(rows.truth.size() / 3);
-  pits.has_pose = !leading.covariance.empty();
+  pits.has_pose = !estimate.covariance.empty();
   pits.has_rank = !rows.cloud.log_weight.empty();
   pits.has_landmark = rows.final_map && !landmarks.empty();
   for (std::size_t m = 0; m < kQuarters; ++m) {
     if (pits.has_pose) {
       const bool drawn = particles > 0 && is_drawn(rows, scans[m]);
       pits.pose[m] = drawn ? drawn_pits(rows, draws_at(rows, particles, scans[m]), scans[m])
-                           : gaussian_pits(rows.truth, leading, scans[m]);
+                           : gaussian_pits(rows.truth, estimate, scans[m]);
     }
     if (pits.has_rank) pits.rank[m] = rank_pits(rows.truth, rows.cloud, scans[m], m, evenly(run));
   }

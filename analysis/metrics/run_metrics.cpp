@@ -27,7 +27,7 @@ void measure_nees(const std::vector<double>& truth, const MomentRows& moments, N
   for (auto& value : rows.value) value.resize(scans);
   for (auto& floored : rows.floored) floored.resize(scans);
   for (std::size_t s = 0; s < scans; ++s) {
-    const Eigen::Vector3d error = boxminus(pose_of(truth, s), pose_of(moments.mean, s));
+    const Eigen::Vector3d error = boxminus(pose_of(moments.mean, s), pose_of(truth, s));
     const Eigen::Matrix3d P = Eigen::Map<const RowMajor3>(moments.covariance.data() + 9 * s);
     const std::array<Nees, 3> blocks = {nees<3>(error, P), nees<2>(error, P), nees<1>(error, P, 2)};
     for (std::size_t b = 0; b < blocks.size(); ++b) {
@@ -55,14 +55,10 @@ void measure_imported(const ErrorRows& errors, bool is_pose, NeesRows& rows) {
   }
 }
 
-const MomentRows& leading(const RunRows& rows) {
-  return rows.mixture.mean.empty() ? rows.spread : rows.mixture;
-}
-
 }  // namespace
 
 void RunMetrics::measure_errors(const RunRows& rows, std::size_t scans) {
-  const std::vector<double>& mean = leading(rows).mean;
+  const std::vector<double>& mean = estimate_of(rows).mean;
   squared_position_.clear();
   squared_heading_.clear();
   errors_.clear();
@@ -70,7 +66,7 @@ void RunMetrics::measure_errors(const RunRows& rows, std::size_t scans) {
   if (rows.truth.empty() || mean.empty()) return;
   expect(rows.truth.size() == 3 * scans && mean.size() == 3 * scans, "poses are {scan, 3}");
   for (std::size_t s = 0; s < scans; ++s) {
-    const Eigen::Vector3d error = boxminus(pose_of(rows.truth, s), pose_of(mean, s));
+    const Eigen::Vector3d error = boxminus(pose_of(mean, s), pose_of(rows.truth, s));
     squared_position_.push_back(error(0) * error(0) + error(1) * error(1));
     squared_heading_.push_back(error(2) * error(2));
     errors_.push_back(error);
@@ -79,7 +75,7 @@ void RunMetrics::measure_errors(const RunRows& rows, std::size_t scans) {
 }
 
 void RunMetrics::turn_into_vehicle(const RunRows& rows) {
-  const std::vector<double>& covariance = leading(rows).covariance;
+  const std::vector<double>& covariance = estimate_of(rows).covariance;
   for (std::size_t s = 0; s < errors_.size(); ++s) {
     const double heading = pose_of(rows.truth, s).heading;
     Eigen::Matrix3d vehicle_from_map = Eigen::Matrix3d::Identity();

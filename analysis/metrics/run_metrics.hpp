@@ -36,14 +36,14 @@ class RunMetrics {
   const NeesRows& nees(Moments moments) const { return nees_[static_cast<std::size_t>(moments)]; }
   /// By the first of kMoments that is there; nullptr where none is.
   const NeesRows* leading_nees() const;
-  /// [m^2] {scan}, of the leading mean: the mixture's where stored.
+  /// [m^2] {scan}, of the mean of estimate_of().
   const std::vector<double>& squared_position() const { return squared_position_; }
   /// [rad^2] {scan}
   const std::vector<double>& squared_heading() const { return squared_heading_; }
-  /// {scan} errors of the leading mean in the frame of the true vehicle: forward [m], left [m],
-  /// heading [rad].
+  /// {scan} errors of the same mean, estimate - truth, in the frame of the true vehicle: forward
+  /// [m], left [m], heading [rad].
   const std::vector<Eigen::Vector3d>& errors() const { return errors_; }
-  /// {scan} the leading covariance in the same frame; empty where none is stored.
+  /// {scan} covariance of estimate_of() in the same frame; empty where none is stored.
   const std::vector<Eigen::Matrix3d>& covariances() const { return covariances_; }
   /// nullptr where there are no ancestors, as lineages().
   const Diversity* diversity() const { return diversity_; }

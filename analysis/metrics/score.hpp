@@ -11,7 +11,8 @@ namespace montecarta::analysis {
 
 struct MeasuredRun;
 
-/// Which of two values of a score is the better one; neither: the lower one is counted, no more.
+/// Which of two values of a score is the better one; neither: `compare` says in how many runs it is
+/// lower, and calls none better.
 enum class Better : std::uint8_t { lower, higher, neither };
 
 /// A number that a run has one of: what is averaged over runs, and compared run by run.
@@ -27,7 +28,7 @@ struct Score {
 struct ScanSeries {
   const char* name;
   const char* units;
-  /// {scan} nothing where it does not apply.
+  /// {scan} nothing where it does not apply; NaN at a scan of one run leaves a gap in the mean.
   std::vector<double> (*of)(const MeasuredRun&);
   bool is_square = false;  ///< the root of its mean is what is shown
 };

@@ -17,9 +17,8 @@
 
 namespace montecarta::engine {
 
-/// What a study may ask to be stored (study file: record.columns). The per-scan diagnostics
-/// (ess, resampled, log_likelihood, nis, nis_dof, numerical_faults, map_size) and pose_mean are
-/// always stored.
+/// What a study may ask to be stored (study file: record.columns) besides the columns of the group
+/// `pose` (records/column_table.cpp), which are always stored.
 struct ColumnSelection {
   bool covariance =
       true;  ///< pose_covariance; pose_mean_mixture, pose_covariance_mixture where there is one

@@ -41,8 +41,10 @@ struct AssociationCounts {
 
 /// What a filter says of its last update; a value that does not apply stays NaN or zero.
 struct ScanReport {
-  double ess = 0.0;        ///< effective number of particles after weighing, before resampling
-  bool resampled = false;  ///< whether this update ended with a resampling
+  double ess = 0.0;  ///< effective number of particles after weighing, before resampling
+  /// Whether this update resampled: at its end, so that the particles of the next one have other
+  /// ancestors, or (marginal filters) before it weighed, so that its own have.
+  bool resampled = false;
   /// log p(scan | past scans) of the matched detections; with unknown association also log p0
   /// (EQUATIONS 17) for each detection that matches nothing, so that all particles count as many
   /// factors.

@@ -70,7 +70,7 @@ std::vector<ColumnKind> make_table() {
              has_mixture),
       of_report("ess", "pose", f64, "effective sample size after weighing",
                 [](Report r) { return r.ess; }),
-      of_report("resampled", "pose", u8, "1 where the scan ended with a resampling",
+      of_report("resampled", "pose", u8, "1 where the particles were resampled",
                 [](Report r) { return r.resampled ? 1.0 : 0.0; }),
       of_report("log_likelihood", "pose", f64, "log density of the scan given the past",
                 [](Report r) { return r.log_likelihood; }),

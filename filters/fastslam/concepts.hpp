@@ -40,8 +40,8 @@ using HeldBy = decltype(std::declval<const MapTransform&>().initialise(
     BasicPose<Real>(), RangeBearing<Real>(), SensorNoise()));
 
 /// Keeps landmarks, as those two do: each as a LandmarkGaussian, or in a form of its own that
-/// gaussian_of() gives as one. A form is a struct of Reals; one that was never seen, `{}`, must be
-/// finite.
+/// gaussian_of() gives as one, which is all that poses, weights and association see of it. A form
+/// is a struct of Reals; one that was never seen, `{}`, must give a finite Gaussian.
 template <class T, class Real>
 concept KeepsLandmarks = requires(const T t, const BasicPose<Real>& pose, HeldBy<T, Real>& landmark,
                                   const RangeBearing<Real>& seen, const SensorNoise& R,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/errors.hpp"
 #include "filters/moments/mounted.hpp"
 #include "filters/moments/sigma_sensor.hpp"
 
@@ -13,7 +14,10 @@ namespace montecarta::filters {
 /// Range and bearing from the pose of the vehicle.
 struct AtPose {
   using Kind = RangeBearingSensor;
-  explicit AtPose(const Sensor& /*sensor*/) {}
+  explicit AtPose(const Sensor& sensor) {
+    expect(std::holds_alternative<RangeBearingSensor>(sensor.kind) && sensor.mounting.is_none(),
+           "AtPose is given another sensor than its FilterKind has in `sensors`");
+  }
 
   template <class Gaussian>
   [[gnu::always_inline]] const Gaussian& sensor(const Gaussian& vehicle) const {

@@ -30,7 +30,7 @@ PopulationSettings population_settings(const FilterOptions& options);
 
 /// What all filters with particles have in common, whatever a particle is: weights, descent,
 /// resampling, and the report of a scan. Between a scan and the next step the particles are weighed
-/// but not yet resampled: that is the state that is estimated and recorded.
+/// but not yet resampled by that scan's weights: that is the state that is estimated and recorded.
 template <class Real>
 class Population {
  public:
@@ -84,7 +84,7 @@ class Population {
     std::fill(parents_.begin() + static_cast<std::ptrdiff_t>(settings_.particles), parents_.end(),
               0U);
   }
-  /// Resampling takes effect before the next step: true where `parents()` follow.
+  /// Resampling takes effect before the next step: true where it gave ancestors().
   bool resample() {
     if (!std::exchange(is_after_scan_, false)) return false;
     if (!report_.resampled) {
@@ -96,7 +96,8 @@ class Population {
     return true;
   }
 
-  /// Draws the ancestors at once, by weights of the caller's (EQUATIONS 12).
+  /// Draws the ancestors at once, by weights of the caller's (EQUATIONS 12): of marginal filters,
+  /// which resample before they weigh.
   void draw_ancestors(const StepContext& context, std::span<const double> weights) {
     report_.resampled = true;
     draw_parents(settings_.resampling, weights, context,

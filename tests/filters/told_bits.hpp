@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/core/slam_filter.hpp"
+#include "engine/records/column_table.hpp"
 
 #include <bit>
 #include <cstdint>
@@ -41,13 +42,9 @@ class ToldBits {
     tell(estimate.spread);
     if (estimate.mixture) tell(*estimate.mixture);
   }
-  void tell(const ScanReport& r) {
-    const AssociationCounts& a = r.association;
-    for (const double number :
-         {r.ess, static_cast<double>(r.resampled), r.log_likelihood, r.nis,
-          static_cast<double>(r.nis_dof), static_cast<double>(r.numerical_faults), a.correct,
-          a.wrong, a.new_again, a.missed, a.clutter, r.map_size, r.rotation_information}) {
-      tell(number);
+  void tell(const ScanReport& report) {
+    for (const engine::ColumnKind& column : engine::column_table()) {
+      if (column.of_report != nullptr) tell(column.of_report(report));
     }
   }
   void write_particle_columns(const SlamFilter& filter, std::size_t particles) {

@@ -16,6 +16,7 @@ using ::testing::ElementsAre;
 using ::testing::ElementsAreArray;
 using ::testing::IsEmpty;
 using ::testing::IsNan;
+using ::testing::IsSupersetOf;
 
 std::vector<std::string> names(const RecordLayout& layout) {
   std::vector<std::string> names;
@@ -41,8 +42,10 @@ TEST(RecordLayout, HoldsWhatWasAskedFor) {
   StudyPlan plan = small_result_plan();
   plan.columns = {.covariance = false, .ancestry = false};
   const RecordLayout least(plan.cells[0], plan.columns, plan.drives->itinerary());
-  EXPECT_THAT(names(least), ElementsAre("pose_mean", "ess", "resampled", "log_likelihood", "nis",
-                                        "nis_dof", "numerical_faults", "map_size"));
+  EXPECT_THAT(names(least), IsSupersetOf({"pose_mean", "ess", "numerical_faults", "map_size"}));
+  for (const char* name : {"pose_covariance", "pose_mean_mixture", "ancestor", "map_mean"}) {
+    EXPECT_FALSE(least.find(name)) << name;
+  }
   plan.columns = {};
   plan.cells[0].mixture = false;
   const RecordLayout usual(plan.cells[0], plan.columns, plan.drives->itinerary());

@@ -60,6 +60,18 @@ TEST_P(LandmarkForms, AreUpdatedAssociatedResampledAndReported) {
   }
 }
 
+// A bearing would be taken for a range.
+TEST(LandmarkForm, IsRefusedAnotherSensorThanRangeAndBearingAtThePose) {
+  const SmallWorldSettings settings;
+  for (const Sensor& sensor : {Sensor{.kind = BearingSensor()}, Sensor{.kind = RangeBearingSensor(),
+                                                                .mounting = {.forward = 1.0}}}) {
+    FilterSetup setup = setup_of(Variant{"fastslam2"}, settings);
+    setup.belief.sensor = sensor;
+    EXPECT_THROW(make_refined<Lanes>(setup, Linearised(), LinearisedInTwoMetres()),
+                 std::logic_error);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, LandmarkForms,
                          testing::Values(Variant{"fastslam2"}, Variant{"fastslam2", "ratio"},
                                          Variant{"fastslam2", "batch"},
