@@ -116,9 +116,8 @@ std::vector<std::string> comparison_notes(const StudyAnalysis& study,
           "runs with probability " +
           level +
           " (bootstrap over runs), 'ratio' the quotient of the "
-          "means, 'runs won' how often the cell was the better one: the lower one, of a number "
-          "that "
-          "is not better high or low.",
+          "means, 'runs won' how often the cell was the better one: the lower one, of a "
+          "number that is not better high or low.",
       "'better' and 'worse' are said where chance alone would hardly show it: where the runs won "
       "and lost are more uneven than a fair coin's ('p sign', exact sign test), or the differences "
       "lean to one side ('p rank', Wilcoxon's signed-rank test). Both p are adjusted for all " +

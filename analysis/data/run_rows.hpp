@@ -118,4 +118,9 @@ struct RunRows {
   double cpu_seconds = 0.0;
 };
 
+/// The estimate that errors are of: the mixture where it is stored, else the spread.
+inline const MomentRows& estimate_of(const RunRows& rows) {
+  return rows.mixture.mean.empty() ? rows.spread : rows.mixture;
+}
+
 }  // namespace montecarta::analysis

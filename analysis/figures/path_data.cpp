@@ -34,14 +34,10 @@ const std::vector<std::string> kEllipseHeadings = {"x [m]", "y [m]", "major diam
 
 std::vector<double> ellipse_row(const Ellipse& e) { return {e.x, e.y, e.major, e.minor, e.angle}; }
 
-const std::vector<double>& leading_mean(const RunRows& run) {
-  return run.mixture.mean.empty() ? run.spread.mean : run.mixture.mean;
-}
-
 FigureData recorded_path(const ResultFile& file, const StoredCell& cell, const RunRows& run) {
   FigureData data{"path_" + cell.label + ".csv", {"time [s]", "x [m]", "y [m]"}, {}};
   const auto times = drive_met_by(file, run.run).scan_times;
-  const auto& mean = leading_mean(run);
+  const auto& mean = estimate_of(run).mean;
   const std::size_t stride = 1 + times.size() / kMostRecorded;
   for (std::size_t s = 0; s < times.size(); s += stride) {
     data.rows.push_back({times[s], mean[3 * s], mean[3 * s + 1]});
@@ -72,7 +68,7 @@ FigureData path_data(const ResultFile& file, const StoredCell& cell, const RunRo
                   {"time [s]", "true x [m]", "true y [m]", "x [m]", "y [m]"},
                   {}};
   const auto& times = file.scan_times();
-  const auto& mean = leading_mean(run);
+  const auto& mean = estimate_of(run).mean;
   const std::size_t stride = 1 + times.size() / kMostPoints;
   for (std::size_t s = 0; s < times.size(); s += stride) {
     data.rows.push_back(
@@ -83,7 +79,7 @@ FigureData path_data(const ResultFile& file, const StoredCell& cell, const RunRo
 
 FigureData pose_ellipses(const StoredCell& cell, const RunRows& run) {
   FigureData data{"pose_ellipses_" + cell.label + ".csv", kEllipseHeadings, {}};
-  const MomentRows& moments = run.mixture.mean.empty() ? run.spread : run.mixture;
+  const MomentRows& moments = estimate_of(run);
   const std::size_t scans = moments.covariance.size() / 9;
   const std::size_t ellipses = std::min(kPoseEllipses, scans);
   for (std::size_t k = 1; k <= ellipses; ++k) {

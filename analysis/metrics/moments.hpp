@@ -22,11 +22,6 @@ enum class Moments {
 /// where there is one.
 inline constexpr std::array kMoments = {Moments::corrected, Moments::mixture, Moments::spread};
 
-/// The estimate that errors are of: the mixture where it is stored, else the spread.
-inline const MomentRows& estimate_of(const RunRows& rows) {
-  return rows.mixture.mean.empty() ? rows.spread : rows.mixture;
-}
-
 /// Which components of the pose error are judged.
 enum class ErrorBlock {
   pose,      ///< x, y, heading

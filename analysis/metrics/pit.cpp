@@ -17,18 +17,18 @@ double wrapped(std::size_t component, double difference) {
   return component == 2 ? wrap(difference) : difference;
 }
 
-/// Gaussian probability of less than `error` = truth - mean; NaN where the variance is none.
-double gaussian_share(double error, double variance) {
-  if (!(variance > 0.0) || !std::isfinite(variance) || !std::isfinite(error)) return kNaN;
-  return 0.5 * std::erfc(-error / std::sqrt(2.0 * variance));
+/// Gaussian probability of less than `deviation` = truth - mean; NaN where the variance is none.
+double gaussian_share(double deviation, double variance) {
+  if (!(variance > 0.0) || !std::isfinite(variance) || !std::isfinite(deviation)) return kNaN;
+  return 0.5 * std::erfc(-deviation / std::sqrt(2.0 * variance));
 }
 
 RunPits::Components gaussian_pits(const std::vector<double>& truth, const MomentRows& moments,
                                   std::size_t scan) {
   RunPits::Components pits;
   for (std::size_t c = 0; c < 3; ++c) {
-    const double error = wrapped(c, truth[3 * scan + c] - moments.mean[3 * scan + c]);
-    pits[c] = gaussian_share(error, moments.covariance[9 * scan + 4 * c]);
+    const double deviation = wrapped(c, truth[3 * scan + c] - moments.mean[3 * scan + c]);
+    pits[c] = gaussian_share(deviation, moments.covariance[9 * scan + 4 * c]);
   }
   return pits;
 }

@@ -44,7 +44,7 @@ struct SyntheticStudy {
       const double t = 0.2 * static_cast<double>(s);
       const Eigen::Vector3d truth(3.0 * t, 10.0 * std::sin(0.1 * t), wrap(0.5 * t));
       const Eigen::Vector3d noise(draw.normal(), draw.normal(), draw.normal());
-      Eigen::Vector3d mean = truth - bias - inflation * (L * noise);
+      Eigen::Vector3d mean = truth + bias + inflation * (L * noise);
       mean(2) = wrap(mean(2));
       rows.truth.insert(rows.truth.end(), truth.begin(), truth.end());
       rows.spread.mean.insert(rows.spread.mean.end(), mean.begin(), mean.end());

@@ -61,7 +61,7 @@ ReplayCell read_cell(const ResultFile& file, std::size_t index, std::size_t run,
                      const Scans& frames, const ReplaySize& size) {
   const StoredCell& cell = file.cells()[index];
   const RunRows rows = read_run(file, cell, run);
-  const MomentRows& moments = rows.mixture.mean.empty() ? rows.spread : rows.mixture;
+  const MomentRows& moments = estimate_of(rows);
   ReplayCell replay{cell.label, index, failure_of(file, cell, run)};
   replay.x = component(moments.mean, 0, frames);
   replay.y = component(moments.mean, 1, frames);

@@ -93,6 +93,14 @@ TEST(CellSums, FindsTooLargeACovarianceBelowTheBand) {
   EXPECT_EQ(analyze_runs(study, 30).consistency().verdict, Verdict::conservative);
 }
 
+TEST(CellSums, AnErrorIsTheEstimateLessTheTruth) {
+  SyntheticStudy study;
+  study.bias = {0.0, 0.0, 0.2};
+  const CellAnalysis cell = analyze_runs(study, 40);
+  const std::vector<double>& bias = cell.find<ErrorAnatomy>()->bias[2];
+  EXPECT_NEAR(mean_of_finite(bias), 0.2, 0.01);
+}
+
 TEST(CellSums, FindsABiasAndItsRmse) {
   SyntheticStudy study;
   study.bias = {0.5, 0.0, 0.0};
