@@ -150,7 +150,7 @@ std::string win_note(double level) {
 std::string pareto_note() {
   return "On the Pareto front is a cell when no other is as fast and more accurate (or as accurate "
          "and faster): all others are beaten by one of these outright. 'consistency' says the same "
-         "of the NEES distance, how many times ANEES must be halved or doubled to be that of an "
+         "of the NEES distance, how many times ANEES must be halved or doubled to be that of a "
          "consistent filter. All of complete runs alone, by their means: cells whose numbers "
          "differ by "
          "less than their +- may change places with more runs.";
