@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/stop_flag.hpp"
+#include "engine/namespaces.hpp"
 #include "engine/random/stream.hpp"
 #include "engine/threads/parallel.hpp"
 
@@ -9,6 +9,14 @@
 #include <cstdint>
 
 namespace montecarta::engine {
+
+/// Whether somebody has asked the workers to stop. For a filter that waits for something outside of
+/// the process; any other ends its step soon enough.
+class StopFlag {
+ public:
+  virtual ~StopFlag() = default;
+  virtual bool is_set() const = 0;
+};
 
 /// What the engine gives a filter for one step: its place in the study, random streams, and
 /// threads.

@@ -3,8 +3,7 @@
 
 #include "engine/numbers/angle.hpp"
 #include "engine/numbers/lanes.hpp"
-#include "engine/numbers/register_exponential.hpp"
-#include "engine/numbers/register_trigonometry.hpp"
+#include "engine/numbers/registers.hpp"
 
 #include <array>
 #include <cmath>

@@ -3,7 +3,6 @@
 
 #include "engine/namespaces.hpp"
 #include "engine/numbers/real.hpp"
-#include "engine/random/philox.hpp"
 #include "engine/random/stream.hpp"
 
 #include <array>

@@ -3,7 +3,6 @@
 
 #include "engine/errors.hpp"
 #include "engine/random/normals.hpp"
-#include "engine/random/philox.hpp"
 
 #include <bit>
 

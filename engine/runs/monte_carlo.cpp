@@ -9,10 +9,21 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 
 namespace montecarta::engine {
 namespace {
+
+constexpr int kSomeRunsFailed = 3;
+constexpr int kCheckpoint = 85;
+
+std::uint64_t sum(const RunOutcome& outcome, std::uint64_t CellOutcome::*count) {
+  std::uint64_t total = 0;
+  for (const CellOutcome& cell : outcome.cells) total += cell.*count;
+  return total;
+}
 
 ResultWriter open_output(const StudyPlan& plan, const RunOptions& options) {
   if (options.attempt) return ResultWriter::attempt(options.output, plan, options.provenance);
@@ -119,6 +130,30 @@ void tell(const std::vector<std::string>& notes) {
 }
 
 }  // namespace
+
+std::uint64_t RunOutcome::failed() const { return sum(*this, &CellOutcome::failed); }
+std::uint64_t RunOutcome::missing() const { return sum(*this, &CellOutcome::missing); }
+
+std::uint64_t RunOutcome::ended() const { return sum(*this, &CellOutcome::complete) + failed(); }
+
+int exit_code(const RunOutcome& outcome, bool under_scheduler) {
+  switch (outcome.stopped) {
+    case StopReason::complete:
+      return outcome.failed() > 0 ? kSomeRunsFailed : EXIT_SUCCESS;
+    case StopReason::time_budget:
+      return kCheckpoint;
+    case StopReason::sigterm:
+      return under_scheduler ? kCheckpoint : 128 + SIGTERM;
+    case StopReason::sigint:
+      return 128 + SIGINT;
+    case StopReason::error:
+      break;
+  }
+  expect(false, "an error has no outcome: it is thrown");
+  return EXIT_FAILURE;
+}
+
+bool runs_under_scheduler() { return std::getenv("SLURM_JOB_ID") != nullptr; }
 
 RunOutcome run_study(const StudyPlan& plan, const RunOptions& options) {
   const Stopwatch stopwatch;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/stop_flag.hpp"
+#include "engine/core/step_context.hpp"
 
 #include <atomic>
 #include <cstdint>

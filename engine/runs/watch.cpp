@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/runs/watch.hpp"
 
-#include "engine/runs/run_outcome.hpp"
+#include "engine/runs/monte_carlo.hpp"
 
 #include <algorithm>
 #include <csignal>

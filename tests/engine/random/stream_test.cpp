@@ -2,7 +2,6 @@
 #include "engine/random/stream.hpp"
 
 #include "engine/random/normals.hpp"
-#include "engine/random/philox.hpp"
 
 #include <Random123/philox.h>
 #include <gtest/gtest.h>

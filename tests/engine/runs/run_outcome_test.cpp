@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/runs/run_outcome.hpp"
+#include "engine/runs/monte_carlo.hpp"
 
 #include <gtest/gtest.h>
 
