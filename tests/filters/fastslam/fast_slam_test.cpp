@@ -5,14 +5,35 @@
 namespace montecarta::filters {
 namespace {
 
+/// The filter with one particle at a time instead of eight.
 std::unique_ptr<SlamFilter> make_single(const Variant& v, const SmallWorldSettings& world) {
   const FilterSetup setup = setup_of(v, world);
-  return v.filter == "fastslam1" ? make_fastslam1<double>(setup) : make_fastslam2<double>(setup);
+  if (v.filter == "fastslam1") return make_fastslam1<double>(setup);
+  if (v.filter == "fastslam2") return make_fastslam2<double>(setup);
+  if (v.filter == "ufastslam") return make_ufastslam<double>(setup);
+  if (v.filter == "srcd_aided") return make_srcd_aided<double>(setup);
+  return v.filter == "srcd" ? make_srcd<double>(setup) : make_srcd_pf<double>(setup);
 }
+
+/// The textbook version.
 std::unique_ptr<SlamFilter> make_reference(const Variant& v, const SmallWorldSettings& world) {
   const reference::FastSlamSettings settings = reference_settings(v, world);
+  const reference::Weight weight = reference_weight(v);
   if (v.filter == "fastslam1") return reference::make_fast_slam1(settings);
-  return reference::make_fast_slam2(settings, reference_weight(v));
+  if (v.filter == "fastslam2") return reference::make_fast_slam2(settings, weight);
+  const FilterOptions options = setup_of(v, world).options;
+  const bool map_uncertainty = !v.options.contains("map_uncertainty");  // "off" where it is given
+  if (v.filter == "ufastslam") {
+    return reference::make_ufast_slam(
+        settings, weight,
+        {options.number("alpha"), options.number("beta"), options.number("kappa")},
+        map_uncertainty);
+  }
+  return reference::make_srcd_fast_slam(settings, weight,
+                                        {.pose = v.filter != "srcd_aided",
+                                         .map = v.filter != "srcd_pf",
+                                         .map_uncertainty = map_uncertainty,
+                                         .h = options.number("interval")});
 }
 
 class FastSlams : public testing::TestWithParam<Variant> {};
@@ -38,17 +59,40 @@ TEST_P(FastSlams, EstimatesBetweenScansAsTheReferenceDoes) {
   expect_same_steps(*lanes, *plain, small_world(settings), 1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, FastSlams,
+using enum Association;
+
+INSTANTIATE_TEST_SUITE_P(FastSlam, FastSlams,
                          testing::Values(Variant{"fastslam1"}, Variant{"fastslam2"},
                                          Variant{"fastslam2", "ratio"},
                                          Variant{"fastslam2", "batch"},
-                                         Variant{"fastslam1", "closed", Association::nearest},
-                                         Variant{"fastslam2", "closed", Association::nearest},
-                                         Variant{"fastslam2", "batch", Association::nearest, 40},
-                                         Variant{"fastslam2", "ratio", Association::nearest, 8},
-                                         Variant{"fastslam2", "closed", Association::known, 1},
-                                         Variant{"fastslam1", "closed", Association::known, 9}),
+                                         Variant{"fastslam1", "closed", nearest},
+                                         Variant{"fastslam2", "closed", nearest},
+                                         Variant{"fastslam2", "batch", nearest, 40},
+                                         Variant{"fastslam2", "ratio", nearest, 8},
+                                         Variant{"fastslam2", "closed", known, 1},
+                                         Variant{"fastslam1", "closed", known, 9}),
                          testing::PrintToStringParamName());
+
+INSTANTIATE_TEST_SUITE_P(
+    UFastSlam, FastSlams,
+    testing::Values(
+        Variant{"ufastslam"}, Variant{"ufastslam", "ratio"},
+        Variant{"ufastslam", "closed", nearest},
+        Variant{"ufastslam", "closed", known, 9, {{"map_uncertainty", "off"}}},
+        Variant{"ufastslam", "ratio", nearest, 8, {{"map_uncertainty", "off"}}},
+        Variant{
+            "ufastslam", "closed", known, 1, {{"alpha", "0.5"}, {"beta", "0"}, {"kappa", "1"}}}),
+    testing::PrintToStringParamName());
+
+INSTANTIATE_TEST_SUITE_P(
+    Srcd, FastSlams,
+    testing::Values(Variant{"srcd"}, Variant{"srcd", "ratio"}, Variant{"srcd", "closed", nearest},
+                    Variant{"srcd", "closed", known, 1, {{"map_uncertainty", "off"}}},
+                    Variant{"srcd", "closed", known, 9, {{"interval", "1.3"}}},
+                    Variant{"srcd_aided"}, Variant{"srcd_pf"},
+                    Variant{"srcd_aided", "ratio", nearest, 8},
+                    Variant{"srcd_pf", "ratio", nearest, 9, {{"map_uncertainty", "off"}}}),
+    testing::PrintToStringParamName());
 
 }  // namespace
 }  // namespace montecarta::filters
