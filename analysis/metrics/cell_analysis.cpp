@@ -41,7 +41,11 @@ const std::vector<double>& CellAnalysis::over_time(std::string_view series) cons
 
 Consistency CellAnalysis::consistency() const {
   const NeesResult* pose = find_nees(ErrorBlock::pose, leading);
-  return pose == nullptr ? Consistency{} : pose->consistency;
+  if (pose != nullptr) return pose->consistency;
+  Consistency untested;
+  untested.runs = complete + failures.size();
+  untested.failed = failures.size();
+  return untested;
 }
 
 }  // namespace montecarta::analysis

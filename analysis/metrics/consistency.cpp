@@ -127,6 +127,19 @@ std::string what_decides(const Consistency& found) {
   return "undecided: " + std::to_string(*found.more_runs) + " more runs decide";
 }
 
+/// " (3 of 300 runs failed, 20 of 9600 samples are unusable)"; empty if there are none.
+std::string exceptions_of(const Consistency& found) {
+  std::string words;
+  if (found.failed > 0) {
+    words = std::to_string(found.failed) + " of " + std::to_string(found.runs) + " runs failed";
+  }
+  if (found.unusable > 0) {
+    words += (words.empty() ? "" : ", ") + std::to_string(found.unusable) + " of " +
+             std::to_string(found.samples) + " samples are unusable";
+  }
+  return words.empty() ? words : " (" + words + ")";
+}
+
 }  // namespace
 
 std::optional<std::size_t> first_lasting(const std::vector<bool>& above, std::size_t length) {
@@ -167,19 +180,21 @@ Consistency judge(const NeesSeries& series, std::span<const double> times, doubl
 }
 
 std::string in_words(const Consistency& consistency) {
+  const std::string exceptions = exceptions_of(consistency);
   switch (consistency.verdict) {
     case Verdict::untested:
-      return "not tested";
+      return "not tested" + exceptions;
     case Verdict::consistent:
-      return "consistent within " + exact_text(consistency.within);
+      return "consistent within " + exact_text(consistency.within) +
+             (exceptions.empty() ? "" : " in what can be judged") + exceptions;
     case Verdict::optimistic:
-      return "optimistic" + how_far(consistency);
+      return "optimistic" + how_far(consistency) + exceptions;
     case Verdict::conservative:
-      return "conservative" + how_far(consistency);
+      return "conservative" + how_far(consistency) + exceptions;
     case Verdict::undecided:
       break;
   }
-  return what_decides(consistency);
+  return what_decides(consistency) + exceptions;
 }
 
 }  // namespace montecarta::analysis

@@ -37,9 +37,10 @@ struct NeesSeries {
   WholeRunTest test;                       ///< what the average over the run is tested by
   std::vector<double> run_averages;        ///< {run} over its scans, of runs that have any NEES
   std::uint64_t samples = 0;               ///< scans x complete runs
-  std::uint64_t floored = 0;               ///< of them: singular covariance, floor was added
-  std::uint64_t undefined = 0;  ///< of them: not a number, left out of average and median
-  std::uint64_t too_few = 0;    ///< of them: too few effective draws to be judged, left out as well
+  std::uint64_t lower_rank = 0;  ///< of them: judged in the range of a singular covariance
+  std::uint64_t unusable = 0;    ///< of them: error or covariance is not finite, or the covariance
+                                 ///< not positive semidefinite; left out of average and median
+  std::uint64_t too_few = 0;  ///< of them: too few effective draws to be judged, left out as well
   std::uint64_t unjudged_runs = 0;  ///< complete runs without a NEES at any scan, left out as well
 };
 
@@ -65,6 +66,10 @@ struct ScanRatio {
 /// consistent (STATISTICS 5).
 struct Consistency {
   Verdict verdict = Verdict::untested;
+  std::uint64_t runs = 0;         ///< that ended, complete or failed
+  std::uint64_t failed = 0;       ///< of them
+  std::uint64_t samples = 0;      ///< of the complete runs, one a scan
+  std::uint64_t unusable = 0;     ///< of them, as NeesSeries::unusable
   double within = kUsualMargin;   ///< the margin: ratios in [1 / within, within] are consistent
   Interval ratio = {};            ///< where the expected average over the run, divided by the right
                                   ///< one, lies; 1 is in it where average_bounds hold the mean
@@ -101,7 +106,8 @@ Consistency judge(const NeesSeries& series, std::span<const double> times,
 
 /// The verdict as one reads it: "consistent within 1.1", "optimistic by 1.2 to 1.4", "optimistic by
 /// 1.3 to 2.5 at 12.4 s" where no other scan nor the run shows it, "undecided: 130 more runs
-/// decide", ...
+/// decide", ... Failed runs and unusable samples are part of it: "consistent within 1.1 in what can
+/// be judged (3 of 300 runs failed)".
 std::string in_words(const Consistency& consistency);
 
 }  // namespace montecarta::analysis

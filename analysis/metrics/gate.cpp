@@ -9,19 +9,14 @@
 namespace montecarta::analysis {
 namespace {
 
-/// ": ANEES 0.97 to 1.08 times the expected one, 200 runs"
-std::string numbers_behind(const Consistency& found, const JudgedRuns& runs) {
-  std::string words;
+/// "; ANEES 0.97 to 1.08 times the expected one, 200 runs"
+std::string numbers_behind(const Consistency& found) {
+  std::string words = "; ";
   if (std::isfinite(found.ratio.lower) && std::isfinite(found.ratio.upper)) {
-    words = "ANEES " + compact(found.ratio.lower) + " to " + compact(found.ratio.upper) +
-            " times the expected one, ";
+    words += "ANEES " + compact(found.ratio.lower) + " to " + compact(found.ratio.upper) +
+             " times the expected one, ";
   }
-  words += std::to_string(runs.complete) + " complete runs";
-  if (runs.failed > 0) words += ", " + std::to_string(runs.failed) + " failed";
-  if (runs.unjudged > 0) words += ", " + std::to_string(runs.unjudged) + " without any NEES";
-  if (runs.invalid == 0) return words;
-  return words + "; " + std::to_string(runs.invalid) + " of " + std::to_string(runs.covariances) +
-         " covariances are invalid and left out";
+  return words + std::to_string(found.runs) + " runs";
 }
 
 /// Whether ratios within the margin are left: then more runs may show the filter to be.
@@ -31,13 +26,16 @@ bool may_be_within(const Consistency& found) {
 
 }  // namespace
 
-Gate gate(const Consistency& found, const JudgedRuns& runs) {
-  const std::string numbers = "; " + numbers_behind(found, runs);
+Gate gate(const Consistency& found, const Allowance& allowed) {
+  const std::string numbers = numbers_behind(found);
   const std::string margin = " within " + exact_text(found.within);
-  if (found.verdict != Verdict::untested && runs.failed + runs.unjudged > runs.most_failed) {
-    return {GateAnswer::inconsistent, std::to_string(runs.failed + runs.unjudged) + " of " +
-                                          std::to_string(runs.complete + runs.failed) +
-                                          " runs failed or have no NEES"};
+  if (found.failed > allowed.failed || found.unusable > allowed.unusable) {
+    const bool by_runs = found.failed > allowed.failed;
+    return {GateAnswer::inconsistent,
+            "not consistent, more " + std::string(by_runs ? "failed runs" : "unusable samples") +
+                " than are allowed (" +
+                std::to_string(by_runs ? allowed.failed : allowed.unusable) +
+                "): " + in_words(found) + numbers};
   }
   switch (found.verdict) {
     case Verdict::untested:

@@ -16,19 +16,14 @@ struct Gate {
   std::string why;  ///< one line without the name of what was judged
 };
 
-/// Runs that a verdict is of, and what is in no NEES.
-struct JudgedRuns {
-  std::uint64_t complete = 0;
-  std::uint64_t failed = 0;       ///< ended early
-  std::uint64_t unjudged = 0;     ///< of the complete ones: without any NEES; count as failed
-  std::uint64_t covariances = 0;  ///< at all scans of the complete runs
-  std::uint64_t invalid = 0;      ///< of them: no covariance, so that its scan has no NEES
-  std::uint64_t most_failed =
-      0;  ///< more failed runs than these are inconsistent whatever the NEES
+/// What a gate lets pass. More than these are inconsistent whatever the NEES.
+struct Allowance {
+  std::uint64_t failed = 0;    ///< runs
+  std::uint64_t unusable = 0;  ///< samples
 };
 
-/// The answer that a verdict gives within its margin, wherever the runs came from. Throws
-/// StudyError where the verdict is `untested`: there was nothing to judge.
-Gate gate(const Consistency& found, const JudgedRuns& runs);
+/// The answer that a verdict gives within its margin. Throws StudyError if the verdict is
+/// `untested` and nothing failed: there was nothing to judge.
+Gate gate(const Consistency& found, const Allowance& allowed = {});
 
 }  // namespace montecarta::analysis

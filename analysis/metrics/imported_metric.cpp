@@ -142,13 +142,13 @@ std::vector<std::string> imported_notes(const StudyAnalysis& study) {
   }
   for (const CellAnalysis& cell : study.cells) {
     const NeesResult* all = cell.find_nees(ErrorBlock::pose, cell.leading);
-    if (all == nullptr || all->series.undefined == 0) continue;
+    if (all == nullptr || all->series.unusable == 0) continue;
     const double share =
-        static_cast<double>(all->series.undefined) / static_cast<double>(all->series.samples);
-    notes.push_back(cell.label + ": " + std::to_string(all->series.undefined) + " of " +
-                    std::to_string(all->series.samples) + " covariances (" + percent(share) +
-                    ") are not symmetric or not positive definite, and so say nothing of an error: "
-                    "ANEES and verdict are of the other scans alone.");
+        static_cast<double>(all->series.unusable) / static_cast<double>(all->series.samples);
+    notes.push_back(cell.label + ": " + std::to_string(all->series.unusable) + " of " +
+                    std::to_string(all->series.samples) + " samples (" + percent(share) +
+                    ") are unusable: error or covariance is not finite, or the covariance is not "
+                    "symmetric and positive semidefinite. ANEES is of the other samples alone.");
   }
   return notes;
 }

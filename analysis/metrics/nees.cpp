@@ -1,24 +1,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/nees.hpp"
 
+#include "analysis/statistics/means.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <boost/math/distributions/chi_squared.hpp>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <vector>
 
 namespace montecarta::analysis {
 namespace {
 
-constexpr double kLeastVarianceShare = 1e-10;
-constexpr double kLeastPivot = 1e-12;
+constexpr double kLeastPivot = 1e-12;       // also the least eigenvalue that counts in the rank
+constexpr double kMostNegative = -1e-9;     // eigenvalue that rounding may leave
+constexpr double kRounding = 1e-9;          // error of a component that is known exactly
+constexpr double kFarthestOutside = 10.0;   // standard deviations; second-order effects are smaller
 constexpr double kLargestAsymmetry = 1e-6;  // of the deviations: as six printed digits leave it
+constexpr double kLastTail = 1e-6;          // beyond, a consistent filter hardly ever is
+const Eigen::Vector3d kLeastDeviation{1e-9, 1e-9, 1e-10};
 
 template <int D>
 using Vec = Eigen::Matrix<double, D, 1>;
 template <int D>
 using Mat = Eigen::Matrix<double, D, D>;
 
+double capped(double nees) { return nees <= kLargestNees ? nees : kLargestNees; }
+
 /// e' P^-1 e by Cholesky of the correlation matrix, whose pivots do not depend on units; nullopt
-/// where P is singular.
+/// if P is singular.
 template <int D>
 std::optional<double> quadratic_form(const Vec<D>& error, const Mat<D>& covariance,
                                      const Vec<D>& least_variance) {
@@ -45,29 +58,93 @@ std::optional<double> quadratic_form(const Vec<D>& error, const Mat<D>& covarian
   return sum;
 }
 
+constexpr Nees kUnusableSample = {kNaN, Nees::kUnusable};
+
+/// The same in the range of a singular P. An error that P excludes has the largest NEES: of a
+/// component that is known exactly if it is more than rounding, of others if it is farther outside
+/// the range than second-order effects take it.
+Nees nees_in_range(const Eigen::VectorXd& error, const Eigen::MatrixXd& P,
+                   const Eigen::VectorXd& least_variance) {
+  bool is_excluded = false;
+  std::vector<Eigen::Index> open;
+  for (Eigen::Index i = 0; i < error.size(); ++i) {
+    if (P(i, i) > least_variance(i)) {
+      open.push_back(i);
+      continue;
+    }
+    if (P(i, i) < -least_variance(i)) return kUnusableSample;
+    is_excluded = is_excluded || std::abs(error(i)) > kRounding;
+    for (Eigen::Index j = 0; j < error.size(); ++j) {
+      const double most = std::max(P(j, j), least_variance(j)) * least_variance(i);
+      const double covariance = P(std::max(i, j), std::min(i, j));
+      if (i != j && covariance * covariance > most) return kUnusableSample;
+    }
+  }
+  Nees sample = {0.0, 0};
+  if (!open.empty()) {
+    const Eigen::MatrixXd block = P(open, open);
+    const Eigen::VectorXd scale = block.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd correlation = scale.asDiagonal() * block * scale.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
+    const Eigen::VectorXd along =
+        solver.eigenvectors().transpose() * scale.cwiseProduct(error(open));
+    double outside = 0.0;
+    for (Eigen::Index k = 0; k < along.size(); ++k) {
+      const double eigenvalue = solver.eigenvalues()(k);
+      if (!(eigenvalue >= kMostNegative)) return kUnusableSample;
+      if (eigenvalue > kLeastPivot) {
+        sample.value += along(k) * along(k) / eigenvalue;
+        ++sample.rank;
+      } else {
+        outside += along(k) * along(k);
+      }
+    }
+    is_excluded = is_excluded || !(outside <= kFarthestOutside * kFarthestOutside);
+  }
+  if (is_excluded) return {kLargestNees, std::max(sample.rank, 1)};
+  return sample.rank == 0 ? Nees{kNaN, 0} : Nees{capped(sample.value), sample.rank};
+}
+
 }  // namespace
 
 template <int Dimension>
 Nees nees(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, int first) {
   const Vec<Dimension> e = error.template segment<Dimension>(first);
-  Mat<Dimension> P = covariance.template block<Dimension, Dimension>(first, first);
-  if (!e.allFinite() || !P.allFinite()) return {std::numeric_limits<double>::quiet_NaN(), false};
-  const Vec<Dimension> floor = kNeesFloor.segment<Dimension>(first).cwiseAbs2();
-  const Vec<Dimension> least = kLeastVarianceShare * floor;
-  if (const auto value = quadratic_form<Dimension>(e, P, least)) return {*value, false};
-  P.diagonal() += floor;
-  const auto value = quadratic_form<Dimension>(e, P, least);
-  return {value.value_or(std::numeric_limits<double>::quiet_NaN()), true};
+  const Mat<Dimension> P = covariance.template block<Dimension, Dimension>(first, first);
+  if (!e.allFinite() || !P.allFinite()) return kUnusableSample;
+  const Vec<Dimension> least = kLeastDeviation.segment<Dimension>(first).cwiseAbs2();
+  if (const auto value = quadratic_form<Dimension>(e, P, least)) {
+    return {capped(*value), Dimension};
+  }
+  return nees_in_range(e, P, least);
 }
 
-double strict_nees(const Eigen::VectorXd& error, const Eigen::MatrixXd& P) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (!error.allFinite() || !P.allFinite() || !(P.diagonal().array() > 0.0).all()) return kNone;
+Nees imported_nees(const Eigen::VectorXd& error, const Eigen::MatrixXd& P) {
+  if (!error.allFinite() || !P.allFinite() || (P.diagonal().array() < 0.0).any()) {
+    return kUnusableSample;
+  }
   const Eigen::VectorXd deviation = P.diagonal().cwiseSqrt();
   const Eigen::MatrixXd allowed = kLargestAsymmetry * deviation * deviation.transpose();
-  if (((P - P.transpose()).cwiseAbs().array() > allowed.array()).any()) return kNone;
+  if (((P - P.transpose()).cwiseAbs().array() > allowed.array()).any()) return kUnusableSample;
   const Eigen::VectorXd least = Eigen::VectorXd::Zero(error.size());
-  return quadratic_form<Eigen::Dynamic>(error, P, least).value_or(kNone);
+  if (const auto value = quadratic_form<Eigen::Dynamic>(error, P, least)) {
+    return {capped(*value), static_cast<int>(error.size())};
+  }
+  return nees_in_range(error, P, least);
+}
+
+double on_full_scale(const Nees& sample, std::size_t dimension) {
+  if (sample.rank <= 0) return kNaN;
+  if (static_cast<std::size_t>(sample.rank) == dimension || sample.value == 0.0) {
+    return sample.value;
+  }
+  const boost::math::chi_squared in_range(sample.rank), full(static_cast<double>(dimension));
+  const auto value_beyond = [](const boost::math::chi_squared& law, double tail) {
+    return boost::math::quantile(boost::math::complement(law, tail));
+  };
+  const double tail = boost::math::cdf(boost::math::complement(in_range, sample.value));
+  if (tail > kLastTail) return value_beyond(full, tail);
+  return capped(sample.value * value_beyond(full, kLastTail) / value_beyond(in_range, kLastTail));
 }
 
 double ideal_spread_nees(std::size_t dimension, std::size_t particles) {

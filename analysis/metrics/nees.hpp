@@ -7,27 +7,38 @@
 
 namespace montecarta::analysis {
 
-/// A covariance counts as singular below this floor (STATISTICS 2), standard deviations [m, m,
-/// rad].
-inline const Eigen::Vector3d kNeesFloor{1e-4, 1e-4, 1e-5};
+/// A larger NEES counts as this one, so that an error too large for a double is judged like any
+/// other that its covariance does not explain, and sums over runs stay finite.
+inline constexpr double kLargestNees = 1e60;
 
-/// Normalised estimation error squared of one sample.
+/// Normalised estimation error squared of one sample (STATISTICS 2).
 struct Nees {
-  double value = 0.0;    ///< e' P^-1 e; NaN where error or covariance is not finite
-  bool floored = false;  ///< P was singular: the floor was added
+  static constexpr int kUnusable = -1;
+
+  /// e' P^-1 e in the range of P; NaN if the sample is unusable or the rank is 0.
+  double value;
+  /// Rank of P: the degrees of freedom of the value. kUnusable if error or covariance is not finite
+  /// or the covariance is not positive semidefinite.
+  int rank;
+
+  bool is_usable() const { return rank != kUnusable; }
 };
 
 /// NEES of the components [first, first + Dimension) of a pose error (x [m], y [m], heading [rad])
-/// with that block of the covariance, of which the lower triangle is read. Singular means: a
-/// variance below 1e-10 of the floor's, or a pivot of the correlation matrix below 1e-12 (a thin
-/// but correct covariance after few noisy steps has 1e-6). The floor answers both (STATISTICS 2).
+/// with that block of the covariance, of which the lower triangle is read. A standard deviation
+/// below 1e-9 m or 1e-10 rad counts as 0.
 template <int Dimension>
 Nees nees(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, int first = 0);
 
-/// NEES of an imported estimate, of which nothing is repaired: `error` {d} with `covariance` {d,
-/// d}. NaN where the covariance is not symmetric (to 1e-6 of the deviations) or not positive
-/// definite (a variance not above 0, a pivot of the correlation matrix not above 1e-12).
-double strict_nees(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance);
+/// NEES of an imported estimate: `error` {d} with `covariance` {d, d}, which is also unusable if it
+/// is not symmetric (to 1e-6 of the standard deviations).
+Nees imported_nees(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance);
+
+/// Puts the NEES of a covariance of lower rank on the scale of `dimension` components: it becomes
+/// the value that is as probable under the chi-square law of `dimension` degrees of freedom. What a
+/// consistent filter exceeds once in a million samples grows in proportion from there on. The value
+/// itself if the rank is full, NaN if nothing can be judged.
+double on_full_scale(const Nees& sample, std::size_t dimension);
 
 /// What the NEES of `dimension` components is on the average if a filter is perfect but its
 /// covariance is the spread, with 1 / particles, of so many independent draws (Hotelling;

@@ -57,15 +57,22 @@ NeesAccumulator::NeesAccumulator(ErrorBlock block, Moments moments, std::size_t 
 void NeesAccumulator::add(const RunMetrics& metrics) {
   const auto block = static_cast<std::size_t>(block_);
   const NeesRows& rows = metrics.nees(moments_);
-  for (const std::uint8_t floored : rows.floored[block]) floored_ += floored;
-  add(rows.value[block], rows.too_few[block]);
+  add(rows.value[block], rows.rank[block], rows.too_few[block]);
 }
 
-void NeesAccumulator::add(std::span<const double> value, std::span<const std::uint8_t> too_few) {
+void NeesAccumulator::add(std::span<const double> value, std::span<const int> rank,
+                          std::span<const std::uint8_t> too_few) {
   samples_ += value.size();
   for (std::size_t s = 0; s < value.size(); ++s) {
+    const bool has_lower_rank =
+        !rank.empty() && rank[s] >= 0 && static_cast<std::size_t>(rank[s]) < dimension_;
+    if (has_lower_rank) ++lower_rank_;
     if (!std::isfinite(value[s])) {
-      ++(!too_few.empty() && too_few[s] != 0 ? too_few_ : undefined_);
+      if (!too_few.empty() && too_few[s] != 0) {
+        ++too_few_;
+      } else if (!has_lower_rank) {
+        ++unusable_;
+      }
       continue;
     }
     sum_[s] += value[s];
@@ -86,8 +93,8 @@ NeesSeries NeesAccumulator::series(double level, double verdict_level,
   NeesSeries series;
   series.dimension = dimension_;
   series.samples = samples_;
-  series.floored = floored_;
-  series.undefined = undefined_;
+  series.lower_rank = lower_rank_;
+  series.unusable = unusable_;
   series.too_few = too_few_;
   series.runs = runs_;
   series.run_averages = run_averages_;

@@ -26,9 +26,10 @@ class NeesAccumulator {
   NeesAccumulator(ErrorBlock block, Moments moments, std::size_t scans, std::size_t dimension = 0);
   Moments moments() const { return moments_; }
   void add(const RunMetrics& metrics);
-  /// The NEES {scan} of a run whose covariances were all regular; `too_few` {scan}: 1 where too few
-  /// draws were left to judge (empty: nowhere).
-  void add(std::span<const double> value, std::span<const std::uint8_t> too_few = {});
+  /// The NEES {scan} of a run, NaN if it is unusable, with the `rank` {scan} of its covariances
+  /// (empty: full) and `too_few` {scan}: 1 where too few draws were left to judge (empty: nowhere).
+  void add(std::span<const double> value, std::span<const int> rank = {},
+           std::span<const std::uint8_t> too_few = {});
   /// `times` [s] of the scans; `walks` of as many; `within` the margin of judge(). `look_level` is
   /// that of the verdict where it is taken at several looks; `level` where it is not given.
   NeesResult result(std::span<const double> times, double level, const BandWalks& walks,
@@ -46,7 +47,7 @@ class NeesAccumulator {
   QuantileTable table_;
   NeighbourCorrelation neighbours_;
   std::vector<double> run_averages_;  ///< {run that has any}
-  std::uint64_t samples_ = 0, floored_ = 0, undefined_ = 0, too_few_ = 0, unjudged_runs_ = 0;
+  std::uint64_t samples_ = 0, lower_rank_ = 0, unusable_ = 0, too_few_ = 0, unjudged_runs_ = 0;
 };
 
 }  // namespace montecarta::analysis

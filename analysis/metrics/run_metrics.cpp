@@ -24,16 +24,13 @@ Pose pose_of(const std::vector<double>& rows, std::size_t s) {
 
 void measure_nees(const std::vector<double>& truth, const MomentRows& moments, NeesRows& rows) {
   const std::size_t scans = truth.empty() ? 0 : moments.covariance.size() / 9;
-  for (auto& value : rows.value) value.resize(scans);
-  for (auto& floored : rows.floored) floored.resize(scans);
+  rows.resize(scans);
   for (std::size_t s = 0; s < scans; ++s) {
     const Eigen::Vector3d error = boxminus(pose_of(moments.mean, s), pose_of(truth, s));
     const Eigen::Matrix3d P = Eigen::Map<const RowMajor3>(moments.covariance.data() + 9 * s);
-    const std::array<Nees, 3> blocks = {nees<3>(error, P), nees<2>(error, P), nees<1>(error, P, 2)};
-    for (std::size_t b = 0; b < blocks.size(); ++b) {
-      rows.value[b][s] = blocks[b].value;
-      rows.floored[b][s] = blocks[b].floored ? 1 : 0;
-    }
+    rows.set(0, s, nees<3>(error, P));
+    rows.set(1, s, nees<2>(error, P));
+    rows.set(2, s, nees<1>(error, P, 2));
   }
 }
 
@@ -42,16 +39,26 @@ void measure_imported(const ErrorRows& errors, bool is_pose, NeesRows& rows) {
   const std::size_t d = errors.components();
   const std::size_t scans = errors.scans();
   rows.dimension = is_pose ? std::array<std::size_t, 3>{3, 2, 1} : std::array<std::size_t, 3>{d};
-  for (auto& value : rows.value) value.clear();
-  for (auto& floored : rows.floored) floored.clear();
+  rows.resize(is_pose ? scans : 0);
+  rows.value[0].resize(scans);
+  rows.rank[0].resize(scans);
   for (std::size_t s = 0; s < scans; ++s) {
     const Eigen::VectorXd e = errors.error(s);
     const Eigen::MatrixXd P = errors.covariance_of(s);
-    rows.value[0].push_back(strict_nees(e, P));
+    const Nees whole = imported_nees(e, P);
+    rows.set(0, s, whole);
     if (!is_pose) continue;
-    const bool is_valid = !std::isnan(rows.value[0].back());
-    rows.value[1].push_back(is_valid ? strict_nees(e.head(2), P.topLeftCorner(2, 2)) : kNaN);
-    rows.value[2].push_back(is_valid ? strict_nees(e.tail(1), P.bottomRightCorner(1, 1)) : kNaN);
+    rows.set(1, s, whole.is_usable() ? imported_nees(e.head(2), P.topLeftCorner(2, 2)) : whole);
+    rows.set(2, s, whole.is_usable() ? imported_nees(e.tail(1), P.bottomRightCorner(1, 1)) : whole);
+  }
+}
+
+void put_on_full_scale(NeesRows& rows) {
+  for (std::size_t b = 0; b < rows.value.size(); ++b) {
+    for (std::size_t s = 0; s < rows.value[b].size(); ++s) {
+      double& value = rows.value[b][s];
+      if (!std::isnan(value)) value = on_full_scale({value, rows.rank[b][s]}, rows.dimension[b]);
+    }
   }
 }
 
@@ -100,18 +107,22 @@ void RunMetrics::correct_spread(const RunRows& rows, std::size_t particles) {
   corrected = particles > 0 ? nees(Moments::spread) : NeesRows{};
   const NeesRows& mixture = nees(Moments::mixture);
   for (std::size_t b = 0; b < kErrorBlocks.size(); ++b) {
-    const SamplerScale& scale = sampler_scale(dimension_of(kErrorBlocks[b]));
+    const SamplerScale& whole = sampler_scale(dimension_of(kErrorBlocks[b]));
     std::vector<double>& value = corrected.value[b];
+    std::vector<int>& rank = corrected.rank[b];
     corrected.too_few[b].assign(value.size(), 0);
     for (std::size_t s = 0; s < value.size(); ++s) {
       if (!is_drawn(rows, s)) {
-        value[s] = mixture.value[b][s];
-        corrected.floored[b][s] = mixture.floored[b][s];
+        corrected.set(b, s, {mixture.value[b][s], mixture.rank[b][s]});
         continue;
       }
       const EffectiveDraws draws = draws_at(rows, particles, s);
-      corrected.too_few[b][s] = scale.can_judge(draws) ? 0 : 1;
-      value[s] = scale.can_judge(draws) ? scale(value[s], draws) : kNaN;
+      corrected.too_few[b][s] = whole.can_judge(draws) ? 0 : 1;
+      if (!whole.can_judge(draws)) {
+        value[s] = kNaN;
+      } else if (rank[s] > 0) {
+        value[s] = sampler_scale(static_cast<std::size_t>(rank[s]))(value[s], draws);
+      }
     }
   }
 }
@@ -127,6 +138,7 @@ void RunMetrics::measure(const RunRows& rows, std::size_t particles,
   }
   measure_nees(rows.truth, rows.mixture, nees_[static_cast<std::size_t>(Moments::mixture)]);
   correct_spread(rows, particles);
+  for (NeesRows& all : nees_) put_on_full_scale(all);
   diversity_ = nullptr;
   lineages_.reset();
   if (rows.ancestor.empty()) return;

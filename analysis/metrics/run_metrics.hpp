@@ -5,6 +5,7 @@
 #include "analysis/metrics/diversity.hpp"
 #include "analysis/metrics/lineages.hpp"
 #include "analysis/metrics/moments.hpp"
+#include "analysis/metrics/nees.hpp"
 
 #include <Eigen/Core>
 
@@ -19,11 +20,22 @@ namespace montecarta::analysis {
 /// NEES of one run by one definition of the moments; empty where no covariance is stored.
 struct NeesRows {
   std::array<std::size_t, 3> dimension = {3, 2, 1};  ///< {block} components
-  std::array<std::vector<double>, 3> value;  ///< {block}{scan}; a block may be empty but the first
-  std::array<std::vector<std::uint8_t>, 3> floored;  ///< {block}{scan} the floor was added
+  /// {block}{scan} on the scale of all components (on_full_scale()); NaN if a sample is unusable or
+  /// nothing of it can be judged. A block may be empty but the first.
+  std::array<std::vector<double>, 3> value;
+  std::array<std::vector<int>, 3> rank;  ///< {block}{scan} of the covariance, as Nees::rank
   /// {block}{scan} too few effective draws to be judged (SamplerScale), value NaN; empty where the
   /// moments are not corrected.
   std::array<std::vector<std::uint8_t>, 3> too_few;
+
+  void set(std::size_t block, std::size_t scan, const Nees& sample) {
+    value[block][scan] = sample.value;
+    rank[block][scan] = sample.rank;
+  }
+  void resize(std::size_t scans) {
+    for (auto& values : value) values.resize(scans);
+    for (auto& ranks : rank) ranks.resize(scans);
+  }
 };
 
 /// What one run says, scan by scan. Keeps its memory from run to run; one per thread.

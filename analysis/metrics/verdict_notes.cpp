@@ -79,11 +79,12 @@ std::vector<std::string> consistency_notes() {
       "none it is that of the mixture.",
       "'median' is the middle run instead of the average one, 'trimmed' the mean without the tenth "
       "of the runs at either end, each divided by what a consistent filter has: near 1 while ANEES "
-      "is far too large they say that few bad runs make the average. 'floored' counts covariances "
-      "that were singular (0.1 mm and 0.00001 rad were added), 'undefined' those that were not a "
-      "number and left out, 'too few draws' those of no more effective draws than components "
-      "and two, of which no spread says anything, 'unjudged runs' complete runs in which no scan "
-      "is left."};
+      "is far too large they say that few bad runs make the average. 'lower rank' counts singular "
+      "covariances: they are judged by the components that they leave. 'unusable' counts samples "
+      "that are left out because error or covariance is not finite or the covariance is not "
+      "positive semidefinite. 'too few draws' counts covariances of no more effective draws than "
+      "components and two, of which no spread says anything, 'unjudged runs' complete runs in "
+      "which no scan is left."};
 }
 
 std::vector<std::string> too_few_notes(const StudyAnalysis& study) {

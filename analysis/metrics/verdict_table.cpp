@@ -100,8 +100,8 @@ std::vector<std::string> consistency_row(const CellAnalysis& cell, const NeesRes
           percent(found.share_inside),
           percent(found.share_above),
           percent(found.share_below),
-          std::to_string(nees.series.floored),
-          std::to_string(nees.series.undefined),
+          std::to_string(nees.series.lower_rank),
+          std::to_string(nees.series.unusable),
           std::to_string(nees.series.too_few),
           std::to_string(nees.series.unjudged_runs)};
 }
@@ -154,8 +154,8 @@ std::vector<NamedNumber> numbers_of(const CellAnalysis& cell, const NeesResult& 
           {"stays_above_from_s", "s", found.stays_above_from.value_or(kNever)},
           {"stays_below_from_s", "s", found.stays_below_from.value_or(kNever)},
           {"samples", "1", static_cast<double>(nees.series.samples)},
-          {"floored", "1", static_cast<double>(nees.series.floored)},
-          {"undefined", "1", static_cast<double>(nees.series.undefined)},
+          {"lower_rank", "1", static_cast<double>(nees.series.lower_rank)},
+          {"unusable", "1", static_cast<double>(nees.series.unusable)},
           {"too_few_draws", "1", static_cast<double>(nees.series.too_few)},
           {"unjudged_runs", "1", static_cast<double>(nees.series.unjudged_runs)}};
 }
@@ -220,8 +220,8 @@ TextTable consistency_table(const StudyAnalysis& study) {
                     {"inside"},
                     {"above"},
                     {"below"},
-                    {"floored"},
-                    {"undefined"},
+                    {"lower rank"},
+                    {"unusable"},
                     {"too few draws"},
                     {"unjudged runs"}};
   for (const CellAnalysis& cell : study.cells) {

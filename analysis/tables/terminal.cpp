@@ -32,12 +32,13 @@ void print_warnings(std::ostream& out, const StudyAnalysis& study) {
   for (const CellAnalysis& cell : study.cells) {
     const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
     if (study.imported.is_imported()) break;  // imported_notes() say it
-    if (pose == nullptr || pose->series.floored + pose->series.undefined == 0) continue;
+    if (pose == nullptr || pose->series.lower_rank + pose->series.unusable == 0) continue;
     print_wrapped(out, cell.label + ": of " + std::to_string(pose->series.samples) +
-                           " covariances " + std::to_string(pose->series.floored) +
-                           " were singular (a floor of 0.1 mm and 0.00001 rad was added) and " +
-                           std::to_string(pose->series.undefined) +
-                           " not a number (left out of the average).");
+                           " covariances " + std::to_string(pose->series.lower_rank) +
+                           " are singular (judged by the components that they leave) and " +
+                           std::to_string(pose->series.unusable) +
+                           " unusable (error or covariance is not finite, or the covariance is not "
+                           "positive semidefinite; left out of the average).");
   }
 }
 

@@ -21,6 +21,7 @@ const StoredCell& cell_to_judge(const Arguments& arguments, const ResultFile& fi
   std::vector<std::string> labels;
   for (const StoredCell& cell : file.cells()) labels.push_back(cell.label);
   const auto label = arguments.text("cell");
+  if (!label && file.cells().size() == 1) return file.cells().front();
   if (!label) {
     throw StudyError("gate: --cell CELL is needed (one filter is judged): one of " +
                      joined(labels));
@@ -47,20 +48,10 @@ int code_of(GateAnswer answer) {
                                               : kUndecided;
 }
 
-JudgedRuns judged_runs(const CellAnalysis& cell, std::uint64_t most_failed) {
-  JudgedRuns runs{
-      .complete = cell.complete, .failed = cell.failures.size(), .most_failed = most_failed};
-  if (const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading)) {
-    runs.unjudged = pose->series.unjudged_runs;
-    runs.covariances = pose->series.samples;
-    runs.invalid = pose->series.undefined;
-  }
-  return runs;
-}
-
 int gate_file(const Arguments& arguments) {
   const auto within = arguments.number("within", kLeastMargin, kMostMargin);
-  const std::uint64_t most_failed = arguments.count("failed", 0, UINT64_MAX).value_or(0);
+  const Allowance allowed = {.failed = arguments.count("failed", 0, UINT64_MAX).value_or(0),
+                             .unusable = arguments.count("invalid", 0, UINT64_MAX).value_or(0)};
   const ResultFile file = open_stored(arguments.operands().front());
   const StoredCell& stored = cell_to_judge(arguments, file);
   const std::string place = file.path().string();
@@ -73,7 +64,7 @@ int gate_file(const Arguments& arguments) {
   const CellAnalysis cell =
       analyze_cell(file, stored, kGateLevel, file.runs().size(), parallel_of(arguments), within);
   try {
-    const Gate found = gate(cell.consistency(), judged_runs(cell, most_failed));
+    const Gate found = gate(cell.consistency(), allowed);
     std::cout << stored.label << ": " << found.why << "\n";
     return code_of(found.answer);
   } catch (const StudyError& error) {
@@ -91,13 +82,17 @@ Command gate_command() {
        .options = {{"cell", "", {"CELL"}, "the cell that is judged"},
                    {"within", "", {"R"}, kWithinMeaning},
                    {"failed", "", {"N"}, "accept so many failed runs; default 0"},
+                   {"invalid", "", {"N"}, "accept so many unusable samples; default 0"},
                    {"threads", "", {"N"}, "default: what this process may use"},
                    {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},
-       .details = "Prints one line that says why. Exit codes: 0 shown to be consistent within R, "
-                  "4 not (optimistic,\nconservative, or more failed runs than accepted), 5 too few "
-                  "runs to know, 2 wrong input or nothing\nto judge, 1 failed. The verdict is that "
-                  "of montecarta analyze at 95 %.\n\n"
-                  "example:\n  montecarta gate first_study.h5 --cell ekf_slam --within 1.2\n"},
+       .details =
+           "Prints one line that says why. Exit codes: 0 shown to be consistent within R, "
+           "4 not (optimistic,\nconservative, or more failed runs or unusable samples than "
+           "accepted), 5 too few runs to know, 2 wrong\ninput or nothing to judge, 1 failed. "
+           "A sample is unusable if its error or covariance is not finite\nor the covariance "
+           "is not positive semidefinite. The verdict is that of montecarta analyze at\n95 "
+           "%.\n\n"
+           "example:\n  montecarta gate first_study.h5 --cell ekf_slam --within 1.2\n"},
       gate_file};
 }
 

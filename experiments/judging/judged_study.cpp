@@ -88,8 +88,9 @@ void put_conventions(const StateRows& rows, const std::vector<Eigen::VectorXd>& 
     if (!column) return;
     const auto nees = record.column<double>(*column);
     for (std::size_t s = 0; s < rows.time.size(); ++s) {
-      nees[s] = analysis::strict_nees(error_of(rows.shape, convention, rows.state[s], truths[s]),
-                                      rows.covariance[s]);
+      const Eigen::VectorXd error = error_of(rows.shape, convention, rows.state[s], truths[s]);
+      nees[s] = analysis::on_full_scale(analysis::imported_nees(error, rows.covariance[s]),
+                                        rows.shape.dimension());
     }
   }
 }
@@ -104,7 +105,7 @@ RunRecord record_of(const RecordLayout& layout, const StateRows& rows,
     const Eigen::VectorXd error = error_of(rows.shape, convention, rows.state[s], truths[s]);
     put_rows(error, s, column("error"));
     put_rows(rows.covariance[s], s, column("error_covariance"));
-    faults[s] = std::isnan(analysis::strict_nees(error, rows.covariance[s])) ? 1 : 0;
+    faults[s] = analysis::imported_nees(error, rows.covariance[s]).is_usable() ? 0 : 1;
     if (rows.shape.kind != StateKind::pose) continue;
     const Pose mean = pose_in(rows.state[s]);
     put_rows(Eigen::Vector3d(mean.x, mean.y, mean.heading), s, column("pose_mean"));

@@ -106,7 +106,8 @@ RowOfInnovations squares_of(const CsvRows& file, const EstimateFields& fields) {
       S(i, j) = file.number(fields.covariance[element], "number");
     }
   }
-  return {analysis::strict_nees(innovation, S), static_cast<std::uint32_t>(d)};
+  const analysis::Nees sample = analysis::imported_nees(innovation, S);
+  return {sample.value, static_cast<std::uint32_t>(std::max(sample.rank, 0))};
 }
 
 }  // namespace

@@ -213,21 +213,24 @@ TEST(CellSums, LeavesOutAndCountsARunWithoutAJudgedScan) {
             "the other runs.");
 }
 
-TEST(CellSums, CountsWhatIsSingularOrUndefined) {
+TEST(CellSums, CountsWhatIsSingularOrUnusable) {
   SyntheticStudy study;
   study.scans = 3;
   Sums sums(study.times());
   for (std::uint64_t run = 0; run < 4; ++run) {
     RunRows rows = study.run(run);
-    if (run == 1) std::fill_n(rows.spread.covariance.begin(), 9, 0.0);
+    if (run == 1) {  // the heading is known, and right
+      for (const std::size_t element : {2u, 5u, 6u, 7u, 8u}) rows.spread.covariance[element] = 0.0;
+      rows.spread.mean[2] = rows.truth[2];
+    }
     if (run == 2) rows.spread.covariance[9] = std::numeric_limits<double>::quiet_NaN();
     sums.add(rows);
   }
   const CellAnalysis cell = sums.result();
   const NeesSeries& series = nees_of(cell, ErrorBlock::pose).series;
   EXPECT_EQ(series.samples, 12u);
-  EXPECT_EQ(series.floored, 1u);
-  EXPECT_EQ(series.undefined, 1u);
+  EXPECT_EQ(series.lower_rank, 1u);
+  EXPECT_EQ(series.unusable, 1u);
   EXPECT_EQ(series.runs, (std::vector<std::uint32_t>{4, 3, 4}));
   EXPECT_DOUBLE_EQ(series.bounds[1].upper, nees_bounds(3, 3, 0.95).upper);
   EXPECT_TRUE(std::isfinite(series.average[1]));

@@ -27,28 +27,30 @@ TEST(Nees, EqualsTheQuadraticFormOfEachBlock) {
     const double expected2 = e.head<2>().dot(position.llt().solve(e.head<2>()));
     EXPECT_NEAR(nees<2>(e, P).value, expected2, 1e-9 * expected2) << i;
     EXPECT_NEAR(nees<1>(e, P, 2).value, e(2) * e(2) / P(2, 2), 1e-9 * e(2) * e(2) / P(2, 2)) << i;
-    EXPECT_FALSE(nees<3>(e, P).floored);
+    EXPECT_EQ(nees<3>(e, P).rank, 3);
   }
 }
 
 // Law: of any dimension, and nothing of what is no covariance.
-TEST(StrictNees, EqualsTheQuadraticFormOrIsNone) {
+TEST(ImportedNees, EqualsTheQuadraticFormOrIsUnusable) {
   RngStream draw({6, 0, 0, 0, Draw::test});
   for (const Eigen::Index d : {1, 2, 6, 15}) {
     const Eigen::MatrixXd root = Eigen::MatrixXd::NullaryExpr(d, d, [&] { return draw.normal(); });
     Eigen::MatrixXd P = root * root.transpose() + 0.01 * Eigen::MatrixXd::Identity(d, d);
     const Eigen::VectorXd e = Eigen::VectorXd::NullaryExpr(d, [&] { return draw.normal(); });
     const double expected = e.dot(P.llt().solve(e));
-    EXPECT_NEAR(strict_nees(e, P), expected, 1e-9 * expected);
-    EXPECT_NEAR(strict_nees(1e-9 * e, 1e-18 * P), expected, 1e-9 * expected) << "no floor";
-    EXPECT_TRUE(std::isnan(strict_nees(e, -P)));
-    EXPECT_TRUE(std::isnan(strict_nees(e, Eigen::MatrixXd::Zero(d, d))));
+    EXPECT_NEAR(imported_nees(e, P).value, expected, 1e-9 * expected);
+    EXPECT_EQ(imported_nees(e, P).rank, d);
+    EXPECT_NEAR(imported_nees(1e-9 * e, 1e-18 * P).value, expected, 1e-9 * expected) << "no floor";
+    EXPECT_FALSE(imported_nees(e, -P).is_usable());
     if (d == 1) continue;
+    Eigen::MatrixXd indefinite = Eigen::MatrixXd::Identity(d, d);
+    indefinite(0, 1) = indefinite(1, 0) = 1.0 + 1e-6;
+    EXPECT_FALSE(imported_nees(e, indefinite).is_usable());
     P(0, 1) += 1e-3 * std::sqrt(P(0, 0) * P(1, 1));
-    EXPECT_TRUE(std::isnan(strict_nees(e, P))) << "not symmetric";
-    EXPECT_TRUE(std::isnan(strict_nees(e, Eigen::MatrixXd::Ones(d, d)))) << "singular";
+    EXPECT_FALSE(imported_nees(e, P).is_usable()) << "not symmetric";
     P(0, 1) = P(1, 0) = std::numeric_limits<double>::infinity();
-    EXPECT_TRUE(std::isnan(strict_nees(e, P)));
+    EXPECT_FALSE(imported_nees(e, P).is_usable());
   }
 }
 
@@ -59,36 +61,67 @@ TEST(Nees, AcceptsAThinCovariance) {
   const Eigen::Matrix3d P = turn * axes.cwiseAbs2().asDiagonal() * turn.transpose();
   const Nees sample = nees<3>(turn * axes, P);
   EXPECT_NEAR(sample.value, 3.0, 1e-6);
-  EXPECT_FALSE(sample.floored);
+  EXPECT_EQ(sample.rank, 3);
 }
 
-TEST(Nees, FloorsASingularCovarianceAndSaysSo) {
-  const Nees zero = nees<3>({1e-4, 0.0, 2e-5}, Eigen::Matrix3d::Zero());
-  EXPECT_TRUE(zero.floored);
-  EXPECT_NEAR(zero.value, 1.0 + 4.0, 1e-9);
-
-  const Eigen::Vector3d direction(1.0, 2.0, 0.1);
-  const Eigen::Matrix3d rank_one = direction * direction.transpose();
-  EXPECT_TRUE(nees<3>(direction, rank_one).floored);
-  EXPECT_NEAR(nees<3>(direction, rank_one).value, 1.0, 1e-3);
-  EXPECT_TRUE(nees<2>(direction, rank_one).floored);
-  EXPECT_FALSE(nees<1>(direction, rank_one, 2).floored);
+TEST(Nees, IsJudgedInTheRangeOfASingularCovariance) {
+  const Eigen::Vector3d forward(1.0, 2.0, 0.1), left(-2.0, 1.0, 0.05);
+  const Eigen::Matrix3d line = forward * forward.transpose();
+  EXPECT_EQ(nees<3>(2.0 * forward, line).rank, 1);
+  EXPECT_NEAR(nees<3>(2.0 * forward, line).value, 4.0, 1e-9);
+  EXPECT_EQ(nees<2>(forward, line).rank, 1);
+  EXPECT_EQ(nees<1>(forward, line, 2).rank, 1);
+  const Eigen::Matrix3d plane = line + left * left.transpose();
+  EXPECT_EQ(nees<3>(forward - 3.0 * left, plane).rank, 2);
+  EXPECT_NEAR(nees<3>(forward - 3.0 * left, plane).value, 10.0, 1e-8);
+  const Eigen::Matrix3d no_heading = Eigen::Vector3d(4.0, 1.0, 0.0).asDiagonal();
+  EXPECT_EQ(nees<3>({2.0, 1.0, 0.0}, no_heading).rank, 2);
+  EXPECT_NEAR(nees<3>({2.0, 1.0, 0.0}, no_heading).value, 2.0, 1e-12);
 }
 
-TEST(Nees, IsUndefinedWhereANumberIsMissing) {
+TEST(Nees, IsLargestWhereTheCovarianceExcludesTheError) {
+  const Eigen::Matrix3d no_heading = Eigen::Vector3d(4.0, 1.0, 0.0).asDiagonal();
+  EXPECT_EQ(nees<3>({2.0, 1.0, 1e-3}, no_heading).value, kLargestNees);
+  EXPECT_EQ(nees<3>({1.0, 0.0, 0.0}, Eigen::Matrix3d::Zero()).value, kLargestNees);
+  const Eigen::Vector3d forward(1.0, 2.0, 0.1);
+  EXPECT_EQ(nees<3>({-20.0, 20.0, 0.0}, forward * forward.transpose()).value, kLargestNees);
+  EXPECT_EQ(nees<3>({1e200, 0.0, 0.0}, Eigen::Matrix3d::Identity()).value, kLargestNees);
+}
+
+TEST(Nees, SaysNothingOfAnErrorThatIsKnownToBeZero) {
+  const Nees sample = nees<3>(Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero());
+  EXPECT_EQ(sample.rank, 0);
+  EXPECT_TRUE(sample.is_usable());
+  EXPECT_TRUE(std::isnan(on_full_scale(sample, 3)));
+}
+
+// STATISTICS (2.2): chi-square of two degrees of freedom becomes chi-square of three.
+TEST(Nees, OfALowerRankIsPutOnTheScaleOfAllComponents) {
+  EXPECT_NEAR(on_full_scale({1.386294361119891, 2}, 3), 2.365973884375338, 1e-9) << "medians";
+  EXPECT_NEAR(on_full_scale({5.991464547107979, 2}, 3), 7.814727903251179, 1e-9) << "95 %";
+  EXPECT_EQ(on_full_scale({1.7, 3}, 3), 1.7);
+  const double last = on_full_scale({27.631021115928547, 2}, 3);  // once in a million
+  EXPECT_NEAR(on_full_scale({27631.021115928547, 2}, 3), 1000.0 * last, 1e-6 * last);
+}
+
+TEST(Nees, IsUnusableWhereANumberIsMissing) {
   const Eigen::Matrix3d P = SyntheticStudy::covariance();
-  EXPECT_TRUE(std::isnan(nees<3>({kNaN, 0.0, 0.0}, P).value));
+  EXPECT_FALSE(nees<3>({kNaN, 0.0, 0.0}, P).is_usable());
   Eigen::Matrix3d broken = P;
   broken(2, 2) = std::numeric_limits<double>::infinity();
-  EXPECT_TRUE(std::isnan(nees<3>({0.1, 0.1, 0.1}, broken).value));
+  EXPECT_FALSE(nees<3>({0.1, 0.1, 0.1}, broken).is_usable());
   EXPECT_NEAR(nees<2>({0.2, 0.0, 0.0}, broken).value, nees<2>({0.2, 0.0, 0.0}, P).value, 1e-12);
 }
 
-TEST(Nees, IsUndefinedWhereACovarianceIsIndefiniteBeyondTheFloor) {
+TEST(Nees, IsUnusableWhereACovarianceIsIndefinite) {
   const Eigen::Matrix3d P = Eigen::Vector3d(1.0, -1.0, 1.0).asDiagonal();
-  const Nees sample = nees<3>({0.1, 0.1, 0.1}, P);
-  EXPECT_TRUE(std::isnan(sample.value));
-  EXPECT_TRUE(sample.floored);
+  EXPECT_FALSE(nees<3>({0.1, 0.1, 0.1}, P).is_usable());
+  Eigen::Matrix3d beyond = Eigen::Matrix3d::Identity();
+  beyond(0, 1) = beyond(1, 0) = 1.1;
+  EXPECT_FALSE(nees<3>({0.1, 0.1, 0.1}, beyond).is_usable());
+  Eigen::Matrix3d hidden = Eigen::Vector3d(1.0, 0.0, 1.0).asDiagonal();
+  hidden(0, 1) = hidden(1, 0) = 0.5;
+  EXPECT_FALSE(nees<3>({0.1, 0.0, 0.1}, hidden).is_usable());
 }
 
 /// Mean NEES, with its standard error, of the covariance of `particles` equal draws of a Gaussian

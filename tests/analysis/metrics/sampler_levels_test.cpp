@@ -141,7 +141,7 @@ TEST(SamplerLevel, JudgesNothingByThreeDrawsAndCountsThem) {
     const NeesResult found = judged_sampler({.draws = 3, .within = within}, 1, 20, walks);
     EXPECT_EQ(found.consistency.verdict, Verdict::untested);
     EXPECT_EQ(found.series.too_few, 20 * kSamplerScans);
-    EXPECT_EQ(found.series.undefined, 0u);
+    EXPECT_EQ(found.series.unusable, 0u);
   }
 }
 

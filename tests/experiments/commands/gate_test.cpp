@@ -45,7 +45,7 @@ TEST_F(GateOfAFile, TellsByItsExitCode) {
   run();
   const Called right = gate("right", {"--within", "1.5"});
   EXPECT_EQ(right.code, 0) << right.out << right.err;
-  EXPECT_THAT(right.out, ContainsRegex("^right: consistent within 1.5; .*100 complete runs\n$"));
+  EXPECT_THAT(right.out, ContainsRegex("^right: consistent within 1.5; .*100 runs\n$"));
   const Called too_sure = gate("too_sure", {"--within", "1.5"});
   EXPECT_EQ(too_sure.code, 4);
   EXPECT_THAT(too_sure.out, ContainsRegex("^too_sure: not consistent, optimistic by [3-5]"));
@@ -74,6 +74,14 @@ TEST_F(GateOfAFile, NamesWhatItCannotJudge) {
   EXPECT_THAT(complaint(gate("right", {"--within", "1"})), HasSubstr("--within 1: not usable"));
   run({"study.runs=20", "record.columns=pose"});
   EXPECT_THAT(complaint(gate("right")), ContainsRegex("out.h5: cell right: no NEES to judge"));
+}
+
+TEST_F(GateOfAFile, NeedsNoNameOfTheOnlyCell) {
+  write("blink.ini",
+        kMatchedBlink.substr(0, kMatchedBlink.find("cell = dead_reckoning label=too")));
+  run({"study.runs=20"});
+  EXPECT_EQ(call({"gate", "out.h5", "--within", "3"}).code, gate("right", {"--within", "3"}).code);
+  EXPECT_NE(call({"gate", "out.h5", "--within", "3"}).code, 2);
 }
 
 TEST_F(GateOfAFile, WantsAllRuns) {

@@ -94,7 +94,7 @@ TEST_F(Judge, OwnEstimatesHaveTheVerdictOfTheirFilter) {
   const auto own = analyzed("own.h5").cells[0], mine = analyzed("mine.h5").cells[0];
   ASSERT_EQ(mine.nees.size(), 3U);
   for (std::size_t b = 0; b < 3; ++b) {
-    EXPECT_EQ(own.nees[b].series.floored, 0U);
+    EXPECT_EQ(own.nees[b].series.lower_rank, 0U);
     const double expected = own.nees[b].consistency.mean;
     EXPECT_NEAR(mine.nees[b].consistency.mean, expected, 1e-12 * expected);
     EXPECT_EQ(in_words(mine.nees[b].consistency), in_words(own.nees[b].consistency));
@@ -142,13 +142,13 @@ TEST_F(Judge, RunsThatEndEarlyHaveFailed) {
 
 TEST_F(Judge, CovariancesThatAreNoneAreCountedAndLeftOut) {
   const std::string good = "1,1,0,0,1,0,0,0,1,0,0,0,1\n";
-  for (const std::string bad : {"2,1,0,0,0,0,0,0,0,0,0,0,0\n", "2,1,0,0,-1,0,0,0,1,0,0,0,1\n",
-                                "2,1,0,0,1,2,0,2,1,0,0,0,1\n", "2,1,0,0,1,0.5,0,0,1,0,0,0,1\n"}) {
+  for (const std::string bad : {"2,1,0,0,-1,0,0,0,1,0,0,0,1\n", "2,1,0,0,1,2,0,2,1,0,0,0,1\n",
+                                "2,1,0,0,1,0.5,0,0,1,0,0,0,1\n"}) {
     const Called called = judged(kHeader + good + bad);
     ASSERT_EQ(called.code, 0) << called.err;
-    EXPECT_THAT(called.out, HasSubstr("1 of 4 covariances (25.0 %)")) << bad;
+    EXPECT_THAT(called.out, HasSubstr("1 of 4 samples (25.0 %)")) << bad;
     const analysis::CellAnalysis cell = analyzed("mine.h5").cells[0];
-    EXPECT_EQ(cell.nees[0].series.undefined, 1U);
+    EXPECT_EQ(cell.nees[0].series.unusable, 1U);
     EXPECT_NEAR(cell.nees[0].series.average[0], (1.0 + 0.01) / 2.0, 1e-12);
     EXPECT_NEAR(cell.nees[0].series.average[1], 0.01, 1e-12);
     EXPECT_EQ(cell.over_runs("numerical_faults").mean, 0.5);

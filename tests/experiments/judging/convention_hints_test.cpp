@@ -32,7 +32,7 @@ ConventionHint hint_of(const StateShape& shape, ErrorConvention right, std::uint
       for (std::size_t k = 0; k < nees.size(); ++k) {
         const ErrorConvention by = conventions_of(shape.kind)[k];
         EXPECT_EQ(name_of(by), engine::kErrorConventions[k].name);
-        nees[k].push_back(analysis::strict_nees(error_of(shape, by, mean, truth), P));
+        nees[k].push_back(analysis::imported_nees(error_of(shape, by, mean, truth), P).value);
       }
     }
     hints.add(nees);
