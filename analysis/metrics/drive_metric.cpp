@@ -80,9 +80,7 @@ std::vector<std::string> drive_row(const CellAnalysis& cell, const JudgedReferen
           std::to_string(drive.mean.fixes),
           is_judged ? readable(drive.mean.leads().effective_samples) : "-",
           innovations == nullptr ? "-" : readable(innovations->mean),
-          innovations == nullptr ? "-"
-          : innovations->white   ? "white"
-                                 : "not white"};
+          innovations == nullptr ? "-" : whiteness_in_words(*innovations)};
 }
 
 TextTable drive_table(const StudyAnalysis& study) {

@@ -6,11 +6,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace montecarta::analysis {
 
-/// How many scans back innovations are compared.
+/// How many scans back innovations are compared, at most: no more than a quarter of the scans.
 inline constexpr std::size_t kInnovationLags = 20;
 
 /// What the normalised innovations squared (NIS) say: a test that needs no truth. A consistent
@@ -22,11 +23,16 @@ struct Innovations {
   double share_inside = 0.0;     ///< of scans with a degree of freedom
   double mean = 0.0;             ///< NIS over degrees of freedom, mean over runs
   Interval interval = {};        ///< of that mean over infinitely many runs (bootstrap)
-  std::vector<double> autocorrelation;  ///< {lag - 1} of the NIS, mean over runs
-  double bound =
-      0.0;  ///< which white innovations exceed at no lag with the probability of the level
-  bool white = false;  ///< whether they stay within it
+  std::vector<double> autocorrelation;  ///< {lag - 1} of the NIS, over all runs; NaN: not tested
+  /// {lag - 1} which white innovations exceed at no lag with the probability of the level.
+  std::vector<double> white_bound;
+  std::size_t worst_lag = 0;  ///< with the largest ratio of the two; 0: no lag is tested
+
+  bool is_white() const;  ///< whether no lag exceeds its bound; true if none is tested
 };
+
+/// "white", "not white" or "not tested".
+std::string whiteness_in_words(const Innovations& found);
 
 /// Adds up the NIS over runs.
 class InnovationSums {
@@ -39,12 +45,18 @@ class InnovationSums {
   Innovations result(double level) const;
 
  private:
-  std::vector<double> nis_;           ///< {scan} over runs
-  std::vector<std::uint64_t> dof_;    ///< {scan} over runs
-  std::vector<double> run_means_;     ///< {run} NIS over degrees of freedom
-  std::vector<double> correlations_;  ///< {lag - 1} over runs
-  std::vector<double> pairs_;         ///< {lag - 1} over runs
-  std::vector<double> deviations_;    ///< {scan} of the run at hand; NaN without detections
+  std::vector<double> nis_;         ///< {scan} over runs
+  std::vector<std::uint64_t> dof_;  ///< {scan} over runs
+  std::vector<double> run_means_;   ///< {run} NIS over degrees of freedom
+  /// Sums over pairs of scans that both have innovations, over all runs.
+  struct Products {
+    double n = 0.0;        ///< pairs
+    double both = 0.0;     ///< sum of all members, two of each pair
+    double product = 0.0;  ///< sum of the products
+    double mean_product(double mean) const { return product / n - mean * both / n + mean * mean; }
+  };
+  std::vector<Products> products_;  ///< {lag} from 0
+  std::vector<double> deviations_;  ///< {scan} of the run at hand; NaN without detections
 };
 
 }  // namespace montecarta::analysis

@@ -19,33 +19,17 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Sums over pairs of scans `lag` apart that both have innovations.
-struct Products {
-  double sum = 0.0;
-  double n = 0.0;
-};
-
-Products products_at(std::span<const double> values, std::size_t lag) {
-  Products products;
-  for (std::size_t s = lag; s < values.size(); ++s) {
-    const double product = values[s] * values[s - lag];
-    if (std::isnan(product)) continue;
-    products.sum += product;
-    products.n += 1.0;
-  }
-  return products;
+/// How many standard deviations white innovations keep to at all of `lags` lags (Sidak).
+double white_deviate(std::size_t lags, double level) {
+  const double each = std::pow(level, 1.0 / static_cast<double>(lags));
+  return boost::math::quantile(boost::math::normal(), 0.5 + 0.5 * each);
 }
 
-void subtract_mean(std::vector<double>& values) {
-  const double mean = mean_of_finite(values);
-  for (double& value : values) value -= mean;
-}
-
-/// What white innovations stay below at all lags.
-double white_bound(const std::vector<double>& pairs, double level) {
-  const double each = std::pow(level, 1.0 / static_cast<double>(pairs.size()));
-  const double deviate = boost::math::quantile(boost::math::normal(), 0.5 + 0.5 * each);
-  return deviate / std::sqrt(*std::ranges::min_element(pairs));
+/// The widest of the bounds of the lags that are tested; NaN if none is.
+double widest_bound(const Innovations& found) {
+  double widest = kNaN;
+  for (const double bound : found.white_bound) widest = std::fmax(widest, bound);
+  return widest;
 }
 
 class InnovationsOverRuns final : public MetricSums {
@@ -84,7 +68,7 @@ void innovations_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all
     all.push_back({"innovation_correlation_" + std::to_string(lag), "1",
                    known ? found.autocorrelation[lag - 1] : kNaN});
   }
-  all.push_back({"innovation_correlation_bound", "1", known ? found.bound : kNaN});
+  all.push_back({"innovation_correlation_bound", "1", known ? widest_bound(found) : kNaN});
 }
 
 void innovations_series(const CellAnalysis& cell, std::vector<NamedSeries>& all) {
@@ -97,16 +81,14 @@ void innovations_series(const CellAnalysis& cell, std::vector<NamedSeries>& all)
 
 std::vector<std::string> innovation_row(const CellAnalysis& cell) {
   const Innovations& found = *cell.find<Innovations>();
-  const auto worst =
-      std::ranges::max_element(found.autocorrelation, {}, [](double r) { return std::abs(r); });
-  const auto lag = worst - found.autocorrelation.begin() + 1;
+  const std::size_t lag = found.worst_lag;
   return {cell.label,
           with_interval(found.mean, found.interval),
           percent(found.share_inside),
           readable(found.autocorrelation.front()),
-          readable(*worst) + " at " + std::to_string(lag),
-          readable(found.bound),
-          found.white ? "white" : "not white"};
+          lag == 0 ? "-" : readable(found.autocorrelation[lag - 1]) + " at " + std::to_string(lag),
+          lag == 0 ? "-" : readable(found.white_bound[lag - 1]),
+          whiteness_in_words(found)};
 }
 
 TextTable innovation_table(const StudyAnalysis& study) {
@@ -143,7 +125,7 @@ std::vector<Band> white_bands(const StudyAnalysis& study) {
   std::set<double> bounds;
   for (const CellAnalysis& cell : study.cells) {
     const Innovations* found = cell.find<Innovations>();
-    if (found != nullptr && std::isfinite(found->bound)) bounds.insert(found->bound);
+    if (found != nullptr && found->worst_lag > 0) bounds.insert(widest_bound(*found));
   }
   std::vector<Band> bands;
   for (const double bound : bounds) {
@@ -202,7 +184,7 @@ std::vector<Figure> innovations_figures(const StudyAnalysis& study) {
 }  // namespace
 
 InnovationSums::InnovationSums(std::size_t scans)
-    : nis_(scans), dof_(scans), correlations_(kInnovationLags), pairs_(kInnovationLags) {}
+    : nis_(scans), dof_(scans), products_(1 + std::min(kInnovationLags, scans / 4)) {}
 
 void InnovationSums::add(std::span<const double> nis, std::span<const std::uint32_t> dof) {
   double sum = 0.0, freedom = 0.0;
@@ -218,13 +200,15 @@ void InnovationSums::add(std::span<const double> nis, std::span<const std::uint3
   }
   if (freedom == 0.0) return;
   run_means_.push_back(sum / freedom);
-  subtract_mean(deviations_);
-  const Products power = products_at(deviations_, 0);
-  for (std::size_t lag = 1; lag <= kInnovationLags; ++lag) {
-    const Products products = products_at(deviations_, lag);
-    if (products.n == 0.0 || power.sum == 0.0) continue;
-    correlations_[lag - 1] += products.sum / power.sum * power.n / products.n;
-    pairs_[lag - 1] += products.n;
+  for (std::size_t lag = 0; lag < products_.size(); ++lag) {
+    Products& sums = products_[lag];
+    for (std::size_t s = lag; s < deviations_.size(); ++s) {
+      const double product = deviations_[s] * deviations_[s - lag];
+      if (std::isnan(product)) continue;
+      sums.n += 1.0;
+      sums.both += deviations_[s] + deviations_[s - lag];
+      sums.product += product;
+    }
   }
 }
 
@@ -242,13 +226,33 @@ Innovations InnovationSums::result(double level) const {
   }
   const auto runs = static_cast<double>(run_means_.size());
   for (const double mean : run_means_) result.mean += mean / runs;
-  for (const double sum : correlations_) result.autocorrelation.push_back(sum / runs);
   result.share_inside = inside / tested;
   result.interval = bootstrap_mean(run_means_, level);
-  result.bound = white_bound(pairs_, level);
-  result.white = std::ranges::all_of(result.autocorrelation,
-                                     [&](double r) { return std::abs(r) <= result.bound; });
+  result.autocorrelation.assign(kInnovationLags, kNaN);
+  result.white_bound.assign(kInnovationLags, kNaN);
+  const double mean = products_[0].both / (2.0 * products_[0].n);
+  const double power = products_[0].mean_product(mean);
+  double farthest = 0.0;
+  for (std::size_t lag = 1; lag < products_.size(); ++lag) {
+    if (products_[lag].n == 0.0 || !(power > 0.0)) continue;
+    const double correlation = products_[lag].mean_product(mean) / power;
+    const double bound = white_deviate(products_.size() - 1, level) / std::sqrt(products_[lag].n);
+    result.autocorrelation[lag - 1] = correlation;
+    result.white_bound[lag - 1] = bound;
+    if (result.worst_lag > 0 && std::abs(correlation) / bound <= farthest) continue;
+    farthest = std::abs(correlation) / bound;
+    result.worst_lag = lag;
+  }
   return result;
+}
+
+bool Innovations::is_white() const {
+  return worst_lag == 0 || std::abs(autocorrelation[worst_lag - 1]) <= white_bound[worst_lag - 1];
+}
+
+std::string whiteness_in_words(const Innovations& found) {
+  if (found.worst_lag == 0) return "not tested";
+  return found.is_white() ? "white" : "not white";
 }
 
 Metric innovations_metric() {

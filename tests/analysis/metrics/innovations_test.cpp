@@ -40,15 +40,15 @@ TEST(Innovations, OfAConsistentFilterAreWhiteAndOfTheRightSize) {
   EXPECT_LT(found.interval.lower, 1.0);
   EXPECT_GT(found.interval.upper, 1.0);
   EXPECT_NEAR(found.share_inside, 0.95, 5.0 * std::sqrt(0.95 * 0.05 / kInnovationScans));
-  EXPECT_TRUE(found.white);
-  EXPECT_LT(found.bound, 0.04);
+  EXPECT_TRUE(found.is_white());
+  EXPECT_LT(found.white_bound[0], 0.04);
 }
 
 // 200 studies: one standard error is 0.015.
 TEST(Innovations, AreCalledWhiteAsOftenAsTheLevelSays) {
   double white = 0.0;
   for (std::uint64_t study = 0; study < 200; ++study) {
-    white += innovations_of(1.0, 0.0, 100 + study).white ? 1.0 : 0.0;
+    white += innovations_of(1.0, 0.0, 100 + study).is_white() ? 1.0 : 0.0;
   }
   EXPECT_NEAR(white / 200.0, 0.95, 0.05);
 }
@@ -56,7 +56,7 @@ TEST(Innovations, AreCalledWhiteAsOftenAsTheLevelSays) {
 // The squares of an autoregression of memory r go together by r^2.
 TEST(Innovations, ThatRememberAreNotWhite) {
   const Innovations found = innovations_of(1.0, 0.5);
-  EXPECT_FALSE(found.white);
+  EXPECT_FALSE(found.is_white());
   EXPECT_NEAR(found.autocorrelation[0], 0.25, 0.04);
   EXPECT_NEAR(found.autocorrelation[1], 0.0625, 0.04);
 }
@@ -78,15 +78,20 @@ Innovations innovations_of_run(const std::vector<double>& nis,
 TEST(Innovations, ThatAreTooLargeMayStillBeWhite) {
   const Innovations found = innovations_of(1.5, 0.0);
   EXPECT_NEAR(found.autocorrelation[0], 0.0, 0.04);
-  EXPECT_TRUE(found.white);
+  EXPECT_TRUE(found.is_white());
 }
 
-// Deviations from their mean are -1/2, 1/2, -1/2, 1/2: three pairs one scan apart, two pairs two
-// scans apart, each product over the mean square of all four.
+// Deviations from their mean are -1/2, 1/2, ...: 7 pairs one scan apart, 6 pairs two scans apart;
+// the bound by scipy.stats.norm.
 TEST(Innovations, GoTogetherByHand) {
-  const Innovations found = innovations_of_run({1.0, 3.0, 1.0, 3.0}, {2, 2, 2, 2});
+  const Innovations found =
+      innovations_of_run({1, 3, 1, 3, 1, 3, 1, 3}, std::vector<std::uint32_t>(8, 2));
   EXPECT_DOUBLE_EQ(found.autocorrelation[0], -1.0);
   EXPECT_DOUBLE_EQ(found.autocorrelation[1], 1.0);
+  EXPECT_TRUE(std::isnan(found.autocorrelation[2])) << "a quarter of the scans is two";
+  EXPECT_NEAR(found.white_bound[0], 2.236477 / std::sqrt(7.0), 1e-6);
+  EXPECT_NEAR(found.white_bound[1], 2.236477 / std::sqrt(6.0), 1e-6);
+  EXPECT_EQ(found.worst_lag, 1u);
 }
 
 // Deviations of 2 and 4 are one standard deviation each where a NIS has 2 and 8 degrees of freedom.
@@ -95,12 +100,9 @@ TEST(Innovations, OfManyDegreesOfFreedomCountNoMoreThanOfFew) {
   EXPECT_NEAR(found.autocorrelation[0], 1.0 / 3.0, 1e-12);
 }
 
-// 30 scans have the fewest pairs, 10, where they lie 20 apart: scipy.stats.norm.
-TEST(Innovations, AreBoundByTheFewestPairs) {
-  std::vector<double> nis;
-  for (int s = 0; s < 30; ++s) nis.push_back(s % 2 == 0 ? 0.5 : 1.5);
-  const Innovations found = innovations_of_run(nis, std::vector<std::uint32_t>(30, 1));
-  EXPECT_NEAR(found.bound, 0.953741213645, 1e-9);
+TEST(Innovations, OfTwoScansAreNotTested) {
+  const Innovations found = innovations_of_run({1.0, 3.0}, {2, 2});
+  EXPECT_EQ(found.worst_lag, 0u);
 }
 
 // Each step back undoes half of the last one: nothing goes together but neighbours, and those the
@@ -120,8 +122,8 @@ TEST(Innovations, ThatAlternateAreNotWhite) {
   }
   const Innovations found = sums.result(0.95);
   EXPECT_NEAR(found.autocorrelation[0], -0.5, 0.05);
-  EXPECT_LT(*std::ranges::max_element(found.autocorrelation), found.bound);
-  EXPECT_FALSE(found.white);
+  EXPECT_LT(*std::ranges::max_element(found.autocorrelation), found.white_bound[19]);
+  EXPECT_FALSE(found.is_white());
 }
 
 TEST(Innovations, ThatAreNoNumbersAreLeftOut) {

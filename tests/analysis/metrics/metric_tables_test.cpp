@@ -59,7 +59,8 @@ TEST(InnovationTable, ShowsTheLagThatIsWorst) {
   found.share_inside = 0.5;
   found.autocorrelation.assign(kInnovationLags, 0.01);
   found.autocorrelation[4] = -0.2;
-  found.bound = 0.05;
+  found.white_bound.assign(kInnovationLags, 0.05);
+  found.worst_lag = 5;
   cell.findings.put(found);
   const TextTable table = reported_table(study_of(cell), "innovations");
   EXPECT_THAT(table.rows[0], ElementsAre("srcd_m10", "1.250 [1.200, 1.300]", "50.0 %", "0.0100",
