@@ -130,10 +130,9 @@ std::vector<std::string> comparison_notes(const StudyAnalysis& study,
       "'nees_distance' is how many times the mean NEES of the pose of a run must be halved or "
       "doubled to be " +
           std::to_string(study.imported.components.size()) +
-          ", what a consistent filter has: 0 is consistent, 1 is off by a factor of 2. It is of "
-          "the covariance that the verdict is of, all on one scale: of particle filters that of "
-          "the "
-          "poses they drew, corrected for their number."};
+          ", what a consistent filter has: 0 is consistent, 1 is off by a factor of 2. No cell is "
+          "called better by it: the NEES of most runs is below its mean, so that a covariance that "
+          "is somewhat too small lowers the distance of most runs."};
   note_failures(study, notes);
   return notes;
 }

@@ -20,6 +20,13 @@ bool beats(const Offer& a, const Offer& b) {
   return a.cost <= b.cost && a.loss <= b.loss && (a.cost < b.cost || a.loss < b.loss);
 }
 
+/// By ANEES; NaN if the cell is not tested.
+double nees_distance_of(const CellAnalysis& cell) {
+  const NeesResult* nees = cell.find_nees(ErrorBlock::pose, cell.leading);
+  if (nees == nullptr || nees->consistency.verdict == Verdict::untested) return kNaN;
+  return nees_distance(nees->consistency.mean, nees->series.dimension);
+}
+
 CellValue value_of(const CellAnalysis& cell, std::size_t place) {
   return {.cell = cell.label,
           .place = place,
@@ -27,9 +34,7 @@ CellValue value_of(const CellAnalysis& cell, std::size_t place) {
           .cpu_seconds = cell.over_runs("cpu_seconds"),
           .position_rmse = cell.over_runs("position_rmse"),
           .verdict = in_words(cell.consistency()),
-          .nees_distance = cell.consistency().verdict == Verdict::untested
-                               ? kNaN
-                               : nees_distance(cell.consistency().mean, 3)};
+          .nees_distance = nees_distance_of(cell)};
 }
 
 /// One panel: a loss against cost.

@@ -32,7 +32,8 @@ constexpr Score kNeesScores[] = {
        const NeesRows* nees = run.metrics.leading_nees();
        return nees_distance(mean_nees(run, ErrorBlock::pose),
                             nees == nullptr ? 3 : nees->dimension[0]);
-     }},
+     },
+     Better::neither},
 };
 
 class NeesOverRuns final : public MetricSums {

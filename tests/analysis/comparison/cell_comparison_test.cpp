@@ -135,6 +135,11 @@ TEST(CompareCells, SaysNothingFalseMoreOftenThanItsLevel) {
   EXPECT_GT(false_words, 0u);
 }
 
+// Most runs are below the mean of their NEES, so that overconfidence lowers the distance of most.
+TEST(NeesDistance, CallsNoCellBetter) {
+  EXPECT_EQ(find_score("nees_distance")->better, Better::neither);
+}
+
 TEST(NeesDistance, CountsDoublings) {
   EXPECT_DOUBLE_EQ(nees_distance(3.0, 3), 0.0);
   EXPECT_DOUBLE_EQ(nees_distance(6.0, 3), 1.0);

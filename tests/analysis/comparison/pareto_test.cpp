@@ -30,6 +30,7 @@ StudyAnalysis priced_study() {
     NeesResult nees;
     nees.consistency.verdict = Verdict::optimistic;
     nees.consistency.mean = i == 2 ? 3.0 : 12.0;
+    nees.series.dimension = 3;
     study.cells[i].nees = {nees};
   }
   return study;
@@ -44,6 +45,9 @@ TEST(CellValues, NameTheCellsOnTheFronts) {
   EXPECT_FALSE(values[2].accurate_for_cost);
   EXPECT_TRUE(values[2].consistent_for_cost);
   EXPECT_DOUBLE_EQ(values[0].nees_distance, 2.0);
+  StudyAnalysis in_space = priced_study();
+  in_space.cells[0].nees[0].series.dimension = 6;
+  EXPECT_DOUBLE_EQ(cell_values(in_space)[0].nees_distance, 1.0);
   StudyAnalysis without = priced_study();
   without.has_truth = false;
   EXPECT_TRUE(cell_values(without).empty());
