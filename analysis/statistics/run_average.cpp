@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kLeastVariation = 1e-9;      // of run averages that are equal
 constexpr double kOverdispersedErrors = 3.0;  // standard errors
+constexpr double kLeastTail = 1e-300;
+constexpr double kLeastExactVariance = 1e-7;
 
 /// Squared deviation of the values in units of their mean; NaN where it is not a number.
 double variation_of(std::span<const double> values) {
@@ -23,10 +25,18 @@ double variation_of(std::span<const double> values) {
   return squares / (n - 1.0) / mean / mean;
 }
 
-/// Quantile of a gamma of mean 1 and this variance, where a normal distribution has `deviate`.
+/// Quantile of a gamma of mean 1 and this variance, where a normal distribution has `deviate`. With
+/// few runs the deviate is so large that no double holds the tail: the end of the distribution
+/// then. Of a small variance, where Boost's series need too many terms, by Wilson and Hilferty, to
+/// 1e-8.
 double gamma_quantile(double variance, double deviate) {
-  const boost::math::gamma_distribution<> gamma(1.0 / variance, variance);
+  if (variance < kLeastExactVariance) {
+    const double third = variance / 9.0;
+    return std::pow(1.0 - third + deviate * std::sqrt(third), 3);
+  }
   const double tail = boost::math::cdf(boost::math::normal(), -std::abs(deviate));
+  if (tail < kLeastTail) return deviate < 0.0 ? 0.0 : std::numeric_limits<double>::infinity();
+  const boost::math::gamma_distribution<> gamma(1.0 / variance, variance);
   return deviate < 0.0 ? boost::math::quantile(gamma, tail)
                        : boost::math::quantile(boost::math::complement(gamma, tail));
 }

@@ -37,7 +37,7 @@ struct GaussianLaw {
 inline std::vector<double> draw_nees(const GaussianLaw& law, std::uint64_t study, std::uint64_t run,
                                      std::size_t scans) {
   RngStream draw({.seed = study, .run = run, .purpose = Draw::test});
-  std::array<double, 3> state{};
+  std::array<double, 6> state{};
   for (std::size_t c = 0; c < law.dimension; ++c) state[c] = draw.normal();
   const double rest = std::sqrt(1.0 - law.memory * law.memory);
   std::vector<double> nees;
@@ -83,13 +83,12 @@ inline bool is_below(const Consistency& found) {
 
 inline VerdictRates verdict_rates(const GaussianLaw& law, std::uint64_t runs, std::size_t scans,
                                   std::uint64_t studies) {
-  const std::array blocks = {ErrorBlock::heading, ErrorBlock::position, ErrorBlock::pose};
   const std::vector<double> times = five_a_second(scans);
   const BandWalks walks(scans);
   const double one = 1.0 / static_cast<double>(studies);
   VerdictRates rates;
   for (std::uint64_t study = 0; study < studies; ++study) {
-    NeesAccumulator sums(blocks[law.dimension - 1], Moments::spread, scans);
+    NeesAccumulator sums(ErrorBlock::pose, Moments::spread, scans, law.dimension);
     for (std::uint64_t run = 0; run < runs; ++run) sums.add(draw_nees(law, study, run, scans));
     const Consistency found = sums.result(times, 0.95, walks).consistency;
     if (is_above(found)) {

@@ -13,7 +13,10 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int kRuns = 60, kScans = 32;
+/// How many files with how many rows.
+struct Size {
+  int runs = 60, scans = 32;
+};
 
 /// Error and variance of one component at one scan, from a standard normal number.
 struct Sample {
@@ -24,13 +27,13 @@ struct Sample {
 class GateOfEstimates : public Program {
  protected:
   Called gate(const std::function<Sample(int run, double normal)>& sample,
-              const std::vector<std::string>& more = {}) const {
+              const std::vector<std::string>& more = {}, const Size& size = {}) const {
     RngStream draw({17, 0, 0, 0, Draw::test});
     std::vector<std::string> words = {"judge"};
-    for (int run = 0; run < kRuns; ++run) {
+    for (int run = 0; run < size.runs; ++run) {
       std::ostringstream text;
       text << "time_s,a_m,cov_0_0\n";
-      for (int scan = 1; scan <= kScans; ++scan) {
+      for (int scan = 1; scan <= size.scans; ++scan) {
         const auto [error, variance] = sample(run, draw.normal());
         text << scan << ',' << error << ',' << variance << '\n';
       }
@@ -38,12 +41,13 @@ class GateOfEstimates : public Program {
       write(words.back(), text.str());
     }
     std::string truth = "time_s,a_m\n";
-    for (int scan = 1; scan <= kScans; ++scan) truth += std::to_string(scan) + ",0\n";
+    for (int scan = 1; scan <= size.scans; ++scan) truth += std::to_string(scan) + ",0\n";
     write("truth.csv", truth);
     words.insert(words.end(),
                  {"--truth", "truth.csv", "--error", "world", "-o", "mine.h5", "--force"});
     const Called judged = call(words);
     EXPECT_EQ(judged.code, 0) << judged.err;
+    EXPECT_EQ(call({"analyze", "mine.h5"}).code, 0);
     words = {"gate", "mine.h5", "--within", "1.5"};
     words.insert(words.end(), more.begin(), more.end());
     return call(words);
@@ -80,6 +84,28 @@ TEST_F(GateOfEstimates, StopsAVarianceOfZeroWhereTheErrorIsLarge) {
   });
   EXPECT_EQ(called.code, 4) << called.out << called.err;
   EXPECT_THAT(called.out, HasSubstr("optimistic"));
+}
+
+// Few runs, or runs that hardly differ, leave no double for the tails that the verdict asks for.
+TEST_F(GateOfEstimates, AnswersWhereRunsAreFewOrAlike) {
+  double of_run = 0.0;
+  const auto constant_in_a_run = [&, last = -1](int run, double n) mutable {
+    if (run != last) of_run = n;
+    last = run;
+    return Sample{of_run, 1.0};
+  };
+  const auto identical = [](int, double) { return Sample{1.0, 1.0}; };
+  const auto zero = [](int, double) { return Sample{0.0, 1.0}; };
+  const auto right = [](int, double n) { return Sample{n, 1.0}; };
+  for (const Size& size :
+       {Size{1, 1}, Size{2, 1}, Size{3, 1}, Size{3, 8}, Size{4, 2}, Size{20, 1}}) {
+    for (const auto& sample : std::vector<std::function<Sample(int, double)>>{
+             constant_in_a_run, identical, zero, right}) {
+      const Called called = gate(sample, {}, size);
+      EXPECT_TRUE(called.code == 0 || called.code == 4 || called.code == 5)
+          << size.runs << " runs of " << size.scans << ": " << called.err;
+    }
+  }
 }
 
 }  // namespace
