@@ -26,7 +26,7 @@ class AttemptCommand : public Program {
 };
 
 TEST_F(AttemptCommand, StopsAtACheckpointAndTheSameCommandGoesOn) {
-  const std::vector<std::string> many{"--set", "study.runs=300", "--threads", "1"};
+  const std::vector<std::string> many{"--set", "study.runs=3000", "--threads", "1"};
   std::vector<std::string> stopped = many;
   stopped.insert(stopped.end(), {"--time-budget", "0.01"});
   ASSERT_EQ(attempt(stopped).code, 85);
