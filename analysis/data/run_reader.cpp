@@ -134,10 +134,10 @@ void RunReader::read_scans(std::string_view column, std::size_t width, std::size
 void RunReader::expect_particles(const RunRows& rows) const {
   const auto is_none = [&](std::uint32_t parent) { return parent >= cell_->particles; };
   if (std::ranges::none_of(rows.ancestor, is_none)) return;
-  throw RunError(file_->path().string() + ": cell '" + cell_->label + "', run " +
-                 std::to_string(rows.run) +
-                 ": an ancestor is none of the particles (the file is damaged): run the study "
-                 "again");
+  throw StudyError(file_->path().string() + ": cell '" + cell_->label + "', run " +
+                   std::to_string(rows.run) +
+                   ": an ancestor is none of the particles (the file is damaged): run the study "
+                   "again");
 }
 
 void RunReader::read_particles(std::size_t i, RunRows& rows) const {
@@ -156,6 +156,7 @@ void RunReader::read_particles(std::size_t i, RunRows& rows) const {
 }
 
 void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
+  file_->expect_whole(*cell_, i);
   read_truth(i, rows.truth, scratch);
   read_at_scans("pose_mean", 3, i, rows.spread.mean, scratch);
   read_at_scans("pose_covariance", 9, i, rows.spread.covariance, scratch);

@@ -37,7 +37,8 @@ class RunReader {
   /// Memory for the rows between scans.
   using Scratch = std::vector<double>;
 
-  /// Fills `rows` with run index `i` (0-based in the file), which is complete.
+  /// Fills `rows` with run index `i` (0-based in the file), which is complete. Throws StudyError if
+  /// the run is damaged (ResultFile::expect_whole()).
   void read(std::size_t i, RunRows& rows, Scratch& scratch) const;
 
  private:
@@ -53,7 +54,7 @@ class RunReader {
   void read_cloud(std::size_t i, CloudRows& out, Scratch& scratch) const;
   /// Weights, parents and poses of the particles; empty where the cell has none.
   void read_particles(std::size_t i, RunRows& rows) const;
-  /// Throws RunError where a parent does not exist.
+  /// Throws StudyError where a parent does not exist.
   void expect_particles(const RunRows& rows) const;
   template <class Number>
   void read_scans(std::string_view column, std::size_t width, std::size_t i,

@@ -7,6 +7,7 @@
 #include "analysis/metrics/cramer_rao.hpp"
 #include "analysis/metrics/imported_estimates.hpp"
 #include "engine/errors.hpp"
+#include "engine/runs/rounds.hpp"
 
 #include <algorithm>
 #include <span>
@@ -20,6 +21,17 @@ double scan_time(const MetDrive& drive, std::uint32_t step) {
   return drive.scan_times[std::min(static_cast<std::size_t>(scan), drive.scan_steps.size() - 1)];
 }
 
+/// Throws StudyError if run index `i`, which is marked as spared, cannot be: the study has no
+/// interim analyses, the run lies before the first one, or it was made.
+void expect_planned(const ResultFile& file, const StoredCell& cell, std::size_t i) {
+  file.expect_whole(cell, i);
+  if (!study_setting(file.study_text(), "until").value_or("").empty() && i >= kFirstRound) return;
+  throw StudyError(file.path().string() + ": cell '" + cell.label + "', run " +
+                   std::to_string(file.runs()[i]) +
+                   ": damaged (marked as not needed, but the study plans no such end there): take "
+                   "a copy that is whole, or run the study again");
+}
+
 /// Run indices in the file of the complete runs among the first `runs`; counts and names them all
 /// in `cell`.
 std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell& stored,
@@ -31,8 +43,12 @@ std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell&
   for (std::size_t i = 0; i < std::min(runs, status.size()); ++i) {
     if (status[i] == RunStatus::complete) complete.push_back(i);
     if (status[i] == RunStatus::missing) ++cell.missing;
-    if (status[i] == RunStatus::spared) ++cell.spared;
+    if (status[i] == RunStatus::spared) {
+      ++cell.spared;
+      expect_planned(file, stored, i);
+    }
     if (status[i] == RunStatus::failed) {
+      file.expect_whole(stored, i);
       cell.failures.push_back({file.runs()[i], steps[i], reasons[i],
                                scan_time(drive_met_by(file, file.runs()[i]), steps[i])});
     }

@@ -40,8 +40,8 @@ class Check {
 
   void expect(bool condition, const std::string& what) const {
     if (condition) return;
-    throw RunError(path_.string() + ": damaged (" + what +
-                   "): take a copy that is whole, or run the study again");
+    throw StudyError(path_.string() + ": damaged (" + what +
+                     "): take a copy that is whole, or run the study again");
   }
 
  private:

@@ -58,6 +58,13 @@ herr_t collect_name(hid_t, const char* name, const H5L_info_t*, void* names) {
   return 0;
 }
 
+/// What cannot be read is the user's file; what cannot be written is the machine's fault.
+bool is_only_read(const Handle& object) {
+  const Handle file(H5Iget_file_id(object.id()));
+  unsigned intent = 0;
+  return file.id() >= 0 && H5Fget_intent(file.id(), &intent) >= 0 && intent == H5F_ACC_RDONLY;
+}
+
 }  // namespace
 
 namespace detail {
@@ -66,9 +73,11 @@ std::int64_t check(std::int64_t status, const char* what, const Handle& object,
                    const std::string& name) {
   if (status >= 0) return status;
   const std::string within = name_in_file(object.id()) + (name.empty() ? "" : "/" + name);
-  throw RunError(
+  const std::string said =
       name_of_file(object.id()) + ": cannot " + what + " '" + within +
-      "' (the file is damaged, not of montecarta, or the disk failed): check it with 'h5ls -r'");
+      "' (the file is damaged, not of montecarta, or the disk failed): check it with 'h5ls -r'";
+  if (is_only_read(object)) throw StudyError(said);
+  throw RunError(said);
 }
 
 void expect_in_file(std::span<const unsigned long long> elements, std::size_t width,

@@ -14,8 +14,8 @@
 #include <vector>
 
 /// The little of HDF5 that montecarta uses, with owned identifiers and exceptions. Every function
-/// throws RunError naming the object. hdf5.h itself stays in h5.cpp, h5_attributes.cpp and
-/// h5_datasets.cpp.
+/// throws StudyError naming the object if the file is only read, RunError if it is written. hdf5.h
+/// itself stays in h5.cpp, h5_attributes.cpp and h5_datasets.cpp.
 namespace montecarta::engine::h5 {
 
 /// Owns an HDF5 identifier of any kind.
@@ -84,13 +84,13 @@ void write_text(const Handle& dataset, const std::string& text);
 std::optional<std::uint64_t> place(const Handle& dataset);
 /// What the elements take in the file [byte].
 std::uint64_t stored_bytes(const Handle& dataset);
-/// Throws RunError also where so many elements cannot be in the file: memory may be taken by it.
+/// Throws StudyError also where so many elements cannot be in the file: memory may be taken by it.
 Shape shape(const Handle& dataset);
 /// Type of the elements as stored; nullopt where it is none of ours.
 std::optional<Element> element(const Handle& dataset);
-/// Reads everything, converted to `element`; throws RunError unless `bytes` fit exactly.
+/// Reads everything, converted to `element`; throws StudyError unless `bytes` fit exactly.
 void read(const Handle& dataset, Element element, std::span<std::byte> bytes);
-/// Reads index `i` of the first axis, converted to `element`; throws RunError as read() does.
+/// Reads index `i` of the first axis, converted to `element`; throws StudyError as read() does.
 void read_row(const Handle& dataset, std::uint64_t i, Element element, std::span<std::byte> bytes);
 std::string read_text(const Handle& dataset);
 
@@ -100,10 +100,11 @@ bool is_scale(const Handle& dataset);
 void attach_scale(const Handle& dataset, const Handle& scale, unsigned axis);
 
 namespace detail {
-/// Throws RunError "file: cannot <what> '/object/name'" where `status` < 0; returns it otherwise.
+/// Throws StudyError (of a file that is only read, else RunError) "file: cannot <what>
+/// '/object/name'" where `status` < 0; returns it otherwise.
 std::int64_t check(std::int64_t status, const char* what, const Handle& object,
                    const std::string& name);
-/// Throws RunError where `elements` of `width` bytes are more than the file of `object` can hold,
+/// Throws StudyError where `elements` of `width` bytes are more than the file of `object` can hold,
 /// even if another program compressed it.
 void expect_in_file(std::span<const unsigned long long> elements, std::size_t width,
                     const Handle& object, const std::string& name);

@@ -5,24 +5,38 @@
 #include "engine/records/h5.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/result_layout.hpp"
+#include "engine/records/result_slabs.hpp"
 #include "engine/records/run_record.hpp"
 #include "engine/records/seal.hpp"
 
 #include <algorithm>
 #include <map>
+#include <mutex>
 
 namespace montecarta::engine {
 
 struct ResultFile::Contents {
   std::filesystem::path path;
+  Seal seal;
   h5::Handle file;
   ResultDescription description;
   std::optional<h5::Handle> truth, own_landmarks;
   /// Every column of every cell, opened once.
   std::map<std::string, std::map<std::string, h5::Handle, std::less<>>, std::less<>> columns;
 
+  /// The bytes of the runs of a sealed file.
+  struct Bytes {
+    PosixFile file;
+    ResultSlabs slabs;
+  };
+  mutable std::once_flag bytes_found;
+  mutable std::optional<Bytes> bytes;
+
   explicit Contents(const std::filesystem::path& given)
-      : path(given), file(open_checked(path)), description(read_description(file, path)) {
+      : path(given),
+        seal(check_seal(path)),
+        file(h5::open_file(path)),
+        description(read_description(file, path)) {
     if (description.has_truth) truth = h5::open_dataset(file, "truth/pose");
     if (description.own_landmarks) own_landmarks = h5::open_dataset(file, "truth/landmarks");
     for (const StoredCell& cell : description.cells) {
@@ -31,6 +45,15 @@ struct ResultFile::Contents {
             column.name, h5::open_dataset(file, "cells/" + cell.label + "/" + column.name));
       }
     }
+  }
+
+  /// nullptr if the file has no seal.
+  const Bytes* bytes_of_runs() const {
+    if (seal != Seal::holds) return nullptr;
+    std::call_once(bytes_found, [&] {
+      bytes.emplace(PosixFile(path, PosixFile::Mode::read), find_slabs(path, description));
+    });
+    return &*bytes;
   }
 
   const h5::Handle& column(const StoredCell& cell, std::string_view name) const {
@@ -104,6 +127,22 @@ std::vector<RunStatus> ResultFile::status(const StoredCell& cell) const {
   auto statuses = contents_->per_run<RunStatus>("cells/" + cell.label + "/status", Element::u8);
   expect_known(statuses, path().string() + ": cell '" + cell.label + "'");
   return statuses;
+}
+
+void ResultFile::expect_whole(const StoredCell& cell, std::size_t i) const {
+  const Contents::Bytes* bytes = contents_->bytes_of_runs();
+  if (bytes == nullptr) return;
+  const auto c = static_cast<std::size_t>(&cell - cells().data());
+  thread_local std::vector<std::byte> buffer;
+  const CellSlabs& slabs = bytes->slabs.cells.at(c);
+  if (run_is_whole(bytes->file, slabs, i, buffer) &&
+      (is_spared(bytes->file, slabs, i) || truth_is_whole(bytes->file, bytes->slabs, i, buffer))) {
+    return;
+  }
+  throw StudyError(
+      path().string() + ": cell '" + cell.label + "', run " + std::to_string(runs()[i]) +
+      ": damaged (its bytes do not fit its fingerprint): take a copy that is whole, or "
+      "run the study again");
 }
 
 std::vector<std::string> ResultFile::failure_reasons(const StoredCell& cell) const {

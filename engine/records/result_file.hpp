@@ -18,7 +18,7 @@ namespace montecarta::engine {
 /// A result file opened for reading: all that analysis knows of a study. Reads stream run by run.
 /// Reading needs no more memory than the caller's buffer. Two threads may read from one file object
 /// where the HDF5 library is built thread-safe, as Debian's is. Opens finished files and work in
-/// progress (OUT.h5.part). Every member throws RunError naming file and dataset when the file
+/// progress (OUT.h5.part). Every member throws StudyError naming file and dataset when the file
 /// cannot be read.
 class ResultFile {
  public:
@@ -53,6 +53,10 @@ class ResultFile {
   const std::vector<StoredCell>& cells() const;
 
   std::vector<RunStatus> status(const StoredCell& cell) const;  ///< one per run held
+  /// Throws StudyError if the bytes of run index `i` of `cell`, its status and true path included,
+  /// do not fit the fingerprints stored with them. A file without a seal, which another program may
+  /// have written anew, is not checked. Any number of threads may call it.
+  void expect_whole(const StoredCell& cell, std::size_t i) const;
   std::vector<std::string> failure_reasons(const StoredCell& cell) const;
   std::vector<std::uint32_t> failure_steps(const StoredCell& cell) const;
   std::vector<double> cpu_seconds(const StoredCell& cell)

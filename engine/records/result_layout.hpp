@@ -41,8 +41,8 @@ void add_own_drives(const h5::Handle& scenario, const std::vector<OwnDrive>& dri
 std::vector<ReferencePath> read_references(const h5::Handle& scenario);
 std::vector<OwnDrive> read_own_drives(const h5::Handle& scenario);
 
-/// Throws RunError unless all that a file says of itself goes together: every number in it that is
-/// an index, a count or a time of others is one, and all columns of a cell have the same axes.
+/// Throws StudyError unless all that a file says of itself goes together: every number in it that
+/// is an index, a count or a time of others is one, and all columns of a cell have the same axes.
 void check_description(const ResultDescription& description, const std::filesystem::path& path);
 
 /// What an open result file says of itself. Throws StudyError where it is no montecarta result of a

@@ -25,8 +25,8 @@ class SlabFinder {
     const h5::Handle dataset = h5::open_dataset(file_, name);
     const auto place = h5::place(dataset);
     if (place && h5::stored_bytes(dataset) != runs * run_bytes) {
-      throw RunError(path_.string() + ": damaged ('" + name +
-                     "' is not as long as its axes): run the study again");
+      throw StudyError(path_.string() + ": damaged ('" + name +
+                       "' is not as long as its axes): run the study again");
     }
     if (!place) {
       throw StudyError(path_.string() + ": '" + name +
@@ -95,8 +95,17 @@ std::vector<RunStatus> read_statuses(const PosixFile& file, const CellSlabs& cel
   return statuses;
 }
 
+bool is_spared(const PosixFile& file, const CellSlabs& cell, std::size_t run_index) {
+  RunStatus status{};
+  file.read_at(cell.status.at(run_index), std::as_writable_bytes(std::span(&status, 1)));
+  return status == RunStatus::spared;
+}
+
 bool run_is_whole(const PosixFile& file, const CellSlabs& cell, std::size_t run_index,
                   std::vector<std::byte>& buffer) {
+  if (is_spared(file, cell, run_index)) {
+    return stored_fingerprint(file, cell.fingerprint, run_index) == 0;
+  }
   Fingerprint fingerprint;
   for (const Slab& column : cell.columns) add_run(file, column, run_index, buffer, fingerprint);
   for (const Slab& slab : {cell.status, cell.failure_step, cell.failure_reason})

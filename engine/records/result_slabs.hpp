@@ -44,12 +44,15 @@ struct ResultSlabs {
 /// tool rewrote the file so that a dataset does not lie in one piece.
 ResultSlabs find_slabs(const std::filesystem::path& path, const ResultDescription& description);
 
-/// Status of every run of a cell. Throws RunError where a number is none.
+/// Status of every run of a cell. Throws StudyError where a number is none.
 std::vector<RunStatus> read_statuses(const PosixFile& file, const CellSlabs& cell,
                                      std::size_t runs);
 
+/// Whether a run was not needed, and not made.
+bool is_spared(const PosixFile& file, const CellSlabs& cell, std::size_t run_index);
+
 /// Whether the fingerprint stored with a run is that of its bytes, which needs `buffer` for the
-/// longest column.
+/// longest column. A spared run has none.
 bool run_is_whole(const PosixFile& file, const CellSlabs& cell, std::size_t run_index,
                   std::vector<std::byte>& buffer);
 /// The same for its true path; false where it is missing, true where there is none to store.

@@ -76,7 +76,7 @@ void RunRecord::expect_element(const Column& column, std::size_t size) {
 
 void expect_known(std::span<const RunStatus> statuses, const std::string& place) {
   if (std::ranges::all_of(statuses, [](RunStatus s) { return s <= RunStatus::spared; })) return;
-  throw RunError(place + ": a status is none of 0, 1, 2, 3 (the file is damaged): make it anew");
+  throw StudyError(place + ": a status is none of 0, 1, 2, 3 (the file is damaged): make it anew");
 }
 
 }  // namespace montecarta::engine

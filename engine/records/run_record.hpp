@@ -24,7 +24,7 @@ inline bool is_stored(RunStatus status) {
   return status == RunStatus::complete || status == RunStatus::failed;
 }
 
-/// Throws RunError, beginning with `place`, where a number read from a file is none of these.
+/// Throws StudyError, beginning with `place`, where a number read from a file is none of these.
 void expect_known(std::span<const RunStatus> statuses, const std::string& place);
 
 /// Width of failure_reason in the file: fixed, so that a run's reason has its own place.

@@ -69,10 +69,6 @@ T read_value(const PosixFile& file, std::uint64_t offset) {
   return value;
 }
 
-bool is_spared(const PosixFile& file, const CellSlabs& cell, std::size_t run_index) {
-  return read_value<RunStatus>(file, cell.status.at(run_index)) == RunStatus::spared;
-}
-
 }  // namespace
 
 ResultDescription describe_shard(const std::filesystem::path& path) {
@@ -127,11 +123,10 @@ void expect_whole(const PosixFile& file, const Shard& shard, std::uint64_t run,
   bool whole = std::ranges::all_of(shard.slabs.cells, spared) ||
                truth_is_whole(file, shard.slabs, shard.index(run), buffer);
   for (const CellSlabs& cell : shard.slabs.cells)
-    whole = whole && (is_spared(file, cell, shard.index(run)) ||
-                      run_is_whole(file, cell, shard.index(run), buffer));
+    whole = whole && run_is_whole(file, cell, shard.index(run), buffer);
   if (whole) return;
-  throw RunError(shard.path.string() + ": run " + std::to_string(run) +
-                 " is damaged (its bytes do not fit its fingerprint): compute this shard anew");
+  throw StudyError(shard.path.string() + ": run " + std::to_string(run) +
+                   " is damaged (its bytes do not fit its fingerprint): compute this shard anew");
 }
 
 std::uint64_t copy_runs(const PosixFile& from, const Shard& shard, RunSpan runs,

@@ -28,7 +28,7 @@ Shard make_shard(const std::filesystem::path& path, const ResultDescription& des
 
 /// Throws StudyError where the two shards hold different bytes for a run they both have.
 void expect_equal(const Shard& a, const Shard& b, std::uint64_t run);
-/// Throws RunError where a run does not fit its fingerprints.
+/// Throws StudyError where a run does not fit its fingerprints.
 void expect_whole(const PosixFile& file, const Shard& shard, std::uint64_t run,
                   std::vector<std::byte>& buffer);
 /// Runs of the study that follow each other.

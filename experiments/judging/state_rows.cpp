@@ -107,7 +107,7 @@ RowOfInnovations squares_of(const CsvRows& file, const EstimateFields& fields) {
     }
   }
   const analysis::Nees sample = analysis::imported_nees(innovation, S);
-  return {sample.value, static_cast<std::uint32_t>(std::max(sample.rank, 0))};
+  return {sample.value, static_cast<std::uint32_t>(sample.is_usable() ? sample.rank : d)};
 }
 
 }  // namespace

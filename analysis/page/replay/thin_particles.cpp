@@ -14,7 +14,7 @@ std::uint32_t ancestor_at(const StoredParticles& stored, std::size_t scan, std::
                           std::uint32_t i) {
   for (; scan > before; --scan) {
     i = stored.ancestor[scan * stored.count + i];
-    if (i >= stored.count) throw RunError("ancestor: no such particle (the file is damaged)");
+    if (i >= stored.count) throw StudyError("ancestor: no such particle (the file is damaged)");
   }
   return i;
 }

@@ -48,7 +48,7 @@ TEST_F(StudyAnalysisOfAFile, RefusesAncestorsThatAreNoParticles) {
   try {
     analyze(ResultFile(path_));
     FAIL() << "an ancestor that is no particle was taken";
-  } catch (const RunError& error) {
+  } catch (const StudyError& error) {
     EXPECT_EQ(std::string(error.what()).find(path_.string() + ": cell 'scripted_m3', run 7: "), 0U)
         << error.what();
   }

@@ -28,7 +28,7 @@ class CheckDescription : public ResultWriting {
     ResultDescription description = describe(plan_, {});
     change(description);
     lay_out(path_, description);
-    const std::string said = message<RunError>([&] { ResultFile{path_}; });
+    const std::string said = message<StudyError>([&] { ResultFile{path_}; });
     EXPECT_THAT(said, HasSubstr(path_.string()));
     return said;
   }
@@ -65,7 +65,7 @@ TEST_F(CheckDescription, RefusesScansThatAreNone) {
   const auto misplaced = [&](std::uint32_t scan) {
     ResultDescription description = describe(plan_, {});
     description.joint_scans.back() = scan;
-    return message<RunError>([&] { check_description(description, path_); });
+    return message<StudyError>([&] { check_description(description, path_); });
   };
   EXPECT_THAT(misplaced(4000), HasSubstr("joint_scan"));
 }
@@ -158,7 +158,7 @@ TEST_F(CheckDescription, FindsEveryOddNumber) {
     try {
       const ResultFile file(path_);
       for (const std::uint32_t row : file.scan_rows()) EXPECT_LT(row, file.times().size());
-    } catch (const RunError& error) {
+    } catch (const StudyError& error) {
       EXPECT_THAT(error.what(), HasSubstr(path_.string())) << seed;
     }
   }

@@ -98,6 +98,37 @@ TEST_F(RecordedResult, ResumesAndMergesLikeAnyOther) {
   EXPECT_EQ(difference(whole, ResultFile(folder_ / "merged.h5")), "");
 }
 
+// One bit in what is stored of a run: a number, the true path, the status, the fingerprint.
+TEST_F(RecordedResult, ExpectsEveryRunToFitItsFingerprint) {
+  plan_ = small_result_plan();
+  write_result(path_, plan_);
+  const ResultSlabs slabs = find_slabs(path_, describe(plan_, {}));
+  const auto is_whole = [&](std::size_t cell, std::size_t run) {
+    const ResultFile file(path_);
+    try {
+      file.expect_whole(file.cells().at(cell), run);
+      return true;
+    } catch (const StudyError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("run 1: damaged"));
+      return false;
+    }
+  };
+  for (std::size_t run = 0; run < plan_.runs; ++run) EXPECT_TRUE(is_whole(0, run)) << run;
+  const PosixFile file(path_, PosixFile::Mode::write);
+  for (const Slab& slab : {slabs.cells[0].columns[0], slabs.cells[0].columns[1], slabs.truth->pose,
+                           slabs.truth->fingerprint, slabs.cells[0].fingerprint,
+                           slabs.cells[0].status, slabs.cells[0].failure_step}) {
+    std::byte stored{};
+    file.read_at(slab.at(1), std::span(&stored, 1));
+    const std::byte changed = stored ^ std::byte{2};  // of the status: complete becomes spared
+    file.write_at(slab.at(1), std::span(&changed, 1));
+    EXPECT_FALSE(is_whole(0, 1)) << slab.offset;
+    EXPECT_TRUE(is_whole(0, 2)) << slab.offset;
+    file.write_at(slab.at(1), std::span(&stored, 1));
+  }
+  EXPECT_TRUE(is_whole(0, 1));
+}
+
 TEST_F(RecordedResult, DamageIsFoundWithoutATruthToo) {
   write_result(folder_ / "a.h5", part_of_plan(plan_, 0, 2));
   write_result(folder_ / "b.h5", part_of_plan(plan_, 2, 3));
@@ -107,7 +138,7 @@ TEST_F(RecordedResult, DamageIsFoundWithoutATruthToo) {
     const std::byte wrong{1};
     file.write_at(slabs.cells[0].columns[0].at(1), std::span(&wrong, 1));
   }
-  const std::string said = message<RunError>([&] {
+  const std::string said = message<StudyError>([&] {
     merge_results(folder_ / "merged.h5", {folder_ / "a.h5", folder_ / "b.h5"}, Existing::refuse);
   });
   EXPECT_THAT(said, HasSubstr("run 1 is damaged"));

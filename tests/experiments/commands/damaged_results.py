@@ -4,11 +4,12 @@
 usage: damaged_results.py MONTECARTA [COUNT [FIRST]]      (default: 200 damaged files, from seed 0)
 
 Each file is a small result with bytes changed, eight bytes set to an extreme number, or its end cut
-off: a third of them where HDF5 keeps its structures, a third anywhere, a third in what is stored of
-runs. Six of ten go through `analyze`, the others
-through the other commands that open a result. Allowed are the exit codes 0, 1 and 2 (and 4, "a run
-differs", of verify and replay) within 5 s of processor time. A file that breaks this is kept, and
-named.
+off: where HDF5 keeps its structures, anywhere, or in what is stored of runs; or its objects are
+removed, renamed, retyped and filled with other numbers (where h5py is installed). Four of ten go
+through `analyze`, two through `gate`, the others through the other commands that open a result.
+Allowed are the exit codes 0 and 2 (4, "a run differs", of verify and replay; 4 and 5 of gate)
+within 5 s of processor time and 2 GB. Where the seal still holds, the verdict must be that of the
+whole file unless the damage is said. A file that breaks this is kept, and named.
 """
 import collections
 import itertools
@@ -26,8 +27,15 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+try:
+    import h5py
+    import numpy
+except ImportError:  # the other kinds of damage need no library
+    h5py = None
+
 SECONDS = 5.0  # of processor time; several programs at once may take longer by the clock
 PATIENCE = 60.0  # [s] by the clock
+MEMORY = 2 << 30  # [bytes]
 
 STUDY = """[study]
 name = blink
@@ -66,10 +74,57 @@ def ranges_in(good):
     return [struct.unpack_from("<QQ", good, end + 32 + 16 * i) for i in range(count)]
 
 
-def damaged(good, structures, ranges, seed):
+def change_objects(path, dice):
+    """Removes, renames, retypes or fills some objects of an HDF5 file, as another program might."""
+    with h5py.File(path, "r+") as file:
+        for _ in range(dice.randint(1, 3)):
+            names = []
+            file.visit(names.append)
+            name = dice.choice(names)
+            thing, kind = file[name], dice.randrange(6)
+            if kind == 0:
+                del file[name]
+            elif kind == 1:
+                file.move(name, name + "_")
+            elif kind == 2 and len(thing.attrs):
+                key = dice.choice(list(thing.attrs))
+                thing.attrs[key] = dice.choice(("", "x\ny", 10**30 * 1.0, -1, numpy.zeros((2, 3))))
+            elif kind == 3 and isinstance(thing, h5py.Dataset):
+                other = numpy.zeros(dice.choice(((), (0,), (3,), (2, 2), tuple(thing.shape))),
+                                    dice.choice(("f4", "i1", "u8", "S5")))
+                del file[name]
+                file[name] = other
+            elif isinstance(thing, h5py.Dataset) and thing.dtype.kind in "fiu" and thing.size:
+                worst = dice.choice((float("nan"), float("inf"), -1e300, 0.0, 3.0))
+                if thing.dtype.kind != "f":
+                    worst = dice.choice((0, 1, numpy.iinfo(thing.dtype).max))
+                flat = thing[...].reshape(-1)
+                flat[dice.randrange(flat.size):] = worst
+                thing[...] = flat.reshape(thing.shape)
+
+
+def is_seal_whole(data):
+    """Whether a block that begins as a seal still lies where the superblock says HDF5 ends."""
+    if len(data) < 52:
+        return False
+    end, = struct.unpack_from("<Q", data, 28)
+    return data[end:end + 8] == b"\x89MCSEAL\n"
+
+
+def damaged(good, structures, ranges, seed, scratch):
     dice = random.Random(seed)
     data = bytearray(good)
-    where = dice.choice(("structures", "anywhere", "runs"))
+    where = dice.choice(("structures", "anywhere", "runs", "runs", "objects"))
+    if where == "objects":
+        if h5py is None:
+            where = "runs"
+        else:
+            scratch.write_bytes(good)
+            try:
+                change_objects(scratch, dice)
+            except (OSError, RuntimeError, TypeError, ValueError, KeyError):
+                pass  # what h5py itself refuses is damage enough
+            return scratch.read_bytes()
     for _ in range(dice.randint(1, 3)):
         if where == "structures":
             at = dice.choice(structures) + dice.randrange(400)
@@ -96,6 +151,14 @@ def damaged(good, structures, ranges, seed):
     return bytes(data)
 
 
+CELLS = ("ekf_slam", "fastslam2_m8")
+
+
+def verdict_in(command, said):
+    """Of gate all that it says, of analyze the first table."""
+    return said if command == "gate" else said.split(b"\n\n")[1]
+
+
 class Ground:
     """A folder with the whole results that are damaged."""
 
@@ -112,6 +175,11 @@ class Ground:
                      for name in ("out.h5", "scans.h5", "last.h5")}
         self.structures = {name: structures_in(data) for name, data in self.good.items()}
         self.ranges = {name: ranges_in(data) for name, data in self.good.items()}
+        self.verdicts = {}
+        for name in ("out.h5", "scans.h5"):
+            for words in (["analyze", name], *(["gate", name, "--cell", cell] for cell in CELLS)):
+                said = subprocess.run([program, *words], cwd=self.folder, capture_output=True)
+                self.verdicts[name, words[0], words[-1]] = verdict_in(words[0], said.stdout)
 
     def make(self, name, *more):
         subprocess.run([self.program, "run", "blink.ini", "-o", name, "--quiet", *more],
@@ -132,8 +200,10 @@ def command_of(seed, own):
         ("status", ["status", "--each", "--whole", out]),
         ("info", ["info", out]),
     ]
+    source = ("out.h5", "scans.h5")[seed % 2]
+    if seed % 10 < 2:
+        return "gate", ["gate", out, "--cell", CELLS[seed // 10 % 2]], source, "out.h5"
     if seed % 10 < 6:
-        source = ("out.h5", "scans.h5")[seed % 2]
         return "analyze", ["analyze", out, "--threads", "1"], source, "out.h5"
     name, words = others[seed // 10 * 4 % len(others) + seed % 10 - 6]
     source = "last.h5" if name == "merge" else "out.h5"
@@ -143,6 +213,7 @@ def command_of(seed, own):
 def limit():
     resource.setrlimit(resource.RLIMIT_CPU, (int(SECONDS) + 1, int(SECONDS) + 1))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
 
 
 def run(ground, words):
@@ -171,17 +242,22 @@ def try_one(ground, seed):
     name, words, source, place = command_of(seed, own)
     file = own / place
     file.write_bytes(damaged(ground.good[source], ground.structures[source],
-                             ground.ranges[source], seed))
+                             ground.ranges[source], seed, own / "objects.h5"))
+    is_sealed = is_seal_whole(file.read_bytes())
     code, seconds, said = run(ground, words)
-    allowed = (0, 1, 2, 4) if name in ("verify", "replay") else (0, 1, 2)
+    allowed = {"verify": (0, 2, 4), "replay": (0, 2, 4), "gate": (0, 2, 4, 5)}.get(name, (0, 2))
+    key = source, name, words[-1] if name == "gate" else source
+    verdict_changed = (is_sealed and code != 2 and key in ground.verdicts
+                       and verdict_in(name, said) != ground.verdicts[key])
     # An error names the file; a merge may find fault with the other shard's equal runs.
-    named = code in (0, 4) or place.encode() in said or b"first.h5" in said
+    named = code in (0, 4, 5) or place.encode() in said or b"first.h5" in said
     internal = b"internal error" in said
     fault = None
-    if code not in allowed or seconds > SECONDS or not named or internal:
+    if code not in allowed or seconds > SECONDS or not named or internal or verdict_changed:
         kept = Path(tempfile.gettempdir()) / f"montecarta_damaged_{seed}_{place}"
         file.exists() and shutil.copy(file, kept)
-        fault = f"{name}, seed {seed}: code {code}, {seconds:.1f} s, {kept}\n    {said[-300:]!r}"
+        why = "another verdict" if verdict_changed else f"code {code}, {seconds:.1f} s"
+        fault = f"{name}, seed {seed}: {why}, {kept}\n    {said[-300:]!r}"
     shutil.rmtree(own)
     return name, code, seconds, fault
 

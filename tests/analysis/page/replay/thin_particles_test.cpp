@@ -71,7 +71,7 @@ TEST(ThinParticles, ShowAllWhereThereIsRoom) {
 TEST(ThinParticles, RefuseAnAncestorThatIsNoParticle) {
   Genealogy family(3, 2, 1);
   family.ancestor[3] = 3;
-  EXPECT_THROW(thin_particles(family.stored(), std::vector<std::size_t>{0, 1}, 100), RunError);
+  EXPECT_THROW(thin_particles(family.stored(), std::vector<std::size_t>{0, 1}, 100), StudyError);
 }
 
 }  // namespace
