@@ -21,6 +21,11 @@ double scan_time(const MetDrive& drive, std::uint32_t step) {
   return drive.scan_times[std::min(static_cast<std::size_t>(scan), drive.scan_steps.size() - 1)];
 }
 
+/// Of a power cut the work in progress may have kept a fingerprint whose run is missing.
+bool is_work_in_progress(const std::filesystem::path& path) {
+  return path.filename().string().find(".part") != std::string::npos;
+}
+
 /// Throws StudyError if run index `i`, which is marked as spared, cannot be: the study has no
 /// interim analyses, the run lies before the first one, or it was made.
 void expect_planned(const ResultFile& file, const StoredCell& cell, std::size_t i) {
@@ -42,7 +47,10 @@ std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell&
   std::vector<std::size_t> complete;
   for (std::size_t i = 0; i < std::min(runs, status.size()); ++i) {
     if (status[i] == RunStatus::complete) complete.push_back(i);
-    if (status[i] == RunStatus::missing) ++cell.missing;
+    if (status[i] == RunStatus::missing) {
+      ++cell.missing;
+      if (!is_work_in_progress(file.path())) file.expect_whole(stored, i);
+    }
     if (status[i] == RunStatus::spared) {
       ++cell.spared;
       expect_planned(file, stored, i);

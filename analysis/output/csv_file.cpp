@@ -32,9 +32,18 @@ void write_in_place(const std::filesystem::path& path, const std::string& text) 
   if (!out) cannot_write(path);
 }
 
+/// A pipe would be waited for, a device written to.
+const std::filesystem::path& not_special(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path) || std::filesystem::is_regular_file(path)) return path;
+  throw StudyError(path.string() +
+                   ": is no regular file (nothing else is ever replaced): choose another place");
+}
+
 }  // namespace
 
-CsvFile::CsvFile(const std::filesystem::path& path) : path_(path), out_(path) { check(); }
+CsvFile::CsvFile(const std::filesystem::path& path) : path_(path), out_(not_special(path)) {
+  check();
+}
 
 void CsvFile::check() {
   if (!out_) cannot_write(path_);

@@ -11,7 +11,7 @@
 
 #include <algorithm>
 #include <map>
-#include <mutex>
+#include <optional>
 
 namespace montecarta::engine {
 
@@ -29,8 +29,7 @@ struct ResultFile::Contents {
     PosixFile file;
     ResultSlabs slabs;
   };
-  mutable std::once_flag bytes_found;
-  mutable std::optional<Bytes> bytes;
+  std::optional<Bytes> bytes;  ///< nullopt if the file has no seal
 
   explicit Contents(const std::filesystem::path& given)
       : path(given),
@@ -45,15 +44,9 @@ struct ResultFile::Contents {
             column.name, h5::open_dataset(file, "cells/" + cell.label + "/" + column.name));
       }
     }
-  }
-
-  /// nullptr if the file has no seal.
-  const Bytes* bytes_of_runs() const {
-    if (seal != Seal::holds) return nullptr;
-    std::call_once(bytes_found, [&] {
+    if (seal == Seal::holds) {
       bytes.emplace(PosixFile(path, PosixFile::Mode::read), find_slabs(path, description));
-    });
-    return &*bytes;
+    }
   }
 
   const h5::Handle& column(const StoredCell& cell, std::string_view name) const {
@@ -130,13 +123,14 @@ std::vector<RunStatus> ResultFile::status(const StoredCell& cell) const {
 }
 
 void ResultFile::expect_whole(const StoredCell& cell, std::size_t i) const {
-  const Contents::Bytes* bytes = contents_->bytes_of_runs();
-  if (bytes == nullptr) return;
+  const std::optional<Contents::Bytes>& bytes = contents_->bytes;
+  if (!bytes) return;
   const auto c = static_cast<std::size_t>(&cell - cells().data());
   thread_local std::vector<std::byte> buffer;
   const CellSlabs& slabs = bytes->slabs.cells.at(c);
   if (run_is_whole(bytes->file, slabs, i, buffer) &&
-      (is_spared(bytes->file, slabs, i) || truth_is_whole(bytes->file, bytes->slabs, i, buffer))) {
+      (!is_stored(status_of(bytes->file, slabs, i)) ||
+       truth_is_whole(bytes->file, bytes->slabs, i, buffer))) {
     return;
   }
   throw StudyError(

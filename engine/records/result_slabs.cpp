@@ -95,15 +95,15 @@ std::vector<RunStatus> read_statuses(const PosixFile& file, const CellSlabs& cel
   return statuses;
 }
 
-bool is_spared(const PosixFile& file, const CellSlabs& cell, std::size_t run_index) {
+RunStatus status_of(const PosixFile& file, const CellSlabs& cell, std::size_t run_index) {
   RunStatus status{};
   file.read_at(cell.status.at(run_index), std::as_writable_bytes(std::span(&status, 1)));
-  return status == RunStatus::spared;
+  return status;
 }
 
 bool run_is_whole(const PosixFile& file, const CellSlabs& cell, std::size_t run_index,
                   std::vector<std::byte>& buffer) {
-  if (is_spared(file, cell, run_index)) {
+  if (!is_stored(status_of(file, cell, run_index))) {
     return stored_fingerprint(file, cell.fingerprint, run_index) == 0;
   }
   Fingerprint fingerprint;

@@ -48,11 +48,10 @@ ResultSlabs find_slabs(const std::filesystem::path& path, const ResultDescriptio
 std::vector<RunStatus> read_statuses(const PosixFile& file, const CellSlabs& cell,
                                      std::size_t runs);
 
-/// Whether a run was not needed, and not made.
-bool is_spared(const PosixFile& file, const CellSlabs& cell, std::size_t run_index);
+RunStatus status_of(const PosixFile& file, const CellSlabs& cell, std::size_t run_index);
 
 /// Whether the fingerprint stored with a run is that of its bytes, which needs `buffer` for the
-/// longest column. A spared run has none.
+/// longest column. A run that is missing or was spared has none.
 bool run_is_whole(const PosixFile& file, const CellSlabs& cell, std::size_t run_index,
                   std::vector<std::byte>& buffer);
 /// The same for its true path; false where it is missing, true where there is none to store.

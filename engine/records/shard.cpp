@@ -118,7 +118,7 @@ void expect_equal(const Shard& a, const Shard& b, std::uint64_t run) {
 void expect_whole(const PosixFile& file, const Shard& shard, std::uint64_t run,
                   std::vector<std::byte>& buffer) {
   const auto spared = [&](const CellSlabs& cell) {
-    return is_spared(file, cell, shard.index(run));
+    return status_of(file, cell, shard.index(run)) == RunStatus::spared;
   };
   bool whole = std::ranges::all_of(shard.slabs.cells, spared) ||
                truth_is_whole(file, shard.slabs, shard.index(run), buffer);

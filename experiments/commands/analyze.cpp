@@ -17,7 +17,10 @@ namespace {
 void check_outputs(const Arguments& arguments, const ResultFile& file) {
   const auto output = arguments.text("output");
   const auto directory = arguments.text("csv");
-  if (output) refuse_input_as_output(*output, arguments.operands());
+  if (output) {
+    refuse_input_as_output(*output, arguments.operands());
+    expect_place_for_result(*output);
+  }
   if (arguments.has("force")) return;
   if (output) refuse_existing("", {*output});
   if (!directory) return;

@@ -48,8 +48,8 @@ std::string baseline_of(const Arguments& arguments, const ResultFile& file) {
         joined(labels));
   }
   if (std::ranges::find(labels, *baseline) != labels.end()) return *baseline;
-  throw StudyError("--baseline " + *baseline + ": no cell of this file (it must be one of them): " +
-                   nearest_spelling(*baseline, labels));
+  throw StudyError("--baseline " + *baseline + ": no cell of " + file.path().string() +
+                   " (it must be one of them): " + nearest_spelling(*baseline, labels));
 }
 
 void print(const StudyAnalysis& study, const StudyComparison& comparison) {

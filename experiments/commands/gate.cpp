@@ -28,8 +28,8 @@ const StoredCell& cell_to_judge(const Arguments& arguments, const ResultFile& fi
   }
   const auto found = std::ranges::find(file.cells(), *label, &StoredCell::label);
   if (found != file.cells().end()) return *found;
-  throw StudyError("--cell " + *label + ": no cell of this file (it must be one of them): " +
-                   nearest_spelling(*label, labels));
+  throw StudyError("--cell " + *label + ": no cell of " + file.path().string() +
+                   " (it must be one of them): " + nearest_spelling(*label, labels));
 }
 
 /// A sample of those runs that happened to end first is none.

@@ -40,7 +40,7 @@ JudgingOptions judging_options(const Arguments& arguments) {
         "judge: -o OUT.h5 is missing (the judged errors need a name): add e.g. -o "
         "mine.h5");
   }
-  refuse_to_replace_other_kinds(*output);
+  expect_place_for_result(*output);
   JudgingOptions options;
   options.output = *output;
   options.convention = convention_of(arguments);

@@ -2,6 +2,7 @@
 #include "engine/records/merge.hpp"
 
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/output_guard.hpp"
 #include "experiments/text/table.hpp"
 
 #include <iostream>
@@ -13,6 +14,7 @@ int merge(const Arguments& arguments) {
   const std::vector<std::string>& names = arguments.operands();
   const std::vector<std::filesystem::path> shards(names.begin() + 1, names.end());
   const Existing existing = arguments.has("force") ? Existing::replace : Existing::refuse;
+  expect_place_for_result(names.front());
   const MergeSummary summary = merge_results(names.front(), shards, existing);
   for (const std::string& note : summary.notes) std::cerr << "montecarta: " << note << "\n";
   std::cerr << "montecarta: " << summary.runs << " runs of " << summary.cells << " cells out of "

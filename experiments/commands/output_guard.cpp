@@ -16,15 +16,21 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
   return fs::equivalent(a, b, ignored);
 }
 
-bool is_other_kind(const fs::path& path) {
+/// What `path` is that no result may replace; empty if it may be written.
+std::string obstacle_at(const fs::path& path) {
   std::error_code ignored;
-  if (!fs::is_regular_file(path, ignored) || fs::is_empty(path, ignored)) return false;
+  const fs::file_status status = fs::status(path, ignored);
+  if (fs::is_symlink(path, ignored) && !fs::exists(status)) return "is a link to nothing";
+  if (!fs::exists(status)) return "";
+  if (fs::is_directory(status)) return "is a folder";
+  if (!fs::is_regular_file(status)) return "is a device, a pipe or a socket";
+  if (fs::is_empty(path, ignored)) return "";
   const std::string signature = "\x89HDF\r\n\x1a\n";
   std::string head(signature.size(), '\0');
   std::ifstream file(path, std::ios::binary);
-  if (!file) return false;  // opening it for writing will say why
+  if (!file) return "";  // opening it for writing will say why
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  return head != signature;
+  return head == signature ? "" : "is no HDF5 file";
 }
 
 }  // namespace
@@ -39,11 +45,15 @@ void refuse_input_as_output(const fs::path& output, const std::vector<std::strin
   }
 }
 
-void refuse_to_replace_other_kinds(const fs::path& output) {
+void expect_place_for_result(const fs::path& output) {
+  if (output.empty()) {
+    throw StudyError("the name of the result is empty (it needs one): name a file, e.g. out.h5");
+  }
   for (const fs::path& path : {output, fs::path(output.string() + ".part")}) {
-    if (!is_other_kind(path)) continue;
-    throw StudyError(path.string() +
-                     ": is no HDF5 file (--force replaces results only): choose another name");
+    const std::string obstacle = obstacle_at(path);
+    if (obstacle.empty()) continue;
+    throw StudyError(path.string() + ": " + obstacle +
+                     " (nothing but a result is ever replaced): choose another name");
   }
 }
 

@@ -12,9 +12,11 @@ namespace montecarta::experiments {
 void refuse_input_as_output(const std::filesystem::path& output,
                             const std::vector<std::string>& inputs);
 
-/// Throws StudyError where `output`, or the unfinished work beside it, is there but no HDF5 file:
-/// --force replaces results, never a study, a world or a letter.
-void refuse_to_replace_other_kinds(const std::filesystem::path& output);
+/// Throws StudyError if no result may be written to `output`: the name is empty, it is a link to
+/// nothing, or it or the unfinished work beside it is there and is anything but a regular HDF5
+/// file.
+/// --force replaces results, never a study, a device, a pipe or a letter.
+void expect_place_for_result(const std::filesystem::path& output);
 
 /// Throws StudyError naming the first of `names` that is in `folder` already.
 void refuse_existing(const std::filesystem::path& folder, const std::vector<std::string>& names);

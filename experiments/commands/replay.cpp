@@ -65,9 +65,14 @@ Study recording_everything(Study study, std::size_t cell, std::uint64_t run) {
 /// What differs from the run as it is stored; nullopt where nothing does or it is not stored.
 std::optional<std::string> departure(const ResultFile& file, const Study& study, std::size_t cell,
                                      std::uint64_t run, ExternalPrograms programs) {
+  if (cell >= file.cells().size() || file.cells()[cell].label != study.cells[cell].label) {
+    throw StudyError(file.path().string() +
+                     ": damaged (its cells are not those of the study in it): take a copy that is "
+                     "whole, or run the study again");
+  }
   const auto held = std::ranges::find(file.runs(), run);
   const auto index = static_cast<std::size_t>(held - file.runs().begin());
-  if (held == file.runs().end() || !is_stored(file.status(file.cells().at(cell))[index])) {
+  if (held == file.runs().end() || !is_stored(file.status(file.cells()[cell])[index])) {
     std::cerr << "montecarta: " << file.path().string() << " does not hold this run yet\n";
     return std::nullopt;
   }
@@ -92,7 +97,7 @@ int replay(const Arguments& arguments) {
   const ResultFile file = open_stored(arguments.operands().front());
   const std::uint64_t run = arguments.count("run", 0, file.study_runs() - 1).value();
   refuse_input_as_output(output, arguments.operands());
-  refuse_to_replace_other_kinds(output);
+  expect_place_for_result(output);
   const Study study = study_in(file, arguments);
   const std::size_t cell = cell_of(study, label);
   const Study whole = recording_everything(study, cell, run);

@@ -71,7 +71,7 @@ RunOptions options_of(const Study& study, const Arguments& arguments) {
   }
   RunOptions options;
   options.output = output_of(study, arguments);
-  refuse_to_replace_other_kinds(options.output);
+  expect_place_for_result(options.output);
   options.parallel = parallel_of(arguments);
   options.resume = arguments.has("resume");
   options.force = arguments.has("force");
