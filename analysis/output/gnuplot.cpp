@@ -2,6 +2,7 @@
 #include "analysis/output/gnuplot.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/visible_text.hpp"
 
 #include <cerrno>
 #include <cstring>
@@ -79,8 +80,7 @@ void run_gnuplot(const std::filesystem::path& directory, const std::string& name
 
 std::string gnuplot_quoted(const std::string& text) {
   std::string quoted = "'";
-  for (const char c : text) {
-    if (c == '\n') continue;
+  for (const char c : visible(text)) {
     quoted += c == '\'' ? std::string("''") : std::string(1, c);
   }
   return quoted + "'";

@@ -19,8 +19,15 @@ set tics nomirror out scale 0.6
 set grid linecolor rgb '#bbbbbb' linewidth 0.4 dashtype (2,4)
 )";
 
+/// A number that a command of gnuplot takes: it knows no infinity.
+std::string command_number(double value) {
+  constexpr double kLargest = 1e300;
+  return std::isnan(value) ? "0" : exact_text(std::clamp(value, -kLargest, kLargest));
+}
+
 std::string range(const char* axis, double from, double to) {
-  return std::string("set ") + axis + "range [" + exact_text(from) + ":" + exact_text(to) + "]\n";
+  return std::string("set ") + axis + "range [" + command_number(from) + ":" + command_number(to) +
+         "]\n";
 }
 
 /// Ticks with these names at 0, 1, 2, ...; gnuplot's own where there are none.
@@ -35,7 +42,7 @@ std::string ticks(const char* axis, const std::vector<std::string>& names) {
 
 std::string ticks_at(const std::vector<double>& places) {
   std::string at;
-  for (const double place : places) at += (at.empty() ? "" : ",") + exact_text(place);
+  for (const double place : places) at += (at.empty() ? "" : ",") + command_number(place);
   return "set xtics nomirror (" + at + ")\n";
 }
 
@@ -93,7 +100,7 @@ std::string linear_ticks(double from, double to, double pixels) {
   const double power = std::pow(10.0, std::floor(std::log10(least)));
   const double steps = least / power;
   const double step = power * (steps <= 1.0 ? 1.0 : steps <= 2.0 ? 2.0 : steps <= 5.0 ? 5.0 : 10.0);
-  return "set ytics nomirror " + exact_text(step) + "\n";
+  return "set ytics nomirror " + command_number(step) + "\n";
 }
 
 std::string vertical_axis(const ChartPanel& panel, const PanelBox& box) {
@@ -141,8 +148,8 @@ std::string texts(const Chart& chart, const ChartPanel& panel) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto& [x, y, words, is_within] = all[i];
     const bool left = x > middle;
-    script += "set label " + gnuplot_quoted(words) + " at " + exact_text(x) + "," + exact_text(y) +
-              " noenhanced front " +
+    script += "set label " + gnuplot_quoted(words) + " at " + command_number(x) + "," +
+              command_number(y) + " noenhanced front " +
               (is_within ? "center textcolor rgb '#111111'\n"
                          : std::string(left ? "right offset -0.8," : "left offset 0.8,") +
                                (i % 2 == 0 ? "-0.5\n" : "0.5\n"));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/tables/tables.hpp"
+#include "engine/visible_text.hpp"
 
 #include <string_view>
 
@@ -65,7 +66,7 @@ std::string latex_tabular(const TextTable& table) {
 }
 
 std::string latex_table(const StudyAnalysis& study, const TextTable& table) {
-  return "% " + study.study_name + ", seed " + std::to_string(study.seed) + ", study " +
+  return "% " + visible(study.study_name) + ", seed " + std::to_string(study.seed) + ", study " +
          study.study_sha256 + "; needs \\usepackage{booktabs}\n" + latex_tabular(table);
 }
 

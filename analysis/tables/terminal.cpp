@@ -9,21 +9,36 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <ostream>
 #include <variant>
 
 namespace montecarta::analysis {
 namespace {
 
-/// Failures of a study that fails a thousand times are not worth a thousand lines.
+/// Runs of a cell that failed for one reason are one line.
 void print_failures(std::ostream& out, const StudyAnalysis& study) {
   constexpr std::size_t kMost = 20;
-  TextTable table = failure_table(study);
-  const std::size_t all = table.rows.size();
+  TextTable table;
+  table.headings = {
+      {"cell", Align::left}, {"runs"}, {"first run"}, {"at step"}, {"reason", Align::left}};
+  std::size_t all = 0;
+  for (const CellAnalysis& cell : study.cells) {
+    std::map<std::string, std::vector<const FailedRun*>> by_reason;
+    for (const FailedRun& failure : cell.failures) by_reason[failure.reason].push_back(&failure);
+    all += cell.failures.size();
+    for (const auto& [reason, runs] : by_reason) {
+      table.rows.push_back({cell.label, std::to_string(runs.size()),
+                            std::to_string(runs.front()->run), std::to_string(runs.front()->step),
+                            reason});
+    }
+  }
+  const std::size_t reasons = table.rows.size();
   out << "Failed runs (" << all << "), left out of everything below:\n";
-  table.rows.resize(std::min(all, kMost));
+  table.rows.resize(std::min(reasons, kMost));
   print_table(out, table);
-  if (all > kMost) out << "... and " << all - kMost << " more: see failures.csv (--csv DIR)\n";
+  if (reasons > kMost) out << "... and " << reasons - kMost << " other reasons\n";
+  if (all > reasons) out << "Each of them: failures.csv (--csv DIR)\n";
   out << '\n';
 }
 

@@ -3,6 +3,7 @@
 #include "engine/records/column_table.hpp"
 #include "engine/records/columns.hpp"
 #include "engine/records/result_layout.hpp"
+#include "engine/visible_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -47,6 +48,25 @@ class Check {
  private:
   const std::filesystem::path& path_;
 };
+
+/// Texts that stand on one line of a table, a figure or a comment.
+void check_texts(const ResultDescription& d, const Check& check) {
+  const auto expect_line = [&](const std::string& text) {
+    check.expect(visible(text, "\t") == text, "a control character in '" + visible(text) + "'");
+  };
+  expect_line(d.study_name);
+  expect_line(d.title);
+  for (const auto& [key, value] : d.scenario) expect_line(key), expect_line(value);
+  for (const StoredCell& cell : d.cells) {
+    for (const std::string& text : {cell.label, cell.filter, cell.long_name}) expect_line(text);
+    for (const auto& [key, value] : cell.settings) expect_line(key), expect_line(value);
+    for (const Column& column : cell.columns) {
+      for (const std::string& text : {column.name, column.units, column.long_name}) {
+        expect_line(text);
+      }
+    }
+  }
+}
 
 void check_runs(const ResultDescription& d, const Check& check) {
   check.expect(!d.runs.empty() && increases(d.runs), "its run numbers do not increase");
@@ -185,6 +205,7 @@ void check_lengths(const ResultDescription& d, const StoredCell& cell, const Che
 
 void check_description(const ResultDescription& description, const std::filesystem::path& path) {
   const Check check(path);
+  check_texts(description, check);
   check_runs(description, check);
   check_times(description, check);
   check_scenario(description, check);

@@ -8,6 +8,7 @@
 #include "engine/records/result_slabs.hpp"
 #include "engine/records/run_record.hpp"
 #include "engine/records/seal.hpp"
+#include "engine/visible_text.hpp"
 
 #include <algorithm>
 #include <map>
@@ -146,7 +147,7 @@ std::vector<std::string> ResultFile::failure_reasons(const StoredCell& cell) con
   h5::read(dataset, Element::u8, std::as_writable_bytes(std::span(texts)));
   std::vector<std::string> reasons;
   for (std::size_t i = 0; i < runs().size(); ++i)
-    reasons.emplace_back(texts.substr(i * kFailureReasonBytes, kFailureReasonBytes).c_str());
+    reasons.push_back(visible(texts.substr(i * kFailureReasonBytes, kFailureReasonBytes).c_str()));
   return reasons;
 }
 

@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/provenance.hpp"
+#include "experiments/commands/visible_output.hpp"
 #include "experiments/text/table.hpp"
 #include "experiments/text/words.hpp"
 
@@ -63,7 +64,7 @@ int dispatch(const std::vector<std::string>& words) {
 
 int print_error(const std::string& message, int code) {
   std::cout.flush();
-  std::cerr << "montecarta: " << message << "\n";
+  std::cerr << "montecarta: " << shortened(message) << "\n";
   return code;
 }
 
@@ -78,6 +79,7 @@ std::vector<Command> all_commands() {
 }
 
 int run_program(const std::vector<std::string>& words) {
+  const VisibleOutput to_output(std::cout), to_errors(std::cerr);
   try {
     const int code = dispatch(words);
     std::cout.flush();

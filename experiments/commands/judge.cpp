@@ -16,7 +16,8 @@
 namespace montecarta::experiments {
 namespace {
 
-ErrorConvention convention_of(const Arguments& arguments) {
+/// nullopt if nothing is said, which is enough for a state of one convention.
+std::optional<ErrorConvention> convention_of(const Arguments& arguments) {
   const auto said = arguments.text("error");
   std::vector<std::string> known;
   for (const ErrorConvention convention : conventions_of(StateKind::pose)) {
@@ -27,10 +28,7 @@ ErrorConvention convention_of(const Arguments& arguments) {
     throw StudyError("--error " + *said + ": not known (one of " + joined(known) +
                      "): " + nearest_spelling(*said, known));
   }
-  throw StudyError(
-      "judge: --error is missing (the covariance is that of an error, and nothing tells which; the "
-      "wrong one makes a wrong verdict): say --error with one of\n" +
-      explained_conventions());
+  return std::nullopt;
 }
 
 JudgingOptions judging_options(const Arguments& arguments) {

@@ -32,7 +32,9 @@ double time_limit(const Pose& pose, const Eigen::Vector2d& waypoint, const Scena
                 "scenario.waypoint_radius"
           : " m (the vehicle circles around it): enlarge scenario.waypoint_radius or scenario." +
                 std::string(turn_limit_key(scenario.vehicle)) + ", or move the way-point";
-  throw StudyError("world " + world.name + ": way-point " + std::to_string(waypoint + 1) +
+  const std::string place =
+      world.waypoint_places.empty() ? "world " + world.name : world.waypoint_places.at(waypoint);
+  throw StudyError(place + ": way-point " + std::to_string(waypoint + 1) +
                    " is not reached within " + to_text(scenario.waypoint_radius) + why_and_remedy);
 }
 

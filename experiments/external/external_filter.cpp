@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/external/external_filter.hpp"
 
+#include "engine/errors.hpp"
 #include "experiments/external/answer.hpp"
 
 #include <utility>
@@ -82,12 +83,21 @@ void ExternalFilter::begin(const StepContext& context) {
 }
 
 void ExternalFilter::tell_start(const RunStart& start) const {
-  use_process([&](Session& session) {
-    if (session.process == nullptr)
-      session.process = std::make_unique<ChildProcess>(command_.words);
-    session.next_id = 1;
-    read_started(ask(start_message(0, start, setup_)), 0);
-  });
+  try {
+    use_process([&](Session& session) {
+      if (session.process == nullptr)
+        session.process = std::make_unique<ChildProcess>(command_.words);
+      session.next_id = 1;
+      read_started(ask(start_message(0, start, setup_)), 0);
+    });
+    command_.starts->any_was_answered = true;
+  } catch (const ProgramError& error) {
+    if (stop_ != nullptr && stop_->is_set()) throw;
+    if (command_.starts->any_was_answered || ++command_.starts->failed < kHopelessStarts) throw;
+    throw RunError("program '" + command_.words.front() + "': none of its first " +
+                   std::to_string(kHopelessStarts) + " starts was answered (" + error.what() +
+                   "): mend the program; montecarta check tries it");
+  }
 }
 
 std::string_view ExternalFilter::ask(const std::string& message) const {

@@ -6,6 +6,7 @@
 #include "experiments/external/messages.hpp"
 #include "filters/setup/filter_setup.hpp"
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -18,7 +19,16 @@ struct ExternalCommand {
   std::vector<std::string> words;  ///< the program and its arguments
   double answer_limit = 30.0;      ///< [s] to wait for one answer
   bool keeps_process = true;       ///< one process for all runs, else a new one for each
+
+  /// How the starts of the program went, in all runs of its cell together.
+  struct Starts {
+    std::atomic<bool> any_was_answered{false};
+    std::atomic<int> failed{0};
+  };
+  std::shared_ptr<Starts> starts = std::make_shared<Starts>();
 };
+/// After so many starts without one that was answered the study is stopped.
+inline constexpr int kHopelessStarts = 8;
 
 /// A filter in any language: a process that is told each run's controls and detections and asked
 /// what it believes (EXTERNAL_FILTERS.md). It is started at the first run and kept; after a failure

@@ -10,9 +10,6 @@
 namespace montecarta::experiments {
 namespace {
 
-/// Spreadsheets mark UTF-8 by three bytes in front.
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
 std::size_t columns_of(std::string_view row) {
   return 1 + static_cast<std::size_t>(std::ranges::count(row, ','));
 }
@@ -26,14 +23,12 @@ std::string tight(std::string_view row) {
 }  // namespace
 
 CsvRows::CsvRows(const std::filesystem::path& path, std::span<const std::string> headers)
-    : path_(path.string()), text_(whole_file(path)), rest_(text_) {
-  skip_mark();
+    : path_(path.string()), text_(text_file(path)), rest_(text_) {
   read_header(headers);
 }
 
 CsvRows::CsvRows(const std::filesystem::path& path)
-    : path_(path.string()), text_(whole_file(path)), rest_(text_) {
-  skip_mark();
+    : path_(path.string()), text_(text_file(path)), rest_(text_) {
   const std::optional<std::string_view> row = take_row();
   if (!row) {
     throw StudyError(path_ + ": empty (the first row names the columns): begin with their names");
@@ -42,10 +37,6 @@ CsvRows::CsvRows(const std::filesystem::path& path)
 }
 
 std::vector<std::string> CsvRows::columns() const { return split(header_text_, ','); }
-
-void CsvRows::skip_mark() {
-  if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
-}
 
 std::string CsvRows::place() const { return path_ + ":" + std::to_string(line_); }
 

@@ -41,7 +41,6 @@ class CsvRows {
   /// Takes the next row that is not empty; nullopt at the end.
   std::optional<std::string_view> take_row();
   void refuse_open_end(std::string_view line) const;
-  void skip_mark();
   void read_header(std::span<const std::string> headers);
 
   std::string path_;

@@ -3,9 +3,11 @@
 
 #include "engine/errors.hpp"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <set>
+#include <string_view>
 #include <system_error>
 
 namespace montecarta::experiments {
@@ -61,6 +63,22 @@ std::string whole_file(const std::filesystem::path& path) {
                      "read?): read it again");
   }
   return bytes;
+}
+
+std::string text_file(const std::filesystem::path& path) {
+  constexpr std::string_view kUtf8 = "\xEF\xBB\xBF", kUtf16[] = {"\xFF\xFE", "\xFE\xFF"};
+  std::string text = whole_file(path);
+  if (text.starts_with(kUtf16[0]) || text.starts_with(kUtf16[1])) {
+    throw StudyError(path.string() +
+                     ": is in UTF-16 (two bytes a character; UTF-8 is read): save it as UTF-8");
+  }
+  if (text.starts_with(kUtf8)) text.erase(0, kUtf8.size());
+  const std::size_t nul = text.find('\0');
+  if (nul == text.npos) return text;
+  const auto line =
+      1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
+  throw StudyError(path.string() + ":" + std::to_string(line) +
+                   ": a NUL byte (this is no text, or it is damaged): save it as UTF-8");
 }
 
 }  // namespace montecarta::experiments

@@ -24,5 +24,8 @@ inline constexpr std::uintmax_t kLargestFile = std::uintmax_t{512} << 20U;
 /// All bytes of a file that the user named. Throws StudyError where there is none, where it is no
 /// file (a folder, a device), cannot be read or is larger than kLargestFile.
 std::string whole_file(const std::filesystem::path& path);
+/// The text of a file in UTF-8, without a byte order mark. Throws StudyError as whole_file() does,
+/// and if the file is in UTF-16 or holds NUL bytes.
+std::string text_file(const std::filesystem::path& path);
 
 }  // namespace montecarta::experiments

@@ -29,7 +29,7 @@ std::string_view take_word(std::string_view& text) {
 }  // namespace
 
 NumberRecords::NumberRecords(const std::filesystem::path& path, std::size_t width, RecordEnd end)
-    : path_(path.string()), text_(whole_file(path)), rest_(text_), record_(width), end_(end) {}
+    : path_(path.string()), text_(text_file(path)), rest_(text_), record_(width), end_(end) {}
 
 std::optional<std::span<const double>> NumberRecords::next() {
   skip_white(rest_);

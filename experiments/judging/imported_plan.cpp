@@ -45,7 +45,7 @@ std::string contents_of(const std::vector<std::filesystem::path>& files) {
 
 TextPairs import_settings(const StateRows& first, const JudgingOptions& options) {
   TextPairs settings = {{"state", name_of(first.shape.kind)},
-                        {"error", name_of(options.convention)},
+                        {"error", name_of(*options.convention)},
                         {"components", joined(first.shape.components)},
                         {"units", joined(first.shape.units)}};
   if (!first.has_cross_terms) settings.emplace_back("cross_terms", "none, taken as 0");

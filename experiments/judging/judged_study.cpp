@@ -172,19 +172,28 @@ void write_runs(const JudgedFiles& files, const JudgingOptions& options, const L
         std::ranges::transform(truths, std::back_inserter(drive.truth), pose_in);
         writer.write_truth(run, drive);
       }
-      writer.write(c, run, record_of(layouts[c], rows, truths, options.convention));
+      writer.write(c, run, record_of(layouts[c], rows, truths, *options.convention));
     }
   }
 }
 
-/// Where the layout of the file says of which error its covariance is.
-void expect_stated_error(const LongestRun& longest, ErrorConvention said) {
+/// The convention that is said, or the only one that the state has. Throws StudyError if nothing is
+/// said and it has several, or if the layout of the file contradicts.
+ErrorConvention stated_error(const LongestRun& longest, std::optional<ErrorConvention> answer) {
   const auto known = conventions_of(longest.rows.shape.kind);
+  if (!answer && known.size() == 1) return known.front();
+  if (!answer) {
+    throw StudyError(
+        "judge: --error is missing (the covariance is that of an error, and nothing tells which; "
+        "the wrong one makes a wrong verdict): say --error with one of\n" +
+        explained_conventions());
+  }
+  const ErrorConvention said = *answer;
   if (std::ranges::find(known, said) == known.end()) {
     throw StudyError("--error " + name_of(said) + ": not of a vector (" + longest.path.string() +
                      " has no pose, which alone has a frame): say --error world");
   }
-  if (longest.rows.has_cross_terms || said == ErrorConvention::world) return;
+  if (longest.rows.has_cross_terms || said == ErrorConvention::world) return said;
   throw StudyError("--error " + name_of(said) + ": not of OpenVINS' layout (" +
                    longest.path.string() +
                    " has the position's covariance in the map and the rotation's in the body, "
@@ -194,9 +203,10 @@ void expect_stated_error(const LongestRun& longest, ErrorConvention said) {
 
 }  // namespace
 
-void judge_files(const JudgedFiles& files, const JudgingOptions& options) {
-  const LongestRun longest = longest_of(files, options.match.tolerance);
-  expect_stated_error(longest, options.convention);
+void judge_files(const JudgedFiles& files, const JudgingOptions& given) {
+  const LongestRun longest = longest_of(files, given.match.tolerance);
+  JudgingOptions options = given;
+  options.convention = stated_error(longest, given.convention);
   const StudyPlan plan = imported_plan(files, longest.rows, options);
   ResultWriter writer =
       ResultWriter::create(options.output, plan, options.provenance, options.existing);

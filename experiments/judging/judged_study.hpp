@@ -18,7 +18,8 @@ namespace montecarta::experiments {
 /// How estimates of another program become a result file.
 struct JudgingOptions {
   std::filesystem::path output;
-  ErrorConvention convention = ErrorConvention::world;
+  /// nullopt: nothing is said, which is enough for a state of one convention.
+  std::optional<ErrorConvention> convention = {};
   TimeMatch match;
   Existing existing = Existing::refuse;
   TextPairs provenance;

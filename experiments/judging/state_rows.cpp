@@ -155,7 +155,7 @@ StateRows read_estimates(const std::filesystem::path& path) {
 }
 
 std::size_t rows_in(const std::filesystem::path& path) {
-  const std::string text = whole_file(path);
+  const std::string text = text_file(path);
   std::size_t lines = 0;
   for (std::string_view rest = text; !rest.empty();) {
     const std::size_t length = std::min(rest.find('\n'), rest.size());

@@ -26,7 +26,7 @@ constexpr double kSameTime = 1e-6;                            // [s] of pose and
 class NumberLines {
  public:
   explicit NumberLines(const fs::path& path)
-      : path_(path.string()), text_(whole_file(path)), rest_(text_) {}
+      : path_(path.string()), text_(text_file(path)), rest_(text_) {}
 
   /// The next line; false after the last one.
   bool next() {
@@ -134,7 +134,7 @@ std::vector<Eigen::MatrixXd> covariances_in(const fs::path& path, const std::vec
 }  // namespace
 
 bool is_tum(const fs::path& path) {
-  const std::string text = whole_file(path);
+  const std::string text = text_file(path);
   std::string_view rest = text;
   bool names_timestamp = false;
   while (!rest.empty()) {

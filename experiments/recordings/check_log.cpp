@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 namespace montecarta::experiments {
@@ -18,9 +19,11 @@ constexpr double kLongestHold = 5.0;  ///< [s] that scans may outlast the odomet
 struct Record {
   const std::string& place;
   std::size_t index;
+  std::optional<double> time = {};  ///< [s] by which it is found in its file
 
   [[noreturn]] void refuse(const std::string& fault) const {
-    throw StudyError(place + ": record " + std::to_string(index + 1) + ": " + fault);
+    throw StudyError(place + ": record " + std::to_string(index + 1) +
+                     (time ? ", at " + to_text(*time) + " s: " : ": ") + fault);
   }
   /// Throws unless |value| <= most; NaN is never.
   void limit(double value, double most, const char* noun, const char* why) const {
@@ -75,7 +78,7 @@ void check_identities(const DriveLog& log, const std::string& place) {
     for (const Detection& detection : log.scans[s].detections) {
       const bool unknown = detection.identity == Detection::kUnidentified;
       (unknown ? unidentified : identified) = true;
-      const Record record{place, s};
+      const Record record{place, s, log.scans[s].time};
       if (identified && unidentified) {
         record.refuse("some detections have an identity, others not (all or none): " +
                       std::string("give it for all"));

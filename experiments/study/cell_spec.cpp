@@ -43,13 +43,15 @@ const Option& known_option(const FilterKind& filter, const std::string& key,
                    "' (nothing would come of it): " + nearest_spelling(key, known));
 }
 
+constexpr std::size_t kLongestLabel = 200;
+
 std::string checked_label(const std::string& label, const std::string& place) {
   const auto allowed = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   const bool good = !label.empty() && std::isalpha(static_cast<unsigned char>(label[0])) != 0 &&
                     std::ranges::all_of(label, allowed);
-  if (good) return label;
-  throw StudyError(place + ": label = '" + label +
-                   "' (a label is a letter, then letters, digits and _): choose another");
+  if (good && label.size() <= kLongestLabel) return label;
+  throw StudyError(place + ": label = '" + label + "' (a label is a letter, then letters, digits " +
+                   "and _, at most " + std::to_string(kLongestLabel) + "): choose another");
 }
 
 /// One word of a cell line behind the filter's name.

@@ -2,6 +2,7 @@
 #include "experiments/study/setting.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/visible_text.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -36,6 +37,20 @@ std::string checked_count(const Option& option, std::string_view text, const std
                     static_cast<double>(*value) <= option.most;
   if (!fits) throw_bad_value(option, text, place);
   return std::to_string(*value);
+}
+
+/// One line that a terminal shows as it is; the name of a study is part of file names.
+std::string checked_text(const Option& option, std::string_view text, const std::string& place) {
+  const std::size_t longest = option.key == "name" ? 200 : option.key == "title" ? 1000 : 1'000'000;
+  if (text.size() > longest) {
+    throw StudyError(place + ": " + option.key + " has " + std::to_string(text.size()) +
+                     " characters (at most " + std::to_string(longest) + "): shorten it");
+  }
+  if (visible(text, "\t") != text) {
+    throw StudyError(place + ": " + option.key + " = " + visible(text) +
+                     " (a control character, or bytes that are no UTF-8): remove them");
+  }
+  return std::string(text);
 }
 
 void check_choice(const Option& option, const std::string& word, const std::string& place) {
@@ -117,7 +132,7 @@ std::string checked_value(const Option& option, std::string_view text, const std
   switch (option.kind) {
     case Kind::text:
       if (text.empty() && !option.fallback) throw_bad_value(option, text, place);
-      return std::string(text);
+      return checked_text(option, text, place);
     case Kind::number:
       return checked_number(option, text, place);
     case Kind::count:

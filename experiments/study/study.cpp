@@ -3,6 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "experiments/external/external_kind.hpp"
+#include "experiments/files/files.hpp"
 #include "experiments/study/cell_spec.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/study/setting.hpp"
@@ -11,8 +12,6 @@
 #include "experiments/worlds/world.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 namespace montecarta::experiments {
 namespace {
@@ -136,14 +135,7 @@ Study parse_study(const std::string& text, const std::string& name,
 }
 
 Study read_study(const std::filesystem::path& path, std::span<const std::string> overrides) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  if (!file || std::filesystem::is_directory(path) || !(text << file.rdbuf())) {
-    throw StudyError(
-        path.string() +
-        ": cannot be read (missing, empty, or no permission): check the path of the study");
-  }
-  return parse_study(text.str(), path.string(), path.parent_path(), overrides);
+  return parse_study(text_file(path), path.string(), path.parent_path(), overrides);
 }
 
 std::string study_of_log(const Study& study) {

@@ -80,6 +80,7 @@ World read_inline_world(const IniText& ini, const std::string& name, const std::
           entry.place + ": unknown key world." + entry.key +
           " (a world has waypoint and landmark): " + nearest_spelling(entry.key, kPointKeys));
     }
+    if (entry.key == kPointKeys[0]) world.waypoint_places.push_back(entry.place);
     (entry.key == kPointKeys[0] ? world.waypoints : world.landmarks).push_back(read_point(entry));
   }
   check_world(world, place);

@@ -88,6 +88,24 @@ std::string excerpt(std::string_view text) {
   return text.size() > kLongest ? shown + "..." : shown;
 }
 
+std::string shortened(const std::string& message) {
+  constexpr std::size_t kLongestWord = 400, kKept = 100, kLongestMessage = 8000;
+  std::string shown;
+  for (std::size_t begin = 0; begin < message.size() && shown.size() < kLongestMessage;) {
+    const std::size_t end = std::min(message.find_first_of(" \n", begin), message.size());
+    const std::string_view word = std::string_view(message).substr(begin, end - begin);
+    if (word.size() > kLongestWord) {
+      shown.append(word.substr(0, kKept)).append("...").append(word.substr(word.size() - kKept));
+    } else {
+      shown += word;
+    }
+    if (end < message.size()) shown += message[end];
+    begin = end + 1;
+  }
+  if (shown.size() >= kLongestMessage) shown.replace(kLongestMessage, shown.npos, "...");
+  return shown;
+}
+
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> cost(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) {

@@ -23,6 +23,10 @@ std::string joined(std::span<const std::string> parts, std::string_view between 
 /// `text` as an error message may quote it: its first 40 bytes, with ? for what cannot be printed.
 std::string excerpt(std::string_view text);
 
+/// A message as a terminal shows it: words of thousands of characters lose their middle, and a
+/// message of tens of thousands its end.
+std::string shortened(const std::string& message);
+
 /// Fewest insertions, deletions, replacements and swaps of neighbours that turn `a` into `b`, case
 /// ignored.
 std::size_t edit_distance(std::string_view a, std::string_view b);

@@ -46,6 +46,7 @@ void read_row(const CsvRows& rows, World& world) {
                      "' (a row is a landmark or a waypoint): " + nearest_spelling(kind, kKinds));
   }
   auto& points = kind == kKinds[0] ? world.landmarks : world.waypoints;
+  if (kind == kKinds[1]) world.waypoint_places.push_back(rows.place());
   points.emplace_back(rows.number(1, "coordinate"), rows.number(2, "coordinate"));
 }
 

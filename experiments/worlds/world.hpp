@@ -14,6 +14,8 @@ struct World {
   std::string name;                        ///< as studies call it: the file's name without ending
   std::vector<Eigen::Vector2d> waypoints;  ///< [m], in the order in which they are driven
   std::vector<Eigen::Vector2d> landmarks;  ///< [m], by identity
+  /// "file:line" of each way-point, for errors; empty if there are no lines.
+  std::vector<std::string> waypoint_places = {};
 };
 
 /// A coordinate larger than this [m] is a mistake of units, not a place.

@@ -40,7 +40,7 @@ TEST(Gnuplot, TellsWhatGnuplotSays) {
   EXPECT_THAT(message_of(run), AllOf(HasSubstr("bad.gp"), HasSubstr("No data in plot")));
 }
 
-TEST(Gnuplot, QuotesText) { EXPECT_EQ(gnuplot_quoted("it's\n_m30"), "'it''s_m30'"); }
+TEST(Gnuplot, QuotesText) { EXPECT_EQ(gnuplot_quoted("it's\n_m30"), R"('it''s\n_m30')"); }
 
 TEST(TwoSigmaEllipse, LiesAlongTheAxesOfTheCovariance) {
   const Ellipse flat = two_sigma_ellipse(1.0, 2.0, 4.0, 0.0, 1.0);

@@ -79,7 +79,7 @@ TEST_F(Commands, WrongInputIsNamedWithItsRemedy) {
   expect_wrong({"run", "blink.ini", "-o", "out.h5", "--time-budget", "0"}, "--time-budget 0");
   expect_wrong({"run", "blink.ini", "-o", "out.h5", "--set", "study.seed=-1"},
                "from 0 to 18446744073709551615 is");
-  expect_wrong({"run", "absent.ini", "-o", "out.h5"}, "absent.ini: cannot be read");
+  expect_wrong({"run", "absent.ini", "-o", "out.h5"}, "absent.ini: cannot be opened");
   expect_wrong({"run", "blink.ini", "-o", "out.h5", "--set", "scenario.world=no.csv"},
                "no.csv: no such world file");
   expect_wrong({"list", "filtres"}, "did you mean filters?");

@@ -145,6 +145,42 @@ TEST_F(External, AChildOfTheProgramDiesWithIt) {
   ::close(handle);
 }
 
+// One line says why, instead of as many failed runs as the study has.
+TEST_F(External, AProgramThatNeverStartsEndsTheStudy) {
+  const auto said = [&](int runs) -> std::string {
+    try {
+      result_of(scripted("exit 0"), {kAtScans, "study.runs=" + std::to_string(runs)});
+    } catch (const RunError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(said(100), AllOf(HasSubstr("none of its first 8 starts"), HasSubstr("last words")));
+  EXPECT_EQ(said(7), "") << "so few failures are results";
+}
+
+// Law: no program is left behind, not even one that ignores the end of its input.
+TEST_F(External, AProgramDoesNotOutliveOursThatWasKilled) {
+  std::ofstream(folder_ / "deaf") << "#!/bin/sh\ntrap '' HUP INT TERM PIPE\n"
+                                     "echo $$ > pid.new && mv pid.new pid\n"
+                                     "while :; do sleep 1; done\n";
+  std::filesystem::permissions(folder_ / "deaf", std::filesystem::perms::owner_all);
+  std::ofstream(folder_ / "tiny.ini")
+      << kTinyLoop << "[cells]\ncell = external command=./deaf label=deaf\n";
+  const std::string enter = "cd '" + folder_.path().string() + "'; ";
+  const std::string script =
+      enter +
+      MONTECARTA_EXECUTABLE
+      " run tiny.ini -o out.h5 --allow-external --quiet > said 2>&1 & ours=$!; " +
+      enter +
+      "for i in $(seq 1200); do [ -s pid ] && break; sleep 0.05; done;"
+      " [ -s pid ] || exit 2; kill -9 $ours;"
+      " for i in $(seq 1200); do"
+      "   grep -q '^State:.[RSD]' /proc/$(cat pid)/status 2> /dev/null || exit 0; sleep 0.05;"
+      " done; kill -9 $(cat pid); exit 1";
+  EXPECT_EQ(WEXITSTATUS(std::system(script.c_str())), 0) << std::ifstream(folder_ / "said").rdbuf();
+}
+
 TEST_F(External, AFileThatIsNoProgramEndsTheStudy) {
   std::ofstream(folder_ / "script") << "no first line\n";
   std::filesystem::permissions(folder_ / "script", std::filesystem::perms::owner_all);

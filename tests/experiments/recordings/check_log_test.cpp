@@ -92,7 +92,7 @@ TEST(CheckLog, RefusesALandmarkTwiceInAScan) {
   EXPECT_THAT(complaint_after([](DriveLog& log) {
                 log.scans[1].detections.push_back({4.0, 0.0, 1});
               }),
-              HasSubstr("(scans): record 2: identity 1 twice"));
+              HasSubstr("(scans): record 2, at 0.2 s: identity 1 twice"));
   EXPECT_EQ(complaint_after([](DriveLog& log) {
               log.scans[1].detections.push_back({4.0, 0.0, Detection::kClutter});
             }),

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Text of studies, tables and other programs that is not what it should be.
+#include "tests/experiments/commands/program.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace montecarta::experiments {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class HostileText : public Program {
+ protected:
+  HostileText() { write("blink.csv", kBlinkWorld); }
+  Called run(const std::string& study) const {
+    write("blink.ini", study);
+    return call({"run", "blink.ini", "-o", "out.h5", "--quiet", "--force"});
+  }
+};
+
+TEST_F(HostileText, AByteOrderMarkIsNoFault) {
+  EXPECT_EQ(run("\xEF\xBB\xBF" + kBlink).code, 0);
+}
+
+TEST_F(HostileText, Utf16AndNulBytesAreNamed) {
+  std::string wide = "\xFF\xFE";
+  for (const char c : kBlink) (wide += c) += '\0';
+  EXPECT_EQ(run(wide).code, 2);
+  EXPECT_THAT(run(wide).err, HasSubstr("blink.ini: is in UTF-16"));
+  write("blink.csv", kBlinkWorld.substr(0, 30) + std::string(1, '\0') + kBlinkWorld.substr(30));
+  EXPECT_THAT(run(kBlink).err, ContainsRegex("blink.csv:[0-9]: a NUL byte"));
+}
+
+TEST_F(HostileText, ControlCharactersReachNeitherFileNorTerminal) {
+  EXPECT_THAT(run(kBlink + "[study]\ntitle = a\x1b[2Jb\n").err,
+              AllOf(HasSubstr("title = a\\x1b[2Jb"), Not(HasSubstr("\x1b"))));
+  EXPECT_THAT(run(kBlink + "[study]\nk\x1b]0;x\x07 = 1\n").err,
+              AllOf(HasSubstr("\\x1b]0;x\\x07"), Not(HasSubstr("\x1b"))));
+}
+
+TEST_F(HostileText, LongValuesAreNotEchoed) {
+  const std::string longest(100'000, 'x');
+  for (const std::string& line : {"[study]\nruns = " + longest, "[study]\n" + longest + " = 1",
+                                  "[study]\nname = " + longest, "[cells]\ncell = " + longest,
+                                  "[cells]\ncell = ekf_slam label=" + longest}) {
+    const Called called = run(kBlink + line + "\n");
+    EXPECT_EQ(called.code, 2) << line.substr(0, 30);
+    EXPECT_LT(called.err.size(), 9000u) << line.substr(0, 30);
+    EXPECT_THAT(called.err, HasSubstr("blink.ini:"));
+  }
+}
+
+TEST_F(HostileText, AWayPointThatIsNotReachedIsNamedByItsLine) {
+  EXPECT_THAT(run(kBlink + "[scenario]\nwaypoint_radius = 0.001\n").err,
+              ContainsRegex("blink.csv:[23]: way-point [12] is not reached"));
+}
+
+TEST_F(HostileText, APageIsMadeOfNumbersBeyondAnyAxis) {
+  write("e_0.csv", "time_s,x_m,y_m,heading_rad,cov_0_0,cov_0_1,cov_0_2,cov_1_0,cov_1_1,cov_1_2,"
+                   "cov_2_0,cov_2_1,cov_2_2\n1,1e308,0,0,1,0,0,0,1,0,0,0,1\n"
+                   "2,-1e308,1,0,1,0,0,0,1,0,0,0,1\n");
+  write("e_1.csv", "time_s,x_m,y_m,heading_rad,cov_0_0,cov_0_1,cov_0_2,cov_1_0,cov_1_1,cov_1_2,"
+                   "cov_2_0,cov_2_1,cov_2_2\n1,0,0,0,1,0,0,0,1,0,0,0,1\n"
+                   "2,0,1,0,1,0,0,0,1,0,0,0,1\n");
+  write("truth.csv", "time_s,x_m,y_m,heading_rad\n1,0,0,0\n2,0,0,0\n");
+  ASSERT_EQ(call({"judge", "e_0.csv", "e_1.csv", "--truth", "truth.csv", "--error", "world", "-o",
+                  "mine.h5"})
+                .code,
+            0);
+  const Called called = call({"report", "mine.h5", "-o", "page"});
+  EXPECT_EQ(called.code, 0) << called.err;
+  EXPECT_TRUE(exists("page/index.html"));
+}
+
+TEST_F(HostileText, AVectorHasOneConvention) {
+  write("e_0.csv", "time_s,a_m,cov_0_0\n1,0.5,1\n2,-0.5,1\n");
+  write("truth.csv", "time_s,a_m\n1,0\n2,0\n");
+  EXPECT_EQ(call({"judge", "e_0.csv", "--truth", "truth.csv", "-o", "mine.h5"}).code, 0);
+}
+
+}  // namespace
+}  // namespace montecarta::experiments
