@@ -38,7 +38,8 @@ Bounds bounds_of_fixes(const FigureData& fixes) {
 }  // namespace
 
 void Bounds::include(double x, double y) {
-  if (!std::isfinite(x) || !std::isfinite(y)) return;
+  constexpr double kBeyondAnyMap = 1e100;  // [m]
+  if (!(std::abs(x) < kBeyondAnyMap && std::abs(y) < kBeyondAnyMap)) return;
   left = std::min(left, x);
   right = std::max(right, x);
   low = std::min(low, y);

@@ -13,7 +13,7 @@ struct Bounds {
   double left = std::numeric_limits<double>::infinity(), right = -left;
   double low = left, high = -left;
 
-  /// What is not a number has no place.
+  /// What is not a number, or beyond any map (1e100 m), has no place.
   void include(double x, double y);
   bool empty() const { return left > right; }
   /// Room around, and no axis shorter than a quarter of the other.

@@ -19,11 +19,13 @@ set tics nomirror out scale 0.6
 set grid linecolor rgb '#bbbbbb' linewidth 0.4 dashtype (2,4)
 )";
 
-/// A number that a command of gnuplot takes: it knows no infinity.
-std::string command_number(double value) {
+/// On any axis: gnuplot knows no infinity.
+double on_axis(double value) {
   constexpr double kLargest = 1e300;
-  return std::isnan(value) ? "0" : exact_text(std::clamp(value, -kLargest, kLargest));
+  return std::isnan(value) ? 0.0 : std::clamp(value, -kLargest, kLargest);
 }
+
+std::string command_number(double value) { return exact_text(on_axis(value)); }
 
 std::string range(const char* axis, double from, double to) {
   return std::string("set ") + axis + "range [" + command_number(from) + ":" + command_number(to) +
@@ -96,7 +98,7 @@ double upper_end(const ChartPanel& panel) {
 
 /// A distance of 1, 2 or 5 times a power of ten that leaves room for the numbers.
 std::string linear_ticks(double from, double to, double pixels) {
-  const double least = (to - from) * 26.0 / pixels;
+  const double least = (on_axis(to) - on_axis(from)) * 26.0 / pixels;
   const double power = std::pow(10.0, std::floor(std::log10(least)));
   const double steps = least / power;
   const double step = power * (steps <= 1.0 ? 1.0 : steps <= 2.0 ? 2.0 : steps <= 5.0 ? 5.0 : 10.0);

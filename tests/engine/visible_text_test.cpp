@@ -15,7 +15,10 @@ TEST(VisibleText, WritesOutWhatCommandsATerminal) {
   EXPECT_EQ(visible("\x1b[2J"), "\\x1b[2J");
   EXPECT_EQ(visible("a\nb\tc\r"), "a\\nb\\tc\\x0d");
   EXPECT_EQ(visible("a\nb\tc", "\n\t"), "a\nb\tc");
-  EXPECT_EQ(visible("\xC2\x9B" "31m"), "\\xc2\\x9b31m") << "a control character of two bytes";
+  EXPECT_EQ(visible("\xC2\x9B"
+                    "31m"),
+            "\\xc2\\x9b31m")
+      << "a control character of two bytes";
   EXPECT_EQ(visible(std::string("\0", 1)), "\\x00");
   EXPECT_EQ(visible("\x7f"), "\\x7f");
 }

@@ -147,6 +147,13 @@ TEST(Latex, HasOneRowACellAndAsManyColumnsAsHeadings) {
             "a\\_b & 1 $\\pm$ 2 \\\\\n & 3 \\\\\n\\bottomrule\n\\end{tabular}\n");
 }
 
+TEST(Latex, ACommentStaysOnItsLine) {
+  StudyAnalysis study = small_study();
+  study.study_name = "a\n\\input{/etc/passwd}";
+  const std::string latex = latex_table(study, {});
+  EXPECT_EQ(latex.find("\\begin{tabular}"), latex.find('\n') + 1);
+}
+
 TEST(WriteAnalysisFile, HoldsSeriesAndVerdicts) {
   const ScratchFolder folder;
   write_analysis_file(small_study(), folder / "analysis.h5");

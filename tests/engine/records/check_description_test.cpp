@@ -96,6 +96,14 @@ TEST_F(CheckDescription, RefusesColumnsThatDoNotFitTheirAxes) {
               HasSubstr("too long"));
 }
 
+// They stand in LaTeX comments, in scripts and on terminals.
+TEST_F(CheckDescription, RefusesTextsThatAreNotOneLine) {
+  EXPECT_THAT(refusal([](auto& d) { d.study_name = "a\n\\input{/etc/passwd}"; }),
+              HasSubstr("a control character in 'a\\n"));
+  EXPECT_THAT(refusal([](auto& d) { d.title = "\x1b[2J"; }), HasSubstr("'\\x1b[2J'"));
+  EXPECT_THAT(refusal([](auto& d) { d.cells[0].long_name = "\r"; }), HasSubstr("\\x0d"));
+}
+
 TEST_F(CheckDescription, HoldsErrorsOfAnyDimension) {
   plan_.cells[0].error_components = 4;
   plan_.cells[0].poses = plan_.cells[0].innovations = false;

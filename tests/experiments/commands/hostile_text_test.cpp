@@ -22,9 +22,7 @@ class HostileText : public Program {
   }
 };
 
-TEST_F(HostileText, AByteOrderMarkIsNoFault) {
-  EXPECT_EQ(run("\xEF\xBB\xBF" + kBlink).code, 0);
-}
+TEST_F(HostileText, AByteOrderMarkIsNoFault) { EXPECT_EQ(run("\xEF\xBB\xBF" + kBlink).code, 0); }
 
 TEST_F(HostileText, Utf16AndNulBytesAreNamed) {
   std::string wide = "\xFF\xFE";
@@ -44,9 +42,9 @@ TEST_F(HostileText, ControlCharactersReachNeitherFileNorTerminal) {
 
 TEST_F(HostileText, LongValuesAreNotEchoed) {
   const std::string longest(100'000, 'x');
-  for (const std::string& line : {"[study]\nruns = " + longest, "[study]\n" + longest + " = 1",
-                                  "[study]\nname = " + longest, "[cells]\ncell = " + longest,
-                                  "[cells]\ncell = ekf_slam label=" + longest}) {
+  for (const std::string& line :
+       {"[study]\nruns = " + longest, "[study]\n" + longest + " = 1", "[study]\nname = " + longest,
+        "[cells]\ncell = " + longest, "[cells]\ncell = ekf_slam label=" + longest}) {
     const Called called = run(kBlink + line + "\n");
     EXPECT_EQ(called.code, 2) << line.substr(0, 30);
     EXPECT_LT(called.err.size(), 9000u) << line.substr(0, 30);
@@ -60,12 +58,14 @@ TEST_F(HostileText, AWayPointThatIsNotReachedIsNamedByItsLine) {
 }
 
 TEST_F(HostileText, APageIsMadeOfNumbersBeyondAnyAxis) {
-  write("e_0.csv", "time_s,x_m,y_m,heading_rad,cov_0_0,cov_0_1,cov_0_2,cov_1_0,cov_1_1,cov_1_2,"
-                   "cov_2_0,cov_2_1,cov_2_2\n1,1e308,0,0,1,0,0,0,1,0,0,0,1\n"
-                   "2,-1e308,1,0,1,0,0,0,1,0,0,0,1\n");
-  write("e_1.csv", "time_s,x_m,y_m,heading_rad,cov_0_0,cov_0_1,cov_0_2,cov_1_0,cov_1_1,cov_1_2,"
-                   "cov_2_0,cov_2_1,cov_2_2\n1,0,0,0,1,0,0,0,1,0,0,0,1\n"
-                   "2,0,1,0,1,0,0,0,1,0,0,0,1\n");
+  write("e_0.csv",
+        "time_s,x_m,y_m,heading_rad,cov_0_0,cov_0_1,cov_0_2,cov_1_0,cov_1_1,cov_1_2,"
+        "cov_2_0,cov_2_1,cov_2_2\n1,1e308,0,0,1,0,0,0,1,0,0,0,1\n"
+        "2,-1e308,1,0,1,0,0,0,1,0,0,0,1\n");
+  write("e_1.csv",
+        "time_s,x_m,y_m,heading_rad,cov_0_0,cov_0_1,cov_0_2,cov_1_0,cov_1_1,cov_1_2,"
+        "cov_2_0,cov_2_1,cov_2_2\n1,0,0,0,1,0,0,0,1,0,0,0,1\n"
+        "2,0,1,0,1,0,0,0,1,0,0,0,1\n");
   write("truth.csv", "time_s,x_m,y_m,heading_rad\n1,0,0,0\n2,0,0,0\n");
   ASSERT_EQ(call({"judge", "e_0.csv", "e_1.csv", "--truth", "truth.csv", "--error", "world", "-o",
                   "mine.h5"})
