@@ -15,6 +15,12 @@ namespace {
 constexpr double kLatestTime = 1e10;  ///< [s] beyond are nanoseconds
 constexpr double kLongestHold = 5.0;  ///< [s] that scans may outlast the odometry
 
+/// Where a part of a log stands: a file of its own, or a part of `place`.
+std::string part_of_log(const std::string& place, LogForm form, const char* noun,
+                        const char* file) {
+  return form == LogForm::csv ? place + "/" + file : place + " (" + noun + ")";
+}
+
 /// A record of one file, for errors.
 struct Record {
   const std::string& place;
@@ -138,25 +144,27 @@ void check_covariances(const ReferencePath& reference, const std::string& place)
 }
 
 /// Odometry holds until the next record: where none follows for so long, the file was cut.
-void check_end(const DriveLog& log, const std::string& place) {
+void check_end(const DriveLog& log, const std::string& place, LogForm form) {
   const double last_scan = log.scans.back().time, last_move = log.odometry.back().time;
   if (last_scan <= last_move + kLongestHold) return;
-  throw StudyError(place + " (odometry): the last record is at " + to_text(last_move) +
-                   " s, the last scan at " + to_text(last_scan) +
+  throw StudyError(part_of_log(place, form, "odometry", "odometry.csv") +
+                   ": the last record is at " + to_text(last_move) + " s, the last scan at " +
+                   to_text(last_scan) +
                    " s (nobody knows how the vehicle moved in between; was the file cut short?): "
                    "take the whole file, or leave out the scans");
 }
 
 /// A scan before the start has no pose to be seen from; odometry all before it moves nothing.
-void check_start(const DriveLog& log, const std::string& place) {
+void check_start(const DriveLog& log, const std::string& place, LogForm form) {
   const std::string start = to_text(log.start_time) + " s";
   if (log.scans.front().time < log.start_time) {
-    throw StudyError(place + " (scans): the first is at " + to_text(log.scans.front().time) +
-                     " s, before the start at " + start +
+    throw StudyError(part_of_log(place, form, "scans", "detections.csv") + ": the first is at " +
+                     to_text(log.scans.front().time) + " s, before the start at " + start +
                      " (nobody knows where it was taken): give an earlier start, or leave it out");
   }
   if (log.odometry.back().time < log.start_time) {
-    throw StudyError(place + " (odometry): all of it is before the start at " + start +
+    throw StudyError(part_of_log(place, form, "odometry", "odometry.csv") +
+                     ": all of it is before the start at " + start +
                      " (the vehicle would never move): correct the time of the start");
   }
 }
@@ -211,18 +219,18 @@ void check_landmarks(std::span<const Eigen::Vector2d> landmarks, const std::stri
   for (std::size_t i = 0; i < landmarks.size(); ++i) Record{place, i}.place_on_map(landmarks[i]);
 }
 
-void check_log(const DriveLog& log, const std::string& place) {
-  const std::string start = place + " (start)";
+void check_log(const DriveLog& log, const std::string& place, LogForm form) {
+  const std::string start = part_of_log(place, form, "start", "start.csv");
   Record{start, 0}.limit(log.start_time, kLatestTime, "time", "seconds, a finite number");
   Record{start, 0}.place_on_map({log.start.x, log.start.y});
   Record{start, 0}.limit(log.start.heading, 1e3 * kPi, "heading", "radians");
-  check_odometry(log.odometry, log.controls, place + " (odometry)");
-  check_scans(log.scans, place + " (scans)", log.components);
+  check_odometry(log.odometry, log.controls, part_of_log(place, form, "odometry", "odometry.csv"));
+  check_scans(log.scans, part_of_log(place, form, "scans", "detections.csv"), log.components);
   check_references(log, place);
-  check_landmarks(log.landmarks, place + " (landmarks)");
-  check_identities(log, place + " (scans)");
-  check_start(log, place);
-  check_end(log, place);
+  check_landmarks(log.landmarks, part_of_log(place, form, "landmarks", "landmarks.csv"));
+  check_identities(log, part_of_log(place, form, "scans", "detections.csv"));
+  check_start(log, place, form);
+  check_end(log, place, form);
 }
 
 }  // namespace montecarta::experiments

@@ -53,9 +53,12 @@ void check_scans(std::span<const LoggedScan> scans, const std::string& place,
 void check_reference(const ReferencePath& reference, const std::string& place);
 void check_landmarks(std::span<const Eigen::Vector2d> landmarks, const std::string& place);
 
+/// How a log is stored: as the files of kind = log, of which errors name one, or otherwise.
+enum class LogForm { csv, other };
+
 /// All of the above for the whole log, and what its parts owe to each other: odometry, scans and a
 /// reference are there, references have different names, identities are given to all detections or
 /// to none and belong to a landmark where landmarks are known. `place` is the folder.
-void check_log(const DriveLog& log, const std::string& place);
+void check_log(const DriveLog& log, const std::string& place, LogForm form = LogForm::other);
 
 }  // namespace montecarta::experiments

@@ -178,7 +178,7 @@ DriveLog read_log_csv(const fs::path& folder) {
   if (fs::exists(folder / "landmarks.csv")) {
     log.landmarks = read_landmarks(folder / "landmarks.csv");
   }
-  check_log(log, folder.string());
+  check_log(log, folder.string(), LogForm::csv);
   return log;
 }
 
