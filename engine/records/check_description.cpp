@@ -170,6 +170,9 @@ void check_columns(const StoredCell& cell, const Check& check) {
                  "cells/" + cell.label + " has only a part of " + std::string(together.front()) +
                      " and what belongs to it");
   }
+  check.expect(
+      cell.has("pose_covariance") || cell.has("error") || !cell.has("pose_covariance_mixture"),
+      "cells/" + cell.label + " has pose_covariance_mixture and no pose_covariance");
   check.expect(cell.has("pose_mean") || cell.has("error"),
                "cells/" + cell.label + " has no pose_mean");
   check.expect(cell.label.size() <= kLongestLabel, "the label of a cell is too long");

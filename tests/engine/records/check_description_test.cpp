@@ -92,6 +92,11 @@ TEST_F(CheckDescription, RefusesColumnsThatDoNotFitTheirAxes) {
                               [](const auto& c) { return c.name == "pose_mean"; });
               }),
               HasSubstr("has no pose_mean"));
+  EXPECT_THAT(refusal([](auto& d) {
+                std::erase_if(d.cells[0].columns,
+                              [](const auto& c) { return c.name == "pose_covariance"; });
+              }),
+              HasSubstr("no pose_covariance"));
   EXPECT_THAT(refusal([](auto& d) { d.cells[0].label = std::string(1001, 'x'); }),
               HasSubstr("too long"));
 }
