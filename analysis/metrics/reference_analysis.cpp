@@ -26,9 +26,9 @@ std::size_t ReferenceAnalysis::lost() const {
       runs, [](const ReferenceScores& run) { return run.has_fixes() && run.lost(); }));
 }
 
-std::size_t ReferenceAnalysis::better_than(double baseline) const {
+std::size_t ReferenceAnalysis::better_than(double baseline, double ReferenceScores::*score) const {
   return static_cast<std::size_t>(std::ranges::count_if(
-      runs, [&](const ReferenceScores& run) { return run.aligned_rms < baseline; }));
+      runs, [&](const ReferenceScores& run) { return run.*score < baseline; }));
 }
 
 void ReferenceAccumulator::add(const ReferenceRun& run) {

@@ -21,8 +21,8 @@ struct ReferenceAnalysis {
   std::size_t with_fixes() const;
   /// Runs that lost the map.
   std::size_t lost() const;
-  /// Runs whose aligned RMS is below `baseline` [m].
-  std::size_t better_than(double baseline) const;
+  /// Runs whose `score` is below `baseline` [m].
+  std::size_t better_than(double baseline, double ReferenceScores::*score) const;
 };
 
 /// One for each reference of the drive, the leading first.

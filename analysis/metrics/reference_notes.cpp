@@ -34,11 +34,15 @@ std::string baseline_note(const StudyAnalysis& study) {
   }
   const CellAnalysis* baseline = baseline_of(study);
   if (baseline == nullptr) return "No cell runs EKF-SLAM, so there is no baseline to beat.";
-  const Spread aligned =
-      baseline->get<ReferenceAnalyses>().front().over_runs(&ReferenceScores::aligned_rms);
-  return "A run beats EKF-SLAM where its aligned RMS to " + study.references.front().name +
-         " is below the mean of " + baseline->label + ", " + readable(aligned.summary.mean) +
-         " m; failed runs beat nothing.";
+  const JudgedReference& reference = study.references.front();
+  const Spread compared = baseline->get<ReferenceAnalyses>().front().over_runs(
+      reference.compares_raw() ? &ReferenceScores::rms : &ReferenceScores::aligned_rms);
+  return std::string("A run beats EKF-SLAM where its ") + reference.compared() + " RMS to " +
+         reference.name + " is below the mean of " + baseline->label + ", " +
+         readable(compared.summary.mean) + " m; failed runs beat nothing." +
+         (reference.compares_raw() ? " It is compared as it stands, since the errors of the "
+                                     "reference are known."
+                                   : "");
 }
 
 std::vector<std::string> distance_notes(const StudyAnalysis& study) {

@@ -93,7 +93,8 @@ std::string against_baseline(std::size_t better, std::size_t runs) {
                              : "worse in most runs";
 }
 
-std::vector<std::string> baseline_row(const CellAnalysis& cell, const CellAnalysis* baseline) {
+std::vector<std::string> baseline_row(const CellAnalysis& cell, const CellAnalysis* baseline,
+                                      const JudgedReference& reference) {
   const ReferenceAnalysis& leading = cell.get<ReferenceAnalyses>().front();
   std::vector<std::string> row = {cell.label, lost_text(cell, leading)};
   if (baseline == nullptr) return row;
@@ -101,11 +102,10 @@ std::vector<std::string> baseline_row(const CellAnalysis& cell, const CellAnalys
     row.insert(row.end(), {"-", "is the baseline"});
     return row;
   }
-  const double aligned = baseline->get<ReferenceAnalyses>()
-                             .front()
-                             .over_runs(&ReferenceScores::aligned_rms)
-                             .summary.mean;
-  const std::size_t better = leading.better_than(aligned), runs = judged_runs(cell, leading);
+  const auto score =
+      reference.compares_raw() ? &ReferenceScores::rms : &ReferenceScores::aligned_rms;
+  const double mean = baseline->get<ReferenceAnalyses>().front().over_runs(score).summary.mean;
+  const std::size_t better = leading.better_than(mean, score), runs = judged_runs(cell, leading);
   row.insert(row.end(), {of_text(better, runs), against_baseline(better, runs)});
   return row;
 }
@@ -156,7 +156,9 @@ TextTable baseline_table(const StudyAnalysis& study) {
     table.headings.push_back({"beats " + baseline->label});
     table.headings.push_back({"against EKF-SLAM", Align::left});
   }
-  for (const CellAnalysis& cell : study.cells) table.rows.push_back(baseline_row(cell, baseline));
+  for (const CellAnalysis& cell : study.cells) {
+    table.rows.push_back(baseline_row(cell, baseline, study.references.front()));
+  }
   return table;
 }
 

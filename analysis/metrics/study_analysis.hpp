@@ -24,6 +24,11 @@ struct JudgedReference {
   bool has_heading = false;
   bool has_errors = false;  ///< whether its own errors are known: then it gives a NEES
   bool has_start = false;   ///< whether the drive starts at one of its fixes
+
+  /// What cells are compared by: raw distances where the errors of the reference are known, which
+  /// makes it one in the frame of the drive; else aligned ones, since nobody knows the start.
+  bool compares_raw() const { return has_errors; }
+  const char* compared() const { return compares_raw() ? "raw" : "aligned"; }
 };
 
 /// What estimates of another program are of; all cells of a file agree.

@@ -67,6 +67,12 @@ int check(const Arguments& arguments) {
                          duration_text(itinerary.step_time.back()) + " of driving, " +
                          std::to_string(itinerary.landmarks.size()) + " landmarks"}})
             << "\n";
+  if (study.log != nullptr) {
+    const std::string kind = study.settings.text("association", "kind");
+    std::cout << "association: " << kind
+              << (kind == "known" ? ", by the identities of the log\n\n"
+                                  : ", by the filters themselves\n\n");
+  }
   if (study.until) std::cout << "until: " << in_words(*study.until, plan.runs) << "\n\n";
   const Estimate total = print_cells(plan);
   std::cout << "\n"

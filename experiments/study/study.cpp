@@ -100,6 +100,14 @@ bool is_default_noted(const Study& study, const std::string& key, const std::str
   return key != "until" || !value.empty();
 }
 
+/// Where nothing is said of the association, and the log says which landmark each detection is of,
+/// filters are told.
+void use_identities(Study& study, const std::string& name) {
+  const bool is_given = study.settings.place("association", "kind") != name;
+  if (is_given || identities_of(study) == 0) return;
+  study.settings.replace("association", "kind", "known");
+}
+
 }  // namespace
 
 Study parse_study(const std::string& text, const std::string& name,
@@ -123,6 +131,7 @@ Study parse_study(const std::string& text, const std::string& name,
     study.own_logs = read_drives_of(study.settings, folder);
     study.log = study.own_logs.front();
     if (study.own_logs.size() == 1) study.own_logs.clear();
+    use_identities(study, name);
   }
   refuse_sensors(study.settings, study.cells);
   study.until =

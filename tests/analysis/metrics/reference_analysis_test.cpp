@@ -35,8 +35,8 @@ ReferenceAnalysis four_runs() {
 TEST(ReferenceAnalysis, CountsRunsThatLoseTheMapOrBeatABaseline) {
   const ReferenceAnalysis cell = four_runs();
   EXPECT_EQ(cell.lost(), 1u);  // ten metres are not yet lost
-  EXPECT_EQ(cell.better_than(2.0), 1u);
-  EXPECT_EQ(cell.better_than(2.1), 2u);
+  EXPECT_EQ(cell.better_than(2.0, &ReferenceScores::aligned_rms), 1u);
+  EXPECT_EQ(cell.better_than(2.1, &ReferenceScores::aligned_rms), 2u);
 }
 
 TEST(ReferenceAnalysis, GivesMeanMiddleAndExtremesOverRuns) {

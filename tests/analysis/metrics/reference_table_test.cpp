@@ -43,6 +43,31 @@ std::vector<std::string> texts_of(const TextTable& table) {
   return texts;
 }
 
+/// A filter whose path is where it should be against one that is shifted as a whole.
+StudyAnalysis shifted_study(bool has_errors) {
+  StudyAnalysis study;
+  study.references.push_back({.name = "gps", .times = {1.0}, .fixes = 1, .drives = 1});
+  study.references.front().has_errors = has_errors;
+  const auto add = [&](const char* filter, double raw, double aligned) {
+    CellAnalysis& cell = study.cells.emplace_back();
+    cell.label = cell.filter = filter;
+    cell.complete = 1;
+    ReferenceAnalysis against;
+    against.runs.push_back(
+        {.rms = raw, .median = raw, .aligned_rms = aligned, .aligned_median = aligned});
+    cell.findings.put(ReferenceAnalyses{against});
+  };
+  add("ekf_slam", 2.37, 0.60);
+  add("smoother", 0.67, 0.61);
+  return study;
+}
+
+// Errors that are known make a reference one in the frame of the drive: a shift is an error.
+TEST(ReferenceTable, ComparesAsItStandsWhereTheErrorsOfTheReferenceAreKnown) {
+  EXPECT_EQ(baseline_table(shifted_study(true)).rows[1][3], "better in every run");
+  EXPECT_EQ(baseline_table(shifted_study(false)).rows[1][3], "better in no run");
+}
+
 TEST(ReferenceTable, HasOneRowACellAndReference) {
   const TextTable table = reference_table(recorded_study());
   ASSERT_EQ(table.rows.size(), 8u);
