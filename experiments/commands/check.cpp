@@ -12,6 +12,11 @@
 namespace montecarta::experiments {
 namespace {
 
+std::string memory_text(double bytes) {
+  if (std::isinf(bytes)) return "more than this machine has free: use fewer particles";
+  return "about " + bytes_text(bytes);
+}
+
 struct Estimate {
   double cpu_seconds = 0.0;
   double disk = 0.0;        ///< [byte]
@@ -31,8 +36,8 @@ Estimate print_cells(const StudyPlan& plan) {
   total.per_thread = 2.0 * truth;
   std::vector<TableRow> rows{{"cell", "filter", "ms a run", "a run", "all runs"}};
   for (const Cell& cell : plan.cells) {
-    const std::optional<double> first = trial_seconds(cell, plan, drive);
-    const double cpu_seconds = first.value_or(0.0) * alike;
+    const std::optional<Trial> first = trial_of(cell, plan, drive);
+    const double cpu_seconds = first.value_or(Trial{}).seconds * alike;
     const double bytes = static_cast<double>(RecordLayout(cell, plan.columns, itinerary).bytes());
     rows.push_back(
         {cell.label, cell.long_name,
@@ -40,7 +45,7 @@ Estimate print_cells(const StudyPlan& plan) {
          bytes_text(bytes), bytes_text(bytes * runs)});
     total.cpu_seconds += cpu_seconds;
     total.disk += bytes * runs;
-    total.per_thread += bytes;
+    total.per_thread += bytes + first.value_or(Trial{}).bytes;
   }
   std::cout << aligned(rows);
   return total;
@@ -79,7 +84,7 @@ int check(const Arguments& arguments) {
             << aligned({{"time", (study.until ? "at most " : "about ") +
                                      duration_text(total.cpu_seconds / threads) + " on " +
                                      std::to_string(threads) + " threads (by a short trial)"},
-                        {"memory", "about " + bytes_text(total.per_thread * threads + 3e7)},
+                        {"memory", memory_text(total.per_thread * threads + 3e7)},
                         {"disk", bytes_text(total.disk)}});
   return kDone;
 }

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/commands/trial.hpp"
 
+#include "tests/doubles/scripted_drives.hpp"
+#include "tests/doubles/scripted_filter.hpp"
+
 #include <gtest/gtest.h>
+
+#include <thread>
 
 namespace montecarta::experiments {
 namespace {
@@ -33,6 +38,39 @@ TEST(Trial, WeighsDrivesByTheirSteps) {
   EXPECT_DOUBLE_EQ(runs_like_the_first(plan), 4.0);
   plan.drives = std::make_shared<ThreeLengths>(0);
   EXPECT_DOUBLE_EQ(runs_like_the_first(plan), 2.0);
+}
+
+/// Starts as slowly as a program, and holds `bytes`.
+class SlowStarter final : public ScriptedFilter {
+ public:
+  explicit SlowStarter(std::size_t bytes) : ScriptedFilter({}), held_(bytes, 'x') {}
+  void predict(const StepContext& context, const Control& control, double duration) override {
+    if (!is_begun_) std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    is_begun_ = true;
+    ScriptedFilter::predict(context, control, duration);
+  }
+
+ private:
+  bool is_begun_ = false;
+  std::string held_;
+};
+
+Trial trial_of_filter(std::size_t bytes) {
+  StudyPlan plan;
+  plan.drives = std::make_shared<ScriptedDrives>(200);
+  Drive drive;
+  plan.drives->generate(0, drive);
+  Cell cell;
+  cell.make_filter = [bytes] { return std::make_unique<SlowStarter>(bytes); };
+  return trial_of(cell, plan, drive).value();
+}
+
+// The start is one of the process, not of each run: 200 of them would be a minute.
+TEST(Trial, LeavesOutTheStartOfAProgram) { EXPECT_LT(trial_of_filter(0).seconds, 10.0); }
+
+TEST(Trial, MeasuresWhatAFilterHolds) {
+  EXPECT_GT(trial_of_filter(200'000'000).bytes, 190e6);
+  EXPECT_LT(trial_of_filter(200'000'000).bytes, 250e6);
 }
 
 }  // namespace
