@@ -60,49 +60,61 @@ std::optional<double> quadratic_form(const Vec<D>& error, const Mat<D>& covarian
 
 constexpr Nees kUnusableSample = {kNaN, Nees::kUnusable};
 
+/// The components of an error by what P says of them.
+struct Components {
+  std::vector<Eigen::Index> open;  ///< of a variance above the least
+  bool is_excluded = false;        ///< one that is known exactly has an error of more than rounding
+};
+
+/// nullopt if a variance is negative, or a covariance larger than two variances allow.
+std::optional<Components> open_components(const Eigen::VectorXd& error, const Eigen::MatrixXd& P,
+                                        const Eigen::VectorXd& least_variance) {
+  Components found;
+  for (Eigen::Index i = 0; i < error.size(); ++i) {
+    if (P(i, i) > least_variance(i)) {
+      found.open.push_back(i);
+      continue;
+    }
+    if (P(i, i) < -least_variance(i)) return std::nullopt;
+    found.is_excluded = found.is_excluded || std::abs(error(i)) > kRounding;
+    for (Eigen::Index j = 0; j < error.size(); ++j) {
+      const double most = std::max(P(j, j), least_variance(j)) * least_variance(i);
+      const double covariance = P(std::max(i, j), std::min(i, j));
+      if (i != j && covariance * covariance > most) return std::nullopt;
+    }
+  }
+  return found;
+}
+
 /// The same in the range of a singular P. An error that P excludes has the largest NEES: of a
 /// component that is known exactly if it is more than rounding, of others if it is farther outside
 /// the range than second-order effects take it.
 Nees nees_in_range(const Eigen::VectorXd& error, const Eigen::MatrixXd& P,
                    const Eigen::VectorXd& least_variance) {
-  bool is_excluded = false;
-  std::vector<Eigen::Index> open;
-  for (Eigen::Index i = 0; i < error.size(); ++i) {
-    if (P(i, i) > least_variance(i)) {
-      open.push_back(i);
-      continue;
-    }
-    if (P(i, i) < -least_variance(i)) return kUnusableSample;
-    is_excluded = is_excluded || std::abs(error(i)) > kRounding;
-    for (Eigen::Index j = 0; j < error.size(); ++j) {
-      const double most = std::max(P(j, j), least_variance(j)) * least_variance(i);
-      const double covariance = P(std::max(i, j), std::min(i, j));
-      if (i != j && covariance * covariance > most) return kUnusableSample;
-    }
-  }
+  const std::optional<Components> components = open_components(error, P, least_variance);
+  if (!components) return kUnusableSample;
+  const auto& [open, is_excluded] = *components;
+  if (open.empty()) return is_excluded ? Nees{kLargestNees, 1} : Nees{kNaN, 0};
+  const Eigen::MatrixXd block = P(open, open);
+  const Eigen::VectorXd scale = block.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd correlation = scale.asDiagonal() * block * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
+  const Eigen::VectorXd along = solver.eigenvectors().transpose() * scale.cwiseProduct(error(open));
   Nees sample = {0.0, 0};
-  if (!open.empty()) {
-    const Eigen::MatrixXd block = P(open, open);
-    const Eigen::VectorXd scale = block.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd correlation = scale.asDiagonal() * block * scale.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
-    const Eigen::VectorXd along =
-        solver.eigenvectors().transpose() * scale.cwiseProduct(error(open));
-    double outside = 0.0;
-    for (Eigen::Index k = 0; k < along.size(); ++k) {
-      const double eigenvalue = solver.eigenvalues()(k);
-      if (!(eigenvalue >= kMostNegative)) return kUnusableSample;
-      if (eigenvalue > kLeastPivot) {
-        sample.value += along(k) * along(k) / eigenvalue;
-        ++sample.rank;
-      } else {
-        outside += along(k) * along(k);
-      }
+  double outside = 0.0;
+  for (Eigen::Index k = 0; k < along.size(); ++k) {
+    const double eigenvalue = solver.eigenvalues()(k);
+    if (!(eigenvalue >= kMostNegative)) return kUnusableSample;
+    if (eigenvalue > kLeastPivot) {
+      sample.value += along(k) * along(k) / eigenvalue;
+      ++sample.rank;
+    } else {
+      outside += along(k) * along(k);
     }
-    is_excluded = is_excluded || !(outside <= kFarthestOutside * kFarthestOutside);
   }
-  if (is_excluded) return {kLargestNees, std::max(sample.rank, 1)};
-  return sample.rank == 0 ? Nees{kNaN, 0} : Nees{capped(sample.value), sample.rank};
+  const bool is_far_outside = !(outside <= kFarthestOutside * kFarthestOutside);
+  sample.value = is_excluded || is_far_outside ? kLargestNees : capped(sample.value);
+  return sample;
 }
 
 }  // namespace
