@@ -4,11 +4,9 @@
 % At scans, over complete runs (status 1). Mean and covariance are the Gaussian mixture's where the
 % file has them, else the spread of the particles (or the one Gaussian's own): rows `mixture`, or
 % else `spread`, of consistency.csv. (What is called `corrected` there allows for few particles, and
-% is not made here.) A singular covariance (a variance below 1e-10 of the floor's, or a pivot of the
-% correlation matrix below 1e-12) gets the floor diag(1e-4 m, 1e-4 m, 1e-5 rad)^2 added. What is not
-% a number is left out. Mean over the scans of a run, then over runs. Of imported estimates it is
-% that of their stored errors, of any dimension, without a floor. Only functions that Octave and
-% MATLAB both have.
+% is not made here.) A singular covariance is judged in its range (STATISTICS 2); what is unusable
+% is left out. Mean over the scans of a run, then over runs. Of imported estimates it is that of
+% their stored errors, of any dimension. Only functions that Octave and MATLAB both have.
 function anees(path)
   s = load_results(path);
   labels = fieldnames(s.cells);
@@ -32,8 +30,8 @@ function value = anees_of_errors(cell)
     for k = 1:scans
       P = cell.error_covariance(:, :, k, complete(r))';
       allowed = 1e-6 * sqrt(diag(P)) * sqrt(diag(P))';
-      if all(diag(P) > 0) && all(all(abs(P - P') <= allowed))
-        nees(k) = quadratic_form(cell.error(:, k, complete(r)), P, zeros(size(P, 1), 1));
+      if all(diag(P) >= 0) && all(all(abs(P - P') <= allowed))
+        nees(k) = nees_of(cell.error(:, k, complete(r)), P, zeros(size(P, 1), 1));
       end
     end
     average(r) = mean_of_known(nees);
@@ -52,7 +50,8 @@ function value = anees_of(cell, truth, rows)
     e = truth(:, rows, complete(r)) - mean_pose(:, rows, complete(r));
     e(3, :) = e(3, :) - 2 * pi * round(e(3, :) / (2 * pi));
     for k = 1:numel(rows)
-      nees(r, k) = nees_of(e(:, k), covariance(:, :, rows(k), complete(r)));
+      P = covariance(:, :, rows(k), complete(r))';
+      nees(r, k) = nees_of(e(:, k), P, [1e-9; 1e-9; 1e-10] .^ 2);  % [m, m, rad]^2
     end
   end
   average = nan(1, numel(complete));
@@ -60,16 +59,49 @@ function value = anees_of(cell, truth, rows)
   value = mean_of_known(average);
 end
 
-function value = nees_of(e, P)
-  floor_variance = [1e-4; 1e-4; 1e-5] .^ 2;  % [m, m, rad]^2
-  value = quadratic_form(e, P, floor_variance);
-  if isnan(value), value = quadratic_form(e, P + diag(floor_variance), floor_variance); end
+function value = nees_of(e, P, least_variance)
+  value = quadratic_form(e, P, least_variance);
+  if isnan(value), value = nees_in_range(e, P, least_variance); end
+  if value > 1e60, value = 1e60; end  % a larger NEES counts as this one
+end
+
+% Of a singular P, on the scale of all components; NaN if the sample is unusable.
+function value = nees_in_range(e, P, least_variance)
+  value = NaN;
+  variance = diag(P);
+  if ~all(isfinite(P(:))) || ~all(isfinite(e)) || any(variance < -least_variance), return; end
+  is_open = variance > least_variance;
+  lower = tril(P, -1) + tril(P, -1)';
+  most = least_variance * max(variance, least_variance)';
+  if any(any(lower(~is_open, :) .^ 2 > most(~is_open, :))), return; end
+  is_excluded = any(abs(e(~is_open)) > 1e-9);
+  if ~any(is_open)
+    if is_excluded, value = 1e60; end
+    return
+  end
+  scale = 1 ./ sqrt(variance(is_open));
+  [vectors, eigenvalues] = eig((lower(is_open, is_open) + diag(variance(is_open))) ...
+                               .* (scale * scale'));
+  eigenvalues = diag(eigenvalues);
+  along = vectors' * (scale .* e(is_open));
+  if any(eigenvalues < -1e-9), return; end
+  inside = eigenvalues > 1e-12;
+  rank = sum(inside);
+  sum_inside = sum(along(inside) .^ 2 ./ eigenvalues(inside));
+  if is_excluded || sum(along(~inside) .^ 2) > 10 ^ 2, sum_inside = 1e60; end
+  tail = gammainc(sum_inside / 2, rank / 2, 'upper');  % chi-square
+  beyond = @(tail, d) 2 * gammaincinv(tail, d / 2, 'upper');
+  if tail > 1e-6
+    value = beyond(tail, numel(e));
+  else
+    value = sum_inside * beyond(1e-6, numel(e)) / beyond(1e-6, rank);
+  end
 end
 
 % e' P^-1 e by Cholesky of the correlation matrix; NaN where P is singular.
-function value = quadratic_form(e, P, floor_variance)
+function value = quadratic_form(e, P, least_variance)
   value = NaN;
-  if ~all(diag(P) > 1e-10 * floor_variance) || ~all(isfinite(P(:))), return; end
+  if ~all(diag(P) > least_variance) || ~all(isfinite(P(:))), return; end
   scale = sqrt(diag(P));
   L = zeros(numel(e));
   y = zeros(numel(e), 1);

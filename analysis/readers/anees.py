@@ -5,20 +5,21 @@ At scans, over complete runs (status 1). Mean and covariance are the Gaussian mi
 file has them, else the spread of the particles (or the one Gaussian's own): rows `mixture`, or else
 `spread`, of consistency.csv. (What is called `corrected` there allows for few particles, and is not
 made here.)
-Of imported estimates it is that of their stored errors, of any dimension, without a floor.
-A singular covariance (a variance below 1e-10 of the floor's, or a pivot of the correlation matrix
-below 1e-12) gets the floor diag(1e-4 m, 1e-4 m, 1e-5 rad)^2 added. What is not a number is left
-out. Mean over the scans of a run, then over runs."""
+Of imported estimates it is that of their stored errors, of any dimension. A singular covariance is
+judged in its range (STATISTICS 2); what is unusable is left out. Mean over the scans of a run, then
+over runs."""
 import sys
 
 import numpy as np
+from scipy.stats import chi2
 
 import montecarta
 
-FLOOR = np.diag([1e-4, 1e-4, 1e-5]) ** 2  # [m, m, rad]^2
+LEAST_VARIANCE = np.array([1e-9, 1e-9, 1e-10]) ** 2  # [m, m, rad]^2
+LARGEST = 1e60  # a larger NEES counts as this one
 
 
-def quadratic_form(e, P, least_variance=1e-10 * np.diag(FLOOR)):
+def quadratic_form(e, P, least_variance):
     """e' P^-1 e by Cholesky of the correlation matrix; NaN where P is singular."""
     variance = np.diagonal(P, axis1=-2, axis2=-1)
     regular = (variance > least_variance).all(-1) & np.isfinite(P).all((-2, -1))
@@ -34,15 +35,51 @@ def quadratic_form(e, P, least_variance=1e-10 * np.diag(FLOOR)):
         L[..., i, i] = np.sqrt(pivot)
         rest = e[..., i] / scale[..., i] - (L[..., i, :i] * y[..., :i]).sum(-1)
         y[..., i] = rest / L[..., i, i]
-    return np.where(regular, (y**2).sum(-1), np.nan)
+    return np.where(regular, np.minimum((y**2).sum(-1), LARGEST), np.nan)
+
+
+def nees_in_range(e, P, least_variance):
+    """Of one sample with a singular P, on the scale of all components; NaN if it is unusable."""
+    d, variance = len(e), np.diag(P)
+    if not (np.isfinite(e).all() and np.isfinite(P).all()) or (variance < -least_variance).any():
+        return np.nan
+    is_open = variance > least_variance
+    most = np.outer(least_variance, np.maximum(variance, least_variance))
+    lower = np.tril(P, -1) + np.tril(P, -1).T
+    if (lower**2 > most)[~is_open].any():
+        return np.nan
+    is_excluded = (abs(e[~is_open]) > 1e-9).any()
+    if not is_open.any():
+        return LARGEST if is_excluded else np.nan
+    scale = 1 / np.sqrt(variance[is_open])
+    eigenvalues, vectors = np.linalg.eigh(P[np.ix_(is_open, is_open)] * np.outer(scale, scale))
+    along = vectors.T @ (scale * e[is_open])
+    if (eigenvalues < -1e-9).any():
+        return np.nan
+    inside = eigenvalues > 1e-12
+    is_excluded = is_excluded or (along[~inside] ** 2).sum() > 10.0**2
+    value = LARGEST if is_excluded else (along[inside] ** 2 / eigenvalues[inside]).sum()
+    tail = chi2.sf(value, inside.sum())
+    if tail > 1e-6:
+        return chi2.isf(tail, d)
+    return min(value * chi2.isf(1e-6, d) / chi2.isf(1e-6, inside.sum()), LARGEST)
+
+
+def nees_of(e, P, least_variance):
+    """{...} of errors {..., d} with covariances {..., d, d}."""
+    with np.errstate(all="ignore"):
+        nees = quadratic_form(e, P, least_variance)
+    for sample in zip(*np.nonzero(np.isnan(nees))):
+        nees[sample] = nees_in_range(e[sample], P[sample], least_variance)
+    return nees
 
 
 def imported_nees(e, P):
-    """Likewise, NaN where P is not symmetric or not positive definite."""
+    """Likewise; a covariance that is not symmetric is unusable as well."""
     deviation = np.sqrt(np.diagonal(P, axis1=-2, axis2=-1))
     allowed = 1e-6 * deviation[..., :, None] * deviation[..., None, :]
     symmetric = (abs(P - np.swapaxes(P, -1, -2)) <= allowed).all((-2, -1))
-    return np.where(symmetric, quadratic_form(e, P, 0.0), np.nan)
+    return np.where(symmetric, nees_of(e, P, np.zeros(e.shape[-1])), np.nan)
 
 
 def anees(cell, truth, scan_row):
@@ -60,10 +97,7 @@ def anees(cell, truth, scan_row):
     e = at_scans(truth) - at_scans(cell["pose_mean" + which])
     e[..., 2] -= 2 * np.pi * np.round(e[..., 2] / (2 * np.pi))
     P = at_scans(cell["pose_covariance" + which])
-    with np.errstate(all="ignore"):
-        nees = quadratic_form(e, P)
-        nees = np.where(np.isnan(nees), quadratic_form(e, P + FLOOR), nees)
-    return np.nanmean(np.nanmean(nees, axis=1))
+    return np.nanmean(np.nanmean(nees_of(e, P, LEAST_VARIANCE), axis=1))
 
 
 if __name__ == "__main__":

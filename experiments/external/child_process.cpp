@@ -165,6 +165,7 @@ fs::path find_program(const std::string& program) {
 }
 
 ChildProcess::ChildProcess(std::span<const std::string> words) {
+  OrphanGuard::instance();  // before there are pipes that it would inherit
   Pipe input = make_pipe(), output = make_pipe(), error = make_pipe();
   start(words, input.read.number(), output.write.number(), error.write.number());
   process_handle_ = Descriptor(static_cast<int>(::syscall(SYS_pidfd_open, process_, 0)));

@@ -21,11 +21,13 @@ constexpr std::size_t kMostGroups = 4096;
   ::setsid();  // Ctrl-C in a terminal is not for it
   ::dup2(line, STDIN_FILENO);
   ::syscall(SYS_close_range, 1U, ~0U, 0U);
+  const pid_t ready = 0;
+  (void)::send(STDIN_FILENO, &ready, sizeof ready, MSG_NOSIGNAL);
   std::array<pid_t, kMostGroups> groups{};
   std::size_t n = 0;
   for (;;) {
     pid_t told = 0;
-    const ssize_t bytes = ::read(STDIN_FILENO, &told, sizeof told);
+    const ssize_t bytes = ::recv(STDIN_FILENO, &told, sizeof told, 0);
     if (bytes < 0 && errno == EINTR) continue;
     if (bytes != sizeof told) break;
     pid_t* const end = groups.data() + n;
@@ -63,6 +65,9 @@ OrphanGuard::OrphanGuard() {
     return;
   }
   while (::waitpid(between, nullptr, 0) < 0 && errno == EINTR) continue;
+  // Until the guard has closed what it inherited it would keep pipes of other programs open.
+  pid_t ready = 0;
+  while (::recv(ends[1], &ready, sizeof ready, 0) < 0 && errno == EINTR) continue;
   line_ = ends[1];
 }
 

@@ -3,7 +3,6 @@
 
 #include "filters/marginal/direct_sums.hpp"
 #include "filters/marginal/gauss_transform.hpp"
-#include "filters/marginal/kd_order.hpp"
 
 #include <array>
 #include <cstddef>
@@ -77,7 +76,7 @@ class IfgtSums {
   }
 
   PoseKernel<1> common_{};
-  std::vector<Point3> sites_;
+  std::vector<std::array<double, 3>> sites_;
   std::vector<std::array<double, N>> charges_;
   std::array<double, N> least_{};  ///< sums below this are not to be trusted
   GaussTransform<3, N> transform_;

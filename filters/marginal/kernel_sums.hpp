@@ -8,7 +8,6 @@
 #include "filters/marginal/ifgt_sums.hpp"
 #include "filters/marginal/marginal_options.hpp"
 #include "filters/marginal/pose_kernels.hpp"
-#include "filters/marginal/tree_sums.hpp"
 #include "filters/population/cloud_moments.hpp"
 
 #include <algorithm>
@@ -20,21 +19,19 @@
 namespace montecarta::filters {
 
 /// log Sum_j weights_n[j] N(target; gaussian_j) for blocks of targets and every n (EQUATIONS 13),
-/// by the method asked for.
+/// by the method asked for. The transform is there because the paper has it: direct sums are
+/// faster, and its error is of the wrong kind for weights
+/// (tests/filters/marginal/kernel_sums_benchmark.cpp).
 template <class Real, std::size_t N>
 class KernelSummation {
  public:
   KernelSummation(KernelSums method, double tolerance) : asked_(method), tolerance_(tolerance) {}
 
-  /// Prepares the method; where it does not pay the direct one is used.
+  /// Prepares the method; where the transform does not pay the direct one is used.
   void assign(std::span<const PoseGaussian<Real>> gaussians,
               const std::array<std::span<const double>, N>& weights) {
     kernels_.assign(gaussians, weights);
     used_ = asked_;
-    const bool may_pay = weights[0].size() >= kTreePaysFrom && asked_ == KernelSums::automatic;
-    if (may_pay || asked_ == KernelSums::tree) tree_.build(kernels_);
-    if (asked_ == KernelSums::automatic)
-      used_ = may_pay && tree_.extent() > kWide ? KernelSums::tree : KernelSums::direct;
     if (used_ == KernelSums::ifgt && !ifgt_.build(kernels_, of_lane(gaussians[0], 0), tolerance_)) {
       used_ = KernelSums::direct;
     }
@@ -44,43 +41,16 @@ class KernelSummation {
   /// logs[b] of targets[b]. Blocks are independent of each other.
   void sum(const StepContext& context, std::span<const BasicPose<Real>> targets,
            std::span<std::array<Real, N>> logs) {
-    if (used_ != KernelSums::tree) {
-      return over_blocks(context, targets.size(),
-                         [&](std::size_t b, auto& scratch) { logs[b] = at(targets[b], scratch); });
-    }
-    put_in_order(targets);
-    over_blocks(context, targets.size(), [&](std::size_t b, auto&) {
-      const auto near = gather_block<Real, BasicPose<Real>>(targets, std::span(order_), b);
-      const auto found = tree_.log_sums(near, tolerance_);
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const std::uint32_t i = order_[b * kLanes + lane];
-        for (std::size_t n = 0; n < N; ++n)
-          set(logs[i / kLanes][n], i % kLanes, get(found[n], lane));
-      }
-    });
+    over_blocks(context, targets.size(),
+                [&](std::size_t b, auto& scratch) { logs[b] = at(targets[b], scratch); });
   }
 
  private:
   static constexpr std::size_t kLanes = kLanesOf<Real>;
 
-  // Where the tree overtakes direct sums: tests/filters/marginal/kernel_sums_benchmark.cpp. The
-  // transform never does, and its error is of the wrong kind for weights.
-  static constexpr std::size_t kTreePaysFrom = 200;  ///< kernels
-  static constexpr double kWide = 20.0;              ///< extent of the cloud, in sigmas of a kernel
-
   std::array<Real, N> at(const BasicPose<Real>& target, std::vector<Real>& scratch) const {
     return used_ == KernelSums::ifgt ? ifgt_.log_sums(target, kernels_, scratch)
                                      : direct_log_sums(target, kernels_);
-  }
-
-  /// Targets of a block should need the same leaves.
-  void put_in_order(std::span<const BasicPose<Real>> targets) {
-    points_.clear();
-    for (std::size_t i = 0; i < targets.size() * kLanes; ++i) {
-      points_.push_back(tree_.whitened_by_first(
-          pose_of_particle<Real>([&](std::size_t b) { return targets[b]; }, i)));
-    }
-    kd_order(points_, Lanes::kSize, order_);
   }
 
   template <class Body>
@@ -96,10 +66,7 @@ class KernelSummation {
   KernelSums asked_, used_ = KernelSums::direct;
   double tolerance_;
   PoseKernels<N> kernels_;
-  KernelTree<N> tree_;
   IfgtSums<N> ifgt_;
-  std::vector<Point3> points_;
-  std::vector<std::uint32_t> order_;        ///< of the targets, for the tree
   std::vector<std::vector<Real>> scratch_;  ///< of each task, for the transform
 };
 

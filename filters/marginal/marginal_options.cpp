@@ -15,7 +15,7 @@ const Names kKernels{"prior", "posterior"};
 const Names kModes{"onestep_converged", "onestep_threshold", "recursive"};
 const Names kSolvers{"gauss_newton", "de"};
 const Names kObjectives{"likelihood", "squares", "squares_as_printed"};
-const Names kSums{"direct", "tree", "ifgt", "auto"};
+const Names kSums{"direct", "ifgt"};
 const Names kBases{"best", "random", "target"};
 
 MapSettings map_settings(const FilterOptions& options) {
@@ -42,10 +42,10 @@ std::vector<Option> marginal_options(MapSolver solver) {
           "kernel_floor_heading", "0.001", 0, 3,
           "[rad] sigma of noise added to the motion in heading at every scan (EQUATIONS 12)"),
       choice_option(
-          "kernel_sums", "auto", kSums,
-          "how the mixtures are summed; auto: direct or tree, whichever is faster (EQUATIONS 13)"),
+          "kernel_sums", "direct", kSums,
+          "how the mixtures are summed: directly, or by the fast Gauss transform (EQUATIONS 13)"),
       number_option("kernel_tolerance", "1e-9", 1e-15, 0.1,
-                    "error of a sum: relative (tree), of the sum of all peaks (ifgt)"),
+                    "kernel_sums=ifgt: error of a sum, of the sum of all peaks"),
       choice_option("map", "recursive", kModes,
                     "what a landmark remembers of earlier scans (EQUATIONS 14)"),
       choice_option("map_solver", kSolvers[static_cast<std::size_t>(solver)], kSolvers,

@@ -32,7 +32,7 @@ enum class MapObjective {
   squares,             ///< Sum w nu' R^-1 nu: its upper bound
   squares_as_printed,  ///< Sum nu' R^-1 nu / M: Havangi (29) forgets the weights
 };
-enum class KernelSums { direct, tree, ifgt, automatic };
+enum class KernelSums { direct, ifgt };
 
 struct MapSettings {
   MapMode mode = MapMode::recursive;
@@ -49,8 +49,8 @@ struct MarginalSettings {
   Kernel kernel = Kernel::prior;
   double kernel_floor_xy = 0.01;        ///< [m] noise added to x and y once a scan
   double kernel_floor_heading = 0.001;  ///< [rad]
-  KernelSums kernel_sums = KernelSums::automatic;
-  double kernel_tolerance = 1e-9;  ///< relative (tree) or of the sum of all weights (ifgt)
+  KernelSums kernel_sums = KernelSums::direct;
+  double kernel_tolerance = 1e-9;  ///< ifgt: of the sum of all weights
   MapSettings map = {};
 };
 

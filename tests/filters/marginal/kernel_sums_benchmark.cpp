@@ -71,7 +71,6 @@ void sizes(benchmark::internal::Benchmark* benchmark) {
 
 BENCHMARK(KernelSumsPlain)->Args({100, 1})->Args({1000, 1})->MinTime(0.05);
 BENCHMARK_CAPTURE(KernelSumsBy, direct, KernelSums::direct)->Apply(sizes);
-BENCHMARK_CAPTURE(KernelSumsBy, tree, KernelSums::tree)->Apply(sizes);
 BENCHMARK_CAPTURE(KernelSumsBy, ifgt, KernelSums::ifgt)->Apply(sizes);
 
 }  // namespace

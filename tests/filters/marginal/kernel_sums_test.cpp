@@ -81,7 +81,6 @@ TEST(DirectSums, EqualPlainEigenWhereHeadingsPointEverywhere) {
   const auto expected = plain_log_sums(plain);
   EXPECT_LT(greatest_difference(log_sums(plain, KernelSums::direct), expected), 1e-9);
   EXPECT_LT(greatest_difference(log_sums(lanes, KernelSums::direct), expected), 1e-9);
-  EXPECT_LT(greatest_difference(log_sums(lanes, KernelSums::tree), expected), 1e-8);
 }
 
 TEST(DirectSums, SurviveTargetsFarFromEveryKernel) {
@@ -92,7 +91,6 @@ TEST(DirectSums, SurviveTargetsFarFromEveryKernel) {
   EXPECT_LT(logs[3][0], -1e5);
   EXPECT_TRUE(std::isfinite(logs[3][0] - logs[3][1]));
   EXPECT_TRUE(std::isfinite(logs[10][1]));
-  EXPECT_LT(greatest_difference(log_sums(cloud, KernelSums::tree), logs), 1e-8);
 }
 
 // EQUATIONS 12: neither the order of particles nor a particle that is written as two makes a
@@ -112,29 +110,6 @@ TEST(DirectSums, DoNotDependOnOrderOrOnParticlesSplitInTwo) {
       1e-12);
 }
 
-TEST(TreeSums, ErrByNoMoreThanAskedFor) {
-  for (const double tolerance : {1e-3, 1e-6, 1e-12}) {
-    for (const double width : {0.5, 10.0, 100.0}) {
-      for (const double floor : kFloors) {
-        const KernelCloud<Lanes> cloud(700, width, kPi, floor);
-        const double error = greatest_difference(log_sums(cloud, KernelSums::tree, tolerance),
-                                                 log_sums(cloud, KernelSums::direct));
-        EXPECT_LT(error, tolerance + 1e-11) << width << ' ' << floor;
-      }
-    }
-  }
-}
-
-TEST(TreeSums, LeaveOutWhatIsFar) {
-  double error = 0.0;
-  for (const double width : {3.0, 10.0, 30.0}) {
-    const KernelCloud<Lanes> cloud(700, width, 0.0, 0.05);
-    error = std::max(error, greatest_difference(log_sums(cloud, KernelSums::tree, 1e-2),
-                                                log_sums(cloud, KernelSums::direct)));
-  }
-  EXPECT_GT(error, 1e-9) << "nothing was left out, so nothing was gained";
-}
-
 TEST(IfgtSums, EqualDirectOnesWhereKernelsAreBroadAndHeadingsAgree) {
   // a floor of half a metre dominates the kernels, so one covariance serves all
   const KernelCloud<Lanes> cloud(400, 3.0, 0.3, 0.5);
@@ -148,18 +123,6 @@ TEST(IfgtSums, FallBackToDirectOnesWhereKernelsAreThin) {
   KernelSummation<Lanes, 2> summation(KernelSums::ifgt, 1e-9);
   summation.assign(cloud.kernels, {cloud.w, cloud.lambda});
   EXPECT_EQ(summation.used(), KernelSums::direct);
-}
-
-TEST(AutomaticSums, TakeTheTreeForManyParticlesFarApartOnly) {
-  KernelSummation<Lanes, 2> summation(KernelSums::automatic, 1e-9);
-  const auto used = [&](std::size_t n, double width) {
-    const KernelCloud<Lanes> cloud(n, width, 0.0, 0.01);
-    summation.assign(cloud.kernels, {cloud.w, cloud.lambda});
-    return summation.used();
-  };
-  EXPECT_EQ(used(30, 30.0), KernelSums::direct);
-  EXPECT_EQ(used(2000, 1.0), KernelSums::direct);
-  EXPECT_EQ(used(2000, 30.0), KernelSums::tree);
 }
 
 TEST(KernelRatios, AreOneWherePriorKernelsAreChosenByWeight) {
