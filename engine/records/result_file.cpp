@@ -46,7 +46,7 @@ struct ResultFile::Contents {
       }
     }
     if (seal == Seal::holds) {
-      bytes = Bytes{PosixFile(path, PosixFile::Mode::read), find_slabs(path, description)};
+      bytes.emplace(Bytes{PosixFile(path, PosixFile::Mode::read), find_slabs(path, description)});
     }
   }
 
