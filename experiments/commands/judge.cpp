@@ -79,7 +79,10 @@ Command judge_command() {
        .operands = {{"ESTIMATE.csv", 1, SIZE_MAX}},
        .options =
            {{"truth", "", {"PATH..."}, "truths, or a folder of 'montecarta export'", true, true},
-            {"error", "", {"world|body|right-invariant"}, "what the covariance is of; no default"},
+            {"error",
+             "",
+             {"world|body|right-invariant"},
+             "what the covariance is of; needed for poses"},
             {"output", "o", {"OUT.h5"}, "the result file"},
             {"cell", "", {"NAME"}, "all estimates are of one estimator of this name"},
             {"tolerance", "", {"SECONDS"}, "times so near are the same; default 1e-6"},

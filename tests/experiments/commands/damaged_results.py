@@ -12,6 +12,7 @@ within 5 s of processor time and 2 GB. Where the seal still holds, the verdict m
 whole file unless the damage is said. A file that breaks this is kept, and named.
 """
 import collections
+import functools
 import itertools
 import os
 import random
@@ -210,17 +211,31 @@ def command_of(seed, own):
     return name, words, source, {"merge": "last.h5", "run": "out.h5.part"}.get(name, "out.h5")
 
 
-def limit():
+def limit_memory():
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+
+
+@functools.cache
+def runs_within_memory(program):
+    """A program that was built with a sanitizer takes terabytes of addresses and cannot be held."""
+    return subprocess.run([program, "--version"], capture_output=True,
+                          preexec_fn=limit_memory).returncode == 0
+
+
+def limit(program):
     resource.setrlimit(resource.RLIMIT_CPU, (int(SECONDS) + 1, int(SECONDS) + 1))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    if runs_within_memory(program):
+        limit_memory()
 
 
 def run(ground, words):
     """Exit code (negative: a signal), seconds of processor time, what was said."""
+    runs_within_memory(ground.program)  # known before the process is started
     with tempfile.TemporaryFile() as said:
         process = subprocess.Popen([ground.program, *words], cwd=ground.folder, stdout=said,
-                                   stderr=said, preexec_fn=limit, start_new_session=True)
+                                   stderr=said, preexec_fn=lambda: limit(ground.program),
+                                   start_new_session=True)
         end = time.monotonic() + PATIENCE
         while True:
             pid, status, usage = os.wait4(process.pid, os.WNOHANG)
