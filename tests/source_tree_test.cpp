@@ -168,7 +168,7 @@ TEST(SourceTree, StatisticsKnowNumbersOnly) {
 }
 
 TEST(SourceTree, LibrariesAreUsedInOneOrTwoFiles) {
-  for (const char* header : {"tbb/", "oneapi/", "omp.h", "boost/program_options", "matio"}) {
+  for (const char* header : {"tbb/", "oneapi/", "omp.h", "boost/program_options"}) {
     const auto users = users_of(sources(), header);
     EXPECT_LE(users.size(), 2u) << header << ": " << testing::PrintToString(users);
   }

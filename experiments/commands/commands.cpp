@@ -74,8 +74,7 @@ std::vector<Command> all_commands() {
   return {run_command(),   check_command(),   info_command(),   status_command(),
           merge_command(), analyze_command(), report_command(), compare_command(),
           gate_command(),  verify_command(),  replay_command(), bounds_command(),
-          plan_command(),  convert_command(), export_command(), judge_command(),
-          list_command()};
+          plan_command(),  export_command(),  judge_command(),  list_command()};
 }
 
 int run_program(const std::vector<std::string>& words) {

@@ -34,7 +34,6 @@ Command compare_command();
 Command gate_command();
 Command bounds_command();
 Command plan_command();
-Command convert_command();
 Command export_command();
 Command judge_command();
 Command list_command();

@@ -48,8 +48,8 @@ int export_drives(const Arguments& arguments) {
   const Study study = study_of(arguments);
   if (study.log != nullptr) {
     throw StudyError(arguments.operands().front() +
-                     ": the drive of this study was recorded (it is the same in all runs): "
-                     "montecarta convert writes it as CSV");
+                     ": the drive of this study was recorded (it is the same in all runs, and a "
+                     "CSV log already): give the folder of scenario.path to the other program");
   }
   const fs::path folder = output_of(arguments);
   const StudyPlan plan = plan_of(study, arguments);

@@ -2,7 +2,6 @@
 #include "engine/errors.hpp"
 #include "experiments/recordings/find_recording.hpp"
 #include "experiments/recordings/log_csv.hpp"
-#include "experiments/recordings/published_drives.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/text/words.hpp"
 
@@ -24,14 +23,6 @@ fs::path folder_of(const Settings& settings, const std::string& path,
   }
 }
 
-DriveLog read_drive(const Settings& settings, const fs::path& folder) {
-  const std::string kind = settings.scenario_kind();
-  if (kind == "car_park") return read_car_park(folder);
-  if (kind == "log") return read_log_csv(folder);
-  const bool is_raw = settings.text(kScenario, "steering") == "raw";
-  return read_victoria_park(folder, is_raw ? Steering::raw : Steering::calibrated);
-}
-
 /// The drive has the reference that the study judges by, if it names one.
 void expect_reference(const Settings& settings, const DriveLog& log) {
   const std::string& name = settings.text(kScenario, "reference");
@@ -51,12 +42,10 @@ void expect_same_drive(const Settings& settings, const std::string& expected,
                    fingerprint + "): give the same files, or remove data_sha256");
 }
 
-/// The folders that the study names: several of drives of the user's own only.
+/// The folders that the study names.
 std::vector<std::string> paths_in(const Settings& settings, const fs::path& study_folder) {
   const std::string& path = settings.text(kScenario, "path");
-  std::vector<std::string> paths = settings.scenario_kind() == "log"
-                                       ? recordings_in(path, {study_folder})
-                                       : std::vector<std::string>{path};
+  std::vector<std::string> paths = recordings_in(path, {study_folder});
   if (std::ranges::find(paths, "") == paths.end()) return paths;
   throw StudyError(settings.place(kScenario, "path") + ": path = " + path +
                    " names a folder that has no name (folders are separated by commas): write "
@@ -115,7 +104,7 @@ std::vector<std::shared_ptr<const DriveLog>> read_drives_of(Settings& settings,
   std::vector<std::string> fingerprints;
   for (std::size_t k = 0; k < paths.size(); ++k) {
     const fs::path folder = folder_of(settings, paths[k], study_folder);
-    DriveLog log = read_drive(settings, folder);
+    DriveLog log = read_log_csv(folder);
     fingerprints.push_back(fingerprint_of(log));
     expect_same_drive(settings, expected[k], fingerprints.back(), folder);
     expect_reference(settings, log);
@@ -123,7 +112,7 @@ std::vector<std::shared_ptr<const DriveLog>> read_drives_of(Settings& settings,
   }
   refuse_drive_again(settings, paths, fingerprints);
   settings.replace(kScenario, "data_sha256", joined(fingerprints));
-  settings.replace(kScenario, "path", settings.scenario_kind());
+  settings.replace(kScenario, "path", "log");
   return logs;
 }
 

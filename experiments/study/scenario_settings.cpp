@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/study/setting_builders.hpp"
 
-#include <algorithm>
 #include <array>
 
 namespace montecarta::experiments::setting_builders {
@@ -39,8 +38,7 @@ void add_drive(std::vector<Setting>& table) {
   const auto add = [&](Setting setting) {
     table.push_back(only_for({"simulated"}, std::move(setting)));
   };
-  add(required(text(s, "world", "a shipped world, or a path to .csv or .mat with lm and wp"),
-               "web_loop"));
+  add(required(text(s, "world", "a shipped world, or a path to a .csv file"), "web_loop"));
   add(count(s, "loops", "1", 1, 10'000, "times round the way-points"));
   add(choice(s, "noise", {"measured-control", "matched"},
              "noise on the controls the filter is given, or on the truth's motion (EQUATIONS 1)"));
@@ -73,21 +71,12 @@ void add_drive(std::vector<Setting>& table) {
 
 void add_recording(std::vector<Setting>& table) {
   const char* s = "scenario";
-  table.push_back(only_for(
-      recorded_kinds(),
-      required(
-          text(s, "path",
-               "the folder of the recorded drive; of kind log several, one a run, with commas"),
-          "../shared/data/victoria_park")));
-  table.push_back(
-      only_for(recorded_kinds(), text(s, "data_sha256", "fingerprint of each drive, filled in")));
-  table.push_back(only_for(recorded_kinds(),
-                           text(s, "reference", "the one to judge by; all of them where empty")));
-  table.push_back(only_for(
-      recorded_kinds(),
-      number(s, "scan_delay", "s", "0", -10, 10, "how much later than it was a scan is stamped")));
-  table.push_back(only_for({"victoria_park"}, choice(s, "steering", {"calibrated", "raw"},
-                                                     "of the text release, or as measured")));
+  const auto add = [&](Setting setting) { table.push_back(only_for({"log"}, std::move(setting))); };
+  add(required(text(s, "path", "the folder of the recorded drive; several, one a run, with commas"),
+               "my_drive"));
+  add(text(s, "data_sha256", "fingerprint of each drive, filled in"));
+  add(text(s, "reference", "the one to judge by; all of them where empty"));
+  add(number(s, "scan_delay", "s", "0", -10, 10, "how much later than it was a scan is stamped"));
 }
 
 void add_sensor(std::vector<Setting>& table) {
@@ -103,44 +92,20 @@ void add_sensor(std::vector<Setting>& table) {
   add(number(s, "miss_probability", "1", "0", 0, 1, "that a landmark in view is not detected"));
 }
 
-/// What a setting is in the two published drives.
-struct Published {
-  const char* key;
-  const char* victoria_park;
-  const char* car_park;
-};
-/// The car is one. Noise: Ankishan 2016, Simulation IV; what is customary for the car park.
-constexpr std::array<Published, 9> kPublished = {{{"vehicle", "rear_wheel", "rear_wheel"},
-                                                  {"wheelbase", "2.83", "2.83"},
-                                                  {"wheel_left", "0.76", "0.76"},
-                                                  {"sensor_ahead", "3.78", "3.78"},
-                                                  {"sensor_left", "0.5", "0.5"},
-                                                  {"sigma_speed", "0.4", "0.7"},
-                                                  {"sigma_steer_deg", "1.4", "7"},
-                                                  {"sigma_range", "0.5", "0.1"},
-                                                  {"sigma_bearing_deg", "1.5", "1"}}};
-
-/// In a simulation it follows the scenario; in the published drives it is what is known of them.
-/// With an `example` it must be given for a log of the user's own, of which nobody else knows it.
+/// In a simulation it follows the scenario. With an `example` it must be given for a recorded
+/// drive, of which only the user knows it.
 Setting believed(Setting setting, const std::string& example) {
   if (!example.empty()) {
     setting.example = example;
     setting = but_for("log", kRequired, std::move(setting));
   }
-  setting = but_for("simulated", kFromScenario, std::move(setting));
-  const auto published = std::ranges::find_if(
-      kPublished, [&](const Published& row) { return setting.key == row.key; });
-  if (published == kPublished.end()) return setting;
-  setting = but_for("car_park", published->car_park, std::move(setting));
-  return but_for("victoria_park", published->victoria_park, std::move(setting));
+  return but_for("simulated", kFromScenario, std::move(setting));
 }
 
 }  // namespace
 
 void add_scenario(std::vector<Setting>& table) {
-  std::vector<std::string> kinds = recorded_kinds();
-  kinds.insert(kinds.begin(), "simulated");
-  table.push_back(choice("scenario", "kind", kinds, "where drives come from"));
+  table.push_back(choice("scenario", "kind", {"simulated", "log"}, "where drives come from"));
   add_drive(table);
   add_recording(table);
   add_sensor(table);

@@ -105,11 +105,6 @@ std::optional<std::string> Setting::fallback_for(std::string_view scenario_kind)
   return fallback;
 }
 
-const std::vector<std::string>& recorded_kinds() {
-  static const std::vector<std::string> kinds = {"victoria_park", "car_park", "log"};
-  return kinds;
-}
-
 std::string demand_of(const Option& option) {
   const std::string unit = option.unit.empty() || option.unit == "1" ? "" : " " + option.unit;
   const std::string range = " from " + to_text(option.least) + " to " + most_of(option) + unit;

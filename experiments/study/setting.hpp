@@ -35,9 +35,6 @@ struct Setting : Option {
   std::optional<std::string> fallback_for(std::string_view scenario_kind) const;
 };
 
-/// Kinds of scenario whose drive was recorded.
-const std::vector<std::string>& recorded_kinds();
-
 /// All settings but those of the filters, section by section in the order of the resolved text.
 std::span<const Setting> study_settings();
 /// `text` in the one spelling that the resolved study uses. Throws StudyError, beginning with

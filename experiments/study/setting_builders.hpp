@@ -85,13 +85,6 @@ inline Setting but_for(const char* kind, const char* fallback, Setting setting) 
   return setting;
 }
 
-/// With another default where the drive was recorded.
-inline Setting for_recorded(Setting setting, const char* fallback) {
-  for (const std::string& kind : recorded_kinds())
-    setting = but_for(kind.c_str(), fallback, std::move(setting));
-  return setting;
-}
-
 void add_scenario(std::vector<Setting>& table);
 void add_belief(std::vector<Setting>& table);
 

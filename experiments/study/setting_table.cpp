@@ -24,9 +24,9 @@ void add_study(std::vector<Setting>& table) {
 /// The fallback gates are chi-square 5.991 (95 %) and 25 with two degrees of freedom.
 void add_association(std::vector<Setting>& table) {
   const char* s = "association";
-  table.push_back(for_recorded(choice(s, "kind", {"known", "nearest"},
-                                      "who says which landmark a detection is (EQUATIONS 17)"),
-                               "nearest"));
+  table.push_back(but_for("log", "nearest",
+                          choice(s, "kind", {"known", "nearest"},
+                                 "who says which landmark a detection is (EQUATIONS 17)")));
   table.push_back(number(s, "gate_sigma", "sigma", "1.959963984540054", 0.01, 30,
                          "nearer: may be that landmark"));
   table.push_back(number(s, "new_gate_sigma", "sigma", "4.626072265579014", 0.01, 30,
@@ -44,10 +44,10 @@ void add_record(std::vector<Setting>& table) {
   Setting columns = choice(s, "columns", groups, "what is stored");
   columns.kind = Setting::Kind::choices;
   columns.fallback = "pose, covariance, ancestry";
-  table.push_back(for_recorded(columns, "pose, covariance, ancestry, final_map"));
-  table.push_back(for_recorded(
-      choice(s, "rate", {"control", "scan"}, "store poses at every control step or at scans only"),
-      "scan"));
+  table.push_back(but_for("log", "pose, covariance, ancestry, final_map", columns));
+  table.push_back(but_for("log", "scan",
+                          choice(s, "rate", {"control", "scan"},
+                                 "store poses at every control step or at scans only")));
   table.push_back(count(s, "map_rows", "0", 0, 100'000,
                         "rows of map columns with unknown association; 0: as many as the world "
                         "has, or most_landmarks"));

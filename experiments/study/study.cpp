@@ -84,14 +84,6 @@ void refuse_world(const IniText& ini, const Settings& settings) {
                    "[world]");
 }
 
-/// Whether "key = value" is a setting that a scenario of kind log does not have.
-bool is_foreign(const std::string& line) {
-  return std::ranges::any_of(study_settings(), [&](const Setting& setting) {
-    return setting.section == "scenario" && !setting.is_for("log") &&
-           line.starts_with(setting.key + " = ");
-  });
-}
-
 /// The text of studies that make all runs, store no joint estimates, or have the usual margin, is
 /// what it was before a study could do otherwise.
 bool is_default_noted(const Study& study, const std::string& key, const std::string& value) {
@@ -145,22 +137,6 @@ Study parse_study(const std::string& text, const std::string& name,
 
 Study read_study(const std::filesystem::path& path, std::span<const std::string> overrides) {
   return parse_study(text_file(path), path.string(), path.parent_path(), overrides);
-}
-
-std::string study_of_log(const Study& study) {
-  expect(study.log != nullptr, "a log is asked for where nothing was recorded");
-  std::istringstream resolved(resolved_text(study));
-  std::string text, section;
-  for (std::string line; std::getline(resolved, line);) {
-    if (line.starts_with("[")) section = line;
-    if (section == "[scenario]") {
-      if (is_foreign(line)) continue;
-      if (line.starts_with("kind = ")) line = "kind = log";
-      if (line.starts_with("path = ")) line = "path = .";
-    }
-    text += line + "\n";
-  }
-  return text;
 }
 
 std::string resolved_text(const Study& study) {

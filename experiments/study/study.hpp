@@ -42,9 +42,4 @@ Study parse_study(const std::string& text, const std::string& name,
 /// gives the same study and the same text, so that its SHA-256 names the study.
 std::string resolved_text(const Study& study);
 
-/// The study file that does with the plain log beside it (scenario.kind = log) what `study` does
-/// with its recorded drive. The fingerprint of the drive stays, so that reading it proves that the
-/// log is the same drive.
-std::string study_of_log(const Study& study);
-
 }  // namespace montecarta::experiments

@@ -25,14 +25,11 @@ inline constexpr double kFarthestCoordinate = 1e6;
 /// way-points, and only places.
 void check_world(const World& world, const std::string& place);
 
-/// Reads a world from .csv (header `kind,x,y`, kind landmark or waypoint, # begins a comment) or
-/// from a MATLAB .mat with `lm` and `wp`. Throws StudyError naming file and line where it is
-/// missing or malformed.
+/// Reads a world from a .csv file (header `kind,x,y`, kind landmark or waypoint, # begins a
+/// comment). Throws StudyError naming file and line where it is missing or malformed.
 World read_world_file(const std::filesystem::path& path);
-World read_world_csv(const std::filesystem::path& path);
-World read_world_mat(const std::filesystem::path& path);
 
-/// Reads the world that a study calls `name`: a path ending in .csv or .mat, tried below each of
+/// Reads the world that a study calls `name`: a path to a .csv file, tried below each of
 /// `folders` and then as it stands, or else a shipped world.
 World find_world(const std::string& name, const std::vector<std::filesystem::path>& folders = {});
 

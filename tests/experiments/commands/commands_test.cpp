@@ -86,8 +86,6 @@ TEST_F(Commands, WrongInputIsNamedWithItsRemedy) {
   expect_wrong({"info", "absent.h5"}, "absent.h5");
   expect_wrong({"bounds", "--runs", "30"}, "--dim D");
   expect_wrong({"bounds", "--match", "2.19", "many"}, "--match many: no end of an interval");
-  expect_wrong({"convert", "blink.ini"}, "-o DIR is where the log goes");
-  expect_wrong({"convert", "blink.ini", "-o", "log"}, "the drives of this study are simulated");
   expect_wrong({"report", "absent.h5"}, "figures need a place");
   expect_wrong({"plan", "--dim", "3"}, "--ratio R");
   expect_wrong({"plan", "--dim", "3", "--ratio", "1"}, "neither 1 nor 0");

@@ -5,6 +5,8 @@
 #include "experiments/worlds/world.hpp"
 #include "filters/models/ackermann.hpp"
 #include "tests/doubles/published_data.hpp"
+#include "tests/doubles/reader_program.hpp"
+#include "tests/doubles/scratch_folder.hpp"
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
@@ -218,9 +220,18 @@ TEST(SimulatedDrive, SaysWhichWaypointCannotBeReached) {
 // Facts of the benchmark map.
 TEST(SimulatedDrive, RepeatsThePublishedBenchmark) {
   const std::filesystem::path map = published_data("bailey/example_webmap.mat");
-  if (map.empty())
-    GTEST_SKIP() << "no bailey/example_webmap.mat: set MONTECARTA_DATA to the folder that holds it";
-  const World world = read_world_file(map);
+  if (map.empty() || !python_has("scipy")) {
+    GTEST_SKIP() << "no bailey/example_webmap.mat (set MONTECARTA_DATA to the folder that holds "
+                    "it), or no python3-scipy";
+  }
+  const ScratchFolder folder;
+  const std::filesystem::path csv = folder / "webmap.csv";
+  ASSERT_EQ(engine::run_program("/usr/bin/python3 -B " MONTECARTA_SOURCE_DIR
+                                "/experiments/convert/world.py " +
+                                map.string() + " -o " + csv.string())
+                .status,
+            0);
+  const World world = read_world_file(csv);
   const SimulatedDrive once(world, Scenario{}, 1);
   EXPECT_EQ(once.itinerary().steps(), 8778U);
   EXPECT_EQ(once.itinerary().scans(), 1097U);

@@ -118,7 +118,6 @@ TEST_F(RecordedStudy, SaysWhatDoesNotFitARecordedDrive) {
               HasSubstr("scenario.loops says nothing of a scenario of kind log (it is for "
                         "simulated): remove it"));
   EXPECT_THAT(complaint({"scenario.sigma_speed=2"}), HasSubstr("give it under [belief]"));
-  EXPECT_THAT(complaint({"scenario.steering=raw"}), HasSubstr("it is for victoria_park"));
   EXPECT_THAT(complaint({"scenario.path=nowhere"}),
               AllOf(HasSubstr("no folder 'nowhere'"), HasSubstr("MONTECARTA_DATA")));
   EXPECT_THAT(complaint({"scenario.reference=gpz"}), HasSubstr("did you mean gps?"));
@@ -140,16 +139,6 @@ TEST_F(RecordedStudy, JudgesByTheReferenceThatItNames) {
   EXPECT_EQ(study.settings.text("scenario", "data_sha256"),
             read(kStudy).settings.text("scenario", "data_sha256"))
       << "the drive is the same";
-}
-
-TEST_F(RecordedStudy, AStudyOfTheLogIsTheSameStudyOfTheSameDrive) {
-  const Study study = read(kStudy, {"scenario.reference=gps"});
-  write_log_csv(*study.log, folder_ / "copy");
-  const Study again = parse_study(study_of_log(study), "study.ini", folder_ / "copy");
-  EXPECT_EQ(again.settings.text("scenario", "data_sha256"),
-            study.settings.text("scenario", "data_sha256"));
-  EXPECT_EQ(again.cells.size(), 1U);
-  EXPECT_EQ(again.settings.section("belief"), study.settings.section("belief"));
 }
 
 TEST_F(RecordedStudy, AsksForTheVehicleAndNoiseOfADriveOfTheUsersOwn) {

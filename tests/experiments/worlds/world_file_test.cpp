@@ -4,12 +4,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <matio.h>
 
 #include <fstream>
 #include <string>
 #include <unistd.h>
-#include <vector>
 
 namespace montecarta::experiments {
 namespace {
@@ -41,17 +39,6 @@ class WorldFile : public testing::Test {
       return error.what();
     }
     return "nothing";
-  }
-  void write_mat(const fs::path& path, const char* name, std::vector<double> values,
-                 std::size_t rows) const {
-    mat_t* file = fs::exists(path) ? Mat_Open(path.c_str(), MAT_ACC_RDWR)
-                                   : Mat_CreateVer(path.c_str(), nullptr, MAT_FT_MAT5);
-    std::size_t sides[2] = {rows, values.size() / rows};
-    matvar_t* variable =
-        Mat_VarCreate(name, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, sides, values.data(), 0);
-    Mat_VarWrite(file, variable, MAT_COMPRESSION_NONE);
-    Mat_VarFree(variable);
-    Mat_Close(file);
   }
 
   fs::path folder_;
@@ -92,29 +79,14 @@ TEST_F(WorldFile, NamesFileLineReasonAndRemedy) {
   EXPECT_THAT(complaint(""), HasSubstr("empty (the first row names the columns)"));
 }
 
-TEST_F(WorldFile, ReadsMatlabMapsLyingAndStanding) {
-  const fs::path path = folder_ / "map.mat";
-  write_mat(path, "lm", {1, 2, 3, 4, 5, 6}, 2);        // 2 x 3, column by column
-  write_mat(path, "wp", {10, 20, 30, 11, 21, 31}, 3);  // 3 x 2
-  const World world = read_world_file(path);
-  ASSERT_EQ(world.landmarks.size(), 3U);
-  EXPECT_EQ(world.landmarks[1], Eigen::Vector2d(3, 4));
-  ASSERT_EQ(world.waypoints.size(), 3U);
-  EXPECT_EQ(world.waypoints[2], Eigen::Vector2d(30, 31));
-}
-
-TEST_F(WorldFile, RefusesMatlabFilesThatAreNoMaps) {
-  const fs::path path = folder_ / "map.mat";
-  write_mat(path, "wp", {10, 20, 30, 11, 21, 31}, 2);
-  EXPECT_THROW(read_world_file(path), StudyError) << "no lm";
-  write_mat(path, "lm", {1, 2, 3, 4, 5, 6, 7, 8, 9}, 3);
-  EXPECT_THROW(read_world_file(path), StudyError) << "3 x 3";
-  EXPECT_THROW(read_world_file(write("text.mat", "kind,x,y\n")), StudyError) << "no MATLAB file";
-}
-
 TEST_F(WorldFile, SaysWhatThereIsWhereAWorldIsMissing) {
   EXPECT_THROW(read_world_file(folder_ / "absent.csv"), StudyError);
-  EXPECT_THROW(read_world_file(write("map.txt", "")), StudyError);
+  try {
+    find_world("map.mat", {write("map.mat", "MATLAB 5.0").parent_path()});
+    ADD_FAILURE() << "a MATLAB file was read";
+  } catch (const StudyError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("map.mat"), HasSubstr("convert/world.py")));
+  }
   try {
     find_world("web_lop");
     ADD_FAILURE() << "a world of that name exists";

@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the scripts of this folder share: reading foreign files, and writing the CSV files that
+montecarta reads (experiments/RECORDED_DRIVES.md). Needs NumPy and SciPy (.ci/packages.txt, group
+`convert`).
+"""
+import argparse
+import os
+import sys
+from decimal import Decimal
+
+try:
+    import numpy as np
+    import scipy.io
+except ImportError as missing:
+    sys.exit(f"{os.path.basename(sys.argv[0])}: {missing.name} is missing (these scripts compute "
+             "with NumPy and SciPy): bash .ci/install-packages convert")
+
+LASER_BEAMS = 361  # of a sweep: half a degree apart, beam 0 right, 180 ahead, 360 left
+ROUNDING = 0.0006  # [s]: the list of all records has times in whole milliseconds
+SENSORS = ("GPS", "odometry", "laser")
+
+
+class ConversionError(Exception):
+    """A file is missing, damaged or another one than expected. "file: problem (why): remedy"."""
+
+
+def number_text(value):
+    """The shortest text of a number that reads back as the same bits, without an exponent unless
+    that makes it shorter: "0.1", "-0", "12", "1e-05"."""
+    text = repr(float(value)).removesuffix(".0")
+    if "e" not in text and (1e-3 <= abs(value) < 1e5 or value == 0.0):
+        return text
+    number = Decimal(text)
+    sign, digits, exponent = number.as_tuple()
+    mantissa = "".join(map(str, digits)).rstrip("0")
+    exponent += len(digits) - 1
+    point = "." if len(mantissa) > 1 else ""
+    scientific = (f"{'-' * sign}{mantissa[0]}{point}{mantissa[1:]}"
+                  f"e{'-' if exponent < 0 else '+'}{abs(exponent):02d}")
+    return min(format(number, "f"), scientific, key=len)
+
+
+def finite_number(word):
+    """The finite number that a word is, else None."""
+    try:
+        value = float(word)
+    except ValueError:
+        return None
+    return value if abs(value) < float("inf") and "_" not in word else None
+
+
+def text_of(path):
+    """The whole text of a file."""
+    try:
+        with open(path, encoding="utf-8", errors="replace") as file:
+            return file.read()
+    except OSError as error:
+        raise ConversionError(f"{path}: cannot be opened ({error.strerror}): check the path and "
+                              "its permissions") from None
+
+
+def numbers_in(path, width, record_is_line=True):
+    """The records of a text file of numbers between white space, {record, width}. A record is a
+    line, or else as many numbers as it has, wherever lines end."""
+    text = text_of(path)
+    words = text.split()
+    if words and not text[-1].isspace():
+        raise ConversionError(
+            f"{path}: record {(len(words) - 1) // width + 1}: '{words[-1][:40]}' ends with the "
+            "file (it may have been cut short within the number): take the whole file as published")
+    lines = [line.split() for line in text.splitlines()] if record_is_line else [words]
+    record = 0
+    for line in filter(None, lines):
+        for k, word in enumerate(line):
+            if finite_number(word) is None:
+                raise ConversionError(
+                    f"{path}: record {record + k // width + 1}: '{word[:40]}' is no finite number "
+                    "(only numbers stand here): take the file as published")
+        if len(line) % width or (record_is_line and len(line) != width):
+            found = len(line) if record_is_line else len(line) % width
+            raise ConversionError(
+                f"{path}: record {record + len(line) // width * (not record_is_line) + 1}: "
+                f"{found} of {width} numbers (some are missing, or left over): take the whole "
+                "file as published")
+        record += len(line) // width
+    return np.array(words, dtype=float).reshape(-1, width)
+
+
+class MatFile:
+    """The variables of a MATLAB file up to version 7."""
+
+    def __init__(self, path):
+        self.path = path
+        try:
+            self.variables = scipy.io.loadmat(path, appendmat=False)
+        except OSError as error:
+            raise ConversionError(f"{path}: cannot be opened ({error}): check the path and its "
+                                  "permissions") from None
+        except Exception as fault:  # a damaged file: SciPy has no kind of error for it
+            raise ConversionError(
+                f"{path}: is damaged or no MATLAB file up to version 7 ({fault}): take the file "
+                "as published, or save it with -v7") from None
+
+    def matrix(self, name):
+        """A real matrix of numbers, as doubles."""
+        values = self.variables.get(name)
+        if not isinstance(values, np.ndarray) or values.ndim != 2 or values.dtype.kind not in "iuf":
+            known = ", ".join(key for key in self.variables if not key.startswith("__"))
+            raise ConversionError(f"{self.path}: no variable '{name}' (a real matrix of numbers; "
+                                  f"there are: {known[:200]}): save it under that name")
+        return values.astype(float)
+
+    def series(self, name, count=None):
+        """One row or one column; of `count` records, if that is given."""
+        values = self.matrix(name)
+        if 1 not in values.shape:
+            raise ConversionError(f"{self.path}: '{name}' is {values.shape[0]} x {values.shape[1]} "
+                                  "(one row or one column is needed): save it so")
+        if count is not None and values.size != count:
+            raise ConversionError(f"{self.path}: '{name}' has {values.size} records of {count} (as "
+                                  "many as times are needed): take the file as published")
+        if not np.all(np.isfinite(values)):
+            raise ConversionError(
+                f"{self.path}: '{name}': record {np.argmin(np.isfinite(values.ravel())) + 1} is no "
+                "finite number (only numbers stand here): take the file as published")
+        return values.ravel()
+
+    def sweeps(self, name, count):
+        """{scan, beam}: one row for each of `count` scans."""
+        values = self.matrix(name)
+        if values.shape != (count, LASER_BEAMS):
+            raise ConversionError(
+                f"{self.path}: '{name}' is {values.shape[0]} x {values.shape[1]} (each of {count} "
+                f"scans has {LASER_BEAMS} beams): take the file as published")
+        return values
+
+
+def check_times(times, path):
+    """Refuses no records, and times that do not increase."""
+    if len(times) == 0:
+        raise ConversionError(f"{path}: no records (it is empty): take the file as published")
+    wrong = np.flatnonzero(~(np.diff(times) > 0))
+    if wrong.size:
+        k = int(wrong[0])
+        raise ConversionError(
+            f"{path}: record {k + 2}: time {number_text(times[k + 1])} s comes after "
+            f"{number_text(times[k])} s (times must increase): take the file as published")
+
+
+def check_sweeps(sweeps, path):
+    """Refuses ranges that are negative or no numbers."""
+    wrong = np.argwhere(~(sweeps >= 0))
+    if wrong.size:
+        scan, beam = wrong[0]
+        raise ConversionError(
+            f"{path}: record {scan + 1}: {sweeps[scan, beam]:g} of beam {beam} (a beam "
+            "measures 0 or more; 80 m or more where nothing came back): take the file as published")
+
+
+def check_events(events, times, path):
+    """`events` {record, (time, sensor, index)} must list every record of the sensors 1, 2 and 3,
+    whose `times` were read, once and in order; None for a sensor that was not read. Finds missing
+    records where a sensor's file alone still looks whole."""
+    def refuse(fault):
+        raise ConversionError(f"{path}: {fault} (the list and the sensors' files must be of one "
+                              "drive): take all files as published")
+
+    seen = [0, 0, 0]
+    for k, (time, number, index) in enumerate(events):
+        if number not in (1, 2, 3):
+            refuse(f"record {k + 1}: sensor {number_text(number)} is none of 1, 2, 3")
+        sensor = int(number) - 1
+        expected, own = seen[sensor], times[sensor]
+        if own is None:
+            continue
+        if (index != expected + 1 or expected >= len(own)
+                or not abs(own[expected] - time) <= ROUNDING):
+            refuse(f"record {k + 1} ({SENSORS[sensor]}): record {number_text(index)} at "
+                   f"{number_text(time)} s is not the next of that sensor's {len(own)}")
+        seen[sensor] += 1
+    for sensor, own in enumerate(times):
+        if own is not None and seen[sensor] != len(own):
+            refuse(f"{seen[sensor]} of {len(own)} records of {SENSORS[sensor]} are listed")
+
+
+def write_rows(path, header, rows):
+    """A CSV file: the header, then rows of numbers; a row that is a text stands as it is."""
+    with open(path, "x", encoding="utf-8") as file:
+        file.write(header + "\n")
+        for row in rows:
+            file.write((row if isinstance(row, str) else ",".join(map(number_text, row))) + "\n")
+
+
+def write_log(folder, start, odometry, scans, references, landmarks=()):
+    """Writes a drive as the CSV log of experiments/RECORDED_DRIVES.md into a new or empty folder.
+    `start` is (time, x, y, heading), `odometry` has rows (time, speed, steer), `scans` are (time,
+    [(range, bearing), ...]), `references` {name: rows (time, x, y)}; seconds, metres, radians."""
+    if os.path.isdir(folder) and os.listdir(folder):
+        raise ConversionError(f"{folder}: not empty (what lies there would be read with the log): "
+                              "name a new folder")
+    os.makedirs(folder, exist_ok=True)
+    write_rows(os.path.join(folder, "start.csv"), "time_s,x_m,y_m,heading_rad", [start])
+    write_rows(os.path.join(folder, "odometry.csv"), "time_s,speed_mps,steer_rad", odometry)
+    detections = []
+    for time, seen in scans:
+        detections += [(time, *one) for one in seen] or [number_text(time) + ",,"]
+    write_rows(os.path.join(folder, "detections.csv"), "time_s,range_m,bearing_rad", detections)
+    for name, fixes in references.items():
+        write_rows(os.path.join(folder, f"reference_{name}.csv"), "time_s,x_m,y_m", fixes)
+    if len(landmarks):
+        write_rows(os.path.join(folder, "landmarks.csv"), "x_m,y_m", landmarks)
+
+
+def parser_of(text):
+    """The parser of a script's arguments; `text` is the script's docstring."""
+    return argparse.ArgumentParser(description=text,
+                                   formatter_class=argparse.RawDescriptionHelpFormatter)
+
+
+def run(convert, arguments):
+    """Calls convert(arguments). A ConversionError, or a fault of the disk, ends the script with
+    its text and code 2."""
+    try:
+        convert(arguments)
+    except (ConversionError, OSError) as error:
+        print(f"{os.path.basename(sys.argv[0])}: {error}", file=sys.stderr)
+        sys.exit(2)
