@@ -114,7 +114,6 @@ ImportedState imported_state(const StoredCell& cell) {
   found.convention = setting("error");
   found.components = words_in(setting("components"));
   found.units = words_in(setting("units"));
-  found.lacks_cross_terms = !setting("cross_terms").empty();
   return found;
 }
 
@@ -129,12 +128,6 @@ std::vector<std::string> imported_notes(const StudyAnalysis& study) {
   std::vector<std::string> notes = {
       "Imported estimates of another program, error " + study.imported.convention + " (" +
       sentence_on(study.imported.convention) + "), components " + components_text(study) + "."};
-  if (study.imported.lacks_cross_terms) {
-    notes.emplace_back(
-        "The files give no covariance between position and rotation: it is taken as 0. What ANEES "
-        "is expected to be does not depend on that; how much it varies does, so that the verdict "
-        "of few runs is less certain than it says.");
-  }
   for (const CellAnalysis& cell : study.cells) {
     const std::string hint =
         in_words(cell.get<ConventionHint>(), cell.label, study.imported.convention);

@@ -68,7 +68,7 @@ struct Components {
 
 /// nullopt if a variance is negative, or a covariance larger than two variances allow.
 std::optional<Components> open_components(const Eigen::VectorXd& error, const Eigen::MatrixXd& P,
-                                        const Eigen::VectorXd& least_variance) {
+                                          const Eigen::VectorXd& least_variance) {
   Components found;
   for (Eigen::Index i = 0; i < error.size(); ++i) {
     if (P(i, i) > least_variance(i)) {

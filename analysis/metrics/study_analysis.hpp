@@ -37,7 +37,6 @@ struct ImportedState {
   std::string convention;  ///< of the error: "world", "body" or "right-invariant"
   std::vector<std::string> components = {"x", "y", "heading"};
   std::vector<std::string> units = {"m", "m", "rad"};
-  bool lacks_cross_terms = false;  ///< between position and rotation: taken as 0
 
   bool is_imported() const { return !state.empty(); }
 };

@@ -94,9 +94,10 @@ Command judge_command() {
        .details =
            "Columns: time_s, then x_m,y_m,heading_rad or x_m,y_m,z_m,qx,qy,qz,qw or any others, "
            "then\ncov_A_B (components or indices from 0), all or one triangle; perhaps nis,nis_dof "
-           "(innovations),\nor innovation.csv beside estimate.csv. Truths have no covariance. Also "
-           "TUM trajectories, with the\ncovariances of OpenVINS behind them or STEM.cov beside. "
-           "Nothing is aligned.\n\n--error says of which error:\n" +
+           "(innovations),\nor innovation.csv beside estimate.csv. Truths have no covariance. "
+           "Nothing is "
+           "aligned. Trajectories in\nthe layouts of TUM and OpenVINS become such files by "
+           "experiments/convert/trajectory.py.\n\n--error says of which error:\n" +
            explained_conventions() + "\n" + pairing_rule() +
            "\nexample:\n"
            "  montecarta judge runs/*/estimate.csv --truth runs/*/truth.csv --error world -o "

@@ -4,7 +4,6 @@
 #include "experiments/files/files.hpp"
 #include "experiments/judging/judged_study.hpp"
 #include "experiments/judging/state_rows.hpp"
-#include "experiments/judging/tum_rows.hpp"
 #include "experiments/text/words.hpp"
 
 #include <memory>
@@ -37,19 +36,15 @@ std::string contents_of(const std::vector<std::filesystem::path>& files) {
   for (const std::filesystem::path& file : files) {
     all += sha256(whole_file(file)) + "\n";
     if (const auto beside = innovations_beside(file)) all += sha256(whole_file(*beside)) + "\n";
-    if (!is_tum(file)) continue;
-    if (const auto beside = covariance_beside(file)) all += sha256(whole_file(*beside)) + "\n";
   }
   return sha256(all);
 }
 
 TextPairs import_settings(const StateRows& first, const JudgingOptions& options) {
-  TextPairs settings = {{"state", name_of(first.shape.kind)},
-                        {"error", name_of(*options.convention)},
-                        {"components", joined(first.shape.components)},
-                        {"units", joined(first.shape.units)}};
-  if (!first.has_cross_terms) settings.emplace_back("cross_terms", "none, taken as 0");
-  return settings;
+  return {{"state", name_of(first.shape.kind)},
+          {"error", name_of(*options.convention)},
+          {"components", joined(first.shape.components)},
+          {"units", joined(first.shape.units)}};
 }
 
 std::string import_text(const JudgedFiles& files, const TextPairs& settings) {
@@ -72,8 +67,7 @@ Cell imported_cell(const EstimatorFiles& files, const StateRows& first, const Te
   cell.long_name = files.cell + " (imported)";
   cell.error_components = first.shape.dimension();
   cell.innovations = !first.nis.empty();
-  // A layout without cross terms says of which error its covariance is.
-  cell.several_conventions = first.has_cross_terms && conventions_of(first.shape.kind).size() > 1;
+  cell.several_conventions = conventions_of(first.shape.kind).size() > 1;
   cell.poses = first.shape.kind == StateKind::pose;
   cell.settings = settings;
   return cell;

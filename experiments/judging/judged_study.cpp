@@ -28,11 +28,6 @@ void expect_alike(const StateRows& rows, const fs::path& path, const StateRows& 
     throw StudyError(path.string() + ": " + (rows.nis.empty() ? "no nis" : "has nis") + " (in " +
                      first_path.string() + " it is otherwise): give it in all files or in none");
   }
-  if (rows.has_cross_terms != first.has_cross_terms) {
-    throw StudyError(path.string() + ": another layout than " + first_path.string() +
-                     " (one of the two has no covariance between position and rotation): judge "
-                     "them apart");
-  }
   if (rows.time.size() > first.time.size()) {
     throw StudyError(path.string() + ": " + std::to_string(rows.time.size()) + " rows, " +
                      first_path.string() + " has " + std::to_string(first.time.size()) +
@@ -178,27 +173,19 @@ void write_runs(const JudgedFiles& files, const JudgingOptions& options, const L
 }
 
 /// The convention that is said, or the only one that the state has. Throws StudyError if nothing is
-/// said and it has several, or if the layout of the file contradicts.
-ErrorConvention stated_error(const LongestRun& longest, std::optional<ErrorConvention> answer) {
+/// said and it has several.
+ErrorConvention stated_error(const LongestRun& longest, std::optional<ErrorConvention> said) {
   const auto known = conventions_of(longest.rows.shape.kind);
-  if (!answer && known.size() == 1) return known.front();
-  if (!answer) {
+  if (!said && known.size() == 1) return known.front();
+  if (!said) {
     throw StudyError(
         "judge: --error is missing (the covariance is that of an error, and nothing tells which; "
         "the wrong one makes a wrong verdict): say --error with one of\n" +
         explained_conventions());
   }
-  const ErrorConvention said = *answer;
-  if (std::ranges::find(known, said) == known.end()) {
-    throw StudyError("--error " + name_of(said) + ": not of a vector (" + longest.path.string() +
-                     " has no pose, which alone has a frame): say --error world");
-  }
-  if (longest.rows.has_cross_terms || said == ErrorConvention::world) return said;
-  throw StudyError("--error " + name_of(said) + ": not of OpenVINS' layout (" +
-                   longest.path.string() +
-                   " has the position's covariance in the map and the rotation's in the body, "
-                   "which is turned into the map): say --error world, or write whole covariances "
-                   "as CSV");
+  if (std::ranges::find(known, *said) != known.end()) return *said;
+  throw StudyError("--error " + name_of(*said) + ": not of a vector (" + longest.path.string() +
+                   " has no pose, which alone has a frame): say --error world");
 }
 
 }  // namespace

@@ -14,6 +14,14 @@
 namespace montecarta::experiments {
 namespace {
 
+const StateShape& pose_in_space_shape() {
+  static const StateShape shape = {StateKind::pose_in_space,
+                                   {"x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"},
+                                   {"x", "y", "z", "rx", "ry", "rz"},
+                                   {"m", "m", "m", "rad", "rad", "rad"}};
+  return shape;
+}
+
 using Names = std::vector<std::string>;
 
 const std::string kTimeColumn = "time_s", kCovariancePrefix = "cov_";
@@ -35,7 +43,9 @@ std::size_t place_of_name(const Names& names, const std::string& name) {
 void check_header(const Names& header, const std::string& place) {
   if (header.front() != kTimeColumn) {
     throw StudyError(place + ": '" + excerpt(header.front()) +
-                     "' is not the first column (times come first): begin the header with time_s");
+                     "' is not the first column (times come first): begin the header with time_s, "
+                     "or convert a trajectory by "
+                     "experiments/convert/trajectory.py");
   }
   for (std::size_t i = 0; i < header.size(); ++i) {
     if (header[i].empty() || place_of_name(header, header[i]) != i) {
@@ -159,14 +169,6 @@ bool is_of_state(const std::string& name) {
 }
 
 }  // namespace
-
-const StateShape& pose_in_space_shape() {
-  static const StateShape shape = {StateKind::pose_in_space,
-                                   {"x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"},
-                                   {"x", "y", "z", "rx", "ry", "rz"},
-                                   {"m", "m", "m", "rad", "rad", "rad"}};
-  return shape;
-}
 
 std::string name_of(StateKind kind) {
   return kind == StateKind::pose            ? "pose"

@@ -31,9 +31,6 @@ struct StateShape {
   bool operator==(const StateShape&) const = default;
 };
 
-/// That of a pose in space, whatever layout it is in.
-const StateShape& pose_in_space_shape();
-
 /// Where a file has what: fields of a row.
 struct EstimateFields {
   StateShape shape;

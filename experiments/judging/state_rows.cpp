@@ -7,7 +7,6 @@
 #include "experiments/files/csv_rows.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/judging/state_columns.hpp"
-#include "experiments/judging/tum_rows.hpp"
 #include "experiments/text/words.hpp"
 
 #include <Eigen/Geometry>
@@ -23,6 +22,26 @@ namespace {
 /// Printed with three digits a quaternion is as long as this.
 constexpr double kQuaternionPlaceSlack = 2e-3;
 constexpr Eigen::Index kQuaternionPlace = 3;  // behind x, y, z
+
+/// Adds the time [s] of the next row.
+void take_time(double time, const std::string& place, std::vector<double>& times) {
+  if (!times.empty() && time <= times.back()) {
+    throw StudyError(place + ": time " + to_text(time) +
+                     " s is not later than that of the row before (rows go forward in time): sort "
+                     "them, one row for each time");
+  }
+  times.push_back(time);
+}
+
+/// Makes the quaternion at the end of the state of a pose in space one of length 1.
+void normalise_quaternion(Eigen::VectorXd& state, const std::string& place) {
+  const double length = state.tail<4>().norm();
+  if (std::abs(length - 1.0) > kQuaternionPlaceSlack) {
+    throw StudyError(place + ": the quaternion has length " + to_text(length) +
+                     " (of a rotation it is 1): write qx, qy, qz, qw of a unit quaternion");
+  }
+  state.tail<4>() /= length;
+}
 
 Eigen::VectorXd state_in(const CsvRows& rows, const std::vector<std::size_t>& fields,
                          const StateShape& shape) {
@@ -122,26 +141,7 @@ std::uint32_t checked_dof(double nis, double dof, const std::string& place) {
                    "nothing was observed");
 }
 
-void take_time(double time, const std::string& place, std::vector<double>& times) {
-  if (!times.empty() && time <= times.back()) {
-    throw StudyError(place + ": time " + to_text(time) +
-                     " s is not later than that of the row before (rows go forward in time): sort "
-                     "them, one row for each time");
-  }
-  times.push_back(time);
-}
-
-void normalise_quaternion(Eigen::VectorXd& state, const std::string& place) {
-  const double length = state.tail<4>().norm();
-  if (std::abs(length - 1.0) > kQuaternionPlaceSlack) {
-    throw StudyError(place + ": the quaternion has length " + to_text(length) +
-                     " (of a rotation it is 1): write qx, qy, qz, qw of a unit quaternion");
-  }
-  state.tail<4>() /= length;
-}
-
 StateRows read_estimates(const std::filesystem::path& path) {
-  if (is_tum(path)) return read_tum_estimates(path);
   CsvRows file(path);
   const EstimateFields fields = estimate_fields(file.columns(), file.place());
   StateRows rows{fields.shape, {}, {}, {}, {}, {}};
@@ -163,12 +163,10 @@ std::size_t rows_in(const std::filesystem::path& path) {
     rest.remove_prefix(std::min(length + 1, rest.size()));
     if (!trimmed(line.substr(0, line.find('#'))).empty()) ++lines;
   }
-  const std::size_t header = is_tum(path) ? 0 : 1;
-  return lines - std::min(lines, header);
+  return lines - std::min<std::size_t>(lines, 1);  // the header
 }
 
 StateRows read_truth(const std::filesystem::path& path, const StateShape& shape) {
-  if (is_tum(path)) return read_tum_truth(path, shape);
   CsvRows file(path);
   const std::vector<std::size_t> fields = truth_fields(file.columns(), shape, file.place());
   StateRows rows{shape, {}, {}, {}, {}, {}};

@@ -22,13 +22,10 @@ struct StateRows {
   std::vector<Eigen::MatrixXd> covariance;  ///< {row}{d, d} as it stands there; empty of a truth
   std::vector<double> nis;                  ///< {row} empty where it is not there
   std::vector<std::uint32_t> nis_dof;       ///< {row} likewise
-  /// Whether the file has covariances between position and rotation; else they are 0 here.
-  bool has_cross_terms = true;
 };
 
-/// Reads estimates: mean and covariance at times, from CSV or in one of the layouts of
-/// tum_rows.hpp. Throws StudyError naming file, line and remedy where the file is empty, damaged,
-/// or has numbers that are not finite.
+/// Reads estimates from CSV: mean and covariance at times. Throws StudyError naming file, line and
+/// remedy where the file is empty, damaged, or has numbers that are not finite.
 StateRows read_estimates(const std::filesystem::path& path);
 
 /// How many lines of numbers a file has, as far as that can be said without reading them.
@@ -40,14 +37,6 @@ StateRows read_truth(const std::filesystem::path& path, const StateShape& shape)
 /// The number of components of a NIS. Throws StudyError beginning with `place` where the two are
 /// not a sum of squares and a count.
 std::uint32_t checked_dof(double nis, double dof, const std::string& place);
-
-/// Adds the time [s] of the next row. Throws StudyError beginning with `place` where it is not
-/// later than the last one.
-void take_time(double time, const std::string& place, std::vector<double>& times);
-
-/// Makes the quaternion at the end of the state of a pose in space one of length 1. Throws
-/// StudyError beginning with `place` where it is none.
-void normalise_quaternion(Eigen::VectorXd& state, const std::string& place);
 
 /// How the truth is found at the time of an estimate.
 struct TimeMatch {

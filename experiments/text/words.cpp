@@ -8,7 +8,6 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <sstream>
 #include <system_error>
 
 namespace montecarta::experiments {
@@ -62,13 +61,6 @@ void split_into(std::string_view text, char separator, std::vector<std::string_v
     parts.push_back(trimmed(text.substr(begin, end - begin)));
     begin = end + 1;
   }
-}
-
-std::vector<std::string> words_of(std::string_view text) {
-  std::vector<std::string> words;
-  std::istringstream stream{std::string(text)};
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
 }
 
 std::string joined(std::span<const std::string> parts, std::string_view between) {

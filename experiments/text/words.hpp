@@ -16,8 +16,6 @@ std::string_view trimmed(std::string_view text);
 std::vector<std::string> split(std::string_view text, char separator);
 /// Likewise, as views of `text`, into `parts`.
 void split_into(std::string_view text, char separator, std::vector<std::string_view>& parts);
-/// The parts of `text` between runs of white space; "" has none.
-std::vector<std::string> words_of(std::string_view text);
 /// "a, b, c".
 std::string joined(std::span<const std::string> parts, std::string_view between = ", ");
 /// `text` as an error message may quote it: its first 40 bytes, with ? for what cannot be printed.

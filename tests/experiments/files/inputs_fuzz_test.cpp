@@ -55,14 +55,6 @@ TEST(InputsFuzz, Estimates) {
   EXPECT_GT(refused(path, 2000, [&] { read_estimates(path); }), 500U);
 }
 
-TEST(InputsFuzz, Trajectories) {
-  const ScratchFolder folder;
-  const fs::path path = folder / "estimate.txt";
-  const std::string row = ".5 1 2 3 0 0 0.6 0.8 1 0 0 1 0 1 2 0 0 2 0 2\n";
-  write_text(path, "# timestamp tx ty tz qx qy qz qw\n1" + row + "2" + row);
-  EXPECT_GT(refused(path, 2000, [&] { read_estimates(path); }), 500U);
-}
-
 TEST(InputsFuzz, Innovations) {
   const ScratchFolder folder;
   const fs::path path = folder / "innovation.csv";
