@@ -12,8 +12,9 @@ try:
     import numpy as np
     import scipy.io
 except ImportError as missing:
-    sys.exit(f"{os.path.basename(sys.argv[0])}: {missing.name} is missing (these scripts compute "
-             "with NumPy and SciPy): bash .ci/install-packages convert")
+    sys.exit(f"{os.path.basename(sys.argv[0])}: {missing.name} is missing in this Python (these "
+             "scripts compute with NumPy and SciPy): bash .ci/install-packages convert, and call "
+             "the script by /usr/bin/python3")
 
 LASER_BEAMS = 361  # of a sweep: half a degree apart, beam 0 right, 180 ahead, 360 left
 ROUNDING = 0.0006  # [s]: the list of all records has times in whole milliseconds
@@ -93,10 +94,10 @@ class MatFile:
         self.path = path
         try:
             self.variables = scipy.io.loadmat(path, appendmat=False)
-        except OSError as error:
-            raise ConversionError(f"{path}: cannot be opened ({error}): check the path and its "
-                                  "permissions") from None
-        except Exception as fault:  # a damaged file: SciPy has no kind of error for it
+        except Exception as fault:  # SciPy has no kind of error for a damaged file
+            if isinstance(fault, OSError) and fault.errno:
+                raise ConversionError(f"{path}: cannot be opened ({fault.strerror}): check the "
+                                      "path and its permissions") from None
             raise ConversionError(
                 f"{path}: is damaged or no MATLAB file up to version 7 ({fault}): take the file "
                 "as published, or save it with -v7") from None

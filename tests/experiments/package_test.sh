@@ -27,7 +27,8 @@ grep -q first_study <<<"$(montecarta list studies)" || fail "no studies"
 verdict=$(montecarta run first_study --runs 0:2) || fail "run first_study"
 grep -q 'ekf_slam' <<<"$verdict" || fail "no verdict: $verdict"
 [ -s first_study_report/index.html ] || fail "no page"
-for file in worlds/web_loop.csv studies/first_study.ini external/python/ekf_slam.py; do
+for file in worlds/web_loop.csv studies/first_study.ini external/python/ekf_slam.py \
+  convert/conversion.py; do
   [ -s "$folder/root/usr/share/montecarta/$file" ] || fail "$file is not in the package"
 done
 /usr/bin/python3 -B -c 'import montecarta_filter' || fail "montecarta_filter.py"

@@ -191,6 +191,13 @@ class CarPark(Scripts):
             self.save("park/data_set.mat", {**self.variables, name: values})
             self.expect_refused(car_park, ("data_set.mat", piece, "): "), **self.arguments)
 
+    def test_knows_a_file_that_was_cut_short_from_one_that_is_missing(self):
+        with open(self.path("park/data_set.mat"), "rb+") as file:
+            file.truncate(5000)
+        self.expect_refused(car_park, ("data_set.mat", "damaged"), **self.arguments)
+        os.remove(self.path("park/data_set.mat"))
+        self.expect_refused(car_park, ("data_set.mat", "cannot be opened"), **self.arguments)
+
     def test_converts_or_names_a_damaged_file(self):
         path, draw, refused = self.path("park/data_set.mat"), random.Random(1), 0
         with open(path, "rb") as file:
