@@ -14,18 +14,6 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Mean of the values that are numbers, in index order; NaN where there is none.
-double mean_of_numbers(const std::vector<double>& values) {
-  double sum = 0.0;
-  std::size_t n = 0;
-  for (const double value : values) {
-    if (std::isnan(value)) continue;
-    sum += value;
-    ++n;
-  }
-  return n == 0 ? kNaN : sum / static_cast<double>(n);
-}
-
 /// The ratio of a scan to what it should be, by the band for all scans: above 1 where the scan is
 /// above the band.
 Interval ratio_of_scan(const NeesSeries& series, std::size_t s) {
@@ -168,9 +156,9 @@ double expected_trimmed(std::size_t dimension) {
 Consistency judge(const NeesSeries& series, std::span<const double> times, double within) {
   Consistency result;
   result.within = within;
-  result.mean = mean_of_numbers(series.run_averages);
-  result.median = mean_of_numbers(series.median);
-  result.trimmed = mean_of_numbers(series.trimmed);
+  result.mean = mean_of_finite(series.run_averages);
+  result.median = mean_of_finite(series.median);
+  result.trimmed = mean_of_finite(series.trimmed);
   count_shares(series, result);
   compare_scans(series, times, result);
   compare_average(series, result);

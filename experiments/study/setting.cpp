@@ -59,16 +59,6 @@ void check_choice(const Option& option, const std::string& word, const std::stri
                    " is needed): " + nearest_spelling(word, option.choices));
 }
 
-/// A word of earlier versions is replaced by today's.
-std::string checked_choice(const Option& option, const std::string& word,
-                           const std::string& place) {
-  for (const auto& [former, choice] : option.former_choices) {
-    if (word == former) return choice;
-  }
-  check_choice(option, word, place);
-  return word;
-}
-
 /// In the order of the table, without repetition.
 std::string checked_choices(const Option& option, std::string_view text, const std::string& place) {
   const std::vector<std::string> given = split(text, ',');
@@ -133,7 +123,8 @@ std::string checked_value(const Option& option, std::string_view text, const std
     case Kind::count:
       return checked_count(option, text, place);
     case Kind::choice:
-      return checked_choice(option, std::string(text), place);
+      check_choice(option, std::string(text), place);
+      return std::string(text);
     case Kind::choices:
       return checked_choices(option, text, place);
   }

@@ -25,8 +25,6 @@ std::optional<Number> whole_text_as(std::string_view text) {
   return value;
 }
 
-constexpr std::string_view kBlank = " \t\r\n\f\v";
-
 /// The text in the quotes that begin at `at`, which becomes the place behind them.
 std::string between_quotes(std::string_view text, std::size_t& at) {
   const char quote = text[at];
@@ -148,9 +146,9 @@ std::string to_text(double value) {
 std::vector<std::string> quoted_words(std::string_view text) {
   std::vector<std::string> words;
   std::size_t at = 0;
-  while ((at = text.find_first_not_of(kBlank, at)) != std::string_view::npos) {
+  while ((at = text.find_first_not_of(kWhite, at)) != std::string_view::npos) {
     std::string word;
-    while (at < text.size() && kBlank.find(text[at]) == std::string_view::npos) {
+    while (at < text.size() && kWhite.find(text[at]) == std::string_view::npos) {
       if (text[at] == '"' || text[at] == '\'') {
         word += between_quotes(text, at);
       } else {

@@ -13,11 +13,9 @@ namespace {
 const std::vector<std::string> kEvolutionModes{"unbiased", "as_printed", "prior", "shared"};
 
 std::vector<Option> options_of_evolution() {
-  Option mode = choice_option("mode", "unbiased", kEvolutionModes,
-                              "what is evolved, and whether weights account for it (EQUATIONS 10)");
-  mode.former_choices = {{"honest", "unbiased"}};
   return {
-      std::move(mode),
+      choice_option("mode", "unbiased", kEvolutionModes,
+                    "what is evolved, and whether weights account for it (EQUATIONS 10)"),
       number_option("scale", "0.4", 0, 2, "F, of the difference vectors (EQUATIONS 9)"),
       number_option("crossover", "0.8", 0, 1, "Cr, share of components that cross"),
       count_option("generations", "10", 0, 1000, "at most; the paper does not say"),

@@ -32,8 +32,6 @@ struct Option {
   double least = 0.0;                        ///< inclusive, as `most`
   double most = 0.0;
   std::vector<std::string> choices = {};
-  /// (word of earlier versions, choice that it means); read, never written.
-  std::vector<std::pair<std::string, std::string>> former_choices = {};
   std::string meaning = {};  ///< one line, with unit and equation
   std::string example = {};  ///< offered as remedy where there is no fallback
   /// Left out of the resolved text where it and, for a belief, the scenario have the default: so

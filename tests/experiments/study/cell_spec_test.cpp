@@ -16,9 +16,8 @@ using testing::HasSubstr;
 std::vector<FilterKind> paper_filters() {
   const Option particles = count_option("particles", "100", 1, 1e6, "how many");
   const Option threshold = number_option("threshold", "0.5", 0, 1, "when to resample");
-  Option weight =
+  const Option weight =
       choice_option("weight", "closed", {"closed", "ratio", "as_printed"}, "which form");
-  weight.former_choices = {{"exact", "closed"}};
   Option younger = choice_option("younger", "no", {"no", "yes"}, "of a later version");
   younger.is_quiet = true;
   const auto kind = [](const char* name, const char* long_name, bool has_particles,
@@ -104,12 +103,6 @@ TEST(Cells, LeaveAYoungerOptionOutOfTheTextWhereItHasItsDefault) {
   const auto cells = cells_of(filters, {"plain younger=no,yes"});
   EXPECT_EQ(cell_line(cells[0]), "plain label=plain_younger_no threshold=0.5");
   EXPECT_EQ(cell_line(cells[1]), "plain label=plain_younger_yes threshold=0.5 younger=yes");
-}
-
-TEST(Cells, ReadAChoiceOfEarlierVersions) {
-  const auto filters = paper_filters();
-  const CellSpec cell = cells_of(filters, {"bold weight=exact"}).at(0);
-  EXPECT_EQ(cell_line(cell), "bold label=bold_m100 particles=100 threshold=0.5 weight=closed");
 }
 
 TEST(Cells, RefuseWhatAFilterDoesNotTake) {
