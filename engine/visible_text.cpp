@@ -27,9 +27,9 @@ std::size_t whole_character(std::string_view text) {
 }
 
 std::string hexadecimal(char c) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
+  constexpr std::string_view kHexadecimalDigits = "0123456789abcdef";
   const auto byte = static_cast<unsigned char>(c);
-  return std::string("\\x") + kDigits[byte >> 4U] + kDigits[byte & 15U];
+  return std::string("\\x") + kHexadecimalDigits[byte >> 4U] + kHexadecimalDigits[byte & 15U];
 }
 
 /// Control characters of ASCII, and those that two bytes spell (U+0080 to U+009F).
