@@ -53,8 +53,6 @@ enum class Draw : std::uint8_t {
   resampling = 18,       ///< index = 0 (systematic) or particle
   evolution = 19,        ///< differential evolution
   kernel_sample = 23,    ///< marginal filters: pose drawn from the chosen kernel, index = particle
-  heading_split = 24,    ///< bank of joint Gaussians: heading drawn, index = particle
-  split_stratum = 27,    ///< as heading_split: which stratum it is drawn from
   external_filter = 28,  ///< what a program outside of the process may seed its generator with
   analysis_bootstrap = 32,
   test = 255,

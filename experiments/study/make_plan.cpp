@@ -204,7 +204,7 @@ std::string objection_to_joint(const Study& study) {
   const auto has_joint = [](const CellSpec& cell) { return cell.filter->has_joint; };
   if (std::ranges::none_of(study.cells, has_joint)) {
     return "(none of the cells' filters has a joint covariance): take joint out, or add a cell of "
-           "ekf_slam, riekf_slam, hrb or smoother";
+           "ekf_slam, riekf_slam, relative_ekf_slam or smoother";
   }
   const Settings& settings = study.settings;
   if (settings.text("association", "kind") == "known" && settings.scenario_kind() == "simulated")

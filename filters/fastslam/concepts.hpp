@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/fastslam/delayed_map.hpp"
 #include "filters/fastslam/particle_maps.hpp"
 #include "filters/moments/linearised.hpp"
 #include "filters/moments/motion_increment.hpp"
@@ -80,25 +79,19 @@ template <class A, class Real>
 concept Associator = requires(A a, const A decided, const StepContext& context, Scan scan,
                               typename A::Maps& maps,
                               const std::vector<PoseGaussian<Real>>& predicted,
-                              const DelayedMap<Real>* joint, const Weights<Real>& weights,
-                              std::size_t block, std::size_t k) {
+                              const Weights<Real>& weights, std::size_t block, std::size_t k) {
   // a run: no landmark is known
   a.start();
-  // a scan: decides for all particles, by their `predicted` poses {block}; `joint` as a
-  // PoseProposal has it
-  a.associate(context, scan, maps, predicted, joint);
+  // a scan: decides for all particles, by their `predicted` poses {block}
+  a.associate(context, scan, maps, predicted);
   { decided.matched_nothing() } -> Is<bool>;
   // detections that some particle may have matched, and the weight of those that did
   { decided.matches() } -> Is<std::size_t>;
   { decided.matched_weight(k, weights) } -> Is<double>;
-  // the landmarks of all matches, each perhaps many times
-  { decided.matched_slots() } -> std::convertible_to<std::span<const std::uint32_t>>;
 
   // a block: first fetch(), then a Match for each k, and store() where its landmark changed
   decided.fetch(block);
   decided.store(block, k, decided.match(block, k));
-  // which landmark of a CorrelatedMap a match is: ForAll or ForEach; `index_of` {slot}
-  decided.where(block, k, /*index_of*/ std::span<const std::size_t>());
   // log p0 for every detection that a particle has not matched (EQUATIONS 17)
   { decided.unmatched_log_weight(block) } -> Is<Real>;
 
@@ -126,10 +119,8 @@ concept PoseProposal = requires(P p, const P now, const StepContext& context, st
   // what a particle believes of its pose before the scan is looked at
   { now.predicted(block, poses[block]) } -> Is<PoseGaussian<Real>>;
 
-  // a scan, once for all particles: before it is associated, and after
-  p.begin_scan(context, poses);
-  { now.joint() } -> Is<const DelayedMap<Real>*>;  // of pose and map, if one is kept
-  p.prepare(context, a, weights, poses, predicted, maps);
+  // a scan that was associated, once for all particles
+  p.prepare(context, a, weights, predicted);
 
   // a block: the pose refined by the scan, the pose drawn from that, and the landmarks updated
   // from there with the log of the weight's factor; P::Refined is what one leaves for the next
@@ -139,8 +130,7 @@ concept PoseProposal = requires(P p, const P now, const StepContext& context, st
 
   p.end_scan();
   p.initialise(fresh, poses[block], maps);  // fills the slot of a new landmark
-  // before the next step: `parents` of the particles, none where they were not resampled
-  p.begin_step(/*parents*/ std::span<const std::uint32_t>());
+  p.begin_step();                           // after resampling
   { now.estimate(weights, poses) } -> Is<PoseEstimate>;
 };
 

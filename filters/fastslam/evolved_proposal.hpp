@@ -60,8 +60,7 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
   /// Moves the cloud, in the modes in which it is one population.
   template <class Associating>
   void prepare(const StepContext& context, const Associating& association,
-               const Weights<Real>& weights, const std::vector<BasicPose<Real>>& /*poses*/,
-               const std::vector<PoseGaussian<Real>>& predicted, ParticleMaps<Real>& /*maps*/) {
+               const Weights<Real>& weights, const std::vector<PoseGaussian<Real>>& predicted) {
     if (settings_.mode == EvolutionMode::unbiased) return;
     for (std::size_t b = 0; b < predicted.size(); ++b) centres_[b] = predicted[b].mean;
     if (association.matches() == 0) return;

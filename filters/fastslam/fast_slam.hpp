@@ -47,7 +47,7 @@ class FastSlam final : public SlamFilter {
     resample();
     population_.begin_scan();
     predict_poses(context);
-    association_.associate(context, scan, maps_, predicted_, proposal_.joint());
+    association_.associate(context, scan, maps_, predicted_);
     const bool found = !association_.matched_nothing();
     if (found) weigh_and_draw(context);
     population_.report().association = association_.counts(weights());
@@ -71,7 +71,6 @@ class FastSlam final : public SlamFilter {
   const Weights<Real>& weights() const { return population_.weights(); }
 
   void predict_poses(const StepContext& context) {
-    proposal_.begin_scan(context, poses_);
     BlockTasks<Real>(poses_.size()).run(context, [&](std::size_t /*task*/, std::size_t b) {
       predicted_[b] = proposal_.predicted(b, poses_[b]);
     });
@@ -82,7 +81,7 @@ class FastSlam final : public SlamFilter {
     innovations_.start(tasks.count(), association_.matches());
     for (std::size_t k = 0; k < association_.matches(); ++k)
       innovations_.matched_weight(k) = association_.matched_weight(k, weights());
-    proposal_.prepare(context, association_, weights(), poses_, predicted_, maps_);
+    proposal_.prepare(context, association_, weights(), predicted_);
     tasks.run(context,
               [&](std::size_t task, std::size_t b) { weigh_and_draw_block(context, task, b); });
     proposal_.end_scan();
@@ -108,18 +107,17 @@ class FastSlam final : public SlamFilter {
       proposal_.initialise(fresh, poses_[fresh.block], maps_);
   }
 
-  /// Ends the time in which the particles of the last scan can be asked for.
+  /// Applies the pending resampling. The particles of the last scan are gone afterwards.
   void resample() {
     if (!population_.is_after_scan()) return;
-    std::span<const std::uint32_t> parents;
     if (population_.resample()) {
-      parents = population_.ancestors();
+      const std::span<const std::uint32_t> parents = population_.ancestors();
       gather<Real>(poses_, parents, resampled_poses_);
       std::swap(poses_, resampled_poses_);
       maps_.resample(parents);
       association_.resample(parents);
     }
-    proposal_.begin_step(parents);
+    proposal_.begin_step();
   }
 
   std::size_t components_;

@@ -134,6 +134,5 @@ FilterKind srcd_kind();
 FilterKind srcd_aided_kind();
 FilterKind srcd_pf_kind();
 FilterKind de_srcd_kind();
-FilterKind delayed_kind();
 
 }  // namespace montecarta::filters

@@ -30,9 +30,10 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
       : Cloud(particles, belief, time_of(form), pose_transform, map_transform), form_(form) {}
 
   /// Nothing is to be decided for all particles together.
-  template <class Associating, class... State>
+  template <class Associating>
   void prepare(const StepContext& /*context*/, const Associating& /*association*/,
-               State&... /*state*/) {}
+               const Weights<Real>& /*weights*/,
+               const std::vector<PoseGaussian<Real>>& /*predicted*/) {}
 
   template <class Associating, class Innovations>
   Refined refine(const StepContext& /*context*/, std::size_t b, const PoseGaussian<Real>& predicted,

@@ -23,8 +23,7 @@ class KnownAssociation {
 
   /// Sorts the scan into known and new landmarks.
   void associate(const StepContext& /*context*/, Scan scan, Maps& maps,
-                 const std::vector<PoseGaussian<Real>>& /*predicted*/,
-                 const DelayedMap<Real>* /*joint*/) {
+                 const std::vector<PoseGaussian<Real>>& /*predicted*/) {
     slots_.clear(), seen_.clear(), new_.clear();
     for (const Detection& detection : scan) {
       if (detection.identity == Detection::kClutter) continue;
@@ -44,8 +43,6 @@ class KnownAssociation {
   /// The weight of the particles that matched detection k: all.
   double matched_weight(std::size_t /*k*/, const Weights<Real>& /*weights*/) const { return 1.0; }
 
-  const std::vector<std::uint32_t>& matched_slots() const { return slots_; }
-
   void fetch(std::size_t b) const {
     for (const auto& slot : opened_) slot.fetch(b);
   }
@@ -55,9 +52,6 @@ class KnownAssociation {
   /// match() refers to the map itself.
   template <class Changed>
   void store(std::size_t /*b*/, std::size_t /*k*/, const Changed& /*match*/) const {}
-  ForAll where(std::size_t /*b*/, std::size_t k, std::span<const std::size_t> index_of) const {
-    return {index_of[slots_[k]]};
-  }
   /// Nobody errs: clutter is left out, all else goes where it belongs.
   AssociationCounts counts(const Weights<Real>& /*weights*/) const {
     return {.correct = static_cast<double>(slots_.size() + new_.size())};

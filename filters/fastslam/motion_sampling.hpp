@@ -42,11 +42,10 @@ class MotionSampling {
     return {pose, {}};
   }
 
-  void begin_scan(const StepContext& /*context*/, std::vector<BasicPose<Real>>& /*poses*/) {}
-  const DelayedMap<Real>* joint() const { return nullptr; }
-  template <class Associating, class... State>
+  template <class Associating>
   void prepare(const StepContext& /*context*/, const Associating& /*association*/,
-               State&... /*state*/) {}
+               const Weights<Real>& /*weights*/,
+               const std::vector<PoseGaussian<Real>>& /*predicted*/) {}
 
   template <class Associating, class Innovations>
   Refined refine(const StepContext& /*context*/, std::size_t /*b*/,
@@ -79,7 +78,7 @@ class MotionSampling {
     fresh.put(map_transform_.initialise(pose, observation_of<Real>(fresh.detection), noise_),
               maps.blocks_of(fresh.slot)[fresh.block]);
   }
-  void begin_step(std::span<const std::uint32_t> /*parents*/) {}
+  void begin_step() {}
   PoseEstimate estimate(const Weights<Real>& weights,
                         const std::vector<BasicPose<Real>>& poses) const {
     return {spread_of(weights, poses), std::nullopt};

@@ -39,7 +39,7 @@ class NearestAssociation {
 
   /// Judges every detection by every particle's map.
   void associate(const StepContext& context, Scan scan, Maps& maps,
-                 const std::vector<PoseGaussian<Real>>& predicted, const DelayedMap<Real>* joint) {
+                 const std::vector<PoseGaussian<Real>>& predicted) {
     scan_ = scan;
     seen_.clear();
     for (const Detection& detection : scan) seen_.push_back(observation_of<Real>(detection));
@@ -48,13 +48,8 @@ class NearestAssociation {
     maps.open(slots_, opened_);
     pairings_.resize(maps.blocks() * kLanes * seen_.size());
     searches_.resize(pairings_.size());
-    context.parallel_for(maps.blocks(), [&](std::size_t b) {
-      judge_block(b, seen_by_.sensor(predicted[b]), joint);
-    });
-    matched_slots_.clear();
-    for (const Pairing& pairing : pairings_) {
-      if (pairing.kind == PairingKind::matched) matched_slots_.push_back(pairing.landmark);
-    }
+    context.parallel_for(maps.blocks(),
+                         [&](std::size_t b) { judge_block(b, seen_by_.sensor(predicted[b])); });
   }
 
   bool matched_nothing() const {
@@ -75,8 +70,6 @@ class NearestAssociation {
     return sum;
   }
 
-  const std::vector<std::uint32_t>& matched_slots() const { return matched_slots_; }
-
   /// Was done to judge.
   void fetch(std::size_t /*b*/) const {}
   using Matched = Match<Real, Held, decltype(Real() > Real())>;
@@ -89,16 +82,6 @@ class NearestAssociation {
       if (pairing.kind == PairingKind::matched)
         copy_lane<Real>(changed.landmark, opened_[pairing.landmark].at(b), lane);
     }
-  }
-  /// A lane without a match gets a harmless landmark.
-  ForEach<Real> where(std::size_t b, std::size_t k, std::span<const std::size_t> index_of) const {
-    ForEach<Real> at{};
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const Pairing& pairing = pairings_of(b * kLanes + lane)[k];
-      if (pairing.kind == PairingKind::matched)
-        at.index[lane] = static_cast<std::uint32_t>(index_of[pairing.landmark]);
-    }
-    return at;
   }
   /// log p0 for every detection that a particle cannot explain, so that all weigh by as many
   /// factors.
@@ -160,12 +143,12 @@ class NearestAssociation {
     return std::span(pairings_).subspan(particle * seen_.size(), seen_.size());
   }
 
-  void judge_block(std::size_t b, const PoseGaussian<Real>& pose, const DelayedMap<Real>* joint) {
+  void judge_block(std::size_t b, const PoseGaussian<Real>& pose) {
     const std::span<NearestSearch> searches =
         std::span(searches_).subspan(b * kLanes * seen_.size(), kLanes * seen_.size());
     std::ranges::fill(searches, NearestSearch{});
     for (std::uint32_t j = 0; j < opened_.size(); ++j)
-      offer(b, j, gaussian_of(opened_[j].fetch(b)), pose, joint, searches);
+      offer(b, j, gaussian_of(opened_[j].fetch(b)), pose, searches);
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::span<Pairing> pairings = pairings_of(b * kLanes + lane);
       for (std::size_t k = 0; k < seen_.size(); ++k) {
@@ -178,13 +161,12 @@ class NearestAssociation {
   /// Offers landmark j to every detection of the scan from the pose of the sensor; `searches`
   /// {detection, lane}.
   void offer(std::size_t b, std::uint32_t j, const LandmarkGaussian<Real>& landmark,
-             const PoseGaussian<Real>& pose, const DelayedMap<Real>* joint,
-             std::span<NearestSearch> searches) const {
+             const PoseGaussian<Real>& pose, std::span<NearestSearch> searches) const {
     const auto s = sight(typename SeenBy::Kind(), pose.mean, landmark.mean);
     const auto owned = Real(static_cast<double>(j)) < counts_[b];
     const Real never(std::numeric_limits<double>::infinity());
     // Only the innovation itself differs from detection to detection; most lie far away.
-    const Symmetric2<Real> S = covariance(j, b, landmark, pose, s, joint);
+    const Symmetric2<Real> S = innovation_of(pose.covariance, s, {}, landmark.covariance, noise_).S;
     const Real determinant = S.determinant();
     for (std::size_t k = 0; k < seen_.size(); ++k) {
       const RangeBearing<Real> v = residual(seen_[k], s);
@@ -195,18 +177,6 @@ class NearestAssociation {
         searches[k * kLanes + lane].offer(j, get(distance, lane), get(cost, lane), settings_.gate);
       }
     }
-  }
-
-  /// Of the innovation of landmark j.
-  template <class Sight>
-  [[gnu::always_inline]] Symmetric2<Real> covariance(std::uint32_t j, std::size_t b,
-                                                     const LandmarkGaussian<Real>& landmark,
-                                                     const PoseGaussian<Real>& pose, const Sight& s,
-                                                     const DelayedMap<Real>* joint) const {
-    if constexpr (std::is_same_v<SeenBy, AtPose>) {
-      if (joint && joint->holds(j)) return joint->covariance(j, b, pose, landmark, s, noise_);
-    }
-    return innovation_of(pose.covariance, s, {}, landmark.covariance, noise_).S;
   }
 
   /// 1 for the lanes that matched detection k, else 0.
@@ -254,7 +224,7 @@ class NearestAssociation {
   InitialisationIdentities made_of_;
   Scan scan_;  ///< the caller's, for the time of an update
   std::vector<RangeBearing<Real>> seen_;
-  std::vector<std::uint32_t> slots_, matched_slots_;
+  std::vector<std::uint32_t> slots_;
   std::vector<Pairing> pairings_;        ///< {particle, detection}
   std::vector<NearestSearch> searches_;  ///< {block, detection, lane}
   std::vector<typename Maps::OpenSlot> opened_;

@@ -72,13 +72,6 @@ class ParticleMaps {
     }
   }
 
-  /// Blocks of a slot every one of which the caller is about to write, so that none need be
-  /// rearranged first.
-  std::span<Landmark> rewrite(std::uint32_t slot) {
-    slots_[slot].generation = genealogy_.generation();
-    return slots_[slot].blocks;
-  }
-
   /// Adds an empty slot, current, for the caller to fill; returns its number.
   std::uint32_t add() {
     if (n_slots_ == slots_.size()) slots_.push_back({std::vector<Landmark>(blocks_), 0});

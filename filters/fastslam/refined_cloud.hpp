@@ -34,7 +34,7 @@ class RefinedCloud {
 
   void start() {
     motion_.restart();
-    begin_step({});
+    begin_step();
   }
   void predict(const StepContext& /*context*/, const Control& control, double duration,
                std::vector<BasicPose<Real>>& /*poses*/) {
@@ -43,9 +43,6 @@ class RefinedCloud {
   PoseGaussian<Real> predicted(std::size_t /*b*/, const BasicPose<Real>& drawn) const {
     return motion_.from(drawn);
   }
-  /// Every scan draws: pose and map are never correlated within a particle.
-  void begin_scan(const StepContext& /*context*/, std::vector<BasicPose<Real>>& /*poses*/) {}
-  const DelayedMap<Real>* joint() const { return nullptr; }
 
   /// All poses were drawn: nothing is uncertain within a particle.
   void end_scan() {
@@ -57,7 +54,7 @@ class RefinedCloud {
     fresh.put(map_transform_.initialise(pose, observation_of<Real>(fresh.detection), noise_),
               maps.blocks_of(fresh.slot)[fresh.block]);
   }
-  void begin_step(std::span<const std::uint32_t> /*parents*/) {
+  void begin_step() {
     moments_.reset();
     is_drawn_ = false;
   }
@@ -75,9 +72,6 @@ class RefinedCloud {
     return estimate;
   }
 
-  /// The motion since poses were drawn; whoever takes it into account himself restarts it.
-  MotionIncrement& motion() { return motion_; }
-  const MotionIncrement& motion() const { return motion_; }
   const SensorNoise& noise() const { return noise_; }
 
  protected:

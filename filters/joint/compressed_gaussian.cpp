@@ -37,23 +37,6 @@ void CompressedGaussian::start(const Pose& start) {
   rests_ = false;
 }
 
-void CompressedGaussian::become(const CompressedGaussian& other) {
-  near_.become(other.near_);
-  whole_.clear(std::min(rows(), whole_.room()));
-  point_of_ = other.point_of_;
-  most_near_ = other.most_near_;
-  updates_ = other.updates_;
-  balance_ = other.balance_;
-  rests_ = other.rests_;
-  stand_ins_ = other.stand_ins_;
-  basis_ = other.basis_;
-  far_ = other.far_;
-  if (std::ranges::find(point_of_, kFar) == point_of_.end()) return;
-  const Eigen::Index held = std::min(rows(), other.whole_.room());
-  whole_.make_room(held);
-  whole_.take(other.whole_, held);
-}
-
 void CompressedGaussian::replace(const PoseMoments& pose, const MapMoments& map) {
   near_.replace_map(landmarks());
   near_.replace(pose, map);
@@ -117,26 +100,6 @@ JointEstimate CompressedGaussian::joint() const {
   joint.covariance.bottomRightCorner(n, n) =
       whole.covariance.topLeftCorner(n, n).selfadjointView<Eigen::Lower>();
   return joint;
-}
-
-/// Far landmarks are asked for their mean only where the bounds leave it open which is farthest.
-double CompressedGaussian::extent(std::span<const std::uint32_t> slots) const {
-  const double moved = coefficients_of_mean().norm();
-  double least = 0.0;
-  const auto distance = [&](std::size_t slot) {
-    const Eigen::Vector2d place =
-        is_near(slot) ? mean_of(slot) : Eigen::Vector2d(whole_.mean.segment<2>(row_of(slot)));
-    return std::sqrt(distance_squared(pose().mean, place));
-  };
-  for (const std::uint32_t slot : slots) {
-    const double margin = is_near(slot) ? 0.0 : far_[slot].share * moved;
-    least = std::max(least, distance(slot) - margin);
-  }
-  for (const std::uint32_t slot : slots) {
-    if (is_near(slot) || distance(slot) + far_[slot].share * moved < least) continue;
-    least = std::max(least, std::sqrt(distance_squared(pose().mean, mean_of(slot))));
-  }
-  return least;
 }
 
 CompressedGaussian::Drift CompressedGaussian::drift() const {

@@ -31,7 +31,6 @@ class CompressedGaussian {
   CompressedGaussian(const Belief& belief, Retraction retraction, std::size_t room);
 
   void start(const Pose& start);
-  void become(const CompressedGaussian& other);
 
   /// Takes these moments of the pose and of all its landmarks, in the order of their slots, for
   /// its own.
@@ -56,8 +55,6 @@ class CompressedGaussian {
   MapMoments map() const;
   /// Pose and landmarks together, likewise.
   JointEstimate joint() const;
-  /// [m] from the vehicle to the farthest of these landmarks, 0 of none.
-  double extent(std::span<const std::uint32_t> slots) const;
   bool is_near(std::size_t slot) const { return point_of_[slot] != kFar; }
 
   /// Bounds on what has become of a far landmark, for a unit of its `Far::share`.
@@ -85,7 +82,6 @@ class CompressedGaussian {
     ++updates_;
     return near_.update_with(point_of_[slot], detected, iterations, expected);
   }
-  void draw_heading(double keep, double normal) { near_.draw_heading(keep, normal); }
   /// JointGaussian::centre_on_pose(); makes all landmarks near.
   void centre_on_pose();
   void append(const Eigen::Vector2d& detection,

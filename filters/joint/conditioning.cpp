@@ -84,18 +84,6 @@ JointGaussian::Trouble JointGaussian::update_with(std::size_t slot, const Eigen:
   return trouble;
 }
 
-void JointGaussian::draw_heading(double keep, double normal) {
-  const double scale = std::sqrt((1.0 - keep * keep) / pose_.covariance(2, 2));
-  gain_pose_ << scale * pose_.covariance.col(2), Eigen::Vector3d::Zero();
-  gain_map_.col(0).head(rows()) = scale * map_.cross.col(2).head(rows());
-  gain_map_.col(1).head(rows()).setZero();
-  condition({normal, 0.0});
-  if (keep > 0.0) return;
-  pose_.covariance.row(2).setZero();  // exactly, not but for rounding
-  pose_.covariance.col(2).setZero();
-  map_.cross.col(2).head(rows()).setZero();
-}
-
 /// W = P H' L^-T.
 void JointGaussian::whiten_gain(std::size_t slot, const ExpectedObservation& expected) {
   const Eigen::Matrix2d inverse = inverse_transposed(expected.factor);

@@ -38,18 +38,6 @@ void JointBelief::start(const Pose& start) {
   outcome_ = {};
 }
 
-void JointBelief::become(const JointBelief& other) {
-  gaussian_.become(other.gaussian_);
-  association_ = other.association_;
-  point_of_ = other.point_of_;
-  delayed_ = other.delayed_;
-  points_ = other.points_;
-  frame_ = other.frame_;
-  rotation_information_ = other.rotation_information_;
-  used_detections_ = other.used_detections_;
-  outcome_ = other.outcome_;
-}
-
 void JointBelief::update_with(const MotionIncrement& motion, Scan scan) {
   outcome_ = {};
   used_detections_.clear();
@@ -75,7 +63,8 @@ void JointBelief::select_matched() {
   gaussian_.make_near(matched_);
 }
 
-std::span<const char> JointBelief::find_advancing(Scan scan) {
+/// Finds out which detections of this scan can take the initialisation of a landmark further.
+void JointBelief::find_advancing(Scan scan) {
   advancing_.assign(scan.size(), false);
   matched_.clear();
   const auto is_fresh = [&](std::size_t k) {
@@ -88,7 +77,6 @@ std::span<const char> JointBelief::find_advancing(Scan scan) {
   for (std::size_t k = 0; k < scan.size(); ++k) {
     if (is_fresh(k)) advancing_[k] = delayed_.advances(gaussian_, scan[k]);
   }
-  return advancing_;
 }
 
 void JointBelief::add_landmark(const Detection& fresh, std::uint32_t point) {
@@ -105,12 +93,13 @@ void JointBelief::place_landmark(const Detection& fresh) {
   points_.append(gaussian_.mean_of(slot) - place_of(gaussian_.pose().mean) + behind);
 }
 
-void JointBelief::initialise_landmarks(Scan scan, std::span<const char> advancing) {
+void JointBelief::initialise_landmarks(Scan scan) {
+  if (!fixes_landmark(sensor_)) find_advancing(scan);
   for (std::size_t k = 0; k < scan.size(); ++k) {
     if (association_.pairings()[k].kind != PairingKind::fresh) continue;
     if (fixes_landmark(sensor_)) {
       place_landmark(scan[k]);
-    } else if (advancing[k]) {
+    } else if (advancing_[k]) {
       const auto point = delayed_.advance(gaussian_, scan[k]);
       if (point) add_landmark(scan[k], *point);
     }

@@ -29,26 +29,18 @@ class JointBelief {
   /// The vehicle moved by `motion`; decides which landmarks `scan` then shows, and conditions the
   /// Gaussian on them.
   void update_with(const MotionIncrement& motion, Scan scan);
-  /// Of each detection of this scan, just used, whether it can take a landmark that is not in the
-  /// map a step further (DelayedInitialisation). Of a sensor whose detections do not fix landmarks.
-  std::span<const char> find_advancing(Scan scan);
-  /// Adds the landmarks that this scan, just used, shows for the first time; or of those that one
-  /// detection does not fix takes them `advancing` a step further. Throws RunError where the map
-  /// has run away.
-  void initialise_landmarks(Scan scan, std::span<const char> advancing = {});
+  /// Adds the landmarks that this scan, just used, shows for the first time. If one detection does
+  /// not fix a landmark, takes its initialisation a step further instead (DelayedInitialisation).
+  /// Throws RunError where the map has run away.
+  void initialise_landmarks(Scan scan);
   /// CompressedGaussian::replace().
   void replace(const PoseMoments& pose, const MapMoments& map) { gaussian_.replace(pose, map); }
-  void draw_heading(double keep, double normal) { gaussian_.draw_heading(keep, normal); }
-  /// Becomes a copy of `other`, which was made of the same setup.
-  void become(const JointBelief& other);
 
   const CompressedGaussian& gaussian() const { return gaussian_; }
   /// What the pose would be after `motion`.
   PoseMoments pose_after(const MotionIncrement& motion) const;
   /// In the map.
   std::size_t landmarks() const { return point_of_.size(); }
-  /// [m] from the vehicle to the farthest landmark in the map.
-  double extent() const { return gaussian_.extent(point_of_); }
   /// The k-th landmark: of identity k with known association, else the k-th initialised.
   std::optional<LandmarkEstimate> landmark(std::size_t k) const;
   /// Of the pose and the first `landmarks` of these; NaN where the map has none.
@@ -92,6 +84,7 @@ class JointBelief {
   bool look_at(std::size_t slot, ExpectedObservation& expected);
   void update_with(std::size_t k, const Detection& detection);
 
+  void find_advancing(Scan scan);
   void add_landmark(const Detection& fresh, std::uint32_t point);
   void place_landmark(const Detection& fresh);
 
@@ -100,7 +93,7 @@ class JointBelief {
   CompressedGaussian gaussian_;
   std::vector<std::uint32_t> point_of_;  ///< {landmark} its slot in the Gaussian
   DelayedInitialisation delayed_;
-  std::vector<char> advancing_;  ///< scratch of find_advancing()
+  std::vector<char> advancing_;  ///< scratch: {detection} whether it takes a landmark further
   int iterations_;
   Moments moments_;
   Linearisation linearisation_;

@@ -16,10 +16,6 @@ std::unique_ptr<SlamFilter> make_ekf_slam(const FilterSetup& setup);
 /// can observe, where the map lies in the world, no detection is taken to tell.
 std::unique_ptr<SlamFilter> make_riekf_slam(const FilterSetup& setup);
 
-/// Heading-split Rao-Blackwellised bank: many joint Gaussians, of which only the heading is drawn
-/// (EQUATIONS 16).
-std::unique_ptr<SlamFilter> make_hrb(const FilterSetup& setup);
-
 /// Their lines in the table of filters.
 FilterKind ekf_slam_kind();
 FilterKind riekf_slam_kind();
@@ -30,6 +26,5 @@ FilterKind oc_ekf_slam_kind();
 FilterKind robocentric_ekf_slam_kind();
 /// EKF-SLAM by sigma points instead of derivatives.
 FilterKind ukf_slam_kind();
-FilterKind hrb_kind();
 
 }  // namespace montecarta::filters

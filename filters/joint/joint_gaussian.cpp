@@ -44,11 +44,6 @@ void JointGaussian::start(const Pose& start) {
   n_landmarks_ = 0;
 }
 
-void JointGaussian::become(const JointGaussian& other) {
-  pose_ = other.pose_;
-  replace_map(other.n_landmarks_).take(other.map_, other.rows());
-}
-
 void JointGaussian::replace(const PoseMoments& pose, const MapMoments& map) {
   pose_ = pose;
   map_.take(map, rows());

@@ -155,12 +155,6 @@ class JointGaussian {
   /// Tells what ended the iterations too early, if anything: then the one before stands.
   Trouble update_with(std::size_t slot, const Eigen::Vector2d& detected, int iterations,
                       ExpectedObservation& expected);
-  /// Draws the heading's part of all that is uncertain (EQUATIONS 16): N(m, P) is the mean over
-  /// standard normal z of N(m + g z, P - g g'), exactly for the additive error and to first order
-  /// in the turn for the invariant one, with g = P e sqrt(1 - keep^2) / sqrt(h), e the heading's
-  /// axis and h its variance. `keep` in [0, 1) is the share of the heading's standard deviation
-  /// that remains; 0 keeps nothing.
-  void draw_heading(double keep, double normal);
   /// Adds a landmark of one detection that fixes it, correlated with everything the pose is
   /// correlated with. `behind` [m]: from where its place is linearised by the heading to the
   /// estimate of the vehicle's place.

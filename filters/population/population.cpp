@@ -9,9 +9,9 @@ const std::vector<std::string> kResamplings{"systematic", "stratified", "residua
 
 }  // namespace
 
-std::vector<Option> population_options(const std::string& particles) {
+std::vector<Option> population_options() {
   return {
-      count_option("particles", particles, 1, 1e6, "number of particles"),
+      count_option("particles", "100", 1, 1e6, "number of particles"),
       choice_option("resampling", "systematic", kResamplings, "draw of the parents (EQUATIONS 18)"),
       number_option("resample_below", "0.5", 0, 1,
                     "resample where ESS < this times particles; Bailey's simulator has 0.75")};

@@ -24,7 +24,7 @@ struct PopulationSettings {
 
 /// The options `particles`, `resampling`, `resample_below`, in the order in which they are
 /// documented.
-std::vector<Option> population_options(const std::string& particles = "100");
+std::vector<Option> population_options();
 /// Reads them.
 PopulationSettings population_settings(const FilterOptions& options);
 

@@ -107,7 +107,7 @@ TEST(Report, JudgesARecordedDriveByItsReferences) {
   EXPECT_THAT(text_in(folder / "report/data/map_ekf_slam.csv"), HasSubstr("\n20.3,5,"));
 }
 
-/// A bank of Gaussians, which has a mixture and no particles, and a filter of a few weighted
+/// A filter that has a mixture and no particles, and a filter of a few weighted
 /// hypotheses that have no ancestry to speak of.
 TEST(Report, KnowsMixturesWithoutParticlesAndWithFew) {
   const ScratchFolder folder;

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,11 +16,12 @@
 namespace montecarta::filters {
 namespace {
 
-std::unique_ptr<SlamFilter> make(const FilterKind& kind, Association association,
-                                 const char* option, const char* value) {
+std::unique_ptr<SlamFilter> make(
+    const FilterKind& kind, Association association,
+    const std::map<std::string, std::string, std::less<>>& options = {}) {
   return kind.make({.belief = {},
                     .association = {.kind = association},
-                    .options = default_options(kind, {{option, value}}),
+                    .options = default_options(kind, options),
                     .landmarks = SmallWorldSettings().landmarks});
 }
 
@@ -49,7 +52,7 @@ TEST(Allocation, NoFilterAllocatesInASecondRun) {
   const SmallWorld world = small_world({.scans = 60});
   for (const FilterKind& kind : filter_kinds()) {
     for (const auto association : {Association::known, Association::nearest}) {
-      const auto filter = make(kind, association, "split_beyond_deg", "0.1");
+      const auto filter = make(kind, association);
       Listener listener(kind);
       const auto after_scan = [&](std::size_t) { listener.listen(*filter); };
       drive_through(*filter, world, Pose(), after_scan);
@@ -64,7 +67,7 @@ TEST(Allocation, NoFilterAllocatesInASecondRun) {
 void expect_no_allocation(const char* name, const char* option, const char* value) {
   const SmallWorld world = small_world({.scans = 60});
   const auto kind = std::ranges::find(filter_kinds(), name, &FilterKind::name);
-  const auto filter = make(*kind, Association::known, option, value);
+  const auto filter = make(*kind, Association::known, {{option, value}});
   drive_through(*filter, world, Pose(), [](std::size_t) {});
   const std::size_t before = n_allocations;
   drive_through(*filter, world, Pose(), [](std::size_t) {});

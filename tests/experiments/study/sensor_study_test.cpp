@@ -60,7 +60,7 @@ TEST(SensorStudy, BeliefsMayMountItElsewhere) {
 TEST(SensorStudy, WhatAFilterDoesNotTakeIsRefused) {
   EXPECT_THAT(complaint(of_cell("marginal"), {"scenario.sensor=range_only"}),
               AllOf(HasSubstr("marginal takes no sensor range_only (it takes range_bearing)"),
-                    HasSubstr("ekf_slam, riekf_slam, hrb")));
+                    HasSubstr("ekf_slam, riekf_slam")));
   EXPECT_THAT(complaint(of_cell("de_srcd"), {"scenario.mount_left=1"}),
               AllOf(HasSubstr("de_srcd takes no sensor that is mounted elsewhere"),
                     HasSubstr("fastslam1, fastslam2, ufastslam, srcd")));

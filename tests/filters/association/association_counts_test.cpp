@@ -58,7 +58,7 @@ AssociationCounts look(NearestAssociation<double>& association, ParticleMaps<dou
                        const std::vector<Detection>& scan) {
   std::vector<PoseGaussian<double>> poses(2);
   poses[1].mean.x = second;
-  association.associate(StepContext(1, 0, 0, Parallel::serial()), scan, maps, poses, nullptr);
+  association.associate(StepContext(1, 0, 0, Parallel::serial()), scan, maps, poses);
   const AssociationCounts counts = association.counts(weights);
   for (const auto& fresh : association.new_landmarks(maps)) {
     const auto& values = fresh.detection.values;

@@ -16,7 +16,7 @@
 // Particle-observation and particle-step costs of the family, and of the plain Eigen references (of
 // seven dimensions and fifteen points where the filter has points) in the same run: the ratio is
 // the figure to quote. All particles share one prediction, whose cost a step does not grow with
-// them. build/benchmarks --benchmark_filter='FastSlam2|UFastSlam|Srcd|Delayed'
+// them. build/benchmarks --benchmark_filter='FastSlam2|UFastSlam|Srcd'
 namespace montecarta::filters {
 namespace {
 
@@ -136,9 +136,6 @@ void UFastSlam(benchmark::State& state, Make make, Part part) {
   measure(state, "ufastslam", make, part);
 }
 void Srcd(benchmark::State& state, Make make, Part part) { measure(state, "srcd", make, part); }
-void Delayed(benchmark::State& state, Make make, Part part) {
-  measure(state, "delayed", make, part);
-}
 void DeSrcd(benchmark::State& state, const char* mode, Part part) {
   const auto filter =
       production("de_srcd", static_cast<std::size_t>(state.range(0)), {{"mode", mode}});
@@ -174,8 +171,6 @@ BENCHMARK_CAPTURE(Srcd, prediction_eigen, Make::eigen, Part::prediction)->Apply(
 BENCHMARK_CAPTURE(DeSrcd, observation, "unbiased", Part::scan)->Apply(few_scans);
 BENCHMARK_CAPTURE(DeSrcd, observation_as_printed, "as_printed", Part::scan)->Apply(few_scans);
 BENCHMARK_CAPTURE(DeSrcd, prediction, "unbiased", Part::prediction)->Apply(steps);
-
-BENCHMARK_CAPTURE(Delayed, observation, Make::lanes, Part::scan)->Apply(scans);
 
 }  // namespace
 }  // namespace montecarta::filters

@@ -98,58 +98,5 @@ TEST(JointGaussian, AnIteratedDetectionPassesTheBackwardDirection) {
   EXPECT_NEAR(gaussian.pose().mean.y, -0.5, 0.2);
 }
 
-TEST(JointGaussian, AHeadingsDrawDecomposesTheGaussianExactly) {
-  for (const double keep : {0.0, 0.6}) {
-    const JointGaussian before = driven(Retraction::additive);
-    JointGaussian left = before, right = before;
-    left.draw_heading(keep, 1.0);
-    right.draw_heading(keep, -1.0);
-    const Eigen::VectorXd drawn = 0.5 * (mean_of(left) - mean_of(right));
-    EXPECT_LT((0.5 * (mean_of(left) + mean_of(right)) - mean_of(before)).norm(), 1e-12);
-    const Eigen::Matrix3d pose =
-        left.pose().covariance + drawn.head<3>() * drawn.head<3>().transpose();
-    EXPECT_LT((pose - before.pose().covariance).norm(), 1e-12);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Eigen::Vector2d step = drawn.segment<2>(3 + 2 * static_cast<Eigen::Index>(k));
-      const Eigen::Matrix2d landmark = left.landmark(k).covariance + step * step.transpose();
-      EXPECT_LT((landmark - before.landmark(k).covariance).norm(), 1e-12) << "landmark " << k;
-    }
-    EXPECT_NEAR(left.pose().covariance(2, 2), keep * keep * before.pose().covariance(2, 2), 1e-15);
-  }
-}
-
-TEST(JointGaussian, AnInvariantDrawTurnsVehicleAndMapAsOne) {
-  // Nothing was seen twice, so pose and landmarks share all that is known of the heading's past.
-  JointGaussian gaussian(kRough, Retraction::invariant, 2);
-  gaussian.start({});
-  const MotionIncrement turn_on_the_spot(Pose{}, {.hh = 0.09});
-  gaussian.move(turn_on_the_spot);
-  gaussian.append(Eigen::Vector2d{10.0, 0.0});
-  gaussian.append(Eigen::Vector2d{20.0, 1.0});
-  const double spread = (gaussian.landmark(0).mean - gaussian.landmark(1).mean).norm();
-  gaussian.draw_heading(0.0, 2.0);  // by 0.6 rad
-  EXPECT_NEAR(gaussian.pose().mean.heading, 0.6, 1e-12);
-  EXPECT_NEAR(gaussian.landmark(0).mean.norm(), 10.0, 1e-12);
-  EXPECT_NEAR(gaussian.landmark(1).mean.norm(), 20.0, 1e-12);
-  EXPECT_NEAR((gaussian.landmark(0).mean - gaussian.landmark(1).mean).norm(), spread, 1e-12);
-}
-
-TEST(JointGaussian, BecomingAnotherLeavesNothingOfWhatItWas) {
-  const JointGaussian small = driven(Retraction::additive);
-  JointGaussian large = small;
-  for (int k = 0; k < 30; ++k) large.append(Eigen::Vector2d{5.0 + k, 0.1});
-  large.become(small);
-  JointGaussian copy = small;
-  for (JointGaussian* gaussian : {&large, &copy}) {
-    for (int k = 0; k < 9; ++k) gaussian->append({4.0 + k, 0.3});
-    ExpectedObservation expected;
-    ASSERT_EQ(gaussian->look_at(7, expected), JointGaussian::Trouble::none);
-    gaussian->update_with(7, Eigen::Vector2d{7.5, 0.28}, 1, expected);
-  }
-  EXPECT_EQ(mean_of(large), mean_of(copy));
-  EXPECT_EQ(large.pose().covariance, copy.pose().covariance);
-  EXPECT_EQ(large.landmark(11).covariance, copy.landmark(11).covariance);
-}
-
 }  // namespace
 }  // namespace montecarta::filters

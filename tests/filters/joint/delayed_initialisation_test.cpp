@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -87,27 +86,6 @@ TEST(DelayedInitialisation, OfBearingsHoldsInALargeMap) {
 }
 
 TEST(DelayedInitialisation, OfRangesHoldsInALargeMap) { expect_a_good_map({RangeSensor(), {}}); }
-
-/// The places a waiting landmark was seen from are points of the Gaussian and none of the map.
-TEST(DelayedInitialisation, TheExtentIsThatOfTheLandmarks) {
-  const SmallWorldSettings settings = large_world({BearingSensor(), {}});
-  const SmallWorld world = small_world(settings);
-  const FilterKind kind = ekf_slam_kind();
-  JointBelief belief({.belief = settings.noise,
-                      .association = {},
-                      .options = default_options(kind),
-                      .landmarks = kLandmarks},
-                     Retraction::additive, 0);
-  belief.start(Pose());
-  const Scan scan = std::span(world.drive.detections).first(world.drive.scan_begin[1]);
-  ASSERT_FALSE(scan.empty());
-  belief.update_with(MotionIncrement(), scan);
-  belief.initialise_landmarks(scan, belief.find_advancing(scan));
-  std::vector<std::uint32_t> points(belief.gaussian().landmarks());
-  std::iota(points.begin(), points.end(), 0U);
-  EXPECT_GT(belief.gaussian().extent(points), 0.0);
-  EXPECT_EQ(belief.extent(), 0.0);
-}
 
 }  // namespace
 }  // namespace montecarta::filters

@@ -58,28 +58,6 @@ void ekf_slam_scan(benchmark::State& state, Association kind) {
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-/// A bank of Gaussians that all differ.
-void hrb_scan(benchmark::State& state) {
-  const StepContext context(1, 0, 0, Parallel::serial());
-  const auto particles = static_cast<std::size_t>(state.range(0));
-  const auto all = circle(35);
-  const auto filter =
-      make_hrb({.belief = {},
-                .association = {},
-                .options = default_options(hrb_kind(), {{"particles", std::to_string(particles)},
-                                                        {"split_beyond_deg", "0.1"},
-                                                        {"resample_below", "0"}}),
-                .landmarks = all.size()});
-  filter->start({});
-  filter->predict(context, {3.0, 0.1}, 0.2);
-  filter->update(context, all);
-  const Scan scan = Scan(all).first(kSeenPerScan);
-  for (auto _ : state) filter->update(context, scan);
-  state.counters["per_particle_detection"] =
-      benchmark::Counter(static_cast<double>(state.iterations() * kSeenPerScan * particles),
-                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-}
-
 /// A ring road of such a radius [m] that a scan up to 30 m ahead shows seven landmarks.
 struct RingRoad {
   explicit RingRoad(std::size_t n) : radius(static_cast<double>(n) / 1.88) {
@@ -160,10 +138,7 @@ BENCHMARK_CAPTURE(second_round, riekf_slam, riekf_slam_kind(), Association::know
     ->Apply(sizes_of_one);
 BENCHMARK_CAPTURE(second_round, ekf_slam_nearest, ekf_slam_kind(), Association::nearest, {})
     ->Apply(sizes);
-BENCHMARK_CAPTURE(second_round, hrb, hrb_kind(), Association::known, {{"particles", "10"}})
-    ->Apply(sizes);
 BENCHMARK(ekf_slam_step);
-BENCHMARK(hrb_scan)->Arg(10)->Arg(30);
 BENCHMARK_CAPTURE(ekf_slam_scan, known, Association::known)->Arg(35)->Arg(135);
 BENCHMARK_CAPTURE(ekf_slam_scan, nearest, Association::nearest)->Arg(35)->Arg(135);
 

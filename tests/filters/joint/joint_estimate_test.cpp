@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Law: what a bank says of pose and map together has, as its parts, what it says of each. Not so
+// Law: what a filter says of pose and map together has, as its parts, what it says of each. Not so
 // full smoothing with pushed moments, whose joint is of a solution of its own.
 #include "filters/joint/joint_filters.hpp"
 #include "filters/relative/relative_ekf_slam.hpp"
@@ -30,7 +30,7 @@ FilterSetup setup_of(const FilterKind& kind, Association association,
 }
 
 /// Checks after every scan; returns how many landmarks there were in all.
-int expect_parts(SlamFilter& filter, const SmallWorld& world, bool heaviest_only) {
+int expect_parts(SlamFilter& filter, const SmallWorld& world) {
   int seen = 0;
   drive_through(filter, world, {}, [&](std::size_t scan) {
     const auto joint = filter.joint(kLandmarks);
@@ -54,7 +54,6 @@ int expect_parts(SlamFilter& filter, const SmallWorld& world, bool heaviest_only
     const Eigen::MatrixXd P = joint->covariance(rows, rows);
     EXPECT_TRUE(P.isApprox(P.transpose(), 1e-12));
     EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(P).eigenvalues().minCoeff(), 0.0);
-    if (heaviest_only) return;
     const PoseEstimate estimate = filter.estimate();
     const PoseMoments& pose = estimate.mixture ? *estimate.mixture : estimate.spread;
     EXPECT_NEAR(joint->mean(0), pose.mean.x, 0.2) << "scan " << scan;
@@ -71,7 +70,7 @@ TEST(JointEstimate, OfOneGaussianHasItsParts) {
         const bool is_one = kind.name == "ekf_slam" || kind.name == "riekf_slam";
         if (!is_one && moments == std::string("pushed")) continue;
         const auto filter = kind.make(setup_of(kind, association, {{"moments", moments}}));
-        EXPECT_GT(expect_parts(*filter, world, false), 100);
+        EXPECT_GT(expect_parts(*filter, world), 100);
         const Eigen::Matrix3d P = filter->estimate().spread.covariance;
         const Eigen::MatrixXd joint = filter->joint(kLandmarks)->covariance;
         EXPECT_TRUE((joint.topLeftCorner<3, 3>().isApprox(P, 1e-12))) << kind.name << moments;
@@ -105,16 +104,6 @@ TEST(JointEstimate, OfFullSmoothingIsNearItsMap) {
     });
     EXPECT_GT(seen, 100);
   }
-}
-
-TEST(JointEstimate, OfABankThatSplitsHasItsParts) {
-  const SmallWorld world = small_world({.seed = 32, .scans = 60});
-  const std::map<std::string, std::string, std::less<>> often{{"particles", "9"},
-                                                              {"split_beyond_deg", "0.1"}};
-  const auto bank = make_hrb(setup_of(hrb_kind(), Association::known, often));
-  EXPECT_GT(expect_parts(*bank, world, false), 100);
-  const auto searching = make_hrb(setup_of(hrb_kind(), Association::nearest, often));
-  EXPECT_GT(expect_parts(*searching, world, true), 100);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include "tests/filters/default_options.hpp"
 #include "tests/filters/fine_noise.hpp"
 #include "tests/filters/small_world.hpp"
-#include "tests/filters/told_bits.hpp"
 
 #include <gtest/gtest.h>
 
@@ -115,22 +114,6 @@ TEST(LargeMap, IsSearchedAsIfNobodyHadCompressedIt) {
   });
   EXPECT_EQ(wrong, 0.0) << "landmarks lie far apart in this noise";
   EXPECT_GT(searching->report().map_size, 190.0);
-}
-
-TEST(LargeMap, OfABankThatSplitsIsTheSameForAnyNumberOfThreads) {
-  const SmallWorld world = large_world();
-  const std::map<std::string, std::string, std::less<>> often{{"particles", "5"},
-                                                              {"split_beyond_deg", "0.3"}};
-  const auto told = [&](const Parallel& parallel) {
-    const auto bank = make_hrb(setup_of(hrb_kind(), often));
-    std::vector<ToldBits> bits;
-    const auto after_scan = [&](std::size_t scan) {
-      if (scan % 10 == 9) bits.emplace_back(*bank, 5, kLandmarks);
-    };
-    drive_through(*bank, world, {}, after_scan, parallel);
-    return bits;
-  };
-  EXPECT_EQ(told(Parallel::serial()), told(Parallel(Backend::tbb, 3)));
 }
 
 }  // namespace

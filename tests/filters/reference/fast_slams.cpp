@@ -2,7 +2,6 @@
 #include "tests/filters/reference/fast_slams.hpp"
 
 #include "tests/filters/reference/de_srcd_fast_slam.hpp"
-#include "tests/filters/reference/delayed_fast_slam.hpp"
 #include "tests/filters/reference/fast_slam1.hpp"
 #include "tests/filters/reference/ufast_slam.hpp"
 
@@ -23,10 +22,6 @@ std::unique_ptr<SlamFilter> make_ufast_slam(const FastSlamSettings& settings, We
 std::unique_ptr<SlamFilter> make_srcd_fast_slam(const FastSlamSettings& settings, Weight weight,
                                                 const SrcdParts& parts) {
   return std::make_unique<SrcdFastSlam>(settings, weight, parts);
-}
-std::unique_ptr<SlamFilter> make_delayed_fast_slam(const FastSlamSettings& settings,
-                                                   std::size_t every) {
-  return std::make_unique<DelayedFastSlam>(settings, every);
 }
 EvolvedFilter make_de_srcd_fast_slam(const FastSlamSettings& settings, const DeSettings& de) {
   auto filter = std::make_unique<DeSrcdFastSlam>(settings, SrcdParts{}, de);

@@ -67,9 +67,6 @@ std::unique_ptr<SlamFilter> make_ufast_slam(const FastSlamSettings& settings, We
                                             const Unscented& unscented, bool map_uncertainty);
 std::unique_ptr<SlamFilter> make_srcd_fast_slam(const FastSlamSettings& settings, Weight weight,
                                                 const SrcdParts& parts);
-/// Draws poses at every `every`-th scan; known association, no clutter.
-std::unique_ptr<SlamFilter> make_delayed_fast_slam(const FastSlamSettings& settings,
-                                                   std::size_t every);
 
 /// DE-SRCD-FastSLAM, and what evolution decides in it.
 struct EvolvedFilter {

@@ -54,20 +54,6 @@ class SquareRootEkfSlam {
     move_by(lower.bottomLeftCorner(n, 2) * white);
   }
 
-  /// EQUATIONS 16 in a square root: a turn of the columns leaves the heading to the first of them,
-  /// and of that the drawn share is taken.
-  void draw_heading(double keep, double normal) {
-    const Eigen::VectorXd heading = F.row(2).transpose();
-    const double sigma = heading.norm();
-    Eigen::VectorXd mirror = heading / sigma;  // of Householder: heading to -sigma e_0
-    mirror(0) += 1.0;
-    F -= (F * mirror) * (2.0 / mirror.squaredNorm()) * mirror.transpose();
-    const Eigen::VectorXd drawn = -F.col(0);
-    F.col(0) *= keep;
-    F.row(2).tail(F.cols() - 1).setZero();
-    move_by(std::sqrt(1.0 - keep * keep) * normal * drawn);
-  }
-
   void append(const RangeBearing<double>& observation) {
     const auto placed = linearised_place(pose(), observation);
     const Eigen::Index n = F.rows(), m = F.cols();
