@@ -70,8 +70,7 @@ constexpr std::array kReadingOrder = {"title",
                                       "innovations",
                                       "consistency",
                                       "",
-                                      "origin",
-                                      "printed"};
+                                      "origin"};
 
 std::size_t place_of(const Section& section) {
   const auto found = std::ranges::find(kReadingOrder, section.name);
@@ -84,10 +83,9 @@ std::size_t place_of(const Section& section) {
 std::vector<Section> all_sections(const ResultFile& file, const StudyAnalysis& study,
                                   const StudyComparison& comparison, const ReportOptions& options) {
   std::vector<Section> sections = sections_of(study);
-  sections.insert(
-      sections.end(),
-      {title_section(study), failure_section(study), replay_section(file, options.run),
-       comparison_section(study, comparison), origin_section(file, study), printed_section(study)});
+  sections.insert(sections.end(),
+                  {title_section(study), failure_section(study), replay_section(file, options.run),
+                   comparison_section(study, comparison), origin_section(file, study)});
   std::vector<Figure> figures = figures_of(study);
   figures.insert(figures.end(), {path_figure(file, options.run), ancestry_figure(file, options.run),
                                  pareto_figure(comparison.values)});

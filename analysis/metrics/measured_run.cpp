@@ -53,8 +53,7 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
                        .joint_scans = file.description().joint_scans,
                        .walks = BandWalks(scans),
                        .calibrates = noise_is_matched(file),
-                       .look_level = {},
-                       .printed = printed_in(file.study_text())};
+                       .look_level = {}};
   const auto looks = looks_in(file.study_text(), file.study_runs());
   if (looks.size() > 1) criteria.look_level = level_of_a_look(level, looks.size());
   for (const ReferencePath& path : file.references()) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/data/printed.hpp"
 #include "analysis/data/run_reader.hpp"
 #include "analysis/metrics/consistency.hpp"
 #include "analysis/metrics/drive_scores.hpp"
@@ -42,8 +41,6 @@ struct RunCriteria {
   bool calibrates = false;  ///< whether calibration is judged: where noise is matched
   /// Of each verdict where cells stop by verdict, so that all looks together have `level`.
   std::optional<double> look_level = {};
-  Printed printed = {};  ///< by runs of the paper and its bands batches are judged
-
   /// {run of the study} Where every run is a drive of its own; then times are those of the longest
   /// one, references and judged_fixes those of the first.
   std::vector<DriveCriteria> drives = {};

@@ -14,7 +14,6 @@ Metric errors_metric();
 Metric nees_metric();
 Metric imported_metric();
 Metric convention_hints_metric();
-Metric nees_batches_metric();
 Metric map_size_metric();
 Metric particles_metric();
 Metric lineages_metric();
@@ -37,14 +36,14 @@ Metric smoother_metric();
 
 std::span<const Metric> all_metrics() {
   static const std::vector<Metric> all = {
-      errors_metric(),           nees_metric(),          imported_metric(),
-      map_size_metric(),         particles_metric(),     lineages_metric(),
-      association_metric(),      references_metric(),    drive_metric(),
-      beacons_metric(),          bound_metric(),         map_metric(),
-      joint_nees_metric(),       error_anatomy_metric(), survival_metric(),
-      innovations_metric(),      diversity_metric(),     calibration_metric(),
-      mismatch_metric(),         cost_metric(),          nees_batches_metric(),
-      convention_hints_metric(), smoother_metric(),      observability_metric()};
+      errors_metric(),      nees_metric(),          imported_metric(),
+      map_size_metric(),    particles_metric(),     lineages_metric(),
+      association_metric(), references_metric(),    drive_metric(),
+      beacons_metric(),     bound_metric(),         map_metric(),
+      joint_nees_metric(),  error_anatomy_metric(), survival_metric(),
+      innovations_metric(), diversity_metric(),     calibration_metric(),
+      mismatch_metric(),    cost_metric(),          convention_hints_metric(),
+      smoother_metric(),    observability_metric()};
   return all;
 }
 

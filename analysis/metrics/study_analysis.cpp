@@ -126,7 +126,6 @@ StudyAnalysis begin(const ResultFile& file, double level, std::optional<double> 
   study.level = level;
   study.within = margin_of(file, within);
   study.looks = looks_in(file.study_text(), file.study_runs());
-  study.printed = told_by(file, printed_in);
   study.times = file.scan_times();
   for (const std::uint32_t scan : file.description().joint_scans) {
     study.joint_times.push_back(study.times[scan]);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/data/printed.hpp"
 #include "analysis/metrics/cell_analysis.hpp"
 #include "analysis/metrics/cramer_rao.hpp"
 #include "engine/records/result_file.hpp"
@@ -63,7 +62,6 @@ struct StudyAnalysis {
   std::size_t beacons = 0;                  ///< landmarks whose true positions are known
   CramerRaoBound bound;                     ///< below which no error can be
   std::vector<CellAnalysis> cells;
-  Printed printed;  ///< what the study repeats; empty where it repeats nothing
 
   bool has_failures() const;
   /// "200 scans each", "up to 200 scans".

@@ -145,15 +145,6 @@ std::string markdown_section(const Section& section) {
   return tables.empty() ? "" : heading + tables;
 }
 
-std::string markdown_assumptions(const StudyAnalysis& study) {
-  if (study.printed.assumptions.empty()) return "";
-  std::string list = "\nWhat the paper leaves open, and what is assumed:\n\n";
-  for (const std::string& each : study.printed.assumptions) {
-    list += "- " + markdown_escape(each) + "\n";
-  }
-  return list;
-}
-
 bool is_leading_figure(const Section& section) {
   constexpr std::array kLeading = {"figure_anees", "figure_reference_error"};
   return std::ranges::find(kLeading, section.name) != kLeading.end();
@@ -196,7 +187,7 @@ std::string markdown_page(const StudyAnalysis& study, const std::vector<Section>
     page += markdown_figure(section.figures.front());
     has_figure = true;
   }
-  return page + markdown_assumptions(study);
+  return page;
 }
 
 }  // namespace montecarta::analysis

@@ -27,8 +27,6 @@ Section replay_section(const ResultFile& file, std::optional<std::uint64_t> run)
 Section comparison_section(const StudyAnalysis& study, const StudyComparison& comparison);
 /// Study, scenario and provenance.
 Section origin_section(const ResultFile& file, const StudyAnalysis& study);
-/// What a paper printed beside what was measured.
-Section printed_section(const StudyAnalysis& study);
 
 /// Writes index.html with these sections in their order, their figures below figures/ and data/ and
 /// their tables below tables/ into `directory`.

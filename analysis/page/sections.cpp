@@ -4,22 +4,12 @@
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/page/html.hpp"
 #include "analysis/page/page.hpp"
-#include "analysis/printed/comparison.hpp"
 
 namespace montecarta::analysis {
 namespace {
 
 std::string details(const std::string& summary, const std::string& content) {
   return "<details><summary>" + summary + "</summary>" + content + "</details>\n";
-}
-
-std::string assumptions(const Printed& printed) {
-  if (printed.assumptions.empty()) return "";
-  std::string list = "<p>What the paper leaves open, and what we assume:</p>\n<ul>\n";
-  for (const std::string& each : printed.assumptions) {
-    list += "<li>" + html_escape(each) + "</li>\n";
-  }
-  return list + "</ul>\n";
 }
 
 }  // namespace
@@ -69,19 +59,6 @@ Section origin_section(const ResultFile& file, const StudyAnalysis& study) {
                    details("Provenance", html_pairs(file.provenance())) +
                    details("Study file, with everything filled in",
                            "<pre>" + html_escape(file.study_text()) + "</pre>"));
-  return section;
-}
-
-Section printed_section(const StudyAnalysis& study) {
-  if (study.printed.empty()) return {};
-  Section section{"printed", "Printed and measured"};
-  if (!study.printed.source.empty()) {
-    section.add_html("<p>" + html_escape(study.printed.source) + "</p>\n");
-  }
-  section.add("printed", printed_value_table(study));
-  section.add("claims", printed_claim_table(study));
-  section.add(printed_notes(study));
-  section.add_html(assumptions(study.printed));
   return section;
 }
 

@@ -3,7 +3,6 @@
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/csv_file.hpp"
 #include "analysis/output/number_text.hpp"
-#include "analysis/printed/comparison.hpp"
 #include "analysis/tables/tables.hpp"
 
 namespace montecarta::analysis {
@@ -12,8 +11,7 @@ namespace {
 constexpr const char* kFailures = "failures.csv";
 constexpr const char* kCells = "cells.csv";
 constexpr const char* kConsistency = "consistency.csv";
-constexpr const char* kPrinted = "printed.csv";
-constexpr const char* kClaims = "claims.csv";
+constexpr const char* kRuns = "runs.csv";
 std::string series_name(const std::string& label) { return "series_" + label + ".csv"; }
 
 void write_cells(const StudyAnalysis& study, const std::filesystem::path& path) {
@@ -35,6 +33,20 @@ void write_consistency(const StudyAnalysis& study, const std::filesystem::path& 
                 {"covariance", name_of(nees.moments)},
                 {"verdict", in_words(nees.consistency)}},
                numbers_of(cell, nees, study.level));
+    }
+  }
+  file.close();
+}
+
+void write_runs(const StudyAnalysis& study, const std::filesystem::path& path) {
+  NamedRows file(path);
+  for (const CellAnalysis& cell : study.cells) {
+    for (std::size_t r = 0; r < cell.runs.size(); ++r) {
+      std::vector<NamedNumber> numbers;
+      for (const Score& score : all_scores()) {
+        numbers.push_back({score.name, score.units, cell.scores.column(score.name)[r]});
+      }
+      file.row({{"cell", cell.label}, {"run", std::to_string(cell.runs[r])}}, numbers);
     }
   }
   file.close();
@@ -67,7 +79,7 @@ void write_series(const StudyAnalysis& study, const CellAnalysis& cell,
 }  // namespace
 
 std::vector<std::string> csv_names(const std::vector<std::string>& labels) {
-  std::vector<std::string> names = {kFailures, kCells, kConsistency, kPrinted, kClaims};
+  std::vector<std::string> names = {kFailures, kCells, kConsistency, kRuns};
   for (const Metric& metric : all_metrics()) {
     for (const TableFile& file : metric.files) names.emplace_back(file.name);
   }
@@ -80,8 +92,7 @@ void write_csv(const StudyAnalysis& study, const std::filesystem::path& director
   write_table(failure_table(study), directory / kFailures);
   write_cells(study, directory / kCells);
   write_consistency(study, directory / kConsistency);
-  write_table(printed_value_table(study), directory / kPrinted);
-  write_table(printed_claim_table(study), directory / kClaims);
+  write_runs(study, directory / kRuns);
   for (const Metric& metric : all_metrics()) {
     for (const TableFile& file : metric.files) {
       if (file.applies(study)) file.write(study, directory / file.name);

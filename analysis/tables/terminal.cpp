@@ -4,7 +4,6 @@
 #include "analysis/metrics/reference_report.hpp"
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/text_table.hpp"
-#include "analysis/printed/comparison.hpp"
 #include "analysis/tables/tables.hpp"
 
 #include <algorithm>
@@ -87,20 +86,6 @@ void print_section_notes(std::ostream& out, const Section& section) {
   }
 }
 
-/// What a paper printed against what was measured, and what had to be assumed.
-void print_printed(std::ostream& out, const StudyAnalysis& study) {
-  if (study.printed.empty()) return;
-  out << "\nPrinted and measured" << (study.printed.source.empty() ? "" : ": ")
-      << study.printed.source << "\n\n";
-  for (const TextTable& table : {printed_value_table(study), printed_claim_table(study)}) {
-    if (table.rows.empty()) continue;
-    print_table(out, table);
-    out << '\n';
-  }
-  for (const std::string& note : printed_notes(study)) print_wrapped(out, note);
-  for (const std::string& each : study.printed.assumptions) print_wrapped(out, "Assumed: " + each);
-}
-
 }  // namespace
 
 void print_tables(std::ostream& out, const StudyAnalysis& study, Explanations explanations) {
@@ -120,7 +105,6 @@ void print_tables(std::ostream& out, const StudyAnalysis& study, Explanations ex
     for (const std::string& note : imported_notes(study)) print_wrapped(out, note);
     for (const std::string& note : too_few_notes(study)) print_wrapped(out, note);
   }
-  print_printed(out, study);
 }
 
 }  // namespace montecarta::analysis

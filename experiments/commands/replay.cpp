@@ -50,7 +50,6 @@ std::string all_columns(const Study& study) {
 /// The study of one run of one cell alone that keeps all it can.
 Study recording_everything(Study study, std::size_t cell, std::uint64_t run) {
   study.cells = {study.cells[cell]};
-  study.printed = {};   // what a paper says of cells that are not there
   study.until.reset();  // one run decides nothing
   study.settings.replace("study", "until", "");
   study.settings.replace("record", "columns", all_columns(study));

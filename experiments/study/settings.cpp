@@ -45,8 +45,7 @@ const Setting& known_setting(const IniEntry& entry) {
 
 Settings::Settings(std::span<const IniEntry> entries, const std::string& name) {
   for (const IniEntry& entry : entries) {
-    const bool ours = entry.section != "cells" && entry.section != "printed";
-    if (ours && entry.section != "world") take(entry);
+    if (entry.section != "cells" && entry.section != "world") take(entry);
   }
   fill_in(name);
 }
@@ -167,7 +166,7 @@ std::vector<std::pair<std::string, std::string>> Settings::section(std::string_v
 }
 
 std::vector<std::string> study_sections() {
-  return {"study", "scenario", "belief", "association", "cells", "record", "printed", "world"};
+  return {"study", "scenario", "belief", "association", "cells", "record", "world"};
 }
 
 }  // namespace montecarta::experiments

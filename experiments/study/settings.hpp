@@ -18,7 +18,7 @@ struct Setting;
 /// The value of every setting of study_settings(), checked and in its one spelling.
 class Settings {
  public:
-  /// Fills what `entries` leave open. Sections "cells", "printed" and "world" are no concern of it.
+  /// Fills what `entries` leave open. Sections "cells" and "world" are no concern of it.
   /// Throws StudyError at unknown and repeated keys, bad values, and where a required one is
   /// missing
   /// (`name`: of the study file).

@@ -5,9 +5,9 @@
 #include "experiments/external/external_kind.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/study/cell_spec.hpp"
+#include "experiments/study/inline_world.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/study/setting.hpp"
-#include "experiments/study/study_sections.hpp"
 #include "experiments/text/words.hpp"
 #include "experiments/worlds/world.hpp"
 
@@ -112,9 +112,7 @@ Study parse_study(const std::string& text, const std::string& name,
                                      settings.text("scenario", "noise") == "measured-control";
   Study study{settings, read_cells(ini.entries, name, known_filters(), controls_are_measured),
               {},       {},
-              {},       {},
-              {}};
-  study.printed = read_printed(ini.entries, study.cells);
+              {},       {}};
   if (study.settings.scenario_kind() == "simulated") {
     study.world = world_of(ini, study.settings, folder);
     study.settings.replace("scenario", "world", study.world.name);
@@ -142,7 +140,6 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
 std::string resolved_text(const Study& study) {
   std::string text;
   for (const std::string& section : study_sections()) {
-    if (section == "printed" && study.printed.empty()) continue;
     if (section == "world" && study.log != nullptr) continue;
     text += "[" + section + "]\n";
     for (const auto& [key, value] : study.settings.section(section)) {
@@ -151,7 +148,6 @@ std::string resolved_text(const Study& study) {
     if (section == "cells") {
       for (const CellSpec& cell : study.cells) text += "cell = " + cell_line(cell) + "\n";
     }
-    if (section == "printed") text += printed_text(study.printed);
     if (section == "world") text += inline_world_text(study.world);
   }
   return text;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/data/printed.hpp"
 #include "experiments/recordings/drive_log.hpp"
 #include "experiments/study/cell_spec.hpp"
 #include "experiments/study/settings.hpp"
@@ -26,7 +25,6 @@ struct Study {
   /// {run} Where every run is a drive of its own, the first one being `log`; else empty.
   std::vector<std::shared_ptr<const DriveLog>> own_logs;
   std::optional<Until> until;  ///< when a cell stops early
-  Printed printed;             ///< what a paper says of it; no result depends on it
 };
 
 /// Reads a study file. `overrides` are "section.key=value" as given to --set; "cells.cell=..."

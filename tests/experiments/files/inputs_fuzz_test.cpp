@@ -76,8 +76,7 @@ TEST(InputsFuzz, Study) {
       "[study]\nname = blink\ntitle = A blink\nruns = 3\nuntil = position_rmse < 0.02\n"
       "[scenario]\nworld = yard.csv\nnoise = matched\nscan_rate = 5 # Hz\n"
       "[association]\nkind = nearest\n[record]\ncolumns = pose, covariance\n"
-      "[cells]\ncell = ekf_slam\ncell = fastslam2 particles=3,10 motion_noise=1,2\n"
-      "[printed]\nsource = A paper\nvalue = cell=ekf_slam metric=position_rmse printed=2.5\n");
+      "[cells]\ncell = ekf_slam\ncell = fastslam2 particles=3,10 motion_noise=1,2\n");
   EXPECT_GT(refused(path, 2000, [&] { resolved_text(read_study(path)); }), 500U);
 }
 

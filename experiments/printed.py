@@ -1,0 +1,383 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Compares what a paper printed with what `montecarta analyze FILE --csv FOLDER` measured, and
+prints the comparison as Markdown.
+
+    python3 printed.py studies/ankishan2016_sim1.printed FOLDER [BATCH...]
+
+The .printed file beside a study has one statement in a line:
+
+    source = Authors: title, year; Table 1
+    runs = 20                  # the printed numbers are means over so many runs; 1 if not given
+    baseline = fastslam2       # if its number is far off, no other cell's is compared
+    band = position 1.3 2.79   # the band that the paper drew for its average NEES
+    value = cell=srcd metric=position_rmse printed=2.8211 note="Table 1"
+    value = cell=ufastslam metric=cpu_seconds printed=1.82 relative_to=fastslam2 note="Table 3"
+    claim = position_rmse srcd < ufastslam note="Fig. 3"
+    assume = Loops: the paper does not say; two.
+
+Cells are named by their labels. A metric is a column of runs.csv, or share_inside_BLOCK,
+share_above_BLOCK or stays_above_from_BLOCK (pose, position, heading), which compare the average
+NEES of all runs with a band: the paper's, or else the chi-square band of so many runs. Such numbers
+depend on the number of runs, so each is computed for every BATCH: a folder that `analyze --csv`
+wrote of a part of the study with as many runs as the paper had. Needs NumPy and SciPy.
+"""
+import argparse
+import csv
+import math
+import os
+import re
+import shlex
+import sys
+
+try:
+    import numpy as np
+    from scipy import stats
+except ImportError as missing:
+    sys.exit(f"printed.py: {missing.name} is missing in this Python: bash .ci/install-packages "
+             "convert, and call the script by /usr/bin/python3")
+
+LEVEL = 0.95
+REPRODUCED_WITHIN = 2.0  # a number that is farther off than this factor is not reproduced
+ALIKE_WITHIN = 0.1  # cells are alike if they differ by less than this share of their mean
+BAND_METRIC = re.compile("(share_inside|share_above|stays_above_from)_(pose|position|heading)$")
+DIMENSIONS = {"pose": 3, "position": 2, "heading": 1}
+
+
+class PrintedError(Exception):
+    """A file is missing, damaged or says something that cannot be. "file: problem: remedy"."""
+
+
+# ---- What the paper says
+
+
+def fields_of(text, required, optional):
+    """The fields key=value of a line, as a dictionary."""
+    fields = {}
+    for word in shlex.split(text):
+        key, equals, value = word.partition("=")
+        if not equals or key not in required + optional or key in fields or not value:
+            raise ValueError(f"'{word}' is not understood: write {'=... '.join(required)}=..., and "
+                             f"of {', '.join(optional)} what applies, each once")
+        fields[key] = value
+    absent = [key for key in required if key not in fields]
+    if absent:
+        raise ValueError(f"{absent[0]}= is missing: add it")
+    return fields
+
+
+def value_of(text):
+    value = fields_of(text, ["cell", "metric", "printed"], ["relative_to", "runs", "note"])
+    value["number"] = float(value["printed"])
+    decimals = re.sub("[eE].*", "", value["printed"]).partition(".")[2]
+    value["rounding"] = 0.5 * 10.0 ** -len(decimals)
+    if "relative_to" in value and BAND_METRIC.match(value["metric"]):
+        raise ValueError(f"relative_to= has no meaning for {value['metric']}: remove it")
+    return value
+
+
+def claim_of(text):
+    words = shlex.split(text)
+    if len(words) not in (4, 5) or words[2] not in ("<", ">", "~") or (
+            len(words) == 5 and not words[4].startswith("note=")):
+        raise ValueError("write claim = METRIC LABEL < LABEL [note=\"...\"] (or >, ~)")
+    note = words[4].removeprefix("note=") if len(words) == 5 else ""
+    return {"metric": words[0], "left": words[1], "relation": words[2], "right": words[3],
+            "note": note}
+
+
+def band_of(text):
+    words = text.split()
+    if len(words) != 3 or words[0] not in DIMENSIONS or not float(words[1]) < float(words[2]):
+        raise ValueError("write band = pose LOWER UPPER (or position, heading)")
+    return words[0], (float(words[1]), float(words[2]))
+
+
+def read_printed(path):
+    """What a .printed file says, as a dictionary of its keys. Raises PrintedError."""
+    printed = {"source": "", "runs": 1, "baseline": "", "band": {}, "value": [], "claim": [],
+               "assume": []}
+    try:
+        with open(path, encoding="utf-8") as file:
+            lines = file.read().splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise PrintedError(f"{path}: cannot be read ({error}): check the path") from None
+    for number, line in enumerate(lines, 1):
+        if not line.strip() or line.startswith("#"):
+            continue
+        key, equals, text = (part.strip() for part in line.partition("="))
+        try:
+            if not equals or key not in printed or not text:
+                raise ValueError(f"'{line[:60]}' is not understood: write KEY = TEXT with one of "
+                                 f"{', '.join(printed)}")
+            if key == "band":
+                block, band = band_of(text)
+                printed[key][block] = band
+            elif key in ("value", "claim"):
+                printed[key].append(value_of(text) if key == "value" else claim_of(text))
+            elif key == "assume":
+                printed[key].append(text)
+            else:
+                printed[key] = max(1, int(text)) if key == "runs" else text
+        except ValueError as error:
+            raise PrintedError(f"{path}:{number}: {error}") from None
+    return printed
+
+
+# ---- What was measured
+
+
+def table_of(folder, name):
+    """The rows of a CSV file of `analyze` as dictionaries, by names without units."""
+    path = os.path.join(folder, name)
+    try:
+        with open(path, encoding="utf-8", newline="") as file:
+            rows = list(csv.reader(file, strict=True))
+        names = [heading.split(" [")[0] for heading in rows[0]]
+        if any(len(row) != len(names) for row in rows):
+            raise ValueError("a row is incomplete")
+    except (OSError, ValueError, IndexError, csv.Error) as error:
+        raise PrintedError(f"{path}: cannot be read ({error}): write the folder again with "
+                           "montecarta analyze FILE.h5 --csv FOLDER --force") from None
+    return [dict(zip(names, row)) for row in rows[1:]]
+
+
+class Measured:
+    """The tables of one folder that `analyze --csv` wrote."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.labels = [row["cell"] for row in table_of(folder, "cells.csv")]
+        self.runs = {label: {} for label in self.labels}
+        for row in table_of(folder, "runs.csv"):
+            self.runs[row["cell"]][int(row["run"])] = row
+
+    def check(self, metric, *labels):
+        for label in labels:
+            if label not in self.labels:
+                raise PrintedError(f"{self.folder}: there is no cell '{label}': correct the label "
+                                   f"(there are {', '.join(self.labels)})")
+        known = [name for rows in self.runs.values() for row in rows.values() for name in row]
+        if not BAND_METRIC.match(metric) and known and metric not in known:
+            raise PrintedError(f"{self.folder}/runs.csv: there is no column '{metric}': correct "
+                               "the metric")
+
+    def scores(self, label, metric):
+        """{run} of the complete runs; NaN where a run has no such number."""
+        return {run: float(row[metric] or "nan") for run, row in self.runs[label].items()}
+
+    def by_band(self, label, metric, printed_bands):
+        """A share of scans, or a time [s], from the average NEES over all runs of the folder."""
+        kind, block = BAND_METRIC.match(metric).groups()
+        tests = [row for row in table_of(self.folder, "consistency.csv")
+                 if row["cell"] == label and row["error"] == block]
+        if not tests:
+            return math.nan
+        series = table_of(self.folder, f"series_{label}.csv")
+        anees = np.array([float(row[f"anees_{block}_{tests[0]['covariance']}"]) for row in series])
+        times = np.array([float(row["time"]) for row in series])
+        n, d = len(self.runs[label]), DIMENSIONS[block]
+        expected = stats.chi2.interval(LEVEL, n * d)
+        lower, upper = printed_bands.get(block, (expected[0] / n, expected[1] / n))
+        judged = np.isfinite(anees)
+        anees, times = anees[judged], times[judged]
+        if not len(anees):
+            return math.nan
+        if kind == "share_inside":
+            return float(np.mean((anees >= lower) & (anees <= upper)))
+        if kind == "share_above":
+            return float(np.mean(anees > upper))
+        below = np.flatnonzero(anees <= upper)
+        first = below[-1] + 1 if len(below) else 0
+        return float(times[first]) if first < len(times) else math.inf
+
+
+# ---- The comparison
+
+
+def distance_text(measured, number):
+    if math.isinf(measured):
+        return "not reproduced: never"
+    factor = measured / number if number else math.nan
+    if not factor > 0:
+        return "differs"
+    how = f"{factor:.2g} times as large" if factor >= 1 else f"{1 / factor:.2g} times smaller"
+    far = factor > REPRODUCED_WITHIN or factor < 1 / REPRODUCED_WITHIN
+    return f"{'not reproduced' if far else 'differs'}: {how}"
+
+
+def interval_of(values):
+    """Student's interval of the mean; None of fewer than two values."""
+    if len(values) < 2:
+        return None
+    half = stats.t.ppf(0.5 + LEVEL / 2, len(values) - 1) * stats.sem(values)
+    return np.mean(values) - half, np.mean(values) + half
+
+
+def paired(measured, left, right, metric):
+    """{run, (left, right)} of the runs that both cells completed."""
+    l, r = measured.scores(left, metric), measured.scores(right, metric)
+    pairs = np.array([(l[run], r[run]) for run in sorted(l.keys() & r.keys())]).reshape(-1, 2)
+    return pairs[np.isfinite(pairs).all(1)]
+
+
+def judge_value(value, printed, measured, batches):
+    """(measured mean, its interval or None, verdict) of a printed number."""
+    number, rounding = value["number"], value["rounding"]
+    cell, metric = value["cell"], value["metric"]
+    if BAND_METRIC.match(metric):
+        numbers = np.sort([b.by_band(cell, metric, printed["band"]) for b in batches or [measured]])
+        if np.isnan(numbers).any():
+            return math.nan, None, "not measured"
+        cut = int(0.5 * (1 - LEVEL) * len(numbers))
+        lowest, median, highest = numbers[cut], np.median(numbers), numbers[-1 - cut]
+        agrees = lowest - rounding <= number <= highest + rounding
+        return median, (lowest, highest), "agrees" if agrees else distance_text(median, number)
+    paper_runs = int(value.get("runs", printed["runs"]))
+    if "relative_to" in value:
+        pairs = paired(measured, cell, value["relative_to"], metric)
+        if not len(pairs):
+            return math.nan, None, "not measured"
+        base = pairs[:, 1].mean()
+        mean = pairs[:, 0].mean() / base
+        sample = mean + (pairs[:, 0] - mean * pairs[:, 1]) / base  # of a linearised ratio
+    else:
+        sample = np.array(list(measured.scores(cell, metric).values()))
+        sample = sample[np.isfinite(sample)]
+        if not len(sample):
+            return math.nan, None, "not measured"
+        mean = sample.mean()
+    interval = interval_of(sample)
+    off = abs(mean - number)
+    if off <= rounding:
+        return mean, interval, "agrees"
+    if interval is None:
+        return mean, None, "differs (one run)" if off > 0.2 * abs(number) else "agrees within 20 %"
+    if paper_runs == 1 and "relative_to" not in value:  # a single run must be among ours
+        beyond = min((sample <= number + rounding).sum(), (sample >= number - rounding).sum())
+        if beyond < max(1, int(0.5 * (1 - LEVEL) * len(sample))):
+            return mean, interval, distance_text(mean, number)
+    reach = (stats.t.ppf(0.5 + LEVEL / 2, len(sample) - 1) * sample.std(ddof=1)
+             * math.sqrt(1 / len(sample) + 1 / paper_runs))
+    return mean, interval, "agrees" if off <= rounding + reach else distance_text(mean, number)
+
+
+def another_world(value, printed, measured, batches):
+    """Says how far the baseline is off in the same metric, if that is too far; else None."""
+    if value["cell"] == printed["baseline"]:
+        return None
+    for other in printed["value"]:
+        if (other["cell"], other["metric"]) == (printed["baseline"], value["metric"]):
+            verdict = judge_value(other, printed, measured, batches)[2]
+            if verdict.startswith("not reproduced"):
+                return f"another world: {other['cell']}{verdict.removeprefix('not reproduced')}"
+    return None
+
+
+def judge_claim(claim, printed, measured, batches):
+    """(left minus right, its interval or None, verdict) of a claim."""
+    metric, left, right, relation = (claim[key] for key in ("metric", "left", "right", "relation"))
+    sign = -1.0 if relation == "<" else 1.0
+    if BAND_METRIC.match(metric):
+        pairs = [[b.by_band(label, metric, printed["band"]) for label in (left, right)]
+                 for b in batches or [measured]]
+        if np.isnan(pairs).any():
+            return math.nan, None, "not measured"
+        differences = np.array([0.0 if l == r else l - r for l, r in pairs])
+        holds, fails = (sign * differences > 0).sum(), (sign * differences < 0).sum()
+        n = len(differences)
+        verdict = (f"holds in {n} of {n} batches" if holds == n else
+                   f"contradicted in {n} of {n} batches" if fails == n else
+                   f"undecided: holds in {holds} of {n} batches, contradicted in {fails}")
+        return np.median(differences), None, verdict
+    pairs = paired(measured, left, right, metric)
+    if not len(pairs):
+        return math.nan, None, "not measured"
+    differences = pairs[:, 0] - pairs[:, 1]
+    interval = interval_of(differences)
+    lower, upper = interval or (differences[0], differences[0])
+    alone = "" if interval else ", of one run"
+    if relation == "~":
+        near = ALIKE_WITHIN * np.abs(pairs.mean(0)).mean()
+        name = ("holds" if -near < lower and upper < near else
+                "contradicted" if lower > near or upper < -near else "undecided")
+    elif lower <= 0 <= upper:
+        name = "undecided"
+    else:
+        name = "holds" if sign * lower > 0 else "contradicted"
+    return differences.mean(), interval, name + alone
+
+
+# ---- Markdown
+
+
+def number_text(number):
+    return "-" if math.isnan(number) else "never" if math.isinf(number) else f"{number:.4g}"
+
+
+def interval_text(interval):
+    return "-" if interval is None else f"[{number_text(interval[0])}, {number_text(interval[1])}]"
+
+
+def print_table(headings, rows):
+    if not rows:
+        return
+    print("\n| " + " | ".join(headings) + " |\n|" + "---|" * len(headings))
+    for row in rows:
+        escaped = [re.sub(r"([\\|_~<>\[\]])", r"\\\1", field) for field in row]
+        print("| " + " | ".join(escaped) + " |")
+
+
+def compare(printed, measured, batches):
+    """Prints the whole comparison."""
+    for value in printed["value"]:
+        measured.check(value["metric"], value["cell"], value.get("relative_to", value["cell"]))
+    for claim in printed["claim"]:
+        measured.check(claim["metric"], claim["left"], claim["right"])
+    print("## Printed and measured\n\n" + printed["source"])
+    values, claims = [], []
+    for value in printed["value"]:
+        mean, interval, verdict = judge_value(value, printed, measured, batches)
+        verdict = another_world(value, printed, measured, batches) or verdict
+        what = value["metric"] + (f", relative to {value['relative_to']}"
+                                  if "relative_to" in value else "")
+        values.append([value["cell"], what, value["printed"], number_text(mean),
+                       interval_text(interval), verdict, value.get("note", "")])
+    for claim in printed["claim"]:
+        difference, interval, verdict = judge_claim(claim, printed, measured, batches)
+        claims.append([f"{claim['metric']}: {claim['left']} {claim['relation']} {claim['right']}",
+                       number_text(difference), interval_text(interval), verdict, claim["note"]])
+    print_table(["cell", "metric", "paper printed", "we measure", "95 % interval", "verdict",
+                 "where"], values)
+    print_table(["paper says", "we measure: left - right", "95 % interval", "verdict", "where"],
+                claims)
+    print(f"\nThe paper's numbers are taken as means over {printed['runs']} run(s). A printed "
+          "number agrees if the mean of so many of our runs would lie as far from our mean with "
+          "a probability of 5 % or more, or if it rounds to the printed digits. It is not "
+          f"reproduced if it is off by more than a factor of {REPRODUCED_WITHIN:g}. A claim holds "
+          "or is contradicted if the whole 95 % interval of the difference, run by run on the "
+          "same worlds and noise, lies on one side; ~ claims a difference below 10 %.")
+    if any(BAND_METRIC.match(each["metric"]) for each in printed["value"] + printed["claim"]):
+        print(f"\nNumbers from a band of the average NEES are those of {max(1, len(batches))} "
+              "batch(es) with as many runs as the paper had: their median, and the range in which "
+              "95 % of them lie. A printed number agrees if it lies in that range, and a claim "
+              "holds if it holds in all batches.")
+    if printed["assume"]:
+        print("\nWhat the paper leaves open, and what is assumed:\n")
+        for each in printed["assume"]:
+            print("- " + re.sub(r"([\\|_~<>])", r"\\\1", each))
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("printed", help="the .printed file")
+    parser.add_argument("folder", help="what analyze --csv wrote of the whole study")
+    parser.add_argument("batch", nargs="*", help="what it wrote of each batch of runs")
+    arguments = parser.parse_args()
+    try:
+        compare(read_printed(arguments.printed), Measured(arguments.folder),
+                [Measured(batch) for batch in arguments.batch])
+    except PrintedError as error:
+        print(f"printed.py: {error}", file=sys.stderr)
+        sys.exit(2)
