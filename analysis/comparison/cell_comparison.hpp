@@ -2,9 +2,9 @@
 #pragma once
 
 #include "analysis/metrics/study_analysis.hpp"
-#include "analysis/statistics/means.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 #include "analysis/statistics/paired_tests.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <cstddef>
 #include <span>

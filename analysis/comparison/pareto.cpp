@@ -2,7 +2,7 @@
 #include "analysis/comparison/pareto.hpp"
 
 #include "analysis/metrics/nees_accumulator.hpp"
-#include "analysis/statistics/means.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,9 @@
 #include "analysis/comparison/study_comparison.hpp"
 
 #include "analysis/output/csv_file.hpp"
+#include "analysis/output/number_text.hpp"
 
+#include <cmath>
 #include <utility>
 
 namespace montecarta::analysis {
@@ -102,6 +104,154 @@ void write_comparison_csv(const StudyComparison& comparison,
   for (const WinMatrix& matrix : comparison.matrices) write_wins(matrix, wins);
   wins.close();
   write_values(comparison.values, directory / kPareto);
+}
+
+namespace {
+
+/// How many runs the difference is of, and what became of the others.
+std::string pairs_text(const CellComparison& row) {
+  std::string text = std::to_string(row.pairs);
+  const auto add = [&](std::size_t n, const char* words) {
+    if (n > 0) text.append(", ").append(std::to_string(n)).append(words);
+  };
+  add(row.without, " lost by failure");
+  add(row.baseline_without, " won by failure");
+  add(row.neither, " failed in both");
+  add(row.unpaired, " unpaired");
+  return text;
+}
+
+std::vector<std::string> row_of(const CellComparison& row, double level) {
+  return {heading(row.score->name, row.score->units),
+          row.cell,
+          row.verdict(level),
+          readable(row.difference),
+          row.has_heavy_tail ? "heavy tail" : interval_text(row.interval),
+          readable(row.ratio),
+          percent(row.wins.share()),
+          readable(row.wins.p_holm, 2),
+          readable(row.rank_p_holm, 2),
+          pairs_text(row)};
+}
+
+std::string front_text(const CellValue& value) {
+  if (value.accurate_for_cost && value.consistent_for_cost) return "both";
+  return value.accurate_for_cost ? "accuracy" : value.consistent_for_cost ? "consistency" : "no";
+}
+
+/// "40 of 200 runs" of failures in words; nothing where there are none.
+void note_failures(const StudyAnalysis& study, std::vector<std::string>& notes) {
+  for (const CellAnalysis& cell : study.cells) {
+    if (cell.failures.empty()) continue;
+    notes.push_back(cell.label + " FAILED in " + std::to_string(cell.failures.size()) +
+                    " runs: each counts as lost in its win shares and sign tests, and is left out "
+                    "of differences, ratios and signed-rank tests, which look at the " +
+                    std::to_string(cell.complete) + " complete runs alone.");
+  }
+}
+
+}  // namespace
+
+TextTable comparison_table(const Comparisons& comparisons) {
+  TextTable table;
+  table.headings = {{"what", Align::left},
+                    {"cell", Align::left},
+                    {"verdict", Align::left},
+                    {"difference"},
+                    {level_text(comparisons.level) + " interval"},
+                    {"ratio"},
+                    {"runs won"},
+                    {"p sign"},
+                    {"p rank"},
+                    {"runs", Align::left}};
+  for (const CellComparison& row : comparisons.rows) {
+    table.rows.push_back(row_of(row, comparisons.level));
+  }
+  return table;
+}
+
+TextTable win_table(const WinMatrix& matrix, double level) {
+  TextTable table;
+  table.headings = {{std::string(matrix.score->name) + ": row beats", Align::left}};
+  for (const std::string& cell : matrix.cells) table.headings.push_back({cell});
+  for (std::size_t r = 0; r < matrix.cells.size(); ++r) {
+    std::vector<std::string> row = {matrix.cells[r]};
+    for (std::size_t c = 0; c < matrix.cells.size(); ++c) {
+      const Wins& wins = matrix.wins[r][c];
+      row.push_back(percent(wins.share()) + (wins.p_holm < 1.0 - level ? " *" : ""));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+TextTable pareto_table(std::span<const CellValue> values) {
+  TextTable table;
+  table.headings = {{"cell", Align::left},
+                    {"CPU [s]"},
+                    {"position RMSE [m]"},
+                    {"verdict", Align::left},
+                    {"NEES distance"},
+                    {"failed"},
+                    {"on the Pareto front", Align::left}};
+  for (const CellValue& value : values) {
+    table.rows.push_back(
+        {value.cell, with_error(value.cpu_seconds.mean, value.cpu_seconds.standard_error()),
+         with_error(value.position_rmse.mean, value.position_rmse.standard_error()), value.verdict,
+         readable(value.nees_distance), std::to_string(value.failed), front_text(value)});
+  }
+  return table;
+}
+
+std::vector<std::string> comparison_notes(const StudyAnalysis& study,
+                                          const Comparisons& comparisons) {
+  const std::string level = level_text(comparisons.level);
+  std::vector<std::string> notes = {
+      "Each cell against " + comparisons.baseline +
+          ", run by run in the same world with the same noise: 'difference' is the mean of what "
+          "the cell has more than " +
+          comparisons.baseline +
+          ", with the interval in which it would lie over infinitely many "
+          "runs with probability " +
+          level +
+          " (bootstrap over runs), 'ratio' the quotient of the "
+          "means, 'runs won' how often the cell was the better one: the lower one, of a "
+          "number that is not better high or low.",
+      "'better' and 'worse' are said where chance alone would hardly show it: where the runs won "
+      "and lost are more uneven than a fair coin's ('p sign', exact sign test), or the differences "
+      "lean to one side ('p rank', Wilcoxon's signed-rank test). Both p are adjusted for all " +
+          std::to_string(2 * comparisons.rows.size()) +
+          " tests of the table (Holm): the probability of one false word in all of it is at most " +
+          level_text(1.0 - comparisons.level) +
+          ". Both look at runs, not at the mean: where the interval of the mean difference holds 0 "
+          "the word is 'in most runs', and 'mixed' where it lies on the other side. 'heavy tail' "
+          "stands where a few runs decide the mean difference, so that no interval can be given.",
+      "'nees_distance' is how many times the mean NEES of the pose of a run must be halved or "
+      "doubled to be " +
+          std::to_string(study.imported.components.size()) +
+          ", what a consistent filter has: 0 is consistent, 1 is off by a factor of 2. No cell is "
+          "called better by it: the NEES of most runs is below its mean, so that a covariance that "
+          "is somewhat too small lowers the distance of most runs."};
+  note_failures(study, notes);
+  return notes;
+}
+
+std::string win_note(double level) {
+  return "Share of runs in which the cell of the row beats the one of the column, in the same "
+         "world "
+         "with the same noise; a run that failed in one cell is won by the other. With * one of "
+         "the "
+         "two wins more often than chance would have it (exact sign test at " +
+         level_text(1.0 - level) + " for the whole matrix, by Holm's correction).";
+}
+
+std::string pareto_note() {
+  return "On the Pareto front is a cell when no other is as fast and more accurate (or as accurate "
+         "and faster): all others are beaten by one of these outright. 'consistency' says the same "
+         "of the NEES distance, how many times ANEES must be halved or doubled to be that of a "
+         "consistent filter. All of complete runs alone, by their means: cells whose numbers "
+         "differ by "
+         "less than their +- may change places with more runs.";
 }
 
 }  // namespace montecarta::analysis

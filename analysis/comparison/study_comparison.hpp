@@ -3,6 +3,7 @@
 
 #include "analysis/comparison/cell_comparison.hpp"
 #include "analysis/comparison/pareto.hpp"
+#include "analysis/metrics/verdict_table.hpp"
 
 #include <filesystem>
 #include <span>
@@ -29,5 +30,18 @@ std::vector<std::string> comparison_csv_names();
 /// Throws RunError naming the file that cannot be written.
 void write_comparison_csv(const StudyComparison& comparison,
                           const std::filesystem::path& directory);
+
+/// One row a cell and score: the difference from the baseline and its tests.
+TextTable comparison_table(const Comparisons& comparisons);
+/// One row and one column a cell: in what share of runs the row beats the column.
+TextTable win_table(const WinMatrix& matrix, double level);
+/// One row a cell: what it costs and what it gives.
+TextTable pareto_table(std::span<const CellValue> values);
+
+/// Each table's meaning, a sentence each, for someone who never heard of a p value.
+std::vector<std::string> comparison_notes(const StudyAnalysis& study,
+                                          const Comparisons& comparisons);
+std::string win_note(double level);
+std::string pareto_note();
 
 }  // namespace montecarta::analysis

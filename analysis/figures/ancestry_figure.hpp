@@ -4,10 +4,39 @@
 #include "analysis/output/figure.hpp"
 #include "engine/records/result_file.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
+#include <span>
+#include <vector>
 
 namespace montecarta::analysis {
+
+/// The lines of descent of one run that reach its end. Nothing but where lines meet is kept, so the
+/// tree is as large as the particles are many, however long the run.
+struct AncestryTree {
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+  /// A line without a fork.
+  struct Branch {
+    std::size_t parent = kNone;   ///< among the branches; none: it begins where the run begins
+    double from = 0.0, to = 0.0;  ///< [s] when it parted from its siblings, when it forks or ends
+    std::size_t leaves = 0;       ///< particles at the end of the run that descend from it
+    double height = 0.0;          ///< where it is drawn: leaves at 1, 2, ..., no lines cross
+  };
+  std::vector<Branch> branches;  ///< children before their parents
+  std::size_t leaves = 0;        ///< lines that are followed back
+  std::size_t particles = 0;     ///< of the cell: more than leaves where there were too many
+
+  /// [s] the youngest common ancestor of all leaves; 0 where they have none but the start.
+  double common_ancestor() const;
+};
+
+/// Follows at most `most` particles of the last scan, evenly over their indices, back through
+/// `ancestor` {scan, particle}; `times` [s] of the scans.
+AncestryTree ancestry_tree(std::span<const std::uint32_t> ancestor, std::size_t particles,
+                           std::span<const double> times, std::size_t most);
 
 /// Where the particles at the end of one run come from, cell by cell: the run as chosen_run()
 /// chooses it. Without data where no cell has stored its ancestry.

@@ -1,17 +1,63 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/figures/path_bounds.hpp"
+#include "analysis/data/run_rows.hpp"
 #include "analysis/output/figure.hpp"
 #include "engine/records/result_file.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace montecarta::analysis {
+
+/// A rectangle of the plane [m].
+struct Bounds {
+  double left = std::numeric_limits<double>::infinity(), right = -left;
+  double low = left, high = -left;
+
+  /// What is not a number, or beyond any map (1e100 m), has no place.
+  void include(double x, double y);
+  bool empty() const { return left > right; }
+  /// Room around, and no axis shorter than a quarter of the other.
+  Bounds widened() const;
+  /// `share` of the longer side farther in every direction.
+  Bounds grown(double share) const;
+  bool contains(double x, double y) const {
+    return x >= left && x <= right && y >= low && y <= high;
+  }
+};
+
+/// Of paths (data "path_...") with their truth, and landmarks.
+Bounds path_bounds(const std::vector<FigureData>& all);
+/// Of a recorded drive. A filter that is lost may be anywhere: paths and maps (data "path_...",
+/// "map_...") reach no farther than a quarter beyond the fixes.
+Bounds recorded_bounds(const std::vector<FigureData>& all, const FigureData& fixes,
+                       const FigureData& landmarks);
+
+/// Index in the file of the run that is shown: `run`, or else the first that is complete in every
+/// cell, else in most; none where no cell is complete. Throws StudyError where the file does not
+/// hold `run`.
+std::optional<std::size_t> chosen_run(const ResultFile& file, std::optional<std::uint64_t> run);
+
+/// How many ellipses of the pose lie along a path.
+inline constexpr std::size_t kPoseEllipses = 16;
+
+/// (time, true x, true y, x, y) at up to some hundred scans of a run; (time, x, y) where nobody
+/// knows the truth.
+FigureData path_data(const ResultFile& file, const StoredCell& cell, const RunRows& run);
+/// Two-sigma ellipses of the pose at kPoseEllipses moments; no rows without covariance.
+FigureData pose_ellipses(const StoredCell& cell, const RunRows& run);
+/// Two-sigma ellipses of the landmarks that the filter has at the last scan; no rows where neither
+/// the map nor the final map is stored.
+FigureData map_data(const ResultFile& file, const StoredCell& cell, std::size_t run_index);
+/// (time, x, y) of up to some hundred fixes of the leading reference; no rows where there is none.
+FigureData fix_data(const ResultFile& file, std::size_t run_index);
+/// True landmarks in a run.
+FigureData landmark_data(const ResultFile& file, std::size_t run_index);
 
 /// What is drawn of one cell: files of path_data.hpp, those without rows are left out.
 struct DrawnPath {

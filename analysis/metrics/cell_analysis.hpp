@@ -6,7 +6,6 @@
 #include "analysis/metrics/moments.hpp"
 #include "analysis/metrics/score.hpp"
 #include "analysis/output/csv_file.hpp"
-#include "analysis/statistics/means.hpp"
 #include "analysis/statistics/spread.hpp"
 
 #include <any>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "analysis/metrics/study_analysis.hpp"
-#include "analysis/output/panel.hpp"
+#include "analysis/output/figure.hpp"
 
 #include <functional>
 #include <string>

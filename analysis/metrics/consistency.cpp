@@ -3,8 +3,8 @@
 
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/bootstrap.hpp"
-#include "analysis/statistics/means.hpp"
 #include "analysis/statistics/run_average.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>
 

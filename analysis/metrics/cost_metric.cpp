@@ -2,7 +2,7 @@
 // What a run cost, and how often its arithmetic needed a fallback.
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
-#include "analysis/statistics/means.hpp"
+#include "analysis/statistics/spread.hpp"
 
 namespace montecarta::analysis {
 

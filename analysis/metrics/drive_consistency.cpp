@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// NEES along a recorded drive, by references whose own errors are known.
 #include "analysis/metrics/drive_consistency.hpp"
 
+#include "analysis/metrics/innovations.hpp"
+#include "analysis/metrics/measured_run.hpp"
+#include "analysis/metrics/metric.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/number_text.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 namespace montecarta::analysis {
@@ -160,6 +168,224 @@ std::string in_words(const DriveConsistency& drive) {
       break;
   }
   return drive.mean.is_the_reference ? "refused: the reference is this estimate" : "not tested";
+}
+
+namespace {
+
+/// {reference with known errors}
+using DriveConsistencies = std::vector<DriveConsistency>;
+
+class DrivesOverRuns final : public MetricSums {
+ public:
+  explicit DrivesOverRuns(const RunCriteria& criteria)
+      : level_(criteria.level),
+        within_(criteria.within),
+        are_own_(!criteria.drives.empty()),
+        runs_(criteria.judged_fixes.size()) {}
+  void add(const MeasuredRun& run) override {
+    for (std::size_t r = 0; r < runs_.size(); ++r) runs_[r].push_back(run.drives[r]);
+  }
+  void put(CellAnalysis& cell) override {
+    DriveConsistencies all;
+    for (const auto& runs : runs_) {
+      all.push_back(are_own_ ? judge_own_drives(runs, level_, within_)
+                             : judge_drive(runs, level_, within_));
+    }
+    if (!all.empty()) cell.findings.put(all);
+  }
+
+ private:
+  double level_, within_;
+  bool are_own_;
+  std::vector<std::vector<DriveScores>> runs_;  ///< {reference}{run}
+};
+
+/// Calls visit(cell, reference, what is known of the two).
+template <class Visit>
+void for_each_drive(const StudyAnalysis& study, const Visit& visit) {
+  for (const CellAnalysis& cell : study.cells) {
+    std::size_t k = 0;
+    for (const JudgedReference& reference : study.references) {
+      if (!reference.has_errors) continue;
+      const DriveConsistencies& all = cell.get<DriveConsistencies>();
+      if (k < all.size()) visit(cell, reference, all[k]);
+      ++k;
+    }
+  }
+}
+
+std::string block_text(const DriveConsistency& drive, ErrorBlock block) {
+  const CorrelatedAverage& found = drive.mean.blocks[static_cast<std::size_t>(block)];
+  if (!(found.effective_samples > 0.0)) return "-";
+  // The ends lie at very different distances: each is to be read by itself.
+  return readable(found.mean) + " [" + compact(found.ratio.lower) + ", " +
+         compact(found.ratio.upper) + "]";
+}
+
+std::vector<std::string> drive_row(const CellAnalysis& cell, const JudgedReference& reference,
+                                   const DriveConsistency& drive) {
+  const Innovations* innovations = cell.find<Innovations>();
+  const bool is_judged = drive.verdict != Verdict::untested;
+  return {cell.label,
+          reference.name,
+          runs_in_words(cell),
+          in_words(drive),
+          is_judged ? block_text(drive, drive.mean.leading) : "-",
+          is_judged ? readable(drive.mean.median) : "-",
+          is_judged ? block_text(drive, ErrorBlock::position) : "-",
+          is_judged ? block_text(drive, ErrorBlock::heading) : "-",
+          std::to_string(drive.mean.fixes),
+          is_judged ? readable(drive.mean.leads().effective_samples) : "-",
+          innovations == nullptr ? "-" : readable(innovations->mean),
+          innovations == nullptr ? "-" : whiteness_in_words(*innovations)};
+}
+
+TextTable drive_table(const StudyAnalysis& study) {
+  const std::string level = " [" + level_text(study.level) + "]";
+  TextTable table;
+  table.headings = {{"cell", Align::left},
+                    {"reference", Align::left},
+                    {"runs", Align::left},
+                    {"verdict", Align::left},
+                    {"NEES / expected" + level},
+                    {"median / expected"},
+                    {"position" + level},
+                    {"heading" + level},
+                    {"fixes"},
+                    {"effective"},
+                    {"NIS per component"},
+                    {"innovations", Align::left}};
+  for_each_drive(study, [&](const auto& cell, const auto& reference, const auto& drive) {
+    table.rows.push_back(drive_row(cell, reference, drive));
+  });
+  return table;
+}
+
+std::vector<std::string> warnings_of(const CellAnalysis& cell, const JudgedReference& reference,
+                                     const DriveConsistency& drive) {
+  std::vector<std::string> warnings;
+  if (drive.mean.is_below_reference) {
+    warnings.emplace_back(
+        "errors are smaller than the fixes' own: their sigmas are too large, or the reference fed "
+        "the filter");
+  }
+  if (reference.has_start) {
+    warnings.emplace_back(
+        "the drive starts at a fix of this reference: the error of that fix is in all estimates "
+        "and in no covariance");
+  }
+  if (cell.filter == "external") {
+    warnings.emplace_back("a program: only its author knows whether it read the reference");
+  }
+  if (drive.mean.in_gaps > 0) {
+    warnings.push_back(std::to_string(drive.mean.in_gaps) +
+                       " fixes left out: the scans around lie more than " +
+                       readable(kLongestScanGap, 1) + " s apart");
+  }
+  if (drive.mean.undefined > 0) {
+    warnings.push_back(std::to_string(drive.mean.undefined) +
+                       " fixes left out: no finite covariance there, or too few draws");
+  }
+  return warnings;
+}
+
+TextTable warning_table(const StudyAnalysis& study) {
+  TextTable table;
+  table.headings = {
+      {"cell", Align::left}, {"reference", Align::left}, {"to be considered", Align::left}};
+  for_each_drive(study, [&](const auto& cell, const auto& reference, const auto& drive) {
+    for (const std::string& warning : warnings_of(cell, reference, drive)) {
+      table.rows.push_back({cell.label, reference.name, warning});
+    }
+  });
+  return table;
+}
+
+std::string independence_note(const StudyAnalysis& study) {
+  const std::string fixes =
+      "Errors of neighbouring fixes are correlated: 'effective' is how many independent fixes vary "
+      "as much. ";
+  if (study.own_drives == 0) {
+    return "All runs met the same drive, so many runs say no more of it than one. " + fixes +
+           "Where an error may last for the whole drive there is hardly more than one, and the "
+           "drive cannot tell.";
+  }
+  return "Every run met a drive of its own: the verdict is of the mean over drives of their "
+         "averages. " +
+         fixes +
+         "An error that lasts for a whole drive counts once for each. What all drives have in "
+         "common, a calibration that is off say, is no independent error: it needs other drives.";
+}
+
+std::vector<std::string> drive_notes(const StudyAnalysis& study) {
+  return {
+      "The NEES at a fix is the squared error in units of the filter's covariance plus that of the "
+      "fix, both as they stand, without alignment; divided by the components it is 1 on the "
+      "average of a consistent filter.",
+      independence_note(study),
+      "The minutes are those of a drive on which errors are correlated for as long as on this one, "
+      "that would show the filter to be consistent within the margin, or to be off.",
+      "An outlier among the fixes makes the average large and leaves the median; the verdict is by "
+      "the average."};
+}
+
+std::vector<Section> drive_sections(const StudyAnalysis& study) {
+  const TextTable table = drive_table(study);
+  if (table.rows.empty()) return {};
+  Section section{"drive", "Does the covariance cover the errors along the drive?"};
+  section.add("drive", table);
+  section.add("drive_warnings", warning_table(study));
+  section.add(drive_notes(study));
+  return {section};
+}
+
+void add_block(const std::string& name, const CorrelatedAverage& found,
+               std::vector<NamedNumber>& all) {
+  const bool known = found.effective_samples > 0.0;
+  all.push_back({name + "_nees_ratio", "1", known ? found.mean : kNaN});
+  all.push_back({name + "_nees_ratio_lower", "1", known ? found.ratio.lower : kNaN});
+  all.push_back({name + "_nees_ratio_upper", "1", known ? found.ratio.upper : kNaN});
+  all.push_back({name + "_effective_fixes", "1", known ? found.effective_samples : kNaN});
+}
+
+std::vector<NamedNumber> drive_numbers(const DriveConsistency& drive) {
+  const DriveScores& mean = drive.mean;
+  const auto count = [](std::size_t n) { return static_cast<double>(n); };
+  std::vector<NamedNumber> all = {{"within", "1", drive.within},
+                                  {"fixes", "1", count(mean.fixes)},
+                                  {"fixes_in_gaps", "1", count(mean.in_gaps)},
+                                  {"fixes_undefined", "1", count(mean.undefined)},
+                                  {"median_nees_ratio", "1", mean.median},
+                                  {"needed", "min", drive.minutes},
+                                  {"drives", "1", count(drive.drives)}};
+  add_block("pose", mean.blocks[0], all);
+  add_block("position", mean.blocks[1], all);
+  add_block("heading", mean.blocks[2], all);
+  return all;
+}
+
+bool has_known_errors(const StudyAnalysis& study) {
+  return std::ranges::any_of(study.references, &JudgedReference::has_errors);
+}
+
+void write_drive(const StudyAnalysis& study, const std::filesystem::path& path) {
+  NamedRows file(path);
+  for_each_drive(study, [&](const auto& cell, const auto& reference, const auto& drive) {
+    file.row({{"cell", cell.label},
+              {"filter", cell.filter},
+              {"reference", reference.name},
+              {"verdict", in_words(drive)}},
+             drive_numbers(drive));
+  });
+  file.close();
+}
+
+}  // namespace
+
+Metric drive_metric() {
+  return {.sums = make_sums<DrivesOverRuns>,
+          .sections = drive_sections,
+          .files = {{"drive.csv", has_known_errors, write_drive}}};
 }
 
 }  // namespace montecarta::analysis

@@ -1,13 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// How far final maps are from the true landmarks.
 #include "analysis/metrics/map_errors.hpp"
 
+#include "analysis/metrics/cramer_rao.hpp"
+#include "analysis/metrics/map_scores.hpp"
 #include "analysis/metrics/measured_run.hpp"
+#include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/score.hpp"
-#include "analysis/statistics/means.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/output/csv_file.hpp"
+#include "analysis/output/number_text.hpp"
+#include "analysis/statistics/spread.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <string_view>
 
 namespace montecarta::analysis {
+
 double MapErrors::share_inside() const {
   double inside = 0.0, tested = 0.0;
   for (const LandmarkErrors& one : landmarks) {
@@ -66,6 +78,165 @@ MapErrors MapErrorSums::result(double level, bool known) const {
     errors.landmarks.push_back(one);
   }
   return errors;
+}
+
+namespace {
+
+template <double MapScores::*kValue>
+double of_map(const MeasuredRun& run) {
+  return run.map ? (*run.map).*kValue : kNaN;
+}
+template <double Gospa::*kValue>
+double of_map(const MeasuredRun& run) {
+  return run.map ? run.map->gospa.*kValue : kNaN;
+}
+
+constexpr Score kMapScores[] = {
+    {"landmark_rms", "m", "RMS error of the landmarks in the final map", of_map<&MapScores::rms>},
+    {"landmark_nees", "1", "NEES of a landmark in the final map, mean over landmarks",
+     of_map<&MapScores::nees>},
+    {"gospa", "m", "GOSPA of the final map", of_map<&Gospa::distance>},
+    {"gospa_localisation", "m", "localisation part of GOSPA", of_map<&Gospa::localisation>},
+    {"landmarks_missed", "1", "landmarks missed by the final map", of_map<&Gospa::missed>},
+    {"landmarks_spurious", "1", "spurious landmarks of the final map", of_map<&Gospa::spurious>},
+};
+
+class MapOverRuns final : public MetricSums {
+ public:
+  explicit MapOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
+  void add(const MeasuredRun& run) override { map_.add(run.map); }
+  void put(CellAnalysis& cell) override {
+    cell.findings.put(map_.result(criteria_->level, criteria_->map.known));
+  }
+
+ private:
+  const RunCriteria* criteria_;
+  MapErrorSums map_;
+};
+
+void map_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
+  all.push_back({"landmarks_undefined", "1", static_cast<double>(cell.get<MapErrors>().undefined)});
+}
+
+std::string text_of(const CellAnalysis& cell, std::string_view score) {
+  const Summary summary = cell.over_runs(score);
+  return with_error(summary.mean, summary.standard_error());
+}
+
+std::vector<std::string> row_of(const CellAnalysis& cell) {
+  return {cell.label,
+          text_of(cell, "landmark_rms"),
+          percent(cell.get<Efficiency>().map),
+          text_of(cell, "landmark_nees"),
+          percent(cell.get<MapErrors>().share_inside()),
+          text_of(cell, "gospa"),
+          text_of(cell, "gospa_localisation"),
+          text_of(cell, "landmarks_missed"),
+          text_of(cell, "landmarks_spurious")};
+}
+
+/// Reason, and the labels of the cells it is true of: "a, b".
+std::map<std::string, std::string> cells_without_map_errors(const StudyAnalysis& study) {
+  std::map<std::string, std::string> cells;
+  for (const CellAnalysis& cell : study.cells) {
+    if (cell.get<MapErrors>().missing.empty()) continue;
+    std::string& labels = cells[cell.get<MapErrors>().missing];
+    labels += (labels.empty() ? "" : ", ") + cell.label;
+  }
+  return cells;
+}
+
+/// Whether any cell of a simulation has final maps to judge.
+bool has_map_errors(const StudyAnalysis& study) {
+  return std::ranges::any_of(
+      study.cells, [](const CellAnalysis& cell) { return cell.get<MapErrors>().missing.empty(); });
+}
+
+/// One row a cell: how far its final maps are from the true landmarks. Without rows where no cell
+/// has a map.
+TextTable map_error_table(const StudyAnalysis& study) {
+  TextTable table;
+  if (!has_map_errors(study)) return table;
+  table.headings = {
+      {"cell", Align::left}, {"landmark RMSE [m]"}, {"efficiency"},       {"landmark NEES"},
+      {"landmarks inside"},  {"GOSPA [m]"},         {"of it errors [m]"}, {"missed"},
+      {"spurious"}};
+  for (const CellAnalysis& cell : study.cells) table.rows.push_back(row_of(cell));
+  return table;
+}
+
+/// How to read it, a sentence each, or why there are no numbers.
+std::vector<std::string> map_error_notes(const StudyAnalysis& study) {
+  std::vector<std::string> notes;
+  if (has_map_errors(study)) {
+    notes.push_back(
+        "The map after the last scan: landmark RMSE is how far landmarks are from where they "
+        "stand; "
+        "landmark NEES compares that with what the filter expected (2 is expected, more is "
+        "overconfident "
+        "of "
+        "itself), and 'landmarks inside' is the share of landmarks whose NEES over runs is in "
+        "its " +
+        level_text(study.level) +
+        " band, each by itself: the errors of neighbours are correlated. All three need to know "
+        "which "
+        "landmark is which.");
+    notes.push_back(
+        "GOSPA pairs the map with the true landmarks that came into view, whoever is who: the root "
+        "of the squared errors of the pairs plus " +
+        readable(0.5 * kGospaCutoff * kGospaCutoff) +
+        " m2 for each landmark missed or spurious (farther than " + readable(kGospaCutoff, 1) +
+        " m from any partner).");
+  }
+  if (study.has_truth && study.beacons > 0) {
+    for (const auto& [reason, cells] : cells_without_map_errors(study)) {
+      notes.push_back(cells + ": no map errors, since " + reason + ".");
+    }
+  }
+  for (const CellAnalysis& cell : study.cells) {
+    if (cell.get<MapErrors>().undefined == 0) continue;
+    notes.push_back(cell.label + ": the NEES of " +
+                    std::to_string(cell.get<MapErrors>().undefined) +
+                    " landmarks was not a number (left out of the average).");
+  }
+  return notes;
+}
+
+/// One row a cell and landmark: error and NEES over runs, with the bounds of that NEES.
+void write_landmarks(const StudyAnalysis& study, const std::filesystem::path& path) {
+  NamedRows file(path);
+  for (const CellAnalysis& cell : study.cells) {
+    for (std::size_t l = 0; l < cell.get<MapErrors>().landmarks.size(); ++l) {
+      const LandmarkErrors& one = cell.get<MapErrors>().landmarks[l];
+      file.row({{"cell", cell.label}, {"landmark", std::to_string(l)}},
+               {{"runs", "1", static_cast<double>(one.runs)},
+                {"runs_with_nees", "1", static_cast<double>(one.valid)},
+                {"rms", "m", one.rms},
+                {"anees", "1", one.anees},
+                {"lower", "1", one.bounds.lower},
+                {"upper", "1", one.bounds.upper}});
+    }
+  }
+  file.close();
+}
+
+std::vector<Section> map_sections(const StudyAnalysis& study) {
+  const std::vector<std::string> notes = map_error_notes(study);
+  if (notes.empty()) return {};
+  Section section{"map_errors", "Map"};
+  section.add("map_errors", map_error_table(study));
+  section.add(notes);
+  return {section};
+}
+
+}  // namespace
+
+Metric map_metric() {
+  return {.scores = kMapScores,
+          .sums = make_sums<MapOverRuns>,
+          .add_numbers = map_numbers,
+          .sections = map_sections,
+          .files = {{"landmarks.csv", has_map_errors, write_landmarks}}};
 }
 
 }  // namespace montecarta::analysis

@@ -3,12 +3,153 @@
 
 #include "analysis/data/run_reader.hpp"
 #include "analysis/data/study_settings.hpp"
+#include "analysis/metrics/moments.hpp"
+#include "analysis/metrics/nees.hpp"
 #include "analysis/metrics/simulated_world.hpp"
 #include "analysis/statistics/group_sequential.hpp"
+#include "analysis/statistics/sampler_scale.hpp"
+#include "analysis/statistics/spread.hpp"
+#include "engine/core/pose.hpp"
+#include "engine/errors.hpp"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cmath>
 
 namespace montecarta::analysis {
+namespace {
+
+using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+Pose pose_of(const std::vector<double>& rows, std::size_t s) {
+  return {rows[3 * s], rows[3 * s + 1], rows[3 * s + 2]};
+}
+
+void measure_nees(const std::vector<double>& truth, const MomentRows& moments, NeesRows& rows) {
+  const std::size_t scans = truth.empty() ? 0 : moments.covariance.size() / 9;
+  rows.resize(scans);
+  for (std::size_t s = 0; s < scans; ++s) {
+    const Eigen::Vector3d error = boxminus(pose_of(moments.mean, s), pose_of(truth, s));
+    const Eigen::Matrix3d P = Eigen::Map<const RowMajor3>(moments.covariance.data() + 9 * s);
+    rows.set(0, s, nees<3>(error, P));
+    rows.set(1, s, nees<2>(error, P));
+    rows.set(2, s, nees<1>(error, P, 2));
+  }
+}
+
+/// Of imported errors: all components, and of a pose in the plane its parts.
+void measure_imported(const ErrorRows& errors, bool is_pose, NeesRows& rows) {
+  const std::size_t d = errors.components();
+  const std::size_t scans = errors.scans();
+  rows.dimension = is_pose ? std::array<std::size_t, 3>{3, 2, 1} : std::array<std::size_t, 3>{d};
+  rows.resize(is_pose ? scans : 0);
+  rows.value[0].resize(scans);
+  rows.rank[0].resize(scans);
+  for (std::size_t s = 0; s < scans; ++s) {
+    const Eigen::VectorXd e = errors.error(s);
+    const Eigen::MatrixXd P = errors.covariance_of(s);
+    const Nees whole = imported_nees(e, P);
+    rows.set(0, s, whole);
+    if (!is_pose) continue;
+    rows.set(1, s, whole.is_usable() ? imported_nees(e.head(2), P.topLeftCorner(2, 2)) : whole);
+    rows.set(2, s, whole.is_usable() ? imported_nees(e.tail(1), P.bottomRightCorner(1, 1)) : whole);
+  }
+}
+
+void put_on_full_scale(NeesRows& rows) {
+  for (std::size_t b = 0; b < rows.value.size(); ++b) {
+    for (std::size_t s = 0; s < rows.value[b].size(); ++s) {
+      double& value = rows.value[b][s];
+      if (!std::isnan(value)) value = on_full_scale({value, rows.rank[b][s]}, rows.dimension[b]);
+    }
+  }
+}
+
+}  // namespace
+
+void RunMetrics::measure_errors(const RunRows& rows, std::size_t scans) {
+  const std::vector<double>& mean = estimate_of(rows).mean;
+  squared_position_.clear();
+  squared_heading_.clear();
+  errors_.clear();
+  covariances_.clear();
+  if (rows.truth.empty() || mean.empty()) return;
+  expect(rows.truth.size() == 3 * scans && mean.size() == 3 * scans, "poses are {scan, 3}");
+  for (std::size_t s = 0; s < scans; ++s) {
+    const Eigen::Vector3d error = boxminus(pose_of(mean, s), pose_of(rows.truth, s));
+    squared_position_.push_back(error(0) * error(0) + error(1) * error(1));
+    squared_heading_.push_back(error(2) * error(2));
+    errors_.push_back(error);
+  }
+  turn_into_vehicle(rows);
+}
+
+void RunMetrics::turn_into_vehicle(const RunRows& rows) {
+  const std::vector<double>& covariance = estimate_of(rows).covariance;
+  for (std::size_t s = 0; s < errors_.size(); ++s) {
+    const double heading = pose_of(rows.truth, s).heading;
+    Eigen::Matrix3d vehicle_from_map = Eigen::Matrix3d::Identity();
+    vehicle_from_map.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-heading).toRotationMatrix();
+    errors_[s] = vehicle_from_map * errors_[s];
+    if (covariance.empty()) continue;
+    const Eigen::Matrix3d P = Eigen::Map<const RowMajor3>(covariance.data() + 9 * s);
+    covariances_.emplace_back(vehicle_from_map * P * vehicle_from_map.transpose());
+  }
+}
+
+const NeesRows* RunMetrics::leading_nees() const {
+  const auto found =
+      std::ranges::find_if(nees_, [](const NeesRows& rows) { return !rows.value[0].empty(); });
+  return found == nees_.end() ? nullptr : &*found;
+}
+
+/// Poses that a scan drew are judged as so many draws. Where none were drawn the covariance has
+/// each particle's own in it, and is judged as it is.
+void RunMetrics::correct_spread(const RunRows& rows, std::size_t particles) {
+  NeesRows& corrected = nees_[static_cast<std::size_t>(Moments::corrected)];
+  corrected = particles > 0 ? nees(Moments::spread) : NeesRows{};
+  const NeesRows& mixture = nees(Moments::mixture);
+  for (std::size_t b = 0; b < kErrorBlocks.size(); ++b) {
+    const SamplerScale& whole = sampler_scale(dimension_of(kErrorBlocks[b]));
+    std::vector<double>& value = corrected.value[b];
+    std::vector<int>& rank = corrected.rank[b];
+    corrected.too_few[b].assign(value.size(), 0);
+    for (std::size_t s = 0; s < value.size(); ++s) {
+      if (!is_drawn(rows, s)) {
+        corrected.set(b, s, {mixture.value[b][s], mixture.rank[b][s]});
+        continue;
+      }
+      const EffectiveDraws draws = draws_at(rows, particles, s);
+      corrected.too_few[b][s] = whole.can_judge(draws) ? 0 : 1;
+      if (!whole.can_judge(draws)) {
+        value[s] = kNaN;
+      } else if (rank[s] > 0) {
+        value[s] = sampler_scale(static_cast<std::size_t>(rank[s]))(value[s], draws);
+      }
+    }
+  }
+}
+
+void RunMetrics::measure(const RunRows& rows, std::size_t particles,
+                         std::span<const double> times) {
+  measure_errors(rows, times.size());
+  NeesRows& spread = nees_[static_cast<std::size_t>(Moments::spread)];
+  if (rows.error.components() > 0) {
+    measure_imported(rows.error, !rows.spread.mean.empty(), spread);
+  } else {
+    measure_nees(rows.truth, rows.spread, spread);
+  }
+  measure_nees(rows.truth, rows.mixture, nees_[static_cast<std::size_t>(Moments::mixture)]);
+  correct_spread(rows, particles);
+  for (NeesRows& all : nees_) put_on_full_scale(all);
+  diversity_ = nullptr;
+  lineages_.reset();
+  if (rows.ancestor.empty()) return;
+  diversity_ = &counter_.count(rows.ancestor, particles, times);
+  lineages_ = walker_.walk(rows, particles, times, squared_position_);
+}
+
 namespace {
 
 bool says(const ResultFile& file, const char* setting, const char* value) {

@@ -3,7 +3,7 @@
 
 #include "analysis/metrics/score.hpp"
 #include "analysis/output/csv_file.hpp"
-#include "analysis/output/section.hpp"
+#include "analysis/output/text_table.hpp"
 
 #include <filesystem>
 #include <memory>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/nees.hpp"
 
-#include "analysis/statistics/means.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <boost/math/distributions/chi_squared.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "analysis/metrics/cell_analysis.hpp"
-#include "analysis/metrics/run_metrics.hpp"
+#include "analysis/metrics/measured_run.hpp"
 #include "analysis/statistics/correlation.hpp"
 #include "analysis/statistics/quantile_table.hpp"
 #include "analysis/statistics/whole_run_band.hpp"

@@ -2,8 +2,8 @@
 #include "analysis/metrics/particle_curves.hpp"
 
 #include "analysis/metrics/cell_panels.hpp"
-#include "analysis/metrics/reference_analysis.hpp"
 #include "analysis/metrics/reference_report.hpp"
+#include "analysis/metrics/reference_scores.hpp"
 
 #include <algorithm>
 #include <limits>

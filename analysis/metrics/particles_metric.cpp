@@ -6,7 +6,7 @@
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/output/number_text.hpp"
-#include "analysis/statistics/means.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <cmath>
 

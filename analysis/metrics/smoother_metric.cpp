@@ -4,7 +4,6 @@
 #include "analysis/metrics/paired_runs.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/output/number_text.hpp"
-#include "analysis/statistics/means.hpp"
 #include "analysis/statistics/spread.hpp"
 
 #include <algorithm>

@@ -1,19 +1,71 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/output/gnuplot.hpp"
 
+#include "analysis/output/number_text.hpp"
 #include "engine/errors.hpp"
 #include "engine/visible_text.hpp"
 
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <fcntl.h>
 #include <fstream>
 #include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 #include <vector>
 
 namespace montecarta::analysis {
+namespace {
+
+// [px]
+constexpr double kAxisRoom = 76.0, kNarrowAxisRoom = 48.0;  // beside a panel: numbers and label
+constexpr double kRightRoom = 14.0, kHeading = 26.0, kTicks = 54.0, kGap = 18.0;
+constexpr std::size_t kMostColumns = 3;
+constexpr double kSingleHeight = 250.0, kUsualHeight = 160.0;
+
+double panel_height(const Chart& chart, double panel_width) {
+  if (chart.aspect > 0.0) return chart.aspect * panel_width;
+  if (chart.height > 0.0) return chart.height;
+  return chart.panels.size() == 1 ? kSingleHeight : kUsualHeight;
+}
+
+}  // namespace
+
+PrintLayout print_layout(const Chart& chart, double width, double legend_height) {
+  PrintLayout layout;
+  const bool is_zoomed = chart.x_first > chart.x_from;
+  layout.views = is_zoomed ? 2 : 1;
+  const std::size_t count = layout.views * chart.panels.size();
+  const std::size_t columns =
+      std::min(is_zoomed ? 2 : std::min(chart.columns, kMostColumns), count);
+  const std::size_t rows = (count + columns - 1) / columns;
+  const bool headings = columns > 1 || !chart.panels.front().cell.empty();
+  const double room = headings ? kNarrowAxisRoom : kAxisRoom;
+  // One map alone needs no more than half of the width.
+  const double each =
+      chart.is_map && columns == 1 ? 0.5 * width : width / static_cast<double>(columns);
+  const double start = 0.5 * (width - each * static_cast<double>(columns));
+  const double panel_width = each - room - kRightRoom;
+  const double height = panel_height(chart, panel_width);
+  const double pitch = height + kGap + (headings ? kHeading : 0.0);
+  const double first_top = legend_height + (headings ? kHeading : 8.0);
+  layout.height =
+      std::ceil(first_top + static_cast<double>(rows) * pitch - (pitch - height) + kTicks);
+  const std::array<double, 2> begins = {chart.x_from, chart.x_first};
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t row = k / columns, column = k % columns;
+    const double left = start + static_cast<double>(column) * each + room;
+    const double top = first_top + static_cast<double>(row) * pitch;
+    layout.boxes.push_back({left, left + panel_width, top, top + height, k + columns >= count,
+                            columns == 1, headings, begins[k % layout.views], chart.x_to});
+  }
+  return layout;
+}
+
 namespace {
 
 /// Where a process begins: its folder, and where its words go.
@@ -84,6 +136,375 @@ std::string gnuplot_quoted(const std::string& text) {
     quoted += c == '\'' ? std::string("''") : std::string(1, c);
   }
   return quoted + "'";
+}
+
+namespace {
+
+using Shape = ChartMarks::Shape;
+using Columns = std::vector<const std::vector<double>*>;
+
+constexpr double kBeyondAnyAxis = 1e100;  // gnuplot knows no infinity
+
+/// A data block; a row whose first number is NaN interrupts a line.
+std::string block(const std::string& name, const Columns& columns) {
+  std::string text = name + " << EOD\n";
+  for (std::size_t c = 0; c < columns.size(); ++c) text += c == 0 ? "x" : ",y";
+  text += "\n";
+  for (std::size_t r = 0; r < columns.front()->size(); ++r) {
+    const bool is_gap = std::isnan((*columns.front())[r]);
+    for (std::size_t c = 0; c < columns.size() && !is_gap; ++c) {
+      text += (c == 0 ? "" : ",") +
+              exact_text(std::clamp((*columns[c])[r], -kBeyondAnyAxis, kBeyondAnyAxis));
+    }
+    text += "\n";
+  }
+  return text + "EOD\n";
+}
+
+std::string colour_of(std::size_t style) { return " linecolor rgb '" + line_colour(style) + "'"; }
+
+std::string line_style(std::size_t style) {
+  return "linewidth 1.4" + colour_of(style) + " dashtype " +
+         (style == kReferenceStyle ? "(6,4)" : std::to_string(line_dashes(style)));
+}
+
+/// Adds plots one above the other, each with a data block of its own.
+class PanelWriter {
+ public:
+  PanelWriter(const Chart& chart, std::size_t panel)
+      : chart_(chart), panel_(chart.panels[panel]), prefix_("$p" + std::to_string(panel) + "_") {}
+
+  void add(const Band& band) {
+    const std::vector<double> x = {chart_.x_from, chart_.x_to}, lower = {band.lower, band.lower},
+                              upper = {band.upper, band.upper};
+    plot({&x, &lower, &upper}, "1:2:3", band_style());
+  }
+
+  void add_curve(std::size_t i) {
+    const ChartPanel::Curve& curve = panel_.curves[i];
+    if (curve.least.empty()) {
+      plot({&panel_.x, &curve.values}, "1:2", curve_style(curve.style));
+      return;
+    }
+    // Bars of neighbouring curves must not cover each other.
+    const auto bars = std::ranges::count_if(
+        panel_.curves, [](const ChartPanel::Curve& one) { return !one.least.empty(); });
+    const double place = static_cast<double>(i) - 0.5 * static_cast<double>(bars - 1);
+    std::vector<double> x = panel_.x;
+    for (double& at : x) at *= 1.0 + 0.03 * place;
+    plot({&x, &curve.values}, "1:2", curve_style(curve.style));
+    plot({&x, &curve.values, &curve.least, &curve.greatest}, "1:2:3:4",
+         "yerrorbars pointtype 7 pointsize 0.5 " + line_style(curve.style));
+  }
+
+  void add(const ChartMarks& marks) {
+    if (marks.x.empty()) return;  // an empty data block is an error to gnuplot
+    if (marks.shape == Shape::ellipses) return add_ellipses(marks);
+    if (marks.shape == Shape::boxes) return add_boxes(marks);
+    plot({&marks.x, &marks.y}, "1:2", mark_style(marks));
+  }
+
+  PanelPlots result() const { return {numbers_, commands_.empty() ? "NaN notitle" : commands_}; }
+
+ private:
+  void plot(const Columns& columns, const std::string& which, const std::string& how) {
+    const std::string name = prefix_ + std::to_string(count_++);
+    numbers_ += block(name, columns);
+    commands_ += (commands_.empty() ? "" : ", \\\n  ") + name + " using " + which + " with " + how +
+                 " notitle";
+  }
+
+  /// None so small that it cannot be seen.
+  void add_ellipses(const ChartMarks& marks) {
+    const double least = 0.012 * (chart_.x_to - chart_.x_from);
+    std::vector<double> width = marks.width, height = marks.height;
+    for (double& one : width) one = one < least ? least : one;
+    for (double& one : height) one = one < least ? least : one;
+    plot({&marks.x, &marks.y, &width, &height, &marks.angle}, "1:2:3:4:5",
+         "ellipses fillstyle empty border " + line_style(marks.style));
+  }
+
+  void add_boxes(const ChartMarks& marks) {
+    const std::string corners = "1:2:($1-$3/2):($1+$3/2):($2-$4/2):($2+$4/2)";
+    if (marks.fill.empty()) {
+      plot({&marks.x, &marks.y, &marks.width, &marks.height}, corners,
+           "boxxyerror " + line_style(marks.style) + " fillstyle transparent solid 0.35 border");
+      return;
+    }
+    std::vector<double> colours;
+    for (const std::string& fill : marks.fill) {
+      colours.push_back(static_cast<double>(std::stoul(fill.substr(1), nullptr, 16)));
+    }
+    plot({&marks.x, &marks.y, &marks.width, &marks.height, &colours}, corners + ":5",
+         "boxxyerror linecolor rgb variable fillstyle solid 1 noborder");
+  }
+
+  const Chart& chart_;
+  const ChartPanel& panel_;
+  std::string prefix_, numbers_, commands_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+std::string band_style() {
+  return "filledcurves fillcolor rgb '#707070' fillstyle transparent solid 0.45 border linecolor "
+         "rgb '#666666' linewidth 0.6";
+}
+
+std::string curve_style(std::size_t style) { return "lines " + line_style(style); }
+
+std::string mark_style(const ChartMarks& marks) {
+  const auto points = [&](const char* type, double size) {
+    return std::string("points pointtype ") + type + " pointsize " + exact_text(size) +
+           colour_of(marks.style);
+  };
+  switch (marks.shape) {
+    case Shape::line:
+      if (marks.style == kReferenceStyle) return curve_style(marks.style);
+      return "lines linewidth " + exact_text(marks.thickness > 0.0 ? marks.thickness : 1.4) +
+             colour_of(marks.style);
+    case Shape::points:
+      return points("7", marks.thickness > 0.0 ? 0.1 * marks.thickness : 0.5);
+    case Shape::crosses:
+      return points("1", 0.6);
+    case Shape::ellipses:
+      return points("6", 1.2);
+    case Shape::boxes:
+      return points("5", 1.2);
+  }
+  return "";
+}
+
+PanelPlots panel_plots(const Chart& chart, std::size_t panel) {
+  PanelWriter writer(chart, panel);
+  const ChartPanel& drawn = chart.panels[panel];
+  for (const Band& band : drawn.bands) writer.add(band);
+  for (std::size_t i = 0; i < drawn.curves.size(); ++i) writer.add_curve(i);
+  for (const ChartMarks& marks : drawn.marks) writer.add(marks);
+  return writer.result();
+}
+
+namespace {
+
+using Shape = ChartMarks::Shape;
+/// Behind the legend, for which all of it is off.
+constexpr const char* kPanelStyle = R"(set key off
+set border 3 linewidth 0.8 linecolor rgb 'black'
+set tics nomirror out scale 0.6
+set grid linecolor rgb '#bbbbbb' linewidth 0.4 dashtype (2,4)
+)";
+
+/// On any axis: gnuplot knows no infinity.
+double on_axis(double value) {
+  constexpr double kLargest = 1e300;
+  return std::isnan(value) ? 0.0 : std::clamp(value, -kLargest, kLargest);
+}
+
+std::string command_number(double value) { return exact_text(on_axis(value)); }
+
+std::string range(const char* axis, double from, double to) {
+  return std::string("set ") + axis + "range [" + command_number(from) + ":" + command_number(to) +
+         "]\n";
+}
+
+/// Ticks with these names at 0, 1, 2, ...; gnuplot's own where there are none.
+std::string ticks(const char* axis, const std::vector<std::string>& names) {
+  std::string script = std::string("set ") + axis + "tics nomirror";
+  if (names.empty()) return script + " autofreq\n";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    script += (i == 0 ? " (" : ", ") + gnuplot_quoted(names[i]) + " " + std::to_string(i);
+  }
+  return script + ")\n";
+}
+
+std::string ticks_at(const std::vector<double>& places) {
+  std::string at;
+  for (const double place : places) at += (at.empty() ? "" : ",") + command_number(place);
+  return "set xtics nomirror (" + at + ")\n";
+}
+
+/// Of a logarithmic axis: 1, 2 and 5 of each decade, 1 alone of many.
+std::string logarithmic_ticks(double from, double to) {
+  expect(from > 0.0 && to < 1e200, "a logarithmic axis has positive ends");
+  const bool is_long = to > 2000.0 * from;
+  std::string at;
+  for (double decade = std::pow(10.0, std::floor(std::log10(from))); decade <= to; decade *= 10.0) {
+    for (const double step : {1.0, 2.0, 5.0}) {
+      if (is_long && step > 1.0) continue;
+      at += (at.empty() ? "" : ",") + readable(step * decade, 1);
+    }
+  }
+  return "set xtics nomirror (" + at + ")\n";
+}
+
+/// One label for all columns stands below the drawing (common_label()).
+std::string horizontal_axis(const Chart& chart, const ChartPanel& panel, const PanelBox& box) {
+  const std::string label = box.is_alone_in_row
+                                ? "set xlabel " + gnuplot_quoted(chart.x_label) + " offset 0,0.4\n"
+                                : "unset xlabel\n";
+  return std::string(chart.x_logarithmic ? "set" : "unset") + " logscale x\n" +
+         (!chart.x_ticks.empty() ? ticks_at(chart.x_ticks)
+          : chart.x_logarithmic  ? logarithmic_ticks(box.x_from, box.x_to)
+                                 : ticks("x", panel.x_names)) +
+         range("x", box.x_from, box.x_to) +
+         (box.is_lowest ? "set format x '%h'\n" + label : "set format x ''\nunset xlabel\n");
+}
+
+std::string common_label(const Chart& chart, const PrintLayout& layout) {
+  if (layout.boxes.front().is_alone_in_row) return "";
+  return "set label " + gnuplot_quoted(chart.x_label) + " at screen 0.5, screen " +
+         readable(10.0 / layout.height, 4) + " center\n";
+}
+
+/// As far as curves and bands reach, where the axis does not say.
+double upper_end(const ChartPanel& panel) {
+  if (!std::isnan(panel.axis.high)) return panel.axis.high;
+  double greatest = panel.axis.low;
+  const auto include = [&](double value) {
+    if (std::isfinite(value)) greatest = std::max(greatest, value);
+  };
+  for (const ChartPanel::Curve& curve : panel.curves) {
+    std::ranges::for_each(curve.values, include);
+    std::ranges::for_each(curve.greatest, include);
+  }
+  for (const Band& band : panel.bands) include(band.upper);
+  return greatest > panel.axis.low ? 1.05 * greatest : panel.axis.low + 1.0;
+}
+
+/// A distance of 1, 2 or 5 times a power of ten that leaves room for the numbers.
+std::string linear_ticks(double from, double to, double pixels) {
+  const double least = (on_axis(to) - on_axis(from)) * 26.0 / pixels;
+  const double power = std::pow(10.0, std::floor(std::log10(least)));
+  const double steps = least / power;
+  const double step = power * (steps <= 1.0 ? 1.0 : steps <= 2.0 ? 2.0 : steps <= 5.0 ? 5.0 : 10.0);
+  return "set ytics nomirror " + command_number(step) + "\n";
+}
+
+std::string vertical_axis(const ChartPanel& panel, const PanelBox& box) {
+  const ChartAxis& axis = panel.axis;
+  const bool is_plain = !axis.logarithmic || (axis.low >= 0.01 && axis.high <= 1e4);
+  const bool is_free = axis.logarithmic || !panel.y_names.empty();
+  const double to = upper_end(panel);
+  const std::string label = gnuplot_quoted(panel.label) + " noenhanced";
+  return std::string(axis.logarithmic ? "set" : "unset") + " logscale y\n" +
+         (is_free ? ticks("y", panel.y_names) : linear_ticks(axis.low, to, box.bottom - box.top)) +
+         "set format y '" + (is_plain ? "%h" : "10^{%T}") + "'\n" + range("y", axis.low, to) +
+         "unset label\n" +
+         (box.has_heading
+              ? "unset ylabel\nset label " + label + " at graph 0,1 left offset -3,0.8\n"
+              : "set ylabel " + label + " offset 0.8,0\n");
+}
+
+std::string place(const PanelBox& box, double width, double height) {
+  const auto margin = [](const char* side, double share) {
+    return std::string("set ") + side + "margin at screen " + readable(share, 6) + "\n";
+  };
+  return margin("l", box.left / width) + margin("r", box.right / width) +
+         margin("t", 1.0 - box.top / height) + margin("b", 1.0 - box.bottom / height);
+}
+
+/// Words within boxes; of points beside them, on the side where there is room, above and below by
+/// turns from the lowest point up so that neighbours keep apart.
+std::string texts(const Chart& chart, const ChartPanel& panel) {
+  struct Text {
+    double x, y;
+    std::string words;
+    bool is_within;
+  };
+  std::vector<Text> all;
+  for (const ChartMarks& marks : panel.marks) {
+    for (std::size_t i = 0; i < marks.text.size(); ++i) {
+      if (!std::isfinite(marks.x[i]) || !std::isfinite(marks.y[i])) continue;
+      all.push_back({marks.x[i], marks.y[i], marks.text[i], marks.shape == Shape::boxes});
+    }
+  }
+  std::ranges::stable_sort(all, {}, &Text::y);
+  const double middle = chart.x_logarithmic ? std::sqrt(chart.x_from * chart.x_to)
+                                            : 0.5 * (chart.x_from + chart.x_to);
+  std::string script;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto& [x, y, words, is_within] = all[i];
+    const bool left = x > middle;
+    script += "set label " + gnuplot_quoted(words) + " at " + command_number(x) + "," +
+              command_number(y) + " noenhanced front " +
+              (is_within ? "center textcolor rgb '#111111'\n"
+                         : std::string(left ? "right offset -0.8," : "left offset 0.8,") +
+                               (i % 2 == 0 ? "-0.5\n" : "0.5\n"));
+  }
+  return script;
+}
+
+struct LegendEntry {
+  std::string how, words;
+};
+
+/// Bands, then cells that no heading names or, on maps, what is drawn.
+std::vector<LegendEntry> legend_of(const Chart& chart) {
+  std::vector<LegendEntry> entries;
+  const auto add = [&](const std::string& how, const std::string& words) {
+    if (words.empty() || std::ranges::find(entries, words, &LegendEntry::words) != entries.end())
+      return;
+    entries.push_back({how, words});
+  };
+  for (const Band& band : chart.panels.front().bands) add(band_style(), band.legend);
+  for (const ChartPanel& panel : chart.panels) {
+    for (const auto& curve : panel.curves) add(curve_style(curve.style), curve.legend);
+    for (const ChartMarks& marks : panel.marks) {
+      if (!marks.text.empty()) continue;
+      const bool is_named = panel.cell == marks.cell;
+      if (chart.is_map || !is_named) add(mark_style(marks), chart.is_map ? marks.name : marks.cell);
+    }
+  }
+  return entries;
+}
+
+std::size_t legend_columns(const std::vector<LegendEntry>& entries, std::size_t width) {
+  std::size_t longest = 8;
+  for (const LegendEntry& entry : entries) longest = std::max(longest, entry.words.size());
+  return std::clamp<std::size_t>((width - 90) / (8 * longest + 68), 1, entries.size());
+}
+
+/// A plot of nothing across the whole drawing: the legend of a panel is no wider than the panel.
+std::string legend_plot(const std::vector<LegendEntry>& entries, std::size_t columns,
+                        const PanelBox& box, double width, double height) {
+  std::string script = "unset border\nunset tics\nunset grid\n" + place(box, width, height) +
+                       "set key inside left top horizontal Left reverse maxcols " +
+                       std::to_string(columns) + "\nplot [0:1] [0:1] ";
+  for (const auto& [how, words] : entries) {
+    script += "keyentry with " + how + " title " + gnuplot_quoted(words) + ", \\\n  ";
+  }
+  return script + "NaN notitle\n";
+}
+
+}  // namespace
+
+GnuplotChart gnuplot_chart(const Chart& chart, std::size_t width) {
+  constexpr std::size_t kLegendRow = 20;  // [px]
+  const std::vector<LegendEntry> legend = legend_of(chart);
+  const std::size_t columns = legend.empty() ? 1 : legend_columns(legend, width);
+  const std::size_t legend_height =
+      (legend.size() + columns - 1) / columns * kLegendRow + (legend.empty() ? 0 : 8);
+  const auto w = static_cast<double>(width);
+  const PrintLayout layout = print_layout(chart, w, static_cast<double>(legend_height));
+  GnuplotChart drawn{"", "set style ellipse units xx\nset multiplot\n",
+                     static_cast<std::size_t>(layout.height)};
+  if (!legend.empty()) {
+    const PanelBox top{40.0, w - 10.0, 4.0, static_cast<double>(legend_height)};
+    drawn.commands += legend_plot(legend, columns, top, w, layout.height);
+  }
+  drawn.commands += kPanelStyle;
+  for (std::size_t k = 0; k < layout.boxes.size(); ++k) {
+    const ChartPanel& panel = chart.panels[k / layout.views];
+    const PanelPlots plots = panel_plots(chart, k / layout.views);
+    if (k % layout.views == 0) drawn.numbers += plots.numbers;
+    drawn.commands += place(layout.boxes[k], w, layout.height) +
+                      horizontal_axis(chart, panel, layout.boxes[k]) +
+                      vertical_axis(panel, layout.boxes[k]) + texts(chart, panel) +
+                      (k == 0 ? common_label(chart, layout) : "") + "plot " + plots.commands + "\n";
+  }
+  drawn.commands += "unset multiplot\n";
+  return drawn;
 }
 
 }  // namespace montecarta::analysis

@@ -3,7 +3,7 @@
 
 #include "analysis/comparison/study_comparison.hpp"
 #include "analysis/metrics/study_analysis.hpp"
-#include "analysis/output/section.hpp"
+#include "analysis/output/text_table.hpp"
 #include "engine/records/result_description.hpp"
 #include "engine/records/result_file.hpp"
 

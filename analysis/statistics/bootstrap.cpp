@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/bootstrap.hpp"
 
-#include "analysis/statistics/means.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/errors.hpp"
 #include "engine/random/normals.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/metric.hpp"
-#include "analysis/metrics/reference_analysis.hpp"
 #include "analysis/metrics/reference_report.hpp"
+#include "analysis/metrics/reference_scores.hpp"
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/csv_file.hpp"
 #include "analysis/tables/tables.hpp"

@@ -3,9 +3,12 @@
 
 #include "engine/errors.hpp"
 
-#include <hdf5.h>
-
 #include <algorithm>
+#include <array>
+#include <hdf5.h>
+#include <hdf5_hl.h>
+#include <numeric>
+#include <type_traits>
 
 namespace montecarta::engine::h5 {
 namespace {
@@ -208,6 +211,268 @@ std::vector<std::string> members(const Handle& group) {
   }
   detail::check(status, "list", group, "");
   return names;
+}
+
+namespace {
+
+using detail::check;
+
+/// Strings of any length in UTF-8: what h5py hands back as str.
+Handle text_type() {
+  Handle type(H5Tcopy(H5T_C_S1));
+  H5Tset_size(type.id(), H5T_VARIABLE);
+  H5Tset_cset(type.id(), H5T_CSET_UTF8);
+  return type;
+}
+
+Handle create_attribute(const Handle& object, const std::string& name, hid_t type,
+                        const Handle& space) {
+  const hid_t made =
+      H5Acreate2(object.id(), name.c_str(), type, space.id(), H5P_DEFAULT, H5P_DEFAULT);
+  return Handle(check(made, "create attribute", object, name));
+}
+
+Handle open_attribute(const Handle& object, const std::string& name) {
+  const hid_t opened = H5Aopen(object.id(), name.c_str(), H5P_DEFAULT);
+  return Handle(check(opened, "open attribute", object, name));
+}
+
+/// The value of a text attribute, of fixed or any length; nullopt where it is no single text.
+std::optional<std::string> value_of(const Handle& attribute) {
+  const Handle type(H5Aget_type(attribute.id()));
+  const Handle space(H5Aget_space(attribute.id()));
+  if (H5Tget_class(type.id()) != H5T_STRING || H5Sget_simple_extent_npoints(space.id()) != 1)
+    return std::nullopt;
+  if (H5Tis_variable_str(type.id()) > 0) {
+    char* value = nullptr;
+    if (H5Aread(attribute.id(), text_type().id(), &value) < 0) return std::nullopt;
+    std::string copy = value == nullptr ? "" : value;
+    H5free_memory(value);
+    return copy;
+  }
+  const std::size_t width = H5Tget_size(type.id());
+  detail::expect_in_file({}, width, attribute, "");
+  std::string value(width, '\0');
+  if (H5Aread(attribute.id(), type.id(), value.data()) < 0) return std::nullopt;
+  return value.substr(0, value.find('\0'));
+}
+
+herr_t collect_name(hid_t, const char* name, const H5A_info_t*, void* names) {
+  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
+  return 0;
+}
+
+std::vector<std::string> attribute_names(const Handle& object) {
+  std::vector<std::string> names;
+  hsize_t start = 0;
+  herr_t status =
+      H5Aiterate2(object.id(), H5_INDEX_CRT_ORDER, H5_ITER_INC, &start, collect_name, &names);
+  if (status < 0) {
+    names.clear();
+    start = 0;
+    status = H5Aiterate2(object.id(), H5_INDEX_NAME, H5_ITER_INC, &start, collect_name, &names);
+  }
+  check(status, "list the attributes of", object, "");
+  return names;
+}
+
+}  // namespace
+
+void put_text(const Handle& object, const std::string& name, const std::string& value) {
+  const Handle type = text_type();
+  const Handle attribute = create_attribute(object, name, type.id(), Handle(H5Screate(H5S_SCALAR)));
+  const char* characters = value.c_str();
+  check(H5Awrite(attribute.id(), type.id(), &characters), "write attribute", object, name);
+}
+
+void put_numbers(const Handle& object, const std::string& name,
+                 std::span<const std::uint64_t> values) {
+  const hsize_t count = values.size();
+  const Handle space(count == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &count, nullptr));
+  const Handle attribute = create_attribute(object, name, H5T_NATIVE_UINT64, space);
+  check(H5Awrite(attribute.id(), H5T_NATIVE_UINT64, values.data()), "write attribute", object,
+        name);
+}
+
+std::optional<std::string> find_text(const Handle& object, const std::string& name) {
+  if (H5Aexists(object.id(), name.c_str()) <= 0) return std::nullopt;
+  return value_of(open_attribute(object, name));
+}
+
+std::string text(const Handle& object, const std::string& name) {
+  auto value = find_text(object, name);
+  if (!value) check(-1, "read text attribute", object, name);
+  return *std::move(value);
+}
+
+std::vector<Text> texts(const Handle& object) {
+  std::vector<Text> found;
+  for (const std::string& name : attribute_names(object)) {
+    if (auto value = find_text(object, name)) found.emplace_back(name, *std::move(value));
+  }
+  return found;
+}
+
+std::vector<std::uint64_t> numbers(const Handle& object, const std::string& name) {
+  const Handle attribute = open_attribute(object, name);
+  const Handle space(H5Aget_space(attribute.id()));
+  const auto count =
+      check(H5Sget_simple_extent_npoints(space.id()), "read attribute", object, name);
+  detail::expect_in_file(std::array{static_cast<hsize_t>(count)}, sizeof(std::uint64_t), object,
+                         name);
+  std::vector<std::uint64_t> values(static_cast<std::size_t>(count));
+  check(H5Aread(attribute.id(), H5T_NATIVE_UINT64, values.data()), "read attribute", object, name);
+  return values;
+}
+
+std::uint64_t number(const Handle& object, const std::string& name) {
+  const std::vector<std::uint64_t> values = numbers(object, name);
+  check(values.empty() ? -1 : 0, "read attribute", object, name);
+  return values.front();
+}
+
+namespace {
+
+using detail::check;
+using detail::native_type;
+
+Handle space_of(const Shape& shape) {
+  if (shape.empty()) return Handle(H5Screate(H5S_SCALAR));
+  return Handle(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr));
+}
+
+/// Marked ASCII, though the text may be UTF-8: Octave 7 reads no text that is marked UTF-8.
+Handle text_type(std::size_t width) {
+  Handle type(H5Tcopy(H5T_C_S1));
+  H5Tset_size(type.id(), std::max<std::size_t>(width, 1));
+  H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
+  return type;
+}
+
+Handle create(const Handle& parent, const std::string& name, hid_t type, const Shape& shape) {
+  Handle creation(H5Pcreate(H5P_DATASET_CREATE));
+  H5Pset_layout(creation.id(), H5D_CONTIGUOUS);
+  H5Pset_alloc_time(creation.id(), H5D_ALLOC_TIME_EARLY);
+  H5Pset_fill_time(creation.id(), H5D_FILL_TIME_NEVER);
+  H5Pset_attr_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  const hid_t made = H5Dcreate2(parent.id(), name.c_str(), type, space_of(shape).id(), H5P_DEFAULT,
+                                creation.id(), H5P_DEFAULT);
+  return Handle(check(made, "create dataset", parent, name));
+}
+
+std::uint64_t count(const Shape& shape) {
+  return std::accumulate(shape.begin(), shape.end(), std::uint64_t{1}, std::multiplies<>());
+}
+
+void expect_fit(std::uint64_t elements, Element element, std::span<std::byte> bytes,
+                const Handle& dataset) {
+  check(elements * size_of(element) == bytes.size() ? 0 : -1, "fit to its axes", dataset, "");
+}
+
+/// Of a dataset that may be anything.
+std::size_t width_of(const Handle& dataset) {
+  return H5Tget_size(Handle(H5Dget_type(dataset.id())).id());
+}
+
+}  // namespace
+
+Handle create_dataset(const Handle& parent, const std::string& name, Element element,
+                      const Shape& shape) {
+  return create(parent, name, native_type(element), shape);
+}
+
+Handle create_text(const Handle& parent, const std::string& name, std::size_t width) {
+  return create(parent, name, text_type(width).id(), {});
+}
+
+Handle open_dataset(const Handle& parent, const std::string& name) {
+  return Handle(
+      check(H5Dopen2(parent.id(), name.c_str(), H5P_DEFAULT), "open dataset", parent, name));
+}
+
+void write(const Handle& dataset, Element element, const void* values) {
+  const auto status =
+      H5Dwrite(dataset.id(), native_type(element), H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
+  check(status, "write", dataset, "");
+}
+
+void write_text(const Handle& dataset, const std::string& text) {
+  const Handle type(H5Dget_type(dataset.id()));
+  std::string padded = text;
+  padded.resize(H5Tget_size(type.id()), '\0');
+  check(H5Dwrite(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()), "write",
+        dataset, "");
+}
+
+std::optional<std::uint64_t> place(const Handle& dataset) {
+  static_assert(std::is_same_v<Shape::value_type, hsize_t>);
+  const haddr_t address = H5Dget_offset(dataset.id());
+  if (address != HADDR_UNDEF) return address;
+  return count(shape(dataset)) == 0 ? std::optional<std::uint64_t>(0) : std::nullopt;
+}
+
+std::uint64_t stored_bytes(const Handle& dataset) { return H5Dget_storage_size(dataset.id()); }
+
+Shape shape(const Handle& dataset) {
+  const Handle space(H5Dget_space(dataset.id()));
+  const auto rank = check(H5Sget_simple_extent_ndims(space.id()), "read the shape of", dataset, "");
+  std::vector<hsize_t> dimensions(static_cast<std::size_t>(rank));
+  H5Sget_simple_extent_dims(space.id(), dimensions.data(), nullptr);
+  detail::expect_in_file(dimensions, width_of(dataset), dataset, "");
+  return {dimensions.begin(), dimensions.end()};
+}
+
+std::optional<Element> element(const Handle& dataset) {
+  const Handle type(H5Dget_type(dataset.id()));
+  for (Element candidate : {Element::f64, Element::u8, Element::u16, Element::u32, Element::u64}) {
+    if (H5Tequal(type.id(), native_type(candidate)) > 0) return candidate;
+  }
+  return std::nullopt;
+}
+
+void read(const Handle& dataset, Element element, std::span<std::byte> bytes) {
+  expect_fit(count(shape(dataset)), element, bytes, dataset);
+  const auto status =
+      H5Dread(dataset.id(), native_type(element), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data());
+  check(status, "read", dataset, "");
+}
+
+void read_row(const Handle& dataset, std::uint64_t i, Element element, std::span<std::byte> bytes) {
+  Shape extent = shape(dataset);
+  check(!extent.empty() && i < extent[0] ? 0 : -1, "find a row of", dataset, "");
+  Shape start(extent.size(), 0);
+  start[0] = i;
+  extent[0] = 1;
+  expect_fit(count(extent), element, bytes, dataset);
+  const Handle file_space(H5Dget_space(dataset.id()));
+  H5Sselect_hyperslab(file_space.id(), H5S_SELECT_SET, start.data(), nullptr, extent.data(),
+                      nullptr);
+  const Handle memory_space = space_of({count(extent)});
+  const auto status = H5Dread(dataset.id(), native_type(element), memory_space.id(),
+                              file_space.id(), H5P_DEFAULT, bytes.data());
+  check(status, "read", dataset, "");
+}
+
+std::string read_text(const Handle& dataset) {
+  const Handle type(H5Dget_type(dataset.id()));
+  const bool fixed = H5Tget_class(type.id()) == H5T_STRING && H5Tis_variable_str(type.id()) == 0;
+  check(fixed && shape(dataset).empty() ? 0 : -1, "read as text", dataset, "");
+  std::string text(H5Tget_size(type.id()), '\0');
+  check(H5Dread(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()), "read",
+        dataset, "");
+  text.resize(std::min(text.find('\0'), text.size()));
+  return text;
+}
+
+void make_scale(const Handle& dataset, const std::string& dimension) {
+  check(H5DSset_scale(dataset.id(), dimension.c_str()), "make a dimension scale of", dataset, "");
+}
+
+bool is_scale(const Handle& dataset) { return H5DSis_scale(dataset.id()) > 0; }
+
+void attach_scale(const Handle& dataset, const Handle& scale, unsigned axis) {
+  check(H5DSattach_scale(dataset.id(), scale.id(), axis), "attach a dimension scale to", dataset,
+        "");
 }
 
 }  // namespace montecarta::engine::h5

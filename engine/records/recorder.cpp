@@ -2,7 +2,7 @@
 #include "engine/records/recorder.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/records/column_table.hpp"
+#include "engine/records/columns.hpp"
 
 #include <algorithm>
 

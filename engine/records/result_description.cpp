@@ -2,11 +2,23 @@
 #include "engine/records/result_description.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/records/columns.hpp"
 #include "engine/records/fingerprint.hpp"
-#include "engine/records/record_layout.hpp"
+#include "engine/records/read_numbers.hpp"
+#include "engine/records/result_layout.hpp"
+#include "engine/records/run_record.hpp"
+#include "engine/visible_text.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
 #include <numeric>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
 
 namespace montecarta::engine {
 namespace {
@@ -94,6 +106,331 @@ ResultDescription describe(const StudyPlan& plan, const TextPairs& provenance) {
   result.provenance = provenance;
   for (const Cell& cell : plan.cells) result.cells.push_back(describe(cell, plan));
   return result;
+}
+
+namespace {
+
+constexpr std::array kBookkeeping = {"status", "failure_reason", "failure_step", "fingerprint"};
+
+void expect_result_file(const h5::Handle& file, const std::filesystem::path& path) {
+  if (h5::find_text(file, "filetype") != std::string(format::kFiletype)) {
+    throw StudyError(
+        path.string() + ": not a montecarta result (its attribute 'filetype' is not '" +
+        std::string(format::kFiletype) + "'): give a file that 'montecarta run' wrote");
+  }
+  const auto version = h5::numbers(file, "format_version");
+  if (version.size() != 2 || version[0] != format::kMajor) {
+    throw StudyError(path.string() + ": format version " +
+                     (version.empty() ? "?" : std::to_string(version[0])) +
+                     " (this program reads version " + std::to_string(format::kMajor) +
+                     "): use the montecarta that wrote it");
+  }
+}
+
+/// The axes behind `run` out of "run, time, component"; nullopt where it is not of that kind.
+std::optional<std::vector<Axis>> axes_of(const std::string& dimension_order) {
+  std::vector<Axis> axes;
+  std::size_t begin = dimension_order.find(", ");
+  if (dimension_order.substr(0, begin) != "run") return std::nullopt;
+  while (begin != std::string::npos) {
+    const std::size_t end = dimension_order.find(", ", begin + 2);
+    const auto axis =
+        axis_named(std::string_view(dimension_order).substr(begin + 2, end - begin - 2));
+    if (!axis) return std::nullopt;
+    axes.push_back(*axis);
+    begin = end;
+  }
+  return axes;
+}
+
+/// A dataset as a column; nullopt where it is not one (a later version may have added other
+/// things).
+std::optional<Column> column_of(const h5::Handle& group, const std::string& name,
+                                std::size_t runs) {
+  if (std::ranges::find(kBookkeeping, name) != kBookkeeping.end()) return std::nullopt;
+  const h5::Handle dataset = h5::open_dataset(group, name);
+  const auto axes = axes_of(h5::find_text(dataset, "dimension_order").value_or(""));
+  const auto element = h5::element(dataset);
+  const h5::Shape shape = h5::shape(dataset);
+  if (!axes || !element || shape.size() != axes->size() + 1 || shape[0] != runs)
+    return std::nullopt;
+  return Column{name,
+                *element,
+                *axes,
+                {shape.begin() + 1, shape.end()},
+                h5::find_text(dataset, "units").value_or("1"),
+                h5::find_text(dataset, "long_name").value_or(name)};
+}
+
+StoredCell read_cell(const h5::Handle& cells, const std::string& label, std::size_t runs) {
+  const h5::Handle group = h5::open_group(cells, label);
+  StoredCell cell;
+  cell.label = label;
+  cell.filter = h5::text(group, "filter");
+  cell.long_name = h5::text(group, "long_name");
+  cell.particles = h5::number(group, "particles");
+  cell.settings = h5::texts(h5::open_group(group, "settings"));
+  for (const std::string& name : h5::members(group)) {
+    if (h5::is_group(group, name)) continue;
+    if (auto column = column_of(group, name, runs)) cell.columns.push_back(*std::move(column));
+  }
+  return cell;
+}
+
+void read_axes(const h5::Handle& file, ResultDescription& result) {
+  result.runs = read_all<std::uint64_t>(file, "run", Element::u64);
+  result.times = read_all<double>(file, "time", Element::f64);
+  result.scan_times = read_all<double>(file, "scan", Element::f64);
+  result.scan_steps = read_all<std::uint32_t>(file, "scan_step", Element::u32);
+  result.scan_rows = read_all<std::uint32_t>(file, "scan_row", Element::u32);
+  if (h5::has(file, "joint_scan")) {
+    result.joint_scans = read_all<std::uint32_t>(file, "joint_scan", Element::u32);
+  }
+}
+
+void read_scenario(const h5::Handle& file, ResultDescription& result) {
+  const h5::Handle group = h5::open_group(file, "scenario");
+  result.scenario = h5::texts(group);
+  h5::read(h5::open_dataset(group, "start"), Element::f64,
+           std::as_writable_bytes(std::span(&result.start, 1)));
+  result.landmarks = read_points(group, "landmarks");
+  result.waypoints = read_points(group, "waypoints");
+  result.references = read_references(group);
+  result.drives = read_own_drives(group);
+}
+
+void read_provenance(const h5::Handle& file, ResultDescription& result) {
+  const h5::Handle group = h5::open_group(file, "provenance");
+  result.provenance = h5::texts(group);
+  std::erase_if(result.provenance, [](const auto& pair) { return pair.first == "study_sha256"; });
+  result.study_sha256 = h5::text(group, "study_sha256");
+  result.study_text = h5::read_text(h5::open_dataset(group, "study"));
+}
+
+}  // namespace
+
+ResultDescription read_description(const h5::Handle& file, const std::filesystem::path& path) {
+  expect_result_file(file, path);
+  ResultDescription result;
+  result.study_name = h5::text(file, "study");
+  result.title = h5::text(file, "title");
+  result.seed = h5::number(file, "seed");
+  result.study_runs = h5::number(file, "runs");
+  read_axes(file, result);
+  read_scenario(file, result);
+  result.has_truth = h5::has(file, "truth");
+  result.own_landmarks = result.has_truth && h5::has(h5::open_group(file, "truth"), "landmarks");
+  read_provenance(file, result);
+  const h5::Handle cells = h5::open_group(file, "cells");
+  for (const std::string& label : h5::members(cells))
+    result.cells.push_back(read_cell(cells, label, result.runs.size()));
+  check_description(result, path);
+  return result;
+}
+
+namespace {
+
+constexpr std::size_t kLongestLabel = 1000;
+constexpr std::uint32_t kMostSteps = 1U << 27U;  // of a run; more would take days to go through
+
+bool are_finite(const std::vector<double>& values) {
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
+bool is_place(const Eigen::Vector2d& point) { return point.allFinite(); }
+
+bool are_finite(const std::vector<std::pair<double, double>>& points) {
+  return std::ranges::all_of(
+      points, [](const auto& p) { return std::isfinite(p.first) && std::isfinite(p.second); });
+}
+
+template <class T>
+bool increases(const std::vector<T>& values) {
+  return std::ranges::adjacent_find(values, std::ranges::greater_equal()) == values.end();
+}
+
+class Check {
+ public:
+  explicit Check(const std::filesystem::path& path) : path_(path) {}
+
+  void expect(bool condition, const std::string& what) const {
+    if (condition) return;
+    throw StudyError(path_.string() + ": damaged (" + what +
+                     "): take a copy that is whole, or run the study again");
+  }
+
+ private:
+  const std::filesystem::path& path_;
+};
+
+/// Texts that stand on one line of a table, a figure or a comment.
+void check_texts(const ResultDescription& d, const Check& check) {
+  const auto expect_line = [&](const std::string& text) {
+    check.expect(visible(text, "\t") == text, "a control character in '" + visible(text) + "'");
+  };
+  expect_line(d.study_name);
+  expect_line(d.title);
+  for (const auto& [key, value] : d.scenario) expect_line(key), expect_line(value);
+  for (const StoredCell& cell : d.cells) {
+    for (const std::string& text : {cell.label, cell.filter, cell.long_name}) expect_line(text);
+    for (const auto& [key, value] : cell.settings) expect_line(key), expect_line(value);
+    for (const Column& column : cell.columns) {
+      for (const std::string& text : {column.name, column.units, column.long_name}) {
+        expect_line(text);
+      }
+    }
+  }
+}
+
+void check_runs(const ResultDescription& d, const Check& check) {
+  check.expect(!d.runs.empty() && increases(d.runs), "its run numbers do not increase");
+  check.expect(d.runs.back() < d.study_runs, "a run number is beyond the study's runs");
+}
+
+void check_times(const ResultDescription& d, const Check& check) {
+  check.expect(are_finite(d.times) && std::ranges::is_sorted(d.times),
+               "its times do not increase, or are no numbers");
+  const std::size_t scans = d.scan_times.size();
+  check.expect(d.scan_rows.size() == scans && d.scan_steps.size() == scans,
+               "scan, scan_step and scan_row are not equally long");
+  check.expect(increases(d.scan_steps) && increases(d.scan_rows),
+               "scan_step or scan_row do not increase");
+  if (scans == 0) return;
+  check.expect(d.scan_rows.back() < d.times.size(), "scan_row is beyond the rows of time");
+  check.expect(d.scan_steps.back() < kMostSteps, "scan_step is beyond any drive");
+  for (std::size_t s = 0; s < scans; ++s) {
+    check.expect(d.scan_times[s] == d.times[d.scan_rows[s]], "scan is not time at scan_row");
+  }
+  check.expect(d.scan_rows == d.scan_steps || d.times.size() == scans,
+               "scan_row is neither scan_step nor one row after the other");
+  check.expect(increases(d.joint_scans) && (d.joint_scans.empty() || d.joint_scans.back() < scans),
+               "joint_scan does not increase, or is beyond the scans");
+}
+
+void check_references(const std::vector<ReferencePath>& references, const Check& check) {
+  for (const ReferencePath& path : references) {
+    check.expect(path.position.size() == path.time.size() &&
+                     (path.heading.empty() || path.heading.size() == path.time.size()),
+                 "reference " + path.name + " has other fixes than times");
+    check.expect(are_finite(path.time) && std::ranges::all_of(path.position, is_place),
+                 "a fix of reference " + path.name + " is no place");
+    const auto is_finite = [](const Eigen::Matrix3d& covariance) { return covariance.allFinite(); };
+    check.expect((path.covariance.empty() || path.covariance.size() == path.time.size()) &&
+                     std::ranges::all_of(path.covariance, is_finite),
+                 "reference " + path.name + " has no covariance for each of its fixes");
+  }
+}
+
+/// Whether two drives are judged alike by the two.
+bool are_alike(const ReferencePath& a, const ReferencePath& b) {
+  return a.name == b.name && a.heading.empty() == b.heading.empty() &&
+         a.covariance.empty() == b.covariance.empty();
+}
+
+void check_scenario(const ResultDescription& d, const Check& check) {
+  check.expect(are_finite({d.start.x, d.start.y, d.start.heading}) && are_finite(d.landmarks) &&
+                   are_finite(d.waypoints),
+               "start, landmarks or waypoints are no places");
+  check_references(d.references, check);
+}
+
+/// Runs of their own drives are read by the times of these.
+void check_drives(const ResultDescription& d, const Check& check) {
+  if (d.drives.empty()) return;
+  check.expect(d.drives.size() == d.study_runs && d.times.size() == d.scan_times.size(),
+               "it has not one drive for each run, with rows at scans");
+  for (const OwnDrive& drive : d.drives) {
+    check.expect(!drive.scan_times.empty() && drive.scan_times.size() <= d.scan_times.size() &&
+                     drive.scan_times.size() == drive.scan_steps.size(),
+                 "a drive has no scans, or more than the file");
+    check.expect(are_finite(drive.scan_times) && increases(drive.scan_times) &&
+                     increases(drive.scan_steps) &&
+                     are_finite({drive.start.x, drive.start.y, drive.start.heading}),
+                 "the times or the start of a drive are no numbers, or do not increase");
+    check_references(drive.references, check);
+    check.expect(std::ranges::equal(drive.references, d.drives.front().references, are_alike),
+                 "its drives have different references");
+  }
+}
+
+std::vector<std::string_view> nees_columns() {
+  std::vector<std::string_view> names;
+  for (const StoredConvention& convention : kErrorConventions)
+    names.emplace_back(convention.column);
+  return names;
+}
+
+/// Columns that are read together.
+const std::vector<std::vector<std::string_view>> kTogether = {
+    {"pose_mean_mixture", "pose_covariance_mixture"},
+    {"nis", "nis_dof"},
+    {"particle_pose", "log_weight"},
+    {"map_mean", "map_covariance", "map_seen"},
+    {"final_map_mean", "final_map_covariance", "final_map_seen"},
+    {"joint_mean", "joint_covariance"},
+    {"error", "error_covariance"},
+    nees_columns()};
+
+void check_columns(const StoredCell& cell, const Check& check) {
+  for (const Column& column : cell.columns) {
+    const auto known = std::ranges::find(column_table(), column.name, &ColumnKind::name);
+    check.expect(known == column_table().end() || known->axes == column.axes,
+                 "cells/" + cell.label + "/" + column.name + " has other axes than it should");
+  }
+  for (const auto& together : kTogether) {
+    const auto there =
+        std::ranges::count_if(together, [&](std::string_view name) { return cell.has(name); });
+    check.expect(there == 0 || there == std::ssize(together),
+                 "cells/" + cell.label + " has only a part of " + std::string(together.front()) +
+                     " and what belongs to it");
+  }
+  check.expect(
+      cell.has("pose_covariance") || cell.has("error") || !cell.has("pose_covariance_mixture"),
+      "cells/" + cell.label + " has pose_covariance_mixture and no pose_covariance");
+  check.expect(cell.has("pose_mean") || cell.has("error"),
+               "cells/" + cell.label + " has no pose_mean");
+  check.expect(cell.label.size() <= kLongestLabel, "the label of a cell is too long");
+}
+
+/// Rows and columns of a covariance are as many.
+Axis row_axis(Axis axis) {
+  if (axis == Axis::state_column) return Axis::state;
+  return axis == Axis::error_component_column ? Axis::error_component : axis;
+}
+
+void check_lengths(const ResultDescription& d, const StoredCell& cell, const Check& check) {
+  const AxisLengths lengths{.time = d.times.size(),
+                            .scan = d.scan_times.size(),
+                            .joint = d.joint_scans.size(),
+                            .particle = cell.particles,
+                            .landmark = std::nullopt,
+                            .error_component = std::nullopt};
+  std::map<Axis, std::size_t> own;
+  for (const Column& column : cell.columns) {
+    for (std::size_t a = 0; a < column.axes.size(); ++a) {
+      const Axis axis = row_axis(column.axes[a]);
+      const auto known =
+          length_of(axis, lengths).value_or(own.try_emplace(axis, column.shape[a]).first->second);
+      check.expect(column.shape[a] == known, "cells/" + cell.label + "/" + column.name +
+                                                 " is not as long as its axis " +
+                                                 std::string(name_of(axis)));
+    }
+  }
+}
+
+}  // namespace
+
+void check_description(const ResultDescription& description, const std::filesystem::path& path) {
+  const Check check(path);
+  check_texts(description, check);
+  check_runs(description, check);
+  check_times(description, check);
+  check_scenario(description, check);
+  check_drives(description, check);
+  for (const StoredCell& cell : description.cells) {
+    check_columns(cell, check);
+    check_lengths(description, cell, check);
+  }
 }
 
 }  // namespace montecarta::engine

@@ -3,8 +3,8 @@
 
 #include "engine/core/plan.hpp"
 #include "engine/records/result_writer.hpp"
+#include "engine/runs/interruption.hpp"
 #include "engine/runs/progress.hpp"
-#include "engine/runs/stop_request.hpp"
 #include "engine/threads/parallel.hpp"
 
 #include <cstdint>

@@ -4,7 +4,7 @@
 #include "engine/errors.hpp"
 #include "engine/records/open_result.hpp"
 #include "engine/records/recorder.hpp"
-#include "engine/runs/run_one.hpp"
+#include "engine/runs/worker.hpp"
 
 #include <algorithm>
 #include <charconv>

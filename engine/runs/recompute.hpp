@@ -2,7 +2,6 @@
 #pragma once
 
 #include "engine/core/plan.hpp"
-#include "engine/records/record_layout.hpp"
 #include "engine/records/result_description.hpp"
 #include "engine/records/result_slabs.hpp"
 #include "engine/records/run_record.hpp"

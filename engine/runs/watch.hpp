@@ -3,7 +3,6 @@
 
 #include "engine/runs/interruption.hpp"
 #include "engine/runs/progress.hpp"
-#include "engine/runs/stop_request.hpp"
 
 #include <chrono>
 #include <condition_variable>

@@ -1,9 +1,100 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/runs/worker.hpp"
 
+#include "engine/errors.hpp"
+#include "engine/threads/cpu_clock.hpp"
+
 #include <algorithm>
+#include <cmath>
+#include <exception>
+#include <new>
+#include <string_view>
 
 namespace montecarta::engine {
+namespace {
+
+bool is_finite(const Pose& pose) {
+  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.heading);
+}
+
+/// What of an estimate is not finite, in words; empty where all is well or nothing was estimated.
+std::string_view defect_of(const PoseEstimate* estimate) {
+  if (estimate == nullptr) return {};
+  if (!is_finite(estimate->spread.mean)) return "estimated pose is not finite";
+  if (!estimate->spread.covariance.allFinite()) return "pose covariance is not finite";
+  if (!estimate->mixture) return {};
+  if (!is_finite(estimate->mixture->mean)) return "estimated pose (mixture) is not finite";
+  if (!estimate->mixture->covariance.allFinite()) return "pose covariance (mixture) is not finite";
+  return {};
+}
+
+/// The run as it goes from step to step; what it learns is told by `step` and `scan`.
+class Walk {
+ public:
+  Walk(const RunConditions& conditions, SlamFilter& filter, Recorder& recorder,
+       std::size_t particles)
+      : conditions_(conditions), filter_(filter), recorder_(recorder), particles_(particles) {}
+
+  void start() { filter_.start(conditions_.itinerary.start); }
+  bool arrived() const { return step_ == conditions_.itinerary.steps(); }
+  std::uint32_t step() const { return step_; }
+  void next() { ++step_; }
+
+  /// One step; returns what is wrong with its estimate, empty if nothing.
+  std::string_view take_step() {
+    const Itinerary& itinerary = conditions_.itinerary;
+    const StepContext context(conditions_.seed, conditions_.run, step_,
+                              conditions_.spare_threads.lend(particles_), &conditions_.stop);
+    const Control& control = conditions_.drive.controls[step_];
+    if (!control.stands(itinerary.moving_controls))
+      filter_.predict(context, control, itinerary.duration(step_));
+    while (scan_ < itinerary.scans() && itinerary.scan_step[scan_] == step_) {
+      filter_.update(context, conditions_.drive.scan(scan_));
+      const std::string_view flaw = defect_of(recorder_.after_scan(filter_, scan_++));
+      if (!flaw.empty()) return flaw;
+    }
+    return defect_of(recorder_.after_step(filter_, step_));
+  }
+
+ private:
+  const RunConditions& conditions_;
+  SlamFilter& filter_;
+  Recorder& recorder_;
+  std::size_t particles_;
+  std::uint32_t step_ = 0;
+  std::size_t scan_ = 0;
+};
+
+}  // namespace
+
+RunEnd run_one(const RunConditions& conditions, SlamFilter& filter, Recorder& recorder,
+               RunRecord& record) {
+  record.clear();
+  recorder.expect_scans(conditions.itinerary.scans());
+  const CpuClock clock;
+  Walk walk(conditions, filter, recorder, record.layout().particles());
+  try {
+    for (walk.start(); !walk.arrived(); walk.next()) {
+      if (conditions.stop.is_set()) return RunEnd::dropped;
+      const std::string_view flaw = walk.take_step();
+      if (flaw.empty()) continue;
+      record.mark_failed(walk.step(), flaw, clock.seconds());
+      return RunEnd::recorded;
+    }
+    record.mark_complete(clock.seconds());
+  } catch (const std::bad_alloc&) {
+    throw;  // says something of the machine, not of the filter: no result of the study
+  } catch (const RunError&) {
+    throw;  // likewise
+  } catch (const std::exception& error) {
+    if (conditions.stop.is_set()) return RunEnd::dropped;  // it may be why the filter gave up
+    record.mark_failed(walk.step(), error.what(), clock.seconds());
+  } catch (...) {
+    record.mark_failed(walk.step(), "an exception that is no std::exception", clock.seconds());
+  }
+  return RunEnd::recorded;
+}
+
 namespace {
 
 std::size_t largest_record(std::span<const RecordLayout> layouts) {

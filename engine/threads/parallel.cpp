@@ -3,7 +3,6 @@
 
 #include "engine/errors.hpp"
 
-#include <omp.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task.h>
@@ -12,6 +11,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <omp.h>
 
 namespace montecarta::engine {
 namespace {

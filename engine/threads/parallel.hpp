@@ -1,12 +1,61 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/threads/loop_order.hpp"
+#include "engine/namespaces.hpp"
 
+#include <atomic>
 #include <cstddef>
 #include <memory>
 
+#ifdef MONTECARTA_THREAD_SANITIZER
+#include <sanitizer/tsan_interface.h>
+#endif
 namespace montecarta::engine {
+
+/// Tells the thread sanitizer what libtbb and libgomp, which are built without it, keep from it: a
+/// loop's bodies begin after the loop does and end before it ends. Bodies stay unordered among each
+/// other, so races between them are found. Without the sanitizer all this is nothing.
+/// `body` is the loop's body, whose address tells one loop from another.
+#ifdef MONTECARTA_THREAD_SANITIZER
+
+class LoopOrder {
+ public:
+  explicit LoopOrder(const void* body) : body_(body) { __tsan_release(begin()); }
+  ~LoopOrder() { __tsan_acquire(end()); }
+  LoopOrder(const LoopOrder&) = delete;
+  LoopOrder& operator=(const LoopOrder&) = delete;
+
+  /// Around one call of the body.
+  class Call {
+   public:
+    explicit Call(const void* body) : body_(body) { __tsan_acquire(LoopOrder::begin(body_)); }
+    ~Call() { __tsan_release(LoopOrder::end(body_)); }
+    Call(const Call&) = delete;
+    Call& operator=(const Call&) = delete;
+
+   private:
+    const void* body_;
+  };
+
+ private:
+  void* begin() const { return begin(body_); }
+  void* end() const { return end(body_); }
+  static void* begin(const void* body) { return const_cast<void*>(body); }
+  static void* end(const void* body) { return static_cast<char*>(begin(body)) + 1; }
+
+  const void* body_;
+};
+
+#else
+
+struct LoopOrder {
+  explicit LoopOrder(const void* /*body*/) {}
+  struct Call {
+    explicit Call(const void* /*body*/) {}
+  };
+};
+
+#endif
 
 enum class Backend { tbb, openmp, serial };
 
@@ -53,6 +102,30 @@ class Parallel {
   Backend backend_;
   int threads_;
   std::shared_ptr<Pool> pool_;  ///< of TBB; null where the calling thread or OpenMP does the work
+};
+
+/// Gives the threads that have no run of their own to the loops inside the runs still at work:
+/// where runs are fewer than threads, and at the end of every study.
+class SpareThreads {
+ public:
+  /// Below this many particles a loop over them costs more to spread than it saves.
+  static constexpr std::size_t kLeastParticles = 256;
+
+  SpareThreads(const Parallel& parallel, std::size_t workers)
+      : parallel_(&parallel), at_work_(workers) {}
+
+  /// How the next loop over `particles` is to be spread: changes from step to step, results do not.
+  const Parallel& lend(std::size_t particles) const {
+    const auto threads = static_cast<std::size_t>(parallel_->threads());
+    const bool spare = at_work_.load(std::memory_order_relaxed) < threads;
+    return spare && particles >= kLeastParticles ? *parallel_ : Parallel::serial();
+  }
+  /// A worker has found nothing more to do.
+  void gain_one() { at_work_.fetch_sub(1, std::memory_order_relaxed); }
+
+ private:
+  const Parallel* parallel_;
+  std::atomic<std::size_t> at_work_;
 };
 
 }  // namespace montecarta::engine

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/records/fingerprint.hpp"
-#include "engine/records/record_layout.hpp"
+#include "engine/records/run_record.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/plan_arguments.hpp"
 #include "experiments/commands/trial.hpp"

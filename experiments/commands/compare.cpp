@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/comparison/comparison_tables.hpp"
 #include "analysis/comparison/study_comparison.hpp"
 #include "analysis/data/study_settings.hpp"
 #include "analysis/output/text_table.hpp"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/errors.hpp"
-#include "engine/records/column_table.hpp"
+#include "engine/records/columns.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/external/external_kind.hpp"
+#include "experiments/external/external_filter.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/study/cell_spec.hpp"
 #include "experiments/study/ini_text.hpp"

@@ -5,7 +5,7 @@
 #include "engine/records/result_description.hpp"
 #include "engine/threads/parallel.hpp"
 #include "experiments/commands/arguments.hpp"
-#include "experiments/external/external_kind.hpp"
+#include "experiments/external/external_filter.hpp"
 #include "experiments/study/study.hpp"
 
 #include <string>

@@ -4,11 +4,13 @@
 #include "engine/core/slam_filter.hpp"
 #include "experiments/external/child_process.hpp"
 #include "experiments/external/messages.hpp"
+#include "filters/factory.hpp"
 #include "filters/setup/filter_setup.hpp"
 
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -73,5 +75,21 @@ class ExternalFilter final : public SlamFilter {
   ScanReport report_;
   std::unique_ptr<Session> session_;
 };
+
+/// Whether a cell may start the program that it names. Who runs a study says so; the study does
+/// not.
+enum class ExternalPrograms { refused, allowed };
+
+/// The option that says it, without dashes.
+inline constexpr const char* kAllowExternal = "allow-external";
+
+/// A program outside of ours: "cell = external command="python3 my_filter.py" label=mine".
+FilterKind external_kind();
+
+/// Whether cells of this kind start a program.
+bool starts_program(const FilterKind& filter);
+
+/// What a study may name: the filters of the table, then `external`.
+std::span<const FilterKind> known_filters();
 
 }  // namespace montecarta::experiments

@@ -2,9 +2,18 @@
 #include "experiments/external/messages.hpp"
 
 #include "analysis/page/json.hpp"
+#include "experiments/external/child_process.hpp"
+#include "experiments/text/words.hpp"
 #include "filters/models/vehicle_settings.hpp"
 
+#include <Eigen/Cholesky>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
 #include <type_traits>
 
 namespace montecarta::experiments {
@@ -109,5 +118,182 @@ std::string scan_message(std::uint64_t id, std::span<const ControlRow> controls,
 }
 
 std::string map_message(std::uint64_t id) { return json_message(id, "map").end_object().text(); }
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kDeepest = 4;  // of brackets within brackets; no answer needs more
+/// Of a correlation matrix: what rounding leaves of an eigenvalue that is zero.
+constexpr double kEigenvalueRounding = 1e-9;
+
+[[noreturn]] void refuse_answer(const std::string& reason) { throw ProgramError(reason); }
+
+/// Python and others write what JSON does not have.
+bool names_no_number(std::string_view line) {
+  return line.find("NaN") != line.npos || line.find("Infinity") != line.npos;
+}
+
+/// Whether brackets nest deeper than in any answer: a parser would need memory for each.
+bool is_too_deep(std::string_view line) {
+  int depth = 0;
+  for (const char c : line) {
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (depth > kDeepest) return true;
+  }
+  return false;
+}
+
+Json parsed_answer(std::string_view line) {
+  if (is_too_deep(line)) refuse_answer("answer has too many brackets within brackets");
+  Json answer = Json::parse(line, nullptr, false);
+  if (!answer.is_discarded()) return answer;
+  if (names_no_number(line)) refuse_answer("answer holds NaN or Infinity");
+  refuse_answer("answer is not JSON: " + excerpt(line));
+}
+
+/// The object in a line that answers message `id` and has no members but those.
+Json object_in(std::string_view line, std::uint64_t id,
+               std::initializer_list<std::string_view> members) {
+  Json answer = parsed_answer(line);
+  if (!answer.is_object()) refuse_answer("answer is no JSON object: " + excerpt(line));
+  const auto number = answer.find("id");
+  if (number == answer.end() || !number->is_number_unsigned() || *number != id)
+    refuse_answer("answer has not the message's id " + std::to_string(id) + ": " + excerpt(line));
+  for (const auto& [name, value] : answer.items()) {
+    if (name != "id" && std::ranges::find(members, name) == members.end())
+      refuse_answer("answer has an unknown member '" + excerpt(name) + "'");
+  }
+  return answer;
+}
+
+double finite_number(const Json& value, const std::string& what) {
+  if (value.is_null()) refuse_answer(what + " is not a number");
+  if (!value.is_number()) refuse_answer(what + " is not a number: " + excerpt(value.dump()));
+  const double number = value.get<double>();
+  if (!std::isfinite(number)) refuse_answer(what + " is not finite");
+  return number;
+}
+
+const Json& member(const Json& answer, const char* name) {
+  const auto found = answer.find(name);
+  if (found == answer.end()) refuse_answer(std::string("answer has no ") + name);
+  return *found;
+}
+
+void expect_array(const Json& value, std::size_t size, const std::string& what) {
+  if (value.is_array() && value.size() == size) return;
+  refuse_answer(what + " is no array of " + std::to_string(size));
+}
+
+/// Throws unless C is a covariance: no variance and no eigenvalue of the correlations negative but
+/// for rounding. Singular it may be: a pose that is known exactly is.
+void expect_covariance(const Eigen::MatrixXd& C, const std::string& what) {
+  const Eigen::Index n = C.rows();
+  Eigen::VectorXd scale(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (C(i, i) < 0.0) refuse_answer(what + " is not positive definite: a variance is negative");
+    scale(i) = C(i, i) > 0.0 ? 1.0 / std::sqrt(C(i, i)) : 0.0;
+    if (C(i, i) == 0.0 && !C.row(i).isZero(0.0))
+      refuse_answer(what + " is not positive definite: correlation with a variance of zero");
+  }
+  const Eigen::MatrixXd correlations = scale.asDiagonal() * C * scale.asDiagonal();
+  if (!correlations.allFinite())
+    refuse_answer(what + " is not positive definite: beyond all bounds");
+  // Positive definite when raised by the tolerance: no eigenvalue is below its negative.
+  const Eigen::MatrixXd raised =
+      correlations + kEigenvalueRounding * Eigen::MatrixXd::Identity(n, n);
+  if (raised.llt().info() != Eigen::Success) refuse_answer(what + " is not positive definite");
+}
+
+Eigen::Matrix3d covariance_in(const Json& value) {
+  expect_array(value, 3, "covariance");
+  Eigen::Matrix3d C;
+  for (int i = 0; i < 3; ++i) {
+    const Json& row = value[static_cast<std::size_t>(i)];
+    expect_array(row, 3, "a row of the covariance");
+    for (int j = 0; j < 3; ++j)
+      C(i, j) = finite_number(row[static_cast<std::size_t>(j)], "covariance");
+  }
+  const Eigen::Vector3d sigma = C.diagonal().cwiseAbs().cwiseSqrt();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < i; ++j) {
+      if (std::abs(C(i, j) - C(j, i)) > kEigenvalueRounding * sigma(i) * sigma(j))
+        refuse_answer("covariance is not symmetric");
+    }
+  }
+  C = (0.5 * (C + C.transpose())).eval();
+  expect_covariance(C, "covariance");
+  return C;
+}
+
+double optional_number(const Json& answer, const char* name) {
+  const auto found = answer.find(name);
+  return found == answer.end() ? 0.0 : finite_number(*found, name);
+}
+
+std::uint32_t optional_count(const Json& answer, const char* name) {
+  const auto found = answer.find(name);
+  if (found == answer.end()) return 0;
+  const bool fits = found->is_number_unsigned() &&
+                    found->get<std::uint64_t>() <= std::numeric_limits<std::uint32_t>::max();
+  if (!fits)
+    refuse_answer(std::string(name) + " is no whole number from 0: " + excerpt(found->dump()));
+  return found->get<std::uint32_t>();
+}
+
+/// One row of a map: number, x, y, xx, xy, yy.
+std::pair<std::size_t, LandmarkEstimate> landmark_in(const Json& row) {
+  expect_array(row, 6, "a landmark of the map");
+  if (!row[0].is_number_unsigned())
+    refuse_answer("a landmark's number is no whole number from 0: " + excerpt(row[0].dump()));
+  std::array<double, 5> numbers{};
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = finite_number(row[i + 1], "map");
+  const auto [x, y, xx, xy, yy] = numbers;
+  LandmarkEstimate landmark{{x, y}, Eigen::Matrix2d{{xx, xy}, {xy, yy}}};
+  expect_covariance(landmark.covariance, "a landmark's covariance");
+  return {row[0].get<std::size_t>(), landmark};
+}
+
+}  // namespace
+
+void read_started(std::string_view line, std::uint64_t id) { object_in(line, id, {}); }
+
+ProgramEstimate read_estimate(std::string_view line, std::uint64_t id) {
+  const Json answer = object_in(
+      line, id, {"mean", "covariance", "log_likelihood", "nis", "nis_dof", "ess", "map_size"});
+  const Json& mean = member(answer, "mean");
+  expect_array(mean, 3, "mean");
+  ProgramEstimate estimate;
+  estimate.pose.mean = {.x = finite_number(mean[0], "mean"),
+                        .y = finite_number(mean[1], "mean"),
+                        .heading = wrap(finite_number(mean[2], "mean"))};
+  estimate.pose.covariance = covariance_in(member(answer, "covariance"));
+  estimate.report = {.ess = optional_number(answer, "ess"),
+                     .log_likelihood = optional_number(answer, "log_likelihood"),
+                     .nis = optional_number(answer, "nis"),
+                     .nis_dof = optional_count(answer, "nis_dof"),
+                     .map_size = optional_number(answer, "map_size")};
+  return estimate;
+}
+
+void read_map(std::string_view line, std::uint64_t id, Association association,
+              std::span<std::optional<LandmarkEstimate>> landmarks) {
+  const Json answer = object_in(line, id, {"map"});
+  const Json& map = member(answer, "map");
+  if (!map.is_array()) refuse_answer("map is no array");
+  for (const Json& row : map) {
+    const auto [number, landmark] = landmark_in(row);
+    if (number >= landmarks.size()) {
+      if (association == Association::nearest) continue;
+      refuse_answer("the map has landmark " + std::to_string(number) + ", the world has " +
+                    std::to_string(landmarks.size()));
+    }
+    if (landmarks[number])
+      refuse_answer("the map has landmark " + std::to_string(number) + " twice");
+    landmarks[number] = landmark;
+  }
+}
 
 }  // namespace montecarta::experiments

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/core/plan.hpp"
-#include "experiments/external/external_kind.hpp"
+#include "experiments/external/external_filter.hpp"
 #include "experiments/study/study.hpp"
 
 #include <cstdint>

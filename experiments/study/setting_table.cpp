@@ -1,12 +1,212 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/data/study_settings.hpp"
-#include "engine/records/column_table.hpp"
-#include "experiments/study/setting_builders.hpp"
+#include "engine/records/columns.hpp"
+#include "experiments/study/setting.hpp"
+#include "filters/models/sensor.hpp"
+#include "filters/models/vehicle_settings.hpp"
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace montecarta::experiments {
 namespace {
 
-using namespace setting_builders;
+constexpr double kTiny = 1e-6;  // least of what must be positive
+constexpr double kMostSeed = 18446744073709551615.0;
+
+Setting text(const char* section, const char* key, const char* meaning) {
+  return {{.key = key, .fallback = "", .meaning = meaning}, section};
+}
+
+Setting number(const char* section, const char* key, const char* unit, const char* fallback,
+               double least, double most, const char* meaning) {
+  Setting setting{number_option(key, fallback, least, most, meaning), section};
+  setting.unit = unit;
+  return setting;
+}
+
+Setting count(const char* section, const char* key, const char* fallback, double least, double most,
+              const char* meaning) {
+  return {count_option(key, fallback, least, most, meaning), section};
+}
+
+/// The first choice is the default.
+Setting choice(const char* section, const char* key, std::vector<std::string> choices,
+               const char* meaning) {
+  const std::string first = choices.front();
+  return {choice_option(key, first, std::move(choices), meaning), section};
+}
+
+/// Without a default; `example` is offered as remedy.
+Setting required(Setting setting, const char* example) {
+  setting.fallback.reset();
+  setting.example = example;
+  return setting;
+}
+
+/// Of these kinds of scenario only.
+Setting only_for(std::vector<std::string> kinds, Setting setting) {
+  setting.kinds = std::move(kinds);
+  return setting;
+}
+
+/// A setting of some vehicles.
+Setting of_vehicles(const char* section, const VehicleSetting& v) {
+  const bool is_choice = !v.choices.empty();
+  Setting setting{
+      is_choice ? choice_option(v.key.c_str(), v.usual, v.choices, v.meaning.c_str())
+                : number_option(v.key.c_str(), v.usual.c_str(), v.least, v.most, v.meaning.c_str()),
+      section};
+  setting.unit = v.unit;
+  setting.chooser = "vehicle";
+  setting.chosen = v.vehicles;
+  return setting;
+}
+
+/// The deviation of a component of some sensors, from `least` on.
+Setting deviation_setting(const char* section, Quantity quantity, double least) {
+  const DetectionName& c = name_of(quantity);
+  Setting setting = number(section, c.sigma, c.unit, c.usual, least, c.most_sigma, c.noise_text);
+  setting.chooser = "sensor";
+  setting.chosen = sensors_with(quantity);
+  return setting;
+}
+
+/// Left out of the resolved text where it says nothing.
+Setting quiet(Setting setting) {
+  setting.is_quiet = true;
+  return setting;
+}
+
+/// With another default where the scenario is of that kind.
+Setting but_for(const char* kind, const char* fallback, Setting setting) {
+  setting.fallback_of_kind.emplace_back(kind, fallback);
+  return setting;
+}
+
+/// alpha_1 to alpha_4 (EQUATIONS 1), added by `add`.
+template <class Add>
+void add_growth(const char* section, const Add& add) {
+  static constexpr std::array<const char*, 4> kMeanings = {
+      "variance of a speed by its square", "and by the square of steering angle or yaw rate",
+      "variance of steering angle or yaw rate by the square of the speed", "and by its own square"};
+  for (std::size_t i = 0; i < kMeanings.size(); ++i) {
+    add(quiet(number(section, alpha_key(i).c_str(), "SI", "0", 0, 1e6, kMeanings[i])));
+  }
+}
+
+/// Which sensor, where it is mounted, and its noise, added by `add`. Deviations from `least` on.
+template <class Add>
+void add_sensor_kind(const char* section, double least, const Add& add) {
+  const auto mount = [&](const char* key, const char* unit, double most, const char* meaning) {
+    add(quiet(number(section, key, unit, "0", -most, most, meaning)), "");
+  };
+  add(quiet(choice(section, "sensor", sensor_names(), "what detects landmarks (EQUATIONS 2)")), "");
+  mount("mount_forward", "m", 1000, "of the sensor, ahead of the pose");
+  mount("mount_left", "m", 1000, "of the sensor, left of the pose");
+  mount("mount_turn_deg", "deg", 360, "where the sensor looks, left of the heading");
+  for (std::size_t i = 0; i < kDetectionNames.size(); ++i) {
+    const auto quantity = static_cast<Quantity>(i);
+    add(deviation_setting(section, quantity, least), name_of(quantity).example);
+  }
+}
+
+void add_drive(std::vector<Setting>& table) {
+  const char* s = "scenario";
+  const auto add = [&](Setting setting) {
+    table.push_back(only_for({"simulated"}, std::move(setting)));
+  };
+  add(required(text(s, "world", "a shipped world, or a path to a .csv file"), "web_loop"));
+  add(count(s, "loops", "1", 1, 10'000, "times round the way-points"));
+  add(choice(s, "noise", {"measured-control", "matched"},
+             "noise on the controls the filter is given, or on the truth's motion (EQUATIONS 1)"));
+  Setting pilot = choice(s, "pilot", {"closed_loop", "open_loop"},
+                         "steers by the true pose, or takes the controls of the noise-free drive");
+  pilot.chooser = "noise";
+  pilot.chosen = {"matched"};
+  add(quiet(pilot));
+  add(choice(s, "map", {"fixed", "random"},
+             "landmarks where the world has them, or displaced anew in every run"));
+  add(number(s, "map_shift", "m", "10", 0, 1e4, "farthest that a random map displaces one"));
+  add(choice(s, "vehicle", vehicle_names(),
+             "what drives, and what its controls are (EQUATIONS 1)"));
+  const auto add_all = [&](const std::vector<VehicleSetting>& settings) {
+    for (const VehicleSetting& setting : settings) add(of_vehicles(s, setting));
+  };
+  add_all(vehicle_settings(VehicleUse::motion));
+  add(number(s, "speed", "m/s", "3", 1e-3, 1000, "along the path; of rear_wheel: of that wheel"));
+  add(number(s, "control_rate", "Hz", "40", 1e-3, 1e5, "control steps a second"));
+  add(number(s, "scan_rate", "Hz", "5", 1e-4, 1e5, "scans a second; must divide control_rate"));
+  add(number(s, "waypoint_radius", "m", "1", 1e-3, 1e4, "nearer than this a way-point is reached"));
+  add_all(vehicle_settings(VehicleUse::pilot));
+  add(number(s, "start_x", "m", "0", -1e6, 1e6, "pose before the first step"));
+  add(number(s, "start_y", "m", "0", -1e6, 1e6, "pose before the first step"));
+  add(number(s, "start_heading_deg", "deg", "0", -360, 360, "pose before the first step"));
+  add_all(control_noise_settings());
+  add_growth(s, add);
+  add_sensor_kind(s, 0.0, [&](const Setting& setting, const std::string&) { add(setting); });
+}
+
+void add_recording(std::vector<Setting>& table) {
+  const char* s = "scenario";
+  const auto add = [&](Setting setting) { table.push_back(only_for({"log"}, std::move(setting))); };
+  add(required(text(s, "path", "the folder of the recorded drive; several, one a run, with commas"),
+               "my_drive"));
+  add(text(s, "data_sha256", "fingerprint of each drive, filled in"));
+  add(text(s, "reference", "the one to judge by; all of them where empty"));
+  add(number(s, "scan_delay", "s", "0", -10, 10, "how much later than it was a scan is stamped"));
+}
+
+void add_sensor(std::vector<Setting>& table) {
+  const char* s = "scenario";
+  table.push_back(number(s, "max_range", "m", "30", 1e-3, 1e6, "farther is not detected"));
+  table.push_back(quiet(number(s, "min_range", "m", "0", 0, 1e6, "nearer is not detected")));
+  const auto add = [&](Setting setting) {
+    table.push_back(only_for({"simulated"}, std::move(setting)));
+  };
+  add(number(s, "field_of_view_deg", "deg", "180", 0.1, 360,
+             "of the sensor, centred where it looks"));
+  add(number(s, "clutter_rate", "1", "0", 0, 100, "mean false alarms a scan"));
+  add(number(s, "miss_probability", "1", "0", 0, 1, "that a landmark in view is not detected"));
+}
+
+/// In a simulation it follows the scenario. With an `example` it must be given for a recorded
+/// drive, of which only the user knows it.
+Setting believed(Setting setting, const std::string& example) {
+  if (!example.empty()) {
+    setting.example = example;
+    setting = but_for("log", kRequired, std::move(setting));
+  }
+  return but_for("simulated", kFromScenario, std::move(setting));
+}
+
+void add_scenario(std::vector<Setting>& table) {
+  table.push_back(choice("scenario", "kind", {"simulated", "log"}, "where drives come from"));
+  add_drive(table);
+  add_recording(table);
+  add_sensor(table);
+}
+
+/// In a simulation everything follows the scenario unless it says otherwise.
+void add_belief(std::vector<Setting>& table) {
+  const char* s = "belief";
+  const char* meaning = "what the filter takes it to be";
+  const auto add = [&](Setting setting, const std::string& example = {}) {
+    setting.meaning = meaning;
+    table.push_back(believed(std::move(setting), example));
+  };
+  add(choice(s, "vehicle", vehicle_names(), meaning));
+  for (const VehicleSetting& setting : vehicle_settings(VehicleUse::motion)) {
+    add(of_vehicles(s, setting), setting.example);
+  }
+  for (const VehicleSetting& setting : control_noise_settings()) {
+    add(of_vehicles(s, setting), setting.example);
+  }
+  add_growth(s, add);
+  add_sensor_kind(s, kTiny, add);
+}
 
 void add_study(std::vector<Setting>& table) {
   const char* s = "study";

@@ -2,10 +2,9 @@
 #include "experiments/study/study.hpp"
 
 #include "engine/errors.hpp"
-#include "experiments/external/external_kind.hpp"
+#include "experiments/external/external_filter.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/study/cell_spec.hpp"
-#include "experiments/study/inline_world.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/study/setting.hpp"
 #include "experiments/text/words.hpp"

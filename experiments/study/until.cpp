@@ -3,7 +3,7 @@
 
 #include "analysis/comparison/cell_comparison.hpp"
 #include "analysis/data/study_settings.hpp"
-#include "analysis/metrics/first_values.hpp"
+#include "analysis/metrics/cell_sums.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/result_file.hpp"

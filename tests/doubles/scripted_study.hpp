@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/core/plan.hpp"
-#include "engine/threads/spare_threads.hpp"
+#include "engine/threads/parallel.hpp"
 #include "tests/doubles/scripted_drives.hpp"
 #include "tests/doubles/scripted_filter.hpp"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/core/slam_filter.hpp"
-#include "engine/records/column_table.hpp"
+#include "engine/records/columns.hpp"
 
 #include <bit>
 #include <cstdint>

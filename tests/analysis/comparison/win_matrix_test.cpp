@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/cell_comparison.hpp"
-#include "analysis/comparison/comparison_tables.hpp"
+#include "analysis/comparison/study_comparison.hpp"
 #include "tests/analysis/comparison/compared_cells.hpp"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/ancestry_tree.hpp"
-
+#include "analysis/figures/ancestry_figure.hpp"
 #include "analysis/metrics/lineages.hpp"
 #include "engine/errors.hpp"
 #include "engine/random/stream.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/gospa.hpp"
+#include "analysis/metrics/map_scores.hpp"
 #include "engine/random/stream.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/cell_calibration.hpp"
-
+#include "analysis/metrics/calibration.hpp"
 #include "tests/analysis/reported.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
 

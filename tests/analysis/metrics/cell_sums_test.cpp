@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/cell_sums.hpp"
 
-#include "analysis/metrics/credibility.hpp"
 #include "analysis/metrics/error_anatomy.hpp"
+#include "analysis/metrics/survival.hpp"
 #include "analysis/metrics/verdict_table.hpp"
-#include "analysis/statistics/means.hpp"
-#include "analysis/statistics/survival.hpp"
+#include "analysis/statistics/spread.hpp"
 #include "tests/analysis/reported.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
 

@@ -2,7 +2,7 @@
 #include "analysis/metrics/consistency.hpp"
 
 #include "analysis/output/number_text.hpp"
-#include "analysis/statistics/means.hpp"
+#include "analysis/statistics/spread.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/credibility.hpp"
-
+#include "analysis/metrics/error_anatomy.hpp"
 #include "engine/random/stream.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/first_values.hpp"
-
 #include "analysis/comparison/cell_comparison.hpp"
+#include "analysis/metrics/cell_sums.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "tests/analysis/synthetic_result.hpp"
 #include "tests/doubles/scratch_folder.hpp"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/fix_errors.hpp"
-
+#include "analysis/metrics/drive_scores.hpp"
 #include "analysis/metrics/nees.hpp"
 #include "analysis/statistics/sampler_scale.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/joint_nees.hpp"
 
-#include "analysis/statistics/means.hpp"
+#include "analysis/statistics/spread.hpp"
 #include "engine/numbers/angle.hpp"
 #include "engine/random/stream.hpp"
 

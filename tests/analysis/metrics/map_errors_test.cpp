@@ -3,7 +3,7 @@
 
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/score.hpp"
-#include "analysis/statistics/means.hpp"
+#include "analysis/statistics/spread.hpp"
 #include "engine/random/stream.hpp"
 
 #include <gmock/gmock.h>

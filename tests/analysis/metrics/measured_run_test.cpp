@@ -3,7 +3,7 @@
 
 #include "analysis/metrics/joint_nees.hpp"
 #include "analysis/metrics/map_errors.hpp"
-#include "analysis/metrics/reference_analysis.hpp"
+#include "analysis/metrics/reference_scores.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/synthetic_result.hpp"

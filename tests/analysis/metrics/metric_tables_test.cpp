@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/credibility.hpp"
 #include "analysis/metrics/error_anatomy.hpp"
 #include "analysis/metrics/innovations.hpp"
 #include "analysis/metrics/lineages.hpp"
-#include "analysis/statistics/means.hpp"
+#include "analysis/statistics/spread.hpp"
 #include "tests/analysis/reported.hpp"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/cell_calibration.hpp"
+#include "analysis/metrics/calibration.hpp"
 #include "analysis/metrics/cramer_rao.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "engine/records/merge.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/particle_curves.hpp"
-#include "analysis/metrics/reference_analysis.hpp"
 #include "analysis/metrics/reference_report.hpp"
+#include "analysis/metrics/reference_scores.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/reference_analysis.hpp"
 #include "analysis/metrics/reference_report.hpp"
+#include "analysis/metrics/reference_scores.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/records/h5.hpp"
 #include "tests/analysis/recorded_result.hpp"

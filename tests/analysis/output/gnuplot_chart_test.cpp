@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/output/figure.hpp"
 #include "analysis/output/gnuplot.hpp"
-#include "analysis/output/print_layout.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/output/panel.hpp"
+#include "analysis/output/figure.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/statistics/survival.hpp"
+#include "analysis/metrics/survival.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include "analysis/output/csv_file.hpp"
 #include "analysis/output/number_text.hpp"
-#include "analysis/statistics/means.hpp"
+#include "analysis/statistics/spread.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/h5.hpp"
 #include "tests/doubles/scratch_folder.hpp"

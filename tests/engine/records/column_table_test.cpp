@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/records/column_table.hpp"
+#include "engine/records/columns.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #include "engine/runs/monte_carlo.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/threads/spare_threads.hpp"
+#include "engine/threads/parallel.hpp"
 #include "tests/doubles/same_results.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 #include "tests/doubles/scripted_study.hpp"

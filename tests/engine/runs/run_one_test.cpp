@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/runs/run_one.hpp"
-
+#include "engine/runs/worker.hpp"
 #include "tests/doubles/allocation_count.hpp"
 #include "tests/doubles/scripted_study.hpp"
 

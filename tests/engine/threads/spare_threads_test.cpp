@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/threads/spare_threads.hpp"
+#include "engine/threads/parallel.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a program may answer.
-#include "experiments/external/answer.hpp"
-
 #include "engine/random/stream.hpp"
 #include "experiments/external/child_process.hpp"
 #include "experiments/external/messages.hpp"

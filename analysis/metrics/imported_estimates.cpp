@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Estimates of another program: errors and deviations of each component, in the stated convention.
+#include "analysis/metrics/imported_estimates.hpp"
+
+#include "analysis/metrics/measured_run.hpp"
+#include "analysis/metrics/metric.hpp"
+#include "analysis/metrics/verdict_table.hpp"
+#include "analysis/output/number_text.hpp"
+#include "analysis/statistics/spread.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace montecarta::analysis {
+namespace {
+
+/// Root mean squares over runs and scans that have a NEES, in the units of the components.
+struct ComponentErrors {
+  std::vector<double> error;      ///< {component}
+  std::vector<double> deviation;  ///< {component} as the other program believes
+};
+
+class ComponentsOverRuns final : public MetricSums {
+ public:
+  explicit ComponentsOverRuns(const RunCriteria& /*criteria*/) {}
+  void add(const MeasuredRun& run) override {
+    const ErrorRows& rows = run.rows.error;
+    if (rows.components() == 0) return;
+    const std::vector<double>& nees = run.metrics.nees(Moments::spread).value[0];
+    squares_.resize(rows.components());
+    variances_.resize(rows.components());
+    for (std::size_t s = 0; s < rows.scans(); ++s) {
+      if (std::isnan(nees[s])) continue;
+      add(rows.error(s), rows.covariance_of(s));
+    }
+  }
+  void put(CellAnalysis& cell) override {
+    if (squares_.empty()) return;
+    const auto root = [&](double sum) { return std::sqrt(sum / samples_); };
+    ComponentErrors found;
+    std::ranges::transform(squares_, std::back_inserter(found.error), root);
+    std::ranges::transform(variances_, std::back_inserter(found.deviation), root);
+    cell.findings.put(std::move(found));
+  }
+
+ private:
+  void add(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance) {
+    for (std::size_t c = 0; c < squares_.size(); ++c) {
+      const auto i = static_cast<Eigen::Index>(c);
+      squares_[c] += error(i) * error(i);
+      variances_[c] += covariance(i, i);
+    }
+    samples_ += 1.0;
+  }
+
+  std::vector<double> squares_, variances_;  ///< {component} sums
+  double samples_ = 0.0;
+};
+
+TextTable component_table(const StudyAnalysis& study) {
+  TextTable table;
+  table.headings = {{"cell", Align::left}, {"component", Align::left}, {"unit", Align::left},
+                    {"RMS error"},         {"RMS of its deviation"},   {"ratio"}};
+  for (const CellAnalysis& cell : study.cells) {
+    const ComponentErrors& found = cell.get<ComponentErrors>();
+    const std::size_t named =
+        std::min(study.imported.components.size(), study.imported.units.size());
+    for (std::size_t c = 0; c < std::min(found.error.size(), named); ++c) {
+      table.rows.push_back({cell.label, study.imported.components[c], study.imported.units[c],
+                            readable(found.error[c]), readable(found.deviation[c]),
+                            readable(found.error[c] / found.deviation[c])});
+    }
+  }
+  return table;
+}
+
+std::vector<Section> imported_sections(const StudyAnalysis& study) {
+  if (!study.imported.is_imported()) return {};
+  Section section{"components", "Which component is off?"};
+  section.add("components", component_table(study));
+  section.add(std::vector<std::string>{
+      "The error in the stated convention (" + study.imported.convention +
+      "), root mean square over runs and scans, beside the deviation that the covariance claims: "
+      "of a consistent estimator their ratio is near 1."});
+  return {section};
+}
+
+std::vector<std::string> words_in(const std::string& list) {
+  std::vector<std::string> words;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(", ", begin), list.size());
+    words.push_back(list.substr(begin, end - begin));
+    begin = end + 2;
+  }
+  return words;
+}
+
+std::string sentence_on(const std::string& convention) {
+  if (convention == "body") return "in the frame of the estimate";
+  if (convention == "right-invariant")
+    return "right-invariant: the logarithm of mean times inverse truth";
+  return "estimate minus truth in the frame of the map";
+}
+
+}  // namespace
+
+ImportedState imported_state(const StoredCell& cell) {
+  ImportedState found;
+  if (!cell.has("error")) return found;
+  const auto setting = [&](const char* name) {
+    const auto pair = std::ranges::find(cell.settings, name, &TextPairs::value_type::first);
+    return pair == cell.settings.end() ? std::string() : pair->second;
+  };
+  found.state = setting("state");
+  found.convention = setting("error");
+  found.components = words_in(setting("components"));
+  found.units = words_in(setting("units"));
+  return found;
+}
+
+std::string components_text(const StudyAnalysis& study) {
+  std::string all;
+  for (const std::string& name : study.imported.components) all += (all.empty() ? "" : ", ") + name;
+  return all;
+}
+
+std::vector<std::string> imported_notes(const StudyAnalysis& study) {
+  if (!study.imported.is_imported()) return {};
+  std::vector<std::string> notes = {
+      "Imported estimates of another program, error " + study.imported.convention + " (" +
+      sentence_on(study.imported.convention) + "), components " + components_text(study) + "."};
+  for (const CellAnalysis& cell : study.cells) {
+    const std::string hint =
+        in_words(cell.get<ConventionHint>(), cell.label, study.imported.convention);
+    if (!hint.empty()) notes.push_back("Hint, no verdict: " + hint + ".");
+  }
+  for (const CellAnalysis& cell : study.cells) {
+    const NeesResult* all = cell.find_nees(ErrorBlock::pose, cell.leading);
+    if (all == nullptr || all->series.unusable == 0) continue;
+    const double share =
+        static_cast<double>(all->series.unusable) / static_cast<double>(all->series.samples);
+    notes.push_back(cell.label + ": " + std::to_string(all->series.unusable) + " of " +
+                    std::to_string(all->series.samples) + " samples (" + percent(share) +
+                    ") are unusable: error or covariance is not finite, or the covariance is not "
+                    "symmetric and positive semidefinite. ANEES is of the other samples alone.");
+  }
+  return notes;
+}
+
+Metric imported_metric() {
+  return {.sums = make_sums<ComponentsOverRuns>, .sections = imported_sections};
+}
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Size and whiteness of the innovations, which need no truth.
+#include "analysis/metrics/innovations.hpp"
+
+#include "analysis/metrics/cell_panels.hpp"
+#include "analysis/metrics/measured_run.hpp"
+#include "analysis/metrics/metric.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/output/number_text.hpp"
+#include "analysis/statistics/bootstrap.hpp"
+#include "analysis/statistics/spread.hpp"
+
+#include <boost/math/distributions/normal.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+namespace montecarta::analysis {
+namespace {
+
+/// How many standard deviations white innovations keep to at all of `lags` lags (Sidak).
+double white_deviate(std::size_t lags, double level) {
+  const double each = std::pow(level, 1.0 / static_cast<double>(lags));
+  return boost::math::quantile(boost::math::normal(), 0.5 + 0.5 * each);
+}
+
+/// The widest of the bounds of the lags that are tested; NaN if none is.
+double widest_bound(const Innovations& found) {
+  double widest = kNaN;
+  for (const double bound : found.white_bound) widest = std::fmax(widest, bound);
+  return widest;
+}
+
+class InnovationsOverRuns final : public MetricSums {
+ public:
+  explicit InnovationsOverRuns(const RunCriteria& criteria)
+      : level_(criteria.level),
+        has_common_scans_(criteria.drives.empty()),
+        innovations_(criteria.times.size()) {}
+  void add(const MeasuredRun& run) override {
+    if (!run.rows.nis.empty()) innovations_.add(run.rows.nis, run.rows.nis_dof);
+  }
+  void put(CellAnalysis& cell) override {
+    if (innovations_.empty()) return;
+    Innovations found = innovations_.result(level_);
+    if (!has_common_scans_) {
+      found.average.clear();
+      found.bounds.clear();
+    }
+    cell.findings.put(std::move(found));
+  }
+
+ private:
+  double level_;
+  bool has_common_scans_;  ///< else runs are drives of their own, without a mean over time
+  InnovationSums innovations_;
+};
+
+void innovations_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
+  const bool known = cell.find<Innovations>() != nullptr;
+  const Innovations& found = cell.get<Innovations>();
+  all.push_back({"nis_per_component", "1", known ? found.mean : kNaN});
+  all.push_back({"nis_per_component_lower", "1", known ? found.interval.lower : kNaN});
+  all.push_back({"nis_per_component_upper", "1", known ? found.interval.upper : kNaN});
+  all.push_back({"nis_share_inside", "1", known ? found.share_inside : kNaN});
+  for (std::size_t lag = 1; lag <= kInnovationLags; ++lag) {
+    all.push_back({"innovation_correlation_" + std::to_string(lag), "1",
+                   known ? found.autocorrelation[lag - 1] : kNaN});
+  }
+  all.push_back({"innovation_correlation_bound", "1", known ? widest_bound(found) : kNaN});
+}
+
+void innovations_series(const CellAnalysis& cell, std::vector<NamedSeries>& all) {
+  const Innovations* innovations = cell.find<Innovations>();
+  if (innovations == nullptr || innovations->average.empty()) return;
+  all.push_back({"nis_per_component", "1", innovations->average});
+  all.push_back({"nis_lower", "1", ends_of(innovations->bounds, &Interval::lower)});
+  all.push_back({"nis_upper", "1", ends_of(innovations->bounds, &Interval::upper)});
+}
+
+std::vector<std::string> innovation_row(const CellAnalysis& cell) {
+  const Innovations& found = *cell.find<Innovations>();
+  const std::size_t lag = found.worst_lag;
+  return {cell.label,
+          with_interval(found.mean, found.interval),
+          percent(found.share_inside),
+          readable(found.autocorrelation.front()),
+          lag == 0 ? "-" : readable(found.autocorrelation[lag - 1]) + " at " + std::to_string(lag),
+          lag == 0 ? "-" : readable(found.white_bound[lag - 1]),
+          whiteness_in_words(found)};
+}
+
+TextTable innovation_table(const StudyAnalysis& study) {
+  TextTable table;
+  table.headings = {{"cell", Align::left},
+                    {"NIS per component [" + level_text(study.level) + "]"},
+                    {"scans inside"},
+                    {"correlation, 1 scan"},
+                    {"largest, scans apart"},
+                    {"white below"},
+                    {"innovations", Align::left}};
+  for (const CellAnalysis& cell : study.cells) {
+    if (cell.find<Innovations>()) table.rows.push_back(innovation_row(cell));
+  }
+  return table;
+}
+
+std::vector<std::string> innovation_notes() {
+  return {
+      "The NIS compares what the filter measured with what it expected to measure, and needs no "
+      "truth: 1 per component means it expects its measurements rightly, more that they surprise "
+      "it. "
+      "Surprises of a consistent filter are 'white': one says nothing of the next. The correlation "
+      "over "
+      "scans that lie up to " +
+      std::to_string(kInnovationLags) +
+      " apart stays below the bound then. A filter can pass this test and still not know its "
+      "pose."};
+}
+
+/// Where white innovations stay: one band for each number of pairs of scans; where there are none
+/// so far apart, no band.
+std::vector<Band> white_bands(const StudyAnalysis& study) {
+  std::set<double> bounds;
+  for (const CellAnalysis& cell : study.cells) {
+    const Innovations* found = cell.find<Innovations>();
+    if (found != nullptr && found->worst_lag > 0) bounds.insert(widest_bound(*found));
+  }
+  std::vector<Band> bands;
+  for (const double bound : bounds) {
+    bands.push_back(
+        {bands.empty() ? level_text(study.level) + " band of white ones" : "", -bound, bound});
+  }
+  return bands;
+}
+
+Figure innovation_figure(const StudyAnalysis& study) {
+  Figure figure{"nis", "Do measurements surprise the filter?", ""};
+  figure.sentence =
+      "Normalised innovation squared per component, mean over runs: near 1 the filter expects its "
+      "measurements as well as it says; above, they surprise it. This test needs no truth, and a "
+      "filter that has lost its way may still pass it.";
+  const CellValues nis = [](const CellAnalysis& cell) { return cell.get<Innovations>().average; };
+  add_panels(
+      cell_panels(study, {"nis_per_component", "NIS per component", {}, {}, Scale::automatic}, nis),
+      study.times, figure);
+  return figure;
+}
+
+Figure whiteness_figure(const StudyAnalysis& study) {
+  Figure figure{"whiteness", "Does one surprise foretell the next?", ""};
+  figure.sentence =
+      "Correlation of the normalised innovations squared of scans that lie so many scans apart, "
+      "mean over runs: inside of the grey band at every distance the innovations are white, one "
+      "tells nothing of the next; a curve above it belongs to a filter that makes the same mistake "
+      "scan after scan.";
+  const CellValues correlation = [](const CellAnalysis& cell) {
+    return cell.get<Innovations>().autocorrelation;
+  };
+  std::vector<Panel> panels = cell_panels(
+      study, {"whiteness", "correlation of NIS", {}, {}, Scale::around_zero}, correlation);
+  for (Panel& panel : panels) panel.bands = white_bands(study);
+  std::vector<double> lags(kInnovationLags);
+  std::iota(lags.begin(), lags.end(), 1.0);
+  figure.chart.x_label = "scans apart";
+  add_panels(panels, lags, figure);
+  return figure;
+}
+
+std::vector<Section> innovations_sections(const StudyAnalysis& study) {
+  const TextTable table = innovation_table(study);
+  if (table.rows.empty()) return {};
+  Section section{"innovations", "Do measurements surprise the filter?"};
+  section.add("innovation", table);
+  section.add(innovation_notes());
+  return {section};
+}
+
+std::vector<Figure> innovations_figures(const StudyAnalysis& study) {
+  return {innovation_figure(study), whiteness_figure(study)};
+}
+
+}  // namespace
+
+InnovationSums::InnovationSums(std::size_t scans)
+    : nis_(scans), dof_(scans), products_(1 + std::min(kInnovationLags, scans / 4)) {}
+
+void InnovationSums::add(std::span<const double> nis, std::span<const std::uint32_t> dof) {
+  double sum = 0.0, freedom = 0.0;
+  deviations_.assign(nis.size(), kNaN);
+  for (std::size_t s = 0; s < nis.size(); ++s) {
+    if (dof[s] == 0 || !std::isfinite(nis[s])) continue;
+    const double n = dof[s];
+    nis_[s] += nis[s];
+    dof_[s] += dof[s];
+    sum += nis[s];
+    freedom += n;
+    deviations_[s] = (nis[s] - n) / std::sqrt(2.0 * n);
+  }
+  if (freedom == 0.0) return;
+  run_means_.push_back(sum / freedom);
+  for (std::size_t lag = 0; lag < products_.size(); ++lag) {
+    Products& sums = products_[lag];
+    for (std::size_t s = lag; s < deviations_.size(); ++s) {
+      const double product = deviations_[s] * deviations_[s - lag];
+      if (std::isnan(product)) continue;
+      sums.n += 1.0;
+      sums.both += deviations_[s] + deviations_[s - lag];
+      sums.product += product;
+    }
+  }
+}
+
+Innovations InnovationSums::result(double level) const {
+  Innovations result;
+  double tested = 0.0, inside = 0.0;
+  for (std::size_t s = 0; s < nis_.size(); ++s) {
+    const auto n = static_cast<double>(dof_[s]);
+    result.average.push_back(nis_[s] / n);  // NaN where there is none
+    result.bounds.push_back(dof_[s] == 0 ? Interval{} : nees_bounds(dof_[s], 1, level));
+    if (dof_[s] == 0) continue;
+    const Interval& band = result.bounds.back();
+    tested += 1.0;
+    inside += band.lower <= result.average[s] && result.average[s] <= band.upper ? 1.0 : 0.0;
+  }
+  const auto runs = static_cast<double>(run_means_.size());
+  for (const double mean : run_means_) result.mean += mean / runs;
+  result.share_inside = inside / tested;
+  result.interval = bootstrap_mean(run_means_, level);
+  result.autocorrelation.assign(kInnovationLags, kNaN);
+  result.white_bound.assign(kInnovationLags, kNaN);
+  const double mean = products_[0].both / (2.0 * products_[0].n);
+  const double power = products_[0].mean_product(mean);
+  double farthest = 0.0;
+  for (std::size_t lag = 1; lag < products_.size(); ++lag) {
+    if (products_[lag].n == 0.0 || !(power > 0.0)) continue;
+    const double correlation = products_[lag].mean_product(mean) / power;
+    const double bound = white_deviate(products_.size() - 1, level) / std::sqrt(products_[lag].n);
+    result.autocorrelation[lag - 1] = correlation;
+    result.white_bound[lag - 1] = bound;
+    if (result.worst_lag > 0 && std::abs(correlation) / bound <= farthest) continue;
+    farthest = std::abs(correlation) / bound;
+    result.worst_lag = lag;
+  }
+  return result;
+}
+
+bool Innovations::is_white() const {
+  return worst_lag == 0 || std::abs(autocorrelation[worst_lag - 1]) <= white_bound[worst_lag - 1];
+}
+
+std::string whiteness_in_words(const Innovations& found) {
+  if (found.worst_lag == 0) return "not tested";
+  return found.is_white() ? "white" : "not white";
+}
+
+Metric innovations_metric() {
+  return {.sums = make_sums<InnovationsOverRuns>,
+          .add_numbers = innovations_numbers,
+          .add_series = innovations_series,
+          .sections = innovations_sections,
+          .figures = innovations_figures};
+}
+
+}  // namespace montecarta::analysis

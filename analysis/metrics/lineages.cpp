@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Ancestors of the particles some time ago, and what few of them cost.
+#include "analysis/metrics/lineages.hpp"
+
+#include "analysis/metrics/cell_analysis.hpp"
+#include "analysis/metrics/diversity.hpp"
+#include "analysis/metrics/measured_run.hpp"
+#include "analysis/metrics/metric.hpp"
+#include "analysis/output/number_text.hpp"
+#include "analysis/statistics/spread.hpp"
+
+#include <cmath>
+#include <numeric>
+
+namespace montecarta::analysis {
+namespace {
+
+constexpr std::size_t kMostScansOfLineages = 32;
+constexpr double kSameTime = 1e-9;
+
+template <double Lineages::*kValue>
+double of_lineages(const MeasuredRun& run) {
+  const Lineages* lineages = run.metrics.lineages();
+  return lineages == nullptr ? kNaN : lineages->*kValue;
+}
+
+constexpr Score kLineagesScores[] = {
+    {"coalescence", "s", "time back to the common ancestor", of_lineages<&Lineages::coalescence>,
+     Better::higher},
+    {"monte_carlo_variance", "m2", "position variance by few particles",
+     of_lineages<&Lineages::monte_carlo_variance>},
+};
+
+class LineagesOverRuns final : public MetricSums {
+ public:
+  explicit LineagesOverRuns(const RunCriteria& /*criteria*/) {}
+  void add(const MeasuredRun& run) override {
+    if (run.metrics.lineages() != nullptr) lineages_.add(*run.metrics.lineages());
+  }
+  void put(CellAnalysis& cell) override {
+    if (!lineages_.empty()) cell.findings.put(lineages_.result());
+  }
+
+ private:
+  LineageSums lineages_;
+};
+
+void lineages_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
+  const bool known = cell.find<LineageSummary>() != nullptr;
+  const LineageSummary& lineages = cell.get<LineageSummary>();
+  for (std::size_t lag = 0; lag < kLineageLags.size(); ++lag) {
+    all.push_back({"distinct_ancestors_" + readable(kLineageLags[lag], 1) + "_s_ago", "1",
+                   known ? lineages.ancestors[lag] : kNaN});
+  }
+  all.push_back({"coalescence", "s", known ? lineages.coalescence : kNaN});
+  all.push_back({"coalesced_share", "1", known ? lineages.coalesced_share : kNaN});
+  all.push_back({"monte_carlo_share", "1", known ? lineages.monte_carlo_share : kNaN});
+}
+
+}  // namespace
+
+struct LineageWalker::Sums {
+  std::array<SummaryOf, kLineageLags.size()> ancestors;
+  SummaryOf coalescence, coalesced, variance, squared_error;
+};
+
+/// With `ancestor_` telling the families of the particles of scan `s`.
+double LineageWalker::family_variance(const RunRows& rows, std::size_t s) {
+  const std::size_t particles = ancestor_.size();
+  const double* const pose = rows.particle_pose.data() + 3 * particles * s;
+  const double* const log_weight = rows.log_weight.data() + particles * s;
+  double x = 0.0, y = 0.0;
+  for (std::size_t i = 0; i < particles; ++i) {
+    x += std::exp(log_weight[i]) * pose[3 * i];
+    y += std::exp(log_weight[i]) * pose[3 * i + 1];
+  }
+  families_.assign(2 * particles, 0.0);
+  for (std::size_t i = 0; i < particles; ++i) {
+    const double weight = std::exp(log_weight[i]);
+    families_[2 * ancestor_[i]] += weight * (pose[3 * i] - x);
+    families_[2 * ancestor_[i] + 1] += weight * (pose[3 * i + 1] - y);
+  }
+  return std::inner_product(families_.begin(), families_.end(), families_.begin(), 0.0);
+}
+
+void LineageWalker::walk_from(std::size_t s, const RunRows& rows, std::span<const double> times,
+                              Sums& sums) {
+  const std::size_t particles = ancestor_.size();
+  const bool has_poses = !rows.particle_pose.empty();
+  set_.start(particles);
+  std::iota(ancestor_.begin(), ancestor_.end(), 0u);
+  std::size_t lag = 0;
+  bool is_family_lag = false;
+  for (std::size_t scan = s + 1; scan-- > 0 && set_.size() > 1;) {
+    const std::span parents(rows.ancestor.data() + particles * scan, particles);
+    const double back = times[s] - (scan == 0 ? 0.0 : times[scan - 1]) + kSameTime;
+    set_.step_back(parents);
+    if (set_.size() == 1) sums.coalescence.add(back);
+    if (has_poses && !is_family_lag) {
+      for (std::uint32_t& ancestor : ancestor_) ancestor = parents[ancestor];
+      is_family_lag = back >= kDiversityLag;
+      if (is_family_lag && set_.size() > 1) sums.variance.add(family_variance(rows, s));
+    }
+    for (; lag < kLineageLags.size() && back >= kLineageLags[lag]; ++lag) {
+      sums.ancestors[lag].add(static_cast<double>(set_.size()));
+    }
+  }
+  sums.coalesced.add(set_.size() == 1 ? 1.0 : 0.0);
+  // Once all lines have met, one ancestor is left at every longer lag that the run has.
+  for (; lag < kLineageLags.size() && times[s] + kSameTime >= kLineageLags[lag]; ++lag) {
+    sums.ancestors[lag].add(static_cast<double>(set_.size()));
+  }
+}
+
+Lineages LineageWalker::walk(const RunRows& rows, std::size_t particles,
+                             std::span<const double> times,
+                             std::span<const double> squared_position) {
+  ancestor_.resize(particles);
+  Sums sums;
+  const std::size_t every = (times.size() + kMostScansOfLineages - 1) / kMostScansOfLineages;
+  for (std::size_t s = every - 1; s < times.size(); s += every) {
+    walk_from(s, rows, times, sums);
+    if (!squared_position.empty()) sums.squared_error.add(squared_position[s]);
+  }
+  Lineages lineages;
+  for (std::size_t lag = 0; lag < kLineageLags.size(); ++lag) {
+    lineages.ancestors[lag] = sums.ancestors[lag].result().mean;
+  }
+  lineages.coalescence = sums.coalescence.result().mean;
+  lineages.coalesced_share = sums.coalesced.result().mean;
+  lineages.monte_carlo_variance = sums.variance.result().mean;
+  lineages.squared_error = sums.squared_error.result().mean;
+  return lineages;
+}
+
+void LineageSums::Mean::add(double value) {
+  if (std::isnan(value)) return;
+  sum += value;
+  n += 1.0;
+}
+
+void LineageSums::add(const Lineages& lineages) {
+  ++runs_;
+  for (std::size_t lag = 0; lag < ancestors_.size(); ++lag) {
+    ancestors_[lag].add(lineages.ancestors[lag]);
+  }
+  coalescence_.add(lineages.coalescence);
+  coalesced_.add(lineages.coalesced_share);
+  variance_.add(lineages.monte_carlo_variance);
+  squared_error_.add(lineages.squared_error);
+}
+
+LineageSummary LineageSums::result() const {
+  LineageSummary summary;
+  for (std::size_t lag = 0; lag < ancestors_.size(); ++lag) {
+    summary.ancestors[lag] = ancestors_[lag].value();
+  }
+  summary.coalescence = coalescence_.value();
+  summary.coalesced_share = coalesced_.value();
+  summary.monte_carlo_share = variance_.value() / squared_error_.value();
+  return summary;
+}
+
+Metric lineages_metric() {
+  return {.scores = kLineagesScores,
+          .scores_are_numbers = false,
+          .sums = make_sums<LineagesOverRuns>,
+          .add_numbers = lineages_numbers};
+}
+
+}  // namespace montecarta::analysis

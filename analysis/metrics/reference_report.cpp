@@ -1,0 +1,507 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Independent measurements of the path.
+#include "analysis/metrics/reference_report.hpp"
+
+#include "analysis/metrics/cell_panels.hpp"
+#include "analysis/metrics/map_scores.hpp"
+#include "analysis/metrics/measured_run.hpp"
+#include "analysis/metrics/metric.hpp"
+#include "analysis/metrics/particle_curves.hpp"
+#include "analysis/metrics/reference_scores.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/output/csv_file.hpp"
+#include "analysis/output/number_text.hpp"
+#include "analysis/statistics/spread.hpp"
+#include "engine/numbers/angle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace montecarta::analysis {
+namespace {
+
+/// No fix is known better than to a centimetre, no heading than to a hundredth of a degree.
+std::string mean_text(const Spread& spread, double factor = 1.0) {
+  return with_error_to(2, factor * spread.summary.mean, factor * spread.summary.standard_error());
+}
+
+std::string count_text(const Spread& spread) {
+  return with_error_to(1, spread.summary.mean, spread.summary.standard_error());
+}
+
+/// The middle run and the two ends: "1.55 [1.41, 2.20]".
+std::string runs_text(const Spread& spread) {
+  if (std::isnan(spread.median)) return "-";
+  const auto text = [](double value) { return with_error_to(2, value, kNaN); };
+  return text(spread.median) + " [" + text(spread.least) + ", " + text(spread.greatest) + "]";
+}
+
+std::string of_text(std::size_t k, std::size_t n) {
+  return std::to_string(k) + " of " + std::to_string(n);
+}
+
+/// Runs that can be judged: failed ones are lost and beat nothing.
+std::size_t judged_runs(const CellAnalysis& cell, const ReferenceAnalysis& against) {
+  return against.with_fixes() + cell.failures.size();
+}
+
+std::string lost_text(const CellAnalysis& cell, const ReferenceAnalysis& against) {
+  return of_text(against.lost() + cell.failures.size(), judged_runs(cell, against));
+}
+
+bool any_heading(const StudyAnalysis& study) {
+  return std::ranges::any_of(study.references, &JudgedReference::has_heading);
+}
+
+std::vector<std::string> reference_row(const StudyAnalysis& study, const CellAnalysis& cell,
+                                       std::size_t r) {
+  const ReferenceAnalysis& against = cell.get<ReferenceAnalyses>()[r];
+  const auto text = [&](double ReferenceScores::*score) {
+    return mean_text(against.over_runs(score));
+  };
+  const double kept = against.over_runs(&ReferenceScores::aligned_gated_share).summary.mean;
+  std::vector<std::string> row = {
+      cell.label,
+      study.references[r].name,
+      runs_in_words(cell),
+      study.references[r].fixes == 0 ? "-" : lost_text(cell, against),
+      text(&ReferenceScores::rms),
+      text(&ReferenceScores::median),
+      text(&ReferenceScores::aligned_rms),
+      runs_text(against.over_runs(&ReferenceScores::aligned_rms)),
+      text(&ReferenceScores::aligned_median),
+      text(&ReferenceScores::aligned_gated_rms) + " (" + percent(kept) + ")"};
+  if (any_heading(study)) {
+    row.push_back(mean_text(against.over_runs(&ReferenceScores::heading_rmse), 180.0 / kPi));
+  }
+  return row;
+}
+
+std::vector<std::string> map_row(const StudyAnalysis& study, const CellAnalysis& cell) {
+  const auto text = [&](std::string_view score) { return mean_text(cell.known_over_runs(score)); };
+  const Spread found = cell.known_over_runs("beacons_found");
+  std::vector<std::string> row = {cell.label, count_text(cell.known_over_runs("map_landmarks"))};
+  if (study.beacons > 0) {
+    row.push_back(
+        found.summary.n == 0 ? "-" : count_text(found) + " of " + std::to_string(study.beacons));
+    row.push_back(text("beacon_rms"));
+    row.push_back(text("beacon_aligned_rms"));
+  }
+  row.push_back(readable(cell.over_runs("ess").mean));
+  row.push_back(readable(cell.over_runs("ancestors_at_start_at_the_end").mean));
+  row.push_back(readable(cell.over_runs("cpu_seconds").mean));
+  return row;
+}
+
+std::string against_baseline(std::size_t better, std::size_t runs) {
+  if (runs == 0) return "not tested";
+  if (better == runs) return "better in every run";
+  if (better == 0) return "better in no run";
+  return 2 * better == runs  ? "better in half of the runs"
+         : 2 * better > runs ? "better in most runs"
+                             : "worse in most runs";
+}
+
+std::vector<std::string> baseline_row(const CellAnalysis& cell, const CellAnalysis* baseline,
+                                      const JudgedReference& reference) {
+  const ReferenceAnalysis& leading = cell.get<ReferenceAnalyses>().front();
+  std::vector<std::string> row = {cell.label, lost_text(cell, leading)};
+  if (baseline == nullptr) return row;
+  if (&cell == baseline) {
+    row.insert(row.end(), {"-", "is the baseline"});
+    return row;
+  }
+  const auto score =
+      reference.compares_raw() ? &ReferenceScores::rms : &ReferenceScores::aligned_rms;
+  const double mean = baseline->get<ReferenceAnalyses>().front().over_runs(score).summary.mean;
+  const std::size_t better = leading.better_than(mean, score), runs = judged_runs(cell, leading);
+  row.insert(row.end(), {of_text(better, runs), against_baseline(better, runs)});
+  return row;
+}
+
+}  // namespace
+
+const CellAnalysis* baseline_of(const StudyAnalysis& study) {
+  const auto found = std::ranges::find_if(study.cells, [](const CellAnalysis& cell) {
+    return cell.filter == "ekf_slam" && cell.complete > 0 && !cell.get<ReferenceAnalyses>().empty();
+  });
+  return found == study.cells.end() ? nullptr : &*found;
+}
+
+TextTable reference_table(const StudyAnalysis& study) {
+  TextTable table;
+  table.headings = {{"cell", Align::left},  {"reference", Align::left},
+                    {"runs", Align::left},  {"lost"},
+                    {"raw RMS [m]"},        {"raw median [m]"},
+                    {"aligned RMS [m]"},    {"middle run [ends]"},
+                    {"aligned median [m]"}, {"gated [m] (kept)"}};
+  if (any_heading(study)) table.headings.push_back({"heading RMSE [deg]"});
+  for (const CellAnalysis& cell : study.cells) {
+    for (std::size_t r = 0; r < cell.get<ReferenceAnalyses>().size(); ++r) {
+      table.rows.push_back(reference_row(study, cell, r));
+    }
+  }
+  return table;
+}
+
+TextTable map_table(const StudyAnalysis& study) {
+  TextTable table;
+  table.headings = {{"cell", Align::left}, {"landmarks"}};
+  if (study.beacons > 0) {
+    table.headings.insert(table.headings.end(),
+                          {{"beacons found"}, {"beacon error [m]"}, {"beacon error, aligned [m]"}});
+  }
+  table.headings.insert(table.headings.end(), {{"ESS"}, {"roots"}, {"CPU [s]"}});
+  for (const CellAnalysis& cell : study.cells) table.rows.push_back(map_row(study, cell));
+  return table;
+}
+
+TextTable baseline_table(const StudyAnalysis& study) {
+  TextTable table;
+  if (study.references.empty() || study.references.front().fixes == 0) return table;
+  const CellAnalysis* baseline = baseline_of(study);
+  table.headings = {{"cell", Align::left}, {"loses the map"}};
+  if (baseline != nullptr) {
+    table.headings.push_back({"beats " + baseline->label});
+    table.headings.push_back({"against EKF-SLAM", Align::left});
+  }
+  for (const CellAnalysis& cell : study.cells) {
+    table.rows.push_back(baseline_row(cell, baseline, study.references.front()));
+  }
+  return table;
+}
+
+namespace {
+
+/// "the drive", "2 of 3 drives".
+std::string drives_in_words(const StudyAnalysis& study, const JudgedReference& reference) {
+  if (study.own_drives == 0) return "the drive";
+  return std::to_string(reference.drives) + " of " + std::to_string(study.own_drives) + " drives";
+}
+
+std::string fixes_note(const StudyAnalysis& study) {
+  std::string sentence =
+      "Estimates are compared with each reference at its fixes only, interpolated linearly in time "
+      "between the poses that are stored:";
+  for (const JudgedReference& reference : study.references) {
+    sentence += " " + reference.name + " has " + std::to_string(reference.fixes) +
+                " fixes within " + drives_in_words(study, reference) +
+                (&reference == &study.references.back() ? "." : ",");
+  }
+  return sentence;
+}
+
+std::string baseline_note(const StudyAnalysis& study) {
+  if (study.references.front().fixes == 0) {
+    return "No fix of " + study.references.front().name + " lies within " +
+           (study.own_drives == 0 ? "the drive" : "any drive") + ", so nothing can be said by it.";
+  }
+  const CellAnalysis* baseline = baseline_of(study);
+  if (baseline == nullptr) return "No cell runs EKF-SLAM, so there is no baseline to beat.";
+  const JudgedReference& reference = study.references.front();
+  const Spread compared = baseline->get<ReferenceAnalyses>().front().over_runs(
+      reference.compares_raw() ? &ReferenceScores::rms : &ReferenceScores::aligned_rms);
+  return std::string("A run beats EKF-SLAM where its ") + reference.compared() + " RMS to " +
+         reference.name + " is below the mean of " + baseline->label + ", " +
+         readable(compared.summary.mean) + " m; failed runs beat nothing." +
+         (reference.compares_raw() ? " It is compared as it stands, since the errors of the "
+                                     "reference are known."
+                                   : "");
+}
+
+std::vector<std::string> distance_notes(const StudyAnalysis& study) {
+  return {
+      "'raw' compares as it stands; 'aligned' first turns and shifts the estimated path as a whole "
+      "(no stretching, no mirroring) to where it fits all fixes best, since nobody knows exactly "
+      "where the drive began and which way the vehicle looked.",
+      "The median is the middle fix and is hardly moved by outliers; 'gated' is the aligned RMS "
+      "over the "
+      "fixes within " +
+          readable(kReferenceGate, 1) +
+          " times the run's own median error, with the share kept: a single fix may be more than a "
+          "hundred metres off. A filter that leaves the path half way keeps few fixes: read it "
+          "with the "
+          "share.",
+      std::string(study.own_drives > 0
+                      ? "Every run met a drive of its own, and those without a fix are left out"
+                      : "Runs see the same drive and differ by the filter's own randomness alone") +
+          ": numbers are means over runs +- their standard error; 'middle run' is the median over "
+          "runs of the aligned RMS, with the best and the worst run.",
+      "A run lost the map where it failed or the median of its aligned errors exceeds " +
+          readable(kLostBeyond, 2) + " m."};
+}
+
+}  // namespace
+
+std::string no_truth_sentence(const StudyAnalysis& study) {
+  if (std::ranges::any_of(study.references, &JudgedReference::has_errors)) {
+    return "This drive was recorded: nobody knows its true path. References whose own errors are "
+           "stated take its place: the NEES at their fixes is by the covariance of both.";
+  }
+  return "This drive was recorded: nobody knows its true path, so there is no verdict on "
+         "consistency (NEES) and no true error; estimates are judged by independent measurements "
+         "of the path.";
+}
+
+std::vector<std::string> reference_notes(const StudyAnalysis& study) {
+  std::vector<std::string> notes;
+  if (!study.references.empty()) {
+    notes = distance_notes(study);
+    notes.insert(notes.begin(), fixes_note(study));
+    notes.push_back(baseline_note(study));
+  }
+  if (study.beacons > 0) {
+    notes.push_back(
+        "A surveyed beacon is found where the final map, aligned like the path, has a landmark "
+        "within " +
+        readable(kFoundWithin, 1) +
+        " m of it; its error is the RMS over the beacons found, as the map stands and aligned.");
+  }
+  if (study.own_drives > 0) {
+    notes.emplace_back(
+        "Every drive has scan times of its own, so no mean over runs is taken scan by scan: there "
+        "are no series and no figures over time.");
+  }
+  notes.emplace_back(
+      "Landmarks are those in the map after the last scan; ESS is the effective number of "
+      "particles, roots how many of the first particles still have descendants at the end, CPU the "
+      "filter's own time in a run; all of complete runs only.");
+  return notes;
+}
+
+namespace {
+
+void add(const std::string& name, const std::string& units, const Spread& spread,
+         std::vector<NamedNumber>& all) {
+  all.push_back({name + "_mean", units, spread.summary.mean});
+  all.push_back({name + "_standard_error", units, spread.summary.standard_error()});
+  all.push_back({name + "_median", units, spread.median});
+  all.push_back({name + "_least", units, spread.least});
+  all.push_back({name + "_greatest", units, spread.greatest});
+}
+
+/// Of the map, which is the same against every reference.
+bool is_of_the_map(const std::string& name) {
+  return name.starts_with("map_") || name.starts_with("beacon");
+}
+
+}  // namespace
+
+std::vector<NamedNumber> reference_numbers(const CellAnalysis& cell, std::size_t reference) {
+  const ReferenceAnalysis& against = cell.get<ReferenceAnalyses>()[reference];
+  const auto count = [](std::size_t n) { return static_cast<double>(n); };
+  const bool judged = cell.complete == 0 || against.with_fixes() > 0;
+  const std::size_t lost = against.lost() + cell.failures.size();
+  std::vector<NamedNumber> all = {{"runs_failed", "1", count(cell.failures.size())},
+                                  {"runs_complete", "1", count(cell.complete)},
+                                  {"runs_lost", "1", judged ? count(lost) : kNaN}};
+  const auto one = [&](const char* name, const char* units, double ReferenceScores::*score) {
+    add(name, units, against.over_runs(score), all);
+  };
+  one("rms", "m", &ReferenceScores::rms);
+  one("median_error", "m", &ReferenceScores::median);
+  one("gated_rms", "m", &ReferenceScores::gated_rms);
+  one("gated_share", "1", &ReferenceScores::gated_share);
+  one("aligned_rms", "m", &ReferenceScores::aligned_rms);
+  one("aligned_median_error", "m", &ReferenceScores::aligned_median);
+  one("aligned_gated_rms", "m", &ReferenceScores::aligned_gated_rms);
+  one("aligned_gated_share", "1", &ReferenceScores::aligned_gated_share);
+  one("heading_rmse", "rad", &ReferenceScores::heading_rmse);
+  for (const Score& score : all_scores()) {
+    if (!is_of_the_map(score.name)) continue;
+    add(score.name, score.units, cell.known_over_runs(score.name), all);
+  }
+  all.push_back({"cpu_seconds_mean", "s", cell.over_runs("cpu_seconds").mean});
+  return all;
+}
+
+void write_references(const StudyAnalysis& study, const std::filesystem::path& path) {
+  NamedRows file(path);
+  for (const CellAnalysis& cell : study.cells) {
+    for (std::size_t r = 0; r < cell.get<ReferenceAnalyses>().size(); ++r) {
+      file.row(
+          {{"cell", cell.label}, {"filter", cell.filter}, {"reference", study.references[r].name}},
+          reference_numbers(cell, r));
+    }
+  }
+  file.close();
+}
+
+void write_reference_errors(const StudyAnalysis& study, const std::filesystem::path& path) {
+  CsvFile file(path);
+  std::vector<std::string> headings = {"time [s]"};
+  std::vector<const std::vector<double>*> columns;
+  for (const CellAnalysis& cell : study.cells) {
+    if (cell.complete == 0) continue;
+    headings.push_back(cell.label + " [m]");
+    columns.push_back(&cell.get<ReferenceAnalyses>().front().error_over_time);
+  }
+  file.row(headings);
+  const std::vector<double>& times = study.references.front().times;
+  for (std::size_t f = 0; f < times.size(); ++f) {
+    std::vector<double> numbers = {times[f]};
+    for (const auto* column : columns) numbers.push_back((*column)[f]);
+    file.row(numbers);
+  }
+  file.close();
+}
+
+namespace {
+
+/// Nearer than this a reference cannot tell [m]: satellite positions are good to a centimetre.
+constexpr double kLeastError = 0.01;
+constexpr double kTwoDecades = 100.0;
+
+/// One axis for all panels, which begins at kLeastError where it is logarithmic.
+Scale scale_of(const std::vector<Panel>& panels) {
+  double least = std::numeric_limits<double>::infinity(), greatest = 0.0;
+  for (const Panel& panel : panels) {
+    for (const Curve& curve : panel.curves) {
+      for (const double value : curve.values) {
+        if (std::isnan(value)) continue;
+        least = std::min(least, std::max(value, kLeastError));
+        greatest = std::max(greatest, value);
+      }
+    }
+  }
+  return greatest > kTwoDecades * least ? Scale::logarithmic : Scale::from_zero;
+}
+
+/// Adds panels to a figure, which says so where there are several.
+void add(const std::vector<Panel>& panels, const std::vector<double>& times, Figure& figure) {
+  if (panels.size() > 1) figure.sentence += " One panel for each number of particles M.";
+  add_panels(panels, times, figure);
+}
+
+}  // namespace
+
+Figure reference_error_figure(const StudyAnalysis& study) {
+  Figure figure{"reference_error", "How far from the reference over time?", ""};
+  if (study.references.empty() || study.own_drives > 0) return figure;
+  const JudgedReference& reference = study.references.front();
+  figure.sentence = "Distance between the estimate as it stands and each fix of " + reference.name +
+                    ", root mean square over runs: lower is better, but no curve can be nearer "
+                    "than the reference itself is right. Peaks that all filters have are wild "
+                    "fixes; a curve that climbs and stays belongs to a filter that lost the map.";
+  const Panel blank{"reference_error", "distance to " + reference.name + " [m]", {}, {}, {},
+                    kLeastError};
+  std::vector<Panel> panels = cell_panels(study, blank, [](const CellAnalysis& cell) {
+    return cell.complete == 0 ? std::vector<double>{}
+                              : cell.get<ReferenceAnalyses>().front().error_over_time;
+  });
+  if (panels.empty()) return figure;
+  const Scale scale = scale_of(panels);
+  for (Panel& panel : panels) panel.scale = scale;
+  add(panels, reference.times, figure);
+  return figure;
+}
+
+Figure map_size_figure(const StudyAnalysis& study) {
+  Figure figure{"map_size", "How does the map grow?", ""};
+  figure.sentence =
+      "Landmarks in the map, mean over runs (of a particle filter: over its weighted particles). "
+      "It should level off where the vehicle meets known ground: a map that goes on growing there "
+      "takes known landmarks for new ones.";
+  const std::vector<Panel> panels =
+      cell_panels(study, {"map_size", "landmarks", {}, {}, Scale::from_zero},
+                  [](const CellAnalysis& cell) { return cell.over_time("map_landmarks"); });
+  if (!panels.empty()) add(panels, study.times, figure);
+  return figure;
+}
+
+Figure particles_figure(const StudyAnalysis& study) {
+  Figure figure{"reference_particles", "Do more particles help?", ""};
+  const std::vector<ParticleCurve> curves = particle_curves(study);
+  if (curves.empty()) return figure;
+  figure.sentence = "RMS distance to " + study.references.front().name +
+                    " against the number of particles, one curve a filter: left as it stands, "
+                    "right after the best turn and shift of the whole path. Points are means over "
+                    "runs, bars reach from the best run to the worst, the dashed line is EKF-SLAM.";
+  draw_particle_curves(curves, baseline_errors(study), figure);
+  return figure;
+}
+
+std::vector<Figure> reference_figures(const StudyAnalysis& study) {
+  std::vector<Figure> figures = {reference_error_figure(study), particles_figure(study),
+                                 map_size_figure(study)};
+  std::erase_if(figures, [](const Figure& figure) { return figure.data.empty(); });
+  return figures;
+}
+
+namespace {
+
+/// By the leading reference.
+template <double ReferenceScores::*kValue>
+double of_reference(const MeasuredRun& run) {
+  return run.references.empty() ? kNaN : run.references.front().scores.*kValue;
+}
+
+constexpr Score kReferencesScores[] = {
+    {"reference_rms", "m", "RMS distance to the reference", of_reference<&ReferenceScores::rms>},
+    {"reference_median", "m", "median distance to the reference",
+     of_reference<&ReferenceScores::median>},
+    {"reference_gated_rms", "m", "RMS distance to the reference without outliers",
+     of_reference<&ReferenceScores::gated_rms>},
+    {"reference_aligned_rms", "m", "RMS distance to the reference, aligned",
+     of_reference<&ReferenceScores::aligned_rms>},
+    {"reference_aligned_median", "m", "median distance to the reference, aligned",
+     of_reference<&ReferenceScores::aligned_median>},
+    {"reference_aligned_gated_rms", "m", "RMS distance to the reference without outliers, aligned",
+     of_reference<&ReferenceScores::aligned_gated_rms>},
+    {"reference_heading_rmse", "rad", "heading RMSE to the reference",
+     of_reference<&ReferenceScores::heading_rmse>},
+};
+
+class ReferencesOverRuns final : public MetricSums {
+ public:
+  explicit ReferencesOverRuns(const RunCriteria& criteria)
+      : references_(
+            criteria.references.size(),
+            ReferenceAccumulator(criteria.drives.empty() ? ReferenceAccumulator::Fixes::same
+                                                         : ReferenceAccumulator::Fixes::own)) {}
+  void add(const MeasuredRun& run) override {
+    for (std::size_t r = 0; r < references_.size(); ++r) references_[r].add(run.references[r]);
+  }
+  void put(CellAnalysis& cell) override {
+    ReferenceAnalyses all;
+    for (const ReferenceAccumulator& sums : references_) all.push_back(sums.result());
+    cell.findings.put(all);
+  }
+
+ private:
+  std::vector<ReferenceAccumulator> references_;
+};
+
+std::vector<Section> references_sections(const StudyAnalysis& study) {
+  if (study.has_truth && study.references.empty()) return {};
+  Section section{"references", "Judged by references"};
+  if (!study.has_truth) section.add_html("<p>" + no_truth_sentence(study) + "</p>\n");
+  section.add("reference", reference_table(study));
+  section.add("baseline", baseline_table(study));
+  section.add("map", map_table(study));
+  section.add(reference_notes(study));
+  return {section};
+}
+
+bool has_references(const StudyAnalysis& study) { return !study.references.empty(); }
+
+bool has_common_fixes(const StudyAnalysis& study) {
+  return has_references(study) && study.own_drives == 0;
+}
+
+}  // namespace
+
+Metric references_metric() {
+  return {.scores = kReferencesScores,
+          .scores_are_numbers = false,
+          .sums = make_sums<ReferencesOverRuns>,
+          .sections = references_sections,
+          .figures = reference_figures,
+          .files = {{"references.csv", has_references, write_references},
+                    {"reference_errors.csv", has_common_fixes, write_reference_errors}}};
+}
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How many runs are not lost yet, each judged by its own NEES.
+#include "analysis/metrics/survival.hpp"
+
+#include "analysis/metrics/cell_panels.hpp"
+#include "analysis/metrics/measured_run.hpp"
+#include "analysis/metrics/metric.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/statistics/spread.hpp"
+
+#include <boost/math/distributions/normal.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace montecarta::analysis {
+namespace {
+
+/// Where a probability lies of which `hits` of `n` were seen.
+Interval wilson(double hits, double n, double level) {
+  const double z = boost::math::quantile(boost::math::normal(), 0.5 + 0.5 * level);
+  const double share = hits / n, scale = 1.0 + z * z / n;
+  const double middle = (share + 0.5 * z * z / n) / scale;
+  const double half = z * std::sqrt(share * (1.0 - share) / n + 0.25 * z * z / (n * n)) / scale;
+  return {std::max(0.0, middle - half), std::min(1.0, middle + half)};
+}
+
+}  // namespace
+
+Survival survival_of(std::span<const double> ends, std::span<const double> times, double level) {
+  Survival survival;
+  survival.runs = ends.size();
+  if (ends.empty()) return survival;
+  std::vector<double> sorted(ends.begin(), ends.end());
+  std::ranges::sort(sorted);
+  const auto n = static_cast<double>(sorted.size());
+  for (const double time : times) {
+    const auto left = static_cast<double>(sorted.end() - std::ranges::upper_bound(sorted, time));
+    survival.share.push_back(left / n);
+    survival.interval.push_back(wilson(left, n, level));
+  }
+  survival.lost = static_cast<std::size_t>(
+      std::ranges::count_if(sorted, [](double end) { return std::isfinite(end); }));
+  survival.median = sorted[(sorted.size() - 1) / 2];
+  survival.median_interval = median_interval(sorted, level);
+  return survival;
+}
+
+namespace {
+
+class SurvivalOverRuns final : public MetricSums {
+ public:
+  explicit SurvivalOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
+  void add(const MeasuredRun& run) override {
+    const NeesRows* nees = run.metrics.leading_nees();
+    if (nees == nullptr) return;
+    if (dimension_ != nees->dimension[0]) {
+      dimension_ = nees->dimension[0];
+      run_bound_ = nees_bounds(1, dimension_, criteria_->level).upper;
+    }
+    std::vector<bool> above;
+    for (const double value : nees->value[0]) above.push_back(value > run_bound_);
+    const auto exit = first_lasting(above, kLastingScans);
+    run_exits_.push_back(exit ? criteria_->times[*exit] : std::numeric_limits<double>::infinity());
+  }
+  void put(CellAnalysis& cell) override {
+    if (run_exits_.empty()) return;
+    std::vector<double> ends = run_exits_;
+    for (const FailedRun& failure : cell.failures) ends.push_back(failure.time);
+    cell.findings.put(survival_of(ends, criteria_->times, criteria_->level));
+  }
+
+ private:
+  const RunCriteria* criteria_;
+  std::size_t dimension_ = 0;
+  double run_bound_ = kNaN;        ///< upper end of the band of a single run's NEES
+  std::vector<double> run_exits_;  ///< [s] {run}
+};
+
+void survival_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
+  const Survival& survival = cell.get<Survival>();
+  const bool known = survival.runs > 0;
+  all.push_back({"runs_lost", "1", known ? static_cast<double>(survival.lost) : kNaN});
+  all.push_back({"half_lost", "s", known ? survival.median : kNaN});
+  all.push_back({"half_lost_lower", "s", known ? survival.median_interval.lower : kNaN});
+  all.push_back({"half_lost_upper", "s", known ? survival.median_interval.upper : kNaN});
+}
+
+void survival_series(const CellAnalysis& cell, std::vector<NamedSeries>& all) {
+  const Survival& survival = cell.get<Survival>();
+  if (survival.share.empty()) return;
+  all.push_back({"runs_consistent", "1", survival.share});
+  all.push_back({"runs_consistent_lower", "1", ends_of(survival.interval, &Interval::lower)});
+  all.push_back({"runs_consistent_upper", "1", ends_of(survival.interval, &Interval::upper)});
+}
+
+Figure survival_figure(const StudyAnalysis& study) {
+  Figure figure{"survival", "How long does a run stay right?", ""};
+  figure.sentence =
+      "Share of the runs that still know how wrong they are, each judged by its own NEES: a run is "
+      "lost where that stays above the band of a single run for 5 s at 5 Hz, or where it fails. A "
+      "consistent filter loses a few runs by chance.";
+  const CellValues share = [](const CellAnalysis& cell) {
+    return scaled(cell.get<Survival>().share, 100.0);
+  };
+  add_panels(
+      cell_panels(study, {"runs_consistent", "runs not lost [%]", {}, {}, Scale::percent}, share),
+      study.times, figure);
+  return figure;
+}
+
+std::vector<Figure> survival_figures(const StudyAnalysis& study) {
+  return {survival_figure(study)};
+}
+
+}  // namespace
+
+Metric survival_metric() {
+  return {.sums = make_sums<SurvivalOverRuns>,
+          .add_numbers = survival_numbers,
+          .add_series = survival_series,
+          .figures = survival_figures};
+}
+
+}  // namespace montecarta::analysis

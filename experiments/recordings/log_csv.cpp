@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/recordings/log_csv.hpp"
+
+#include "analysis/output/csv_file.hpp"
+#include "engine/errors.hpp"
+#include "experiments/files/csv_rows.hpp"
+#include "experiments/recordings/drive_log.hpp"
+#include "experiments/recordings/log_csv_names.hpp"
+#include "experiments/text/words.hpp"
+#include "filters/models/vehicle_settings.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+#include <iterator>
+#include <span>
+#include <system_error>
+
+namespace montecarta::experiments {
+namespace {
+
+namespace fs = std::filesystem;
+
+void read_start(const fs::path& path, DriveLog& log) {
+  CsvRows rows(path, log_csv::kStart);
+  const bool has_row = rows.next();
+  if (has_row) {
+    log.start_time = rows.number(0, "time");
+    log.start = {.x = rows.number(1, "coordinate"),
+                 .y = rows.number(2, "coordinate"),
+                 .heading = rows.number(3, "heading")};
+    if (!rows.next()) return;
+  }
+  throw StudyError(path.string() + ": " + (has_row ? "more than one row" : "no row") +
+                   " (a drive starts at one pose): write one row");
+}
+
+/// The different sets of controls that vehicles have.
+std::vector<std::span<const ControlName>> known_controls() {
+  std::vector<std::span<const ControlName>> known;
+  for_each_vehicle([&](const Vehicle& vehicle) { known.push_back(controls_of(vehicle)); });
+  return known;
+}
+
+/// The columns say what kind of vehicle it is of.
+void read_odometry(const fs::path& path, DriveLog& log) {
+  const std::vector<std::span<const ControlName>> known = known_controls();
+  std::vector<std::string> headers;
+  for (const auto& controls : known) headers.push_back(log_csv::odometry_header(controls));
+  CsvRows rows(path, headers);
+  log.controls = known[rows.header()];
+  while (rows.next()) {
+    Odometry& odometry = log.odometry.emplace_back(Odometry{rows.number(0, "time"), {}});
+    for (std::size_t c = 0; c < log.controls.size(); ++c) {
+      odometry.control[c] = rows.number(c + 1, log.controls[c].noun);
+    }
+  }
+  check_odometry(log.odometry, log.controls, path.string());
+}
+
+/// The whole number in a field; nullopt where it is empty.
+std::optional<std::int32_t> identity_in(const CsvRows& rows, std::size_t column) {
+  if (rows.field(column).empty()) return std::nullopt;
+  const auto identity = to_count(rows.field(column));
+  if (identity && *identity < kMostIdentities) return static_cast<std::int32_t>(*identity);
+  throw StudyError(rows.place() + ": '" + excerpt(rows.field(column)) +
+                   "' is no identity (a whole number from 0 to 999999): number the landmarks " +
+                   "from 0, or leave the field empty for clutter");
+}
+
+Detection detection_in(const CsvRows& rows, std::span<const Quantity> components, bool identified) {
+  Detection detection{.values = {}, .identity = Detection::kUnidentified};
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    detection[i] = rows.number(i + 1, name_of(components[i]).name);
+  }
+  if (!identified) return detection;
+  detection.identity = identity_in(rows, components.size() + 1).value_or(Detection::kClutter);
+  return detection;
+}
+
+/// Nothing behind the time, in so many fields.
+bool is_empty_scan(const CsvRows& rows, std::size_t fields) {
+  for (std::size_t i = 1; i <= fields; ++i) {
+    if (!rows.field(i).empty()) return false;
+  }
+  return true;
+}
+
+/// Headers of the detections of all sensors, two of each.
+std::vector<std::string> known_detections() {
+  std::vector<std::string> headers;
+  for_each_sensor([&](const Sensor& sensor) {
+    std::ranges::copy(log_csv::detection_headers(components_of(sensor)),
+                      std::back_inserter(headers));
+  });
+  return headers;
+}
+
+/// The columns say what sensor it is of. Rows of one time make one scan; a row of a time alone is a
+/// scan that saw nothing.
+void read_scans(const fs::path& path, DriveLog& log) {
+  CsvRows rows(path, known_detections());
+  const bool identified = rows.header() % 2 == 1;
+  std::size_t kind = 0;
+  for_each_sensor([&](const Sensor& sensor) {
+    if (kind++ == rows.header() / 2) log.components = components_of(sensor);
+  });
+  const std::size_t fields = log.components.size() + (identified ? 1 : 0);
+  std::vector<LoggedScan>& scans = log.scans;
+  while (rows.next()) {
+    const double time = rows.number(0, "time");
+    const bool nothing = is_empty_scan(rows, fields);
+    const bool again = !scans.empty() && scans.back().time == time;
+    if (again && (nothing || scans.back().detections.empty())) {
+      throw StudyError(rows.place() + ": a scan at " + to_text(time) +
+                       " s that saw nothing has other rows (it is one row): delete one of them");
+    }
+    if (!again) scans.push_back({time, {}});
+    if (nothing) continue;
+    scans.back().detections.push_back(detection_in(rows, log.components, identified));
+  }
+  check_scans(scans, path.string(), log.components);
+}
+
+/// By identity where that column is there: each from 0 on once.
+std::vector<Eigen::Vector2d> read_landmarks(const fs::path& path) {
+  CsvRows rows(path, log_csv::kLandmarks);
+  std::vector<std::pair<std::int32_t, Eigen::Vector2d>> landmarks;
+  while (rows.next()) {
+    const auto next = static_cast<std::int32_t>(landmarks.size());
+    const auto identity = rows.header() == 1 ? identity_in(rows, 2).value_or(-1) : next;
+    landmarks.push_back({identity, {rows.number(0, "coordinate"), rows.number(1, "coordinate")}});
+  }
+  if (landmarks.empty()) {
+    throw StudyError(path.string() + ": no landmarks (it is empty): add them, or remove the file");
+  }
+  std::ranges::stable_sort(landmarks, {}, [](const auto& landmark) { return landmark.first; });
+  std::vector<Eigen::Vector2d> places;
+  for (const auto& [identity, place] : landmarks) {
+    if (identity != static_cast<std::int32_t>(places.size())) {
+      throw StudyError(path.string() + ": no landmark of identity " +
+                       std::to_string(places.size()) +
+                       ", or two of the one before (they count from 0): number each row once");
+    }
+    places.push_back(place);
+  }
+  check_landmarks(places, path.string());
+  return places;
+}
+
+/// The name of the reference in a file; empty where it holds none. A file that looks misspelt is
+/// refused, for nobody would miss what it holds.
+std::string reference_in(const fs::path& file) {
+  std::string stem = file.stem().string();
+  if (file.extension() != ".csv" || stem == "landmarks") return {};
+  if (stem == log_csv::kLeading) return stem;
+  const std::string prefix = log_csv::kLeading + "_";
+  if (stem.starts_with(prefix) && stem != prefix) return stem.substr(prefix.size());
+  if (!stem.starts_with("reference") && !stem.starts_with("landmark")) return {};
+  throw StudyError(file.string() + ": no file of a log (known: reference.csv, " +
+                   "reference_NAME.csv, landmarks.csv): rename it");
+}
+
+std::vector<ReferencePath> read_references(const fs::path& folder) {
+  std::error_code failure;
+  std::vector<ReferencePath> references;
+  for (const auto& entry : fs::directory_iterator(folder, failure)) {
+    const std::string name = reference_in(entry.path());
+    if (!name.empty()) references.push_back(read_reference_csv(entry.path(), name));
+  }
+  std::ranges::sort(references, log_csv::is_before, &ReferencePath::name);
+  return references;
+}
+
+}  // namespace
+
+DriveLog read_log_csv(const fs::path& folder) {
+  DriveLog log;
+  read_start(folder / "start.csv", log);
+  read_odometry(folder / "odometry.csv", log);
+  read_scans(folder / "detections.csv", log);
+  log.references = read_references(folder);
+  if (fs::exists(folder / "landmarks.csv")) {
+    log.landmarks = read_landmarks(folder / "landmarks.csv");
+  }
+  check_log(log, folder.string(), LogForm::csv);
+  return log;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file as text, row by row.
+class Table {
+ public:
+  explicit Table(const std::string& header) : text_(header + "\n") {}
+
+  void add(std::initializer_list<double> numbers, const std::string& rest = "") {
+    add(std::span(numbers.begin(), numbers.size()), rest);
+  }
+  void add(std::span<const double> numbers, const std::string& rest = "") {
+    for (const double number : numbers) {
+      if (text_.back() != '\n') text_ += ',';
+      text_ += to_text(number);
+    }
+    text_ += rest + "\n";
+  }
+  void save(const fs::path& path) const { write_text(path, text_); }
+
+ private:
+  std::string text_;
+};
+
+Table start_table(double time, const Pose& start) {
+  Table table(log_csv::kStart[0]);
+  table.add({time, start.x, start.y, start.heading});
+  return table;
+}
+
+Table odometry_table(const DriveLog& log) {
+  Table table(log_csv::odometry_header(log.controls));
+  for (const auto& [time, control] : log.odometry) {
+    std::array<double, 1 + Control::kMost> row{time};
+    std::ranges::copy(control.values, row.begin() + 1);
+    table.add(std::span(row).first(1 + log.controls.size()));
+  }
+  return table;
+}
+
+bool is_identified(const DriveLog& log) {
+  return std::ranges::any_of(log.scans, [](const LoggedScan& scan) {
+    return !scan.detections.empty() && scan.detections.front().identity != Detection::kUnidentified;
+  });
+}
+
+std::string identity_field(const Detection& detection) {
+  return detection.identity < 0 ? "," : "," + std::to_string(detection.identity);
+}
+
+Table detection_table(const DriveLog& log) {
+  const bool identified = is_identified(log);
+  const std::size_t n = log.components.size();
+  Table table(log_csv::detection_headers(log.components)[identified ? 1 : 0]);
+  for (const auto& [time, detections] : log.scans) {
+    if (detections.empty()) table.add({time}, std::string(identified ? n + 1 : n, ','));
+    for (const Detection& detection : detections) {
+      std::array<double, 1 + Detection::kMost> row{time};
+      std::ranges::copy(detection.values, row.begin() + 1);
+      table.add(std::span(row).first(1 + n), identified ? identity_field(detection) : "");
+    }
+  }
+  return table;
+}
+
+Table landmark_table(const std::vector<Eigen::Vector2d>& landmarks) {
+  Table table(log_csv::kLandmarks[0]);
+  for (const Eigen::Vector2d& place : landmarks) table.add({place.x(), place.y()});
+  return table;
+}
+
+void check_order(const DriveLog& log, const std::string& place) {
+  if (std::ranges::is_sorted(log.references, log_csv::is_before, &ReferencePath::name)) return;
+  throw StudyError(place + ": references are not in the order of their names (in which they will " +
+                   "be read): rename them, or call the leading one 'reference'");
+}
+
+void make_folder(const fs::path& folder) {
+  make_directory(folder);
+  if (fs::is_empty(folder)) return;
+  throw StudyError(folder.string() +
+                   ": not empty (what lies there would be read with the log): name a new folder");
+}
+
+}  // namespace
+
+void write_log_csv(const DriveLog& log, const fs::path& folder) {
+  write_log_csv(log, folder, folder);
+}
+
+void write_log_csv(const DriveLog& log, const fs::path& folder, const fs::path& truth_folder) {
+  check_log(log, folder.string());
+  check_order(log, folder.string());
+  make_folder(folder);
+  make_folder(truth_folder);
+  start_table(log.start_time, log.start).save(folder / "start.csv");
+  odometry_table(log).save(folder / "odometry.csv");
+  detection_table(log).save(folder / "detections.csv");
+  for (const ReferencePath& reference : log.references) {
+    write_text(truth_folder / log_csv::file_of_reference(reference.name), csv_of(reference));
+  }
+  if (!log.landmarks.empty()) landmark_table(log.landmarks).save(truth_folder / "landmarks.csv");
+}
+
+namespace {
+
+using log_csv::ReferenceColumns;
+
+constexpr double kLeastDeviation = 1e-9;  // [m, rad]
+
+/// Diagonal, of as many sigmas from field `first` on.
+Eigen::Matrix3d covariance_of_sigmas(const CsvRows& rows, std::size_t first, int dimension) {
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < dimension; ++i) {
+    const std::size_t field = first + static_cast<std::size_t>(i);
+    const double sigma = rows.number(field, "standard deviation");
+    if (!(sigma >= kLeastDeviation)) {
+      throw StudyError(rows.place() + ": standard deviation " + std::string(rows.field(field)) +
+                       " (every fix has an error, at least 1e-9 m or rad): correct it, or leave "
+                       "the sigmas out where nobody knows them");
+    }
+    covariance(i, i) = sigma * sigma;
+  }
+  return covariance;
+}
+
+bool is_positive_definite(const Eigen::Matrix3d& covariance, int dimension) {
+  const Eigen::VectorXd variances = covariance.diagonal().head(dimension);
+  if (!(variances.array() >= kLeastDeviation * kLeastDeviation).all()) return false;
+  const Eigen::VectorXd scale = variances.cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd correlation =
+      scale.asDiagonal() * covariance.topLeftCorner(dimension, dimension) * scale.asDiagonal();
+  constexpr double kLeastPivot = 1e-9;
+  const Eigen::LLT<Eigen::MatrixXd> factor(correlation);
+  return factor.info() == Eigen::Success &&
+         (factor.matrixLLT().diagonal().array().square() > kLeastPivot).all();
+}
+
+/// Of its lower triangle, row by row from field `first` on.
+Eigen::Matrix3d covariance_in(const CsvRows& rows, std::size_t first, int dimension) {
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  std::size_t field = first;
+  for (int i = 0; i < dimension; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      covariance(i, j) = covariance(j, i) = rows.number(field++, "covariance");
+    }
+  }
+  if (is_positive_definite(covariance, dimension)) return covariance;
+  throw StudyError(rows.place() +
+                   ": the covariance is not positive definite (variances must be above 0 and "
+                   "correlations between -1 and 1): correct it, or give standard deviations");
+}
+
+}  // namespace
+
+ReferencePath read_reference_csv(const std::filesystem::path& path, const std::string& name) {
+  CsvRows rows(path, log_csv::kReference);
+  const auto columns = static_cast<ReferenceColumns>(rows.header());
+  const bool headed = log_csv::has_heading(columns);
+  const std::size_t behind = headed ? 4 : 3;  // the first field that is neither time nor pose
+  ReferencePath reference{.name = name, .time = {}, .position = {}, .heading = {}};
+  while (rows.next()) {
+    reference.time.push_back(rows.number(0, "time"));
+    reference.position.emplace_back(rows.number(1, "coordinate"), rows.number(2, "coordinate"));
+    if (headed) reference.heading.push_back(rows.number(3, "heading"));
+    if (columns == ReferenceColumns::position || columns == ReferenceColumns::pose) continue;
+    const bool by_sigmas =
+        columns == ReferenceColumns::position_sigmas || columns == ReferenceColumns::pose_sigmas;
+    reference.covariance.push_back(by_sigmas
+                                       ? covariance_of_sigmas(rows, behind, reference.dimension())
+                                       : covariance_in(rows, behind, reference.dimension()));
+  }
+  check_reference(reference, path.string());
+  return reference;
+}
+
+std::string csv_of(const ReferencePath& reference) {
+  const bool headed = !reference.heading.empty(), known = !reference.covariance.empty();
+  std::string text = log_csv::header_of(known    ? headed ? ReferenceColumns::pose_covariance
+                                                          : ReferenceColumns::position_covariance
+                                        : headed ? ReferenceColumns::pose
+                                                 : ReferenceColumns::position) +
+                     "\n";
+  for (std::size_t f = 0; f < reference.time.size(); ++f) {
+    text += to_text(reference.time[f]) + "," + to_text(reference.position[f].x()) + "," +
+            to_text(reference.position[f].y());
+    if (headed) text += "," + to_text(reference.heading[f]);
+    for (int i = 0; known && i < reference.dimension(); ++i) {
+      for (int j = 0; j <= i; ++j) text += "," + to_text(reference.covariance[f](i, j));
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace montecarta::experiments
