@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 
 namespace montecarta::analysis {
@@ -80,6 +81,15 @@ std::string exact_text(double value) {
   if (std::isnan(value)) return "nan";
   std::array<char, 64> text{};
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+std::string duration_text(double seconds) {
+  if (seconds < 59.95) return printed("%.*f", seconds < 9.95 ? 1 : 0, seconds) + " s";
+  const auto whole = static_cast<std::uint64_t>(seconds + 0.5);
+  const bool has_hours = whole >= 3600;
+  const std::uint64_t rest = has_hours ? whole / 60 % 60 : whole % 60;
+  return std::to_string(has_hours ? whole / 3600 : whole / 60) + (has_hours ? " h " : " min ") +
+         (rest < 10 ? "0" : "") + std::to_string(rest) + (has_hours ? " min" : " s");
 }
 
 std::string percent(double share) {

@@ -10,35 +10,45 @@ namespace {
 
 constexpr std::size_t kTextWidth = 100;
 
-std::vector<std::size_t> widths_of(const TextTable& table) {
+std::vector<std::size_t> widths_of(const std::vector<TableRow>& rows) {
   std::vector<std::size_t> widths;
-  for (const auto& heading : table.headings) widths.push_back(heading.text.size());
-  for (const auto& row : table.rows) {
+  for (const TableRow& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
     for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
   }
   return widths;
 }
 
-std::string padded(const std::string& text, std::size_t width, Align align) {
-  const std::string space(width - std::min(width, text.size()), ' ');
-  return align == Align::left ? text + space : space + text;
-}
-
 }  // namespace
 
-void print_table(std::ostream& out, const TextTable& table) {
-  const auto widths = widths_of(table);
-  const auto line = [&](const auto& text_of) {
-    std::string printed;
-    for (std::size_t c = 0; c < widths.size(); ++c) {
-      printed += padded(text_of(c), widths[c], table.headings[c].align) + "  ";
+std::string aligned(const std::vector<TableRow>& rows, std::size_t indent,
+                    const std::vector<Align>& alignment) {
+  const std::vector<std::size_t> widths = widths_of(rows);
+  std::string text;
+  for (const TableRow& row : rows) {
+    std::string line(indent, ' ');
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const std::string space(widths[c] - row[c].size(), ' ');
+      const bool is_right = c < alignment.size() && alignment[c] == Align::right;
+      line += (is_right ? space + row[c] : row[c] + space) + "  ";
     }
-    printed.erase(printed.find_last_not_of(' ') + 1);
-    out << printed << '\n';
-  };
-  line([&](std::size_t c) { return table.headings[c].text; });
-  line([&](std::size_t c) { return std::string(widths[c], '-'); });
-  for (const auto& row : table.rows) line([&](std::size_t c) { return row[c]; });
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  }
+  return text;
+}
+
+void print_table(std::ostream& out, const TextTable& table) {
+  std::vector<TableRow> rows(1);
+  std::vector<Align> alignment;
+  for (const TextTable::Heading& heading : table.headings) {
+    rows.front().push_back(heading.text);
+    alignment.push_back(heading.align);
+  }
+  rows.insert(rows.end(), table.rows.begin(), table.rows.end());
+  TableRow rule;
+  for (const std::size_t width : widths_of(rows)) rule.emplace_back(width, '-');
+  rows.insert(rows.begin() + 1, std::move(rule));
+  out << aligned(rows, 0, alignment);
 }
 
 void print_wrapped(std::ostream& out, const std::string& sentence) {

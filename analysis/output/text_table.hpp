@@ -12,6 +12,8 @@ namespace montecarta::analysis {
 
 enum class Align { left, right };
 
+using TableRow = std::vector<std::string>;
+
 /// A table in words, whatever it is set in.
 struct TextTable {
   struct Heading {
@@ -19,8 +21,13 @@ struct TextTable {
     Align align = Align::right;
   };
   std::vector<Heading> headings;
-  std::vector<std::vector<std::string>> rows;
+  std::vector<TableRow> rows;
 };
+
+/// Rows with their columns below each other, two spaces between, each line indented by `indent`.
+/// Columns without an element of `alignment` {column} are left-aligned; no line ends in spaces.
+std::string aligned(const std::vector<TableRow>& rows, std::size_t indent = 2,
+                    const std::vector<Align>& alignment = {});
 
 /// A table for a terminal: columns below each other.
 void print_table(std::ostream& out, const TextTable& table);

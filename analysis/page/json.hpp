@@ -3,59 +3,23 @@
 
 #include "analysis/output/chart.hpp"
 
-#include <concepts>
-#include <ranges>
+#include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
+#include <vector>
 
 namespace montecarta::analysis {
 
-/// Writes compact JSON that may stand in a page's <script>. The caller nests: begin and end in
-/// pairs, and within an object a key() before every value.
-class JsonWriter {
- public:
-  static constexpr int kDigits = 5;  ///< significant, of numbers; nobody sees more in a drawing
+/// Members stand in the order in which they are added.
+using Json = nlohmann::ordered_json;
 
-  JsonWriter& begin_object() { return begin('{'); }
-  JsonWriter& end_object() { return end('}'); }
-  JsonWriter& begin_array() { return begin('['); }
-  JsonWriter& end_array() { return end(']'); }
-  JsonWriter& key(std::string_view name);
+/// A number rounded to `digits` significant ones: nobody sees more in a drawing. NaN becomes null,
+/// and what is infinite the text "+inf" or "-inf", since JSON has neither.
+Json rounded(double value, int digits = 5);
+/// An array of such numbers.
+Json rounded(const std::vector<double>& values, int digits = 5);
 
-  JsonWriter& value(std::string_view text);
-  JsonWriter& value(const char* text) { return value(std::string_view(text)); }
-  JsonWriter& value(bool truth) { return literal(truth ? "true" : "false"); }
-  /// NaN becomes null; what is infinite becomes 1e999, which a page reads as infinite.
-  JsonWriter& value(double number, int digits = kDigits);
-  /// The shortest text that reads back as the same bits, as a number with a fraction: 3.0.
-  JsonWriter& exact(double number);
-  JsonWriter& value(std::integral auto number) { return literal(std::to_string(number)); }
-
-  /// An array of numbers or texts.
-  template <std::ranges::range Values>
-  requires(!std::convertible_to<Values, std::string_view>) JsonWriter& value(const Values& values) {
-    begin_array();
-    for (const auto& each : values) value(each);
-    return end_array();
-  }
-
-  /// A member of an object.
-  template <class Value>
-  JsonWriter& member(std::string_view name, const Value& content) {
-    return key(name).value(content);
-  }
-
-  const std::string& text() const { return text_; }
-
- private:
-  JsonWriter& begin(char bracket);
-  JsonWriter& end(char bracket);
-  JsonWriter& literal(std::string_view text);
-  void separate();
-
-  std::string text_;
-  bool first_ = true;  ///< nothing stands before the next value that a comma must part it from
-};
+/// Compact text that may stand in a page's <script>.
+std::string script_text(const Json& json);
 
 /// A chart as the page's script reads it (page/script/chart.js).
 std::string chart_json(const Chart& chart);

@@ -6,7 +6,6 @@
 #include "engine/records/seal.hpp"
 
 #include <optional>
-#include <sstream>
 #include <system_error>
 
 namespace montecarta::engine {
@@ -30,13 +29,6 @@ void refuse_existing(const fs::path& path) {
   }
 }
 
-std::string gigabytes(double bytes) {
-  std::ostringstream text;
-  text.precision(3);
-  text << bytes / 1e9 << " GB";
-  return text.str();
-}
-
 }  // namespace
 
 void expect_room(const fs::path& path, double bytes) {
@@ -44,8 +36,8 @@ void expect_room(const fs::path& path, double bytes) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   const fs::space_info space = fs::space(folder, ignored);
   if (ignored || bytes <= static_cast<double>(space.available)) return;
-  throw RunError(path.string() + ": " + gigabytes(bytes) + " are needed, " +
-                 gigabytes(static_cast<double>(space.available)) +
+  throw RunError(path.string() + ": " + bytes_text(bytes) + " are needed, " +
+                 bytes_text(static_cast<double>(space.available)) +
                  " are free: free space, choose another disk, or store fewer runs or columns");
 }
 

@@ -4,6 +4,7 @@
 #include "engine/errors.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -217,6 +218,15 @@ void expect_free(const std::filesystem::path& path) {
   throw StudyError(path.string() +
                    ": exists (nothing is overwritten unasked): add --force to replace it, or "
                    "choose another path");
+}
+
+std::string bytes_text(double bytes) {
+  constexpr std::array kUnits = {" B", " kB", " MB", " GB", " TB"};
+  std::size_t unit = 0;
+  for (; bytes >= 999.5 && unit + 1 < kUnits.size(); ++unit) bytes /= 1000.0;
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), unit > 0 && bytes < 9.95 ? "%.1f" : "%.0f", bytes);
+  return text.data() + std::string(kUnits[unit]);
 }
 
 }  // namespace montecarta::engine

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 
 namespace montecarta::engine {
 
@@ -51,6 +52,9 @@ class PosixFile {
   std::filesystem::path path_;
   int descriptor_ = -1;
 };
+
+/// "3.8 MB", "12 kB", "17 B": powers of 1000, two digits or more.
+std::string bytes_text(double bytes);
 
 /// Name of the work in progress of the result `path`.
 std::filesystem::path part_of(std::filesystem::path path);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/output/text_table.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 #include "engine/errors.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/text/table.hpp"
 #include "experiments/text/words.hpp"
 
 #include <array>

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/output/number_text.hpp"
+#include "analysis/output/text_table.hpp"
 #include "engine/records/fingerprint.hpp"
+#include "engine/records/posix_file.hpp"
 #include "engine/records/run_record.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/plan_arguments.hpp"
 #include "experiments/commands/trial.hpp"
-#include "experiments/text/table.hpp"
 
 #include <algorithm>
 #include <iostream>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/commands/commands.hpp"
 
+#include "analysis/output/text_table.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/provenance.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/visible_output.hpp"
-#include "experiments/text/table.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/output/text_table.hpp"
+#include "engine/records/posix_file.hpp"
 #include "engine/records/seal.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"
-#include "experiments/text/table.hpp"
 
 #include <algorithm>
 #include <filesystem>

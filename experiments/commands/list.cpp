@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/output/text_table.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/columns.hpp"
 #include "experiments/commands/commands.hpp"
@@ -8,7 +9,6 @@
 #include "experiments/study/ini_text.hpp"
 #include "experiments/study/setting.hpp"
 #include "experiments/study/settings.hpp"
-#include "experiments/text/table.hpp"
 #include "experiments/text/words.hpp"
 #include "experiments/worlds/world.hpp"
 #include "filters/models/vehicle_settings.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/records/merge.hpp"
 
+#include "engine/records/posix_file.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_guard.hpp"
-#include "experiments/text/table.hpp"
 
 #include <iostream>
 

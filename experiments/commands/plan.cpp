@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/data/study_settings.hpp"
 #include "analysis/output/number_text.hpp"
+#include "analysis/output/text_table.hpp"
 #include "analysis/statistics/nees_power.hpp"
 #include "engine/errors.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/text/table.hpp"
 
 #include <cmath>
 #include <iostream>

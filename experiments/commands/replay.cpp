@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/errors.hpp"
+#include "engine/records/posix_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
 #include "engine/runs/recompute.hpp"
 #include "experiments/commands/commands.hpp"
@@ -10,7 +11,6 @@
 #include "experiments/study/make_drives.hpp"
 #include "experiments/study/make_plan.hpp"
 #include "experiments/study/setting.hpp"
-#include "experiments/text/table.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

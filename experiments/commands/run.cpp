@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/study_analysis.hpp"
+#include "analysis/output/number_text.hpp"
 #include "analysis/report.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
@@ -11,7 +12,6 @@
 #include "experiments/commands/output_guard.hpp"
 #include "experiments/commands/plan_arguments.hpp"
 #include "experiments/commands/stored_result.hpp"
-#include "experiments/text/table.hpp"
 
 #include <filesystem>
 #include <iostream>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/output/text_table.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/result_slabs.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"
-#include "experiments/text/table.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/output/text_table.hpp"
 #include "engine/records/result_file.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/study/study.hpp"
-#include "experiments/text/table.hpp"
 
 #include <string>
 

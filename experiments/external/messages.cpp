@@ -1,127 +1,104 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/external/messages.hpp"
 
-#include "analysis/page/json.hpp"
 #include "experiments/external/child_process.hpp"
 #include "experiments/text/words.hpp"
 #include "filters/models/vehicle_settings.hpp"
 
 #include <Eigen/Cholesky>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
-#include <type_traits>
+#include <nlohmann/json.hpp>
 
 namespace montecarta::experiments {
 namespace {
 
-JsonWriter json_message(std::uint64_t id, const char* type) {
-  JsonWriter json;
-  json.begin_object().member("id", id).member("type", type);
-  return json;
+/// Members stand in the order in which they are added.
+using Json = nlohmann::ordered_json;
+
+Json json_message(std::uint64_t id, const char* type) { return {{"id", id}, {"type", type}}; }
+
+Json controls_of_step(std::span<const ControlRow> controls) {
+  Json array = Json::array();
+  for (const ControlRow& control : controls) array.push_back(control);
+  return array;
 }
 
-void exact_row(JsonWriter& json, std::span<const double> numbers) {
-  json.begin_array();
-  for (const double number : numbers) json.exact(number);
-  json.end_array();
-}
-
-void tell_controls(JsonWriter& json, std::span<const ControlRow> controls) {
-  json.key("controls").begin_array();
-  for (const ControlRow& control : controls) exact_row(json, control);
-  json.end_array();
-}
-
-void tell_control_names(JsonWriter& json, const Vehicle& vehicle) {
-  json.key("controls").begin_array();
-  for (const ControlName& control : controls_of(vehicle)) json.value(control.name);
-  json.end_array();
-}
-
-void tell_control_noise(JsonWriter& json, const Vehicle& vehicle, const ControlNoise& noise) {
+void add_controls(const Vehicle& vehicle, const ControlNoise& noise, Json& settings) {
+  Json& names = settings["controls"] = Json::array();
   std::size_t i = 0;
   for (const ControlName& control : controls_of(vehicle)) {
-    json.key(si_name(control.sigma)).exact(noise.sigma[i++]);
+    names.push_back(control.name);
+    settings[si_name(control.sigma)] = noise.sigma[i++];
   }
   if (!noise.grows()) return;
-  for (std::size_t k = 0; k < noise.alpha.size(); ++k) json.key(alpha_key(k)).exact(noise.alpha[k]);
+  for (std::size_t k = 0; k < noise.alpha.size(); ++k) settings[alpha_key(k)] = noise.alpha[k];
 }
 
-void tell_sensor(JsonWriter& json, const Belief& belief) {
+void add_sensor(const Belief& belief, Json& settings) {
   const auto& [forward, left, turn] = belief.sensor.mounting;
-  json.member("sensor", name_of(belief.sensor));
+  settings["sensor"] = name_of(belief.sensor);
   for (const Quantity quantity : components_of(belief.sensor)) {
-    json.key(si_name(name_of(quantity).sigma)).exact(deviation_of(quantity, belief));
+    settings[si_name(name_of(quantity).sigma)] = deviation_of(quantity, belief);
   }
   if (belief.sensor.mounting.is_none()) return;
-  json.key("mount_forward").exact(forward);
-  json.key("mount_left").exact(left);
-  json.key("mount_turn").exact(turn);
+  settings["mount_forward"] = forward;
+  settings["mount_left"] = left;
+  settings["mount_turn"] = turn;
 }
 
-void tell_settings(JsonWriter& json, const FilterSetup& setup) {
-  const Belief& belief = setup.belief;
-  const Vehicle& vehicle = belief.vehicle;
-  const bool known = setup.association.kind == Association::known;
-  json.key("settings").begin_object();
-  json.member("vehicle", name_of(vehicle));
-  tell_vehicle(vehicle, [&](const std::string& name, const auto& value) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>) {
-      json.key(name).exact(value);
-    } else {
-      json.member(name, value);
-    }
-  });
-  tell_control_names(json, vehicle);
-  tell_control_noise(json, vehicle, belief.control);
-  tell_sensor(json, belief);
-  json.member("association", known ? "known" : "nearest");
-  json.key("gate").exact(setup.association.gate);
-  json.key("new_gate").exact(setup.association.new_gate);
-  json.member("landmarks", setup.landmarks);
-  json.end_object();
+Json settings_of(const FilterSetup& setup) {
+  const Vehicle& vehicle = setup.belief.vehicle;
+  Json settings = {{"vehicle", name_of(vehicle)}};
+  tell_vehicle(vehicle,
+               [&](const std::string& name, const auto& value) { settings[name] = value; });
+  add_controls(vehicle, setup.belief.control, settings);
+  add_sensor(setup.belief, settings);
+  settings["association"] = setup.association.kind == Association::known ? "known" : "nearest";
+  settings["gate"] = setup.association.gate;
+  settings["new_gate"] = setup.association.new_gate;
+  settings["landmarks"] = setup.landmarks;
+  return settings;
 }
 
 }  // namespace
 
 std::string start_message(std::uint64_t id, const RunStart& start, const FilterSetup& setup) {
-  JsonWriter json = json_message(id, "start");
-  json.member("run", start.run).member("seed", start.seed).key("start");
-  exact_row(json, std::array{start.pose.x, start.pose.y, start.pose.heading});
-  tell_settings(json, setup);
-  return json.end_object().text();
+  Json message = json_message(id, "start");
+  message["run"] = start.run;
+  message["seed"] = start.seed;
+  message["start"] = {start.pose.x, start.pose.y, start.pose.heading};
+  message["settings"] = settings_of(setup);
+  return message.dump();
 }
 
 std::string predict_message(std::uint64_t id, std::span<const ControlRow> controls) {
-  JsonWriter json = json_message(id, "predict");
-  tell_controls(json, controls);
-  return json.end_object().text();
+  Json message = json_message(id, "predict");
+  message["controls"] = controls_of_step(controls);
+  return message.dump();
 }
 
 std::string scan_message(std::uint64_t id, std::span<const ControlRow> controls, Scan scan,
                          Association association, std::size_t components) {
-  JsonWriter json = json_message(id, "scan");
-  tell_controls(json, controls);
-  json.key("detections").begin_array();
+  Json message = json_message(id, "scan");
+  message["controls"] = controls_of_step(controls);
+  Json& detections = message["detections"] = Json::array();
   for (const Detection& detection : scan) {
     const bool named = association == Association::known && detection.identity >= 0;
-    json.begin_array();
-    for (std::size_t i = 0; i < components; ++i) json.exact(detection[i]);
-    json.value(named ? detection.identity : -1).end_array();
+    Json numbers = Json::array();
+    for (std::size_t i = 0; i < components; ++i) numbers.push_back(detection[i]);
+    numbers.push_back(named ? detection.identity : -1);
+    detections.push_back(std::move(numbers));
   }
-  return json.end_array().end_object().text();
+  return message.dump();
 }
 
-std::string map_message(std::uint64_t id) { return json_message(id, "map").end_object().text(); }
+std::string map_message(std::uint64_t id) { return json_message(id, "map").dump(); }
 
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr int kDeepest = 4;  // of brackets within brackets; no answer needs more
 /// Of a correlation matrix: what rounding leaves of an eigenvalue that is zero.

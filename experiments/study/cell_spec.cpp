@@ -227,7 +227,6 @@ std::string cell_line(const CellSpec& cell) {
   for (std::size_t i = 0; i < cell.options.size(); ++i) {
     const auto& [key, value] = cell.options[i];
     const Option& option = cell.filter->options[i];
-    if (option.is_quiet && value == option.fallback) continue;
     const bool is_text = option.kind == Option::Kind::text;
     line += " " + key + "=" + (is_text ? in_quotes(value) : value);
   }

@@ -74,12 +74,6 @@ Setting deviation_setting(const char* section, Quantity quantity, double least) 
   return setting;
 }
 
-/// Left out of the resolved text where it says nothing.
-Setting quiet(Setting setting) {
-  setting.is_quiet = true;
-  return setting;
-}
-
 /// With another default where the scenario is of that kind.
 Setting but_for(const char* kind, const char* fallback, Setting setting) {
   setting.fallback_of_kind.emplace_back(kind, fallback);
@@ -93,7 +87,7 @@ void add_growth(const char* section, const Add& add) {
       "variance of a speed by its square", "and by the square of steering angle or yaw rate",
       "variance of steering angle or yaw rate by the square of the speed", "and by its own square"};
   for (std::size_t i = 0; i < kMeanings.size(); ++i) {
-    add(quiet(number(section, alpha_key(i).c_str(), "SI", "0", 0, 1e6, kMeanings[i])));
+    add(number(section, alpha_key(i).c_str(), "SI", "0", 0, 1e6, kMeanings[i]));
   }
 }
 
@@ -101,9 +95,9 @@ void add_growth(const char* section, const Add& add) {
 template <class Add>
 void add_sensor_kind(const char* section, double least, const Add& add) {
   const auto mount = [&](const char* key, const char* unit, double most, const char* meaning) {
-    add(quiet(number(section, key, unit, "0", -most, most, meaning)), "");
+    add(number(section, key, unit, "0", -most, most, meaning), "");
   };
-  add(quiet(choice(section, "sensor", sensor_names(), "what detects landmarks (EQUATIONS 2)")), "");
+  add(choice(section, "sensor", sensor_names(), "what detects landmarks (EQUATIONS 2)"), "");
   mount("mount_forward", "m", 1000, "of the sensor, ahead of the pose");
   mount("mount_left", "m", 1000, "of the sensor, left of the pose");
   mount("mount_turn_deg", "deg", 360, "where the sensor looks, left of the heading");
@@ -126,7 +120,7 @@ void add_drive(std::vector<Setting>& table) {
                          "steers by the true pose, or takes the controls of the noise-free drive");
   pilot.chooser = "noise";
   pilot.chosen = {"matched"};
-  add(quiet(pilot));
+  add(pilot);
   add(choice(s, "map", {"fixed", "random"},
              "landmarks where the world has them, or displaced anew in every run"));
   add(number(s, "map_shift", "m", "10", 0, 1e4, "farthest that a random map displaces one"));
@@ -162,7 +156,7 @@ void add_recording(std::vector<Setting>& table) {
 void add_sensor(std::vector<Setting>& table) {
   const char* s = "scenario";
   table.push_back(number(s, "max_range", "m", "30", 1e-3, 1e6, "farther is not detected"));
-  table.push_back(quiet(number(s, "min_range", "m", "0", 0, 1e6, "nearer is not detected")));
+  table.push_back(number(s, "min_range", "m", "0", 0, 1e6, "nearer is not detected"));
   const auto add = [&](Setting setting) {
     table.push_back(only_for({"simulated"}, std::move(setting)));
   };

@@ -116,13 +116,6 @@ bool Settings::is_for_choice(const Setting& setting) const {
   return setting.chooser.empty() || setting.is_for_choice(text(setting.section, setting.chooser));
 }
 
-bool Settings::says_nothing(const Setting& setting) const {
-  const auto has_default = [&](const char* section) {
-    return !has(section, setting.key) || text(section, setting.key) == setting.fallback;
-  };
-  return setting.is_quiet && has_default("scenario") && has_default("belief");
-}
-
 bool Settings::has(std::string_view section, std::string_view key) const {
   return values_.contains({std::string(section), std::string(key)});
 }
@@ -160,7 +153,7 @@ std::vector<std::pair<std::string, std::string>> Settings::section(std::string_v
   std::vector<std::pair<std::string, std::string>> pairs;
   for (const Setting& setting : study_settings()) {
     if (setting.section != name || !has(name, setting.key)) continue;
-    if (!says_nothing(setting)) pairs.emplace_back(setting.key, text(name, setting.key));
+    pairs.emplace_back(setting.key, text(name, setting.key));
   }
   return pairs;
 }

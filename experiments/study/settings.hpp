@@ -41,7 +41,7 @@ class Settings {
   /// Whether there is a value: kind of scenario, vehicle and sensor have that key.
   bool has(std::string_view section, std::string_view key) const;
   /// (key, value) of a section in the order of the table, as far as the kind of scenario,
-  /// vehicle and sensor have them; without quiet ones that say nothing.
+  /// vehicle and sensor have them.
   std::vector<std::pair<std::string, std::string>> section(std::string_view name) const;
 
  private:
@@ -54,7 +54,6 @@ class Settings {
   void fill_in(const std::string& name);
   std::string copied_from_scenario(const Setting& setting) const;
   bool is_for_choice(const Setting& setting) const;
-  bool says_nothing(const Setting& setting) const;
   const Value& at(std::string_view section, std::string_view key) const;
 
   std::map<Name, Value> values_;

@@ -83,14 +83,6 @@ void refuse_world(const IniText& ini, const Settings& settings) {
                    "[world]");
 }
 
-/// The text of studies that make all runs, store no joint estimates, or have the usual margin, is
-/// what it was before a study could do otherwise.
-bool is_default_noted(const Study& study, const std::string& key, const std::string& value) {
-  if (key == "joint_scans") return study.settings.lists("record", "columns", "joint");
-  if (key == "within") return value != kUsualWithin;
-  return key != "until" || !value.empty();
-}
-
 /// Where nothing is said of the association, and the log says which landmark each detection is of,
 /// filters are told.
 void use_identities(Study& study, const std::string& name) {
@@ -142,7 +134,7 @@ std::string resolved_text(const Study& study) {
     if (section == "world" && study.log != nullptr) continue;
     text += "[" + section + "]\n";
     for (const auto& [key, value] : study.settings.section(section)) {
-      if (is_default_noted(study, key, value)) text += key + " = " + value + "\n";
+      if (key != "until" || !value.empty()) text += key + " = " + value + "\n";
     }
     if (section == "cells") {
       for (const CellSpec& cell : study.cells) text += "cell = " + cell_line(cell) + "\n";

@@ -60,12 +60,9 @@ Eigen::Index row_of_point(Eigen::Index i) { return i == 0 ? 0 : 1 + 2 * i; }
 }  // namespace
 
 Option moments_option(const char* fallback) {
-  Option option =
-      choice_option("moments", fallback, kMoments,
-                    "reported mean and covariance: of the Gaussian in map coordinates, or those "
-                    "that follow from it in the right-invariant chart (EQUATIONS 19, 21)");
-  option.is_quiet = true;
-  return option;
+  return choice_option("moments", fallback, kMoments,
+                       "reported mean and covariance: of the Gaussian in map coordinates, or those "
+                       "that follow from it in the right-invariant chart (EQUATIONS 19, 21)");
 }
 
 Moments moments_of(const FilterOptions& options) {

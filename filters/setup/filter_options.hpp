@@ -34,9 +34,6 @@ struct Option {
   std::vector<std::string> choices = {};
   std::string meaning = {};  ///< one line, with unit and equation
   std::string example = {};  ///< offered as remedy where there is no fallback
-  /// Left out of the resolved text where it and, for a belief, the scenario have the default: so
-  /// that the text of studies that are older than the option stays.
-  bool is_quiet = false;
   /// The default of a filter's option where its controls are noisy measurements of the true ones
   /// (scenario.noise = measured-control), if that differs.
   std::optional<std::string> fallback_if_measured = {};

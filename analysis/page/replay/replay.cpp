@@ -216,37 +216,30 @@ namespace {
 constexpr int kPlaceDigits = 6;  // a millimetre in 300 m
 constexpr int kSizeDigits = 3;
 
-void write_numbers(const char* name, const std::vector<double>& values, int digits,
-                   JsonWriter& json) {
-  json.key(name).begin_array();
-  for (const double value : values) json.value(value, digits);
-  json.end_array();
-}
-
-void write_points(const char* name, const std::vector<std::pair<double, double>>& points,
-                  JsonWriter& json) {
-  json.key(name).begin_array();
-  for (const auto& [x, y] : points) json.value(x).value(y);
-  json.end_array();
-}
-
-/// Diameters [m] and angle [deg], three numbers each; the centre is the pose.
-void write_pose_ellipses(const std::vector<Ellipse>& ellipses, JsonWriter& json) {
-  json.key("pose").begin_array();
-  for (const Ellipse& e : ellipses) {
-    for (const double value : {e.major, e.minor, e.angle}) json.value(value, kSizeDigits);
+Json json_of(const std::vector<std::pair<double, double>>& points) {
+  Json array = Json::array();
+  for (const auto& [x, y] : points) {
+    array.push_back(rounded(x));
+    array.push_back(rounded(y));
   }
-  json.end_array();
+  return array;
+}
+
+/// Diameters [m] and angle [deg].
+void add_size(const Ellipse& e, Json& array) {
+  for (const double value : {e.major, e.minor, e.angle}) {
+    array.push_back(rounded(value, kSizeDigits));
+  }
 }
 
 /// Places relative to the estimate in whole units, which are short to write.
-void write_places(const char* name, const std::vector<double>& places, double centre, double unit,
-                  JsonWriter& json) {
-  json.key(name).begin_array();
+Json relative_places(const std::vector<double>& places, double centre, double unit) {
+  Json array = Json::array();
   for (const double place : places) {
-    json.value(std::isfinite(place) ? std::round((place - centre) / unit) : place, 9);
+    const double units = std::round((place - centre) / unit);
+    array.push_back(std::abs(units) < 1e9 ? Json(static_cast<int>(units)) : rounded(place));
   }
-  json.end_array();
+  return array;
 }
 
 /// A power of ten [m], a hundred thousandth of the greatest coordinate or less.
@@ -260,66 +253,63 @@ double unit_of(const ReplayCell& cell) {
   return std::pow(10.0, std::floor(std::log10(greatest)) - 5.0);
 }
 
-void write_particles(const ReplayCell& cell, JsonWriter& json) {
+void add_particles(const ReplayCell& cell, Json& json) {
   const double unit = unit_of(cell);
-  json.member("particles", cell.particles.all).member("unit", unit);
-  json.key("clouds").begin_array();
+  json["particles"] = cell.particles.all;
+  json["unit"] = rounded(unit);
+  Json& clouds = json["clouds"] = Json::array();
   for (std::size_t f = 0; f < cell.particles.frames.size(); ++f) {
     const ReplayParticles::Frame& frame = cell.particles.frames[f];
-    json.begin_object();
-    write_places("x", frame.x, cell.x[f], unit, json);
-    write_places("y", frame.y, cell.y[f], unit, json);
-    if (!frame.parent.empty()) json.member("parent", frame.parent);
-    json.end_object();
+    Json cloud = {{"x", relative_places(frame.x, cell.x[f], unit)},
+                  {"y", relative_places(frame.y, cell.y[f], unit)}};
+    if (!frame.parent.empty()) cloud["parent"] = frame.parent;
+    clouds.push_back(std::move(cloud));
   }
-  json.end_array();
 }
 
 /// Centre [m], diameters [m] and angle [deg], five numbers a landmark.
-void write_maps(const std::vector<ReplayMap>& maps, JsonWriter& json) {
-  json.key("maps").begin_array();
-  for (const ReplayMap& map : maps) {
-    json.begin_object().member("frame", map.frame).key("landmarks").begin_array();
-    for (const Ellipse& e : map.landmarks) {
-      json.value(e.x).value(e.y);
-      for (const double value : {e.major, e.minor, e.angle}) json.value(value, kSizeDigits);
-    }
-    json.end_array().end_object();
+Json json_of(const ReplayMap& map) {
+  Json landmarks = Json::array();
+  for (const Ellipse& e : map.landmarks) {
+    landmarks.push_back(rounded(e.x));
+    landmarks.push_back(rounded(e.y));
+    add_size(e, landmarks);
   }
-  json.end_array();
+  return {{"frame", map.frame}, {"landmarks", std::move(landmarks)}};
 }
 
-void write_path(const std::vector<double>& x, const std::vector<double>& y,
-                const std::vector<double>& h, JsonWriter& json) {
-  write_numbers("x", x, kPlaceDigits, json);
-  write_numbers("y", y, kPlaceDigits, json);
-  write_numbers("h", h, kSizeDigits + 1, json);
+void add_path(const std::vector<double>& x, const std::vector<double>& y,
+              const std::vector<double>& h, Json& json) {
+  json["x"] = rounded(x, kPlaceDigits);
+  json["y"] = rounded(y, kPlaceDigits);
+  json["h"] = rounded(h, kSizeDigits + 1);
 }
 
-void write_cell(const ReplayCell& cell, JsonWriter& json) {
-  json.begin_object().member("label", cell.label).member("failure", cell.failure);
-  json.member("colour", line_colour(cell.style)).member("ancestry", cell.has_ancestry);
-  write_path(cell.x, cell.y, cell.h, json);
-  write_pose_ellipses(cell.pose, json);
-  write_particles(cell, json);
-  write_maps(cell.maps, json);
-  json.end_object();
+Json json_of(const ReplayCell& cell) {
+  Json json = {{"label", cell.label},
+               {"failure", cell.failure},
+               {"colour", line_colour(cell.style)},
+               {"ancestry", cell.has_ancestry}};
+  add_path(cell.x, cell.y, cell.h, json);
+  Json& pose = json["pose"] = Json::array();
+  for (const Ellipse& e : cell.pose) add_size(e, pose);
+  add_particles(cell, json);
+  Json& maps = json["maps"] = Json::array();
+  for (const ReplayMap& map : cell.maps) maps.push_back(json_of(map));
+  return json;
 }
 
 }  // namespace
 
 std::string replay_json(const Replay& replay) {
-  JsonWriter json;
-  json.begin_object().member("run", replay.run);
-  write_numbers("times", replay.times, kPlaceDigits, json);
-  json.key("truth").begin_object();
-  write_path(replay.x, replay.y, replay.h, json);
-  json.end_object();
-  write_points("landmarks", replay.landmarks, json);
-  write_points("fixes", replay.fixes, json);
-  json.key("cells").begin_array();
-  for (const ReplayCell& cell : replay.cells) write_cell(cell, json);
-  return json.end_array().end_object().text();
+  Json json = {{"run", replay.run}, {"times", rounded(replay.times, kPlaceDigits)}};
+  json["truth"] = Json::object();
+  add_path(replay.x, replay.y, replay.h, json["truth"]);
+  json["landmarks"] = json_of(replay.landmarks);
+  json["fixes"] = json_of(replay.fixes);
+  Json& cells = json["cells"] = Json::array();
+  for (const ReplayCell& cell : replay.cells) cells.push_back(json_of(cell));
+  return script_text(json);
 }
 
 namespace {

@@ -18,8 +18,6 @@ std::vector<FilterKind> paper_filters() {
   const Option threshold = number_option("threshold", "0.5", 0, 1, "when to resample");
   const Option weight =
       choice_option("weight", "closed", {"closed", "ratio", "as_printed"}, "which form");
-  Option younger = choice_option("younger", "no", {"no", "yes"}, "of a later version");
-  younger.is_quiet = true;
   const auto kind = [](const char* name, const char* long_name, bool has_particles,
                        std::vector<Option> options) {
     FilterKind made;
@@ -31,7 +29,7 @@ std::vector<FilterKind> paper_filters() {
     return made;
   };
   return {kind("bold", "Bold filter", true, {particles, threshold, weight}),
-          kind("plain", "Plain filter", false, {threshold, younger})};
+          kind("plain", "Plain filter", false, {threshold})};
 }
 
 std::vector<CellSpec> cells_of(const std::vector<FilterKind>& filters,
@@ -96,13 +94,6 @@ TEST(Cells, FillInTheOptionsNotGiven) {
   const CellSpec cell = cells_of(filters, {"bold threshold=0.750"}).at(0);
   EXPECT_EQ(cell_line(cell), "bold label=bold_m100 particles=100 threshold=0.75 weight=closed");
   EXPECT_EQ(cell.distinction, "100 particles");
-}
-
-TEST(Cells, LeaveAYoungerOptionOutOfTheTextWhereItHasItsDefault) {
-  const auto filters = paper_filters();
-  const auto cells = cells_of(filters, {"plain younger=no,yes"});
-  EXPECT_EQ(cell_line(cells[0]), "plain label=plain_younger_no threshold=0.5");
-  EXPECT_EQ(cell_line(cells[1]), "plain label=plain_younger_yes threshold=0.5 younger=yes");
 }
 
 TEST(Cells, RefuseWhatAFilterDoesNotTake) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/text/table.hpp"
+#include "analysis/output/text_table.hpp"
+
+#include "analysis/output/number_text.hpp"
+#include "engine/records/posix_file.hpp"
 
 #include <gtest/gtest.h>
 
-namespace montecarta::experiments {
+namespace montecarta::analysis {
 namespace {
 
 TEST(Table, AlignsColumnsAndLeavesNoTrailingSpace) {
@@ -23,4 +26,4 @@ TEST(Table, WritesSizesAndTimesAsPeopleDo) {
 }
 
 }  // namespace
-}  // namespace montecarta::experiments
+}  // namespace montecarta::analysis
