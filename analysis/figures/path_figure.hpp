@@ -59,7 +59,7 @@ FigureData fix_data(const ResultFile& file, std::size_t run_index);
 /// True landmarks in a run.
 FigureData landmark_data(const ResultFile& file, std::size_t run_index);
 
-/// What is drawn of one cell: files of path_data.hpp, those without rows are left out.
+/// What is drawn of one cell: its files of data, those without rows are left out.
 struct DrawnPath {
   std::string label;
   std::size_t style = 0;  ///< for line_colour()

@@ -23,57 +23,6 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr std::size_t kMostScans = 100, kMostSamples = 2'000'000;
-constexpr std::size_t kFewestRuns = 10;
-
-}  // namespace
-
-CredibilitySamples::CredibilitySamples(std::size_t scans) {
-  const std::size_t every = std::max<std::size_t>(1, (scans + kMostScans - 1) / kMostScans);
-  for (std::size_t s = every - 1; s < scans; s += every) kept_.push_back({s, {}});
-}
-
-void CredibilitySamples::add(std::span<const Eigen::Vector3d> errors,
-                             std::span<const double> nees) {
-  if (samples_ > kMostSamples && kept_.size() > 1) keep_every_second();
-  for (KeptScan& kept : kept_) {
-    const double value = nees[kept.scan];
-    if (!errors[kept.scan].allFinite() || !std::isfinite(value) || !(value > 0.0)) continue;
-    kept.runs.push_back({errors[kept.scan], value});
-    ++samples_;
-  }
-}
-
-void CredibilitySamples::keep_every_second() {
-  samples_ = 0;
-  for (std::size_t k = 0; 2 * k + 1 < kept_.size(); ++k) {
-    kept_[k] = std::move(kept_[2 * k + 1]);
-    samples_ += kept_[k].runs.size();
-  }
-  kept_.resize(kept_.size() / 2);
-}
-
-Credibility CredibilitySamples::result() const {
-  double absolute = 0.0, sum = 0.0, n = 0.0;
-  for (const auto& [scan, runs] : kept_) {
-    if (runs.size() < kFewestRuns) continue;
-    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-    for (const Sample& one : runs) squares += one.error * one.error.transpose();
-    const Eigen::LLT<Eigen::Matrix3d> S(squares / static_cast<double>(runs.size()));
-    if (S.info() != Eigen::Success) continue;
-    for (const Sample& one : runs) {
-      const double right = one.error.dot(S.solve(one.error));
-      const double decibel = 10.0 * std::log10(one.nees / right);
-      absolute += std::abs(decibel);
-      sum += decibel;
-      n += 1.0;
-    }
-  }
-  return {absolute / n, sum / n};
-}
-
-namespace {
-
 constexpr double kFewestRunsOfMoments = 4.0;
 constexpr std::size_t kDraws = 2000;
 
@@ -188,39 +137,32 @@ namespace {
 
 class ErrorAnatomyOverRuns final : public MetricSums {
  public:
-  explicit ErrorAnatomyOverRuns(const RunCriteria& criteria)
-      : credibility_(criteria.times.size()), moments_(criteria.times.size()) {}
+  explicit ErrorAnatomyOverRuns(const RunCriteria& criteria) : moments_(criteria.times.size()) {}
   void add(const MeasuredRun& run) override {
     const RunMetrics& metrics = run.metrics;
     if (metrics.covariances().empty()) return;
     is_empty_ = false;
-    credibility_.add(metrics.errors(), metrics.leading_nees()->value[0]);
     moments_.add(metrics.errors(), metrics.covariances());
   }
   void put(CellAnalysis& cell) override {
     if (is_empty_) return;
-    cell.findings.put(credibility_.result());
     cell.findings.put(moments_.result());
   }
 
  private:
   bool is_empty_ = true;
-  CredibilitySamples credibility_;
   ErrorMoments moments_;
 };
 
 void error_anatomy_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
   const bool known = cell.find<ErrorAnatomy>() != nullptr;
   const ErrorAnatomy& anatomy = cell.get<ErrorAnatomy>();
-  const Credibility& credibility = cell.get<Credibility>();
   all.push_back({"worst_variance_ratio", "1", known ? anatomy.mean_worst_ratio : kNaN});
   for (std::size_t c = 0; c < kErrorComponents.size(); ++c) {
     all.push_back({std::string("worst_direction_") + kErrorComponents[c], "1",
                    known ? anatomy.worst_direction[c] : kNaN});
   }
   all.push_back({"bias_share", "1", known ? anatomy.mean_bias_share : kNaN});
-  all.push_back({"noncredibility", "dB", credibility.noncredibility});
-  all.push_back({"inclination", "dB", credibility.inclination});
 }
 
 void error_anatomy_series(const CellAnalysis& cell, std::vector<NamedSeries>& all) {
@@ -237,8 +179,6 @@ void error_anatomy_series(const CellAnalysis& cell, std::vector<NamedSeries>& al
   all.push_back({"worst_variance_ratio", "1", anatomy->worst_ratio});
 }
 
-std::string decibel(double value) { return std::isnan(value) ? "-" : readable(value) + " dB"; }
-
 /// "heading 97 %".
 std::string direction_text(const ErrorAnatomy& anatomy) {
   const auto& shares = anatomy.worst_direction;
@@ -250,15 +190,12 @@ std::string direction_text(const ErrorAnatomy& anatomy) {
 
 std::vector<std::string> why_row(const CellAnalysis& cell, double level) {
   const ErrorAnatomy& anatomy = *cell.find<ErrorAnatomy>();
-  const Credibility& credibility = cell.get<Credibility>();
   const double share = cell.get<LineageSummary>().monte_carlo_share;
   return {cell.label,
           readable(anatomy.mean_worst_ratio),
           readable(expected_worst_ratio(cell.complete, level)),
           direction_text(anatomy),
           percent(anatomy.mean_bias_share),
-          decibel(credibility.noncredibility),
-          decibel(credibility.inclination),
           std::isfinite(share) ? percent(share) : "-"};
 }
 
@@ -269,8 +206,6 @@ TextTable why_table(const StudyAnalysis& study) {
                     {"expected below"},
                     {"worst direction"},
                     {"bias"},
-                    {"noncredibility"},
-                    {"inclination"},
                     {"Monte Carlo share"}};
   for (const CellAnalysis& cell : study.cells) {
     if (cell.find<ErrorAnatomy>()) table.rows.push_back(why_row(cell, study.level));
@@ -289,10 +224,6 @@ std::vector<std::string> why_notes(const StudyAnalysis& study) {
       "'bias' is the part of ANEES that the mean error makes: what is left is scatter that the "
       "filter does not know of. Bias calls for a better model, scatter for a noise model that "
       "matches.",
-      "Noncredibility is how far, up or down, covariances are from the errors that happened (3 dB: "
-      "a "
-      "factor of 2 in variance); the inclination has a sign: above 0 overconfident, below 0 "
-      "conservative.",
       "'Monte Carlo share' is the part of the squared position error that comes from the particles "
       "being few, by how far their families differ; it needs record.columns with ancestry and "
       "particles."};

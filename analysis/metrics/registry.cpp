@@ -9,7 +9,7 @@
 
 namespace montecarta::analysis {
 
-// Each is defined in a file *_metric.cpp.
+// Each is defined in a file of metrics/.
 Metric errors_metric();
 Metric nees_metric();
 Metric imported_metric();

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The short ones; the player is in replay/replay_section.cpp.
 #include "analysis/page/page.hpp"
 
 #include "analysis/comparison/study_comparison.hpp"

@@ -18,7 +18,7 @@
 namespace montecarta::engine {
 
 /// What a study may ask to be stored (study file: record.columns) besides the columns of the group
-/// `pose` (records/column_table.cpp), which are always stored.
+/// `pose` (records/columns.cpp), which are always stored.
 struct ColumnSelection {
   bool covariance =
       true;  ///< pose_covariance; pose_mean_mixture, pose_covariance_mixture where there is one

@@ -15,7 +15,7 @@
 
 /// The little of HDF5 that montecarta uses, with owned identifiers and exceptions. Every function
 /// throws StudyError naming the object if the file is only read, RunError if it is written. hdf5.h
-/// itself stays in h5.cpp, h5_attributes.cpp and h5_datasets.cpp.
+/// itself stays in h5.cpp.
 namespace montecarta::engine::h5 {
 
 /// Owns an HDF5 identifier of any kind.
