@@ -4,7 +4,7 @@
 #include "engine/errors.hpp"
 #include "filters/dead_reckoning.hpp"
 #include "filters/fastslam/fast_slam_filters.hpp"
-#include "filters/joint/joint_filters.hpp"
+#include "filters/joint/joint_filter.hpp"
 #include "filters/marginal/marginal_filter.hpp"
 #include "filters/relative/relative_ekf_slam.hpp"
 #include "filters/smoothing/smoother.hpp"

@@ -7,9 +7,9 @@
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/output/csv_file.hpp"
 #include "filters/models/ackermann.hpp"
-#include "filters/models/control_of.hpp"
 #include "filters/models/eigen_jacobians.hpp"
 #include "filters/models/range_bearing.hpp"
+#include "filters/models/vehicle.hpp"
 
 #include <Eigen/Cholesky>
 

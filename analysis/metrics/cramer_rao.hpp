@@ -6,7 +6,6 @@
 #include "engine/core/pose.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/threads/parallel.hpp"
-#include "filters/models/control_noise.hpp"
 #include "filters/models/point.hpp"
 #include "filters/models/sensor.hpp"
 #include "filters/models/vehicle.hpp"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "engine/records/result_file.hpp"
-#include "filters/models/control_noise.hpp"
 #include "filters/models/field_of_view.hpp"
 #include "filters/models/sensor.hpp"
 #include "filters/models/vehicle.hpp"

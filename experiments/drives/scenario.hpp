@@ -3,7 +3,6 @@
 
 #include "engine/core/pose.hpp"
 #include "engine/numbers/angle.hpp"
-#include "filters/models/control_noise.hpp"
 #include "filters/models/sensor.hpp"
 #include "filters/models/vehicle.hpp"
 

@@ -4,7 +4,6 @@
 #include "experiments/recordings/drive_log.hpp"
 #include "experiments/study/settings.hpp"
 #include "experiments/study/study.hpp"
-#include "filters/models/control_noise.hpp"
 #include "filters/models/vehicle.hpp"
 #include "filters/models/vehicle_settings.hpp"
 

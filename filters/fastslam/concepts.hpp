@@ -18,8 +18,7 @@ namespace montecarta::filters {
 template <class T, class U>
 concept Is = std::same_as<T, U>;
 
-/// Carries the Gaussian of a pose through motion and observation: `Linearised` and `SigmaPoints` of
-/// moments/moment_transforms.hpp.
+/// Carries the Gaussian of a pose through motion and observation: `Linearised` and `SigmaPoints`.
 template <class T, class Real>
 concept CarriesPoses = requires(const T t, MotionIncrement& motion, PoseGaussian<Real>& pose,
                                 const LandmarkGaussian<Real>& landmark,

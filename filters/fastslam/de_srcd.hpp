@@ -1,10 +1,130 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/fastslam/evolved_proposal.hpp"
 #include "filters/fastslam/fast_slam_filters.hpp"
+#include "filters/fastslam/gaussian_proposal.hpp"
+#include "filters/fastslam/pose_evolution.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
 
 namespace montecarta::filters {
+
+/// What differential evolution is used for in DE-SRCD-FastSLAM (EQUATIONS 10).
+enum class EvolutionMode {
+  unbiased,    ///< each particle seeks its most probable pose, draws about it and pays for the draw
+  as_printed,  ///< the cloud climbs the likelihood and is then refined by the same scan once more
+  prior,       ///< the same with the motion and the map's covariance in the fitness
+  shared,      ///< the cloud seeks the centres, and every particle pays for its draw
+};
+
+inline WeightTime weight_time(EvolutionMode mode) {
+  return mode == EvolutionMode::unbiased || mode == EvolutionMode::shared ? WeightTime::after_draw
+                                                                          : WeightTime::before_draw;
+}
+
+struct EvolvedSettings {
+  EvolutionMode mode = EvolutionMode::unbiased;
+  EvolutionSettings evolution = {.scale = 0.4, .base = EvolutionBase::best};
+  std::size_t population = 10;  ///< of each particle in mode unbiased, at least 7
+  double bounds = 3.0;          ///< of the search, in standard deviations
+  double inflation = 1.0;       ///< of the covariance that is drawn from where the draw is paid for
+};
+
+/// The proposal of SRCD-FastSLAM moved by differential evolution. Where the draw is paid for by the
+/// ratio (6.3) of EQUATIONS, the weights are right whatever centre evolution found, since it knows
+/// nothing but the past and the scan.
+template <class Real>
+class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
+ public:
+  using Cloud = RefinedCloud<Real, SigmaPoints, SigmaPoints>;
+  EvolvedProposal(std::size_t particles, const Belief& belief, const EvolvedSettings& settings,
+                  const SigmaPoints& points)
+      : Cloud(particles, belief, weight_time(settings.mode), points, points),
+        settings_(settings),
+        centres_(blocks_for<Real>(particles)) {
+    if (settings.mode != EvolutionMode::unbiased) return;
+    for (std::size_t i = 0; i < particles; i += kLanesOf<Real>)
+      own_.emplace_back(std::min(particles - i, kLanesOf<Real>), settings.population);
+  }
+
+  /// A pose on its way from the prediction to the draw.
+  struct Refined {
+    PoseGaussian<Real> predicted, posterior;
+    BasicPose<Real> centre;   ///< of the draw
+    Evidence<Real> evidence;  ///< of the scan, before the draw
+    PoseFactor<Real> factor;
+  };
+
+  /// Moves the cloud, in the modes in which it is one population.
+  template <class Associating>
+  void prepare(const StepContext& context, const Associating& association,
+               const Weights<Real>& weights, const std::vector<PoseGaussian<Real>>& predicted) {
+    if (settings_.mode == EvolutionMode::unbiased) return;
+    for (std::size_t b = 0; b < predicted.size(); ++b) centres_[b] = predicted[b].mean;
+    if (association.matches() == 0) return;
+    const auto aim = settings_.mode == EvolutionMode::as_printed
+                         ? CloudEvolution<Real>::Aim::likelihood
+                         : CloudEvolution<Real>::Aim::posterior;
+    cloud_.gather(association, weights, predicted, this->noise());
+    cloud_.evolve(aim, settings_.bounds, settings_.evolution, context.identity(Draw::evolution, 0),
+                  centres_);
+  }
+
+  /// Refines the pose, and in mode unbiased seeks the most probable one about it.
+  template <class Associating, class Innovations>
+  Refined refine(const StepContext& context, std::size_t b, const PoseGaussian<Real>& predicted,
+                 const Associating& association, const Innovations& innovations) {
+    PoseGaussian<Real> posterior = predicted;
+    if (!has_importance_ratio()) posterior.mean = centres_[b];
+    Evidence<Real> evidence;
+    this->update_with_scan(association, b, posterior, innovations, evidence);
+    this->keep(b, posterior);
+    Refined refined{predicted, posterior, posterior.mean, evidence, PoseFactor<Real>(posterior)};
+    if (settings_.mode == EvolutionMode::shared) refined.centre = centres_[b];
+    if (settings_.mode == EvolutionMode::unbiased) {
+      const auto [e0, e1, e2] = own_[b].most_probable(
+          association, b, predicted, posterior, this->noise(), settings_.bounds,
+          settings_.evolution, Cloud::identity(context, Draw::evolution, b));
+      refined.centre = refined.factor.at(e0, e1, e2);
+    }
+    return refined;
+  }
+
+  BasicPose<Real> draw(const StepContext& context, std::size_t b, Refined& refined) const {
+    PoseFactor<Real> about = refined.factor;
+    about.mean = refined.centre;
+    const double spread = has_importance_ratio() ? std::sqrt(settings_.inflation) : 1.0;
+    return draw_from(about, Cloud::identity(context, Draw::pose_proposal, b), Real(spread));
+  }
+
+  /// Updates the landmarks, and returns the log of the weight's factor.
+  template <class Associating, class Innovations>
+  Weighing<Real> update_map(std::size_t b, const BasicPose<Real>& pose,
+                            const Associating& association, const Refined& refined,
+                            const Innovations& /*innovations*/) const {
+    Evidence<Real> drawn;
+    this->update_landmarks(association, b, pose, drawn);
+    const Real faults = refined.evidence.left_out() + refined.factor.L.faults;
+    if (!has_importance_ratio()) return {refined.evidence.log_density(), faults};
+    const PoseGaussian<Real> proposal{refined.centre,
+                                      settings_.inflation * refined.posterior.covariance};
+    const Real ratio =
+        PoseDensity<Real>(refined.predicted)(pose) - PoseDensity<Real>(proposal)(pose);
+    return {drawn.log_density() + ratio, faults};
+  }
+
+ private:
+  bool has_importance_ratio() const {
+    return weight_time(settings_.mode) == WeightTime::after_draw;
+  }
+
+  EvolvedSettings settings_;
+  std::vector<BasicPose<Real>> centres_;  ///< where the cloud moved to
+  std::vector<OwnEvolution<Real>> own_;   ///< of every block, where each particle evolves alone
+  CloudEvolution<Real> cloud_;
+};
 
 /// What evolution was told to be.
 EvolvedSettings evolved_settings(const FilterOptions& options);

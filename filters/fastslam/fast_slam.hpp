@@ -3,7 +3,7 @@
 
 #include "engine/particles/blocks.hpp"
 #include "filters/fastslam/concepts.hpp"
-#include "filters/population/cloud_moments.hpp"
+#include "filters/population/population.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/fastslam/delayed_known_association.hpp"
 #include "filters/fastslam/fast_slam.hpp"
 #include "filters/fastslam/gaussian_proposal.hpp"
 #include "filters/fastslam/known_association.hpp"

@@ -1,9 +1,124 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/fastslam/refined_cloud.hpp"
+#include "filters/fastslam/concepts.hpp"
+#include "filters/moments/gaussians.hpp"
+#include "filters/moments/sigma_points.hpp"
+#include "filters/population/population.hpp"
+
+#include <optional>
+#include <vector>
 
 namespace montecarta::filters {
+
+/// When the weights of a scan are found: by what a particle believed before the draw, or by the
+/// pose that was drawn. In the second case they do not belong to the Gaussians before the draw,
+/// whose mixture is then no estimate (EQUATIONS 19).
+enum class WeightTime { before_draw, after_draw };
+
+/// What filters have in common whose poses are drawn from Gaussians that the scan refined
+/// (EQUATIONS 4): prediction, refinement, maps, and the estimate between scans. The transforms
+/// carry the Gaussians: `PoseTransform` those of the pose, `MapTransform` those of the landmarks.
+template <class Real, CarriesPoses<Real> PoseTransform, KeepsLandmarks<Real> MapTransform>
+class RefinedCloud {
+ public:
+  using Landmark = HeldBy<MapTransform, Real>;
+  RefinedCloud(std::size_t particles, const Belief& belief, WeightTime weighed,
+               const PoseTransform& pose_transform, const MapTransform& map_transform)
+      : belief_(belief),
+        noise_(SensorNoise::of(belief)),
+        pose_transform_(pose_transform),
+        map_transform_(map_transform),
+        weighed_(weighed),
+        posterior_(blocks_for<Real>(particles)) {}
+
+  void start() {
+    motion_.restart();
+    begin_step();
+  }
+  void predict(const StepContext& /*context*/, const Control& control, double duration,
+               std::vector<BasicPose<Real>>& /*poses*/) {
+    pose_transform_.advance(motion_, control, duration, belief_);
+  }
+  PoseGaussian<Real> predicted(std::size_t /*b*/, const BasicPose<Real>& drawn) const {
+    return motion_.from(drawn);
+  }
+
+  /// All poses were drawn: nothing is uncertain within a particle.
+  void end_scan() {
+    motion_.restart();
+    is_drawn_ = true;
+  }
+  void initialise(const FreshLandmark<Real>& fresh, const BasicPose<Real>& pose,
+                  ParticleMaps<Real, Landmark>& maps) const {
+    fresh.put(map_transform_.initialise(pose, observation_of<Real>(fresh.detection), noise_),
+              maps.blocks_of(fresh.slot)[fresh.block]);
+  }
+  void begin_step() {
+    moments_.reset();
+    is_drawn_ = false;
+  }
+  PoseEstimate estimate(const Weights<Real>& weights,
+                        const std::vector<BasicPose<Real>>& poses) const {
+    const bool has_mixture = weighed_ == WeightTime::before_draw;
+    if (is_drawn_) {
+      PoseEstimate estimate{spread_of(weights, poses), std::nullopt};
+      if (has_mixture) estimate.mixture = mixture_of(weights, posterior_);
+      return estimate;
+    }
+    if (!moments_) moments_.emplace(weights, poses);
+    PoseEstimate estimate = moments_->moved_by(motion_);
+    if (!has_mixture) estimate.mixture.reset();
+    return estimate;
+  }
+
+  const SensorNoise& noise() const { return noise_; }
+
+ protected:
+  // Flattened, for out of line their arrays of registers pass through memory.
+
+  /// Updates `pose` with the scan of block b, one detection after the other.
+  template <class Associating, class Innovations>
+  [[gnu::flatten]] void update_with_scan(const Associating& association, std::size_t b,
+                                         PoseGaussian<Real>& pose, const Innovations& innovations,
+                                         Evidence<Real>& evidence) const {
+    for (std::size_t k = 0; k < association.matches(); ++k) {
+      const auto& [landmark, seen, mask] = association.match(b, k);
+      innovations.add(
+          k, pose_transform_.refine(pose, gaussian_of(landmark), seen, noise_, mask, evidence),
+          mask);
+    }
+  }
+  /// Updates the landmarks of block b with the scan, seen from `pose`.
+  template <class Associating, class Weighed>
+  [[gnu::flatten]] void update_landmarks(const Associating& association, std::size_t b,
+                                         const BasicPose<Real>& pose, Weighed& evidence) const {
+    for (std::size_t k = 0; k < association.matches(); ++k) {
+      auto match = association.match(b, k);
+      map_transform_.update(match.landmark, pose, match.seen, noise_, match.mask, evidence);
+      association.store(b, k, match);
+    }
+  }
+  /// What the particles of block b believed of their poses before they were drawn.
+  void keep(std::size_t b, const PoseGaussian<Real>& posterior) { posterior_[b] = posterior; }
+  const PoseTransform& pose_transform() const { return pose_transform_; }
+
+  static StreamIdentity identity(const StepContext& context, Draw purpose, std::size_t b) {
+    return context.identity(purpose, static_cast<std::uint32_t>(b * kLanesOf<Real>));
+  }
+
+ private:
+  Belief belief_;
+  SensorNoise noise_;
+  PoseTransform pose_transform_;
+  MapTransform map_transform_;
+  WeightTime weighed_;
+  MotionIncrement motion_;
+  std::vector<PoseGaussian<Real>> posterior_;  ///< of the last scan, before drawing
+  mutable std::optional<CloudMoments>
+      moments_;  ///< of the poses since the last scan, once asked for
+  bool is_drawn_ = false;
+};
 
 /// The three ways to weigh a particle of FastSLAM II (EQUATIONS 6).
 enum class WeightForm {

@@ -5,8 +5,8 @@
 #include "engine/random/normals.hpp"
 #include "filters/fastslam/concepts.hpp"
 #include "filters/models/ackermann.hpp"
-#include "filters/moments/moment_transforms.hpp"
-#include "filters/population/cloud_moments.hpp"
+#include "filters/moments/sigma_points.hpp"
+#include "filters/population/population.hpp"
 
 #include <vector>
 

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "engine/errors.hpp"
-#include "filters/association/association_counts.hpp"
-#include "filters/association/nearest.hpp"
+#include "filters/association/pairing.hpp"
 #include "filters/fastslam/concepts.hpp"
 #include "filters/fastslam/seen_by.hpp"
 

@@ -2,14 +2,104 @@
 #pragma once
 
 #include "engine/errors.hpp"
-#include "filters/moments/mounted.hpp"
-#include "filters/moments/sigma_sensor.hpp"
+#include "filters/models/sensor.hpp"
+#include "filters/moments/evidence.hpp"
+#include "filters/moments/gaussians.hpp"
+#include "filters/moments/linearised.hpp"
+#include "filters/moments/motion_increment.hpp"
+#include "filters/moments/sensor_sight.hpp"
 
 #include <variant>
 
 /// How the templates of FastSLAM are told their sensor, which is chosen once a filter: the loops
 /// over particles know it when they are compiled.
 namespace montecarta::filters {
+
+/// From the pose of the vehicle to that of its sensor and back, lane by lane (EQUATIONS (2.5)).
+class MountedPose {
+ public:
+  explicit MountedPose(const Mounting& mounting) : mounting_(mounting) {}
+
+  template <class Real>
+  [[gnu::always_inline]] BasicPose<Real> sensor(const BasicPose<Real>& vehicle) const {
+    const BasicPoint<Real> arm = arm_of(vehicle.heading);
+    return {vehicle.x + arm.x, vehicle.y + arm.y, wrap(Real(vehicle.heading + mounting_.turn))};
+  }
+  template <class Real>
+  [[gnu::always_inline]] PoseGaussian<Real> sensor(const PoseGaussian<Real>& vehicle) const {
+    const BasicPoint<Real> arm = arm_of(vehicle.mean.heading);
+    return {sensor(vehicle.mean), sheared(vehicle.covariance, Real(-arm.y), arm.x)};
+  }
+  template <class Real>
+  [[gnu::always_inline]] PoseGaussian<Real> vehicle(const PoseGaussian<Real>& sensor) const {
+    const Real heading = wrap(Real(sensor.mean.heading - mounting_.turn));
+    const BasicPoint<Real> arm = arm_of(heading);
+    return {{sensor.mean.x - arm.x, sensor.mean.y - arm.y, heading},
+            sheared(sensor.covariance, arm.y, Real(-arm.x))};
+  }
+
+ private:
+  template <class Real>
+  [[gnu::always_inline]] BasicPoint<Real> arm_of(const Real& heading) const {
+    const Direction<Real> d = direction_of(heading);
+    return {d.cosine * mounting_.forward - d.sine * mounting_.left,
+            d.sine * mounting_.forward + d.cosine * mounting_.left};
+  }
+
+  Mounting mounting_;
+};
+
+/// `Transform` of a sensor that is mounted on the vehicle: a pose is refined as that of the sensor.
+template <class Transform>
+class Mounted {
+ public:
+  static constexpr bool kRefinesInBatch = Transform::kRefinesInBatch;
+  Mounted(const Mounting& mounting, const Transform& transform)
+      : mounting_(mounting), transform_(transform) {}
+
+  void advance(MotionIncrement& motion, const Control& control, double duration,
+               const Belief& belief) const {
+    transform_.advance(motion, control, duration, belief);
+  }
+  template <class Real, class Mask>
+  [[gnu::always_inline]] Innovation<Real> refine(PoseGaussian<Real>& pose,
+                                                 const LandmarkGaussian<Real>& landmark,
+                                                 const RangeBearing<Real>& seen,
+                                                 const SensorNoise& noise, const Mask& matched,
+                                                 Evidence<Real>& evidence) const {
+    PoseGaussian<Real> sensor = mounting_.sensor(pose);
+    Innovation<Real> v = transform_.refine(sensor, landmark, seen, noise, matched, evidence);
+    pose = mounting_.vehicle(sensor);
+    return v;
+  }
+  template <class Real, class Mask>
+  void refine_in_batch(PoseGaussian<Real>& pose, const BasicPose<Real>& predicted,
+                       const LandmarkGaussian<Real>& landmark, const RangeBearing<Real>& seen,
+                       const SensorNoise& noise, const Mask& matched,
+                       Evidence<Real>& evidence) const {
+    PoseGaussian<Real> sensor = mounting_.sensor(pose);
+    transform_.refine_in_batch(sensor, mounting_.sensor(predicted), landmark, seen, noise, matched,
+                               evidence);
+    pose = mounting_.vehicle(sensor);
+  }
+  template <class Real, class Mask, class Weighed>
+  [[gnu::always_inline]] Innovation<Real> update(LandmarkGaussian<Real>& landmark,
+                                                 const BasicPose<Real>& pose,
+                                                 const RangeBearing<Real>& seen,
+                                                 const SensorNoise& noise, const Mask& matched,
+                                                 Weighed& evidence) const {
+    return transform_.update(landmark, mounting_.sensor(pose), seen, noise, matched, evidence);
+  }
+  template <class Real>
+  LandmarkGaussian<Real> initialise(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
+                                    const SensorNoise& noise) const {
+    return transform_.initialise(mounting_.sensor(pose), seen, noise);
+  }
+
+ private:
+  MountedPose mounting_;
+  Transform transform_;
+};
 
 /// Range and bearing from the pose of the vehicle.
 struct AtPose {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/joint/joint_belief.hpp"
 
-#include "filters/association/joint_report.hpp"
+#include "filters/association/map_association.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,47 @@ namespace {
 /// Landmarks that are reserved before any is seen; identities may be sparse.
 constexpr std::size_t kRoomAtFirst = 300;
 
+bool stands_still(const MotionIncrement& motion) {
+  const Pose& pose = motion.pose();
+  return pose.x == 0.0 && pose.y == 0.0 && pose.heading == 0.0 &&
+         symmetric(motion.covariance()).isZero(0.0);
+}
+
 }  // namespace
+
+void LinearisationPoints::start(const Pose& start) {
+  pose_ = start;
+  landmarks_.clear();
+}
+
+Eigen::Vector2d LinearisationPoints::behind(const Pose& place) const {
+  return place_of(place) - place_of(pose_);
+}
+
+Eigen::Vector2d LinearisationPoints::shift_to(const CompressedGaussian& gaussian) const {
+  Eigen::Vector2d sum = behind(gaussian.pose().mean);
+  for (std::size_t slot = 0; slot < landmarks_.size(); ++slot) {
+    sum += gaussian.mean_of(slot) - landmarks_[slot];
+  }
+  return sum / static_cast<double>(1 + landmarks_.size());
+}
+
+void LinearisationPoints::shift(const Eigen::Vector2d& way) {
+  pose_.x += way(0);
+  pose_.y += way(1);
+  for (Eigen::Vector2d& landmark : landmarks_) landmark += way;
+}
+
+void LinearisationPoints::move(const LinearisedMotion& motion) {
+  const Eigen::Vector2d way = -quarter_turned(motion.by_heading);
+  pose_ = {pose_.x + way(0), pose_.y + way(1), motion.mean.heading};
+}
+
+Eigen::Vector2d turned(const ExpectedObservation& expected, const Eigen::Vector2d& place,
+                       const Eigen::Vector2d& landmark) {
+  return expected.pose_jacobian.leftCols<2>() * quarter_turned(place) +
+         expected.pose_jacobian.col(2) + expected.landmark_jacobian * quarter_turned(landmark);
+}
 
 JointBelief::JointBelief(const FilterSetup& setup, Retraction retraction, int iterations,
                          Moments moments, Linearisation linearisation)
@@ -195,6 +235,44 @@ void JointBelief::update_with(std::size_t k, const Detection& detection) {
   const double distance = L.whiten(expected.innovation(detected)).squaredNorm();
   outcome_.log_likelihood +=
       log_normal_density(distance, L, static_cast<double>(components_of(sensor_).size()));
+}
+
+// Where it linearises, and what its linearised system tells of what none can observe.
+
+Eigen::Vector2d JointBelief::shift_of_points() const {
+  if (linearisation_ != Linearisation::constrained) return Eigen::Vector2d::Zero();
+  return points_.shift_to(gaussian_);
+}
+
+/// A vehicle that has not moved keeps its point, and nothing is linearised.
+LinearisedMotion JointBelief::linearised(const MotionIncrement& motion) const {
+  if (regresses()) return gaussian_.regressed(motion);
+  LinearisedMotion linearised = gaussian_.linearised(motion);
+  if (!has_own_points() || stands_still(motion)) return linearised;
+  linearised.by_heading +=
+      quarter_turned(points_.behind(gaussian_.pose().mean) - shift_of_points());
+  return linearised;
+}
+
+void JointBelief::move(const MotionIncrement& motion) {
+  const LinearisedMotion how = linearised(motion);
+  if (linearisation_ == Linearisation::constrained && !stands_still(motion))
+    points_.shift(shift_of_points());
+  gaussian_.move(how);
+  points_.move(how);
+}
+
+std::optional<ObservationPoint> JointBelief::observation_point(std::size_t slot) const {
+  if (!has_own_points()) return std::nullopt;
+  return ObservationPoint{points_.pose(), points_.landmark(slot)};
+}
+
+/// The invariant error's turn is about the estimate, to which it is carried after every detection;
+/// of errors relative to the vehicle a turn of the whole turns the frame of the map alone.
+ObservationPoint JointBelief::rotation_point(std::size_t slot) const {
+  if (retraction_ == Retraction::invariant || is_robocentric() || !fixes_landmark(sensor_))
+    return {gaussian_.pose().mean, gaussian_.mean_of(slot)};
+  return {points_.pose(), points_.landmark(slot)};
 }
 
 }  // namespace montecarta::filters

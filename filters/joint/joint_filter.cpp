@@ -1,66 +1,199 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/joint/joint_filter.hpp"
 
+#include "engine/core/slam_filter.hpp"
+#include "filters/joint/joint_belief.hpp"
+#include "filters/moments/control_motion.hpp"
+#include "filters/population/population.hpp"
+#include "filters/setup/filter_options.hpp"
+
 #include <cmath>
 #include <stdexcept>
 
 namespace montecarta::filters {
+namespace {
 
-JointFilter::JointFilter(const FilterSetup& setup, const JointFilterSettings& settings)
-    : belief_(setup.belief),
-      motion_form_(settings.motion),
-      joint_(setup, settings.retraction, settings.iterations, settings.moments,
-             settings.linearisation) {}
+/// In which respects the filters of one joint Gaussian differ.
+struct JointFilterSettings {
+  Retraction retraction = Retraction::additive;
+  int iterations = 0;  ///< of the linearisation, after the first
+  Motion motion = Motion::linearised;
+  Moments moments = Moments::map;  ///< of what it reports
+  Linearisation linearisation = Linearisation::estimate;
+};
 
-void JointFilter::start(const Pose& start) {
-  motion_.restart();
-  joint_.start(start);
-  is_at_scan_ = false;
-  report_ = {};
-}
+/// A filter of one Gaussian over the pose and the map: EKF-SLAM and its kind (EQUATIONS 15).
+class JointFilter final : public SlamFilter {
+ public:
+  JointFilter(const FilterSetup& setup, const JointFilterSettings& settings)
+      : belief_(setup.belief),
+        motion_form_(settings.motion),
+        joint_(setup, settings.retraction, settings.iterations, settings.moments,
+               settings.linearisation) {}
 
-void JointFilter::predict(const StepContext& /*context*/, const Control& control, double duration) {
-  is_at_scan_ = false;
-  advance(motion_, control, duration, belief_, motion_form_);
-}
-
-void JointFilter::update(const StepContext& /*context*/, Scan scan) {
-  joint_.update_with(motion_, scan);
-  motion_.restart();
-  report_update(scan);
-  is_at_scan_ = true;
-  pose_at_scan_ = joint_.pose_after(motion_);
-  joint_.initialise_landmarks(scan);
-  report_.map_size = static_cast<double>(joint_.landmarks());
-}
-
-void JointFilter::report_update(Scan scan) {
-  const auto& [log_likelihood, faults] = joint_.outcome();
-  if (!std::isfinite(log_likelihood))
-    throw std::runtime_error("the log-likelihood of the scan is not finite");
-  report_ = {.log_likelihood = log_likelihood,
-             .numerical_faults = faults,
-             .association = joint_.association().counts(),
-             .rotation_information = joint_.rotation_information()};
-  innovations_.start(1, scan.size(), 0.0);
-  const auto innovations = innovations_.of_block(0, 1.0);
-  for (const auto& [k, v, S] : joint_.used_detections()) {
-    innovations.add(k, {{v(0), v(1)}, {S(0, 0), S(1, 0), S(1, 1)}}, Everywhere());
-    innovations_.matched_weight(k) = 1.0;
+  void start(const Pose& start) override {
+    motion_.restart();
+    joint_.start(start);
+    is_at_scan_ = false;
+    report_ = {};
   }
-  innovations_.add_to(report_, components_of(belief_.sensor).size());
+
+  void predict(const StepContext& /*context*/, const Control& control, double duration) override {
+    is_at_scan_ = false;
+    advance(motion_, control, duration, belief_, motion_form_);
+  }
+
+  /// Throws std::runtime_error if the likelihood of the scan is not finite.
+  void update(const StepContext& /*context*/, Scan scan) override {
+    joint_.update_with(motion_, scan);
+    motion_.restart();
+    report_update(scan);
+    is_at_scan_ = true;
+    pose_at_scan_ = joint_.pose_after(motion_);
+    joint_.initialise_landmarks(scan);
+    report_.map_size = static_cast<double>(joint_.landmarks());
+  }
+
+  PoseEstimate estimate() const override {
+    return {is_at_scan_ ? pose_at_scan_ : joint_.pose_after(motion_), std::nullopt};
+  }
+  const ScanReport& report() const override { return report_; }
+  void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override {
+    for (std::size_t k = 0; k < landmarks.size(); ++k) landmarks[k] = joint_.landmark(k);
+  }
+  std::optional<JointEstimate> joint(std::size_t landmarks) const override {
+    return joint_.joint(landmarks);
+  }
+
+ private:
+  void report_update(Scan scan) {
+    const auto& [log_likelihood, faults] = joint_.outcome();
+    if (!std::isfinite(log_likelihood))
+      throw std::runtime_error("the log-likelihood of the scan is not finite");
+    report_ = {.log_likelihood = log_likelihood,
+               .numerical_faults = faults,
+               .association = joint_.association().counts(),
+               .rotation_information = joint_.rotation_information()};
+    innovations_.start(1, scan.size(), 0.0);
+    const auto innovations = innovations_.of_block(0, 1.0);
+    for (const auto& [k, v, S] : joint_.used_detections()) {
+      innovations.add(k, {{v(0), v(1)}, {S(0, 0), S(1, 0), S(1, 1)}}, Everywhere());
+      innovations_.matched_weight(k) = 1.0;
+    }
+    innovations_.add_to(report_, components_of(belief_.sensor).size());
+  }
+
+  Belief belief_;
+  Motion motion_form_;
+  JointBelief joint_;
+  MotionIncrement motion_;  ///< since the last scan
+  bool is_at_scan_ = false;
+  PoseMoments pose_at_scan_;  ///< before new landmarks were initialised
+  ScanReport report_;
+  MixtureInnovations<double> innovations_;  ///< of a mixture of one
+};
+
+Option iterations_option() {
+  return count_option("iterations", "0", 0, 100,
+                      "times a detection is linearised again where it has moved the estimate to");
 }
 
-PoseEstimate JointFilter::estimate() const {
-  return {is_at_scan_ ? pose_at_scan_ : joint_.pose_after(motion_), std::nullopt};
+int iterations(const FilterOptions& options) {
+  return static_cast<int>(options.integer("iterations"));
 }
 
-void JointFilter::map(std::span<std::optional<LandmarkEstimate>> landmarks) const {
-  for (std::size_t k = 0; k < landmarks.size(); ++k) landmarks[k] = joint_.landmark(k);
+std::unique_ptr<SlamFilter> one_gaussian(const FilterSetup& setup, Retraction retraction) {
+  return std::make_unique<JointFilter>(setup,
+                                       JointFilterSettings{.retraction = retraction,
+                                                           .iterations = iterations(setup.options),
+                                                           .motion = motion_of(setup.options),
+                                                           .moments = moments_of(setup.options)});
 }
 
-std::optional<JointEstimate> JointFilter::joint(std::size_t landmarks) const {
-  return joint_.joint(landmarks);
+/// EKF-SLAM that linearises elsewhere than at the estimate.
+template <Linearisation kLinearisation>
+std::unique_ptr<SlamFilter> linearised_elsewhere(const FilterSetup& setup) {
+  return std::make_unique<JointFilter>(setup,
+                                       JointFilterSettings{.motion = motion_of(setup.options),
+                                                           .moments = moments_of(setup.options),
+                                                           .linearisation = kLinearisation});
+}
+
+std::unique_ptr<SlamFilter> make_robocentric(const FilterSetup& setup) {
+  return std::make_unique<JointFilter>(
+      setup, JointFilterSettings{.motion = motion_of(setup.options),
+                                 .linearisation = Linearisation::relative});
+}
+
+FilterKind joint_kind(const char* name, const char* long_name, const char* source,
+                      std::vector<Option> options,
+                      std::unique_ptr<SlamFilter> make(const FilterSetup&)) {
+  return {.name = name,
+          .long_name = long_name,
+          .source = source,
+          .has_particles = false,
+          .has_joint = true,
+          .tells_rotation_information = true,
+          .options = std::move(options),
+          .sensors = {RangeBearingSensor::kName, PositionSensor::kName},
+          .make = make};
+}
+
+/// Of all sensors.
+FilterKind one_gaussian_kind(const char* name, const char* long_name, const char* source,
+                             std::unique_ptr<SlamFilter> make(const FilterSetup&)) {
+  FilterKind kind =
+      joint_kind(name, long_name, source,
+                 {iterations_option(), linearised_motion_option(), moments_option("map")}, make);
+  kind.sensors.clear();
+  kind.delays_initialisation = true;
+  return kind;
+}
+
+}  // namespace
+
+std::unique_ptr<SlamFilter> make_ekf_slam(const FilterSetup& setup) {
+  return one_gaussian(setup, Retraction::additive);
+}
+
+std::unique_ptr<SlamFilter> make_riekf_slam(const FilterSetup& setup) {
+  return one_gaussian(setup, Retraction::invariant);
+}
+
+FilterKind ekf_slam_kind() {
+  return one_gaussian_kind("ekf_slam", "EKF-SLAM", "Smith, Self, Cheeseman 1990; EQUATIONS 15",
+                           make_ekf_slam);
+}
+
+FilterKind riekf_slam_kind() {
+  return one_gaussian_kind("riekf_slam", "right-invariant EKF-SLAM", "Barrau, Bonnabel 2015",
+                           make_riekf_slam);
+}
+
+FilterKind fej_ekf_slam_kind() {
+  return joint_kind("fej_ekf_slam", "first-estimates Jacobian EKF-SLAM",
+                    "Huang, Mourikis, Roumeliotis 2008",
+                    {linearised_motion_option(), moments_option("map")},
+                    linearised_elsewhere<Linearisation::first>);
+}
+
+FilterKind oc_ekf_slam_kind() {
+  return joint_kind("oc_ekf_slam", "observability-constrained EKF-SLAM",
+                    "Huang, Mourikis, Roumeliotis 2010",
+                    {linearised_motion_option(), moments_option("map")},
+                    linearised_elsewhere<Linearisation::constrained>);
+}
+
+FilterKind ukf_slam_kind() {
+  return joint_kind("ukf_slam", "unscented Kalman filter SLAM", "Huang, Mourikis, Roumeliotis 2009",
+                    {fitting_motion_option(), moments_option("map")},
+                    linearised_elsewhere<Linearisation::regression>);
+}
+
+FilterKind robocentric_ekf_slam_kind() {
+  return joint_kind("robocentric_ekf_slam", "robocentric EKF-SLAM",
+                    "Castellanos, Martinez-Cantin, Tardos, Neira 2007",
+                    {linearised_motion_option()}, make_robocentric);
 }
 
 }  // namespace montecarta::filters

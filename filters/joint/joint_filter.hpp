@@ -2,46 +2,29 @@
 #pragma once
 
 #include "engine/core/slam_filter.hpp"
-#include "filters/joint/joint_belief.hpp"
-#include "filters/moments/control_motion.hpp"
-#include "filters/population/innovation_sums.hpp"
+#include "filters/setup/filter_setup.hpp"
+
+#include <memory>
 
 namespace montecarta::filters {
 
-/// In which respects the filters of one joint Gaussian differ.
-struct JointFilterSettings {
-  Retraction retraction = Retraction::additive;
-  int iterations = 0;  ///< of the linearisation, after the first
-  Motion motion = Motion::linearised;
-  Moments moments = Moments::map;  ///< of what it reports
-  Linearisation linearisation = Linearisation::estimate;
-};
+/// EKF-SLAM: one Gaussian over the pose and all landmarks (EQUATIONS 15), detections
+/// used one by one in the order of the scan.
+std::unique_ptr<SlamFilter> make_ekf_slam(const FilterSetup& setup);
 
-/// A filter of one Gaussian over the pose and the map: EKF-SLAM and its kind (EQUATIONS 15).
-class JointFilter final : public SlamFilter {
- public:
-  JointFilter(const FilterSetup& setup, const JointFilterSettings& settings);
+/// The same with the error of Barrau, which pose and map share as one rigid motion: what nobody
+/// can observe, where the map lies in the world, no detection is taken to tell.
+std::unique_ptr<SlamFilter> make_riekf_slam(const FilterSetup& setup);
 
-  void start(const Pose& start) override;
-  void predict(const StepContext& context, const Control& control, double duration) override;
-  /// Throws std::runtime_error if the likelihood of the scan is not finite.
-  void update(const StepContext& context, Scan scan) override;
-  PoseEstimate estimate() const override;
-  const ScanReport& report() const override { return report_; }
-  void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override;
-  std::optional<JointEstimate> joint(std::size_t landmarks) const override;
-
- private:
-  void report_update(Scan scan);
-
-  Belief belief_;
-  Motion motion_form_;
-  JointBelief joint_;
-  MotionIncrement motion_;  ///< since the last scan
-  bool is_at_scan_ = false;
-  PoseMoments pose_at_scan_;  ///< before new landmarks were initialised
-  ScanReport report_;
-  MixtureInnovations<double> innovations_;  ///< of a mixture of one
-};
+/// Their lines in the table of filters.
+FilterKind ekf_slam_kind();
+FilterKind riekf_slam_kind();
+/// EKF-SLAM whose linearised system has the right unobservable directions (EQUATIONS 15).
+FilterKind fej_ekf_slam_kind();
+FilterKind oc_ekf_slam_kind();
+/// EKF-SLAM in the frame of the vehicle.
+FilterKind robocentric_ekf_slam_kind();
+/// EKF-SLAM by sigma points instead of derivatives.
+FilterKind ukf_slam_kind();
 
 }  // namespace montecarta::filters

@@ -4,24 +4,270 @@
 #include "engine/core/step_context.hpp"
 #include "engine/particles/blocks.hpp"
 #include "engine/particles/weights.hpp"
-#include "filters/marginal/direct_sums.hpp"
-#include "filters/marginal/ifgt_sums.hpp"
+#include "filters/marginal/gauss_transform.hpp"
 #include "filters/marginal/marginal_options.hpp"
-#include "filters/marginal/pose_kernels.hpp"
-#include "filters/population/cloud_moments.hpp"
+#include "filters/moments/gaussians.hpp"
+#include "filters/population/population.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
 namespace montecarta::filters {
 
+/// One Gaussian of a mixture over poses, ready to be evaluated anywhere: its mean, and the factor W
+/// with W' W = C^-1 / 2, so that N(s; m, C) is proportional to exp(-|W (s - m)|^2). Every kernel
+/// has a factor of its own: C turns with the heading.
+template <std::size_t N>
+struct PoseKernel {
+  double x, y, heading;           ///< mean; heading relative to the mixture's reference
+  double xx, yx, yy, hx, hy, hh;  ///< W, lower triangular
+  std::array<double, N> height;   ///< weights times the peak of the density, of the N sums
+};
+
+/// N mixtures with common kernels and weights of their own: Sum_j weights_n[j] N(s; m_j, C_j). The
+/// sums share the exponential, which is what they cost.
+template <std::size_t N>
+class PoseKernels {
+ public:
+  /// Kernels from the first `weights[0].size()` particles' Gaussians, which must be positive
+  /// definite. Throws where one has no density.
+  template <class Real>
+  void assign(std::span<const PoseGaussian<Real>> gaussians,
+              const std::array<std::span<const double>, N>& weights) {
+    const std::size_t size = weights[0].size();
+    kernels_.resize(size);
+    log_peaks_.resize(size);
+    reference_ = get(gaussians[0].mean.heading, 0);
+    half_range_ = 0.0;
+    for (std::size_t b = 0; b < gaussians.size(); ++b) factor(gaussians[b], b, size);
+    log_peak_ = *std::max_element(log_peaks_.begin(), log_peaks_.end());
+    for (std::size_t j = 0; j < size; ++j) {
+      const double peak = std::exp(log_peaks_[j] - log_peak_);
+      for (std::size_t n = 0; n < N; ++n) kernels_[j].height[n] = weights[n][j] * peak;
+    }
+  }
+
+  std::span<const PoseKernel<N>> kernels() const { return kernels_; }
+  /// log of what a height of one stands for.
+  double log_peak() const { return log_peak_; }
+  /// Headings are kept relative to this one [rad].
+  double reference() const { return reference_; }
+  /// No kernel's heading is farther from the reference [rad].
+  double half_range() const { return half_range_; }
+
+ private:
+  static constexpr double kLogTwoPi = 1.8378770664093454836;
+
+  template <class Real>
+  void factor(const PoseGaussian<Real>& gaussian, std::size_t b, std::size_t size) {
+    const Cholesky3<Real> L(gaussian.covariance);
+    const Real half(std::sqrt(0.5));
+    const Real xx = half / L.xx, yy = half / L.yy, hh = half / L.hh;
+    const Real yx = -(L.yx * xx) / L.yy;
+    const Real hy = -(L.hy * yy) / L.hh, hx = -(L.hx * xx + L.hy * yx) / L.hh;
+    const Real log_peak = -log(L.xx * L.yy * L.hh) - Real(1.5 * kLogTwoPi);
+    const Real heading = wrap(gaussian.mean.heading - Real(reference_));
+    constexpr std::size_t lanes = kLanesOf<Real>;
+    for (std::size_t l = 0; l < lanes && b * lanes + l < size; ++l) {
+      PoseKernel<N>& kernel = kernels_[b * lanes + l];
+      kernel = {.x = get(gaussian.mean.x, l),
+                .y = get(gaussian.mean.y, l),
+                .heading = get(heading, l),
+                .xx = get(xx, l),
+                .yx = get(yx, l),
+                .yy = get(yy, l),
+                .hx = get(hx, l),
+                .hy = get(hy, l),
+                .hh = get(hh, l),
+                .height = {}};
+      log_peaks_[b * lanes + l] = get(log_peak, l);
+      if (!std::isfinite(get(log_peak, l)))
+        throw std::runtime_error("a kernel of the mixture has no density");
+      half_range_ = std::max(half_range_, std::abs(kernel.heading));
+    }
+  }
+
+  std::vector<PoseKernel<N>> kernels_;
+  std::vector<double> log_peaks_;  ///< scratch
+  double log_peak_ = 0.0;
+  double reference_ = 0.0;
+  double half_range_ = 0.0;
+};
+
+/// Whether headings are so near each other that their differences cannot wrap.
+enum class Headings { near, anywhere };
+
+/// |W (s - m)|^2 for one kernel; the target's heading is relative to the kernels' reference.
+template <Headings headings, class Real, std::size_t N>
+[[gnu::always_inline]] inline Real half_squared_distance(const BasicPose<Real>& target,
+                                                         const PoseKernel<N>& kernel) {
+  const Real dx = target.x - Real(kernel.x), dy = target.y - Real(kernel.y);
+  Real dh = target.heading - Real(kernel.heading);
+  if constexpr (headings == Headings::anywhere) dh = wrap(dh);
+  const Real a = Real(kernel.xx) * dx;
+  const Real b = fma(Real(kernel.yx), dx, Real(kernel.yy) * dy);
+  const Real c = fma(Real(kernel.hx), dx, fma(Real(kernel.hy), dy, Real(kernel.hh) * dh));
+  return fma(a, a, fma(b, b, c * c));
+}
+
+/// Adds to each sum what `kernels` contribute at the target, in units of the peak.
+template <Headings headings, class Real, std::size_t N>
+void add_kernels(const BasicPose<Real>& target, std::span<const PoseKernel<N>> kernels,
+                 std::array<Real, N>& sums) {
+  std::array<Real, N> total = sums;
+  for (const PoseKernel<N>& kernel : kernels) {
+    const Real density = exp(-half_squared_distance<headings>(target, kernel));
+    for (std::size_t n = 0; n < N; ++n) total[n] = fma(Real(kernel.height[n]), density, total[n]);
+  }
+  sums = total;
+}
+
+/// Logs of the sums where they are too small for linear numbers: each with a peak of its own taken
+/// out.
+template <class Real, std::size_t N>
+std::array<Real, N> log_sums_of_far_kernels(const BasicPose<Real>& target,
+                                            std::span<const PoseKernel<N>> kernels) {
+  std::array<Real, N> logs;
+  for (std::size_t n = 0; n < N; ++n) {
+    const auto exponent = [&](const PoseKernel<N>& kernel) {
+      return Real(std::log(kernel.height[n])) -
+             half_squared_distance<Headings::anywhere>(target, kernel);
+    };
+    Real peak(-std::numeric_limits<double>::max()), sum(0.0);
+    for (const auto& kernel : kernels) peak = max(peak, exponent(kernel));
+    for (const auto& kernel : kernels) sum += exp(exponent(kernel) - peak);
+    logs[n] = peak + log(sum);
+  }
+  return logs;
+}
+
+/// Logs of linear sums; where one is so small that terms were lost, they are summed again.
+template <class Real, std::size_t N>
+std::array<Real, N> logs_of(const std::array<Real, N>& sums, const BasicPose<Real>& target,
+                            const PoseKernels<N>& mixture) {
+  constexpr double kLeast = 1e-280;
+  std::array<Real, N> logs;
+  bool is_far = false;
+  for (std::size_t n = 0; n < N; ++n) {
+    logs[n] = log(max(sums[n], Real(kLeast)));
+    is_far = is_far || any(sums[n] < Real(kLeast));
+  }
+  if (is_far) {
+    const auto far = log_sums_of_far_kernels(target, mixture.kernels());
+    for (std::size_t n = 0; n < N; ++n) logs[n] = select(sums[n] < Real(kLeast), far[n], logs[n]);
+  }
+  for (Real& value : logs) value += Real(mixture.log_peak());
+  return logs;
+}
+
+/// The target in the kernels' terms.
+template <class Real, std::size_t N>
+BasicPose<Real> relative_to(const PoseKernels<N>& mixture, const BasicPose<Real>& target) {
+  return {target.x, target.y, wrap(Real(target.heading - Real(mixture.reference())))};
+}
+
+/// Calls with Headings::near where neither kernels nor targets can wrap, else Headings::anywhere.
+template <class Real, std::size_t N, class Call>
+auto by_headings(const PoseKernels<N>& mixture, const BasicPose<Real>& relative, const Call& call) {
+  const Real& h = relative.heading;
+  const Real farthest = max(h, Real(-h));
+  if (any(farthest + Real(mixture.half_range()) >= Real(kPi)))
+    return call.template operator()<Headings::anywhere>();
+  return call.template operator()<Headings::near>();
+}
+
+/// log Sum_j weights_n[j] N(target; m_j, C_j) for every n, kernel by kernel in index order.
+template <class Real, std::size_t N>
+std::array<Real, N> direct_log_sums(const BasicPose<Real>& target, const PoseKernels<N>& mixture) {
+  const BasicPose<Real> relative = relative_to(mixture, target);
+  std::array<Real, N> sums;
+  sums.fill(Real(0.0));
+  by_headings(mixture, relative, [&]<Headings headings>() {
+    add_kernels<headings>(relative, mixture.kernels(), sums);
+  });
+  return logs_of(sums, relative, mixture);
+}
+
+/// Mixtures summed by the improved fast Gauss transform (Havangi, appendix; EQUATIONS 13). It takes
+/// one covariance for all kernels, that of the kernel at the mean heading: exact only if all
+/// headings agree. Where a sum is not far above the error it is summed directly.
+template <std::size_t N>
+class IfgtSums {
+ public:
+  /// `first` is the first particle's kernel, of which all others are turned copies. False where a
+  /// transform does not pay.
+  [[nodiscard]] bool build(const PoseKernels<N>& mixture, const PoseGaussian<double>& first,
+                           double tolerance) {
+    if (mixture.half_range() >= 0.5 * kPi) return false;
+    const auto kernels = mixture.kernels();
+    common_ = common_kernel(mixture, first);
+    sites_.clear(), charges_.clear();
+    least_.fill(0.0);
+    for (const PoseKernel<N>& kernel : kernels) {
+      sites_.push_back(whitened(BasicPose<double>{kernel.x, kernel.y, kernel.heading}));
+      charges_.push_back(kernel.height);
+      for (std::size_t n = 0; n < N; ++n) least_[n] += 1e3 * tolerance * kernel.height[n];
+    }
+    return transform_.build(sites_, charges_, tolerance);
+  }
+
+  template <class Real>
+  std::array<Real, N> log_sums(const BasicPose<Real>& target, const PoseKernels<N>& mixture,
+                               std::vector<Real>& scratch) const {
+    const BasicPose<Real> relative = relative_to(mixture, target);
+    std::array<Real, N> sums = transform_(whitened(relative), scratch);
+    auto is_safe = sums[0] >= Real(least_[0]);
+    for (std::size_t n = 1; n < N; ++n) is_safe = is_safe && sums[n] >= Real(least_[n]);
+    std::array<Real, N> logs;
+    for (std::size_t n = 0; n < N; ++n)
+      logs[n] = log(select(is_safe, sums[n], Real(1.0))) + Real(mixture.log_peak());
+    if (!any(!is_safe)) return logs;
+    const auto direct = direct_log_sums(target, mixture);
+    for (std::size_t n = 0; n < N; ++n) logs[n] = select(is_safe, logs[n], direct[n]);
+    return logs;
+  }
+
+ private:
+  static PoseKernel<1> common_kernel(const PoseKernels<N>& mixture,
+                                     const PoseGaussian<double>& first) {
+    double turn = 0.0, total = 0.0;
+    for (const PoseKernel<N>& kernel : mixture.kernels()) {
+      turn += kernel.height[0] * (kernel.heading - mixture.kernels()[0].heading);
+      total += kernel.height[0];
+    }
+    PoseGaussian<double> mean = first;
+    mean.covariance = turned(first.covariance, direction_of(turn / total));
+    const double one = 1.0;
+    PoseKernels<1> common;
+    common.assign(std::span<const PoseGaussian<double>>(&mean, 1), {std::span(&one, 1)});
+    return common.kernels()[0];
+  }
+
+  /// W (pose - the common kernel's place), headings relative to the mixture's reference.
+  template <class Real>
+  std::array<Real, 3> whitened(const BasicPose<Real>& pose) const {
+    const Real dx = pose.x - Real(common_.x), dy = pose.y - Real(common_.y);
+    const Real& h = pose.heading;
+    return {Real(common_.xx) * dx, Real(common_.yx) * dx + Real(common_.yy) * dy,
+            Real(common_.hx) * dx + Real(common_.hy) * dy + Real(common_.hh) * h};
+  }
+
+  PoseKernel<1> common_{};
+  std::vector<std::array<double, 3>> sites_;
+  std::vector<std::array<double, N>> charges_;
+  std::array<double, N> least_{};  ///< sums below this are not to be trusted
+  GaussTransform<3, N> transform_;
+};
+
 /// log Sum_j weights_n[j] N(target; gaussian_j) for blocks of targets and every n (EQUATIONS 13),
 /// by the method asked for. The transform is there because the paper has it: direct sums are
 /// faster, and its error is of the wrong kind for weights
-/// (tests/filters/marginal/kernel_sums_benchmark.cpp).
+/// (tests/filters/marginal/marginal_benchmark.cpp).
 template <class Real, std::size_t N>
 class KernelSummation {
  public:

@@ -1,13 +1,85 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/marginal/marginal_filter.hpp"
 
+#include "filters/marginal/marginal_options.hpp"
+#include "filters/setup/filter_options.hpp"
+
+#include <string>
+
 namespace montecarta::filters {
+namespace {
+
+using Names = std::vector<std::string>;
+
+// In the order of the enumerators.
+const Names kKernels{"prior", "posterior"};
+const Names kModes{"onestep_converged", "onestep_threshold", "recursive"};
+const Names kSolvers{"gauss_newton", "de"};
+const Names kObjectives{"likelihood", "squares", "squares_as_printed"};
+const Names kSums{"direct", "ifgt"};
+const Names kBases{"best", "random", "target"};
+
+MapSettings map_settings(const FilterOptions& options) {
+  return {.mode = chosen<MapMode>(options.choice("map"), kModes),
+          .solver = chosen<MapSolver>(options.choice("map_solver"), kSolvers),
+          .objective = chosen<MapObjective>(options.choice("map_objective"), kObjectives),
+          .threshold = options.number("map_threshold"),
+          .population = options.integer("population"),
+          .evolution = {.scale = options.number("scale"),
+                        .crossover = options.number("crossover"),
+                        .generations = options.integer("generations"),
+                        .base = chosen<EvolutionBase>(options.choice("base"), kBases)}};
+}
+
+}  // namespace
+
+std::vector<Option> marginal_options(MapSolver solver) {
+  return {
+      count_option("particles", "100", 1, 1e6, "number of particles"),
+      choice_option("kernel", "prior", kKernels, "what poses are drawn from (EQUATIONS 12)"),
+      number_option("kernel_floor_xy", "0.01", 0, 100,
+                    "[m] sigma of noise added to the motion in x and y per scan (EQUATIONS 12)"),
+      number_option(
+          "kernel_floor_heading", "0.001", 0, 3,
+          "[rad] sigma of noise added to the motion in heading at every scan (EQUATIONS 12)"),
+      choice_option(
+          "kernel_sums", "direct", kSums,
+          "how the mixtures are summed: directly, or by the fast Gauss transform (EQUATIONS 13)"),
+      number_option("kernel_tolerance", "1e-9", 1e-15, 0.1,
+                    "kernel_sums=ifgt: error of a sum, of the sum of all peaks"),
+      choice_option("map", "recursive", kModes,
+                    "what a landmark remembers of earlier scans (EQUATIONS 14)"),
+      choice_option("map_solver", kSolvers[static_cast<std::size_t>(solver)], kSolvers,
+                    "how the best place of a landmark is found"),
+      choice_option("map_objective", "likelihood", kObjectives,
+                    "what a landmark is judged by (Havangi eq. 27, its bound, eq. 29)"),
+      number_option(
+          "map_threshold", "5.991464547107979", 0, 1e6,
+          "map=onestep_threshold: a landmark stays where its objective is below (EQUATIONS 14)"),
+      count_option("population", "30", 1, 10000, "map_solver=de: candidates for each landmark"),
+      count_option("generations", "10", 0, 1000, "map_solver=de: at most (EQUATIONS 9)"),
+      number_option("scale", "0.5", 0, 2, "map_solver=de: F (EQUATIONS 9)"),
+      number_option("crossover", "0.8", 0, 1, "map_solver=de: Cr (EQUATIONS 9)"),
+      choice_option("base", "random", kBases,
+                    "map_solver=de: base of a trial; Havangi eq. (6) random, eq. (30) target"),
+  };
+}
+
+MarginalSettings marginal_settings(const FilterOptions& options, Choice choice) {
+  return {.particles = options.integer("particles"),
+          .choice = choice,
+          .kernel = chosen<Kernel>(options.choice("kernel"), kKernels),
+          .kernel_floor_xy = options.number("kernel_floor_xy"),
+          .kernel_floor_heading = options.number("kernel_floor_heading"),
+          .kernel_sums = chosen<KernelSums>(options.choice("kernel_sums"), kSums),
+          .kernel_tolerance = options.number("kernel_tolerance"),
+          .map = map_settings(options)};
+}
 
 FilterKind marginal_kind() {
   return {.name = "marginal",
           .long_name = "marginal particle filter with one map",
           .source = "Martinez-Cantin et al. 2007; Klaas et al. 2005; EQUATIONS 12",
-          .has_mixture = false,
           .options = marginal_options(MapSolver::gauss_newton),
           .make = make_marginal<Lanes, Choice::by_weight>};
 }
@@ -16,7 +88,6 @@ FilterKind ampf_de_kind() {
   return {.name = "ampf_de",
           .long_name = "auxiliary marginal particle filter, map by DE",
           .source = "Havangi et al. 2013; EQUATIONS 12, 14",
-          .has_mixture = false,
           .options = marginal_options(MapSolver::de),
           .make = make_marginal<Lanes, Choice::by_likelihood>};
 }

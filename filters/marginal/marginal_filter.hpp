@@ -5,9 +5,8 @@
 #include "filters/marginal/kernel_sums.hpp"
 #include "filters/marginal/map_learning.hpp"
 #include "filters/marginal/marginal_options.hpp"
-#include "filters/marginal/shared_association.hpp"
-#include "filters/marginal/shared_likelihood.hpp"
-#include "filters/moments/gaussian_draw.hpp"
+#include "filters/marginal/shared_map.hpp"
+#include "filters/moments/gaussians.hpp"
 #include "filters/moments/motion_increment.hpp"
 #include "filters/population/population.hpp"
 

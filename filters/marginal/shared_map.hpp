@@ -2,9 +2,15 @@
 #pragma once
 
 #include "engine/core/slam_filter.hpp"
+#include "filters/association/map_association.hpp"
+#include "filters/marginal/marginal_options.hpp"
+#include "filters/moments/evidence.hpp"
 #include "filters/moments/gaussians.hpp"
+#include "filters/moments/linearised.hpp"
+#include "filters/population/population.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace montecarta::filters {
@@ -37,5 +43,117 @@ inline LandmarkEstimate estimate_of(const SharedLandmark& landmark) {
   const Symmetric2<double> P = landmark.covariance();
   return {{landmark.mean.x, landmark.mean.y}, Eigen::Matrix2d{{P.xx, P.xy}, {P.xy, P.yy}}};
 }
+
+/// A detection and the landmark that it is.
+struct SharedMatch {
+  std::uint32_t landmark;
+  RangeBearing<double> seen;
+};
+
+/// A scan sorted by what it shows of the shared map, once for all particles: by identity, or by the
+/// nearest to a Gaussian pose (EQUATIONS 17).
+class SharedAssociation {
+ public:
+  explicit SharedAssociation(const FilterSetup& setup)
+      : association_(setup), noise_(SensorNoise::of(setup.belief)) {}
+
+  void clear() { association_.clear(); }
+  bool known() const { return association_.known(); }
+  /// By identity.
+  void associate(Scan scan);
+  /// By nearness. `map_is_exact`: the innovation knows no covariance of the map.
+  void associate(Scan scan, const SharedMap& map, bool map_is_exact, const PoseMoments& predicted);
+
+  bool matched_nothing() const { return matches_.empty() && fresh_.empty(); }
+  const std::vector<SharedMatch>& matches() const { return matches_; }
+  /// Detections of landmarks not seen before.
+  const std::vector<Detection>& fresh() const { return fresh_; }
+  const AssociationCounts& counts() const { return association_.counts(); }
+  /// Of all detections that match nothing.
+  double unmatched_log_density() const {
+    return association_.unmatched_log_density() * static_cast<double>(unmatched_);
+  }
+  /// Remembers that a fresh detection became the map's next landmark.
+  void add(const Detection& fresh) { association_.add(fresh); }
+  /// Where row k of the reported map is, or a slot that does not exist.
+  std::size_t slot_of_row(std::size_t k) const { return association_.slot_of(k); }
+
+ private:
+  void sort_out(Scan scan);
+
+  MapAssociation association_;
+  SensorNoise noise_;
+  std::vector<SharedMatch> matches_;
+  std::vector<Detection> fresh_;
+  std::size_t unmatched_ = 0;
+  std::vector<NearestSearch> searches_;  ///< scratch
+};
+
+/// How well poses explain the matched detections of a scan, the map being the same for all.
+template <class Real>
+class SharedLikelihood {
+ public:
+  SharedLikelihood(const SensorNoise& noise, MapMode mode) : noise_(noise), mode_(mode) {}
+
+  /// One-step maps are parameters, known exactly as far as the likelihood goes (Havangi eq. 28);
+  /// recursive ones add Hf Lambda^-1 Hf' to R (EQUATIONS 14).
+  bool map_is_exact() const { return mode_ != MapMode::recursive; }
+
+  void see(const std::vector<SharedMatch>& matches, const SharedMap& map) {
+    seen_.clear();
+    for (const SharedMatch& match : matches) {
+      const SharedLandmark& landmark = map[match.landmark];
+      const Symmetric2<double> P = map_is_exact() ? Symmetric2<double>{} : landmark.covariance();
+      seen_.push_back(
+          {{{Real(landmark.mean.x), Real(landmark.mean.y)}, {Real(P.xx), Real(P.xy), Real(P.yy)}},
+           {Real(match.seen.range), Real(match.seen.bearing)}});
+    }
+  }
+  std::size_t matches() const { return seen_.size(); }
+
+  /// log p(z | pose).
+  [[gnu::always_inline]] Weighing<Real> at(const BasicPose<Real>& pose) const {
+    Evidence<Real> evidence;
+    for (const Seen& seen : seen_) {
+      LandmarkGaussian<Real> landmark = seen.landmark;
+      Linearised().update(landmark, pose, seen.observation, noise_, Everywhere(), evidence);
+    }
+    return {evidence.log_density(), evidence.left_out()};
+  }
+
+  using Innovations = typename MixtureInnovations<Real>::OfBlock;
+  /// log p(z | mean of the kernel) (Havangi eq. 16).
+  Weighing<Real> at_mean(const PoseGaussian<Real>& kernel, const Innovations& innovations) const {
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      const LineOfSight<Real> s = line_of_sight(kernel.mean, seen_[k].landmark.mean);
+      innovations.add(k,
+                      innovation_of(kernel.covariance, s, residual(seen_[k].observation, s),
+                                    seen_[k].landmark.covariance, noise_),
+                      Everywhere());
+    }
+    return at(kernel.mean);
+  }
+
+  /// The kernel becomes p(s | s_j, z); returns log p(z | s_j) (EQUATIONS 12).
+  Weighing<Real> refine(PoseGaussian<Real>& kernel, const Innovations& innovations) const {
+    Evidence<Real> evidence;
+    for (std::size_t k = 0; k < seen_.size(); ++k) {
+      innovations.add(k,
+                      Linearised().refine(kernel, seen_[k].landmark, seen_[k].observation, noise_,
+                                          Everywhere(), evidence),
+                      Everywhere());
+    }
+    return {evidence.log_density(), evidence.left_out()};
+  }
+
+ private:
+  struct Seen {
+    LandmarkGaussian<Real> landmark;
+    RangeBearing<Real> observation;
+  };
+  SensorNoise noise_;
+  MapMode mode_;
+  std::vector<Seen> seen_;
+};
 
 }  // namespace montecarta::filters

@@ -104,4 +104,18 @@ LinearisedMove<Real> linearised_move(const BasicPose<Real>& pose, const Control&
       vehicle);
 }
 
+/// `pose` in the frame of `origin`.
+inline Pose relative_to(const Pose& origin, const Pose& pose) {
+  const Direction<double> d = direction_of(origin.heading);
+  const double dx = pose.x - origin.x, dy = pose.y - origin.y;
+  return {d.cosine * dx + d.sine * dy, d.cosine * dy - d.sine * dx,
+          wrap(pose.heading - origin.heading)};
+}
+
+/// The pose whose displacement in the frame of `origin` is `displacement`.
+inline Pose composed(const Pose& origin, const Pose& displacement) {
+  const Point way = in_world(direction_of(origin.heading), displacement.x, displacement.y);
+  return {origin.x + way.x, origin.y + way.y, wrap(origin.heading + displacement.heading)};
+}
+
 }  // namespace montecarta::models

@@ -4,7 +4,9 @@
 #include "engine/core/drive.hpp"
 #include "engine/numbers/real.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 /// What the files of vehicles share (EQUATIONS 1). A vehicle is a struct that says how a control
@@ -88,5 +90,99 @@ inline constexpr ControlName kSpeedControl = {.name = "speed",
                                               .usual = "0.3",
                                               .most_sigma = 1000,
                                               .noise_text = "noise of the speed"};
+
+// A body that moves with constant velocity in its own frame and turns with a constant yaw rate:
+// what vehicles whose yaw rate is controlled have in common (EQUATIONS 1).
+
+/// How such a motion is followed through a step.
+enum class Integration {
+  arc,   ///< exactly: the velocity turns with the body
+  euler  ///< the velocity keeps the direction that it had at the beginning of the step
+};
+inline constexpr std::array<const char*, 2> kIntegrationNames = {"arc", "euler"};
+
+/// The mean over the step of the turning unit vector: (1, 0) where nothing turns.
+/// (sin t / t, (1 - cos t) / t), t the turn.
+template <class Real>
+struct MeanDirection {
+  Real along, across;
+};
+
+/// `turn`: less than 1e5 rad.
+template <class Real>
+MeanDirection<Real> mean_direction(const Bend<Real>& turn) {
+  const auto& [cosine, sine] = turn.direction;
+  const auto still = turn.angle == Real(0.0);
+  const Real angle = select(still, Real(1.0), turn.angle);
+  const Real along = select(still, Real(1.0), sine / angle);
+  // 1 - cos t = sin^2 t / (1 + cos t), which keeps its digits where t is small
+  const auto ahead = cosine > Real(0.0);
+  const Real small = along * sine / (Real(1.0) + select(ahead, cosine, Real(0.0)));
+  return {along, select(ahead, small, (Real(1.0) - cosine) / angle)};
+}
+
+/// Derivative of mean_direction() by the turn, per rad.
+inline MeanDirection<double> mean_direction_by_turn(const Bend<double>& turn) {
+  const auto& [cosine, sine] = turn.direction;
+  const double t = turn.angle;
+  if (std::abs(t) < 1e-3) return {-t / 3.0 + t * t * t / 30.0, 0.5 - t * t / 8.0};
+  const auto [along, across] = mean_direction(turn);
+  return {(cosine - along) / t, (sine - across) / t};
+}
+
+/// Where the velocity (forward, left) [m/s] leads in `duration` [s].
+template <class Real>
+BodyStep<Real> twist_travel(Integration integration, const Real& forward, const Real& left,
+                            const Bend<Real>& turn, double duration) {
+  const Real ahead = forward * Real(duration), aside = left * Real(duration);
+  if (integration == Integration::euler) return {ahead, aside, Real(0.0)};
+  const auto [along, across] = mean_direction(turn);
+  return {fma(ahead, along, -aside * across), fma(ahead, across, aside * along), Real(0.0)};
+}
+
+/// Derivative of twist_travel() by the turn, each element per rad.
+inline BodyStep<double> twist_travel_by_turn(Integration integration, double forward, double left,
+                                             const Bend<double>& turn, double duration) {
+  if (integration == Integration::euler) return {0.0, 0.0, 0.0};
+  const double ahead = forward * duration, aside = left * duration;
+  const auto [along, across] = mean_direction_by_turn(turn);
+  return {fma(ahead, along, -aside * across), fma(ahead, across, aside * along), 0.0};
+}
+
+/// twist_travel() turned round: the velocity (forward, left) [m/s] and yaw rate [rad/s] of a step.
+inline Control twist_of(Integration integration, const BodyStep<double>& step, double duration) {
+  const double yaw_rate = step.turn / duration;
+  const double ahead = step.forward / duration, aside = step.left / duration;
+  if (integration == Integration::euler) return {ahead, aside, yaw_rate};
+  const auto [along, across] = mean_direction(bend_of(step.turn));
+  const double square = along * along + across * across;  // 0 after whole turns only
+  if (square == 0.0) return {0.0, 0.0, yaw_rate};
+  return {fma(ahead, along, aside * across) / square, fma(aside, along, -ahead * across) / square,
+          yaw_rate};
+}
+
+/// The yaw rate [rad/s] that turns by `off` [rad] within one step, at most `limit`.
+inline double yaw_rate_towards(const Aim& aim, double off, double limit) {
+  return std::clamp(off * aim.control_rate, -limit, limit);
+}
+
+inline constexpr ControlName kYawRateControl = {.name = "yaw_rate",
+                                                .noun = "yaw rate",
+                                                .column = "yaw_rate_radps",
+                                                .most = 100,
+                                                .limit = "radians per second, at most 100",
+                                                .moves = true,
+                                                .sigma = "sigma_yaw_rate_deg",
+                                                .unit = "deg/s",
+                                                .usual = "3",
+                                                .most_sigma = 1e4,
+                                                .noise_text = "noise of the yaw rate"};
+
+/// The setting of the fastest turn that a pilot asks for.
+template <class V>
+constexpr VehicleNumber<V> yaw_rate_limit_of(double V::*member) {
+  return {"yaw_rate_limit_deg", "deg/s", "90", 0.1, 5700, "fastest turn of the vehicle", member,
+          VehicleUse::pilot};
+}
 
 }  // namespace montecarta::models

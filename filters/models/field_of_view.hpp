@@ -3,7 +3,7 @@
 
 #include "engine/core/pose.hpp"
 #include "engine/numbers/angle.hpp"
-#include "filters/models/mounting.hpp"
+#include "filters/models/sensor.hpp"
 
 #include <Eigen/Core>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/models/twist.hpp"
+#include "filters/models/body_step.hpp"
 
 #include <string_view>
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace montecarta::models {
 
@@ -74,6 +75,50 @@ std::optional<double> chosen_side(double left, double right) {
   constexpr double kFits = 9.0, kFitsBetter = 25.0;
   if (std::min(left, right) > kFits || std::abs(left - right) < kFitsBetter) return std::nullopt;
   return left < right ? 1.0 : -1.0;
+}
+
+bool is_of_bearings(const Sensor& sensor) { return components_of(sensor)[0] == Quantity::bearing; }
+
+TwoSightings::TwoSightings(const Sensor& sensor, double variance)
+    : sensor_{sensor.kind, {}}, variance_(variance), of_bearings_(is_of_bearings(sensor)) {}
+
+std::optional<Crossing> TwoSightings::crossing(const Sighting& first, const Sighting& second,
+                                               double side) const {
+  const Eigen::Vector2d here = place_of(first.sensor);
+  if (!of_bearings_) {
+    const auto landmark = crossing_of_circles(here, place_of(second.sensor),
+                                              {first.value, second.value}, side, variance_);
+    return landmark ? std::optional(Crossing{landmark->point, landmark->noise}) : std::nullopt;
+  }
+  const Direction<double> d = direction_of(first.sensor.heading + first.value);
+  const Eigen::Vector2d ray(d.cosine, d.sine), across(-d.sine, d.cosine);
+  const auto landmark = crossing_of_rays(here, here + ray, second.sensor, second.value, variance_);
+  if (!landmark) return std::nullopt;
+  Crossing crossing{landmark->point, landmark->noise};
+  const Eigen::Vector2d by_first = landmark->by_second * across;
+  crossing.covariance += variance_ * by_first * by_first.transpose();
+  return crossing;
+}
+
+bool TwoSightings::cross_well(const Sighting& first, const Sighting& second) const {
+  const auto at = crossing(first, second, 1.0);
+  if (!at) return false;
+  const double nearest = std::min((at->point - place_of(first.sensor)).norm(),
+                                  (at->point - place_of(second.sensor)).norm());
+  return crosses_well(at->covariance, nearest, of_bearings_, variance_);
+}
+
+double TwoSightings::squared_distance(const Sighting& first, const Sighting& second, double side,
+                                      const Sighting& third) const {
+  const double never = std::numeric_limits<double>::infinity();
+  const auto at = crossing(first, second, side);
+  if (!at) return never;
+  const auto seen =
+      linearised_detection(sensor_, third.sensor, Point{at->point.x(), at->point.y()});
+  if (!seen) return never;
+  const Eigen::RowVector2d H = seen->by_landmark.row(0);
+  const double S = (H * at->covariance * H.transpose()).value() + variance_;
+  return std::pow(residual({third.value, 0.0}, seen->value, wraps_of(sensor_))(0), 2) / S;
 }
 
 }  // namespace montecarta::models

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "filters/models/eigen_jacobians.hpp"
+#include "filters/models/sensor.hpp"
 
 #include <Eigen/Core>
 
@@ -43,5 +44,42 @@ bool crosses_well(const Eigen::Matrix2d& covariance, double nearest, bool of_bea
 /// On which of two sides (1, -1) a landmark is, by D^2 of a detection for either: that which it
 /// fits, and so much better than the other; nullopt where it does not tell.
 std::optional<double> chosen_side(double left, double right);
+
+/// Of a sensor of one component; else its detections are ranges.
+bool is_of_bearings(const Sensor& sensor);
+
+/// A detection of one component, from a pose of the sensor that is known.
+struct Sighting {
+  Pose sensor;
+  double value;  ///< bearing [rad] or range [m]
+};
+
+/// Where two sightings place a landmark (EQUATIONS 15), given the path.
+struct Crossing {
+  Eigen::Vector2d point;       ///< [m]
+  Eigen::Matrix2d covariance;  ///< [m^2] of the noise of both
+};
+
+/// How pairs of detections of one sensor place landmarks.
+class TwoSightings {
+ public:
+  /// `variance` [rad^2 or m^2] of the one component.
+  TwoSightings(const Sensor& sensor, double variance);
+
+  /// Nullopt where they do not cross; of ranges on one of two sides (1, -1), of bearings either is
+  /// the same.
+  std::optional<Crossing> crossing(const Sighting& first, const Sighting& second,
+                                   double side) const;
+  /// Whether the crossing is known well enough to be a Gaussian.
+  bool cross_well(const Sighting& first, const Sighting& second) const;
+  /// D^2 of a third sighting, were the landmark at the crossing; infinite where there is none.
+  double squared_distance(const Sighting& first, const Sighting& second, double side,
+                          const Sighting& third) const;
+
+ private:
+  Sensor sensor_;  ///< at its own pose
+  double variance_;
+  bool of_bearings_;
+};
 
 }  // namespace montecarta::models

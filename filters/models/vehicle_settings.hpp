@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/models/control_noise.hpp"
 #include "filters/models/vehicle.hpp"
 
 #include <algorithm>

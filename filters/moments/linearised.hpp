@@ -3,7 +3,7 @@
 
 #include "filters/moments/evidence.hpp"
 #include "filters/moments/gaussians.hpp"
-#include "filters/moments/sensor_noise.hpp"
+#include "filters/moments/motion_increment.hpp"
 
 namespace montecarta::filters {
 
@@ -167,36 +167,6 @@ template <class Real, class Mask>
   return v;
 }
 
-/// update_with() with the model linearised at the refined pose: sequential refinement (EQUATIONS
-/// 6).
-template <class Real, class Mask>
-[[gnu::always_inline]] inline Innovation<Real> refine_pose(PoseGaussian<Real>& pose,
-                                                           const LandmarkGaussian<Real>& landmark,
-                                                           const RangeBearing<Real>& seen,
-                                                           const SensorNoise& noise,
-                                                           const Mask& matched,
-                                                           Evidence<Real>& evidence) {
-  const LineOfSight<Real> s = line_of_sight(pose.mean, landmark.mean);
-  return update_with(pose, s, residual(seen, s), landmark.covariance, noise, matched, evidence);
-}
-
-/// update_with() with the model linearised at the predicted pose for all detections alike: the
-/// sequence then is the batch update with the stacked innovation, and its evidence N(nu; S)
-/// (EQUATIONS (6.4)).
-template <class Real, class Mask>
-[[gnu::always_inline]] inline void refine_pose_in_batch(
-    PoseGaussian<Real>& pose, const BasicPose<Real>& predicted,
-    const LandmarkGaussian<Real>& landmark, const RangeBearing<Real>& seen,
-    const SensorNoise& noise, const Mask& matched, Evidence<Real>& evidence) {
-  const LineOfSight<Real> s = line_of_sight(predicted, landmark.mean);
-  RangeBearing<Real> innovation = residual(seen, s);
-  const Column3<Real> moved{pose.mean.x - predicted.x, pose.mean.y - predicted.y,
-                            pose.mean.heading - predicted.heading};
-  innovation.range += s.ux * moved.x + s.uy * moved.y;
-  innovation.bearing += (s.ux * moved.y - s.uy * moved.x) * s.per_range + moved.h;
-  update_with(pose, s, innovation, landmark.covariance, noise, matched, evidence);
-}
-
 /// A way along and across the line of sight, in the map.
 template <class Real>
 [[gnu::always_inline]] inline BasicPoint<Real> in_map(const Real& along, const Real& across,
@@ -215,50 +185,86 @@ template <class Real>
           along_y * s.uy + across_y * s.ux};
 }
 
-/// Updates with one detection a landmark seen from an exactly known pose (EQUATIONS 4). In the
-/// frame of the line of sight the noise R is diagonal, and the new covariance P (P + R)^-1 R has no
-/// difference that could turn negative; the gain is that times R^-1.
-template <class Real, class Mask, class Weighed>
-[[gnu::always_inline]] inline Innovation<Real> update_landmark(
-    LandmarkGaussian<Real>& landmark, const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
-    const SensorNoise& noise, const Mask& matched, Weighed& evidence) {
-  const LineOfSight<Real> s = line_of_sight(pose, landmark.mean);
-  const auto use = matched && is_usable(s);
-  const Turned<Real> P = turned(landmark.covariance, s);
-  const RangeBearing<Real> innovation = residual(seen, s);
-  const Real along = innovation.range, across = innovation.bearing * s.predicted.range;
-  const Turned<Real> R{noise.range, Real(0.0),
-                       noise.bearing * s.predicted.range * s.predicted.range};
-  const Symmetric2<Real> S{P.along + R.along, P.cross, P.across + R.across};
-  const Real determinant = S.determinant();
-  const Real inverse = select(use, 1.0 / determinant, Real(0.0));
+/// The extended Kalman filter (EQUATIONS 3).
+struct Linearised {
+  static constexpr bool kRefinesInBatch = true;
+  void advance(MotionIncrement& motion, const Control& control, double duration,
+               const Belief& belief) const {
+    motion.advance(control, duration, belief);
+  }
+  /// update_with() with the model linearised at the refined pose: sequential refinement (EQUATIONS
+  /// 6).
+  template <class Real, class Mask>
+  [[gnu::always_inline]] Innovation<Real> refine(PoseGaussian<Real>& pose,
+                                                 const LandmarkGaussian<Real>& landmark,
+                                                 const RangeBearing<Real>& seen,
+                                                 const SensorNoise& noise, const Mask& matched,
+                                                 Evidence<Real>& evidence) const {
+    const LineOfSight<Real> s = line_of_sight(pose.mean, landmark.mean);
+    return update_with(pose, s, residual(seen, s), landmark.covariance, noise, matched, evidence);
+  }
+  /// update_with() with the model linearised at the predicted pose for all detections alike: the
+  /// sequence then is the batch update with the stacked innovation, and its evidence N(nu; S)
+  /// (EQUATIONS (6.4)).
+  template <class Real, class Mask>
+  void refine_in_batch(PoseGaussian<Real>& pose, const BasicPose<Real>& predicted,
+                       const LandmarkGaussian<Real>& landmark, const RangeBearing<Real>& seen,
+                       const SensorNoise& noise, const Mask& matched,
+                       Evidence<Real>& evidence) const {
+    const LineOfSight<Real> s = line_of_sight(predicted, landmark.mean);
+    RangeBearing<Real> innovation = residual(seen, s);
+    const Column3<Real> moved{pose.mean.x - predicted.x, pose.mean.y - predicted.y,
+                              pose.mean.heading - predicted.heading};
+    innovation.range += s.ux * moved.x + s.uy * moved.y;
+    innovation.bearing += (s.ux * moved.y - s.uy * moved.x) * s.per_range + moved.h;
+    update_with(pose, s, innovation, landmark.covariance, noise, matched, evidence);
+  }
+  /// Updates with one detection a landmark seen from an exactly known pose (EQUATIONS 4). In the
+  /// frame of the line of sight the noise R is diagonal, and the new covariance P (P + R)^-1 R has
+  /// no difference that could turn negative; the gain is that times R^-1.
+  template <class Real, class Mask, class Weighed>
+  [[gnu::always_inline]] Innovation<Real> update(LandmarkGaussian<Real>& landmark,
+                                                 const BasicPose<Real>& pose,
+                                                 const RangeBearing<Real>& seen,
+                                                 const SensorNoise& noise, const Mask& matched,
+                                                 Weighed& evidence) const {
+    const LineOfSight<Real> s = line_of_sight(pose, landmark.mean);
+    const auto use = matched && is_usable(s);
+    const Turned<Real> P = turned(landmark.covariance, s);
+    const RangeBearing<Real> innovation = residual(seen, s);
+    const Real along = innovation.range, across = innovation.bearing * s.predicted.range;
+    const Turned<Real> R{noise.range, Real(0.0),
+                         noise.bearing * s.predicted.range * s.predicted.range};
+    const Symmetric2<Real> S{P.along + R.along, P.cross, P.across + R.across};
+    const Real determinant = S.determinant();
+    const Real inverse = select(use, 1.0 / determinant, Real(0.0));
 
-  const Real determinant_of_map = P.along * P.across - P.cross * P.cross;
-  const Turned<Real> g{(determinant_of_map + P.along * R.across) * inverse, P.cross * inverse,
-                       (determinant_of_map + P.across * R.along) * inverse};
-  const Real move_along = g.along * along + g.cross * R.along * across;
-  const Real move_across = g.cross * R.across * along + g.across * across;
-  landmark.mean = landmark.mean + in_map(move_along, move_across, s);
-  const Symmetric2<Real> after = turned_back(
-      Turned<Real>{g.along * R.along, g.cross * R.along * R.across, g.across * R.across}, s);
-  landmark.covariance = select(use, after, landmark.covariance);
-  evidence.add(S.adjugate_form(along, across) * inverse,
-               select(use, determinant * s.per_range * s.per_range, Real(1.0)),
-               as_number<Real>(use), as_number<Real>(matched));
-  return {innovation, {S.xx, S.xy * s.per_range, S.yy * s.per_range * s.per_range}};
-}
-
-/// A landmark seen for the first time from an exactly known pose: g(x, z) and Gz R Gz' (EQUATIONS
-/// 4).
-template <class Real>
-LandmarkGaussian<Real> new_landmark(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
-                                    const SensorNoise& noise) {
-  const LinearisedPlace<Real> place = linearised_place(pose, seen);
-  const Real range = noise.range, bearing = noise.bearing;
-  return {place.point,
-          {place.x_range * place.x_range * range + place.x_bearing * place.x_bearing * bearing,
-           place.x_range * place.y_range * range + place.x_bearing * place.y_bearing * bearing,
-           place.y_range * place.y_range * range + place.y_bearing * place.y_bearing * bearing}};
-}
+    const Real determinant_of_map = P.along * P.across - P.cross * P.cross;
+    const Turned<Real> g{(determinant_of_map + P.along * R.across) * inverse, P.cross * inverse,
+                         (determinant_of_map + P.across * R.along) * inverse};
+    const Real move_along = g.along * along + g.cross * R.along * across;
+    const Real move_across = g.cross * R.across * along + g.across * across;
+    landmark.mean = landmark.mean + in_map(move_along, move_across, s);
+    const Symmetric2<Real> after = turned_back(
+        Turned<Real>{g.along * R.along, g.cross * R.along * R.across, g.across * R.across}, s);
+    landmark.covariance = select(use, after, landmark.covariance);
+    evidence.add(S.adjugate_form(along, across) * inverse,
+                 select(use, determinant * s.per_range * s.per_range, Real(1.0)),
+                 as_number<Real>(use), as_number<Real>(matched));
+    return {innovation, {S.xx, S.xy * s.per_range, S.yy * s.per_range * s.per_range}};
+  }
+  /// A landmark seen for the first time from an exactly known pose: g(x, z) and Gz R Gz' (EQUATIONS
+  /// 4).
+  template <class Real>
+  LandmarkGaussian<Real> initialise(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
+                                    const SensorNoise& noise) const {
+    const LinearisedPlace<Real> place = linearised_place(pose, seen);
+    const Real range = noise.range, bearing = noise.bearing;
+    return {place.point,
+            {place.x_range * place.x_range * range + place.x_bearing * place.x_bearing * bearing,
+             place.x_range * place.y_range * range + place.x_bearing * place.y_bearing * bearing,
+             place.y_range * place.y_range * range + place.y_bearing * place.y_bearing * bearing}};
+  }
+};
 
 }  // namespace montecarta::filters

@@ -3,7 +3,7 @@
 
 #include "engine/numbers/real.hpp"
 #include "filters/models/ackermann.hpp"
-#include "filters/models/control_noise.hpp"
+#include "filters/models/vehicle.hpp"
 #include "filters/moments/gaussians.hpp"
 #include "filters/moments/sigma_rule.hpp"
 #include "filters/setup/filter_setup.hpp"

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/errors.hpp"
 #include "filters/models/sensor_kinds.hpp"
 #include "filters/moments/linearised.hpp"
+#include "filters/moments/sigma_points.hpp"
 
 /// What a sensor of any kind sees of a landmark, linearised at its own pose (EQUATIONS 2). The
 /// components of a detection, in their order, are what RangeBearing, SensorNoise and Innovation
@@ -142,5 +144,237 @@ template <class Kind, class Real, class Use, class Mask, class Weighed>
           : select(use, Real(density.determinant * (1.0 / kTwoPi)), density.determinant);
   evidence.add(density.squared, determinant, used, as_number<Real>(matched));
 }
+
+/// A landmark that one detection from an exactly known pose of the sensor places: g(x, z) and Gz R
+/// Gz' (EQUATIONS 2, 4).
+template <class Kind, class Real>
+LandmarkGaussian<Real> placed_landmark(Kind, const BasicPose<Real>& sensor,
+                                       const RangeBearing<Real>& seen, const SensorNoise& noise) {
+  expect(FixesLandmark<Kind>, "one detection of this sensor places no landmark");
+  const Direction<Real> d = direction_of(sensor.heading);
+  const LineOfSight<Real> axes{{}, d.cosine, d.sine, Real(1.0)};
+  const Turned<Real> R{Real(noise.range), Real(0.0), Real(noise.bearing)};
+  return {BasicPoint<Real>{sensor.x, sensor.y} + in_map(seen.range, seen.bearing, axes),
+          turned_back(R, axes)};
+}
+
+/// Kalman update of a landmark seen from an exactly known pose, by the innovation `v` whose columns
+/// are those of the landmark.
+template <class Real, class Mask>
+[[gnu::always_inline]] inline Density<Real> condition(LandmarkGaussian<Real>& landmark,
+                                                      const Innovation<Real>& v, const Mask& use) {
+  const Symmetric2<Real>& M = landmark.covariance;
+  PoseGaussian<Real> place{{landmark.mean.x, landmark.mean.y, Real(0.0)},
+                           {M.xx, M.xy, M.yy, Real(0.0), Real(0.0), Real(0.0)}};
+  Density<Real> density = condition(place, v, use);
+  landmark = {{place.mean.x, place.mean.y},
+              {place.covariance.xx, place.covariance.xy, place.covariance.yy}};
+  return density;
+}
+
+/// As `Linearised`, of a sensor of another kind; poses are those of the sensor.
+template <class Kind>
+struct LinearisedSensor : Linearised {
+  template <class Real, class Mask>
+  [[gnu::always_inline]] Innovation<Real> refine(PoseGaussian<Real>& pose,
+                                                 const LandmarkGaussian<Real>& landmark,
+                                                 const RangeBearing<Real>& seen,
+                                                 const SensorNoise& noise, const Mask& matched,
+                                                 Evidence<Real>& evidence) const {
+    const auto s = sight(Kind(), pose.mean, landmark.mean);
+    return refine(pose, s, residual(seen, s), landmark, noise, matched, evidence);
+  }
+  template <class Real, class Mask>
+  void refine_in_batch(PoseGaussian<Real>& pose, const BasicPose<Real>& predicted,
+                       const LandmarkGaussian<Real>& landmark, const RangeBearing<Real>& seen,
+                       const SensorNoise& noise, const Mask& matched,
+                       Evidence<Real>& evidence) const {
+    const auto s = sight(Kind(), predicted, landmark.mean);
+    const Column3<Real> moved{pose.mean.x - predicted.x, pose.mean.y - predicted.y,
+                              shorter_way(Real(pose.mean.heading - predicted.heading))};
+    RangeBearing<Real> value = residual(seen, s);
+    value.range -= dot(s.first, moved);
+    value.bearing -= dot(s.second, moved);
+    refine(pose, s, value, landmark, noise, matched, evidence);
+  }
+  template <class Real, class Mask, class Weighed>
+  [[gnu::always_inline]] Innovation<Real> update(LandmarkGaussian<Real>& landmark,
+                                                 const BasicPose<Real>& pose,
+                                                 const RangeBearing<Real>& seen,
+                                                 const SensorNoise& noise, const Mask& matched,
+                                                 Weighed& evidence) const {
+    const auto s = sight(Kind(), pose, landmark.mean);
+    const Symmetric2<Real>& M = landmark.covariance;
+    Innovation<Real> v = innovation_of(Symmetric3<Real>{}, s, residual(seen, s), M, noise);
+    const auto column = [&M](const Column3<Real>& row) {
+      return Column3<Real>{-(M.xx * row.x + M.xy * row.y), -(M.xy * row.x + M.yy * row.y),
+                           Real(0.0)};
+    };
+    v.range = column(s.first), v.bearing = column(s.second);
+    const auto use = matched && is_usable(s);
+    weigh(Kind(), condition(landmark, v, use), use, matched, evidence);
+    return v;
+  }
+  template <class Real>
+  LandmarkGaussian<Real> initialise(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
+                                    const SensorNoise& noise) const {
+    return placed_landmark(Kind(), pose, seen, noise);
+  }
+
+ private:
+  template <class Real, class Mask>
+  [[gnu::always_inline]] static Innovation<Real> refine(
+      PoseGaussian<Real>& pose, const SensorSight<Kind, Real>& s, const RangeBearing<Real>& value,
+      const LandmarkGaussian<Real>& landmark, const SensorNoise& noise, const Mask& matched,
+      Evidence<Real>& evidence) {
+    Innovation<Real> v = innovation_of(pose.covariance, s, value, landmark.covariance, noise);
+    const auto use = matched && is_usable(s);
+    weigh(Kind(), condition(pose, v, use), use, matched, evidence);
+    return v;
+  }
+};
+template <>
+struct LinearisedSensor<RangeBearingSensor> : Linearised {};
+
+/// A sensor's observations of a landmark by sigma points (EQUATIONS 3, 7), in the frame of the
+/// sensor, so that a turned world gives the turned estimate.
+template <class Kind, class Real>
+class SigmaSight {
+ public:
+  SigmaSight(const BasicPose<Real>& sensor, const BasicPoint<Real>& landmark, const SigmaRule& rule)
+      : axes_(direction_of(sensor.heading)), rule_(rule) {
+    const Real dx = landmark.x - sensor.x, dy = landmark.y - sensor.y;
+    way_ = {axes_.cosine * dx + axes_.sine * dy, axes_.cosine * dy - axes_.sine * dx};
+    centre_ = observed(Kind(), way_.x, way_.y);
+  }
+
+  /// A column (forward, left, turn) of the pose's square root: its images are added to `moments`;
+  /// D is returned.
+  [[gnu::always_inline]] RangeBearing<Real> add(const Column3<Real>& column,
+                                                ObservationMoments<Real>& moments) const {
+    const double spread = rule_.spread;
+    const RangeBearing<Real> plus = from(spread * column.x, spread * column.y, spread * column.h);
+    const RangeBearing<Real> minus =
+        from(-spread * column.x, -spread * column.y, -spread * column.h);
+    const ObservationPair<Real> pair{
+        {0.5 * (plus.range - minus.range), 0.5 * (plus.bearing - minus.bearing)},
+        {0.5 * (plus.range + minus.range), 0.5 * (plus.bearing + minus.bearing)}};
+    moments.add(pair, rule_);
+    return pair.odd;
+  }
+  /// Columns of a covariance in the map.
+  std::array<Column3<Real>, 3> columns(const Symmetric3<Real>& P) const {
+    const Cholesky3<Real> L(turned(P, Direction<Real>{axes_.cosine, -axes_.sine}));
+    return {{{L.xx, L.yx, L.hx}, {Real(0.0), L.yy, L.hy}, {Real(0.0), Real(0.0), L.hh}}};
+  }
+  /// A column in the frame of the sensor, in the map.
+  Column3<Real> in_map(const Column3<Real>& c) const {
+    return {axes_.cosine * c.x - axes_.sine * c.y, axes_.sine * c.x + axes_.cosine * c.y, c.h};
+  }
+  /// Of `seen`, without cross-covariances.
+  Innovation<Real> innovation(const RangeBearing<Real>& seen,
+                              const ObservationMoments<Real>& moments) const {
+    const RangeBearing<Real> mean{centre_.range + moments.shift.range,
+                                  centre_.bearing + moments.shift.bearing};
+    return {difference(Kind(), seen, mean), moments.covariance + outer(rule_.shift, moments.shift)};
+  }
+  /// Where the landmark is not too near.
+  auto usable() const {
+    return way_.x * way_.x + way_.y * way_.y > Real(kLeastDistance * kLeastDistance);
+  }
+
+ private:
+  /// Observation less that of the centre, from a pose that is moved so in its own frame.
+  RangeBearing<Real> from(const Real& forward, const Real& left, const Real& turn) const {
+    const Direction<Real> d = direction_of(turn);
+    const Real x = way_.x - forward, y = way_.y - left;
+    return difference(
+        Kind(), observed(Kind(), d.cosine * x + d.sine * y, d.cosine * y - d.sine * x), centre_);
+  }
+
+  Direction<Real> axes_;
+  SigmaRule rule_;
+  BasicPoint<Real> way_;  ///< to the landmark, forward and left
+  RangeBearing<Real> centre_;
+};
+
+/// As `SigmaPoints`, of a sensor of another kind; poses are those of the sensor.
+template <class Kind>
+struct SigmaPointsOf : SigmaPoints {
+  static_assert(!std::is_same_v<Kind, RangeBearingSensor>);
+  explicit SigmaPointsOf(const SigmaPoints& points) : SigmaPoints(points) {}
+
+  template <class Real, class Mask>
+  Innovation<Real> refine(PoseGaussian<Real>& pose, const LandmarkGaussian<Real>& landmark,
+                          const RangeBearing<Real>& seen, const SensorNoise& noise,
+                          const Mask& matched, Evidence<Real>& evidence) const {
+    const SigmaRule& rule = rules().pose;
+    const SigmaSight<Kind, Real> s(pose.mean, landmark.mean, rule);
+    ObservationMoments<Real> own{.covariance = {Real(noise.range), Real(0.0), Real(noise.bearing)}};
+    Column3<Real> first{}, second{};
+    for (const Column3<Real>& column : s.columns(pose.covariance)) {
+      const RangeBearing<Real> D = s.add(column, own);
+      first = first + Real(rule.antisymmetric * rule.spread * D.range) * column;
+      second = second + Real(rule.antisymmetric * rule.spread * D.bearing) * column;
+    }
+    ObservationMoments<Real> both = own;
+    for (const Column3<Real>& column : s.columns(in_plane(landmark.covariance)))
+      s.add(column, both);
+    Innovation<Real> whole = s.innovation(seen, both);
+    Innovation<Real> proposal =
+        map_uncertainty() == MapUncertainty::on ? whole : s.innovation(seen, own);
+    proposal.range = s.in_map(first), proposal.bearing = s.in_map(second);
+    const auto use = matched && s.usable();
+    condition(pose, proposal, use);
+    weigh(Kind(), density_of(whole, use), use, matched, evidence);
+    return whole;
+  }
+  template <class Real, class Mask, class Weighed>
+  Innovation<Real> update(LandmarkGaussian<Real>& landmark, const BasicPose<Real>& pose,
+                          const RangeBearing<Real>& seen, const SensorNoise& noise,
+                          const Mask& matched, Weighed& evidence) const {
+    const SigmaRule& rule = rules().landmark;
+    const SigmaSight<Kind, Real> s(pose, landmark.mean, rule);
+    ObservationMoments<Real> moments{
+        .covariance = {Real(noise.range), Real(0.0), Real(noise.bearing)}};
+    Column3<Real> first{}, second{};
+    for (const Column3<Real>& column : s.columns(in_plane(landmark.covariance))) {
+      const RangeBearing<Real> D = s.add(column, moments);  // moves the other way than the pose
+      first = first - Real(rule.antisymmetric * rule.spread * D.range) * column;
+      second = second - Real(rule.antisymmetric * rule.spread * D.bearing) * column;
+    }
+    Innovation<Real> v = s.innovation(seen, moments);
+    v.range = s.in_map(first), v.bearing = s.in_map(second);
+    const auto use = matched && s.usable();
+    weigh(Kind(), condition(landmark, v, use), use, matched, evidence);
+    return v;
+  }
+  template <class Real>
+  LandmarkGaussian<Real> initialise(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
+                                    const SensorNoise& noise) const {
+    return placed_landmark(Kind(), pose, seen, noise);
+  }
+
+ private:
+  template <class Real>
+  static Symmetric3<Real> in_plane(const Symmetric2<Real>& P) {
+    return {P.xx, P.xy, P.yy, Real(0.0), Real(0.0), Real(0.0)};
+  }
+  template <class Real, class Mask>
+  static Density<Real> density_of(const Innovation<Real>& v, const Mask& use) {
+    return {select(use, v.squared(), Real(0.0)), select(use, v.S.determinant(), Real(1.0))};
+  }
+};
+
+/// The transform of a sensor, given that of range and bearing.
+template <class Kind>
+LinearisedSensor<Kind> of_kind(Kind, const Linearised& /*transform*/) {
+  return {};
+}
+template <class Kind>
+SigmaPointsOf<Kind> of_kind(Kind, const SigmaPoints& transform) {
+  return SigmaPointsOf<Kind>(transform);
+}
+inline SigmaPoints of_kind(RangeBearingSensor, const SigmaPoints& transform) { return transform; }
 
 }  // namespace montecarta::filters

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/relative/relative_ekf_slam.hpp"
 
-#include "filters/association/joint_report.hpp"
+#include "filters/association/map_association.hpp"
 #include "filters/joint/joint_gaussian.hpp"
 #include "filters/setup/filter_options.hpp"
 
@@ -174,7 +174,6 @@ FilterKind relative_ekf_slam_kind() {
       .long_name = "EKF-SLAM in relative coordinates",
       .source = "EQUATIONS 22",
       .has_particles = false,
-      .has_mixture = false,
       .has_joint = true,
       .options = {count_option("frames", "40", 1, 10000,
                                "poses at most whose frames landmarks are held in; with landmarks "

@@ -4,7 +4,7 @@
 #include "engine/core/slam_filter.hpp"
 #include "filters/association/map_association.hpp"
 #include "filters/moments/control_motion.hpp"
-#include "filters/relative/chain_moments.hpp"
+#include "filters/relative/relative_chain.hpp"
 #include "filters/relative/relative_gaussian.hpp"
 
 #include <optional>

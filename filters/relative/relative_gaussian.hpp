@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "filters/moments/evidence.hpp"
 #include "filters/moments/motion_increment.hpp"
-#include "filters/moments/sensor_noise.hpp"
 #include "filters/relative/relative_conditioning.hpp"
 
 #include <Eigen/Core>

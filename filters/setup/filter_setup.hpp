@@ -2,7 +2,6 @@
 #pragma once
 
 #include "engine/core/slam_filter.hpp"
-#include "filters/models/control_noise.hpp"
 #include "filters/models/sensor.hpp"
 #include "filters/models/vehicle.hpp"
 #include "filters/setup/filter_options.hpp"

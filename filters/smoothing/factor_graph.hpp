@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "filters/models/displacement.hpp"
+#include "filters/models/ackermann.hpp"
+#include "filters/moments/evidence.hpp"
 #include "filters/moments/motion_increment.hpp"
-#include "filters/moments/sensor_noise.hpp"
 
 #include <Eigen/Core>
 

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/smoothing/smoother.hpp"
 
-#include "filters/association/joint_report.hpp"
+#include "filters/association/map_association.hpp"
 #include "filters/setup/filter_options.hpp"
 #include "filters/smoothing/relative_laplace.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace montecarta::filters {
 namespace {
+
+constexpr int kMostSteps = 20;
+constexpr int kMostStepHalvings = 10;
+/// Rises of the sum by less than this share are rounding.
+constexpr double kCostRounding = 1e-12;
 
 /// A solution is settled by a step of less than a tenth of a standard deviation; what is left
 /// behind it is of second order.
@@ -18,6 +25,71 @@ constexpr double kTolerance = 1e-2;
 constexpr double kSpacing = 0.02;
 
 }  // namespace
+
+bool GaussNewton::solve(const FactorGraph& graph, double tolerance, GraphEstimate& estimate) {
+  given_ = estimate;
+  double now = squares(graph, estimate);
+  for (int step = 0; step < kMostSteps; ++step) {
+    if (!elimination_.linearise(graph, estimate) || std::isnan(now)) {
+      estimate = given_;
+      return false;
+    }
+    elimination_.minimise(graph, estimate, minimum_);
+    const double gain = now - minimum_.squares;
+    now = take_step(graph, now, estimate);
+    if (gain < tolerance) break;
+  }
+  return true;
+}
+
+/// Infinite where the newest poses lie as no motion can have led to them.
+double GaussNewton::squares(const FactorGraph& graph, const GraphEstimate& estimate) const {
+  if (estimate.multipliers.size() < graph.poses()) return std::numeric_limits<double>::infinity();
+  double sum = 0.0;
+  for (std::size_t t = 0; t < graph.poses(); ++t) {
+    const Eigen::Vector3d& m = estimate.multipliers[t];
+    sum += m.dot(symmetric(graph.motion(t).covariance()) * m);
+    for (const auto& [landmark, observed] : graph.observations_of(t)) {
+      const auto expected = predicted_observation(estimate.poses[t], estimate.landmarks[landmark]);
+      if (too_near(expected)) continue;
+      const auto [range, bearing] = residual(observed, expected);
+      sum += range * range / noise_.range + bearing * bearing / noise_.bearing;
+    }
+  }
+  return sum;
+}
+
+/// By that share of the way to the minimum.
+void GaussNewton::move(double share, GraphEstimate& estimate) const {
+  for (std::size_t t = 0; t < estimate.displacements.size(); ++t) {
+    Pose& d = estimate.displacements[t];
+    const Eigen::Vector3d way = share * boxminus(minimum_.displacements[t], d);
+    d = {d.x + way(0), d.y + way(1), wrap(d.heading + way(2))};
+    Eigen::Vector3d& m = estimate.multipliers[t];
+    m += share * (minimum_.multipliers[t] - m);
+  }
+  for (std::size_t l = 0; l < estimate.in_frame.size(); ++l) {
+    Point& p = estimate.in_frame[l];
+    const Point way = minimum_.in_frame[l] - p;
+    p = p + Point{share * way.x, share * way.y};
+  }
+}
+
+/// Returns the sum of squares behind it. The first step of a new pose is taken in full: it makes
+/// its displacement one that its motion can have.
+double GaussNewton::take_step(const FactorGraph& graph, double before, GraphEstimate& estimate) {
+  estimate.multipliers.resize(graph.poses(), Eigen::Vector3d::Zero());
+  double share = 1.0;
+  for (int halvings = 0;; ++halvings, share *= 0.5) {
+    tried_ = estimate;
+    move(share, tried_);
+    tried_.compose(graph);
+    const double after = squares(graph, tried_);
+    if (after > before * (1.0 + kCostRounding) && halvings < kMostStepHalvings) continue;
+    estimate = tried_;
+    return after;
+  }
+}
 
 Smoother::Smoother(const FilterSetup& setup)
     : model_(setup.belief),
@@ -149,7 +221,6 @@ FilterKind smoother_kind() {
           .long_name = "full smoothing",
           .source = "Dellaert, Kaess 2006; EQUATIONS 21",
           .has_particles = false,
-          .has_mixture = false,
           .has_joint = true,
           .options = {number_option("relinearise", "0.5", 0, 1e9,
                                     "standard deviations that a landmark may move before all is "

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/factory.hpp"
 #include "tests/doubles/allocation_count.hpp"
-#include "tests/filters/default_options.hpp"
 #include "tests/filters/small_world.hpp"
 
 #include <gtest/gtest.h>

@@ -3,7 +3,9 @@
 
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
+#include "tests/filters/small_world.hpp"
 
+#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -20,6 +22,27 @@ inline testing::AssertionResult is_consistent(double anees, std::uint64_t runs) 
          << (anees < band.lower ? "conservative" : "optimistic") << ": ANEES "
          << analysis::readable(anees) << " where 3 is expected (" << analysis::readable(band.lower)
          << " to " << analysis::readable(band.upper) << " over " << runs << " runs)";
+}
+
+/// Of the poses at the end of some runs.
+struct FinalErrors {
+  double squared = 0.0;  ///< mean of squared distances [m^2]
+  double anees = 0.0;    ///< mean NEES
+};
+
+/// Of runs whose seeds count up from that of `settings`.
+inline FinalErrors final_errors(SlamFilter& filter, SmallWorldSettings settings,
+                                std::uint64_t runs) {
+  FinalErrors mean;
+  for (std::uint64_t run = 0; run < runs; ++run, ++settings.seed) {
+    const SmallWorld world = small_world(settings);
+    drive_through(filter, world, Pose(), [](std::size_t) {});
+    const PoseMoments belief = filter.estimate().spread;
+    const Eigen::Vector3d error = boxminus(world.drive.truth.back(), belief.mean);
+    mean.squared += error.head<2>().squaredNorm() / static_cast<double>(runs);
+    mean.anees += error.dot(belief.covariance.llt().solve(error)) / static_cast<double>(runs);
+  }
+  return mean;
 }
 
 }  // namespace montecarta::filters

@@ -10,9 +10,29 @@
 #include "filters/models/range_bearing.hpp"
 
 #include <cmath>
+#include <functional>
+#include <map>
+#include <string>
 #include <vector>
 
 namespace montecarta::filters {
+
+/// A filter's options as a newcomer gets them, but for those of `others`.
+inline FilterOptions default_options(
+    const FilterKind& kind, const std::map<std::string, std::string, std::less<>>& others = {}) {
+  std::map<std::string, std::string, std::less<>> values = others;
+  for (const Option& option : kind.options) values.emplace(option.key, *option.fallback);
+  return FilterOptions(values);
+}
+
+/// Noise so small that the models are linear within it: there EKF-SLAM is the Kalman filter of its
+/// world.
+inline Belief fine() {
+  return {.vehicle = {},
+          .control = {.sigma = {3e-3, 5e-4}},
+          .sigma_range = 1e-3,
+          .sigma_bearing = 2e-4};
+}
 
 /// A world for tests of filters: a vehicle on a circle of 27 m among landmarks, with noise on its
 /// motion.

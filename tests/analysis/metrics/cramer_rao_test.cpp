@@ -2,7 +2,7 @@
 #include "analysis/metrics/cramer_rao.hpp"
 
 #include "filters/models/ackermann.hpp"
-#include "tests/filters/some_sensors.hpp"
+#include "tests/filters/some_models.hpp"
 
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>

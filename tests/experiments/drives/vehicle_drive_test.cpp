@@ -3,7 +3,7 @@
 #include "engine/errors.hpp"
 #include "experiments/drives/simulated_drive.hpp"
 #include "experiments/worlds/world.hpp"
-#include "tests/filters/some_vehicles.hpp"
+#include "tests/filters/some_models.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/de_srcd.hpp"
 
-#include "filters/joint/joint_filters.hpp"
-#include "tests/filters/default_options.hpp"
+#include "filters/joint/joint_filter.hpp"
 #include "tests/filters/fastslam/filter_comparison.hpp"
-#include "tests/filters/reference/gaussian.hpp"
+#include "tests/filters/laws/filters_held_to_laws.hpp"
 #include "tests/filters/reference/particle.hpp"
+#include "tests/filters/small_world.hpp"
 #include "tests/filters/two_scans.hpp"
 
 #include <gtest/gtest.h>
@@ -101,17 +101,10 @@ TEST(DeSrcd, FollowsTheTruthWithOneTwoAndThreeParticles) {
 
 TEST(DeSrcd, TurnsWithTheWorldInEveryMode) {
   const SmallWorldSettings settings;
-  const SmallWorld world = small_world(settings);
-  const Pose start{-30.0, 50.0, 2.0};
   for (const char* mode : {"unbiased", "as_printed", "prior", "shared"}) {
-    const auto filter = make_production(de_srcd(mode, 9), settings);
-    std::vector<Pose> unturned;
-    drive_through(*filter, world, Pose(),
-                  [&](std::size_t) { unturned.push_back(filter->estimate().spread.mean); });
-    drive_through(*filter, turned(world, start), start, [&](std::size_t scan) {
-      const Pose now = filter->estimate().spread.mean;
-      EXPECT_LT(boxminus(now, turned(unturned[scan], start)).norm(), 1e-6) << mode << ' ' << scan;
-    });
+    SCOPED_TRACE(mode);
+    expect_turns_with_the_world(*make_production(de_srcd(mode, 9), settings),
+                                small_world(settings));
   }
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Landmarks in a form of their own: the family takes any that gaussian_of() gives as a Gaussian.
 #include "filters/fastslam/fast_slam_filters.hpp"
 #include "tests/filters/fastslam/filter_comparison.hpp"
 
@@ -93,6 +94,78 @@ INSTANTIATE_TEST_SUITE_P(
                     Variant{"srcd_aided", "ratio", nearest, 8},
                     Variant{"srcd_pf", "ratio", nearest, 9, {{"map_uncertainty", "off"}}}),
     testing::PrintToStringParamName());
+
+/// In units of two metres: a power of two, so that no bit is lost.
+template <class Real>
+struct InTwoMetres {
+  BasicPoint<Real> mean{};
+  Symmetric2<Real> covariance{};
+};
+
+template <class Real>
+InTwoMetres<Real> in_two_metres(const LandmarkGaussian<Real>& landmark) {
+  const auto& [mean, covariance] = landmark;
+  return {{0.5 * mean.x, 0.5 * mean.y}, Real(0.25) * covariance};
+}
+template <class Real>
+LandmarkGaussian<Real> gaussian_of(const InTwoMetres<Real>& landmark) {
+  const auto& [mean, covariance] = landmark;
+  return {{2.0 * mean.x, 2.0 * mean.y}, Real(4.0) * covariance};
+}
+
+struct LinearisedInTwoMetres {
+  template <class Real, class Mask, class Weighed>
+  Innovation<Real> update(InTwoMetres<Real>& landmark, const BasicPose<Real>& pose,
+                          const RangeBearing<Real>& seen, const SensorNoise& noise,
+                          const Mask& matched, Weighed& evidence) const {
+    LandmarkGaussian<Real> in_map = gaussian_of(landmark);
+    Innovation<Real> v = Linearised().update(in_map, pose, seen, noise, matched, evidence);
+    landmark = in_two_metres(in_map);
+    return v;
+  }
+  template <class Real>
+  InTwoMetres<Real> initialise(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
+                               const SensorNoise& noise) const {
+    return in_two_metres(Linearised().initialise(pose, seen, noise));
+  }
+};
+
+class LandmarkForms : public testing::TestWithParam<Variant> {};
+
+TEST_P(LandmarkForms, AreUpdatedAssociatedResampledAndReported) {
+  const SmallWorldSettings settings;
+  const SmallWorld world = small_world(settings);
+  const auto plain = make_production(GetParam(), settings);
+  const auto other =
+      make_refined<Lanes>(setup_of(GetParam(), settings), Linearised(), LinearisedInTwoMetres());
+  expect_same_run(*plain, *other, world, 1e-300);
+  std::vector<std::optional<LandmarkEstimate>> expected(settings.landmarks), map(expected);
+  plain->map(expected), other->map(map);
+  for (std::size_t j = 0; j < map.size(); ++j) {
+    ASSERT_EQ(map[j].has_value(), expected[j].has_value());
+    if (!map[j]) continue;
+    EXPECT_EQ(map[j]->mean, expected[j]->mean);
+    EXPECT_EQ(map[j]->covariance, expected[j]->covariance);
+  }
+}
+
+// A bearing would be taken for a range.
+TEST(LandmarkForm, IsRefusedAnotherSensorThanRangeAndBearingAtThePose) {
+  const SmallWorldSettings settings;
+  for (const Sensor& sensor : {Sensor{.kind = BearingSensor()}, Sensor{.kind = RangeBearingSensor(),
+                                                                .mounting = {.forward = 1.0}}}) {
+    FilterSetup setup = setup_of(Variant{"fastslam2"}, settings);
+    setup.belief.sensor = sensor;
+    EXPECT_THROW(make_refined<Lanes>(setup, Linearised(), LinearisedInTwoMetres()),
+                 std::logic_error);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, LandmarkForms,
+                         testing::Values(Variant{"fastslam2"}, Variant{"fastslam2", "ratio"},
+                                         Variant{"fastslam2", "batch"},
+                                         Variant{"fastslam2", "closed", Association::nearest}),
+                         testing::PrintToStringParamName());
 
 }  // namespace
 }  // namespace montecarta::filters

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // FastSLAM of sensors other than range and bearing at the pose.
 #include "filters/fastslam/fast_slam_filters.hpp"
-#include "filters/joint/joint_filters.hpp"
-#include "tests/filters/default_options.hpp"
-#include "tests/filters/told_bits.hpp"
+#include "filters/joint/joint_filter.hpp"
+#include "tests/filters/same_runs.hpp"
+#include "tests/filters/small_world.hpp"
 #include "tests/filters/two_scans.hpp"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Landmarks that one detection does not fix, in a map of which most is far from the vehicle.
 #include "filters/joint/joint_belief.hpp"
-#include "filters/joint/joint_filters.hpp"
-#include "tests/filters/default_options.hpp"
+#include "filters/joint/joint_filter.hpp"
 #include "tests/filters/small_world.hpp"
 
 #include <Eigen/Dense>

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/errors.hpp"
 #include "filters/joint/joint_belief.hpp"
-#include "filters/joint/joint_filters.hpp"
-#include "tests/filters/default_options.hpp"
-#include "tests/filters/reference/textbook_ekf_slam.hpp"
+#include "filters/joint/joint_filter.hpp"
 #include "tests/filters/small_world.hpp"
 
 #include <Eigen/Dense>
@@ -21,16 +19,6 @@ FilterSetup setup_for(std::size_t landmarks, Association kind = Association::kno
   return setup;
 }
 
-/// The textbook filter behind the signature of a SlamFilter.
-struct TextbookRunner {
-  reference::TextbookEkfSlam filter{Belief{}};
-  void start(const Pose& pose) { filter.start(pose); }
-  void predict(const StepContext&, const Control& control, double duration) {
-    filter.predict(control, duration);
-  }
-  void update(const StepContext&, Scan scan) { filter.update(scan); }
-};
-
 double nees(const PoseMoments& moments, const Pose& truth) {
   const Eigen::Vector3d error = boxminus(truth, moments.mean);
   return error.dot(moments.covariance.ldlt().solve(error));
@@ -40,36 +28,6 @@ Pose turned(const Pose& pose, double turn) {
   const Direction<double> u = direction_of(turn);
   return {pose.x * u.cosine - pose.y * u.sine + 11.0, pose.x * u.sine + pose.y * u.cosine - 7.0,
           wrap(pose.heading + turn)};
-}
-
-TEST(EkfSlam, EqualsTheTextbookFilter) {
-  const SmallWorld world = small_world({.seed = 5, .landmarks = 21, .scans = 250});
-  std::vector<Eigen::VectorXd> means;
-  std::vector<Eigen::MatrixXd> covariances;
-  TextbookRunner textbook;
-  drive_through(textbook, world, {}, [&](std::size_t) {
-    means.push_back(textbook.filter.mean);
-    covariances.push_back(textbook.filter.covariance);
-  });
-  const auto filter = make_ekf_slam(setup_for(21));
-  std::vector<std::optional<LandmarkEstimate>> map(21);
-  drive_through(*filter, world, {}, [&](std::size_t s) {
-    const PoseMoments& pose = filter->estimate().spread;
-    const Pose expected{means[s](0), means[s](1), means[s](2)};
-    EXPECT_LT(boxminus(pose.mean, expected).norm(), 1e-9) << "scan " << s;
-    EXPECT_LT((pose.covariance - covariances[s].topLeftCorner<3, 3>()).norm(), 1e-9);
-    filter->map(map);
-  });
-  for (std::int32_t k = 0; k < 21; ++k) {
-    const Eigen::Index row = textbook.filter.row_of(k);
-    ASSERT_EQ(row >= 0, map[static_cast<std::size_t>(k)].has_value()) << "landmark " << k;
-    if (row < 0) continue;
-    const LandmarkEstimate& landmark = *map[static_cast<std::size_t>(k)];
-    EXPECT_EQ(landmark.covariance, landmark.covariance.transpose());
-    EXPECT_LT((landmark.mean - textbook.filter.mean.segment<2>(row)).norm(), 1e-9);
-    EXPECT_LT((landmark.covariance - textbook.filter.covariance.block<2, 2>(row, row)).norm(),
-              1e-9);
-  }
 }
 
 TEST(EkfSlam, TurningAndShiftingTheWorldLeavesNeesUnchanged) {

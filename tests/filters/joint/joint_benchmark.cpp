@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/random/stream.hpp"
-#include "filters/joint/joint_filters.hpp"
+#include "filters/joint/joint_filter.hpp"
 #include "filters/models/ackermann.hpp"
 #include "filters/models/range_bearing.hpp"
-#include "tests/filters/default_options.hpp"
+#include "tests/filters/small_world.hpp"
 
 #include <benchmark/benchmark.h>
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Laws of whole filters on a map so large that most of it is compressed.
-#include "filters/joint/joint_filters.hpp"
+#include "filters/joint/joint_filter.hpp"
 #include "filters/joint/joint_gaussian.hpp"
-#include "tests/filters/default_options.hpp"
-#include "tests/filters/fine_noise.hpp"
 #include "tests/filters/small_world.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A robot whose heading is known, with a sensor that measures positions, is a linear model.
-#include "filters/joint/joint_filters.hpp"
-#include "tests/filters/default_options.hpp"
+#include "filters/joint/joint_filter.hpp"
 #include "tests/filters/small_world.hpp"
 
 #include <Eigen/Dense>

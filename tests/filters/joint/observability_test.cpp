@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What no detection can tell: how path and map are turned as a whole.
-#include "filters/joint/joint_filters.hpp"
-#include "tests/filters/default_options.hpp"
-#include "tests/filters/reference/fej_ekf_slam.hpp"
+#include "filters/joint/joint_filter.hpp"
+#include "tests/filters/consistent_anees.hpp"
 #include "tests/filters/small_world.hpp"
 
 #include <gtest/gtest.h>
@@ -73,40 +72,75 @@ TEST(RotationInformation, IsNotToldOfASensorThatDoesNotFixLandmarks) {
   EXPECT_TRUE(std::isnan(filter->report().rotation_information));
 }
 
-/// The literal filter behind the signature of a SlamFilter.
-struct FejRunner {
-  reference::FejEkfSlam filter;
-  void start(const Pose& pose) { filter.start(pose); }
-  void predict(const StepContext&, const Control& control, double duration) {
-    filter.predict(control, duration);
-  }
-  void update(const StepContext&, Scan scan) { filter.update(scan); }
-};
+using Make = std::unique_ptr<SlamFilter> (*)(const FilterSetup&);
 
-class AsPublished : public testing::TestWithParam<FilterKind> {};
-
-TEST_P(AsPublished, EqualsTheLiteralFilter) {
-  const FilterKind& kind = GetParam();
-  const SmallWorld world = small_world({.seed = 5, .landmarks = 21, .scans = 250});
-  std::vector<Eigen::Vector3d> means;
-  std::vector<Eigen::Matrix3d> covariances;
-  FejRunner literal{{Belief{}, kind.name == "oc_ekf_slam"}};
-  drive_through(literal, world, {4.0, -3.0, 0.5}, [&](std::size_t) {
-    means.push_back(literal.filter.mean.head<3>());
-    covariances.push_back(literal.filter.covariance.topLeftCorner<3, 3>());
-  });
-  const auto filter = kind.make(
-      {.belief = {}, .association = {}, .options = default_options(kind), .landmarks = 21});
-  drive_through(*filter, world, {4.0, -3.0, 0.5}, [&](std::size_t s) {
-    const PoseMoments& pose = filter->estimate().spread;
-    const Pose expected{means[s](0), means[s](1), means[s](2)};
-    EXPECT_LT(boxminus(pose.mean, expected).norm(), 1e-9) << "scan " << s;
-    EXPECT_LT((pose.covariance - covariances[s]).norm(), 1e-9) << "scan " << s;
-  });
+FilterSetup setup_for(std::size_t landmarks, const Belief& belief = {}) {
+  return {.belief = belief,
+          .association = {},
+          .options = default_options(ekf_slam_kind()),
+          .landmarks = landmarks};
 }
 
-INSTANTIATE_TEST_SUITE_P(All, AsPublished, testing::Values(fej_ekf_slam_kind(), oc_ekf_slam_kind()),
-                         [](const auto& instance) { return instance.param.name; });
+TEST(RiekfSlam, IsEkfSlamUntilALandmarkIsSeenAgain) {
+  const SmallWorld world = small_world({.seed = 6, .scans = 3});
+  const auto plain = make_ekf_slam(setup_for(20));
+  const auto invariant = make_riekf_slam(setup_for(20));
+  const auto advance = [&](SlamFilter& filter, std::uint32_t step) {
+    filter.predict(StepContext(6, 0, step, Parallel::serial()), world.drive.controls[step], 0.025);
+    return filter.estimate().spread;
+  };
+  const auto expect_equal = [&](std::uint32_t step) {
+    const PoseMoments a = advance(*plain, step), b = advance(*invariant, step);
+    EXPECT_EQ(boxminus(a.mean, b.mean).norm(), 0.0) << "step " << step;
+    EXPECT_EQ(a.covariance, b.covariance) << "step " << step;
+  };
+  plain->start({});
+  invariant->start({});
+  for (std::uint32_t step = 0; step < 8; ++step) expect_equal(step);
+  for (auto* filter : {plain.get(), invariant.get()}) {
+    filter->update(StepContext(6, 0, 7, Parallel::serial()), world.drive.scan(0));
+  }
+  for (std::uint32_t step = 8; step < 16; ++step) expect_equal(step);
+}
+
+/// Noise that bends the models: here EKF-SLAM and RI-EKF-SLAM part.
+Belief rough() { return {.control = {.sigma = {0.3, 0.1}}, .sigma_bearing = 0.05}; }
+
+/// How much of the heading's variance is left to a vehicle that drove blindly, stood, and looked a
+/// hundred times at landmarks it had never seen before: nothing of that tells where x points.
+double heading_variance_left(Make make) {
+  const auto filter = make(setup_for(3, rough()));
+  filter->start({5.0, 2.0, 1.0});
+  RngStream draw({.seed = 12, .purpose = Draw::test});
+  const StepContext context(12, 0, 0, Parallel::serial());
+  for (int step = 0; step < 200; ++step) filter->predict(context, {3.0, 0.1}, 0.025);
+  const double before = filter->estimate().spread.covariance(2, 2);
+  for (int look = 0; look < 100; ++look) {
+    std::vector<Detection> scan{{10.0, 0.5, 0}, {15.0, -0.6, 1}, {20.0, 0.1, 2}};
+    for (Detection& detection : scan) {
+      detection[0] += rough().sigma_range * draw.normal();
+      detection[1] += rough().sigma_bearing * draw.normal();
+    }
+    filter->update(context, scan);
+  }
+  return filter->estimate().spread.covariance(2, 2) / before;
+}
+
+TEST(RiekfSlam, AStandingVehicleLearnsNothingOfItsHeadingFromNewLandmarks) {
+  EXPECT_NEAR(heading_variance_left(make_riekf_slam), 1.0, 1e-12);
+  EXPECT_LT(heading_variance_left(make_ekf_slam), 0.7);  // takes the jitter of its map for news
+}
+
+TEST(RiekfSlam, StaysConsistentWhereEkfSlamDoesNot) {
+  constexpr std::uint64_t kRuns = 200;
+  const SmallWorldSettings settings{.seed = 900, .scans = 150, .noise = rough()};
+  const auto anees = [&](Make make) {
+    return final_errors(*make(setup_for(settings.landmarks, settings.noise)), settings, kRuns)
+        .anees;
+  };
+  EXPECT_TRUE(is_consistent(anees(make_riekf_slam), kRuns));
+  EXPECT_GT(anees(make_ekf_slam), 5.9);  // half as much again as the end of the band
+}
 
 }  // namespace
 }  // namespace montecarta::filters

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What every filter is held to, as a newcomer would get it.
 #include "filters/factory.hpp"
-#include "tests/filters/default_options.hpp"
 #include "tests/filters/laws/filters_held_to_laws.hpp"
 #include "tests/filters/small_world.hpp"
-#include "tests/filters/told_bits.hpp"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +15,6 @@
 #include <vector>
 
 namespace montecarta::filters {
-
 namespace {
 
 std::unique_ptr<SlamFilter> make_default(
@@ -119,32 +115,8 @@ TEST_P(EveryFilter, ForgetsADifferentRunBefore) {
     const auto fresh = make_default(GetParam(), 11, settings, association);
     drive_through(*used, first, Pose(), [](std::size_t) {});
     const std::size_t n = GetParam().has_particles ? 11 : 0;
-    std::vector<ToldBits> told;
-    drive_through(*used, world, Pose(),
-                  [&](std::size_t) { told.emplace_back(*used, n, settings.landmarks); });
-    drive_through(*fresh, world, Pose(), [&](std::size_t scan) {
-      ASSERT_TRUE(ToldBits(*fresh, n, settings.landmarks) == told[scan]) << "scan " << scan;
-    });
+    EXPECT_TRUE(told(*used, n, world) == told(*fresh, n, world));
   }
-}
-
-/// Returns when all threads are awake, so that what comes next is shared out among them.
-void rouse(const Parallel& parallel) {
-  std::barrier together(parallel.threads());
-  parallel.for_each(static_cast<std::size_t>(parallel.threads()),
-                    [&](std::size_t) { together.arrive_and_wait(); });
-}
-
-/// All that a filter tells after every scan, with loops over particles spread over `parallel`.
-std::vector<ToldBits> told(SlamFilter& filter, std::size_t particles, const SmallWorld& world,
-                           const Parallel& parallel) {
-  std::vector<ToldBits> bits;
-  const auto listen = [&](std::size_t) {
-    bits.emplace_back(filter, particles, world.itinerary.landmarks.size());
-    if (parallel.threads() > 1) rouse(parallel);
-  };
-  drive_through(filter, world, Pose(), listen, parallel);
-  return bits;
 }
 
 TEST_P(EveryFilter, GivesTheSameBitsOnAnyNumberOfThreads) {
@@ -155,12 +127,7 @@ TEST_P(EveryFilter, GivesTheSameBitsOnAnyNumberOfThreads) {
   const Parallel threads(Backend::tbb, 3);
   for (const auto association : {Association::known, Association::nearest}) {
     const auto filter = make_default(GetParam(), particles, settings, association);
-    const auto alone = told(*filter, n, world, Parallel::serial());
-    const auto together = told(*filter, n, world, threads);
-    ASSERT_EQ(alone.size(), together.size());
-    for (std::size_t scan = 0; scan < alone.size(); ++scan) {
-      ASSERT_TRUE(alone[scan] == together[scan]) << "scan " << scan;
-    }
+    EXPECT_TRUE(told(*filter, n, world) == told(*filter, n, world, threads));
   }
 }
 
@@ -172,42 +139,23 @@ TEST_P(EveryFilter, GivesTheSameBitsOnEveryThreadWhileOthersRun) {
   const auto make = [&] {
     return make_default(GetParam(), particles, settings, Association::known);
   };
-  const auto alone = told(*make(), n, world, Parallel::serial());
+  const auto alone = told(*make(), n, world);
   const Parallel threads(Backend::tbb, 3);
   std::vector<std::vector<ToldBits>> at_once(3);
   std::barrier together(3);
   threads.for_each(3, [&](std::size_t thread) {
     const auto filter = make();
     together.arrive_and_wait();
-    at_once[thread] = told(*filter, n, world, Parallel::serial());
+    at_once[thread] = told(*filter, n, world);
   });
   for (const auto& one : at_once) EXPECT_TRUE(one == alone);
 }
 
-/// `now` is `was` in the world turned and shifted as `start`.
-void expect_turned(const PoseMoments& now, const PoseMoments& was, const Pose& start) {
-  EXPECT_LT(boxminus(now.mean, turned(was.mean, start)).norm(), 1e-6);
-  const Eigen::Matrix3d turn =
-      Eigen::AngleAxisd(start.heading, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  EXPECT_LT((now.covariance - turn * was.covariance * turn.transpose()).norm(), 1e-7);
-}
-
 TEST_P(EveryFilter, TurningTheWorldTurnsTheEstimate) {
   const SmallWorldSettings settings;
-  const SmallWorld world = small_world(settings);
-  const Pose start{-30.0, 50.0, 2.0};
-  const SmallWorld other = turned(world, start);
   const auto filter =
       make_default(GetParam(), 30, settings, Association::known, {{"moments", "pushed"}});
-  std::vector<PoseEstimate> unturned;
-  drive_through(*filter, world, Pose(),
-                [&](std::size_t) { unturned.push_back(filter->estimate()); });
-  drive_through(*filter, other, start, [&](std::size_t scan) {
-    const PoseEstimate now = filter->estimate(), &was = unturned[scan];
-    expect_turned(now.spread, was.spread, start);
-    ASSERT_EQ(now.mixture.has_value(), was.mixture.has_value());
-    if (now.mixture) expect_turned(*now.mixture, *was.mixture, start);
-  });
+  expect_turns_with_the_world(*filter, small_world(settings));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryFilter, testing::ValuesIn(filters_held_to_laws()),

@@ -2,14 +2,10 @@
 // What holds for every filter with every sensor that it takes, on some vehicles.
 #include "filters/factory.hpp"
 #include "tests/filters/consistent_anees.hpp"
-#include "tests/filters/default_options.hpp"
 #include "tests/filters/laws/filters_held_to_laws.hpp"
 #include "tests/filters/small_world.hpp"
-#include "tests/filters/some_sensors.hpp"
-#include "tests/filters/some_vehicles.hpp"
-#include "tests/filters/told_bits.hpp"
+#include "tests/filters/some_models.hpp"
 
-#include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -61,12 +57,6 @@ Belief easy(const SomeVehicle& vehicle, const Sensor& sensor) {
   return noise;
 }
 
-/// Of the poses at the end of some runs.
-struct FinalErrors {
-  double squared = 0.0;  ///< mean of squared distances [m^2]
-  double anees = 0.0;    ///< mean NEES
-};
-
 class EveryFilterAndSensor : public testing::TestWithParam<Offered> {
  protected:
   const FilterKind& kind() const { return GetParam().kind; }
@@ -87,46 +77,17 @@ class EveryFilterAndSensor : public testing::TestWithParam<Offered> {
                     .options = default_options(of, special),
                     .landmarks = 25});
   }
-  FinalErrors final_errors(SlamFilter& filter, std::uint64_t runs) const {
-    FinalErrors mean;
-    for (std::uint64_t run = 0; run < runs; ++run) {
-      const SmallWorld world = small_world(settings(100 + run, 60));
-      drive_through(filter, world, Pose(), [](std::size_t) {});
-      const PoseMoments belief = filter.estimate().spread;
-      const Eigen::Vector3d error = boxminus(world.drive.truth.back(), belief.mean);
-      mean.squared += error.head<2>().squaredNorm() / static_cast<double>(runs);
-      mean.anees += error.dot(belief.covariance.llt().solve(error)) / static_cast<double>(runs);
-    }
-    return mean;
-  }
-  std::size_t particles() const { return kind().has_particles ? kParticles : 0; }
 };
 
 TEST_P(EveryFilterAndSensor, TurningTheWorldTurnsTheEstimate) {
-  const SmallWorld world = small_world(settings(1, 60));
-  const Pose start{-30.0, 50.0, 2.0};
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() << std::cos(2.0), -std::sin(2.0), std::sin(2.0), std::cos(2.0);
-  const auto filter = make();
-  std::vector<PoseMoments> unturned;
-  drive_through(*filter, world, Pose(),
-                [&](std::size_t) { unturned.push_back(filter->estimate().spread); });
-  drive_through(*filter, turned(world, start), start, [&](std::size_t scan) {
-    const PoseMoments now = filter->estimate().spread, &was = unturned[scan];
-    EXPECT_LT(boxminus(now.mean, turned(was.mean, start)).norm(), 1e-6) << "scan " << scan;
-    EXPECT_LT((now.covariance - turn * was.covariance * turn.transpose()).norm(), 1e-7);
-  });
+  expect_turns_with_the_world(*make(), small_world(settings(1, 60)));
 }
 
 TEST_P(EveryFilterAndSensor, GivesTheSameBitsAgain) {
   const SmallWorld world = small_world(settings(2, 40));
   const auto filter = make();
-  std::vector<ToldBits> first;
-  drive_through(*filter, world, Pose(),
-                [&](std::size_t) { first.emplace_back(*filter, particles(), 25); });
-  drive_through(*filter, world, Pose(), [&](std::size_t scan) {
-    EXPECT_TRUE(ToldBits(*filter, particles(), 25) == first[scan]) << "scan " << scan;
-  });
+  const std::size_t n = kind().has_particles ? kParticles : 0;
+  EXPECT_TRUE(told(*filter, n, world) == told(*filter, n, world));
 }
 
 TEST_P(EveryFilterAndSensor, BuildsAMapNearTheTruthAndCountsItsInnovations) {
@@ -166,15 +127,15 @@ TEST_P(EveryFilterAndSensor, BuildsAMapNearTheTruthAndCountsItsInnovations) {
 TEST_P(EveryFilterAndSensor, IsConsistentOnAnEasyWorld) {
   if (kind().has_particles) GTEST_SKIP() << "no joint covariance";
   constexpr std::uint64_t kRuns = 60;
-  EXPECT_TRUE(is_consistent(final_errors(*make(), kRuns).anees, kRuns));
+  EXPECT_TRUE(is_consistent(final_errors(*make(), settings(100, 60), kRuns).anees, kRuns));
 }
 
 TEST_P(EveryFilterAndSensor, SlowErrsByLessThanTwiceTheKalmanFilterOnAnEasyWorld) {
   if (!kind().has_particles) GTEST_SKIP() << "is one, or has no map";
   constexpr std::uint64_t kRuns = 60;
   const auto kalman = std::ranges::find(filter_kinds(), "ekf_slam", &FilterKind::name);
-  const double expected = final_errors(*made(*kalman, 0), kRuns).squared;
-  EXPECT_LT(final_errors(*make(kManyParticles), kRuns).squared, 4.0 * expected);
+  const double expected = final_errors(*made(*kalman, 0), settings(100, 60), kRuns).squared;
+  EXPECT_LT(final_errors(*make(kManyParticles), settings(100, 60), kRuns).squared, 4.0 * expected);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryFilterAndSensor, testing::ValuesIn(all_offered()),

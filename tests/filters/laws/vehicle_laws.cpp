@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What holds for every filter with every vehicle. The path turns on the spot again and again.
 #include "filters/factory.hpp"
-#include "tests/filters/default_options.hpp"
 #include "tests/filters/laws/filters_held_to_laws.hpp"
 #include "tests/filters/small_world.hpp"
-#include "tests/filters/some_vehicles.hpp"
-#include "tests/filters/told_bits.hpp"
+#include "tests/filters/some_models.hpp"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -41,20 +38,7 @@ class EveryFilterAndVehicle : public testing::TestWithParam<std::tuple<FilterKin
 };
 
 TEST_P(EveryFilterAndVehicle, TurningTheWorldTurnsTheEstimate) {
-  const SmallWorld world = small_world(settings());
-  const Pose start{-30.0, 50.0, 2.0};
-  const SmallWorld other = turned(world, start);
-  const Eigen::Matrix3d turn =
-      Eigen::AngleAxisd(start.heading, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  const auto filter = make();
-  std::vector<PoseMoments> unturned;
-  drive_through(*filter, world, Pose(),
-                [&](std::size_t) { unturned.push_back(filter->estimate().spread); });
-  drive_through(*filter, other, start, [&](std::size_t scan) {
-    const PoseMoments now = filter->estimate().spread, &was = unturned[scan];
-    EXPECT_LT(boxminus(now.mean, turned(was.mean, start)).norm(), 1e-6) << "scan " << scan;
-    EXPECT_LT((now.covariance - turn * was.covariance * turn.transpose()).norm(), 1e-7);
-  });
+  expect_turns_with_the_world(*make(), small_world(settings()));
 }
 
 TEST_P(EveryFilterAndVehicle, StaysNearTheTruth) {
@@ -72,12 +56,7 @@ TEST_P(EveryFilterAndVehicle, GivesTheSameBitsAgain) {
   const SmallWorld world = small_world(settings());
   const auto filter = make();
   const std::size_t n = kind().has_particles ? kParticles : 0;
-  std::vector<ToldBits> first;
-  drive_through(*filter, world, Pose(),
-                [&](std::size_t) { first.emplace_back(*filter, n, settings().landmarks); });
-  drive_through(*filter, world, Pose(), [&](std::size_t scan) {
-    EXPECT_TRUE(ToldBits(*filter, n, settings().landmarks) == first[scan]) << "scan " << scan;
-  });
+  EXPECT_TRUE(told(*filter, n, world) == told(*filter, n, world));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryFilterAndVehicle,

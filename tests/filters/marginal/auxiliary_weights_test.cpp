@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/random/normals.hpp"
 #include "filters/marginal/kernel_sums.hpp"
-#include "filters/marginal/shared_likelihood.hpp"
-#include "filters/moments/gaussian_draw.hpp"
+#include "filters/marginal/shared_map.hpp"
+#include "filters/moments/gaussians.hpp"
 #include "tests/filters/marginal/kernel_clouds.hpp"
 
 #include <gtest/gtest.h>

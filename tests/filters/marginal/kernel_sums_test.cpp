@@ -2,7 +2,7 @@
 #include "filters/marginal/kernel_sums.hpp"
 
 #include "tests/filters/marginal/kernel_clouds.hpp"
-#include "tests/filters/reference/gaussian.hpp"
+#include "tests/filters/reference/particle.hpp"
 
 #include <gtest/gtest.h>
 

@@ -34,56 +34,6 @@ Case random_case(RngStream& draw) {
 
 Pose moved(const Case& c) { return move(c.pose, c.control, kDuration, c.vehicle); }
 
-/// Central difference of move() by the value `at` points to.
-Eigen::Vector3d slope(Case c, double& (*at)(Case&)) {
-  const double middle = at(c);
-  const double h = 1e-5;
-  at(c) = middle + h;
-  const Pose ahead = moved(c);
-  at(c) = middle - h;
-  return boxminus(ahead, moved(c)) / (2.0 * h);
-}
-
-TEST(Ackermann, JacobiansEqualCentralDifferences) {
-  RngStream draw({.seed = 21, .purpose = Draw::test});
-  for (int n = 0; n < 200; ++n) {
-    const Case c = random_case(draw);
-    const auto j = linearised_move(c.pose, c.control, kDuration, c.vehicle).jacobians;
-    Eigen::Matrix<double, 3, 5> expected;
-    expected << slope(c, [](Case& v) -> double& { return v.pose.x; }),
-        slope(c, [](Case& v) -> double& { return v.pose.y; }),
-        slope(c, [](Case& v) -> double& { return v.pose.heading; }),
-        slope(c, [](Case& v) -> double& { return v.control[0]; }),
-        slope(c, [](Case& v) -> double& { return v.control[1]; });
-    EXPECT_TRUE(pose_jacobian(j).isApprox(expected.leftCols<3>(), 1e-8)) << "case " << n;
-    EXPECT_LT((control_jacobian(j) - expected.rightCols<2>()).norm(), 1e-8) << "case " << n;
-  }
-}
-
-TEST(Ackermann, LinearisedMoveGoesWhereMoveGoes) {
-  RngStream draw({.seed = 22, .purpose = Draw::test});
-  for (int n = 0; n < 200; ++n) {
-    const Case c = random_case(draw);
-    const Pose there = linearised_move(c.pose, c.control, kDuration, c.vehicle).pose;
-    EXPECT_LT(boxminus(there, moved(c)).norm(), 1e-14) << "case " << n;
-  }
-}
-
-TEST(Ackermann, TurningAndShiftingTheWorldTurnsAndShiftsTheMove) {
-  RngStream draw({.seed = 23, .purpose = Draw::test});
-  for (int n = 0; n < 200; ++n) {
-    const Case c = random_case(draw);
-    const double turn = 3.0 * draw.normal();
-    const auto in_other_world = [turn](const Pose& p) -> Pose {
-      return {p.x * std::cos(turn) - p.y * std::sin(turn) + 5.0,
-              p.x * std::sin(turn) + p.y * std::cos(turn) - 2.0, wrap(p.heading + turn)};
-    };
-    const Pose expected = in_other_world(moved(c));
-    EXPECT_LT(boxminus(moved({in_other_world(c.pose), c.control, c.vehicle}), expected).norm(),
-              1e-12);
-  }
-}
-
 TEST(Ackermann, DrivesSidewaysByTheSineOfCourse) {
   // Ankishan eq. (38) prints cos in both rows; with heading 90 degrees that would stand still in y.
   const Pose there = move(Pose{0.0, 0.0, kPi / 2.0}, Control{2.0, 0.0}, 0.5, kFront);

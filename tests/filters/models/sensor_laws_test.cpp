@@ -3,7 +3,7 @@
 #include "engine/random/stream.hpp"
 #include "filters/models/field_of_view.hpp"
 #include "filters/models/triangulation.hpp"
-#include "tests/filters/some_sensors.hpp"
+#include "tests/filters/some_models.hpp"
 
 #include <gtest/gtest.h>
 

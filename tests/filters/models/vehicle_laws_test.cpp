@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What holds for every vehicle that there is.
+#include "engine/random/stream.hpp"
 #include "filters/models/ackermann.hpp"
-#include "filters/models/control_of.hpp"
 #include "filters/models/eigen_jacobians.hpp"
-#include "tests/filters/some_vehicles.hpp"
+#include "filters/models/vehicle.hpp"
+#include "tests/filters/some_models.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +12,6 @@
 #include <set>
 
 namespace montecarta::models {
-
 namespace {
 
 constexpr double kDuration = 0.1;
@@ -153,6 +153,12 @@ TEST(Vehicles, AreAllInTheLaws) {
 TEST(Vehicles, AreNotFoundByAnotherName) {
   const auto nothing = [](const std::string&) { return std::nullopt; };
   EXPECT_FALSE(vehicle_named("hovercraft", nothing, nothing).has_value());
+}
+
+TEST(ControlOf, FindsNoSteeringInAVehicleThatStands) {
+  const Control at_rest = control_of({0.0, 0.0, 0.0}, 0.1, Vehicle{});
+  EXPECT_EQ(at_rest[0], 0.0);
+  EXPECT_EQ(at_rest[1], 0.0);
 }
 
 }  // namespace

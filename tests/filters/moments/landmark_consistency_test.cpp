@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A landmark seen again and again from one exactly known pose.
 #include "filters/models/eigen_jacobians.hpp"
-#include "filters/moments/moment_transforms.hpp"
+#include "filters/moments/sigma_points.hpp"
 #include "tests/filters/moments/random_gaussians.hpp"
 
 #include <Eigen/Dense>

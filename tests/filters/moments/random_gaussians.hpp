@@ -2,8 +2,8 @@
 #pragma once
 
 #include "engine/random/stream.hpp"
+#include "filters/moments/evidence.hpp"
 #include "filters/moments/gaussians.hpp"
-#include "filters/moments/sensor_noise.hpp"
 
 #include <Eigen/Core>
 

@@ -2,8 +2,7 @@
 #include "filters/moments/sigma_rule.hpp"
 
 #include "engine/random/stream.hpp"
-#include "tests/filters/reference/square_root.hpp"
-#include "tests/filters/reference/unscented.hpp"
+#include "tests/filters/reference/sigma_points.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // The moments of a step of every vehicle, against points that are all sent through it.
 #include "filters/moments/motion_increment.hpp"
 #include "tests/filters/moments/random_gaussians.hpp"
-#include "tests/filters/some_vehicles.hpp"
+#include "tests/filters/some_models.hpp"
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>

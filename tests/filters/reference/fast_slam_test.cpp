@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/filters/reference/fast_slam1.hpp"
-#include "tests/filters/reference/fast_slam2.hpp"
+#include "tests/filters/reference/fast_slam.hpp"
+
 #include "tests/filters/small_world.hpp"
 
 #include <gtest/gtest.h>

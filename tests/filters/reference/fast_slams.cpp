@@ -2,8 +2,8 @@
 #include "tests/filters/reference/fast_slams.hpp"
 
 #include "tests/filters/reference/de_srcd_fast_slam.hpp"
-#include "tests/filters/reference/fast_slam1.hpp"
-#include "tests/filters/reference/ufast_slam.hpp"
+#include "tests/filters/reference/fast_slam.hpp"
+#include "tests/filters/reference/sigma_fast_slams.hpp"
 
 #include <utility>
 

@@ -54,7 +54,9 @@ class InvariantEkfSlam {
     for (const Detection& detection : fresh) append(detection);
   }
 
-  Pose pose() const { return {points[0].x(), points[0].y(), heading}; }
+  PoseMoments moments() const {
+    return {{points[0].x(), points[0].y(), heading}, covariance().topLeftCorner<3, 3>()};
+  }
   /// Covariance of (x, y, heading, landmarks) in the map frame: e = xi + J p xi_heading.
   Eigen::MatrixXd covariance() const {
     Eigen::MatrixXd T = Eigen::MatrixXd::Identity(P.rows(), P.rows());

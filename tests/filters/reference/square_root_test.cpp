@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tests/filters/reference/square_root.hpp"
-
 #include "engine/random/stream.hpp"
-#include "tests/filters/reference/gaussian.hpp"
+#include "tests/filters/reference/particle.hpp"
+#include "tests/filters/reference/sigma_points.hpp"
 
 #include <gtest/gtest.h>
 

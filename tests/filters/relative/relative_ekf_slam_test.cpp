@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/relative/relative_ekf_slam.hpp"
 
-#include "filters/joint/joint_filters.hpp"
+#include "filters/joint/joint_filter.hpp"
 #include "filters/smoothing/smoother.hpp"
-#include "tests/filters/default_options.hpp"
-#include "tests/filters/fine_noise.hpp"
 #include "tests/filters/small_world.hpp"
 
 #include <Eigen/Dense>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/relative/relative_gaussian.hpp"
 
-#include "filters/relative/chain_moments.hpp"
+#include "filters/relative/relative_chain.hpp"
 #include "tests/filters/relative/some_chain.hpp"
 
 #include <Eigen/Dense>

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whole drives, to show how the cost grows with their scans and landmarks.
-#include "filters/joint/joint_filters.hpp"
+#include "filters/joint/joint_filter.hpp"
 #include "filters/smoothing/smoother.hpp"
-#include "tests/filters/default_options.hpp"
 #include "tests/filters/small_world.hpp"
 
 #include <benchmark/benchmark.h>

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/particles/blocks.hpp"
+#include "filters/evolution/differential_evolution.hpp"
+#include "filters/moments/gaussians.hpp"
+#include "filters/moments/linearised.hpp"
+#include "filters/population/population.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <vector>
+
+namespace montecarta::filters {
+
+/// A detection and the landmark that a particle takes it for.
+template <class Real>
+struct MatchedDetection {
+  LandmarkGaussian<Real> landmark;
+  RangeBearing<Real> seen;
+  Real matched;  ///< 1, or 0 where the particle takes it for nothing it knows
+};
+
+/// Appends what the particles of block b, once fetched, take every match of a scan for.
+template <class Real, class Associating>
+void append_matched(const Associating& association, std::size_t b,
+                    std::vector<MatchedDetection<Real>>& scan) {
+  for (std::size_t k = 0; k < association.matches(); ++k) {
+    const auto& [landmark, seen, mask] = association.match(b, k);
+    scan.push_back({landmark, seen, as_number<Real>(mask)});
+  }
+}
+
+/// How well a pose explains a scan.
+template <class Real>
+class PoseFitness {
+ public:
+  PoseFitness(const PoseGaussian<Real>& predicted, const SensorNoise& noise)
+      : predicted_(predicted), noise_(noise) {}
+
+  /// Log of Ankishan eq. (32) read for range and bearing: sum of -1/2 nu' R^-1 nu (EQUATIONS 10).
+  /// Neither the motion nor the map's covariance counts.
+  Real likelihood(const BasicPose<Real>& pose, std::span<const MatchedDetection<Real>> scan) const {
+    Real sum(0.0);
+    for (const MatchedDetection<Real>& one : scan) {
+      const RangeBearing<Real> nu = residual(one.seen, line_of_sight(pose, one.landmark.mean));
+      sum += one.matched *
+             (nu.range * nu.range / noise_.range + nu.bearing * nu.bearing / noise_.bearing);
+    }
+    return -0.5 * sum;
+  }
+
+  /// Log of the pose's posterior density up to a constant: the map's covariance in the innovation,
+  /// and the prediction as prior (EQUATIONS 10).
+  Real posterior(const BasicPose<Real>& pose, std::span<const MatchedDetection<Real>> scan) const {
+    Evidence<Real> evidence;
+    for (const MatchedDetection<Real>& one : scan) {
+      const LineOfSight<Real> s = line_of_sight(pose, one.landmark.mean);
+      const auto use = one.matched > Real(0.5) && is_usable(s);
+      const Turned<Real> map = turned(one.landmark.covariance, s);
+      const auto [r, b] = residual(one.seen, s);
+      const Symmetric2<Real> S{noise_.range + map.along, map.cross * s.per_range,
+                               noise_.bearing + map.across * s.per_range * s.per_range};
+      const Real determinant = S.determinant(), squared = S.adjugate_form(r, b) / determinant;
+      evidence.add(select(use, squared, Real(0.0)), select(use, determinant, Real(1.0)),
+                   as_number<Real>(use), one.matched);
+    }
+    return evidence.log_density() + predicted_(pose);
+  }
+
+ private:
+  PoseDensity<Real> predicted_;
+  SensorNoise noise_;
+};
+
+/// How the candidates of the particles of one block share registers, so that none is spent on lanes
+/// without a particle: candidate `member` of the particle in `lane` is number member * particles
+/// + lane. With all lanes alive nothing changes place.
+template <class Real>
+class PackedCandidates {
+ public:
+  /// `particles` <= kLanesOf<Real> particles of `members` candidates each.
+  PackedCandidates(std::size_t particles, std::size_t members)
+      : particles_(particles),
+        numbers_(particles * members),
+        lanes_of_(std::lcm(particles, kLanes)),
+        place_of_(blocks_for<Real>(numbers_) * kLanes) {
+    for (std::size_t i = 0; i < lanes_of_.size(); ++i)
+      lanes_of_[i] = static_cast<std::uint32_t>(i % particles);
+    for (std::size_t i = 0; i < place_of_.size(); ++i) {
+      const std::size_t member = i < numbers_ ? i / particles : 0;  // what fills up is nobody's
+      place_of_[i] = static_cast<std::uint32_t>(member * kLanes + i % particles);
+    }
+  }
+
+  std::size_t blocks() const { return place_of_.size() / kLanes; }
+  /// After how many packed blocks lanes belong to the same particles again.
+  std::size_t patterns() const { return lanes_of_.size() / kLanes; }
+
+  /// What is said of the particles of a block, as the lanes of packed block `pattern`, `pattern` +
+  /// patterns(), ... need it. `Block`: a struct of Reals.
+  template <class Block>
+  Block pattern_of(const Block& particles, std::size_t pattern) const {
+    if (particles_ == kLanes) return particles;
+    return gather_block<Real, Block>(std::span(&particles, 1), lanes_of_, pattern);
+  }
+  /// Packed block q of candidates of which each holds one of every lane.
+  template <class Candidate>
+  Candidate pack(std::span<const Candidate> candidates, std::size_t q) const {
+    if (particles_ == kLanes) return candidates[q];
+    return gather_block<Real, Candidate>(candidates, place_of_, q);
+  }
+  /// Puts the numbers of packed block q where their candidates came from.
+  void unpack(const Real& packed, std::size_t q, std::span<Real> numbers) const {
+    if (particles_ == kLanes) {
+      numbers[q] = packed;
+      return;
+    }
+    for (std::size_t i = q * kLanes; i < std::min((q + 1) * kLanes, numbers_); ++i)
+      set(numbers[place_of_[i] / kLanes], place_of_[i] % kLanes, get(packed, i % kLanes));
+  }
+
+ private:
+  static constexpr std::size_t kLanes = kLanesOf<Real>;
+
+  std::size_t particles_;                ///< lanes that hold a particle
+  std::size_t numbers_;                  ///< of candidates
+  std::vector<std::uint32_t> lanes_of_;  ///< the particle of every packed lane, until they repeat
+  std::vector<std::uint32_t> place_of_;  ///< member and lane of every packed candidate
+};
+
+/// Evolves a population for every particle of one block apart from all others, in standard
+/// deviations of the particle's refined Gaussian (EQUATIONS 10).
+template <class Real>
+class OwnEvolution {
+ public:
+  /// `population` members, at least seven, for each of the block's `particles`.
+  OwnEvolution(std::size_t particles, std::size_t population)
+      : population_(population), packed_(particles, population) {}
+
+  /// The most probable pose that is found within `bounds` standard deviations, in standard
+  /// deviations of `refined`: where the particles of block b, who expected `predicted`, take the
+  /// detections for what `association` says.
+  template <class Associating>
+  std::array<Real, 3> most_probable(const Associating& association, std::size_t b,
+                                    const PoseGaussian<Real>& predicted,
+                                    const PoseGaussian<Real>& refined, const SensorNoise& noise,
+                                    double bounds, const EvolutionSettings& settings,
+                                    const StreamIdentity& chance) {
+    look(association, b, predicted, refined, noise);
+    if (scan_.empty()) return {Real(0.0), Real(0.0), Real(0.0)};
+    begin(bounds, chance);
+    const Real bound(bounds);
+    const SearchBox<Real, 3> box{{Real(0.0), Real(0.0), Real(0.0)}, {bound, bound, bound}, {}};
+    return evolve<Real, 3>(
+               population_, box, settings, EvolutionDraws{chance, first_block()}, scratch_,
+               [&](Candidates candidates, std::span<Real> fitness) { judge(candidates, fitness); })
+        .best;
+  }
+
+ private:
+  using Candidates = std::span<const std::array<Real, 3>>;
+
+  /// What the particles of block b believe, in the order of packed candidates.
+  template <class Associating>
+  void look(const Associating& association, std::size_t b, const PoseGaussian<Real>& predicted,
+            const PoseGaussian<Real>& refined, const SensorNoise& noise) {
+    fitness_.clear(), factors_.clear(), scan_.clear(), packed_scan_.clear();
+    append_matched(association, b, scan_);
+    for (std::size_t p = 0; p < packed_.patterns(); ++p) {
+      fitness_.emplace_back(packed_.pattern_of(predicted, p), noise);
+      factors_.emplace_back(packed_.pattern_of(refined, p));
+      for (const MatchedDetection<Real>& one : scan_)
+        packed_scan_.push_back(packed_.pattern_of(one, p));
+    }
+  }
+
+  void judge(Candidates candidates, std::span<Real> fitness) const {
+    const std::size_t patterns = packed_.patterns();
+    for (std::size_t q = 0; q < packed_.blocks(); ++q) {
+      const std::size_t p = q % patterns;
+      const std::array<Real, 3> c = packed_.pack(candidates, q);
+      const Real fit =
+          fitness_[p].posterior(factors_[p].at(c[0], c[1], c[2]),
+                                std::span(packed_scan_).subspan(p * scan_.size(), scan_.size()));
+      packed_.unpack(fit, q, fitness);
+    }
+  }
+
+  /// Of the stream, behind those that the first generation is drawn from.
+  std::uint32_t first_block() const { return 2 * static_cast<std::uint32_t>(population_.size()); }
+
+  /// The centre, the sigma points, and draws, kept within bounds.
+  void begin(double bounds, const StreamIdentity& identity) {
+    const Real bound(bounds);
+    const auto inside = [&](const Real& e) {
+      return select(e > bound, bound, select(e < -bound, Real(-bound), e));
+    };
+    population_.assign(population_.size(), {Real(0.0), Real(0.0), Real(0.0)});
+    for (std::size_t j = 0; j < 3; ++j) {
+      population_[1 + j][j] = inside(Real(std::sqrt(3.0)));
+      population_[4 + j][j] = inside(Real(-std::sqrt(3.0)));
+    }
+    for (std::uint32_t i = 7; i < population_.size(); ++i) {
+      const auto [e0, e1] = normal_pairs<Real>(identity, 2 * i);
+      const Real e2 = normal_pairs<Real>(identity, 2 * i + 1).first;
+      population_[i] = {inside(e0), inside(e1), inside(e2)};
+    }
+  }
+
+  std::vector<std::array<Real, 3>> population_;
+  PackedCandidates<Real> packed_;
+  std::vector<PoseFitness<Real>> fitness_;           ///< of every pattern of packed lanes
+  std::vector<PoseFactor<Real>> factors_;            ///< the same
+  std::vector<MatchedDetection<Real>> scan_;         ///< of every detection
+  std::vector<MatchedDetection<Real>> packed_scan_;  ///< {pattern, detection}
+  EvolutionScratch<Real, 3> scratch_;
+};
+
+/// Evolves the cloud of predicted poses as one population (Ankishan 3.2, Fig. 1): member i is
+/// particle i, and what moves there is judged by particle i's own map. Components are those along,
+/// across and about the cloud's mean heading, so that a turned world evolves alike.
+template <class Real>
+class CloudEvolution {
+ public:
+  /// What fitness asks for.
+  enum class Aim { likelihood, posterior };
+
+  /// Looks at where the particles are and what each takes the detections for.
+  template <class Associating>
+  void gather(const Associating& association, const Weights<Real>& weights,
+              const std::vector<PoseGaussian<Real>>& predicted, const SensorNoise& noise) {
+    moments_ = mixture_of(weights, predicted);
+    frame_ = direction_of(moments_.mean.heading);
+    population_.resize(weights.particles());
+    fitness_.clear(), matched_.clear();
+    for (std::size_t b = 0; b < predicted.size(); ++b) {
+      association.fetch(b);
+      append_matched(association, b, matched_);
+      fitness_.emplace_back(predicted[b], noise);
+      const std::array<Real, 3> members = block_of_members(predicted[b].mean);
+      for (std::size_t i = b * kLanes; i < end_of(b); ++i)
+        for (std::size_t j = 0; j < 3; ++j) population_[i][j] = get(members[j], i % kLanes);
+    }
+  }
+
+  /// Evolves within `bounds` standard deviations of the cloud; `poses` are where the particles end.
+  void evolve(Aim aim, double bounds, const EvolutionSettings& settings,
+              const StreamIdentity& identity, std::vector<BasicPose<Real>>& poses) {
+    const auto judge = [&](Members members, std::span<double> fitness) {
+      for (std::size_t b = 0; b < fitness_.size(); ++b) {
+        const Real fit = fitness_of_block(aim, b, block_of_poses(members, b));
+        for (std::size_t i = b * kLanes; i < end_of(b); ++i) fitness[i] = get(fit, i % kLanes);
+      }
+    };
+    filters::evolve<double, 3>(population_, box(bounds), settings, EvolutionDraws{identity},
+                               scratch_, judge);
+    for (std::size_t b = 0; b < poses.size(); ++b) poses[b] = block_of_poses(population_, b);
+  }
+
+ private:
+  static constexpr std::size_t kLanes = kLanesOf<Real>;
+  using Members = std::span<const std::array<double, 3>>;
+
+  /// Behind the last particle of block b.
+  std::size_t end_of(std::size_t b) const { return std::min((b + 1) * kLanes, population_.size()); }
+
+  Real fitness_of_block(Aim aim, std::size_t b, const BasicPose<Real>& pose) const {
+    const std::size_t scan_size = matched_.size() / fitness_.size();
+    const auto scan = std::span(matched_).subspan(b * scan_size, scan_size);
+    return aim == Aim::likelihood ? fitness_[b].likelihood(pose, scan)
+                                  : fitness_[b].posterior(pose, scan);
+  }
+
+  std::array<Real, 3> block_of_members(const BasicPose<Real>& pose) const {
+    const Real x = pose.x - moments_.mean.x, y = pose.y - moments_.mean.y;
+    return {frame_.cosine * x + frame_.sine * y, frame_.cosine * y - frame_.sine * x,
+            wrap(Real(pose.heading - moments_.mean.heading))};
+  }
+  /// Of the particles of block b; lanes without one stand on the mean.
+  BasicPose<Real> block_of_poses(Members members, std::size_t b) const {
+    std::array<Real, 3> m{Real(0.0), Real(0.0), Real(0.0)};
+    for (std::size_t i = b * kLanes; i < end_of(b); ++i)
+      for (std::size_t j = 0; j < 3; ++j) set(m[j], i % kLanes, members[i][j]);
+    return {moments_.mean.x + frame_.cosine * m[0] - frame_.sine * m[1],
+            moments_.mean.y + frame_.sine * m[0] + frame_.cosine * m[1],
+            wrap(Real(moments_.mean.heading + m[2]))};
+  }
+
+  /// mean +- bounds standard deviations, and no member outside.
+  SearchBox<double, 3> box(double bounds) const {
+    const Symmetric3<double> P =
+        turned(symmetric_of(moments_.covariance), Direction<double>{frame_.cosine, -frame_.sine});
+    SearchBox<double, 3> box{
+        {0.0, 0.0, 0.0},
+        {bounds * std::sqrt(std::max(P.xx, 0.0)), bounds * std::sqrt(std::max(P.yy, 0.0)),
+         bounds * std::sqrt(std::max(P.hh, 0.0))},
+        {false, false, true}};
+    for (const auto& one : population_) {
+      for (std::size_t j = 0; j < 3; ++j) box.half[j] = std::max(box.half[j], std::abs(one[j]));
+    }
+    box.half[2] = std::min(box.half[2], kPi);
+    return box;
+  }
+
+  PoseMoments moments_;
+  Direction<double> frame_{1.0, 0.0};
+  std::vector<MatchedDetection<Real>> matched_;  ///< {block, detection}
+  std::vector<PoseFitness<Real>> fitness_;       ///< of each block's particles
+  std::vector<std::array<double, 3>> population_;
+  EvolutionScratch<double, 3> scratch_;
+};
+
+}  // namespace montecarta::filters

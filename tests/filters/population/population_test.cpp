@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "filters/population/population.hpp"
+
+#include "engine/random/stream.hpp"
+#include "filters/setup/filter_setup.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace montecarta::filters {
+namespace {
+
+TEST(CloudMoments, MoveAsEveryPoseDoesHoweverWideTheCloud) {
+  for (const double width : {0.01, 1.0, kPi}) {
+    RngStream draw({3, 0, 0, 0, Draw::test});
+    Weights<double> weights(9);
+    std::vector<BasicPose<double>> poses(9);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      poses[i] = {10 * draw.normal(), 10 * draw.normal(),
+                  wrap(3.0 + width * (2 * draw.uniform() - 1))};
+      weights.multiply(i, draw.normal());
+    }
+    weights.normalise();
+    MotionIncrement motion;
+    for (int k = 0; k < 5; ++k) motion.advance({3.0, 0.3}, 0.1, Belief{});
+    const PoseEstimate closed = CloudMoments(weights, poses).moved_by(motion);
+    std::vector<PoseGaussian<double>> moved;
+    std::vector<BasicPose<double>> centres;
+    for (const auto& pose : poses) {
+      moved.push_back(motion.from(pose));
+      centres.push_back(moved.back().mean);
+    }
+    const PoseMoments spread = spread_of(weights, centres), mixture = mixture_of(weights, moved);
+    EXPECT_LT((closed.spread.covariance - spread.covariance).norm(), 1e-9) << width;
+    EXPECT_LT((closed.mixture->covariance - mixture.covariance).norm(), 1e-9) << width;
+    EXPECT_LT(boxminus(closed.spread.mean, spread.mean).norm(), 1e-9) << width;
+  }
+}
+
+}  // namespace
+}  // namespace montecarta::filters

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/factory.hpp"
+#include "filters/models/eigen_jacobians.hpp"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+/// Kalman filters with full matrices at every step and known association, as their papers have them
+/// and as slow.
+namespace montecarta::filters::reference {
+
+/// A B and A P A' of full matrices; every size alike, which spares the compiler most of its work.
+inline Eigen::MatrixXd product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) { return A * B; }
+inline Eigen::MatrixXd sandwich(const Eigen::MatrixXd& A, const Eigen::MatrixXd& P) {
+  return product(product(A, P), A.transpose());
+}
+
+/// A Gaussian over `rows_before` rows, then landmarks in the order of their initialisation.
+class FullGaussian {
+ public:
+  FullGaussian(const Belief& belief, Eigen::Index rows_before)
+      : belief_(belief), rows_before_(rows_before) {}
+
+  /// First of the two rows of a landmark, -1 where it is not in the map.
+  Eigen::Index row_of(std::int32_t identity) const {
+    const auto slot = std::ranges::find(identities_, identity) - identities_.begin();
+    return slot == std::ssize(identities_) ? -1 : rows_before_ + 2 * slot;
+  }
+
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd covariance;
+
+ protected:
+  void start(const Eigen::VectorXd& at) {
+    mean = at;
+    covariance = Eigen::MatrixXd::Zero(at.size(), at.size());
+    identities_.clear();
+  }
+  const Belief& belief() const { return belief_; }
+  Eigen::Matrix2d R() const {
+    return Eigen::Vector2d(std::pow(belief_.sigma_range, 2), std::pow(belief_.sigma_bearing, 2))
+        .asDiagonal();
+  }
+  Eigen::Vector2d Q() const {
+    return {std::pow(belief_.control.sigma[0], 2), std::pow(belief_.control.sigma[1], 2)};
+  }
+  Pose pose_at(Eigen::Index row) const { return {mean(row), mean(row + 1), mean(row + 2)}; }
+  Point point_at(Eigen::Index row) const { return {mean(row), mean(row + 1)}; }
+
+  /// The pose of three rows moves to `there`.
+  void move(Eigen::Index row, const Pose& there, const Eigen::Matrix3d& by_pose,
+            const Eigen::Matrix<double, 3, 2>& by_control) {
+    Eigen::MatrixXd F = Eigen::MatrixXd::Identity(mean.size(), mean.size());
+    F.block<3, 3>(row, row) = by_pose;
+    Eigen::MatrixXd G = Eigen::MatrixXd::Zero(mean.size(), 2);
+    G.middleRows<3>(row) = by_control;
+    mean.segment<3>(row) << there.x, there.y, there.heading;
+    covariance = sandwich(F, covariance) + sandwich(G, Q().asDiagonal());
+  }
+  /// Calls `see(detection, row)` of what is in the map, then append(detection, place) of the rest.
+  template <class See, class Place>
+  void use(Scan scan, const See& see, const Place& place) {
+    std::vector<Detection> fresh;
+    for (const Detection& detection : scan) {
+      const Eigen::Index row = row_of(detection.identity);
+      row < 0 ? fresh.push_back(detection) : see(detection, row);
+    }
+    for (const Detection& detection : fresh) place(detection);
+  }
+  /// Derivative of an observation by the rows of a pose and of a landmark.
+  Eigen::MatrixXd derivative(Eigen::Index pose, Eigen::Index landmark,
+                             const LinearisedObservation<double>& at) const {
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(2, mean.size());
+    H.middleCols<3>(pose) = pose_jacobian(at);
+    H.middleCols<2>(landmark) = landmark_jacobian(at);
+    return H;
+  }
+  /// Kalman's step, and Joseph's form of the covariance.
+  void condition(const Eigen::MatrixXd& H, const RangeBearing<double>& innovation) {
+    const Eigen::Matrix2d S = sandwich(H, covariance) + R();
+    const Eigen::Matrix2d per_S = S.ldlt().solve(Eigen::Matrix2d::Identity());
+    const Eigen::MatrixXd K = product(product(covariance, H.transpose()), per_S);
+    mean += product(K, to_vector(innovation));
+    const Eigen::MatrixXd I_KH =
+        Eigen::MatrixXd::Identity(mean.size(), mean.size()) - product(K, H);
+    covariance = sandwich(I_KH, covariance) + sandwich(K, R());
+  }
+  /// A landmark placed from the first three rows, with that derivative by them.
+  void append(const Detection& detection, const LinearisedPlace<double>& placed,
+              const Matrix23& by_pose) {
+    const Eigen::Matrix2d Gz = observation_jacobian(placed);
+    const Eigen::Index n = mean.size();
+    Eigen::MatrixXd G = Eigen::MatrixXd::Zero(n + 2, n);
+    G.topRows(n).setIdentity();
+    G.bottomLeftCorner<2, 3>() = by_pose;
+    Eigen::MatrixXd grown = sandwich(G, covariance);
+    grown.bottomRightCorner<2, 2>() += Gz * R() * Gz.transpose();
+    covariance = grown;
+    mean.conservativeResize(n + 2);
+    mean.tail<2>() = to_vector(placed.point);
+    identities_.push_back(detection.identity);
+  }
+
+ private:
+  Belief belief_;
+  Eigen::Index rows_before_;
+  std::vector<std::int32_t> identities_;
+};
+
+/// EKF-SLAM as the textbook has it.
+class TextbookEkfSlam : public FullGaussian {
+ public:
+  explicit TextbookEkfSlam(const Belief& belief) : FullGaussian(belief, 3) {}
+
+  void start(const Pose& start) {
+    FullGaussian::start(Eigen::Vector3d(start.x, start.y, start.heading));
+  }
+  void predict(const Control& control, double duration) {
+    const auto step = linearised_move(pose(), control, duration, belief().vehicle);
+    move(0, step.pose, pose_jacobian(step.jacobians), control_jacobian(step.jacobians));
+  }
+  void update(Scan scan) {
+    use(
+        scan,
+        [&](const Detection& detection, Eigen::Index row) {
+          const auto [observation, H] = look(row);
+          condition(H, residual(observation_of(detection), observation));
+          mean(2) = wrap(mean(2));
+        },
+        [&](const Detection& detection) {
+          const auto placed = linearised_place(pose(), observation_of(detection));
+          append(detection, placed, pose_jacobian(placed));
+        });
+  }
+
+  /// What a landmark should look like, and its derivative by pose and map.
+  struct Look {
+    RangeBearing<double> observation;
+    Eigen::MatrixXd H;
+  };
+  Look look(Eigen::Index row) const {
+    const auto at = linearised_observation(pose(), point_at(row));
+    return {at.observation, derivative(0, row, at)};
+  }
+  Pose pose() const { return pose_at(0); }
+  PoseMoments moments() const { return {pose(), covariance.topLeftCorner<3, 3>()}; }
+};
+
+/// EKF-SLAM by first estimates as Huang, Mourikis and Roumeliotis 2008 have it: propagation by the
+/// predicted place before the last update, observations by that of the scan and the landmark as it
+/// was initialised. `constrained`: as they have it in 2010, with p* = p + lambda / (m + 1) before a
+/// motion, lambda = sum of (landmark - its first estimate - (p - p predicted + sum of all p* - p
+/// predicted before)).
+class FejEkfSlam : public FullGaussian {
+ public:
+  FejEkfSlam(const Belief& belief, bool constrained)
+      : FullGaussian(belief, 3), constrained_(constrained) {}
+
+  void start(const Pose& start) {
+    FullGaussian::start(Eigen::Vector3d(start.x, start.y, start.heading));
+    predicted_ = mean.head<2>();
+    moved_.setZero();
+    first_.clear();
+  }
+  void predict(const Control& control, double duration) {
+    const auto step = linearised_move(pose_at(0), control, duration, belief().vehicle);
+    if (is_updated_) choose_origin();
+    const Eigen::Vector2d way = Eigen::Vector2d(step.pose.x, step.pose.y) - predicted_;
+    Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
+    F.block<2, 1>(0, 2) << -way.y(), way.x();
+    move(0, step.pose, F, control_jacobian(step.jacobians));
+    predicted_ = mean.head<2>();
+  }
+  void update(Scan scan) {
+    const Pose from{predicted_.x(), predicted_.y(), mean(2)};
+    use(
+        scan,
+        [&](const Detection& detection, Eigen::Index row) {
+          const Eigen::Vector2d place = first_[static_cast<std::size_t>(row - 3) / 2] + moved_;
+          const auto at = linearised_observation(from, Point{place.x(), place.y()});
+          const auto expected = linearised_observation(pose_at(0), point_at(row)).observation;
+          condition(derivative(0, row, at), residual(observation_of(detection), expected));
+          mean(2) = wrap(mean(2));
+        },
+        [&](const Detection& detection) { place(detection); });
+    is_updated_ = true;
+  }
+  PoseMoments moments() const { return {pose_at(0), covariance.topLeftCorner<3, 3>()}; }
+
+ private:
+  /// Where the next propagation begins: p*.
+  void choose_origin() {
+    is_updated_ = false;
+    if (!constrained_) return;
+    const Eigen::Vector2d correction = mean.head<2>() - predicted_;
+    Eigen::Vector2d lambda = Eigen::Vector2d::Zero();
+    for (std::size_t slot = 0; slot < first_.size(); ++slot) {
+      lambda += mean.segment<2>(3 + 2 * static_cast<Eigen::Index>(slot)) - first_[slot] -
+                (correction + moved_);
+    }
+    const Eigen::Vector2d origin = mean.head<2>() + lambda / static_cast<double>(first_.size() + 1);
+    moved_ += origin - predicted_;
+    predicted_ = origin;
+  }
+  /// Derivative by the heading: from the predicted place, as an observation of it would have.
+  void place(const Detection& detection) {
+    const auto placed = linearised_place(pose_at(0), observation_of(detection));
+    const Eigen::Vector2d away = to_vector(placed.point) - predicted_;
+    append(detection, placed, Matrix23{{1.0, 0.0, -away.y()}, {0.0, 1.0, away.x()}});
+    first_.emplace_back(to_vector(placed.point) - moved_);
+  }
+
+  bool constrained_;
+  bool is_updated_ = false;
+  Eigen::Vector2d predicted_ = Eigen::Vector2d::Zero();
+  Eigen::Vector2d moved_ = Eigen::Vector2d::Zero();  ///< sum of p* - p predicted
+  std::vector<Eigen::Vector2d> first_;               ///< as initialised, less what had moved then
+};
+
+/// Robocentric EKF-SLAM as Castellanos, Martinez-Cantin, Tardos and Neira 2007 have it. The state
+/// is (base, motion, landmarks), all in the frame of the vehicle at the scan before: the pose of
+/// the map's frame, that of the vehicle, points. Detections correct all of it, then it is composed
+/// into the frame of the vehicle now.
+class RobocentricEkfSlam : public FullGaussian {
+ public:
+  explicit RobocentricEkfSlam(const Belief& belief) : FullGaussian(belief, 6) {}
+
+  void start(const Pose& start) {
+    start_ = start;
+    FullGaussian::start(Eigen::VectorXd::Zero(6));
+  }
+  void predict(const Control& control, double duration) {
+    const auto step = linearised_move(pose_at(3), control, duration, belief().vehicle);
+    move(3, step.pose, pose_jacobian(step.jacobians), control_jacobian(step.jacobians));
+  }
+  void update(Scan scan) {
+    bool is_composed = false;
+    const auto compose_once = [&] {
+      if (!std::exchange(is_composed, true)) compose();
+    };
+    use(
+        scan,
+        [&](const Detection& detection, Eigen::Index row) {
+          const auto at = linearised_observation(pose_at(3), point_at(row));
+          condition(derivative(3, row, at), residual(observation_of(detection), at.observation));
+        },
+        [&](const Detection& detection) {
+          compose_once();
+          const auto placed = linearised_place(Pose{}, observation_of(detection));
+          append(detection, placed, Matrix23::Zero());
+        });
+    compose_once();
+  }
+
+  /// In the map: start (+) (base^-1 (+) motion).
+  PoseMoments moments() const {
+    const Eigen::Matrix2d B = rotation(-mean(2)), W = rotation(start_.heading);
+    const Eigen::Vector2d way = B * (mean.segment<2>(3) - mean.head<2>());
+    const Eigen::Vector2d place = Eigen::Vector2d(start_.x, start_.y) + W * way;
+    Eigen::MatrixXd T = Eigen::MatrixXd::Zero(3, mean.size());
+    T.block<2, 2>(0, 0) = -W * B;
+    T.block<2, 1>(0, 2) = W * Eigen::Vector2d(way.y(), -way.x());
+    T.block<2, 2>(0, 3) = W * B;
+    T(2, 2) = -1.0;
+    T(2, 5) = 1.0;
+    return {{place.x(), place.y(), wrap(start_.heading + mean(5) - mean(2))},
+            sandwich(T, covariance)};
+  }
+
+ private:
+  static Eigen::Matrix2d rotation(double angle) {
+    return Eigen::Matrix2d{{std::cos(angle), -std::sin(angle)}, {std::sin(angle), std::cos(angle)}};
+  }
+  /// (-) motion (+) everything, linearised at the corrected motion.
+  void compose() {
+    const Eigen::Matrix2d back = rotation(-mean(5));
+    const Eigen::Vector2d moved = mean.segment<2>(3);
+    Eigen::MatrixXd T = Eigen::MatrixXd::Zero(mean.size(), mean.size());
+    const auto carry = [&](Eigen::Index row) {
+      const Eigen::Vector2d now = back * (mean.segment<2>(row) - moved);
+      mean.segment<2>(row) = now;
+      T.block<2, 2>(row, row) = back;
+      T.block<2, 2>(row, 3) = -back;
+      T.block<2, 1>(row, 5) = Eigen::Vector2d(now.y(), -now.x());
+    };
+    carry(0);
+    T(2, 2) = 1.0;
+    T(2, 5) = -1.0;
+    mean(2) = wrap(mean(2) - mean(5));
+    for (Eigen::Index row = 6; row < mean.size(); row += 2) carry(row);
+    mean.segment<3>(3).setZero();
+    covariance = sandwich(T, covariance);
+  }
+
+  Pose start_;
+};
+
+}  // namespace montecarta::filters::reference
