@@ -59,7 +59,7 @@ Eigen::Vector2d sigma_of(Facts& facts, const Sensor& sensor) {
   Eigen::Vector2d sigma = Eigen::Vector2d::Ones();
   Eigen::Index i = 0;
   for (const Quantity quantity : components_of(sensor)) {
-    sigma(i++) = facts.si(name_of(quantity).sigma);
+    sigma(i++) = facts.si(component_of(quantity).sigma.key);
   }
   return sigma;
 }

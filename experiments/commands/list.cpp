@@ -22,15 +22,15 @@ namespace montecarta::experiments {
 namespace {
 
 /// The default, and the one of measured controls where it is another.
-std::string fallback_text(const Option& option) {
+std::string fallback_text(const Parameter& option) {
   std::string text = option.fallback.value_or("(required)");
   if (option.fallback_if_measured) text += "; measured-control: " + *option.fallback_if_measured;
   return text;
 }
 
-void list_options(std::span<const Option> options) {
+void list_options(std::span<const Parameter> options) {
   std::vector<TableRow> rows;
-  for (const Option& option : options) {
+  for (const Parameter& option : options) {
     rows.push_back({option.key + "=" + fallback_text(option), option.meaning, demand_of(option)});
   }
   std::cout << aligned(rows, 4);

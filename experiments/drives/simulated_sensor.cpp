@@ -44,7 +44,7 @@ Detection SimulatedSensor::noisy(const Eigen::Vector2d& exact, std::int32_t iden
     double value = exact(at);
     if (noise != nullptr) value += sigma_(at) * noise->normal();
     if (quantity == Quantity::range) value = std::max(value, kLeastRange);
-    detection[i++] = name_of(quantity).wraps ? wrap(value) : value;
+    detection[i++] = is_angle(quantity) ? wrap(value) : value;
   }
   return detection;
 }

@@ -133,7 +133,7 @@ std::unique_ptr<SlamFilter> make_external(const FilterSetup& setup) {
   return std::make_unique<ExternalFilter>(setup, std::move(command));
 }
 
-Option command_option() {
+Parameter command_option() {
   return {.key = "command",
           .meaning = "the program and its arguments, in quotes; started by --allow-external alone",
           .example = "\"python3 my_filter.py\""};
@@ -142,19 +142,20 @@ Option command_option() {
 }  // namespace
 
 FilterKind external_kind() {
-  return {.name = kExternal,
-          .long_name = "external program",
-          .source = "experiments/EXTERNAL_FILTERS.md",
-          .has_particles = false,
-          .has_mixture = false,
-          .has_joint = false,
-          .options = {command_option(),
-                      number_option("answer_limit", "30", 1e-3, 86400,
-                                    "[s] to wait for an answer before the run fails"),
-                      choice_option("process", kProcesses.front(), kProcesses,
-                                    "one process of a worker for all its runs, or a new one each")},
-          .sensors = {},
-          .make = make_external};
+  return {
+      .name = kExternal,
+      .long_name = "external program",
+      .source = "experiments/EXTERNAL_FILTERS.md",
+      .has_particles = false,
+      .has_mixture = false,
+      .has_joint = false,
+      .options = {command_option(),
+                  number_parameter("answer_limit", "30", 1e-3, 86400,
+                                   "[s] to wait for an answer before the run fails"),
+                  choice_parameter("process", kProcesses.front(), kProcesses,
+                                   "one process of a worker for all its runs, or a new one each")},
+      .sensors = {},
+      .make = make_external};
 }
 
 bool starts_program(const FilterKind& filter) { return filter.name == kExternal; }

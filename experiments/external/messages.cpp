@@ -30,9 +30,10 @@ Json controls_of_step(std::span<const ControlRow> controls) {
 void add_controls(const Vehicle& vehicle, const ControlNoise& noise, Json& settings) {
   Json& names = settings["controls"] = Json::array();
   std::size_t i = 0;
-  for (const ControlName& control : controls_of(vehicle)) {
+  for (const Quantity quantity : controls_of(vehicle)) {
+    const Component& control = component_of(quantity);
     names.push_back(control.name);
-    settings[si_name(control.sigma)] = noise.sigma[i++];
+    settings[si_name(control.sigma.key)] = noise.sigma[i++];
   }
   if (!noise.grows()) return;
   for (std::size_t k = 0; k < noise.alpha.size(); ++k) settings[alpha_key(k)] = noise.alpha[k];
@@ -42,7 +43,7 @@ void add_sensor(const Belief& belief, Json& settings) {
   const auto& [forward, left, turn] = belief.sensor.mounting;
   settings["sensor"] = name_of(belief.sensor);
   for (const Quantity quantity : components_of(belief.sensor)) {
-    settings[si_name(name_of(quantity).sigma)] = deviation_of(quantity, belief);
+    settings[si_name(component_of(quantity).sigma.key)] = deviation_of(quantity, belief);
   }
   if (belief.sensor.mounting.is_none()) return;
   settings["mount_forward"] = forward;

@@ -63,8 +63,8 @@ void check_times(std::size_t count, const Time& time, const std::string& place) 
 void check_detection(const Detection& detection, std::span<const Quantity> components,
                      const Record& record) {
   for (std::size_t i = 0; i < components.size(); ++i) {
-    const DetectionName& component = name_of(components[i]);
-    if (component.is_positive && !(detection[i] > 0.0)) {
+    const Component& component = component_of(components[i]);
+    if (components[i] == Quantity::range && !(detection[i] > 0.0)) {
       record.refuse(std::string(component.name) + " " + to_text(detection[i]) +
                     " (a detection is farther than 0 m): correct it");
     }
@@ -172,14 +172,15 @@ void check_start(const DriveLog& log, const std::string& place, LogForm form) {
 
 }  // namespace
 
-void check_odometry(std::span<const Odometry> odometry, std::span<const ControlName> controls,
+void check_odometry(std::span<const Odometry> odometry, std::span<const Quantity> controls,
                     const std::string& place) {
   check_times(
       odometry.size(), [&](std::size_t i) { return odometry[i].time; }, place);
   for (std::size_t i = 0; i < odometry.size(); ++i) {
     const Record record{place, i};
     for (std::size_t c = 0; c < controls.size(); ++c) {
-      record.limit(odometry[i].control[c], controls[c].most, controls[c].noun, controls[c].limit);
+      const Component& control = component_of(controls[c]);
+      record.limit(odometry[i].control[c], control.most, control.name, control.limit);
     }
   }
 }

@@ -32,7 +32,7 @@ struct DriveLog {
   /// [s] when the vehicle was at `start`; what it did before nobody knows.
   double start_time = 0.0;
   Pose start;
-  std::span<const ControlName> controls = controls_of(Vehicle());  ///< what odometry consists of
+  std::span<const Quantity> controls = controls_of(Vehicle());     ///< what odometry consists of
   std::vector<Odometry> odometry;                                  ///< in increasing time
   std::span<const Quantity> components = components_of(Sensor());  ///< of the detections
   std::vector<LoggedScan> scans;                                   ///< in increasing time
@@ -46,7 +46,7 @@ inline constexpr std::int32_t kMostIdentities = 1'000'000;
 // Each throws StudyError "place: record N: problem (why): remedy" at the first record (from 1) that
 // cannot be: time not increasing, a number not finite or beyond anything that drives, e.g. degrees
 // in place of radians. `place` is the file.
-void check_odometry(std::span<const Odometry> odometry, std::span<const ControlName> controls,
+void check_odometry(std::span<const Odometry> odometry, std::span<const Quantity> controls,
                     const std::string& place);
 void check_scans(std::span<const LoggedScan> scans, const std::string& place,
                  std::span<const Quantity> components = components_of(Sensor()));

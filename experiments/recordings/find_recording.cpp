@@ -107,10 +107,10 @@ std::string fingerprint_of(const DriveLog& log) {
   bytes.add(log.start_time);
   bytes.add(log.start);
   if (log.controls.data() != controls_of(Car()).data()) {  // drives of cars keep theirs
-    for (const ControlName& control : log.controls) bytes.add_name(control.name);
+    for (const Quantity control : log.controls) bytes.add_name(component_of(control).name);
   }
   if (log.components.data() != components_of(Sensor()).data()) {  // those of range and bearing too
-    for (const Quantity quantity : log.components) bytes.add_name(name_of(quantity).name);
+    for (const Quantity quantity : log.components) bytes.add_name(component_of(quantity).name);
   }
   bytes.add(log.odometry);
   bytes.add(log.scans);

@@ -38,15 +38,15 @@ void read_start(const fs::path& path, DriveLog& log) {
 }
 
 /// The different sets of controls that vehicles have.
-std::vector<std::span<const ControlName>> known_controls() {
-  std::vector<std::span<const ControlName>> known;
+std::vector<std::span<const Quantity>> known_controls() {
+  std::vector<std::span<const Quantity>> known;
   for_each_vehicle([&](const Vehicle& vehicle) { known.push_back(controls_of(vehicle)); });
   return known;
 }
 
 /// The columns say what kind of vehicle it is of.
 void read_odometry(const fs::path& path, DriveLog& log) {
-  const std::vector<std::span<const ControlName>> known = known_controls();
+  const std::vector<std::span<const Quantity>> known = known_controls();
   std::vector<std::string> headers;
   for (const auto& controls : known) headers.push_back(log_csv::odometry_header(controls));
   CsvRows rows(path, headers);
@@ -54,7 +54,7 @@ void read_odometry(const fs::path& path, DriveLog& log) {
   while (rows.next()) {
     Odometry& odometry = log.odometry.emplace_back(Odometry{rows.number(0, "time"), {}});
     for (std::size_t c = 0; c < log.controls.size(); ++c) {
-      odometry.control[c] = rows.number(c + 1, log.controls[c].noun);
+      odometry.control[c] = rows.number(c + 1, component_of(log.controls[c]).name);
     }
   }
   check_odometry(log.odometry, log.controls, path.string());
@@ -73,7 +73,7 @@ std::optional<std::int32_t> identity_in(const CsvRows& rows, std::size_t column)
 Detection detection_in(const CsvRows& rows, std::span<const Quantity> components, bool identified) {
   Detection detection{.values = {}, .identity = Detection::kUnidentified};
   for (std::size_t i = 0; i < components.size(); ++i) {
-    detection[i] = rows.number(i + 1, name_of(components[i]).name);
+    detection[i] = rows.number(i + 1, component_of(components[i]).name);
   }
   if (!identified) return detection;
   detection.identity = identity_in(rows, components.size() + 1).value_or(Detection::kClutter);

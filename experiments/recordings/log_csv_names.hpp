@@ -16,15 +16,18 @@ using Headers = std::array<std::string, 2>;
 
 inline const std::array<std::string, 1> kStart = {"time_s,x_m,y_m,heading_rad"};
 /// Of the odometry of a vehicle with these controls.
-inline std::string odometry_header(std::span<const ControlName> controls) {
+inline std::string odometry_header(std::span<const Quantity> controls) {
   std::string header = "time_s";
-  for (const ControlName& control : controls) header.append(",").append(control.column);
+  for (const Quantity control : controls) {
+    header.append(",").append(component_of(control).column);
+  }
   return header;
 }
 /// Of the detections of a sensor with these components.
 inline Headers detection_headers(std::span<const Quantity> components) {
   std::string header = "time_s";
-  for (const Quantity quantity : components) header.append(",").append(name_of(quantity).column);
+  for (const Quantity quantity : components)
+    header.append(",").append(component_of(quantity).column);
   return {header, header + ",identity"};
 }
 inline const Headers kLandmarks = {"x_m,y_m", "x_m,y_m,identity"};

@@ -143,9 +143,8 @@ void SeveralDrives::generate(std::uint64_t run, Drive& drive) const {
   drives_.at(run).generate(run, drive);
 }
 
-DriveLog log_of(const Itinerary& itinerary, const Drive& drive,
-                std::span<const ControlName> controls, std::vector<Eigen::Vector2d> landmarks,
-                Identities identities) {
+DriveLog log_of(const Itinerary& itinerary, const Drive& drive, std::span<const Quantity> controls,
+                std::vector<Eigen::Vector2d> landmarks, Identities identities) {
   expect(itinerary.has_truth, "a log is made of a drive whose truth is unknown");
   DriveLog log;
   log.start = itinerary.start;

@@ -63,8 +63,7 @@ enum class Identities { told, withheld };
 /// controls and scans of it, bit for bit, while no detection is beyond its max_range. Times count
 /// from the start. The truth after every step is its only reference, `landmarks` its survey,
 /// `controls` what its controls are.
-DriveLog log_of(const Itinerary& itinerary, const Drive& drive,
-                std::span<const ControlName> controls, std::vector<Eigen::Vector2d> landmarks,
-                Identities identities);
+DriveLog log_of(const Itinerary& itinerary, const Drive& drive, std::span<const Quantity> controls,
+                std::vector<Eigen::Vector2d> landmarks, Identities identities);
 
 }  // namespace montecarta::experiments

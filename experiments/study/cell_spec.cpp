@@ -28,14 +28,14 @@ const FilterKind& known_filter(const std::string& name, const std::string& place
                    "' (see montecarta list filters): " + nearest_spelling(name, known));
 }
 
-const Option& known_option(const FilterKind& filter, const std::string& key,
-                           const std::string& place) {
+const Parameter& known_option(const FilterKind& filter, const std::string& key,
+                              const std::string& place) {
   std::vector<std::string> known{"label"};
-  for (const Option& option : filter.options) {
+  for (const Parameter& option : filter.options) {
     if (option.key == key) return option;
     known.push_back(option.key);
   }
-  for (const Option& option : mismatch_options()) {
+  for (const Parameter& option : mismatch_options()) {
     if (option.key == key) return option;
     known.push_back(option.key);
   }
@@ -70,9 +70,9 @@ void take_word(const std::string& word, const FilterKind& filter, CellSpec& cell
     cell.label = checked_label(word.substr(equals + 1), cell.place);
     return;
   }
-  const Option& option = known_option(filter, key, cell.place);
+  const Parameter& option = known_option(filter, key, cell.place);
   const std::string given = word.substr(equals + 1);
-  const bool is_list = option.kind != Option::Kind::text;  // a text may hold commas
+  const bool is_list = option.kind != Parameter::Kind::text;  // a text may hold commas
   for (const std::string& value : is_list ? split(given, ',') : std::vector{given}) {
     lists[key].push_back(checked_value(option, value, cell.place));
   }
@@ -96,19 +96,19 @@ void multiply(const std::vector<std::string>& values, const Take& take,
 std::vector<CellSpec> combinations(const CellSpec& line, const Lists& lists,
                                    bool controls_are_measured) {
   std::vector<CellSpec> cells{line};
-  const auto values_of = [&](const Option& option) {
+  const auto values_of = [&](const Parameter& option) {
     if (const auto given = lists.find(option.key); given != lists.end()) return given->second;
     const bool has_own = controls_are_measured && option.fallback_if_measured;
     const auto& fallback = has_own ? option.fallback_if_measured : option.fallback;
     return std::vector{checked_value(option, fallback.value_or(""), line.place)};
   };
-  for (const Option& option : line.filter->options) {
+  for (const Parameter& option : line.filter->options) {
     const auto take = [&](CellSpec& cell, const std::string& value) {
       cell.options.emplace_back(option.key, value);
     };
     multiply(values_of(option), take, cells);
   }
-  for (const Option& option : mismatch_options()) {
+  for (const Parameter& option : mismatch_options()) {
     const auto take = [&](CellSpec& cell, const std::string& value) {
       if (value != *option.fallback) cell.mismatch.emplace_back(option.key, value);
     };
@@ -226,8 +226,8 @@ std::string cell_line(const CellSpec& cell) {
   std::string line = cell.filter->name + " label=" + cell.label;
   for (std::size_t i = 0; i < cell.options.size(); ++i) {
     const auto& [key, value] = cell.options[i];
-    const Option& option = cell.filter->options[i];
-    const bool is_text = option.kind == Option::Kind::text;
+    const Parameter& option = cell.filter->options[i];
+    const bool is_text = option.kind == Parameter::Kind::text;
     line += " " + key + "=" + (is_text ? in_quotes(value) : value);
   }
   for (const auto& [key, value] : cell.mismatch) line += " " + key + "=" + value;
@@ -247,8 +247,9 @@ namespace {
 
 /// Whether nothing but its label can tell a cell from others of its filter.
 bool is_known_by_label(const CellSpec& cell) {
-  return std::ranges::any_of(
-      cell.filter->options, [](const Option& option) { return option.kind == Option::Kind::text; });
+  return std::ranges::any_of(cell.filter->options, [](const Parameter& option) {
+    return option.kind == Parameter::Kind::text;
+  });
 }
 
 /// A value as part of a label: 0.75 -> 0p75, -1 -> m1.
@@ -263,7 +264,7 @@ std::string label_part(std::string text) {
 /// Whether cells of the same filter differ in their option number `i`, other than by a text, which
 /// makes no label.
 bool distinguishes(const std::vector<CellSpec>& cells, const CellSpec& cell, std::size_t i) {
-  if (cell.filter->options[i].kind == Option::Kind::text) return false;
+  if (cell.filter->options[i].kind == Parameter::Kind::text) return false;
   return std::ranges::any_of(cells, [&](const CellSpec& other) {
     return other.filter == cell.filter && other.options[i].second != cell.options[i].second;
   });
@@ -297,12 +298,12 @@ void label_cells(std::vector<CellSpec>& cells) {
   }
 }
 
-std::span<const Option> mismatch_options() {
-  static const std::vector<Option> options = {
-      number_option("motion_noise", "1", 1e-3, 1e3,
-                    "factor on the believed deviations of the controls"),
-      number_option("sensor_noise", "1", 1e-3, 1e3,
-                    "factor on the believed sigma_range and sigma_bearing")};
+std::span<const Parameter> mismatch_options() {
+  static const std::vector<Parameter> options = {
+      number_parameter("motion_noise", "1", 1e-3, 1e3,
+                       "factor on the believed deviations of the controls"),
+      number_parameter("sensor_noise", "1", 1e-3, 1e3,
+                       "factor on the believed sigma_range and sigma_bearing")};
   return options;
 }
 

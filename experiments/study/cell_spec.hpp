@@ -28,7 +28,7 @@ struct CellSpec {
 
 /// What every filter takes besides its own options: factors on the standard deviations that it
 /// believes, so that a study can ask what becomes of a filter that is given wrong noise.
-std::span<const Option> mismatch_options();
+std::span<const Parameter> mismatch_options();
 /// The factor of that name; 1 where it is not in the list.
 double mismatch_of(const CellSpec& cell, std::string_view name);
 

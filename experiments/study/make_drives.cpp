@@ -101,14 +101,14 @@ void refuse_impossible_steering(const Settings& s, const DriveLog& log) {
 }
 
 /// "speed, steer"
-std::string names_of(std::span<const ControlName> controls) {
+std::string names_of(std::span<const Quantity> controls) {
   std::vector<std::string> names;
-  for (const ControlName& control : controls) names.emplace_back(control.name);
+  for (const Quantity control : controls) names.emplace_back(component_of(control).name);
   return joined(names);
 }
 
 /// A filter is given controls of the vehicle that drives: it must believe in one that has these.
-void refuse_other_controls(const Settings& s, std::span<const ControlName> driven) {
+void refuse_other_controls(const Settings& s, std::span<const Quantity> driven) {
   const std::string given = names_of(driven);
   const std::string believed = names_of(controls_of(vehicle_of(s, "belief")));
   if (given == believed) return;

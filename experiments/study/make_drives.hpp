@@ -33,7 +33,7 @@ template <class Owner>
 void take_sensor(const Settings& settings, const char* section, double factor, Owner& owner) {
   owner.sensor = sensor_of(settings, section);
   for (const Quantity quantity : components_of(owner.sensor)) {
-    const char* key = name_of(quantity).sigma;
+    const std::string& key = component_of(quantity).sigma.key;
     deviation_of(quantity, owner) = factor * in_si(key, settings.number(section, key));
   }
 }

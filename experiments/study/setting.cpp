@@ -12,26 +12,28 @@
 namespace montecarta::experiments {
 namespace {
 
-using Kind = Option::Kind;
+using Kind = Parameter::Kind;
 
-std::string remedy_of(const Option& option) {
+std::string remedy_of(const Parameter& option) {
   const std::string value = option.fallback.value_or(option.example);
   return value.empty() ? "correct it" : "give e.g. " + option.key + " = " + value;
 }
 
-[[noreturn]] void throw_bad_value(const Option& option, std::string_view text,
+[[noreturn]] void throw_bad_value(const Parameter& option, std::string_view text,
                                   const std::string& place) {
   throw StudyError(place + ": " + option.key + " = " + std::string(text) + " (" +
                    demand_of(option) + " is needed): " + remedy_of(option));
 }
 
-std::string checked_number(const Option& option, std::string_view text, const std::string& place) {
+std::string checked_number(const Parameter& option, std::string_view text,
+                           const std::string& place) {
   const std::optional<double> value = to_number(text);
   if (!value || *value < option.least || *value > option.most) throw_bad_value(option, text, place);
   return to_text(*value + 0.0);  // no negative zero
 }
 
-std::string checked_count(const Option& option, std::string_view text, const std::string& place) {
+std::string checked_count(const Parameter& option, std::string_view text,
+                          const std::string& place) {
   const std::optional<std::uint64_t> value = to_count(text);
   const bool fits = value && static_cast<double>(*value) >= option.least &&
                     static_cast<double>(*value) <= option.most;
@@ -40,7 +42,7 @@ std::string checked_count(const Option& option, std::string_view text, const std
 }
 
 /// One line that a terminal shows as it is; the name of a study is part of file names.
-std::string checked_text(const Option& option, std::string_view text, const std::string& place) {
+std::string checked_text(const Parameter& option, std::string_view text, const std::string& place) {
   const std::size_t longest = option.key == "name" ? 200 : option.key == "title" ? 1000 : 1'000'000;
   if (text.size() > longest) {
     throw StudyError(place + ": " + option.key + " has " + std::to_string(text.size()) +
@@ -53,14 +55,15 @@ std::string checked_text(const Option& option, std::string_view text, const std:
   return std::string(text);
 }
 
-void check_choice(const Option& option, const std::string& word, const std::string& place) {
+void check_choice(const Parameter& option, const std::string& word, const std::string& place) {
   if (std::ranges::find(option.choices, word) != option.choices.end()) return;
   throw StudyError(place + ": " + option.key + " = " + word + " (" + demand_of(option) +
                    " is needed): " + nearest_spelling(word, option.choices));
 }
 
 /// In the order of the table, without repetition.
-std::string checked_choices(const Option& option, std::string_view text, const std::string& place) {
+std::string checked_choices(const Parameter& option, std::string_view text,
+                            const std::string& place) {
   const std::vector<std::string> given = split(text, ',');
   for (const std::string& word : given) check_choice(option, word, place);
   std::vector<std::string> ordered;
@@ -71,7 +74,7 @@ std::string checked_choices(const Option& option, std::string_view text, const s
 }
 
 /// A double cannot hold the largest of 64 bits, of which the reader takes every one.
-std::string most_of(const Option& option) {
+std::string most_of(const Parameter& option) {
   constexpr std::uint64_t kLargest = std::numeric_limits<std::uint64_t>::max();
   const bool is_all = option.kind == Kind::count && option.most >= static_cast<double>(kLargest);
   return is_all ? std::to_string(kLargest) : to_text(option.most);
@@ -95,7 +98,7 @@ std::optional<std::string> Setting::fallback_for(std::string_view scenario_kind)
   return fallback;
 }
 
-std::string demand_of(const Option& option) {
+std::string demand_of(const Parameter& option) {
   const std::string unit = option.unit.empty() || option.unit == "1" ? "" : " " + option.unit;
   const std::string range = " from " + to_text(option.least) + " to " + most_of(option) + unit;
   switch (option.kind) {
@@ -113,7 +116,8 @@ std::string demand_of(const Option& option) {
   return {};
 }
 
-std::string checked_value(const Option& option, std::string_view text, const std::string& place) {
+std::string checked_value(const Parameter& option, std::string_view text,
+                          const std::string& place) {
   switch (option.kind) {
     case Kind::text:
       if (text.empty() && !option.fallback) throw_bad_value(option, text, place);

@@ -18,14 +18,13 @@ inline constexpr const char* kUsualWithin = "1.1";  ///< kUsualMargin of the ana
 
 /// One thing that a study file may say. The table of them drives parsing, checking, the resolved
 /// text, and `montecarta list settings`.
-struct Setting : Option {
+struct Setting : Parameter {
   std::string section = {};
   /// Kinds of scenario (scenario.kind) that it says something of; empty: all.
   std::vector<std::string> kinds = {};
   /// "vehicle", "sensor" or "noise": the setting of the same section that decides whether this one
-  /// says something, by which of its values; empty: always.
+  /// says something, by its values in `chosen`; empty: always.
   std::string chooser = {};
-  std::vector<std::string> chosen = {};
   /// (kind of scenario, its fallback) where that differs. kFromScenario: the scenario's value of
   /// that key; kRequired: must be given.
   std::vector<std::pair<std::string, std::string>> fallback_of_kind = {};
@@ -39,9 +38,9 @@ struct Setting : Option {
 std::span<const Setting> study_settings();
 /// `text` in the one spelling that the resolved study uses. Throws StudyError, beginning with
 /// `place`, where the text is no value of the option.
-std::string checked_value(const Option& option, std::string_view text, const std::string& place);
+std::string checked_value(const Parameter& option, std::string_view text, const std::string& place);
 
 /// What a value must be: "a number from 0 to 1000 m".
-std::string demand_of(const Option& option);
+std::string demand_of(const Parameter& option);
 
 }  // namespace montecarta::experiments

@@ -22,21 +22,19 @@ Setting text(const char* section, const char* key, const char* meaning) {
 
 Setting number(const char* section, const char* key, const char* unit, const char* fallback,
                double least, double most, const char* meaning) {
-  Setting setting{number_option(key, fallback, least, most, meaning), section};
-  setting.unit = unit;
-  return setting;
+  return {number_parameter(key, fallback, least, most, meaning, unit), section};
 }
 
 Setting count(const char* section, const char* key, const char* fallback, double least, double most,
               const char* meaning) {
-  return {count_option(key, fallback, least, most, meaning), section};
+  return {count_parameter(key, fallback, least, most, meaning), section};
 }
 
 /// The first choice is the default.
 Setting choice(const char* section, const char* key, std::vector<std::string> choices,
                const char* meaning) {
   const std::string first = choices.front();
-  return {choice_option(key, first, std::move(choices), meaning), section};
+  return {choice_parameter(key, first, std::move(choices), meaning), section};
 }
 
 /// Without a default; `example` is offered as remedy.
@@ -53,22 +51,16 @@ Setting only_for(std::vector<std::string> kinds, Setting setting) {
 }
 
 /// A setting of some vehicles.
-Setting of_vehicles(const char* section, const VehicleSetting& v) {
-  const bool is_choice = !v.choices.empty();
-  Setting setting{
-      is_choice ? choice_option(v.key.c_str(), v.usual, v.choices, v.meaning.c_str())
-                : number_option(v.key.c_str(), v.usual.c_str(), v.least, v.most, v.meaning.c_str()),
-      section};
-  setting.unit = v.unit;
+Setting of_vehicles(const char* section, const Parameter& parameter) {
+  Setting setting{parameter, section};
   setting.chooser = "vehicle";
-  setting.chosen = v.vehicles;
   return setting;
 }
 
 /// The deviation of a component of some sensors, from `least` on.
 Setting deviation_setting(const char* section, Quantity quantity, double least) {
-  const DetectionName& c = name_of(quantity);
-  Setting setting = number(section, c.sigma, c.unit, c.usual, least, c.most_sigma, c.noise_text);
+  Setting setting{component_of(quantity).sigma, section};
+  setting.least = least;
   setting.chooser = "sensor";
   setting.chosen = sensors_with(quantity);
   return setting;
@@ -101,9 +93,9 @@ void add_sensor_kind(const char* section, double least, const Add& add) {
   mount("mount_forward", "m", 1000, "of the sensor, ahead of the pose");
   mount("mount_left", "m", 1000, "of the sensor, left of the pose");
   mount("mount_turn_deg", "deg", 360, "where the sensor looks, left of the heading");
-  for (std::size_t i = 0; i < kDetectionNames.size(); ++i) {
-    const auto quantity = static_cast<Quantity>(i);
-    add(deviation_setting(section, quantity, least), name_of(quantity).example);
+  for (const Quantity quantity :
+       {Quantity::range, Quantity::bearing, Quantity::forward, Quantity::left}) {
+    add(deviation_setting(section, quantity, least), component_of(quantity).sigma.example);
   }
 }
 
@@ -126,19 +118,19 @@ void add_drive(std::vector<Setting>& table) {
   add(number(s, "map_shift", "m", "10", 0, 1e4, "farthest that a random map displaces one"));
   add(choice(s, "vehicle", vehicle_names(),
              "what drives, and what its controls are (EQUATIONS 1)"));
-  const auto add_all = [&](const std::vector<VehicleSetting>& settings) {
-    for (const VehicleSetting& setting : settings) add(of_vehicles(s, setting));
+  const auto add_all = [&](const std::vector<Parameter>& parameters) {
+    for (const Parameter& parameter : parameters) add(of_vehicles(s, parameter));
   };
-  add_all(vehicle_settings(VehicleUse::motion));
+  add_all(vehicle_parameters(VehicleUse::motion));
   add(number(s, "speed", "m/s", "3", 1e-3, 1000, "along the path; of rear_wheel: of that wheel"));
   add(number(s, "control_rate", "Hz", "40", 1e-3, 1e5, "control steps a second"));
   add(number(s, "scan_rate", "Hz", "5", 1e-4, 1e5, "scans a second; must divide control_rate"));
   add(number(s, "waypoint_radius", "m", "1", 1e-3, 1e4, "nearer than this a way-point is reached"));
-  add_all(vehicle_settings(VehicleUse::pilot));
+  add_all(vehicle_parameters(VehicleUse::pilot));
   add(number(s, "start_x", "m", "0", -1e6, 1e6, "pose before the first step"));
   add(number(s, "start_y", "m", "0", -1e6, 1e6, "pose before the first step"));
   add(number(s, "start_heading_deg", "deg", "0", -360, 360, "pose before the first step"));
-  add_all(control_noise_settings());
+  add_all(control_noise_parameters());
   add_growth(s, add);
   add_sensor_kind(s, 0.0, [&](const Setting& setting, const std::string&) { add(setting); });
 }
@@ -192,11 +184,11 @@ void add_belief(std::vector<Setting>& table) {
     table.push_back(believed(std::move(setting), example));
   };
   add(choice(s, "vehicle", vehicle_names(), meaning));
-  for (const VehicleSetting& setting : vehicle_settings(VehicleUse::motion)) {
-    add(of_vehicles(s, setting), setting.example);
+  for (const Parameter& parameter : vehicle_parameters(VehicleUse::motion)) {
+    add(of_vehicles(s, parameter), parameter.example);
   }
-  for (const VehicleSetting& setting : control_noise_settings()) {
-    add(of_vehicles(s, setting), setting.example);
+  for (const Parameter& parameter : control_noise_parameters()) {
+    add(of_vehicles(s, parameter), parameter.example);
   }
   add_growth(s, add);
   add_sensor_kind(s, kTiny, add);

@@ -12,19 +12,19 @@ namespace {
 /// In the order of the enumerators.
 const std::vector<std::string> kEvolutionModes{"unbiased", "as_printed", "prior", "shared"};
 
-std::vector<Option> options_of_evolution() {
+std::vector<Parameter> options_of_evolution() {
   return {
-      choice_option("mode", "unbiased", kEvolutionModes,
-                    "what is evolved, and whether weights account for it (EQUATIONS 10)"),
-      number_option("scale", "0.4", 0, 2, "F, of the difference vectors (EQUATIONS 9)"),
-      number_option("crossover", "0.8", 0, 1, "Cr, share of components that cross"),
-      count_option("generations", "10", 0, 1000, "at most; the paper does not say"),
-      count_option(
+      choice_parameter("mode", "unbiased", kEvolutionModes,
+                       "what is evolved, and whether weights account for it (EQUATIONS 10)"),
+      number_parameter("scale", "0.4", 0, 2, "F, of the difference vectors (EQUATIONS 9)"),
+      number_parameter("crossover", "0.8", 0, 1, "Cr, share of components that cross"),
+      count_parameter("generations", "10", 0, 1000, "at most; the paper does not say"),
+      count_parameter(
           "population", "10", 7, 1000,
           "of each particle's own evolution (mode unbiased); the particles themselves otherwise"),
-      number_option("bounds", "3", 0, 100, "of the search, in standard deviations"),
-      number_option("inflation", "1", 1, 10,
-                    "of the covariance that is drawn from (modes unbiased and shared)")};
+      number_parameter("bounds", "3", 0, 100, "of the search, in standard deviations"),
+      number_parameter("inflation", "1", 1, 10,
+                       "of the covariance that is drawn from (modes unbiased and shared)")};
 }
 
 }  // namespace
@@ -41,9 +41,9 @@ EvolvedSettings evolved_settings(const FilterOptions& options) {
 }
 
 FilterKind de_srcd_kind() {
-  std::vector<Option> options = population_options();
-  for (Option& option : options_of_evolution()) options.push_back(std::move(option));
-  for (Option& option : central_difference_options()) options.push_back(std::move(option));
+  std::vector<Parameter> options = population_options();
+  for (Parameter& option : options_of_evolution()) options.push_back(std::move(option));
+  for (Parameter& option : central_difference_options()) options.push_back(std::move(option));
   options.push_back(map_uncertainty_option());
   return {.name = "de_srcd",
           .long_name = "DE-SRCD-FastSLAM",

@@ -9,15 +9,15 @@ namespace {
 const std::vector<std::string> kWeightForms{"closed", "ratio", "batch"};
 
 /// In the order in which they are documented.
-std::vector<Option> joined(std::initializer_list<std::vector<Option>> parts) {
-  std::vector<Option> options;
+std::vector<Parameter> joined(std::initializer_list<std::vector<Parameter>> parts) {
+  std::vector<Parameter> options;
   for (const auto& part : parts) options.insert(options.end(), part.begin(), part.end());
   return options;
 }
 
-Option weights_of_sigma_points_option() {
-  return choice_option("weights", "closed", {"closed", "ratio"},
-                       "form of the importance weight (EQUATIONS 6)");
+Parameter weights_of_sigma_points_option() {
+  return choice_parameter("weights", "closed", {"closed", "ratio"},
+                          "form of the importance weight (EQUATIONS 6)");
 }
 
 }  // namespace
@@ -30,8 +30,8 @@ bool weighs_by_ratio(const FilterOptions& options) {
   return weight_form(options) == WeightForm::ratio;
 }
 
-Option map_uncertainty_option() {
-  return choice_option(
+Parameter map_uncertainty_option() {
+  return choice_parameter(
       "map_uncertainty", "on", {"on", "off"},
       "whether a landmark's covariance counts when the pose is refined; printed without");
 }
@@ -40,12 +40,13 @@ MapUncertainty map_uncertainty(const FilterOptions& options) {
   return options.choice("map_uncertainty") == "on" ? MapUncertainty::on : MapUncertainty::off;
 }
 
-std::vector<Option> central_difference_options() {
-  return {number_option("interval", "1.7320508075688772", 1, 10,
-                        "h of the central differences; its square is the kurtosis, 3 for a "
-                        "Gaussian (EQUATIONS 3)"),
-          choice_option("weights_of_sigma_points", "corrected", {"corrected", "as_printed"},
-                        "as_printed: the misprints of Ankishan eq. (14), about the central point")};
+std::vector<Parameter> central_difference_options() {
+  return {
+      number_parameter("interval", "1.7320508075688772", 1, 10,
+                       "h of the central differences; its square is the kurtosis, 3 for a "
+                       "Gaussian (EQUATIONS 3)"),
+      choice_parameter("weights_of_sigma_points", "corrected", {"corrected", "as_printed"},
+                       "as_printed: the misprints of Ankishan eq. (14), about the central point")};
 }
 
 SigmaPoints central_difference_points(const FilterSetup& setup, MapUncertainty map_uncertainty) {
@@ -83,8 +84,8 @@ FilterKind fastslam2_kind() {
           .source = "Montemerlo et al. 2003; EQUATIONS 6",
           .has_mixture = true,
           .options = joined({population_options(),
-                             {choice_option("weights", "closed", kWeightForms,
-                                            "form of the importance weight (EQUATIONS 6)")}}),
+                             {choice_parameter("weights", "closed", kWeightForms,
+                                               "form of the importance weight (EQUATIONS 6)")}}),
           .sensors = {},
           .delays_initialisation = true,
           .drops_mixture = weighs_by_ratio,
@@ -100,14 +101,15 @@ FilterKind ufastslam_kind() {
       .options = joined(
           {population_options(),
            {weights_of_sigma_points_option(),
-            number_option(
+            number_parameter(
                 "alpha", "0.9", 1e-3, 1,
                 "spread of the sigma points; Kim's paper has 0.002, Kim's code 0.9 (EQUATIONS 7)"),
-            number_option("beta", "2", 0, 10,
-                          "weight of the centre in covariances; 2 suits a Gaussian (EQUATIONS 7)"),
-            number_option("kappa", "0", 0, 10,
-                          "second spread: alpha^2 (n + kappa) is the square of the points' "
-                          "distance"),
+            number_parameter(
+                "beta", "2", 0, 10,
+                "weight of the centre in covariances; 2 suits a Gaussian (EQUATIONS 7)"),
+            number_parameter("kappa", "0", 0, 10,
+                             "second spread: alpha^2 (n + kappa) is the square of the points' "
+                             "distance"),
             map_uncertainty_option()}}),
       .sensors = {},
       .delays_initialisation = true,

@@ -58,12 +58,12 @@ std::unique_ptr<SlamFilter> make_refined(const FilterSetup& setup,
 }
 
 /// Whether the landmark's covariance is part of the pose's innovation (EQUATIONS 7).
-Option map_uncertainty_option();
+Parameter map_uncertainty_option();
 MapUncertainty map_uncertainty(const FilterOptions& options);
 
 /// Interval and weights of central differences (EQUATIONS 3), for every stage; `map_uncertainty`
 /// matters to the pose alone.
-std::vector<Option> central_difference_options();
+std::vector<Parameter> central_difference_options();
 SigmaPoints central_difference_points(const FilterSetup& setup, MapUncertainty map_uncertainty);
 /// The scaled unscented transform of every stage (EQUATIONS 7): dimension 5 for motion (pose,
 /// control) and for an observation (pose, landmark), 2 for a landmark.

@@ -93,9 +93,10 @@ class JointFilter final : public SlamFilter {
   MixtureInnovations<double> innovations_;  ///< of a mixture of one
 };
 
-Option iterations_option() {
-  return count_option("iterations", "0", 0, 100,
-                      "times a detection is linearised again where it has moved the estimate to");
+Parameter iterations_option() {
+  return count_parameter(
+      "iterations", "0", 0, 100,
+      "times a detection is linearised again where it has moved the estimate to");
 }
 
 int iterations(const FilterOptions& options) {
@@ -126,7 +127,7 @@ std::unique_ptr<SlamFilter> make_robocentric(const FilterSetup& setup) {
 }
 
 FilterKind joint_kind(const char* name, const char* long_name, const char* source,
-                      std::vector<Option> options,
+                      std::vector<Parameter> options,
                       std::unique_ptr<SlamFilter> make(const FilterSetup&)) {
   return {.name = name,
           .long_name = long_name,

@@ -57,10 +57,11 @@ Eigen::Index row_of_point(Eigen::Index i) { return i == 0 ? 0 : 1 + 2 * i; }
 
 }  // namespace
 
-Option moments_option(const char* fallback) {
-  return choice_option("moments", fallback, kMoments,
-                       "reported mean and covariance: of the Gaussian in map coordinates, or those "
-                       "that follow from it in the right-invariant chart (EQUATIONS 19, 21)");
+Parameter moments_option(const char* fallback) {
+  return choice_parameter(
+      "moments", fallback, kMoments,
+      "reported mean and covariance: of the Gaussian in map coordinates, or those "
+      "that follow from it in the right-invariant chart (EQUATIONS 19, 21)");
 }
 
 Moments moments_of(const FilterOptions& options) {

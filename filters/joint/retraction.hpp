@@ -49,7 +49,7 @@ enum class Moments {
 };
 
 /// The option `moments` of a filter, `map` by default, and what a user chose.
-Option moments_option(const char* fallback);
+Parameter moments_option(const char* fallback);
 Moments moments_of(const FilterOptions& options);
 
 /// Rows x, y, heading [m, m, rad], then x and y of any number of landmarks [m]: takes `mean` and

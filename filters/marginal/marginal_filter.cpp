@@ -33,35 +33,35 @@ MapSettings map_settings(const FilterOptions& options) {
 
 }  // namespace
 
-std::vector<Option> marginal_options(MapSolver solver) {
+std::vector<Parameter> marginal_options(MapSolver solver) {
   return {
-      count_option("particles", "100", 1, 1e6, "number of particles"),
-      choice_option("kernel", "prior", kKernels, "what poses are drawn from (EQUATIONS 12)"),
-      number_option("kernel_floor_xy", "0.01", 0, 100,
-                    "[m] sigma of noise added to the motion in x and y per scan (EQUATIONS 12)"),
-      number_option(
+      count_parameter("particles", "100", 1, 1e6, "number of particles"),
+      choice_parameter("kernel", "prior", kKernels, "what poses are drawn from (EQUATIONS 12)"),
+      number_parameter("kernel_floor_xy", "0.01", 0, 100,
+                       "[m] sigma of noise added to the motion in x and y per scan (EQUATIONS 12)"),
+      number_parameter(
           "kernel_floor_heading", "0.001", 0, 3,
           "[rad] sigma of noise added to the motion in heading at every scan (EQUATIONS 12)"),
-      choice_option(
+      choice_parameter(
           "kernel_sums", "direct", kSums,
           "how the mixtures are summed: directly, or by the fast Gauss transform (EQUATIONS 13)"),
-      number_option("kernel_tolerance", "1e-9", 1e-15, 0.1,
-                    "kernel_sums=ifgt: error of a sum, of the sum of all peaks"),
-      choice_option("map", "recursive", kModes,
-                    "what a landmark remembers of earlier scans (EQUATIONS 14)"),
-      choice_option("map_solver", kSolvers[static_cast<std::size_t>(solver)], kSolvers,
-                    "how the best place of a landmark is found"),
-      choice_option("map_objective", "likelihood", kObjectives,
-                    "what a landmark is judged by (Havangi eq. 27, its bound, eq. 29)"),
-      number_option(
+      number_parameter("kernel_tolerance", "1e-9", 1e-15, 0.1,
+                       "kernel_sums=ifgt: error of a sum, of the sum of all peaks"),
+      choice_parameter("map", "recursive", kModes,
+                       "what a landmark remembers of earlier scans (EQUATIONS 14)"),
+      choice_parameter("map_solver", kSolvers[static_cast<std::size_t>(solver)], kSolvers,
+                       "how the best place of a landmark is found"),
+      choice_parameter("map_objective", "likelihood", kObjectives,
+                       "what a landmark is judged by (Havangi eq. 27, its bound, eq. 29)"),
+      number_parameter(
           "map_threshold", "5.991464547107979", 0, 1e6,
           "map=onestep_threshold: a landmark stays where its objective is below (EQUATIONS 14)"),
-      count_option("population", "30", 1, 10000, "map_solver=de: candidates for each landmark"),
-      count_option("generations", "10", 0, 1000, "map_solver=de: at most (EQUATIONS 9)"),
-      number_option("scale", "0.5", 0, 2, "map_solver=de: F (EQUATIONS 9)"),
-      number_option("crossover", "0.8", 0, 1, "map_solver=de: Cr (EQUATIONS 9)"),
-      choice_option("base", "random", kBases,
-                    "map_solver=de: base of a trial; Havangi eq. (6) random, eq. (30) target"),
+      count_parameter("population", "30", 1, 10000, "map_solver=de: candidates for each landmark"),
+      count_parameter("generations", "10", 0, 1000, "map_solver=de: at most (EQUATIONS 9)"),
+      number_parameter("scale", "0.5", 0, 2, "map_solver=de: F (EQUATIONS 9)"),
+      number_parameter("crossover", "0.8", 0, 1, "map_solver=de: Cr (EQUATIONS 9)"),
+      choice_parameter("base", "random", kBases,
+                       "map_solver=de: base of a trial; Havangi eq. (6) random, eq. (30) target"),
   };
 }
 

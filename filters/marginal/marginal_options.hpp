@@ -55,7 +55,7 @@ struct MarginalSettings {
 };
 
 /// In the order in which they are documented; `solver` is the default way to learn the map.
-std::vector<Option> marginal_options(MapSolver solver);
+std::vector<Parameter> marginal_options(MapSolver solver);
 MarginalSettings marginal_settings(const FilterOptions& options, Choice choice);
 
 }  // namespace montecarta::filters

@@ -3,6 +3,7 @@
 
 #include "engine/core/drive.hpp"
 #include "engine/numbers/real.hpp"
+#include "filters/models/parameter.hpp"
 
 #include <algorithm>
 #include <array>
@@ -43,53 +44,20 @@ struct Aim {
   double control_rate;  ///< [Hz]
 };
 
-/// One component of a control, as messages, logs and study files name it. Keys that end in _deg are
-/// in degrees, everything else in SI units.
-struct ControlName {
-  const char* name;        ///< "speed": in messages
-  const char* noun;        ///< "speed": in errors
-  const char* column;      ///< "speed_mps": in odometry.csv
-  double most;             ///< greatest size that a log may hold
-  const char* limit;       ///< "metres per second, at most 1000": why a log with more is refused
-  bool moves;              ///< whether the vehicle moves where this one alone is not 0
-  const char* sigma;       ///< "sigma_speed": key of its noise
-  const char* unit;        ///< of that key
-  const char* usual;       ///< value of that key where nothing is said
-  double most_sigma;       ///< greatest value of that key
-  const char* noise_text;  ///< what that key means
-};
-
 /// Where a number of a vehicle is asked for.
 enum class VehicleUse {
   motion,  ///< wherever the vehicle moves: in [scenario] and in [belief]
   pilot    ///< where a simulated vehicle is steered: in [scenario] alone
 };
 
-/// A number of a vehicle of type V, as study files name it; keys in _deg as above.
+/// A number of a vehicle of type V. Where `parameter` has an example, it must be given for a log of
+/// the user's own.
 template <class V>
 struct VehicleNumber {
-  const char* key;
-  const char* unit;
-  const char* usual;  ///< value where nothing is said
-  double least, most;
-  const char* meaning;
+  Parameter parameter;
   double V::*member;
   VehicleUse use = VehicleUse::motion;
-  const char* example = "";  ///< not empty: for a log of the user's own it must be given
 };
-
-/// The speed of most vehicles.
-inline constexpr ControlName kSpeedControl = {.name = "speed",
-                                              .noun = "speed",
-                                              .column = "speed_mps",
-                                              .most = 1e3,
-                                              .limit = "metres per second, at most 1000",
-                                              .moves = true,
-                                              .sigma = "sigma_speed",
-                                              .unit = "m/s",
-                                              .usual = "0.3",
-                                              .most_sigma = 1000,
-                                              .noise_text = "noise of the speed"};
 
 // A body that moves with constant velocity in its own frame and turns with a constant yaw rate:
 // what vehicles whose yaw rate is controlled have in common (EQUATIONS 1).
@@ -166,23 +134,12 @@ inline double yaw_rate_towards(const Aim& aim, double off, double limit) {
   return std::clamp(off * aim.control_rate, -limit, limit);
 }
 
-inline constexpr ControlName kYawRateControl = {.name = "yaw_rate",
-                                                .noun = "yaw rate",
-                                                .column = "yaw_rate_radps",
-                                                .most = 100,
-                                                .limit = "radians per second, at most 100",
-                                                .moves = true,
-                                                .sigma = "sigma_yaw_rate_deg",
-                                                .unit = "deg/s",
-                                                .usual = "3",
-                                                .most_sigma = 1e4,
-                                                .noise_text = "noise of the yaw rate"};
-
 /// The setting of the fastest turn that a pilot asks for.
 template <class V>
-constexpr VehicleNumber<V> yaw_rate_limit_of(double V::*member) {
-  return {"yaw_rate_limit_deg", "deg/s", "90", 0.1, 5700, "fastest turn of the vehicle", member,
-          VehicleUse::pilot};
+VehicleNumber<V> yaw_rate_limit_of(double V::*member) {
+  return {number_parameter("yaw_rate_limit_deg", "90", 0.1, 5700, "fastest turn of the vehicle",
+                           "deg/s"),
+          member, VehicleUse::pilot};
 }
 
 }  // namespace montecarta::models

@@ -35,19 +35,7 @@ struct Car {
   static Car named(std::string_view name) {
     return {.kind = name == kNames[0] ? Kind::front_axle : Kind::rear_wheel};
   }
-  static constexpr std::array<ControlName, 2> kControls = {
-      kSpeedControl,
-      {.name = "steer",
-       .noun = "steering",
-       .column = "steer_rad",
-       .most = kPi / 2,
-       .limit = "radians, at most pi / 2",
-       .moves = false,
-       .sigma = "sigma_steer_deg",
-       .unit = "deg",
-       .usual = "3",
-       .most_sigma = 180,
-       .noise_text = "noise of the steering angle"}};
+  static constexpr std::array kControls = {Quantity::speed, Quantity::steer};
   static const std::array<VehicleNumber<Car>, 6>& numbers();
 
   static constexpr bool kTurnsByBend = false;
@@ -123,24 +111,25 @@ struct Car {
 
 inline const std::array<VehicleNumber<Car>, 6>& Car::numbers() {
   constexpr auto pilot = VehicleUse::pilot;
-  static constexpr std::array<VehicleNumber<Car>, 6> kNumbers = {
-      {{.key = "wheelbase",
-        .unit = "m",
-        .usual = "4",
-        .least = 1e-3,
-        .most = 1000,
-        .meaning = "between the axles",
-        .member = &Car::wheelbase,
-        .example = "2.83"},
-       {"wheel_left", "m", "0", -1000, 1000, "measured rear wheel left of the middle",
-        &Car::wheel_left},
-       {"sensor_ahead", "m", "0", -1000, 1000, "sensor ahead of the rear axle", &Car::sensor_ahead},
-       {"sensor_left", "m", "0", -1000, 1000, "sensor left of the middle", &Car::sensor_left},
-       {"steer_limit_deg", "deg", "30", 0.1, 89, "largest steering angle", &Car::steer_limit,
-        pilot},
-       {"steer_rate_limit_deg", "deg/s", "20", 0.1, 1e5, "fastest turn of the steering",
+  const auto wheelbase_parameter = [] {
+    Parameter parameter = number_parameter("wheelbase", "4", 1e-3, 1000, "between the axles", "m");
+    parameter.example = "2.83";
+    return parameter;
+  };
+  const auto place = [](const char* key, const char* meaning) {
+    return number_parameter(key, "0", -1000, 1000, meaning, "m");
+  };
+  static const std::array<VehicleNumber<Car>, 6> all = {
+      {{wheelbase_parameter(), &Car::wheelbase},
+       {place("wheel_left", "measured rear wheel left of the middle"), &Car::wheel_left},
+       {place("sensor_ahead", "sensor ahead of the rear axle"), &Car::sensor_ahead},
+       {place("sensor_left", "sensor left of the middle"), &Car::sensor_left},
+       {number_parameter("steer_limit_deg", "30", 0.1, 89, "largest steering angle", "deg"),
+        &Car::steer_limit, pilot},
+       {number_parameter("steer_rate_limit_deg", "20", 0.1, 1e5, "fastest turn of the steering",
+                         "deg/s"),
         &Car::steer_rate_limit, pilot}}};
-  return kNumbers;
+  return all;
 }
 
 }  // namespace montecarta::models

@@ -17,7 +17,7 @@ struct DifferentialDrive {
   static constexpr std::array<const char*, 1> kNames = {"differential_drive"};
   const char* name() const { return kNames[0]; }
   static DifferentialDrive named(std::string_view /*name*/) { return {}; }
-  static constexpr std::array<ControlName, 2> kControls = {kSpeedControl, kYawRateControl};
+  static constexpr std::array kControls = {Quantity::speed, Quantity::yaw_rate};
   static const std::array<VehicleNumber<DifferentialDrive>, 2>& numbers();
 
   static constexpr bool kTurnsByBend = true;
@@ -49,12 +49,12 @@ struct DifferentialDrive {
 };
 
 inline const std::array<VehicleNumber<DifferentialDrive>, 2>& DifferentialDrive::numbers() {
-  static constexpr std::array<VehicleNumber<DifferentialDrive>, 2> kNumbers = {
+  static const std::array<VehicleNumber<DifferentialDrive>, 2> all = {
       yaw_rate_limit_of(&DifferentialDrive::yaw_rate_limit),
-      {"turn_on_spot_deg", "deg", "45", 0.1, 180,
-       "farther off the way-point it stops and turns on the spot", &DifferentialDrive::turn_on_spot,
-       VehicleUse::pilot}};
-  return kNumbers;
+      {number_parameter("turn_on_spot_deg", "45", 0.1, 180,
+                        "farther off the way-point it stops and turns on the spot", "deg"),
+       &DifferentialDrive::turn_on_spot, VehicleUse::pilot}};
+  return all;
 }
 
 }  // namespace montecarta::models

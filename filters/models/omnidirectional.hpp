@@ -7,17 +7,6 @@
 
 namespace montecarta::models {
 
-/// The control of one component of the velocity, as ControlName names it.
-constexpr ControlName velocity_control(const char* name, const char* column, const char* sigma,
-                                       const char* noise_text) {
-  ControlName control = kSpeedControl;
-  control.name = control.noun = name;
-  control.column = column;
-  control.sigma = sigma;
-  control.noise_text = noise_text;
-  return control;
-}
-
 /// A vehicle on Mecanum or Swedish wheels, which moves in any direction while it turns. The control
 /// is (forward [m/s], left [m/s], yaw rate [rad/s]), the pose that of the point these are measured
 /// at (EQUATIONS 1).
@@ -28,10 +17,8 @@ struct Omnidirectional {
   static constexpr std::array<const char*, 1> kNames = {"omnidirectional"};
   const char* name() const { return kNames[0]; }
   static Omnidirectional named(std::string_view /*name*/) { return {}; }
-  static constexpr std::array<ControlName, 3> kControls = {
-      velocity_control("forward", "forward_mps", "sigma_forward", "noise of the speed forward"),
-      velocity_control("left", "left_mps", "sigma_left", "noise of the speed to the left"),
-      kYawRateControl};
+  static constexpr std::array kControls = {Quantity::forward_speed, Quantity::left_speed,
+                                           Quantity::yaw_rate};
   static const std::array<VehicleNumber<Omnidirectional>, 1>& numbers();
 
   static constexpr bool kTurnsByBend = true;
@@ -62,9 +49,9 @@ struct Omnidirectional {
 };
 
 inline const std::array<VehicleNumber<Omnidirectional>, 1>& Omnidirectional::numbers() {
-  static constexpr std::array<VehicleNumber<Omnidirectional>, 1> kNumbers = {
+  static const std::array<VehicleNumber<Omnidirectional>, 1> all = {
       yaw_rate_limit_of(&Omnidirectional::yaw_rate_limit)};
-  return kNumbers;
+  return all;
 }
 
 }  // namespace montecarta::models

@@ -104,7 +104,7 @@ std::optional<PlacedLandmark> placed_landmark(const Sensor& sensor, const Pose& 
 Wraps wraps_of(const Sensor& sensor) {
   Wraps wraps{};
   std::ranges::transform(components_of(sensor), wraps.begin(),
-                         [](Quantity quantity) { return name_of(quantity).wraps; });
+                         [](Quantity quantity) { return is_angle(quantity); });
   return wraps;
 }
 

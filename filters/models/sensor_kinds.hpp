@@ -4,6 +4,7 @@
 #include "engine/core/drive.hpp"
 #include "engine/numbers/angle.hpp"
 #include "filters/models/eigen_jacobians.hpp"
+#include "filters/models/parameter.hpp"
 #include "filters/models/range_bearing.hpp"
 
 #include <Eigen/Core>
@@ -15,42 +16,6 @@
 /// The sensors that there are (EQUATIONS 2). sensor.hpp lists them and says what one must offer.
 namespace montecarta::models {
 
-/// What a component of a detection is.
-enum class Quantity { range, bearing, forward, left };
-
-/// One component of a detection, as messages, logs and study files name it. Keys that end in _deg
-/// are in degrees, everything else in SI units.
-struct DetectionName {
-  const char* name;        ///< "range": in messages and errors
-  const char* column;      ///< "range_m": in detections.csv
-  bool wraps;              ///< whether it is an angle
-  bool is_positive;        ///< whether it must be above 0
-  double most;             ///< greatest size that a log may hold
-  const char* limit;       ///< "metres, a finite number": why a log with more is refused
-  const char* sigma;       ///< "sigma_range": key of its noise
-  const char* unit;        ///< of that key
-  const char* usual;       ///< value of that key where nothing is said
-  double most_sigma;       ///< greatest value of that key
-  const char* noise_text;  ///< what that key means
-  const char* example;     ///< value of that key that an error suggests
-};
-
-/// In the order of the enumerators.
-inline constexpr std::array<DetectionName, 4> kDetectionNames = {
-    {{"range", "range_m", false, true, 1e6, "metres, a finite number", "sigma_range", "m", "0.1",
-      1000, "noise of a range", "0.5"},
-     {"bearing", "bearing_rad", true, false, 2 * kPi, "radians relative to the heading",
-      "sigma_bearing_deg", "deg", "1", 180, "noise of a bearing", "1.5"},
-     {"forward", "forward_m", false, false, 1e6, "metres, a finite number",
-      "sigma_position_forward", "m", "0.1", 1000, "noise of a position along the sensor's heading",
-      "0.1"},
-     {"left", "left_m", false, false, 1e6, "metres, a finite number", "sigma_position_left", "m",
-      "0.1", 1000, "noise of a position across the sensor's heading", "0.1"}}};
-
-constexpr const DetectionName& name_of(Quantity quantity) {
-  return kDetectionNames[static_cast<std::size_t>(quantity)];
-}
-
 /// The standard deviation that `owner` (a belief, a scenario) has of a quantity.
 template <class Owner>
 auto& deviation_of(Quantity quantity, Owner& owner) {
@@ -61,10 +26,9 @@ auto& deviation_of(Quantity quantity, Owner& owner) {
       return owner.sigma_bearing;
     case Quantity::forward:
       return owner.sigma_forward;
-    case Quantity::left:
-      break;
+    default:
+      return owner.sigma_left;
   }
-  return owner.sigma_left;
 }
 
 /// What a sensor should see of a landmark, with derivatives. Rows of components that the sensor

@@ -34,15 +34,16 @@ template <class V>
 inline constexpr std::size_t kLinearOf = kControlsOf<V> - 1;
 
 /// The controls of a vehicle, in their order.
-inline std::span<const ControlName> controls_of(const Vehicle& vehicle) {
-  return std::visit([](const auto& one) { return std::span<const ControlName>(one.kControls); },
+inline std::span<const Quantity> controls_of(const Vehicle& vehicle) {
+  return std::visit([](const auto& one) { return std::span<const Quantity>(one.kControls); },
                     vehicle);
 }
 
-/// How many of the first controls are all 0 where the vehicle stands.
-inline std::size_t moving_controls(std::span<const ControlName> controls) {
+/// How many of the first controls are all 0 where the vehicle stands: a steering angle moves
+/// nothing by itself.
+inline std::size_t moving_controls(std::span<const Quantity> controls) {
   std::size_t moving = 0;
-  while (moving < controls.size() && controls[moving].moves) ++moving;
+  while (moving < controls.size() && controls[moving] != Quantity::steer) ++moving;
   return moving;
 }
 

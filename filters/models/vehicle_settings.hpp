@@ -48,32 +48,13 @@ inline std::string si_name(std::string_view key) {
   return std::string(key);
 }
 
-/// One thing that a study file may say of some of the vehicles.
-struct VehicleSetting {
-  std::string key = {};
-  std::string unit = {};
-  std::string usual = {};
-  double least = 0.0, most = 0.0;
-  std::string meaning = {};
-  std::string example = {};                ///< not empty: a log of the user's own must give it
-  std::vector<std::string> choices = {};   ///< not empty: one of these, and no number
-  std::vector<std::string> vehicles = {};  ///< names of those that have it
-};
-
-/// Gathers settings, each key once.
-class VehicleSettings {
- public:
-  template <class V>
-  void add(VehicleSetting setting, const V& vehicle) {
-    auto found = std::ranges::find(settings_, setting.key, &VehicleSetting::key);
-    if (found == settings_.end()) found = settings_.insert(found, std::move(setting));
-    for (const char* name : vehicle.kNames) found->vehicles.emplace_back(name);
-  }
-  std::vector<VehicleSetting> take() { return std::move(settings_); }
-
- private:
-  std::vector<VehicleSetting> settings_;
-};
+/// Adds a parameter of a vehicle, each key once, with the names of the vehicles that have it.
+template <class V>
+void add_parameter(Parameter parameter, const V& vehicle, std::vector<Parameter>& all) {
+  auto found = std::ranges::find(all, parameter.key, &Parameter::key);
+  if (found == all.end()) found = all.insert(found, std::move(parameter));
+  for (const char* name : vehicle.kNames) found->chosen.emplace_back(name);
+}
 
 /// Calls `use(key, member)` for the choice of integration of a vehicle that has it.
 template <class V, class Use>
@@ -82,34 +63,32 @@ void for_each_choice(V& vehicle, const Use& use) {
 }
 
 /// What vehicles are described by, as far as it is asked for where `use` says.
-inline std::vector<VehicleSetting> vehicle_settings(VehicleUse use) {
-  VehicleSettings settings;
+inline std::vector<Parameter> vehicle_parameters(VehicleUse use) {
+  std::vector<Parameter> all;
   for_each_vehicle([&](auto one) {
-    for (const auto& n : one.numbers()) {
-      if (n.use != use) continue;
-      settings.add({n.key, n.unit, n.usual, n.least, n.most, n.meaning, n.example}, one);
+    for (const auto& number : one.numbers()) {
+      if (number.use == use) add_parameter(number.parameter, one, all);
     }
     if (use != VehicleUse::motion) return;
     for_each_choice(one, [&](const char* key, Integration) {
-      settings.add({.key = key,
-                    .usual = kIntegrationNames[0],
-                    .meaning = "a step: its exact arc, or along the heading before it",
-                    .choices = {kIntegrationNames.begin(), kIntegrationNames.end()}},
-                   one);
+      add_parameter(choice_parameter(key, kIntegrationNames[0],
+                                     {kIntegrationNames.begin(), kIntegrationNames.end()},
+                                     "a step: its exact arc, or along the heading before it"),
+                    one, all);
     });
   });
-  return settings.take();
+  return all;
 }
 
 /// Deviations of the controls of all vehicles.
-inline std::vector<VehicleSetting> control_noise_settings() {
-  VehicleSettings settings;
+inline std::vector<Parameter> control_noise_parameters() {
+  std::vector<Parameter> all;
   for_each_vehicle([&](const auto& one) {
-    for (const ControlName& c : one.kControls) {
-      settings.add({c.sigma, c.unit, c.usual, 0.0, c.most_sigma, c.noise_text, c.usual}, one);
+    for (const Quantity control : one.kControls) {
+      add_parameter(component_of(control).sigma, one, all);
     }
   });
-  return settings.take();
+  return all;
 }
 
 /// Key of alpha i, from 0.
@@ -131,7 +110,8 @@ inline std::optional<Vehicle> vehicle_named(std::string_view name, const Setting
       return;
     auto vehicle = kind.named(name);
     for (const auto& n : vehicle.numbers()) {
-      if (const auto value = number(n.key)) vehicle.*(n.member) = in_si(n.key, *value);
+      const std::string& key = n.parameter.key;
+      if (const auto value = number(key)) vehicle.*(n.member) = in_si(key, *value);
     }
     for_each_choice(vehicle, [&](const char* key, Integration& integration) {
       if (text(key) == kIntegrationNames[1]) integration = Integration::euler;
@@ -148,7 +128,7 @@ void tell_vehicle(const Vehicle& vehicle, const Tell& tell) {
   std::visit(
       [&](auto one) {
         for (const auto& n : one.numbers()) {
-          if (n.use == VehicleUse::motion) tell(si_name(n.key), one.*(n.member));
+          if (n.use == VehicleUse::motion) tell(si_name(n.parameter.key), one.*(n.member));
         }
         for_each_choice(one, [&](const char* key, Integration integration) {
           tell(std::string(key), kIntegrationNames[integration == Integration::arc ? 0 : 1]);
@@ -162,10 +142,11 @@ inline std::optional<ControlNoise> control_noise_of(const Vehicle& vehicle,
                                                     const SettingNumber& number) {
   ControlNoise noise;
   std::size_t i = 0;
-  for (const ControlName& control : controls_of(vehicle)) {
-    const std::optional<double> value = number(control.sigma);
+  for (const Quantity control : controls_of(vehicle)) {
+    const std::string& key = component_of(control).sigma.key;
+    const std::optional<double> value = number(key);
     if (!value) return std::nullopt;
-    noise.sigma[i++] = in_si(control.sigma, *value);
+    noise.sigma[i++] = in_si(key, *value);
   }
   for (std::size_t k = 0; k < noise.alpha.size(); ++k) {
     noise.alpha[k] = number(alpha_key(k)).value_or(0.0);

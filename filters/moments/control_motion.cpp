@@ -240,8 +240,8 @@ MotionIncrement moved_by_rule(const MotionIncrement& before, const Control& cont
 // In the order of the enumerators.
 const std::vector<std::string> kMotions{"linearised", "quadrature", "unbiased"};
 
-Option motion_option(const char* fallback) {
-  return choice_option(
+Parameter motion_option(const char* fallback) {
+  return choice_parameter(
       "motion", fallback, kMotions,
       "how noise of the control reaches the pose: by derivatives, averaged, or as the noise "
       "of a measurement of the true control");
@@ -268,10 +268,10 @@ MotionIncrement moved_by_unbiased_controls(const MotionIncrement& before, const 
   return moved_by_rule(before, control, duration, belief, kUnbiased);
 }
 
-Option linearised_motion_option() { return motion_option("linearised"); }
+Parameter linearised_motion_option() { return motion_option("linearised"); }
 
-Option fitting_motion_option() {
-  Option option = motion_option("quadrature");
+Parameter fitting_motion_option() {
+  Parameter option = motion_option("quadrature");
   option.fallback_if_measured = "unbiased";
   return option;
 }

@@ -15,8 +15,8 @@ enum class Motion {
 
 /// The option `motion` of a filter, whose default is textbook linearisation whatever the noise is,
 /// or what fits the noise: quadrature, or unbiased where controls were measured.
-Option linearised_motion_option();
-Option fitting_motion_option();
+Parameter linearised_motion_option();
+Parameter fitting_motion_option();
 /// What a user chose.
 Motion motion_of(const FilterOptions& options);
 

@@ -42,12 +42,13 @@ PoseEstimate CloudMoments::moved_by(const MotionIncrement& increment) const {
   return {{mean, symmetric(spread)}, PoseMoments{mean, symmetric(spread + own)}};
 }
 
-std::vector<Option> population_options() {
+std::vector<Parameter> population_options() {
   return {
-      count_option("particles", "100", 1, 1e6, "number of particles"),
-      choice_option("resampling", "systematic", kResamplings, "draw of the parents (EQUATIONS 18)"),
-      number_option("resample_below", "0.5", 0, 1,
-                    "resample where ESS < this times particles; Bailey's simulator has 0.75")};
+      count_parameter("particles", "100", 1, 1e6, "number of particles"),
+      choice_parameter("resampling", "systematic", kResamplings,
+                       "draw of the parents (EQUATIONS 18)"),
+      number_parameter("resample_below", "0.5", 0, 1,
+                       "resample where ESS < this times particles; Bailey's simulator has 0.75")};
 }
 
 PopulationSettings population_settings(const FilterOptions& options) {

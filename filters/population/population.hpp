@@ -220,7 +220,7 @@ struct PopulationSettings {
 
 /// The options `particles`, `resampling`, `resample_below`, in the order in which they are
 /// documented.
-std::vector<Option> population_options();
+std::vector<Parameter> population_options();
 /// Reads them.
 PopulationSettings population_settings(const FilterOptions& options);
 

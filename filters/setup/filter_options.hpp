@@ -2,71 +2,19 @@
 #pragma once
 
 #include "engine/namespaces.hpp"
+#include "filters/models/parameter.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace montecarta::filters {
 
-/// One thing that a user may set: of a filter behind its name in a cell line, of a study in a
-/// section of its file.
-struct Option {
-  enum class Kind {
-    text,     ///< anything
-    number,   ///< finite, from `least` to `most`
-    count,    ///< whole, from `least` to `most`
-    choice,   ///< one of `choices`
-    choices,  ///< a list out of `choices`
-  };
-  std::string key = {};
-  Kind kind = Kind::text;
-  std::string unit = {};                     ///< "" where there is none
-  std::optional<std::string> fallback = {};  ///< default value, as text; nullopt: must be given
-  double least = 0.0;                        ///< inclusive, as `most`
-  double most = 0.0;
-  std::vector<std::string> choices = {};
-  std::string meaning = {};  ///< one line, with unit and equation
-  std::string example = {};  ///< offered as remedy where there is no fallback
-  /// The default of a filter's option where its controls are noisy measurements of the true ones
-  /// (scenario.noise = measured-control), if that differs.
-  std::optional<std::string> fallback_if_measured = {};
-};
-
-inline Option number_option(const char* key, const char* fallback, double least, double most,
-                            const char* meaning) {
-  return {.key = key,
-          .kind = Option::Kind::number,
-          .fallback = fallback,
-          .least = least,
-          .most = most,
-          .meaning = meaning};
-}
-inline Option count_option(const char* key, const std::string& fallback, double least, double most,
-                           const char* meaning) {
-  return {.key = key,
-          .kind = Option::Kind::count,
-          .fallback = fallback,
-          .least = least,
-          .most = most,
-          .meaning = meaning};
-}
-inline Option choice_option(const char* key, const std::string& fallback,
-                            std::vector<std::string> choices, const char* meaning) {
-  return {.key = key,
-          .kind = Option::Kind::choice,
-          .fallback = fallback,
-          .choices = std::move(choices),
-          .meaning = meaning};
-}
-
-/// Values of a filter's options, checked against their Option beforehand.
+/// Values of a filter's options, checked against their Parameter beforehand.
 class FilterOptions {
  public:
   explicit FilterOptions(std::map<std::string, std::string, std::less<>> values)

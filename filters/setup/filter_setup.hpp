@@ -54,7 +54,7 @@ struct FilterKind {
   bool has_joint = false;     ///< whether joint() gives anything
   bool tells_rotation_information = false;  ///< where a detection fixes a landmark (ScanReport)
   bool has_map = true;                      ///< whether it initialises landmarks
-  std::vector<Option> options;              ///< in the order in which they are documented
+  std::vector<Parameter> options;           ///< in the order in which they are documented
   /// Sensors that it takes, mounted at the pose; empty: all of them, wherever they are mounted.
   std::vector<std::string> sensors = {RangeBearingSensor::kName};
   /// Whether it initialises landmarks itself that one detection does not fix. It then needs to know

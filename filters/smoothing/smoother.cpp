@@ -217,19 +217,20 @@ std::optional<JointEstimate> Smoother::solved_joint() const {
 }
 
 FilterKind smoother_kind() {
-  return {.name = "smoother",
-          .long_name = "full smoothing",
-          .source = "Dellaert, Kaess 2006; EQUATIONS 21",
-          .has_particles = false,
-          .has_joint = true,
-          .options = {number_option("relinearise", "0.5", 0, 1e9,
-                                    "standard deviations that a landmark may move before all is "
-                                    "linearised again; 0: however little"),
-                      count_option("iterations", "5", 0, 100,
-                                   "times a detection is linearised again between two solutions"),
-                      fitting_motion_option(), moments_option("pushed")},
-          .sensors = {RangeBearingSensor::kName},
-          .make = [](const FilterSetup& setup) { return std::make_unique<Smoother>(setup); }};
+  return {
+      .name = "smoother",
+      .long_name = "full smoothing",
+      .source = "Dellaert, Kaess 2006; EQUATIONS 21",
+      .has_particles = false,
+      .has_joint = true,
+      .options = {number_parameter("relinearise", "0.5", 0, 1e9,
+                                   "standard deviations that a landmark may move before all is "
+                                   "linearised again; 0: however little"),
+                  count_parameter("iterations", "5", 0, 100,
+                                  "times a detection is linearised again between two solutions"),
+                  fitting_motion_option(), moments_option("pushed")},
+      .sensors = {RangeBearingSensor::kName},
+      .make = [](const FilterSetup& setup) { return std::make_unique<Smoother>(setup); }};
 }
 
 }  // namespace montecarta::filters

@@ -29,7 +29,7 @@ class Listener {
  public:
   explicit Listener(const FilterKind& kind) {
     if (!kind.has_particles) return;
-    for (const Option& option : kind.options) {
+    for (const Parameter& option : kind.options) {
       if (option.key == "particles") log_weights_.resize(std::stoul(*option.fallback));
     }
     poses_.resize(3 * log_weights_.size()), ancestors_.resize(log_weights_.size());

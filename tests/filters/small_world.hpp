@@ -21,7 +21,7 @@ namespace montecarta::filters {
 inline FilterOptions default_options(
     const FilterKind& kind, const std::map<std::string, std::string, std::less<>>& others = {}) {
   std::map<std::string, std::string, std::less<>> values = others;
-  for (const Option& option : kind.options) values.emplace(option.key, *option.fallback);
+  for (const Parameter& option : kind.options) values.emplace(option.key, *option.fallback);
   return FilterOptions(values);
 }
 
@@ -78,7 +78,7 @@ inline void look_around(const SmallWorldSettings& settings, std::uint32_t step, 
     for (const Quantity quantity : components_of(sensor)) {
       const double value = exact(static_cast<Eigen::Index>(i)) +
                            deviation_of(quantity, settings.noise) * draw.normal();
-      detection[i++] = name_of(quantity).wraps ? wrap(value) : value;
+      detection[i++] = is_angle(quantity) ? wrap(value) : value;
     }
     world.drive.detections.push_back(detection);
   }

@@ -142,7 +142,7 @@ TEST(CramerRaoBound, IsThatOfEverySensorWhereverItIsMounted) {
     SimulatedWorld world = open_world();
     world.sensor = sensor;
     world.view = FieldOfView(50.0, kPi, sensor.mounting);
-    const double first = name_of(components_of(sensor)[0]).wraps ? 0.02 : 0.1;
+    const double first = is_angle(components_of(sensor)[0]) ? 0.02 : 0.1;
     world.sigma_observation = {first, fixes_landmark(sensor) ? 0.02 : 1.0};
     const bool fixes = fixes_landmark(sensor);
     expect_information_of_trajectory(world, fixes ? 0 : 3, fixes ? 1e-5 : 3e-3);

@@ -14,12 +14,12 @@ using testing::HasSubstr;
 
 /// Two filters that exist on paper only.
 std::vector<FilterKind> paper_filters() {
-  const Option particles = count_option("particles", "100", 1, 1e6, "how many");
-  const Option threshold = number_option("threshold", "0.5", 0, 1, "when to resample");
-  const Option weight =
-      choice_option("weight", "closed", {"closed", "ratio", "as_printed"}, "which form");
+  const Parameter particles = count_parameter("particles", "100", 1, 1e6, "how many");
+  const Parameter threshold = number_parameter("threshold", "0.5", 0, 1, "when to resample");
+  const Parameter weight =
+      choice_parameter("weight", "closed", {"closed", "ratio", "as_printed"}, "which form");
   const auto kind = [](const char* name, const char* long_name, bool has_particles,
-                       std::vector<Option> options) {
+                       std::vector<Parameter> options) {
     FilterKind made;
     made.name = name;
     made.long_name = long_name;
@@ -59,7 +59,7 @@ std::string complaint_about(const std::string& line) {
 
 TEST(Cells, TakeAnotherDefaultWhereControlsAreMeasured) {
   auto filters = paper_filters();
-  Option& option = filters.back().options.back();
+  Parameter& option = filters.back().options.back();
   option.fallback_if_measured = option.choices.back();
   const auto value_of = [&](const std::string& line, bool measured) {
     return cells_of(filters, {line}, measured).at(0).options.back().second;

@@ -48,7 +48,7 @@ std::unique_ptr<SlamFilter> production(
   const FilterKind& kind = *std::find_if(kinds.begin(), kinds.end(),
                                          [&](const FilterKind& k) { return k.name == name; });
   std::map<std::string, std::string, std::less<>> values = options;
-  for (const Option& option : kind.options) values.insert({option.key, *option.fallback});
+  for (const Parameter& option : kind.options) values.insert({option.key, *option.fallback});
   values["particles"] = std::to_string(particles);
   return kind.make({.belief = belief(),
                     .association = {},

@@ -44,7 +44,7 @@ inline const FilterKind& kind_of(const Variant& v) {
 
 inline FilterSetup setup_of(const Variant& v, const SmallWorldSettings& world) {
   auto values = v.options;
-  for (const Option& option : kind_of(v).options) {
+  for (const Parameter& option : kind_of(v).options) {
     values.try_emplace(option.key, *option.fallback);
   }
   values["particles"] = std::to_string(v.particles);

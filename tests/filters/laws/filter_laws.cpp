@@ -88,7 +88,7 @@ TEST_P(EveryFilter, StandsStillAtTheOriginOfTheMapWithoutHarm) {
 /// Whether a filter adds noise of its own to the motion at every scan, and says so.
 bool declares_a_noise_floor(const FilterKind& kind) {
   return std::any_of(kind.options.begin(), kind.options.end(),
-                     [](const Option& option) { return option.key == "kernel_floor_xy"; });
+                     [](const Parameter& option) { return option.key == "kernel_floor_xy"; });
 }
 
 TEST_P(EveryFilter, LeavesADetectionOutWhoseLandmarkItStandsOn) {

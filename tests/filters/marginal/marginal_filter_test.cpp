@@ -31,7 +31,7 @@ struct Variant {
   Choice choice() const { return filter == "marginal" ? Choice::by_weight : Choice::by_likelihood; }
   FilterOptions options() const {
     Texts values;
-    for (const Option& option : marginal_options(MapSolver::gauss_newton))
+    for (const Parameter& option : marginal_options(MapSolver::gauss_newton))
       values[option.key] = *option.fallback;
     values["particles"] = "13";  // not a multiple of the lanes
     for (const auto& [name, value] : changed) values[name] = value;
