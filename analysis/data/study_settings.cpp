@@ -2,7 +2,7 @@
 #include "analysis/data/study_settings.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/runs/rounds.hpp"
+#include "engine/runs/monte_carlo.hpp"
 
 #include <charconv>
 #include <sstream>

@@ -4,7 +4,7 @@
 
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
-#include "analysis/metrics/moments.hpp"
+#include "analysis/metrics/nees.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/output/csv_file.hpp"
 #include "analysis/output/number_text.hpp"

@@ -3,7 +3,7 @@
 
 #include "analysis/metrics/consistency.hpp"
 #include "analysis/metrics/mismatch.hpp"
-#include "analysis/metrics/moments.hpp"
+#include "analysis/metrics/nees.hpp"
 #include "analysis/metrics/score.hpp"
 #include "analysis/output/csv_file.hpp"
 #include "analysis/statistics/spread.hpp"

@@ -3,7 +3,6 @@
 
 #include "analysis/data/run_reader.hpp"
 #include "analysis/data/study_settings.hpp"
-#include "analysis/metrics/moments.hpp"
 #include "analysis/metrics/nees.hpp"
 #include "analysis/metrics/simulated_world.hpp"
 #include "analysis/statistics/group_sequential.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/metrics/path_at_fixes.hpp"
+#include "analysis/metrics/drive_scores.hpp"
 #include "analysis/statistics/spread.hpp"
 
 #include <Eigen/Core>

@@ -7,7 +7,7 @@
 #include "analysis/metrics/cramer_rao.hpp"
 #include "analysis/metrics/imported_estimates.hpp"
 #include "engine/errors.hpp"
-#include "engine/runs/rounds.hpp"
+#include "engine/runs/monte_carlo.hpp"
 
 #include <algorithm>
 #include <span>

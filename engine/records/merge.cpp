@@ -4,13 +4,211 @@
 #include "engine/errors.hpp"
 #include "engine/records/open_result.hpp"
 #include "engine/records/posix_file.hpp"
-#include "engine/records/shard.hpp"
+#include "engine/records/result_layout.hpp"
+#include "engine/records/seal.hpp"
 
 #include <algorithm>
 #include <numeric>
 #include <set>
+#include <span>
+#include <sstream>
 
 namespace montecarta::engine {
+namespace {
+
+/// What is stored of a true path.
+std::vector<Slab> slabs_of_truth(const ResultSlabs& slabs) {
+  if (!slabs.truth) return {};
+  std::vector<Slab> all = {slabs.truth->pose, slabs.truth->fingerprint};
+  if (slabs.truth->landmarks) all.push_back(*slabs.truth->landmarks);
+  return all;
+}
+
+/// What is stored of a run of a cell, and what it cost, but its status.
+void add_slabs(const CellSlabs& cell, std::vector<Slab>& all) {
+  all.insert(all.end(), cell.columns.begin(), cell.columns.end());
+  all.insert(all.end(),
+             {cell.failure_reason, cell.failure_step, cell.fingerprint, cell.cpu_seconds});
+}
+
+/// Everything stored of one run under /cells and /truth, and what it cost; statuses last.
+std::vector<Slab> slabs_of_run(const ResultSlabs& slabs) {
+  std::vector<Slab> all = slabs_of_truth(slabs);
+  for (const CellSlabs& cell : slabs.cells) add_slabs(cell, all);
+  for (const CellSlabs& cell : slabs.cells) all.push_back(cell.status);
+  return all;
+}
+
+std::vector<Slab> fingerprints(const ResultSlabs& slabs) {
+  std::vector<Slab> all;
+  if (slabs.truth) all.push_back(slabs.truth->fingerprint);
+  for (const CellSlabs& cell : slabs.cells) all.push_back(cell.fingerprint);
+  return all;
+}
+
+std::vector<Slab> slabs_of_cell(const CellSlabs& cell) {
+  std::vector<Slab> all;
+  add_slabs(cell, all);
+  all.push_back(cell.status);
+  return all;
+}
+
+/// Runs of a file that follow each other.
+struct Stretch {
+  const PosixFile& file;
+  const std::vector<Slab>& slabs;
+  std::size_t first;  ///< run index
+};
+
+/// Copies slab by slab: runs that follow each other lie in one piece.
+void copy_slabs(const Stretch& from, const Stretch& to, std::size_t runs) {
+  for (std::size_t i = 0; i < from.slabs.size(); ++i)
+    to.file.copy_at(to.slabs[i].at(to.first), from.file, from.slabs[i].at(from.first),
+                    runs * from.slabs[i].run_bytes);
+}
+
+template <class T>
+T read_value(const PosixFile& file, std::uint64_t offset) {
+  T value{};
+  file.read_at(offset, std::as_writable_bytes(std::span(&value, 1)));
+  return value;
+}
+
+}  // namespace
+
+ResultDescription describe_shard(const std::filesystem::path& path) {
+  const PosixFile readable(path,
+                           PosixFile::Mode::read);  // says better than HDF5 why it cannot be opened
+  return read_description(open_checked(path), path);
+}
+
+Shard make_shard(const std::filesystem::path& path, const ResultDescription& description) {
+  const std::vector<std::uint64_t>& runs = description.runs;
+  if (runs.back() - runs.front() != runs.size() - 1) {
+    throw StudyError(path.string() +
+                     ": its run numbers have gaps (another program wrote it): make it anew");
+  }
+  Shard shard{
+      path, find_slabs(path, description), description.runs.front(), {}, description.provenance};
+  const PosixFile file(path, PosixFile::Mode::read);
+  std::vector<bool> complete(description.runs.size(), true);
+  for (const CellSlabs& cell : shard.slabs.cells) {
+    const auto status = read_statuses(file, cell, complete.size());
+    for (std::size_t i = 0; i < status.size(); ++i)
+      complete[i] = complete[i] && status[i] != RunStatus::missing;
+  }
+  for (std::size_t i = 0; i < complete.size(); ++i) {
+    if (complete[i]) shard.complete_runs.push_back(description.runs[i]);
+  }
+  shard.wall_seconds = read_value<double>(file, shard.slabs.wall_seconds.offset);
+  return shard;
+}
+
+void expect_equal(const Shard& a, const Shard& b, std::uint64_t run) {
+  const PosixFile file_a(a.path, PosixFile::Mode::read);
+  const PosixFile file_b(b.path, PosixFile::Mode::read);
+  const auto slabs_a = fingerprints(a.slabs);
+  const auto slabs_b = fingerprints(b.slabs);
+  for (std::size_t i = 0; i < slabs_a.size(); ++i) {
+    if (read_value<std::uint64_t>(file_a, slabs_a[i].at(a.index(run))) ==
+        read_value<std::uint64_t>(file_b, slabs_b[i].at(b.index(run))))
+      continue;
+    throw StudyError(b.path.string() + ": run " + std::to_string(run) + " differs from that in " +
+                     a.path.string() +
+                     " (made from other sources, by another compiler or C library, or damaged; "
+                     "'montecarta info' tells): leave one of them out");
+  }
+}
+
+void expect_whole(const PosixFile& file, const Shard& shard, std::uint64_t run,
+                  std::vector<std::byte>& buffer) {
+  const auto spared = [&](const CellSlabs& cell) {
+    return status_of(file, cell, shard.index(run)) == RunStatus::spared;
+  };
+  bool whole = std::ranges::all_of(shard.slabs.cells, spared) ||
+               truth_is_whole(file, shard.slabs, shard.index(run), buffer);
+  for (const CellSlabs& cell : shard.slabs.cells)
+    whole = whole && run_is_whole(file, cell, shard.index(run), buffer);
+  if (whole) return;
+  throw StudyError(shard.path.string() + ": run " + std::to_string(run) +
+                   " is damaged (its bytes do not fit its fingerprint): compute this shard anew");
+}
+
+std::uint64_t copy_runs(const PosixFile& from, const Shard& shard, RunSpan runs,
+                        const PosixFile& to, const ResultSlabs& slabs) {
+  const std::size_t first = shard.index(runs.first);
+  copy_slabs({from, slabs_of_run(shard.slabs), first}, {to, slabs_of_run(slabs), runs.first},
+             runs.count);
+  std::vector<RunStatus> status(runs.count);
+  std::uint64_t failed = 0;
+  for (const CellSlabs& cell : shard.slabs.cells) {
+    from.read_at(cell.status.at(first), std::as_writable_bytes(std::span(status)));
+    failed += static_cast<std::uint64_t>(std::ranges::count(status, RunStatus::failed));
+  }
+  return failed;
+}
+
+void copy_cell(const PosixFile& from, const CellSlabs& source, const PosixFile& to,
+               const CellSlabs& sink, std::size_t run_index) {
+  copy_slabs({from, slabs_of_cell(source), run_index}, {to, slabs_of_cell(sink), run_index}, 1);
+}
+
+void copy_truth(const PosixFile& from, const ResultSlabs& source, const PosixFile& to,
+                const ResultSlabs& sink, std::size_t run_index) {
+  copy_slabs({from, slabs_of_truth(source), run_index}, {to, slabs_of_truth(sink), run_index}, 1);
+}
+
+namespace {
+
+bool same_columns(const StoredCell& a, const StoredCell& b) {
+  return a.label == b.label &&
+         std::ranges::equal(a.columns, b.columns, [](const Column& x, const Column& y) {
+           return x.name == y.name && x.element == y.element && x.shape == y.shape;
+         });
+}
+
+/// Of a build; flags without the instruction set, on which no bit depends.
+std::optional<std::string> fact(const TextPairs& build, const std::string& name) {
+  const auto found = std::ranges::find(build, name, [](const auto& pair) { return pair.first; });
+  if (found == build.end()) return std::nullopt;
+  if (name != "flags") return found->second;
+  std::istringstream words(found->second);
+  std::string rest;
+  for (std::string word; words >> word;) {
+    if (!word.starts_with("-march=")) rest += (rest.empty() ? "" : " ") + word;
+  }
+  return rest;
+}
+
+}  // namespace
+
+std::optional<std::string> difference(const ResultDescription& a, const ResultDescription& b,
+                                      const std::filesystem::path& path) {
+  if (a.study_sha256 != b.study_sha256) {
+    return path.string() + ": belongs to another study ('" + b.study_name + "', SHA-256 " +
+           b.study_sha256.substr(0, 12) + ", not '" + a.study_name + "', " +
+           a.study_sha256.substr(0, 12) +
+           "): give the files of one study, made with the same --set";
+  }
+  if (std::ranges::equal(a.cells, b.cells, same_columns) && a.times == b.times &&
+      a.scan_steps == b.scan_steps && a.joint_scans == b.joint_scans)
+    return std::nullopt;
+  return path.string() +
+         ": is laid out differently (another version of montecarta, or of a world file, made it): "
+         "make it anew";
+}
+
+std::vector<std::string> build_differences(const TextPairs& a, const TextPairs& b) {
+  std::vector<std::string> found;
+  for (const char* name : {"version", "git", "compiler", "flags", "libm"}) {
+    const std::optional<std::string> in_a = fact(a, name), in_b = fact(b, name);
+    if (!in_a || !in_b || *in_a == *in_b) continue;
+    found.push_back("two builds worked on this study (" + std::string(name) + ": " + *in_a +
+                    " and " + *in_b + "): the last digits of their runs may differ");
+  }
+  return found;
+}
+
 namespace {
 
 namespace fs = std::filesystem;

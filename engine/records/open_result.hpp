@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/records/posix_file.hpp"
-#include "engine/records/result_slabs.hpp"
+#include "engine/records/result_layout.hpp"
 #include "engine/records/result_writer.hpp"
 
 #include <filesystem>

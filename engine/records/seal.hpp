@@ -3,7 +3,7 @@
 
 #include "engine/records/h5.hpp"
 #include "engine/records/posix_file.hpp"
-#include "engine/records/result_slabs.hpp"
+#include "engine/records/result_layout.hpp"
 
 #include <cstddef>
 #include <cstdint>

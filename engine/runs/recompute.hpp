@@ -3,7 +3,7 @@
 
 #include "engine/core/plan.hpp"
 #include "engine/records/result_description.hpp"
-#include "engine/records/result_slabs.hpp"
+#include "engine/records/result_layout.hpp"
 #include "engine/records/run_record.hpp"
 
 #include <cstddef>

@@ -3,9 +3,9 @@
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
+#include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_guard.hpp"
-#include "experiments/commands/plan_arguments.hpp"
 #include "experiments/commands/stored_result.hpp"
 
 #include <iostream>

@@ -4,8 +4,8 @@
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/run_record.hpp"
+#include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/plan_arguments.hpp"
 #include "experiments/commands/trial.hpp"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include "engine/errors.hpp"
 #include "engine/records/provenance.hpp"
 #include "experiments/commands/arguments.hpp"
-#include "experiments/commands/visible_output.hpp"
+#include "experiments/commands/output_guard.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

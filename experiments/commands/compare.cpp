@@ -3,9 +3,9 @@
 #include "analysis/data/study_settings.hpp"
 #include "analysis/output/text_table.hpp"
 #include "engine/errors.hpp"
+#include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_guard.hpp"
-#include "experiments/commands/plan_arguments.hpp"
 #include "experiments/commands/stored_result.hpp"
 #include "experiments/text/words.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/output/csv_file.hpp"
 #include "engine/errors.hpp"
+#include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/plan_arguments.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
 #include "experiments/study/make_drives.hpp"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/gate.hpp"
-
 #include "analysis/data/study_settings.hpp"
+#include "analysis/metrics/consistency.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "engine/errors.hpp"
+#include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/plan_arguments.hpp"
 #include "experiments/commands/stored_result.hpp"
 #include "experiments/text/words.hpp"
 

@@ -7,7 +7,6 @@
 #include "experiments/files/files.hpp"
 #include "experiments/study/cell_spec.hpp"
 #include "experiments/study/ini_text.hpp"
-#include "experiments/study/setting.hpp"
 #include "experiments/study/settings.hpp"
 #include "experiments/text/words.hpp"
 #include "experiments/worlds/world.hpp"

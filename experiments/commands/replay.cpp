@@ -3,14 +3,14 @@
 #include "engine/records/posix_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
 #include "engine/runs/recompute.hpp"
+#include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_guard.hpp"
-#include "experiments/commands/plan_arguments.hpp"
 #include "experiments/commands/stored_result.hpp"
-#include "experiments/recordings/find_recording.hpp"
+#include "experiments/recordings/recorded_drive.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/study/make_plan.hpp"
-#include "experiments/study/setting.hpp"
+#include "experiments/study/settings.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

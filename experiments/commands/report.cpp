@@ -4,8 +4,8 @@
 #include "analysis/data/study_settings.hpp"
 #include "analysis/output/gnuplot.hpp"
 #include "engine/errors.hpp"
+#include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/plan_arguments.hpp"
 #include "experiments/commands/stored_result.hpp"
 
 #include <cstdlib>

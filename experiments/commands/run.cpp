@@ -8,9 +8,9 @@
 #include "engine/records/result_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
 #include "engine/threads/thread_budget.hpp"
+#include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_guard.hpp"
-#include "experiments/commands/plan_arguments.hpp"
 #include "experiments/commands/stored_result.hpp"
 
 #include <filesystem>

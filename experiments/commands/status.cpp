@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/output/text_table.hpp"
 #include "engine/errors.hpp"
-#include "engine/records/result_slabs.hpp"
+#include "engine/records/result_layout.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"
 #include "experiments/text/words.hpp"

@@ -8,7 +8,7 @@
 #include "engine/records/provenance.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/judging/judged_study.hpp"
-#include "experiments/recordings/find_recording.hpp"
+#include "experiments/recordings/recorded_drive.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

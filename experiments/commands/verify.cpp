@@ -2,8 +2,8 @@
 #include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/runs/recompute.hpp"
+#include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/plan_arguments.hpp"
 #include "experiments/commands/stored_result.hpp"
 #include "experiments/study/make_plan.hpp"
 

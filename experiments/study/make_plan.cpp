@@ -4,8 +4,8 @@
 #include "engine/errors.hpp"
 #include "engine/random/normals.hpp"
 #include "engine/records/columns.hpp"
-#include "experiments/recordings/find_recording.hpp"
 #include "experiments/recordings/log_csv.hpp"
+#include "experiments/recordings/recorded_drive.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/text/words.hpp"
 

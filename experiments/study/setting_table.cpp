@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/data/study_settings.hpp"
 #include "engine/records/columns.hpp"
-#include "experiments/study/setting.hpp"
+#include "experiments/study/settings.hpp"
 #include "filters/models/sensor.hpp"
 #include "filters/models/vehicle_settings.hpp"
 

@@ -6,7 +6,7 @@
 #include "experiments/files/files.hpp"
 #include "experiments/study/cell_spec.hpp"
 #include "experiments/study/make_drives.hpp"
-#include "experiments/study/setting.hpp"
+#include "experiments/study/settings.hpp"
 #include "experiments/text/words.hpp"
 #include "experiments/worlds/world.hpp"
 

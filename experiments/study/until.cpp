@@ -7,7 +7,7 @@
 #include "analysis/metrics/study_analysis.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/result_file.hpp"
-#include "engine/runs/rounds.hpp"
+#include "engine/runs/monte_carlo.hpp"
 #include "experiments/text/words.hpp"
 
 namespace montecarta::experiments {

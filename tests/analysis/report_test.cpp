@@ -24,44 +24,27 @@ TEST(Report, HoldsEverySectionAndNeedsNothingElse) {
   write_synthetic_result(folder / "out.h5", 6, 120);
   write_report(ResultFile(folder / "out.h5"), folder / "report");
   const std::string page = text_in(folder / "report/index.html");
-  for (const char* heading :
-       {"Failed runs", "Verdict", "What happened in one run?", "Where did the filter think it was?",
-        "Is the filter right about its own errors?", "Position or heading: which one goes wrong?",
-        "How large are the errors?", "How many different histories survive?",
-        "Whose story do the particles tell?", "Does one surprise foretell the next?",
-        "How many particles still count?", "The whole test", "Where this comes from"}) {
-    EXPECT_THAT(page, HasSubstr(std::string("<h2>") + heading));
-  }
   EXPECT_THAT(page, HasSubstr("gain is &lt;not&gt; a number &amp; worse"));
   EXPECT_LT(page.find("<h2>Verdict"), page.find("<h2>Failed runs"));
   EXPECT_LT(page.find("<h2>Failed runs"), page.find("<h2>What happened"));
   EXPECT_THAT(page, Not(HasSubstr("to record.columns of the study")));
   EXPECT_THAT(page, Not(HasSubstr("src=")));
   EXPECT_THAT(page, Not(HasSubstr("href=\"http")));
-  for (const char* name :
+  for (const std::string name :
        {"paths", "anees", "anees_parts", "rmse", "diversity", "ess", "ancestry", "whiteness"}) {
-    const auto figures = folder.path() / "report/figures";
-    EXPECT_THAT(text_in(figures / (std::string(name) + ".svg")), HasSubstr("</svg>")) << name;
-    EXPECT_THAT(text_in(figures / (std::string(name) + ".pdf")), testing::StartsWith("%PDF"))
-        << name;
-    EXPECT_THAT(page, HasSubstr(std::string("figures/") + name + ".pdf"));
+    const auto figure = folder / ("report/figures/" + name);
+    EXPECT_THAT(text_in(figure.string() + ".svg"), HasSubstr("</svg>")) << name;
+    EXPECT_THAT(text_in(figure.string() + ".pdf"), testing::StartsWith("%PDF")) << name;
+    EXPECT_THAT(page, HasSubstr("figures/" + name + ".pdf"));
   }
   EXPECT_THAT(text_in(folder / "report/tables/verdict.tex"), HasSubstr("\\bottomrule"));
   EXPECT_TRUE(std::filesystem::exists(folder / "report/data/anees_pose.csv"));
-}
-
-TEST(Report, IsSummedUpInMarkdown) {
-  const ScratchFolder folder;
-  write_synthetic_result(folder / "out.h5", 6, 120);
-  write_report(ResultFile(folder / "out.h5"), folder / "report");
-  const std::string page = text_in(folder / "report/summary.md");
-  for (const char* part : {"# ", "runs, 30 scans each", ", commit ", "## Verdict\n\n| cell |",
-                           "\n|---|", "](figures/anees.svg)", "## Failed runs"}) {
-    EXPECT_THAT(page, HasSubstr(part));
+  const std::string summary = text_in(folder / "report/summary.md");
+  for (const char* part : {"## Verdict\n\n| cell |", "\n|---|", "](figures/anees.svg)",
+                           "gain is \\<not\\> a number"}) {
+    EXPECT_THAT(summary, HasSubstr(part));
   }
-  EXPECT_THAT(page, HasSubstr("gain is \\<not\\> a number"));
-  EXPECT_THAT(page, Not(HasSubstr("Compared with")));
-  EXPECT_THAT(page, Not(HasSubstr("](figures/rmse.svg)")));
+  EXPECT_THAT(summary, Not(HasSubstr("](figures/rmse.svg)")));
 }
 
 TEST(Markdown, ManyRowsAreCounted) {
@@ -77,78 +60,54 @@ TEST(Report, JudgesARecordedDriveByItsReferences) {
   write_recorded_result(folder / "out.h5", 4, 400);
   write_report(ResultFile(folder / "out.h5"), folder / "report");
   const std::string page = text_in(folder / "report/index.html");
-  for (const char* heading :
-       {"Failed runs", "Judged by references", "Where did the filter think it was?",
-        "How far from the reference over time?", "Do more particles help?",
-        "How does the map grow?", "How many different histories survive?",
-        "How many particles still count?", "Where this comes from"}) {
-    EXPECT_THAT(page, HasSubstr(std::string("<h2>") + heading));
-  }
-  for (const char* heading : {"Verdict", "Is the filter right about its own errors?",
-                              "How large are the errors?", "The whole test"}) {
-    EXPECT_THAT(page, Not(HasSubstr(std::string("<h2>") + heading)));
-  }
+  EXPECT_THAT(page, HasSubstr("<h2>Judged by references"));
+  EXPECT_THAT(page, Not(HasSubstr("<h2>Verdict")));
   EXPECT_THAT(page, HasSubstr("class=\"replay-data\">{\"run\":"));
   EXPECT_THAT(page, HasSubstr("' to record.columns of the study"));
   EXPECT_THAT(page, HasSubstr("nobody knows its true path"));
-  for (const char* name : {"paths", "reference_error", "reference_particles", "map_size"}) {
-    EXPECT_THAT(text_in(folder / (std::string("report/figures/") + name + ".svg")),
-                HasSubstr("</svg>"))
-        << name;
+  for (const char* name :
+       {"figures/paths.svg", "figures/reference_error.svg", "figures/reference_particles.svg",
+        "figures/map_size.svg", "tables/reference.tex", "tables/baseline.tex", "tables/map.tex",
+        "tables/references.csv"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "report" / name)) << name;
   }
-  for (const char* name : {"reference.tex", "baseline.tex", "map.tex", "references.csv"}) {
-    EXPECT_TRUE(std::filesystem::exists(folder / (std::string("report/tables/") + name))) << name;
-  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "report/figures/rmse.svg"));
   EXPECT_FALSE(std::filesystem::exists(folder / "report/tables/verdict.tex"));
   const std::string paths = text_in(folder / "report/figures/paths.gp");
   EXPECT_THAT(paths, HasSubstr("title 'fix'"));
-  EXPECT_THAT(paths, HasSubstr("title 'true landmark'"));
   EXPECT_THAT(paths, Not(HasSubstr("true path")));
   EXPECT_THAT(text_in(folder / "report/data/map_ekf_slam.csv"), HasSubstr("\n20.3,5,"));
 }
 
-/// A filter that has a mixture and no particles, and a filter of a few weighted
-/// hypotheses that have no ancestry to speak of.
+/// A filter that has a mixture and no particles, and a filter of a few weighted hypotheses that
+/// have no ancestry to speak of.
 TEST(Report, KnowsMixturesWithoutParticlesAndWithFew) {
   const ScratchFolder folder;
-  const auto banks = [](StudyPlan& plan) {
+  write_synthetic_result(folder / "out.h5", 4, 120, {}, [](StudyPlan& plan) {
     plan.cells[0].particles = 0;
-    plan.cells[0].label = "bank";
     plan.columns.ancestry = false;
-  };
-  write_synthetic_result(folder / "out.h5", 4, 120, {}, banks);
-  const ResultFile file(folder / "out.h5");
-  const StudyAnalysis study = analyze(file);
+  });
+  const StudyAnalysis study = analyze(ResultFile(folder / "out.h5"));
   EXPECT_EQ(study.cells[0].leading, Moments::mixture);
   EXPECT_NE(study.cells[0].consistency().verdict, Verdict::untested);
   EXPECT_EQ(study.cells[0].find_nees(ErrorBlock::pose, Moments::corrected), nullptr);
   EXPECT_TRUE(study.cells[0].over_time("ess").empty());
   EXPECT_TRUE(study.cells[1].over_time("ancestors_at_start").empty());
   EXPECT_FALSE(study.cells[1].over_time("ess").empty());
-  write_report(file, folder / "report");
-  const std::string page = text_in(folder / "report/index.html");
-  EXPECT_THAT(page, HasSubstr("<h2>How many particles still count?"));
-  EXPECT_THAT(page, Not(HasSubstr("<h2>Whose story do the particles tell?")));
-  EXPECT_THAT(page, Not(HasSubstr("<h2>How many different histories survive?")));
 }
 
-TEST(Report, IsNotOverwrittenUnasked) {
+TEST(Report, IsNotOverwrittenUnaskedNorMadeOfARunThatIsNotThere) {
   const ScratchFolder folder;
   write_synthetic_result(folder / "out.h5", 2, 40);
   const ResultFile file(folder / "out.h5");
+  ReportOptions options;
+  options.run = 99;
+  EXPECT_THROW(write_report(file, folder / "report", options), StudyError);
+  EXPECT_FALSE(std::filesystem::exists(folder / "report/index.html"));
   std::filesystem::create_directories(folder / "report");
   std::ofstream(folder / "report/index.html") << "mine";
   EXPECT_THROW(write_report(file, folder / "report"), StudyError);
   EXPECT_EQ(text_in(folder / "report/index.html"), "mine");
-}
-
-TEST(Report, RefusesARunThatIsNotThere) {
-  const ScratchFolder folder;
-  write_synthetic_result(folder / "out.h5", 2, 40);
-  ReportOptions options;
-  options.run = 99;
-  EXPECT_THROW(write_report(ResultFile(folder / "out.h5"), folder / "report", options), StudyError);
-  EXPECT_FALSE(std::filesystem::exists(folder / "report/index.html"));
 }
 
 }  // namespace

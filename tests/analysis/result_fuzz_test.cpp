@@ -79,23 +79,6 @@ TEST_F(ResultFuzz, AnyBytes) {
   EXPECT_LT(refused, cases);
 }
 
-/// What never changes: not one change is let through.
-TEST_F(ResultFuzz, SealedBytes) {
-  const std::vector<ByteRange> ranges = open_ranges();
-  for (std::uint64_t seed = 0; seed < damaged_files(3000); ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Dice dice(seed);
-    const std::size_t gap = dice.below(ranges.size() + 1);
-    const std::uint64_t begin = gap == 0 ? 0 : ranges[gap - 1].offset + ranges[gap - 1].length;
-    const std::uint64_t end = gap == ranges.size() ? good_.size() : ranges[gap].offset;
-    std::string bytes = good_;
-    const std::size_t at = begin + dice.below(end - begin);
-    if (dice.below(2) == 0 && end - at >= 8) set_word(bytes, at, extreme_word(dice));
-    if (bytes == good_) bytes[at] = static_cast<char>(bytes[at] ^ (1 << dice.below(8)));
-    ASSERT_TRUE(is_refused(bytes));
-  }
-}
-
 /// Where the seal does not look.
 TEST_F(ResultFuzz, NumbersOfRuns) {
   const std::vector<ByteRange> ranges = open_ranges();

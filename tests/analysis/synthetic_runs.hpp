@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/data/run_rows.hpp"
+#include "analysis/metrics/measured_run.hpp"
 #include "engine/numbers/angle.hpp"
 #include "engine/random/stream.hpp"
 
@@ -11,9 +12,27 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace montecarta::analysis {
+
+/// Times of scans that begin a period after the start [s].
+inline std::vector<double> scan_times(std::size_t scans, double period = 1.0) {
+  std::vector<double> times;
+  for (std::size_t s = 0; s < scans; ++s) times.push_back(period * static_cast<double>(s + 1));
+  return times;
+}
+
+/// Criteria of runs with these scans, which must outlive them.
+inline RunCriteria criteria_of_scans(std::span<const double> times) {
+  return {.times = times,
+          .references = {},
+          .beacons = {},
+          .map = {},
+          .joint_scans = {},
+          .walks = BandWalks(times.size())};
+}
 
 /// Runs whose errors are drawn, independently at each scan, from a known Gaussian.
 struct SyntheticStudy {
@@ -30,11 +49,7 @@ struct SyntheticStudy {
     return P;
   }
 
-  std::vector<double> times() const {
-    std::vector<double> times(scans);
-    for (std::size_t s = 0; s < scans; ++s) times[s] = scan_period * static_cast<double>(s + 1);
-    return times;
-  }
+  std::vector<double> times() const { return scan_times(scans, scan_period); }
 
   RunRows run(std::uint64_t number) const {
     RngStream draw({seed, number, 0, 0, Draw::test});

@@ -3,6 +3,7 @@
 
 #include "analysis/metrics/nees_accumulator.hpp"
 #include "engine/random/stream.hpp"
+#include "tests/analysis/synthetic_runs.hpp"
 
 #include <array>
 #include <cmath>
@@ -52,12 +53,6 @@ inline std::vector<double> draw_nees(const GaussianLaw& law, std::uint64_t study
   return nees;
 }
 
-inline std::vector<double> five_a_second(std::size_t scans) {
-  std::vector<double> times;
-  for (std::size_t s = 0; s < scans; ++s) times.push_back(0.2 * static_cast<double>(s + 1));
-  return times;
-}
-
 /// Shares of studies.
 struct VerdictRates {
   double above = 0.0;    ///< the test against "right" is left upwards
@@ -83,7 +78,7 @@ inline bool is_below(const Consistency& found) {
 
 inline VerdictRates verdict_rates(const GaussianLaw& law, std::uint64_t runs, std::size_t scans,
                                   std::uint64_t studies) {
-  const std::vector<double> times = five_a_second(scans);
+  const std::vector<double> times = scan_times(scans, 0.2);
   const BandWalks walks(scans);
   const double one = 1.0 / static_cast<double>(studies);
   VerdictRates rates;

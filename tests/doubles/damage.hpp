@@ -41,23 +41,19 @@ inline std::uint64_t damaged_files(std::uint64_t usual) {
 inline std::uint64_t extreme_word(Dice& dice) {
   using Limits = std::numeric_limits<double>;
   constexpr std::uint64_t ones = ~std::uint64_t{0};
-  const std::array words = {std::uint64_t{0},
-                            std::uint64_t{1},
-                            ones,
-                            ones >> 1U,
-                            ones >> 32U,
-                            std::uint64_t{1} << 31U,
-                            std::uint64_t{1} << 63U,
-                            std::bit_cast<std::uint64_t>(Limits::quiet_NaN()),
-                            std::bit_cast<std::uint64_t>(Limits::infinity()),
-                            std::bit_cast<std::uint64_t>(-Limits::infinity()),
-                            std::bit_cast<std::uint64_t>(Limits::max()),
-                            std::bit_cast<std::uint64_t>(Limits::lowest()),
-                            std::bit_cast<std::uint64_t>(Limits::denorm_min()),
-                            std::bit_cast<std::uint64_t>(-1.0),
-                            std::bit_cast<std::uint64_t>(1e9),
-                            std::bit_cast<std::uint64_t>(1e150)};
-  return words[dice.below(words.size())];
+  const std::uint64_t words[] = {0, 1, ones, ones >> 1U, ones >> 32U, 1ULL << 31U, 1ULL << 63U};
+  const double numbers[] = {Limits::quiet_NaN(),
+                            Limits::infinity(),
+                            -Limits::infinity(),
+                            Limits::max(),
+                            Limits::lowest(),
+                            Limits::denorm_min(),
+                            -1.0,
+                            1e9,
+                            1e150};
+  const std::size_t which = dice.below(std::size(words) + std::size(numbers));
+  return which < std::size(words) ? words[which]
+                                  : std::bit_cast<std::uint64_t>(numbers[which - std::size(words)]);
 }
 
 inline void set_word(std::string& bytes, std::size_t at, std::uint64_t word) {

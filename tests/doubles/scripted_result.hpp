@@ -44,17 +44,30 @@ inline void fill_record(const StudyPlan& plan, std::size_t cell, std::uint64_t r
   record.mark_complete(0.25 + static_cast<double>(run));
 }
 
+/// The record of one run of a cell, complete, with the layout and the drive that it is of.
+struct FilledRecord {
+  FilledRecord(const StudyPlan& plan, std::size_t cell, std::uint64_t run)
+      : layout(plan.cells.at(cell), plan.columns, plan.drives->itinerary()), record(layout) {
+    plan.drives->generate(run, drive);
+    fill_record(plan, cell, run, drive, record);
+  }
+  template <class Number>
+  auto column(std::string_view name) {
+    return record.column<Number>(layout.find(name).value());
+  }
+
+  RecordLayout layout;
+  Drive drive;
+  RunRecord record;
+};
+
 /// Computes and stores all cells of one run of the plan (`run` is the number in the study).
 inline void store_run(ResultWriter& writer, const StudyPlan& plan, std::uint64_t run) {
-  Drive drive;
-  plan.drives->generate(run, drive);
   const std::size_t index = run - plan.first_run;
-  writer.write_truth(index, drive);
   for (std::size_t cell = 0; cell < plan.cells.size(); ++cell) {
-    const RecordLayout layout(plan.cells[cell], plan.columns, plan.drives->itinerary());
-    RunRecord record(layout);
-    fill_record(plan, cell, run, drive, record);
-    writer.write(cell, index, record);
+    const FilledRecord filled(plan, cell, run);
+    if (cell == 0) writer.write_truth(index, filled.drive);
+    writer.write(cell, index, filled.record);
   }
 }
 

@@ -14,7 +14,7 @@ using testing::IsEmpty;
 
 TEST(Margin, IsThatOfTheStudyInTheFile) {
   EXPECT_EQ(margin_in(""), kUsualMargin);
-  EXPECT_EQ(margin_in("[study]\nname = a\n[printed]\nwithin = 3\n"), kUsualMargin);
+  EXPECT_EQ(margin_in("[study]\nname = a\n[record]\nwithin = 3\n"), kUsualMargin);
   EXPECT_EQ(margin_in("[study]\nname = a\nwithin = 1.25\n[scenario]\n"), 1.25);
 }
 
@@ -33,7 +33,7 @@ TEST(Looks, AreTheRoundsOfAStudyThatStopsByVerdict) {
 TEST(Looks, AreNoneOfAnyOtherStudy) {
   EXPECT_THAT(looks_in("", 200), IsEmpty());
   EXPECT_THAT(looks_in("[study]\nuntil = position_rmse < 1\n", 200), IsEmpty());
-  EXPECT_THAT(looks_in("[study]\nname = a\n[printed]\nuntil = verdict\n", 200), IsEmpty());
+  EXPECT_THAT(looks_in("[study]\nname = a\n[record]\nuntil = verdict\n", 200), IsEmpty());
 }
 
 }  // namespace

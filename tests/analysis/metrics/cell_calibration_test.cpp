@@ -8,7 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <vector>
 
 namespace montecarta::analysis {
 namespace {
@@ -195,6 +195,25 @@ TEST(CalibrationFigures, DrawEmptyBinsWhereThereIsNoValue) {
   ASSERT_EQ(figure.data.size(), 1u);
   for (const auto& row : figure.data[0].rows) EXPECT_EQ(row[2], 0.0);
   EXPECT_GT(figure.chart.panels[0].axis.high, 0.0);
+}
+
+/// A cell of which the Gaussian was asked at the end of the run, and no particles are stored.
+StudyAnalysis without_particles() {
+  StudyAnalysis study;
+  study.times = {0.2, 0.4};
+  study.runs_here = 100;
+  CellAnalysis cell;
+  cell.label = "ekf_slam";
+  PitHistogram histogram{"x", "Gaussian", 0.4, 0, {}};
+  histogram.test.counts.assign(10, 10);
+  cell.findings.put(Calibrations{histogram});
+  study.cells = {cell};
+  return study;
+}
+
+TEST(CalibrationFigures, DrawNothingOfParticlesThatAreNotStored) {
+  EXPECT_FALSE(reported_figure(without_particles(), "calibration").data.empty());
+  EXPECT_TRUE(reported_figure(without_particles(), "ranks").data.empty());
 }
 
 }  // namespace

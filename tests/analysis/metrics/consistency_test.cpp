@@ -3,7 +3,10 @@
 
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "engine/errors.hpp"
+#include "tests/analysis/synthetic_runs.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,11 +15,7 @@
 namespace montecarta::analysis {
 namespace {
 
-std::vector<double> every_fifth_of_a_second(std::size_t scans) {
-  std::vector<double> times;
-  for (std::size_t s = 0; s < scans; ++s) times.push_back(0.2 * static_cast<double>(s + 1));
-  return times;
-}
+using testing::HasSubstr;
 
 /// A series of 30 runs of three components with these averages.
 NeesSeries series_of(const std::vector<double>& averages) {
@@ -33,7 +32,7 @@ NeesSeries series_of(const std::vector<double>& averages) {
 }
 
 Consistency judge(const std::vector<double>& averages) {
-  return judge(series_of(averages), every_fifth_of_a_second(averages.size()));
+  return judge(series_of(averages), scan_times(averages.size(), 0.2));
 }
 
 TEST(FirstLasting, FindsTheBeginningOfTheFirstLongEnoughStretch) {
@@ -108,7 +107,7 @@ NeesSeries runs_about(double mean, double deviation) {
 }
 
 TEST(Judge, CallsConsistentWhatIsShownToBeWithinTheMargin) {
-  const auto times = every_fifth_of_a_second(100);
+  const auto times = scan_times(100, 0.2);
   const Consistency within = judge(runs_about(3.06, 0.02), times);
   EXPECT_EQ(within.verdict, Verdict::consistent) << "although 1 is excluded";
   EXPECT_GT(within.ratio.lower, 1.0);
@@ -128,7 +127,7 @@ TEST(Judge, CallsConsistentWhatIsShownToBeWithinTheMargin) {
 TEST(Judge, AveragesOverTheRunsThatItsIntervalIsOf) {
   NeesSeries series = runs_about(3.0, 0.2);
   std::ranges::fill(series.average, 4.0);
-  const Consistency found = judge(series, every_fifth_of_a_second(100));
+  const Consistency found = judge(series, scan_times(100, 0.2));
   EXPECT_DOUBLE_EQ(found.mean, 3.0);
   EXPECT_LT(found.ratio.lower, 1.0);
   EXPECT_GT(found.ratio.upper, 1.0);
@@ -139,7 +138,7 @@ TEST(Judge, TakesTheBootstrapWhereSomeRunsAreLost) {
   NeesSeries series = runs_about(3.0, 0.5);
   for (int run = 0; run < 3; ++run) series.run_averages[static_cast<std::size_t>(run)] = 3000.0;
   std::ranges::fill(series.average, 302.7);
-  const Consistency found = judge(series, every_fifth_of_a_second(100));
+  const Consistency found = judge(series, scan_times(100, 0.2));
   EXPECT_TRUE(found.is_overdispersed);
   EXPECT_EQ(found.verdict, Verdict::optimistic);
   EXPECT_LT(found.ratio.lower, 50.0);
@@ -155,7 +154,7 @@ TEST(Judge, TellsOptimisticFromConservative) {
 }
 
 TEST(Judge, UsesTheAverageOverTheRunWhereNoScanIsFarOff) {
-  const auto times = every_fifth_of_a_second(100);
+  const auto times = scan_times(100, 0.2);
   EXPECT_EQ(judge(runs_about(3.4, 0.01), times).verdict, Verdict::optimistic);
   EXPECT_EQ(judge(runs_about(2.7, 0.01), times).verdict, Verdict::conservative);
 }
@@ -179,6 +178,59 @@ TEST(Judge, LeavesOutScansWithoutARun) {
 TEST(Judge, DoesNotJudgeNothing) {
   EXPECT_EQ(judge(std::vector<double>(30, kNaN)).verdict, Verdict::untested);
   EXPECT_EQ(in_words(Consistency{}), "not tested");
+}
+
+/// A verdict on the average over the run alone, within 1.2.
+Consistency found_by_average(Verdict verdict, const Interval& ratio) {
+  Consistency found;
+  found.verdict = verdict;
+  found.runs = 40;
+  found.within = 1.2;
+  found.ratio = ratio;
+  found.mean = 3.0 * std::sqrt(ratio.lower * ratio.upper);
+  found.average_bounds = {found.mean / ratio.upper, found.mean / ratio.lower};
+  return found;
+}
+
+TEST(Gate, AnswersByVerdictAndTellsTheNumbers) {
+  const auto expect_gate = [](const Consistency& found, GateAnswer answer, const char* words) {
+    EXPECT_EQ(gate(found).answer, answer) << words;
+    EXPECT_THAT(gate(found).why, HasSubstr(words));
+  };
+  expect_gate(found_by_average(Verdict::consistent, {0.97, 1.08}), GateAnswer::consistent,
+              "consistent within 1.2; ANEES 0.970 to 1.08 times the expected one, 40 runs");
+  expect_gate(found_by_average(Verdict::optimistic, {1.3, 1.6}), GateAnswer::inconsistent,
+              "not consistent, optimistic by 1.30 to 1.60; ANEES");
+  expect_gate(found_by_average(Verdict::conservative, {0.5, 0.7}), GateAnswer::inconsistent,
+              "not consistent, conservative by");
+  // Shown to differ from 1, not by how much: more runs may find it within the margin.
+  expect_gate(found_by_average(Verdict::optimistic, {1.02, 1.3}), GateAnswer::inconsistent,
+              "not consistent, optimistic by 1.02 to 1.30, though it may lie within 1.2");
+  Consistency open = found_by_average(Verdict::undecided, {0.8, 1.3});
+  open.more_runs = 130;
+  expect_gate(open, GateAnswer::undecided, "undecided: 130 more runs decide; ANEES 0.800 to 1.30");
+  expect_gate(found_by_average(Verdict::undecided, {0.0, HUGE_VAL}), GateAnswer::undecided,
+              "undecided: too few runs; 40 runs");
+  EXPECT_THROW(gate({}), StudyError);
+}
+
+TEST(Gate, StopsAFilterThatFailsOrWhoseSamplesAreUnusable) {
+  Consistency good = found_by_average(Verdict::consistent, {0.97, 1.08});
+  good.failed = 2;
+  EXPECT_THAT(gate(good).why, HasSubstr("(2 of 40 runs failed)"));
+  EXPECT_EQ(gate(good).answer, GateAnswer::inconsistent);
+  EXPECT_EQ(gate(good, {.failed = 1}).answer, GateAnswer::inconsistent);
+  EXPECT_EQ(gate(good, {.failed = 2}).answer, GateAnswer::consistent);
+  good.failed = 0;
+  good.samples = 600;
+  good.unusable = 30;
+  EXPECT_EQ(gate(good).answer, GateAnswer::inconsistent);
+  EXPECT_EQ(gate(good, {.failed = 600, .unusable = 29}).answer, GateAnswer::inconsistent);
+  EXPECT_THAT(gate(good, {.unusable = 30}).why, HasSubstr("(30 of 600 samples are unusable)"));
+  EXPECT_EQ(gate(good, {.unusable = 30}).answer, GateAnswer::consistent);
+  Consistency none;
+  none.runs = none.failed = 20;
+  EXPECT_EQ(gate(none).answer, GateAnswer::inconsistent);
 }
 
 }  // namespace

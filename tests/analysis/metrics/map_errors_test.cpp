@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/map_errors.hpp"
 
+#include "analysis/metrics/map_scores.hpp"
 #include "analysis/metrics/measured_run.hpp"
+#include "analysis/metrics/reference_scores.hpp"
 #include "analysis/metrics/score.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "engine/numbers/angle.hpp"
 #include "engine/random/stream.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <vector>
 
 namespace montecarta::analysis {
 namespace {
@@ -113,6 +119,172 @@ TEST(MapErrors, GiveEveryRunItsScores) {
   EXPECT_DOUBLE_EQ(scores.column("gospa")[1], 5.0);
   EXPECT_EQ(scores.column("landmarks_missed")[1], 2.0);
   EXPECT_EQ(scores.column("landmark_rms")[1], 0.0);
+}
+
+using Points = std::vector<Eigen::Vector2d>;
+
+Points drawn(std::size_t n, double size, RngStream& draw) {
+  Points points;
+  for (std::size_t i = 0; i < n; ++i) {
+    points.emplace_back(size * draw.uniform(), size * draw.uniform());
+  }
+  return points;
+}
+
+/// The definition: over all ways to pair points of the smaller set with different points of the
+/// larger one, where a pair farther than the cutoff is no pair.
+double by_trying_all(Points few, Points many, double cutoff) {
+  if (few.size() > many.size()) std::swap(few, many);
+  std::vector<std::size_t> order(many.size());
+  std::iota(order.begin(), order.end(), 0);
+  double best = std::numeric_limits<double>::infinity();
+  do {
+    double sum = 0.5 * cutoff * cutoff * static_cast<double>(many.size() - few.size());
+    for (std::size_t i = 0; i < few.size(); ++i) {
+      sum += std::min((few[i] - many[order[i]]).squaredNorm(), cutoff * cutoff);
+    }
+    best = std::min(best, sum);
+  } while (std::next_permutation(order.begin(), order.end()));
+  return std::sqrt(best);
+}
+
+TEST(Gospa, EqualsTheBestOfAllAssignments) {
+  RngStream draw({.seed = 11});
+  for (int trial = 0; trial < 200; ++trial) {
+    const Points map = drawn(draw.below(7), 15.0, draw), truth = drawn(draw.below(7), 15.0, draw);
+    const Gospa found = gospa(map, truth);
+    EXPECT_NEAR(found.distance, by_trying_all(map, truth, kGospaCutoff), 1e-12) << trial;
+    EXPECT_NEAR(found.distance * found.distance,
+                found.localisation * found.localisation + 12.5 * (found.missed + found.spurious),
+                1e-9);
+  }
+}
+
+TEST(Gospa, CountsWhatIsMissedAndWhatIsInvented) {
+  const Points truth = {{0, 0}, {10, 0}, {20, 0}};
+  const Gospa found = gospa(Points{{0.3, 0.4}, {10, 6}}, truth);
+  EXPECT_DOUBLE_EQ(found.localisation, 0.5);
+  EXPECT_EQ(found.missed, 2.0);
+  EXPECT_EQ(found.spurious, 1.0);
+  EXPECT_DOUBLE_EQ(found.distance, std::sqrt(0.25 + 3 * 12.5));
+  EXPECT_EQ(gospa(truth, truth).distance, 0.0);
+  EXPECT_EQ(gospa({}, truth).missed, 3.0);
+  EXPECT_EQ(gospa(truth, {}).spurious, 3.0);
+}
+
+TEST(Gospa, GivesAPlaceThatIsNoNumberNoPartner) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Gospa found = gospa(Points{{nan, 0}}, Points{{0, 0}});
+  EXPECT_EQ(found.missed, 1.0);
+  EXPECT_EQ(found.spurious, 1.0);
+}
+
+// A greedy choice takes the pair of distance 0 first and pays 16 for the rest; the best pays 2 x 4.
+TEST(Gospa, LooksAtTheWholeAndNotAtTheNearestPair) {
+  const Gospa found = gospa(Points{{0, 0}, {2, 0}}, Points{{2, 0}, {4, 0}});
+  EXPECT_DOUBLE_EQ(found.distance, std::sqrt(8.0));
+}
+
+TEST(Assignment, OfNothingIsNothing) {
+  EXPECT_TRUE(cheapest_assignment(Eigen::MatrixXd(0, 3)).empty());
+}
+
+using Points = std::vector<Eigen::Vector2d>;
+
+const Points kBeacons = {{0.0, 0.0}, {10.0, 0.0}, {10.0, 10.0}};
+
+TEST(BeaconScores, CountsBeaconsWithinAMetreAndMeasuresThem) {
+  const BeaconScores scores =
+      beacon_scores(Points{{0.6, 0.0}, {10.6, 0.0}, {10.0, 11.1}, {50.0, 50.0}}, kBeacons, {});
+  EXPECT_EQ(scores.found, 2.0);
+  EXPECT_NEAR(scores.rms, 0.6, 1e-12);
+  EXPECT_NEAR(scores.aligned_rms, 0.6, 1e-12);
+}
+
+TEST(BeaconScores, FindsThemWhereThePathIsAlignedAndSaysHowFarTheyWere) {
+  const RigidMotion along_x{.angle = 0.0, .shift = {-3.0, 0.0}};
+  const BeaconScores scores =
+      beacon_scores(Points{{3.0, 0.0}, {13.0, 0.1}, {13.0, 10.0}}, kBeacons, along_x);
+  EXPECT_EQ(scores.found, 3.0);
+  EXPECT_NEAR(scores.rms, std::sqrt(9.0 + 0.01 / 3.0), 1e-12);
+  EXPECT_NEAR(scores.aligned_rms, std::sqrt(0.01 / 3.0), 1e-12);
+}
+
+TEST(BeaconScores, ALandmarkStandsForOneBeaconTheNearerFirst) {
+  const Points close = {{0.0, 0.0}, {1.0, 0.0}};
+  const BeaconScores one = beacon_scores(Points{{0.7, 0.0}}, close, {});
+  EXPECT_EQ(one.found, 1.0);
+  EXPECT_NEAR(one.rms, 0.3, 1e-12);
+  EXPECT_EQ(beacon_scores(Points{{0.7, 0.0}, {0.6, 0.0}}, close, {}).found, 2.0);
+}
+
+TEST(BeaconScores, FindsNothingInAnEmptyMap) {
+  const BeaconScores scores = beacon_scores({}, kBeacons, {});
+  EXPECT_EQ(scores.found, 0.0);
+  EXPECT_TRUE(std::isnan(scores.rms));
+}
+
+using Points = std::vector<Eigen::Vector2d>;
+
+Points random_points(RngStream& draw, std::size_t n) {
+  Points points;
+  for (std::size_t i = 0; i < n; ++i) points.emplace_back(100.0 * draw.normal(), draw.normal());
+  return points;
+}
+
+Points moved(const RigidMotion& motion, const Points& points) {
+  Points images;
+  for (const Eigen::Vector2d& point : points) images.push_back(motion(point));
+  return images;
+}
+
+double squared_distance(const Points& a, const Points& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();
+  return sum;
+}
+
+TEST(RigidAlignment, RecoversAKnownTurnAndShift) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    RngStream draw({.seed = seed, .purpose = Draw::test});
+    const Points points = random_points(draw, 20);
+    const RigidMotion known{wrap(10.0 * draw.normal()), {draw.normal(), 5.0 * draw.normal()}};
+    const RigidMotion found = rigid_alignment(points, moved(known, points));
+    EXPECT_NEAR(wrap(found.angle - known.angle), 0.0, 1e-12) << seed;
+    EXPECT_LT((found.shift - known.shift).norm(), 1e-12 * 100.0) << seed;
+  }
+}
+
+TEST(RigidAlignment, IsTheBestOfAllMotionsNearby) {
+  RngStream draw({.seed = 4, .purpose = Draw::test});
+  const Points from = random_points(draw, 30), onto = random_points(draw, 30);
+  const RigidMotion best = rigid_alignment(from, onto);
+  const double least = squared_distance(moved(best, from), onto);
+  for (const double step : {-1e-3, 1e-3}) {
+    for (const RigidMotion& other :
+         {RigidMotion{best.angle + step, best.shift},
+          RigidMotion{best.angle, best.shift + Eigen::Vector2d(step, 0.0)},
+          RigidMotion{best.angle, best.shift + Eigen::Vector2d(0.0, step)}}) {
+      EXPECT_GT(squared_distance(moved(other, from), onto), least);
+    }
+  }
+}
+
+TEST(RigidAlignment, NeitherMirrorsNorStretches) {
+  const Points from = {{0.0, 0.0}, {4.0, 0.0}, {4.0, 3.0}};
+  Points mirrored = from, stretched = from;
+  for (Eigen::Vector2d& point : mirrored) point.y() = -point.y();
+  for (Eigen::Vector2d& point : stretched) point *= 2.0;
+  for (const Points& onto : {mirrored, stretched}) {
+    EXPECT_GT(squared_distance(moved(rigid_alignment(from, onto), from), onto), 1.0);
+  }
+}
+
+TEST(RigidAlignment, ShiftsOnePointAndLeavesNone) {
+  const RigidMotion motion = rigid_alignment(Points{{1.0, 2.0}}, Points{{-3.0, 5.0}});
+  EXPECT_EQ(motion.angle, 0.0);
+  EXPECT_EQ(motion.shift, Eigen::Vector2d(-4.0, 3.0));
+  EXPECT_EQ(rigid_alignment({}, {}).shift, Eigen::Vector2d::Zero());
 }
 
 }  // namespace

@@ -2,18 +2,27 @@
 #include "analysis/metrics/error_anatomy.hpp"
 #include "analysis/metrics/innovations.hpp"
 #include "analysis/metrics/lineages.hpp"
+#include "analysis/metrics/mismatch.hpp"
+#include "analysis/metrics/study_analysis.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "tests/analysis/reported.hpp"
+#include "tests/analysis/studied_result.hpp"
+#include "tests/doubles/scratch_folder.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace montecarta::analysis {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
 
 StudyAnalysis study_of(CellAnalysis cell) {
   StudyAnalysis study;
@@ -23,30 +32,21 @@ StudyAnalysis study_of(CellAnalysis cell) {
   return study;
 }
 
-CellAnalysis explained() {
+TEST(ErrorAnatomyTable, NamesTheWorstDirectionAndWhatFewParticlesCost) {
   CellAnalysis cell;
   ErrorAnatomy anatomy;
   anatomy.mean_worst_ratio = 9.0;
   anatomy.worst_direction = {0.02, 0.01, 0.97};
   anatomy.mean_bias_share = 0.25;
   cell.findings.put(anatomy);
-  return cell;
-}
-
-TEST(ErrorAnatomyTable, NamesTheWorstDirection) {
-  const TextTable table = reported_table(study_of(explained()), "error_anatomy");
-  ASSERT_EQ(table.rows.size(), 1u);
-  EXPECT_THAT(table.rows[0],
-              ElementsAre("srcd_m10", "9.00", testing::_, "heading 97 %", "25.0 %", "-"));
-  EXPECT_EQ(table.rows[0].size(), table.headings.size());
-}
-
-TEST(ErrorAnatomyTable, SaysWhatFewParticlesCost) {
-  CellAnalysis cell = explained();
+  EXPECT_EQ(reported_table(study_of(cell), "error_anatomy").rows.at(0).back(), "-");
   LineageSummary lineages;
   lineages.monte_carlo_share = 0.125;
   cell.findings.put(lineages);
-  EXPECT_EQ(reported_table(study_of(cell), "error_anatomy").rows[0].back(), "12.5 %");
+  const TextTable table = reported_table(study_of(cell), "error_anatomy");
+  EXPECT_THAT(table.rows.at(0),
+              ElementsAre("srcd_m10", "9.00", testing::_, "heading 97 %", "25.0 %", "12.5 %"));
+  EXPECT_EQ(table.rows[0].size(), table.headings.size());
 }
 
 TEST(InnovationTable, ShowsTheLagThatIsWorst) {
@@ -82,12 +82,124 @@ TEST(DiversityTable, LeavesOpenWhatIsNotStored) {
   EXPECT_EQ(without.rows[0].size(), without.headings.size());
 }
 
-TEST(MetricTables, HaveNoRowsWhereNothingIsKnown) {
-  const auto nothing = std::make_unique<CellAnalysis>();  // on the stack g++ 12 takes it for unset
-  const StudyAnalysis study = study_of(*nothing);
-  EXPECT_TRUE(reported_table(study, "error_anatomy").rows.empty());
-  EXPECT_TRUE(reported_table(study, "innovations").rows.empty());
-  EXPECT_TRUE(reported_table(study, "diversity").rows.empty());
+class MismatchOfAFile : public ::testing::Test {
+ protected:
+  const ResultFile& studied(const std::string& cell) {
+    write_studied_result(path_, kTinyLoop,
+                         {"cells.cell=" + cell, "study.runs=4", "scenario.noise=matched"});
+    return file_.emplace(path_);
+  }
+  ScratchFolder folder_;
+  std::filesystem::path path_ = folder_ / "out.h5";
+  std::optional<ResultFile> file_;
+};
+
+CellAnalysis cell_of(const std::string& family, double motion, double sensor, double anees) {
+  CellAnalysis cell;
+  cell.mismatch = {motion, sensor, family};
+  NeesResult nees;
+  nees.series.dimension = 3;
+  nees.consistency.verdict = Verdict::optimistic;
+  nees.consistency.mean = anees;
+  cell.nees.push_back(nees);
+  return cell;
+}
+
+TEST(MismatchGrids, HoldTheTestOfEveryPairOfFactors) {
+  StudyAnalysis study;
+  study.cells = {cell_of("a", 2, 1, 6), cell_of("a", 1, 1, 3), cell_of("b", 1, 1, 3),
+                 cell_of("a", 1, 0.5, 9), cell_of("b", 2, 1, 3)};
+  const auto grids = mismatch_grids(study);
+  ASSERT_EQ(grids.size(), 1u) << "b has one factor of the sensor's noise";
+  EXPECT_EQ(grids[0].family, "a");
+  EXPECT_THAT(grids[0].motion_noise, ElementsAre(1.0, 2.0));
+  EXPECT_THAT(grids[0].sensor_noise, ElementsAre(0.5, 1.0));
+  EXPECT_EQ(grids[0].anees(0, 0), 3.0);
+  EXPECT_EQ(grids[0].anees(0, 1), 1.0);
+  EXPECT_EQ(grids[0].anees(1, 1), 2.0);
+  EXPECT_TRUE(std::isnan(grids[0].anees(1, 0)));
+  const Figure figure = reported_figure(study, "mismatch");
+  ASSERT_EQ(figure.data.size(), 1u);
+  EXPECT_THAT(figure.data[0].rows, testing::Contains(ElementsAre(2, 1, 2, 1, 1, std::log10(2.0))));
+  const ChartMarks& tiles = figure.chart.panels.at(0).marks.at(0);
+  EXPECT_EQ(tiles.fill[1], "#f7f7f7") << "1 is white";
+  EXPECT_THAT(tiles.facts.at(2).values, ElementsAre(3.0, 1.0, 2.0));
+}
+
+TEST(MismatchGrids, LeaveOutWhatWasNotTested) {
+  StudyAnalysis study;
+  study.cells = {cell_of("a", 2, 1, 6), cell_of("a", 1, 1, 3), cell_of("a", 1, 0.5, 9)};
+  study.cells[1].nees[0].consistency.verdict = Verdict::untested;
+  EXPECT_TRUE(std::isnan(mismatch_grids(study).at(0).anees(0, 1)));
+}
+
+// Until the first landmark is seen again the covariance is that of the motion alone.
+TEST_F(MismatchOfAFile, ScalesWhatTheFilterBelieves) {
+  const ResultFile& file = studied("ekf_slam motion_noise=1,2 sensor_noise=1,2");
+  ASSERT_EQ(file.cells().size(), 4u);
+  std::vector<std::vector<double>> covariance;
+  for (const StoredCell& cell : file.cells()) {
+    auto& P = covariance.emplace_back(9 * file.times().size());
+    file.read(cell, "pose_covariance", 0, std::span(P));
+  }
+  EXPECT_DOUBLE_EQ(covariance[1][0], covariance[0][0]);
+  EXPECT_DOUBLE_EQ(covariance[2][0], 4.0 * covariance[0][0]);
+  EXPECT_DOUBLE_EQ(covariance[3][8], 4.0 * covariance[0][8]);
+  const std::size_t last = 9 * (file.times().size() - 1);
+  EXPECT_GT(covariance[1][last], 1.2 * covariance[0][last]);
+}
+
+TEST_F(MismatchOfAFile, IsFoundInTheFileAndTheLabels) {
+  const StudyAnalysis study =
+      analyze(studied("fastslam1 particles=10 motion_noise=0.5,1 sensor_noise=1,2"));
+  ASSERT_EQ(study.cells.size(), 4u);
+  EXPECT_EQ(study.cells[1].label, "fastslam1_m10_motion_noise_0p5_sensor_noise_2");
+  EXPECT_EQ(study.cells[1].mismatch.motion_noise, 0.5);
+  EXPECT_EQ(study.cells[1].mismatch.sensor_noise, 2.0);
+  EXPECT_EQ(study.cells[2].label, "fastslam1_m10");
+  for (const CellAnalysis& cell : study.cells) EXPECT_EQ(cell.mismatch.family, "fastslam1_m10");
+  EXPECT_EQ(mismatch_grids(study).size(), 1u);
+}
+
+using MeanSquares = std::vector<double>;  ///< {run} of both errors
+
+/// A study of these filters.
+StudyAnalysis study_of_squares(const std::vector<std::pair<std::string, MeanSquares>>& cells) {
+  StudyAnalysis study;
+  for (const auto& [filter, squares] : cells) {
+    CellAnalysis& cell = study.cells.emplace_back();
+    cell.label = filter + "_cell";
+    cell.filter = filter;
+    for (const double square : squares) {
+      const double seconds = filter == "smoother" ? 2.0 : 0.5;
+      cell.runs.push_back(cell.complete++);
+      cell.scores.add(std::vector<ScoreTable::Value>{
+          {"position_mse", square}, {"heading_mse", square}, {"cpu_seconds", seconds}});
+    }
+  }
+  return study;
+}
+
+std::vector<std::vector<std::string>> smoother_rows(const StudyAnalysis& study) {
+  return reported_table(study, "smoother").rows;
+}
+
+TEST(AgainstTheSmoother, EfficiencyIsTheRatioOfRootMeanSquaresOfRunsThatBothCompleted) {
+  const auto study = study_of_squares({{"ekf_slam", {4.0, 16.0}}, {"smoother", {1.0, 4.0, 900.0}}});
+  ASSERT_EQ(smoother_rows(study).size(), 1u);
+  EXPECT_THAT(smoother_rows(study)[0],
+              ElementsAre("ekf_slam_cell", "0.500", "0.500", "-", "0.250"));
+  EXPECT_THAT(reported_notes(study, "smoother"), ElementsAre(HasSubstr("smoother_cell")));
+  EXPECT_THAT(smoother_rows(study_of_squares({{"ekf_slam", {1.0}}})), IsEmpty());
+  EXPECT_THAT(smoother_rows(study_of_squares({{"smoother", {1.0}}})), IsEmpty());
+}
+
+// Half the differences of s / 3 and e / 6 are -0.025 and 0.025 in turn: their standard error is
+// 0.014434, Student's t of four runs 3.1824, and sqrt(3 / 6) exp(+-0.045935) the interval.
+TEST(AgainstTheSmoother, HasAnIntervalOfRunsPairByPair) {
+  const auto study =
+      study_of_squares({{"ekf_slam", {6.1, 5.9, 6.1, 5.9}}, {"smoother", {2.9, 3.1, 2.9, 3.1}}});
+  EXPECT_EQ(smoother_rows(study)[0][1], "0.707 [0.675, 0.740]");
 }
 
 }  // namespace

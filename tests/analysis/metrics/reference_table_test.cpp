@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/particle_curves.hpp"
 #include "analysis/metrics/reference_report.hpp"
 #include "analysis/metrics/reference_scores.hpp"
 #include "analysis/tables/tables.hpp"
+#include "engine/records/h5.hpp"
 #include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/synthetic_result.hpp"
 #include "tests/doubles/scratch_folder.hpp"
@@ -9,7 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <sstream>
+#include <algorithm>
 
 namespace montecarta::analysis {
 namespace {
@@ -17,24 +19,19 @@ namespace {
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::Not;
+using testing::StartsWith;
 
-StudyAnalysis recorded_study(std::size_t steps = 400) {
-  const ScratchFolder folder;
-  write_recorded_result(folder / "out.h5", 4, steps);
-  return analyze(ResultFile(folder / "out.h5"));
-}
-
-StudyAnalysis study_with_truth() {
-  const ScratchFolder folder;
-  write_synthetic_result(folder / "out.h5", 3, 80);
-  return analyze(ResultFile(folder / "out.h5"));
-}
-
-std::string printed(const StudyAnalysis& study) {
-  std::ostringstream out;
-  print_tables(out, study, Explanations::shown);
-  return out.str();
+/// The result of recorded_result.hpp, analysed once for all tests of this file.
+const StudyAnalysis& recorded_study() {
+  static const StudyAnalysis study = [] {
+    const ScratchFolder folder;
+    // Of so many fixes the wild one cannot turn the alignment away.
+    write_recorded_result(folder / "out.h5", 4, 1200);
+    return analyze(ResultFile(folder / "out.h5"));
+  }();
+  return study;
 }
 
 std::vector<std::string> texts_of(const TextTable& table) {
@@ -78,7 +75,7 @@ TEST(ReferenceTable, HasOneRowACellAndReference) {
   EXPECT_EQ(table.rows[2][3], "1 of 4");  // whose run 1 is 40 m off
   EXPECT_EQ(table.rows[6][2], "1 FAILED, 3 complete");
   EXPECT_EQ(table.rows[6][3], "1 of 4");
-  EXPECT_THAT(table.rows[0][9], HasSubstr("(99.0 %)"));
+  EXPECT_THAT(table.rows[0][9], HasSubstr("(99.7 %)"));
   EXPECT_EQ(table.headings.back().text, "heading RMSE [deg]");
   EXPECT_THAT(table.rows[0].back(), HasSubstr("5.7"));
   EXPECT_EQ(table.rows[1].back(), "-");
@@ -127,35 +124,161 @@ TEST(ReferenceTable, JudgesDrivesOfTheirOwnByThoseThatHaveFixes) {
   EXPECT_THAT(reference_table(study).rows[2][4], Not(HasSubstr("nan")));
   EXPECT_EQ(baseline_table(study).rows[2][1], "0 of 3");
   EXPECT_THAT(reference_notes(study),
-              Contains(HasSubstr("gps has 100 fixes within 3 of 4 drives")));
+              Contains(HasSubstr("gps has 300 fixes within 3 of 4 drives")));
   EXPECT_THAT(reference_notes(study), Not(Contains(HasSubstr("No fix"))));
 }
 
 TEST(MapTable, CountsLandmarksAndBeacons) {
-  // Of so many fixes the wild one cannot turn the alignment away.
-  const StudyAnalysis study = recorded_study(1200);
-  const TextTable table = map_table(study);
+  const TextTable table = map_table(recorded_study());
   EXPECT_EQ(table.rows[1][1], "20.0 +- 0.0");
   EXPECT_EQ(table.rows[1][2], "3.0 +- 0.0 of 4");
   EXPECT_EQ(table.rows[1][3], "3.30 +- 0.00");
 }
 
-TEST(PrintTables, SayOfARecordedDriveWhyThereIsNoVerdict) {
-  const std::string text = printed(recorded_study());
-  EXPECT_THAT(text, HasSubstr("nobody knows its true path"));
-  EXPECT_THAT(text, HasSubstr("aligned RMS [m]"));
-  EXPECT_THAT(text, HasSubstr("beats ekf_slam"));
-  EXPECT_THAT(text, HasSubstr("gps has 100 fixes within the drive, coarse has 100"));
-  EXPECT_THAT(text, Not(HasSubstr("ANEES")));
-  EXPECT_THAT(text, Not(HasSubstr("position RMSE")));
+/// A cell of two runs whose raw and aligned RMS are `rms` and 1.5 times that [m].
+CellAnalysis cell_of(const std::string& label, const std::string& filter, std::size_t particles,
+                     double rms) {
+  CellAnalysis cell;
+  cell.label = label;
+  cell.filter = filter;
+  cell.particles = particles;
+  cell.complete = 2;
+  ReferenceAnalysis gps;
+  for (const double value : {rms, 1.5 * rms}) {
+    ReferenceScores run;
+    run.rms = run.aligned_rms = value;
+    gps.runs.push_back(run);
+  }
+  gps.error_over_time = {rms, 2.0 * rms, rms};
+  cell.findings.put(ReferenceAnalyses{gps});
+  cell.scan_series = {{"map_landmarks", "1", {3.0, 4.0}}};
+  return cell;
 }
 
-TEST(PrintTables, OfADriveWithTruthKnowNothingOfReferences) {
-  const std::string text = printed(study_with_truth());
-  EXPECT_THAT(text, HasSubstr("ANEES"));
-  EXPECT_THAT(text, HasSubstr("position RMSE [m]"));
-  EXPECT_THAT(text, Not(HasSubstr("aligned")));
-  EXPECT_THAT(text, Not(HasSubstr("nobody knows")));
+StudyAnalysis study_of(const std::vector<CellAnalysis>& cells) {
+  StudyAnalysis study;
+  study.has_truth = false;
+  study.times = {1.0, 2.0};
+  study.references = {{"gps", {0.5, 1.0, 1.5}, 3, 1, false}};
+  study.cells = cells;
+  return study;
+}
+
+std::vector<std::string> names_of(const std::vector<Figure>& figures) {
+  std::vector<std::string> names;
+  for (const Figure& figure : figures) names.push_back(figure.name);
+  return names;
+}
+
+TEST(ReferenceFigures, ShowErrorsParticlesAndMaps) {
+  const auto figures = reference_figures(study_of({cell_of("ekf_slam", "ekf_slam", 0, 1.0),
+                                                   cell_of("fastslam2_m20", "fastslam2", 20, 2.0),
+                                                   cell_of("fastslam2_m3", "fastslam2", 3, 4.0)}));
+  EXPECT_THAT(names_of(figures), ElementsAre("reference_error", "reference_particles", "map_size"));
+  EXPECT_EQ(figures[0].data[0].rows[1][0], 1.0);  // over the times of the fixes
+  EXPECT_EQ(figures[0].data[0].rows[1][3], 8.0);
+  const FigureData& curve = figures[1].data.at(0);
+  EXPECT_EQ(curve.name, "rms_fastslam2.csv");
+  ASSERT_EQ(curve.rows.size(), 2u);
+  EXPECT_EQ(curve.rows[0][0], 3.0);
+  EXPECT_EQ(curve.rows[0][2], 5.0);
+  EXPECT_EQ(curve.rows[0][5], 4.0);
+  EXPECT_EQ(curve.rows[1][11], 3.0);
+  EXPECT_EQ(figures[1].chart.panels.at(0).curves.back().legend, "EKF-SLAM");
+}
+
+TEST(ReferenceFigures, DrawParticlesOnlyWhereAFilterHasTwoNumbersOfThem) {
+  EXPECT_THAT(particle_curves(study_of({cell_of("fastslam2_m20", "fastslam2", 20, 2.0),
+                                        cell_of("ufastslam_m3", "ufastslam", 3, 4.0)})),
+              IsEmpty());
+  const auto curves = particle_curves(
+      study_of({cell_of("fs_m3_raw", "fs", 3, 2.0), cell_of("fs_m3_gps", "fs", 3, 2.0),
+                cell_of("fs_m30_raw", "fs", 30, 1.0)}));
+  ASSERT_EQ(curves.size(), 2u);
+  EXPECT_EQ(curves[0].legend, "fs_raw");
+  EXPECT_EQ(curves[0].points.size(), 2u);
+  EXPECT_EQ(curves[1].legend, "fs_gps");
+}
+
+TEST(ReferenceFigures, SpreadManyCellsOverAPanelForEachNumberOfParticles) {
+  std::vector<CellAnalysis> cells = {cell_of("ekf_slam", "ekf_slam", 0, 1.0)};
+  for (const std::string filter : {"a", "b", "c", "d"}) {
+    cells.push_back(cell_of(filter + "_m3", filter, 3, 2.0));
+    if (filter != "b") cells.push_back(cell_of(filter + "_m20", filter, 20, 3.0));
+  }
+  EXPECT_EQ(reference_error_figure(study_of(cells)).data.size(), 1u);  // eight are told apart
+  cells.push_back(cell_of("e_m20", "e", 20, 5.0));
+  const Figure figure = reference_error_figure(study_of(cells));
+  ASSERT_EQ(figure.data.size(), 2u);
+  EXPECT_EQ(figure.data[0].name, "reference_error_m3.csv");
+  EXPECT_THAT(figure.data[1].headings,
+              ElementsAre("time [s]", "ekf_slam", "a", "b", "c", "d", "e"));
+  EXPECT_THAT(figure.data[1].rows[0], ElementsAre(0.5, 1.0, 3.0, testing::IsNan(), 3.0, 3.0, 5.0));
+  EXPECT_THAT(figure.data[0].rows[0], ElementsAre(0.5, 1.0, 2.0, 2.0, 2.0, 2.0, testing::IsNan()));
+  EXPECT_EQ(figure.chart.panels[1].label, "distance to gps [m], M = 20");
+}
+
+TEST(ReferenceFigures, AreNotDrawnWithoutReferences) {
+  StudyAnalysis study = study_of({cell_of("a", "a", 0, 1.0)});
+  study.references.clear();
+  study.cells[0].findings.put(ReferenceAnalyses{});
+  study.cells[0].scan_series.clear();
+  EXPECT_THAT(reference_figures(study), IsEmpty());
+}
+
+class ReferenceFiles : public ::testing::Test {
+ protected:
+  ScratchFolder folder_;
+  StudyAnalysis study_ = recorded_study();
+};
+
+TEST_F(ReferenceFiles, HoldARowForEachCellAndReferenceAndForEachFix) {
+  write_csv(study_, folder_ / "csv");
+  const std::string rows = text_in(folder_ / "csv/references.csv");
+  EXPECT_THAT(rows, StartsWith("cell,filter,reference,runs_failed,runs_complete,runs_lost,"
+                               "rms_mean [m],rms_standard_error [m],rms_median [m],"
+                               "rms_least [m],rms_greatest [m],"));
+  EXPECT_EQ(std::ranges::count(rows, '\n'), 9);
+  EXPECT_THAT(rows, HasSubstr("\nufastslam_m3,ufastslam,coarse,1,3,1,"));
+  EXPECT_THAT(rows, HasSubstr("beacons_found_mean"));
+  const std::string errors = text_in(folder_ / "csv/reference_errors.csv");
+  EXPECT_THAT(errors, StartsWith("time [s],ekf_slam [m],fastslam2_m3 [m],"));
+  EXPECT_EQ(std::ranges::count(errors, '\n'), 301);
+  EXPECT_THAT(text_in(folder_ / "csv/series_ekf_slam.csv"),
+              StartsWith("time [s],map_landmarks,nis_per_component,nis_lower,nis_upper\n"));
+  const auto names = csv_names({"ekf_slam"});
+  EXPECT_THAT(names, testing::IsSupersetOf({"references.csv", "reference_errors.csv"}));
+}
+
+TEST_F(ReferenceFiles, AreNotThereWhereTheTruthIsKnown) {
+  write_synthetic_result(folder_ / "true.h5", 3, 80);
+  write_csv(analyze(ResultFile(folder_ / "true.h5")), folder_ / "csv");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "csv/references.csv"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "csv/reference_errors.csv"));
+  EXPECT_THAT(text_in(folder_ / "csv/cells.csv"), Not(HasSubstr("reference")));
+  const std::string series = text_in(folder_ / "csv/series_scripted_m4.csv");
+  EXPECT_THAT(series, StartsWith("time [s],position_rmse [m],heading_rmse [rad],anees"));
+  EXPECT_THAT(series, Not(HasSubstr("map_landmarks")));
+}
+
+TEST_F(ReferenceFiles, AreGroupsOfTheAnalysisFile) {
+  study_.references[1].fixes = 0;
+  study_.references[1].times.clear();  // as if no fix lay within the drive
+  write_analysis_file(study_, folder_ / "analysis.h5");
+  const auto file = h5::open_file(folder_ / "analysis.h5");
+  const std::string group = "cells/fastslam2_m20/references/";
+  std::vector<double> errors(300), mean(1);
+  h5::read(h5::open_dataset(file, group + "gps/error_over_time"), Element::f64,
+           std::as_writable_bytes(std::span(errors)));
+  EXPECT_EQ(errors, study_.cells[2].get<ReferenceAnalyses>()[0].error_over_time);
+  h5::read(h5::open_dataset(file, group + "gps/aligned_rms_mean"), Element::f64,
+           std::as_writable_bytes(std::span(mean)));
+  EXPECT_EQ(mean[0], study_.cells[2]
+                         .get<ReferenceAnalyses>()[0]
+                         .over_runs(&ReferenceScores::aligned_rms)
+                         .summary.mean);
+  EXPECT_FALSE(h5::has(h5::open_group(file, group + "coarse"), "error_over_time"));
+  EXPECT_EQ(h5::text(h5::open_group(file, "cells/ekf_slam"), "verdict"), "not tested");
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What until = verdict promises, by simulated studies that stop when their verdict is known:
 // `MONTECARTA_STUDIES=4000 build/analysis_tests --gtest_filter='*SlowSequential*'` prints the whole
-// table; without the variable 500 studies of a few lines.
+// table; without the variable 300 studies of a few lines.
 #include "analysis/statistics/group_sequential.hpp"
-#include "engine/runs/rounds.hpp"
+#include "engine/runs/monte_carlo.hpp"
 #include "tests/analysis/verdict_studies.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ struct StoppedStudy {
 /// A study whose cell is judged at `look_level` at each look, and stops when it is decided.
 StoppedStudy stopped_study(const GaussianLaw& law, std::uint64_t study, const BandWalks& walks,
                            double look_level) {
-  const std::vector<double> times = five_a_second(kSequentialScans);
+  const std::vector<double> times = scan_times(kSequentialScans, 0.2);
   NeesAccumulator sums(ErrorBlock::pose, Moments::spread, kSequentialScans);
   StoppedStudy stopped;
   for (const std::uint64_t look : rounds_of(kSequentialRuns)) {
@@ -73,7 +73,7 @@ class SlowSequential : public ::testing::TestWithParam<double> {};
 TEST_P(SlowSequential, LooksCostNoErrors) {
   const double memory = GetParam();
   if (memory != 0.7 && memory != 1.0 && !is_table_wanted()) GTEST_SKIP() << kHowToGetTheTable;
-  const std::uint64_t studies = studies_of_a_line(500);
+  const std::uint64_t studies = studies_of_a_line(300);
   const double widened = level_of_a_look(0.95, rounds_of(kSequentialRuns).size());
   std::printf("interval   memory  ratio  rejected [%%]  consistent  interval holds  mean runs\n");
   for (const double ratio : {1.0, kUsualMargin, 1.0 / kUsualMargin}) {
@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(OfMemory, SlowSequential, ::testing::Values(0.0, 0.7, 0
 // The interval of a single look, taken at five: the widening is needed.
 TEST(SlowSequentialWithoutWidening, RejectsMoreThanPromised) {
   const GaussianLaw law{.memory = 1.0};
-  const SequentialRates rates = sequential_rates(law, 0.95, studies_of_a_line(500));
+  const SequentialRates rates = sequential_rates(law, 0.95, studies_of_a_line(300));
   print_line("single", law, rates);
   EXPECT_GT(rates.rejected, 0.08);
   EXPECT_LT(rates.covered, 0.93);

@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/figures/stored_map.hpp"
+#include "analysis/output/csv_file.hpp"
 #include "analysis/output/figure.hpp"
 #include "analysis/output/gnuplot.hpp"
+#include "analysis/statistics/spread.hpp"
+#include "engine/errors.hpp"
+#include "engine/random/stream.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace montecarta::analysis {
 namespace {
 
 using testing::ContainsRegex;
 using testing::HasSubstr;
-using testing::Not;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
@@ -124,6 +130,111 @@ TEST(PrintLayout, ShowsAChartThatBeginsZoomedWholeAndZoomed) {
   EXPECT_EQ(layout.boxes[0].x_from, 0.0);
   EXPECT_EQ(layout.boxes[1].x_from, 1.5);
   EXPECT_EQ(layout.boxes[0].top, layout.boxes[1].top);
+}
+
+TEST(Gnuplot, NamesThePackageWhereItIsMissingAndTellsWhatItSays) {
+  const ScratchFolder folder;
+  EXPECT_THAT([&] { run_gnuplot(folder.path(), "a.gp", "gnuplot-that-is-nowhere"); },
+              testing::ThrowsMessage<StudyError>(HasSubstr("apt-get install gnuplot-nox")));
+  write_text(folder / "bad.gp", "plot 'nothing_here.csv'\n");
+  EXPECT_THAT([&] { run_gnuplot(folder.path(), "bad.gp"); },
+              testing::ThrowsMessage<RunError>(
+                  testing::AllOf(HasSubstr("bad.gp"), HasSubstr("No data in plot"))));
+}
+
+TEST(Gnuplot, QuotesText) { EXPECT_EQ(gnuplot_quoted("it's\n_m30"), R"('it''s\n_m30')"); }
+
+TEST(TwoSigmaEllipse, LiesAlongTheAxesOfTheCovariance) {
+  const Ellipse flat = two_sigma_ellipse(1.0, 2.0, 4.0, 0.0, 1.0);
+  EXPECT_DOUBLE_EQ(flat.major, 8.0);
+  EXPECT_DOUBLE_EQ(flat.minor, 4.0);
+  EXPECT_DOUBLE_EQ(flat.angle, 0.0);
+  const Ellipse tilted = two_sigma_ellipse(0.0, 0.0, 2.0, 1.0, 2.0);
+  EXPECT_DOUBLE_EQ(tilted.angle, 45.0);
+  EXPECT_NEAR(tilted.major, 4.0 * std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(tilted.minor, 4.0, 1e-12);
+}
+
+Figure drawn(const Panel& panel) {
+  Figure figure;
+  add_panels({panel}, {0.2, 0.4}, figure);
+  return figure;
+}
+
+/// A curve of two values, the bands behind it, and the axis that both get.
+struct PanelAxis {
+  const char* what;
+  std::vector<double> values;
+  std::vector<Band> bands;
+  Scale scale;
+  ChartAxis axis;
+};
+
+TEST(Panels, HaveAnAxisThatShowsCurveAndBand) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  const std::vector<PanelAxis> cases = {
+      {"a collapsed filter", {3.0, 1e30}, {{"b", 2.0, 4.0}}, Scale::automatic, {true, 1.0, 4000.0}},
+      {"many decades", {1.0, 1e6}, {}, Scale::logarithmic, {true, 1.0, 1e6}},
+      {"no end above", {1.5, 300.0}, {{"b", 1.0, kInfinite}}, Scale::automatic, {true, 0.5, 300.0}},
+      {"a linear one", {1.5, 10.0}, {{"b", 1.0, kInfinite}}, Scale::automatic, {false, 0.0, 10.5}},
+      {"nothing positive", {kNothing, 0.0}, {}, Scale::logarithmic, {true, 1.0, 10.0}},
+      {"zero", {1.0, -4.0}, {{"b", -2.0, 2.0}}, Scale::around_zero, {false, -4.2, 4.2}}};
+  for (const auto& [what, values, bands, scale, expected] : cases) {
+    const Figure figure = drawn({"name", "label", {{"one", 0, values}}, bands, scale});
+    const ChartAxis& axis = figure.chart.panels.front().axis;
+    EXPECT_EQ(axis.logarithmic, expected.logarithmic) << what;
+    EXPECT_DOUBLE_EQ(axis.low, expected.low) << what;
+    EXPECT_DOUBLE_EQ(axis.high, expected.high) << what;
+    if (std::isnan(values[0])) continue;
+    EXPECT_EQ(figure.data.front().rows.back().back(), values[1]) << what;
+  }
+}
+
+TEST(Panels, CallTheirCommonAxisAsTheFigureWants) {
+  Figure figure;
+  figure.chart.x_label = "scans apart";
+  add_panels({{"r", "correlation", {{"one", 0, {0.1, -0.4}}}, {}, Scale::around_zero}}, {1, 2},
+             figure);
+  EXPECT_EQ(figure.data.front().headings.front(), "scans apart");
+}
+
+std::vector<double> counting(std::size_t n) {
+  std::vector<double> times(n);
+  std::iota(times.begin(), times.end(), 0.0);
+  return times;
+}
+
+TEST(Thin, LeavesShortSeriesAlone) {
+  const auto thinned = thin(counting(20), {{"a", "m", counting(20)}}, 10);
+  EXPECT_EQ(thinned.times, counting(20));
+  EXPECT_EQ(thinned.series[0].values, counting(20));
+}
+
+TEST(Thin, KeepsEveryExtremeInItsOrder) {
+  RngStream draw({9, 0, 0, 0, Draw::test});
+  std::vector<double> values(2173);
+  for (double& value : values) value = draw.normal();
+  values[777] = 1e6;
+  values[1500] = -1e6;
+  const auto thinned = thin(counting(2173), {{"a", "m", values}, {"b", "m", values}}, 300);
+  EXPECT_EQ(thinned.times.size(), 600u);
+  EXPECT_TRUE(std::ranges::is_sorted(thinned.times));
+  for (const NamedSeries& one : thinned.series) {
+    ASSERT_EQ(one.values.size(), 600u);
+    const auto top = std::ranges::max_element(one.values);
+    EXPECT_EQ(*top, 1e6);
+    EXPECT_EQ(*std::ranges::min_element(one.values), -1e6);
+    EXPECT_NEAR(thinned.times[static_cast<std::size_t>(top - one.values.begin())], 777.0, 8.0);
+  }
+}
+
+TEST(Thin, KeepsGapsAndNumbersBesideThem) {
+  std::vector<double> values(100, kNaN);
+  values[7] = 4.0;
+  const auto thinned = thin(counting(100), {{"a", "m", values}}, 10);
+  EXPECT_EQ(thinned.series[0].values[0], 4.0);
+  EXPECT_EQ(thinned.series[0].values[1], 4.0);
+  EXPECT_TRUE(std::isnan(thinned.series[0].values[2]));
 }
 
 }  // namespace

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/page/html.hpp"
 
+#include "analysis/output/figure.hpp"
+#include "analysis/page/json.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <vector>
+
 namespace montecarta::analysis {
 namespace {
+
+using testing::HasSubstr;
 
 TEST(Html, EscapesText) {
   EXPECT_EQ(html_escape("a < b & \"c\" 3 +- 1"), "a &lt; b &amp; &quot;c&quot; 3 &plusmn; 1");
@@ -29,17 +37,76 @@ TEST(Html, GivesEveryDrawingItsOwnIdentifiersAndTheColourOfTheText) {
             "href='#rmse_a'/></svg>");
 }
 
-TEST(Html, HoldsAllStylesAndScripts) {
-  const std::string page = html_page("title", "body");
-  EXPECT_THAT(page, testing::HasSubstr("\"use strict\";\n" + std::string(page_script())));
-  EXPECT_THAT(page_script(), testing::HasSubstr("class Player"));
-  EXPECT_THAT(page, testing::HasSubstr(std::string(page_style())));
-  EXPECT_THAT(page_style(), testing::HasSubstr("color-scheme: light dark"));
-  EXPECT_THAT(page_style(), testing::EndsWith("}\n"));
-}
-
 TEST(Html, ForbidsTheBrowserToAskTheNetwork) {
   EXPECT_THAT(html_page("title", "body"), testing::HasSubstr("content=\"default-src 'none';"));
+}
+
+TEST(Json, RoundsNumbersToWhatIsSeenAndSaysWhatIsNone) {
+  const double infinite = std::numeric_limits<double>::infinity();
+  const std::vector<double> numbers = {
+      1.0,      0.1 + 0.2, 123456.7, 1e-9, -2.50001e-4, std::numeric_limits<double>::quiet_NaN(),
+      infinite, -infinite};
+  EXPECT_EQ(script_text(rounded(numbers)), R"([1,0.3,123460.0,1e-09,-0.00025,null,"+inf","-inf"])");
+  EXPECT_EQ(script_text(rounded(0.123456, 2)), "0.12");
+}
+
+TEST(Json, TextCannotEndTheScriptItStandsIn) {
+  EXPECT_EQ(script_text("</script> \"quoted\" \\ \n \xc3\xa9"),
+            "\"\\u003c/script> \\\"quoted\\\" \\\\ \\n \xc3\xa9\"");
+}
+
+Figure figure_of_two_panels() {
+  Figure figure{"name", "title", "sentence"};
+  add_panels({{"low", "low [m]", {{"a", 0, {1, 2, 3}}, {"b", 7, {2, 3, 4}}}, {}, Scale::from_zero},
+              {"high", "high", {{"a", 0, {1, 10, 900}}}, {{"band", 2, 4}}, Scale::logarithmic}},
+             {1, 2, 3}, figure);
+  return figure;
+}
+
+TEST(ChartJson, HoldsWhatThePanelsShow) {
+  const std::string json = chart_json(figure_of_two_panels().chart);
+  EXPECT_THAT(json, testing::StartsWith(R"({"x_label":"time [s]","x_from":0,"x_to":3,"panels":[)"));
+  EXPECT_THAT(json, HasSubstr(R"({"label":"low [m]","axis":{"logarithmic":false,"low":0,)"
+                              R"("high":null},"bands":[],"x":[1,2,3],"curves":[)"
+                              R"({"legend":"a","colour":"#0072B2","dash":1,"y":[1,2,3]},)"
+                              R"({"legend":"b","colour":"#D55E00","dash":2,"y":[2,3,4]}]})"));
+}
+
+TEST(ChartJson, WritesACommonTimeOnce) {
+  const std::string json = chart_json(figure_of_two_panels().chart);
+  EXPECT_EQ(json.find("\"x\":"), json.rfind("\"x\":"));
+  EXPECT_THAT(json, HasSubstr(R"("bands":[{"legend":"band","lower":2,"upper":4}],"curves")"));
+}
+
+TEST(ChartJson, HoldsMarksWithTheirFacts) {
+  Chart chart{"x [m]", -1, 1, {}};
+  ChartPanel& panel = chart.panels.emplace_back();
+  panel.cell = "a";
+  panel.y_names = {"low", "high"};
+  ChartMarks& marks = panel.marks.emplace_back();
+  marks.name = "tile";
+  marks.cell = "a";
+  marks.shape = ChartMarks::Shape::boxes;
+  marks.x = {0, std::numeric_limits<double>::quiet_NaN()};
+  marks.y = {1, 2};
+  marks.fill = {"#123456", "#000000"};
+  marks.facts = {{"time [s]", {3, 4}}};
+  const std::string json = chart_json(chart);
+  EXPECT_THAT(json, HasSubstr(R"({"shape":"boxes","name":"tile","legend":"a","colour":"#0072B2",)"
+                              R"("dash":1,"x":[0,null],"y":[1,2],"fill":["#123456","#000000"],)"
+                              R"("facts":[{"label":"time [s]","values":[3,4]}]})"));
+  EXPECT_THAT(json, HasSubstr(R"("y_names":["low","high"])"));
+  EXPECT_THAT(json, testing::Not(HasSubstr("x_first")));
+  chart.x_first = 0.5;
+  EXPECT_THAT(chart_json(chart), HasSubstr(R"("x_first":0.5)"));
+}
+
+TEST(ChartJson, KeepsTheAxisNearABand) {
+  const Figure figure = figure_of_two_panels();
+  const ChartAxis& axis = figure.chart.panels[1].axis;
+  EXPECT_TRUE(axis.logarithmic);
+  EXPECT_DOUBLE_EQ(axis.low, 1.0);
+  EXPECT_DOUBLE_EQ(axis.high, 900.0);
 }
 
 }  // namespace

@@ -1,20 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/bootstrap.hpp"
 
+#include "analysis/metrics/survival.hpp"
+#include "analysis/statistics/paired_tests.hpp"
+#include "analysis/statistics/quantile_table.hpp"
 #include "engine/random/stream.hpp"
 
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 namespace montecarta::analysis {
 namespace {
+
+using testing::DoubleNear;
+using testing::ElementsAre;
 
 RngStream stream(std::uint64_t run) { return RngStream({7, run, 0, 0, Draw::test}); }
 
@@ -111,17 +119,6 @@ TEST(Bootstrap, HoldsTheMeanAsOftenAsItSays) {
 // The plain percentile interval holds the mean of 20 exponentials in 90 % of studies.
 TEST(Bootstrap, MakesUpForSkewness) { EXPECT_NEAR(coverage(exponentials, 20, 1.0), 0.945, 0.03); }
 
-TEST(Bootstrap, IsNearStudentsIntervalOfManyNormals) {
-  const std::vector<double> values = normals(1, 400);
-  double mean = 0.0, squares = 0.0;
-  for (const double value : values) mean += value / 400.0;
-  for (const double value : values) squares += (value - mean) * (value - mean);
-  const double half = 1.966 * std::sqrt(squares / 399.0 / 400.0);
-  const Interval interval = bootstrap_mean(values, 0.95);
-  EXPECT_NEAR(interval.lower, mean - half, 0.08 * half);
-  EXPECT_NEAR(interval.upper, mean + half, 0.08 * half);
-}
-
 TEST(Bootstrap, GivesColumnsWhatEachWouldGetAlone) {
   const std::vector<std::vector<double>> columns = {normals(1, 30), exponentials(2, 30)};
   const std::vector<Interval> together = bootstrap_means(columns, 0.9);
@@ -146,6 +143,149 @@ TEST(Bootstrap, OfEqualValuesIsThatValue) {
   const Interval interval = bootstrap_mean(std::vector<double>(10, 3.0), 0.95);
   EXPECT_DOUBLE_EQ(interval.lower, 3.0);
   EXPECT_DOUBLE_EQ(interval.upper, 3.0);
+}
+
+TEST(SignTest, IsThatOfAFairCoin) {
+  EXPECT_DOUBLE_EQ(sign_test(3, 7), 0.34375);  // 2 (1 + 10 + 45 + 120) / 1024
+  EXPECT_DOUBLE_EQ(sign_test(7, 3), 0.34375);
+  EXPECT_DOUBLE_EQ(sign_test(0, 20), std::ldexp(1.0, -19));
+  EXPECT_NEAR(sign_test(450, 550), 0.0017305360849763024, 1e-15);  // SciPy's binomtest
+  EXPECT_DOUBLE_EQ(sign_test(500, 501), 1.0);
+  EXPECT_DOUBLE_EQ(sign_test(0, 0), 1.0);
+}
+
+// Darwin's maize in eighths of an inch, as Wilcoxon and Fisher discuss it: SciPy's wilcoxon.
+TEST(SignedRankTest, IsExactOnDarwinsMaize) {
+  const std::vector<double> maize = {6, 8, 14, 16, 23, 24, 28, 29, 41, -48, 49, 56, 60, -67, 75};
+  const SignedRank test = signed_rank_test(maize);
+  EXPECT_TRUE(test.is_exact);
+  EXPECT_EQ(test.n, 15u);
+  EXPECT_DOUBLE_EQ(test.negative, 24.0);
+  EXPECT_DOUBLE_EQ(test.positive + test.negative, 120.0);
+  EXPECT_DOUBLE_EQ(test.p, 0.041259765625);
+}
+
+TEST(SignedRankTest, SharesRanksOfTiesAndLeavesOutZeros) {
+  const std::vector<double> pairs = {15, -7, 5, 20, 0, -9, 17, -12, 5, -10};
+  const SignedRank test = signed_rank_test(pairs);
+  EXPECT_FALSE(test.is_exact);
+  EXPECT_EQ(test.n, 9u);
+  EXPECT_DOUBLE_EQ(test.negative, 18.0);
+  EXPECT_NEAR(test.p, 0.5936305914425295, 1e-14);
+  EXPECT_DOUBLE_EQ(signed_rank_test({}).p, 1.0);
+  EXPECT_DOUBLE_EQ(signed_rank_test(std::vector<double>{0.0, 0.0}).p, 1.0);
+}
+
+// Holm's procedure as every textbook works it: 0.01, 0.04, 0.03 and 0.005 times 3, 1, 2 and 4.
+TEST(Holm, AdjustsATextbookFamily) {
+  EXPECT_THAT(holm(std::vector<double>{0.01, 0.04, 0.03, 0.005}),
+              ElementsAre(DoubleNear(0.03, 1e-15), DoubleNear(0.06, 1e-15), DoubleNear(0.06, 1e-15),
+                          DoubleNear(0.02, 1e-15)));
+  EXPECT_THAT(holm(std::vector<double>{0.6, 0.9}), ElementsAre(1.0, 1.0));
+  EXPECT_THAT(holm(std::vector<double>{}), ElementsAre());
+}
+
+/// Share of 2000 studies of `runs` pairs without difference that `p_of` calls different at 5 %.
+template <class P>
+double false_calls(std::size_t runs, P p_of) {
+  RngStream draw({.seed = 8, .purpose = Draw::test});
+  std::size_t calls = 0;
+  for (int study = 0; study < 2000; ++study) {
+    std::vector<double> differences(runs);
+    for (double& d : differences) d = draw.normal();
+    calls += p_of(differences) < 0.05 ? 1u : 0u;
+  }
+  return static_cast<double>(calls) / 2000.0;
+}
+
+// At most 5 %, five standard errors allowed; and near it where the distribution is fine enough.
+TEST(PairedTests, KeepTheirLevel) {
+  const double error = std::sqrt(0.05 * 0.95 / 2000.0);
+  const auto rank = [](const std::vector<double>& d) { return signed_rank_test(d).p; };
+  const auto sign = [](const std::vector<double>& d) {
+    const auto won =
+        static_cast<std::size_t>(std::ranges::count_if(d, [](double v) { return v < 0; }));
+    return sign_test(won, d.size() - won);
+  };
+  for (const std::size_t runs : {20u, 50u, 51u, 200u}) {
+    EXPECT_NEAR(false_calls(runs, rank), 0.05, 5.0 * error) << runs;
+    EXPECT_LT(false_calls(runs, sign), 0.05 + 5.0 * error) << runs;
+  }
+}
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+const std::vector<double> kTimes = {1.0, 2.0, 3.0, 4.0, 5.0};
+
+TEST(Survival, CountsTheRunsThatAreStillRight) {
+  const std::vector<double> ends = {2.0, kNever, 4.0, 2.0};
+  const Survival found = survival_of(ends, kTimes, 0.95);
+  EXPECT_EQ(found.share, (std::vector<double>{1.0, 0.5, 0.5, 0.25, 0.25}));
+  EXPECT_EQ(found.runs, 4u);
+  EXPECT_EQ(found.lost, 3u);
+  EXPECT_EQ(found.median, 2.0);
+}
+
+// Wilson's interval of 5 of 10 at 95 % is [0.2366, 0.7634] (Newcombe 1998).
+TEST(Survival, GivesWilsonsIntervals) {
+  std::vector<double> ends(10, kNever);
+  std::fill_n(ends.begin(), 5, 1.0);
+  const Survival found = survival_of(ends, kTimes, 0.95);
+  EXPECT_NEAR(found.interval[0].lower, 0.2366, 1e-4);
+  EXPECT_NEAR(found.interval[0].upper, 0.7634, 1e-4);
+}
+
+// Of ten values the second and the ninth hold the median with 97.9 %, the third and eighth with 89
+// %.
+TEST(Survival, HoldsTheMedianBetweenOrderStatistics) {
+  const std::vector<double> ends = {1, 2, 3, 4, 5, 6, 7, 8, 9, kNever};
+  const Survival found = survival_of(ends, kTimes, 0.95);
+  EXPECT_EQ(found.median, 5.0);
+  EXPECT_EQ(found.median_interval.lower, 2.0);
+  EXPECT_EQ(found.median_interval.upper, 9.0);
+  EXPECT_EQ(survival_of(ends, kTimes, 0.9).median_interval.lower, 2.0);
+  EXPECT_EQ(survival_of(ends, kTimes, 0.89).median_interval.lower, 3.0);
+}
+
+TEST(Survival, SaysNeverWhereMostRunsLast) {
+  const std::vector<double> ends = {1.0, kNever, kNever, kNever, kNever};
+  const Survival found = survival_of(ends, kTimes, 0.95);
+  EXPECT_EQ(found.median, kNever);
+  EXPECT_EQ(found.median_interval.upper, kNever);
+  EXPECT_EQ(survival_of({}, kTimes, 0.95).runs, 0u);
+}
+
+TEST(QuantileTable, EqualsWhatSortingGivesToThreePercent) {
+  RngStream draw({7, 0, 0, 0, Draw::test});
+  for (const double spread : {0.1, 1.0, 5.0}) {
+    QuantileTable table(2);
+    std::vector<double> values;
+    for (int i = 0; i < 301; ++i) {
+      values.push_back(std::exp(spread * draw.normal()));
+      table.add(1, values.back());
+    }
+    std::ranges::sort(values);
+    EXPECT_NEAR(table.median(1), values[150], 0.03 * values[150]) << spread;
+    const double middle = std::accumulate(values.begin() + 30, values.end() - 30, 0.0) / 241.0;
+    EXPECT_NEAR(table.trimmed_mean(1, 30.0 / 301.0), middle, 0.03 * middle) << spread;
+  }
+}
+
+TEST(QuantileTable, HoldsWhatIsOutOfItsRangeAtItsEnds) {
+  QuantileTable table(3);
+  table.add(0, 0.0);
+  table.add(1, 1e300);
+  EXPECT_LT(table.median(0), 1e-3);
+  EXPECT_GT(table.median(1), 1e9);
+  EXPECT_TRUE(std::isnan(table.median(2)));
+  EXPECT_TRUE(std::isnan(table.trimmed_mean(2, 0.1)));
+}
+
+TEST(QuantileTable, DoesNotDependOnTheOrder) {
+  QuantileTable forwards(1), backwards(1);
+  for (int i = 1; i <= 50; ++i) forwards.add(0, i);
+  for (int i = 50; i >= 1; --i) backwards.add(0, i);
+  EXPECT_EQ(forwards.median(0), backwards.median(0));
+  EXPECT_NEAR(forwards.median(0), 25.5, 0.8);
 }
 
 }  // namespace

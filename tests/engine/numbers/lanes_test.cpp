@@ -5,7 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
 
 namespace montecarta::engine {
 namespace {
@@ -57,14 +63,46 @@ TEST(Lanes, LeastGreatestAndFloorEqualScalars) {
   });
 }
 
-TEST(Lanes, SineAndCosineEqualTheLibrary) {
-  for_random_lanes(20.0, [](const Lanes& angle) {
-    const auto [cosine, sine] = direction_of(angle);
-    for (std::size_t i = 0; i < Lanes::kSize; ++i) {
-      ASSERT_NEAR(sine.get(i), std::sin(angle.get(i)), kUlp) << angle.get(i);
-      ASSERT_NEAR(cosine.get(i), std::cos(angle.get(i)), kUlp) << angle.get(i);
+/// A function of one number, that of the library, and where and how nearly they are the same.
+struct LibraryFunction {
+  const char* name;
+  Lanes (*of_lanes)(const Lanes&);
+  double (*of_library)(double);
+  double (*place)(int round, double uniform);
+  double relative, absolute;
+  std::uint64_t seed = 7;
+};
+
+const LibraryFunction kLibrary[] = {
+    {"sin", [](const Lanes& x) { return direction_of(x).sine; }, std::sin,
+     [](int, double u) { return 40.0 * u - 20.0; }, 0.0, kUlp},
+    {"cos", [](const Lanes& x) { return direction_of(x).cosine; }, std::cos,
+     [](int, double u) { return 40.0 * u - 20.0; }, 0.0, kUlp},
+    {"exp", [](const Lanes& x) { return exp(x); }, std::exp,
+     [](int n, double u) { return n % 2 ? 709.0 - 1417.0 * u : 1.0 - 2.0 * u; }, 7e-16, 0.0},
+    {"log", [](const Lanes& x) { return log(x); }, std::log,
+     [](int n, double u) {
+       return n % 3 == 0 ? u : n % 3 == 1 ? 0.9 + 0.2 * u : std::exp(1400.0 * (u - 0.5));
+     },
+     2.3e-16, 0.0, 8}};
+
+TEST(Lanes, EqualTheLibrary) {
+  for (const LibraryFunction& function : kLibrary) {
+    RngStream draw({function.seed, 0, 0, 0, Draw::test});
+    for (int round = 0; round < 20000; ++round) {
+      Lanes x(0.0);
+      for (std::size_t i = 0; i < Lanes::kSize; ++i) {
+        set(x, i, function.place(round, draw.uniform()));
+      }
+      const Lanes found = function.of_lanes(x);
+      for (std::size_t i = 0; i < Lanes::kSize; ++i) {
+        const double expected = function.of_library(x.get(i));
+        ASSERT_NEAR(found.get(i), expected,
+                    function.absolute + function.relative * std::abs(expected))
+            << function.name << " of " << x.get(i);
+      }
     }
-  });
+  }
 }
 
 TEST(Lanes, ArcTangentEqualsTheLibraryInEveryQuadrant) {
@@ -81,40 +119,32 @@ TEST(Lanes, ArcTangentEqualsTheLibraryInEveryQuadrant) {
 }
 
 TEST(Lanes, ArcTangentOnTheAxes) {
-  const double cases[][2] = {{0, 1}, {0, -1}, {1, 0}, {-1, 0}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
+  const double cases[][2] = {{0, 0}, {0, 1},  {0, -1}, {1, 0},  {-1, 0},
+                             {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
   for (const auto& [y, x] : cases)
     EXPECT_NEAR(atan2(Lanes(y), Lanes(x)).get(0), std::atan2(y, x), kUlp);
 }
 
-TEST(Lanes, ArcTangentOfNothingIsZeroAsInTheLibrary) {
-  EXPECT_EQ(atan2(Lanes(0.0), Lanes(0.0)).get(0), 0.0);
-}
-
-TEST(Lanes, WrapKeepsItsContractAtTheBorder) {
-  for (double angle :
-       {kPi, -kPi, std::nextafter(kPi, 4.0), std::nextafter(-kPi, -4.0), 3 * kPi, 1e300}) {
-    const Lanes wrapped = wrap(Lanes(angle));
-    EXPECT_GT(wrapped.get(0), -kPi) << angle;
-    EXPECT_LE(wrapped.get(0), kPi) << angle;
-    EXPECT_EQ(wrap(wrapped).get(0), wrapped.get(0)) << angle;
+TEST(Wrap, KeepsItsContractInLanesToo) {
+  for (const double angle : {0.0, 3.2, -3.2, kPi, -kPi, std::nextafter(kPi, 4.0),
+                             std::nextafter(-kPi, -4.0), 3 * kPi, 1e3, -1e6, 1e18, 1e300}) {
+    for (const double wrapped : {wrap(angle), wrap(Lanes(angle)).get(0)}) {
+      EXPECT_GT(wrapped, -kPi) << angle;
+      EXPECT_LE(wrapped, kPi) << angle;
+    }
+    EXPECT_EQ(wrap(wrap(angle)), wrap(angle)) << angle;
+    EXPECT_EQ(wrap(wrap(Lanes(angle))).get(0), wrap(Lanes(angle)).get(0)) << angle;
   }
+  EXPECT_EQ(wrap(-kPi), kPi);
   EXPECT_EQ(wrap(Lanes(-kPi)).get(0), kPi);
 }
 
-TEST(Lanes, WrapEqualsTheScalarOne) {
+TEST(Lanes, WrapAndShorterWayEqualTheScalarOnes) {
   for_random_lanes(30.0, [](const Lanes& angle) {
-    const Lanes wrapped = wrap(angle);
+    const Lanes wrapped = wrap(angle), way = shorter_way(angle);
     for (std::size_t i = 0; i < Lanes::kSize; ++i) {
       ASSERT_NEAR(wrap(wrapped.get(i) - wrap(angle.get(i))), 0.0, 1e-14);
       ASSERT_LE(std::abs(wrapped.get(i)), kPi + 1e-14);
-    }
-  });
-}
-
-TEST(Lanes, TheShorterWayIsTheSameAngleWithinHalfATurn) {
-  for_random_lanes(30.0, [](const Lanes& angle) {
-    const Lanes way = shorter_way(angle);
-    for (std::size_t i = 0; i < Lanes::kSize; ++i) {
       ASSERT_NEAR(wrap(way.get(i) - wrap(angle.get(i))), 0.0, 1e-14);
       ASSERT_NEAR(way.get(i), shorter_way(angle.get(i)), 1e-14);
       ASSERT_LE(std::abs(way.get(i)), kPi + 1e-14);
@@ -134,22 +164,150 @@ TEST(Lanes, EveryLaneIsAFunctionOfItselfAlone) {
   });
 }
 
-TEST(Lanes, SelectTakesLaneByLane) {
-  Lanes a(0.0);
-  for (std::size_t i = 0; i < Lanes::kSize; ++i) set(a, i, static_cast<double>(i));
-  const Lanes chosen = select(a < Lanes(3.0), Lanes(-1.0), a);
-  for (std::size_t i = 0; i < Lanes::kSize; ++i) {
-    EXPECT_EQ(chosen.get(i), i < 3 ? -1.0 : static_cast<double>(i));
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TEST(Exponential, IsOneAtZeroAndZeroFarBelow) {
+  EXPECT_EQ(exp(Lanes(0.0)).get(0), 1.0);
+  EXPECT_NEAR(exp(Lanes(1e-12)).get(0), 1.0 + 1e-12, 1e-15);
+  for (const double far : {-708.1, -1e6, -1e300, -kInfinity})
+    EXPECT_EQ(exp(Lanes(far)).get(3), 0.0) << far;
+  EXPECT_TRUE(std::isnan(exp(Lanes(std::numeric_limits<double>::quiet_NaN())).get(1)));
+}
+
+TEST(Logarithm, OfZeroInfinityAndNegativeNumbers) {
+  EXPECT_EQ(log(Lanes(1.0)).get(0), 0.0);
+  EXPECT_EQ(log(Lanes(0.0)).get(0), -kInfinity);
+  EXPECT_EQ(log(Lanes(1e-310)).get(0), -kInfinity) << "of less than full precision";
+  EXPECT_EQ(log(Lanes(kInfinity)).get(0), kInfinity);
+  EXPECT_NEAR(log(Lanes(std::numeric_limits<double>::min())).get(0), -708.3964185322641, 2e-13);
+  EXPECT_TRUE(std::isnan(log(Lanes(-1.0)).get(0)));
+  EXPECT_TRUE(std::isnan(log(Lanes(std::numeric_limits<double>::quiet_NaN())).get(0)));
+}
+
+template <std::size_t N>
+void expect_directions() {
+  RngStream draw({.seed = N, .purpose = Draw::test});
+  for (int n = 0; n < 200; ++n) {
+    std::array<double, N> angles;
+    for (double& angle : angles) angle = 20.0 * draw.normal();
+    const auto found = directions_of(angles);
+    for (std::size_t k = 0; k < N; ++k) {
+      EXPECT_NEAR(found[k].cosine, std::cos(angles[k]), 3e-16) << k << " of " << N;
+      EXPECT_NEAR(found[k].sine, std::sin(angles[k]), 3e-16) << k << " of " << N;
+      EXPECT_EQ(found[k].sine, direction_of(Lanes(angles[k])).sine.get(0)) << "same as in a lane";
+    }
   }
 }
 
-TEST(Wrap, KeepsItsContract) {
-  EXPECT_EQ(wrap(kPi), kPi);
-  EXPECT_EQ(wrap(-kPi), kPi);
-  for (double angle : {0.0, 3.2, -3.2, 1e3, -1e6, 1e18, 3 * kPi}) {
-    EXPECT_EQ(wrap(wrap(angle)), wrap(angle)) << angle;
-    EXPECT_GT(wrap(angle), -kPi);
-    EXPECT_LE(wrap(angle), kPi);
+TEST(Directions, AreThoseOfEachAngleWhateverTheOthersAre) {
+  expect_directions<1>();
+  expect_directions<2>();
+  expect_directions<4>();
+  expect_directions<5>();
+  expect_directions<8>();
+}
+
+// What a number becomes does not depend on how many others share its register.
+
+std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
+
+template <class R>
+class Registers : public testing::Test {};
+
+#if defined(__AVX512F__)
+using Widths = testing::Types<xsimd::batch<double, xsimd::sse4_2>,
+                              xsimd::batch<double, xsimd::fma3<xsimd::avx2>>, xsimd::batch<double>>;
+#elif defined(__AVX2__)
+using Widths = testing::Types<xsimd::batch<double, xsimd::sse4_2>, xsimd::batch<double>>;
+#else
+using Widths = testing::Types<xsimd::batch<double>>;
+#endif
+TYPED_TEST_SUITE(Registers, Widths);
+
+TYPED_TEST(Registers, HaveTheSameBitsAtEveryWidth) {
+  RngStream draw({.seed = 11, .purpose = Draw::test});
+  for (int n = 0; n < 20000; ++n) {
+    const double x = 40.0 * draw.normal(), y = draw.normal(), z = draw.normal();
+    const TypeParam wide(x), other(y), third(z);
+    const Lanes lanes(x);
+    TypeParam sine, cosine;
+    register_math::sincos(wide, sine, cosine);
+    ASSERT_EQ(bits(sine.get(0)), bits(sin(lanes).get(0))) << x;
+    ASSERT_EQ(bits(cosine.get(0)), bits(cos(lanes).get(0))) << x;
+    ASSERT_EQ(bits(register_math::atan2(wide, other).get(0)), bits(atan2(lanes, Lanes(y)).get(0)));
+    ASSERT_EQ(bits(register_math::exp(wide).get(0)), bits(exp(lanes).get(0))) << x;
+    ASSERT_EQ(bits(register_math::log(wide * wide).get(0)), bits(log(lanes * lanes).get(0))) << x;
+    ASSERT_EQ(bits(register_math::multiply_add(wide, other, third).get(0)),
+              bits(std::fma(x, y, z)));
+    ASSERT_EQ(bits(register_math::negative_multiply_add(wide, other, third).get(0)),
+              bits(std::fma(-x, y, z)));
+  }
+}
+
+/// Numbers at which instruction sets may differ: zeros, what does not count, what hardly counts,
+/// halves between whole numbers.
+std::vector<double> corners() {
+  using Limits = std::numeric_limits<double>;
+  std::vector<double> all = {
+      0.0,    Limits::denorm_min(), 0.75 * Limits::min(), Limits::min(), 0.5, 1.0, 1.5, 2.5, 3e15,
+      0x1p52, Limits::max(),        Limits::infinity()};
+  for (std::size_t n = 0, count = all.size(); n < count; ++n) all.push_back(-all[n]);
+  all.push_back(Limits::quiet_NaN());
+  return all;
+}
+
+/// The second where neither is less.
+double lesser(double a, double b) { return a < b ? a : b; }
+double greater(double a, double b) { return a > b ? a : b; }
+
+TYPED_TEST(Registers, TakeTheSignAndTheWholePartOfAnyNumber) {
+  for (const double a : corners()) {
+    const TypeParam x(a);
+    EXPECT_EQ(bits((-Lanes(a)).get(0)), bits(-a)) << a;
+    EXPECT_EQ(bits(register_math::negative(x).get(0)), bits(-a)) << a;
+    EXPECT_EQ(bits(xsimd::abs(x).get(0)), bits(std::fabs(a))) << a;
+    EXPECT_EQ(bits(register_math::rounded_down(x).get(0)), bits(std::floor(a))) << a;
+    EXPECT_EQ(bits(xsimd::nearbyint(x).get(0)), bits(std::nearbyint(a))) << a;
+    if (a >= 0.0) {
+      EXPECT_EQ(bits(xsimd::sqrt(x).get(0)), bits(std::sqrt(a))) << a;
+    }
+  }
+}
+
+TYPED_TEST(Registers, CompareAndSelectAnyNumbers) {
+  for (const double a : corners()) {
+    for (const double b : corners()) {
+      const std::string both = std::to_string(a) + " and " + std::to_string(b);
+      const TypeParam x(a), y(b);
+      EXPECT_EQ(bits(register_math::lesser(x, y).get(0)), bits(lesser(a, b))) << both;
+      EXPECT_EQ(bits(register_math::greater(x, y).get(0)), bits(greater(a, b))) << both;
+      EXPECT_EQ(bits(xsimd::select(x < y, x, y).get(0)), bits(a < b ? a : b)) << both;
+      EXPECT_EQ(bits(xsimd::select(x <= y, x, y).get(0)), bits(a <= b ? a : b)) << both;
+      EXPECT_EQ(bits(xsimd::select(x == y, x, y).get(0)), bits(a == b ? a : b)) << both;
+    }
+  }
+}
+
+TYPED_TEST(Registers, HaveTheSameBitsAtCorners) {
+  for (const double a : corners()) {
+    const TypeParam x(a);
+    EXPECT_EQ(bits(register_math::log(x).get(0)), bits(log(Lanes(a)).get(0))) << a;
+    if (std::fabs(a) <= 709.0 || a < 0.0) {
+      EXPECT_EQ(bits(register_math::exp(x).get(0)), bits(exp(Lanes(a)).get(0))) << a;
+    }
+    for (const double b : corners()) {
+      EXPECT_EQ(bits(register_math::atan2(x, TypeParam(b)).get(0)),
+                bits(atan2(Lanes(a), Lanes(b)).get(0)))
+          << a << " and " << b;
+    }
+  }
+}
+
+TYPED_TEST(Registers, MultiplyTheLowHalvesExactly) {
+  using Bits = register_math::BitsOf<TypeParam>;
+  for (const std::uint64_t a : {0x0ULL, 0x1ULL, 0xffffffffULL, 0x123456789abcdef0ULL}) {
+    const std::uint64_t product = (a & 0xffffffffULL) * 0xd2511f53ULL;
+    EXPECT_EQ(register_math::multiply_low_halves(Bits(a), 0xd2511f53U).get(0), product) << a;
   }
 }
 

@@ -2,21 +2,30 @@
 #include "engine/records/result_layout.hpp"
 
 #include "engine/records/columns.hpp"
+#include "engine/records/fingerprint.hpp"
 #include "engine/records/h5.hpp"
+#include "engine/records/provenance.hpp"
+#include "tests/doubles/complaint.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 #include "tests/doubles/scripted_result.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <sstream>
+#include <string>
 
 namespace montecarta::engine {
 namespace {
+
+using testing::HasSubstr;
 
 std::string type_name(const h5::Handle& dataset) {
   const auto element = h5::element(dataset);
@@ -121,6 +130,61 @@ TEST(ResultLayout, EveryNumberHasUnitNameAndAxes) {
     }
     EXPECT_TRUE(h5::place(dataset)) << name << " must lie in one piece";
   }
+}
+
+/// The row of a table of FORMAT.md that describes a column; empty where there is none.
+std::string described(const std::string& column) {
+  std::ifstream file(std::filesystem::path(MONTECARTA_SOURCE_DIR) / "analysis/FORMAT.md");
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t end = line.find(" | ", 2);
+    const bool is_row = line.starts_with("| ") && end != std::string::npos;
+    if (is_row && line.substr(0, end).find("`" + column + "`") != std::string::npos) return line;
+  }
+  return {};
+}
+
+TEST(ColumnTable, IsThatOfTheFormat) {
+  for (const ColumnKind& kind : column_table()) {
+    const std::string row = described(kind.name);
+    ASSERT_FALSE(row.empty()) << kind.name << " is not in analysis/FORMAT.md";
+    std::string axes = "{run";
+    for (const Axis axis : kind.axes) axes += ", " + std::string(name_of(axis));
+    EXPECT_THAT(row, HasSubstr(axes + "}"));
+    EXPECT_THAT(row, HasSubstr("| " + std::string(kind.units) + " |"));
+    const bool is_chosen = std::string(kind.group) != "pose";
+    EXPECT_EQ(row.starts_with("| + "), is_chosen) << row;
+  }
+}
+
+/// What is said of an HDF5 file of this type and version that holds nothing else.
+std::string said_of(const std::string& filetype, std::uint64_t major) {
+  const ScratchFolder folder;
+  const h5::Handle file = h5::create_file(folder / "some.h5");
+  h5::put_text(file, "filetype", filetype);
+  h5::put_numbers(file, "format_version", std::array{major, format::kMinor});
+  return complaint_of([&] { read_description(file, "some.h5"); });
+}
+
+TEST(ReadDescription, RefusesFilesOfOthersAndOfOtherMajorVersions) {
+  const std::string ours(format::kFiletype);
+  EXPECT_THAT(said_of("somebody's", format::kMajor), HasSubstr("some.h5: not a montecarta result"));
+  EXPECT_THAT(said_of(ours, format::kMajor + 1), HasSubstr("some.h5: format version 2 (this"));
+  EXPECT_THROW(said_of(ours, format::kMajor), RunError) << "of a known version, but empty";
+}
+
+TEST(Provenance, KnowsBuildAndMachine) {
+  const TextPairs pairs = collect_provenance();
+  const std::map<std::string, std::string> facts(pairs.begin(), pairs.end());
+  for (const auto& [name, value] : facts) EXPECT_FALSE(value.empty()) << name;
+  EXPECT_THAT(facts.at("date"), ::testing::MatchesRegex("20..-..-..T..:..:..Z"));
+  EXPECT_THAT(facts.at("git"), ::testing::MatchesRegex("unknown|[0-9a-f]{40}(-dirty)?"));
+  EXPECT_THAT(facts.at("flags"), ::testing::HasSubstr("-ffp-contract=off"));
+  EXPECT_THAT(facts.at("version"), ::testing::MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+"));
+}
+
+TEST(Sha256, KnownAnswers) {  // FIPS 180-2, appendix B.1, and the empty text
+  EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ pid_t in_child(const Work& work) {
   ::_exit(0);
 }
 
-int exit_code(pid_t child) {
+int wait_for_exit(pid_t child) {
   int status = 0;
   ::waitpid(child, &status, 0);
   return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
@@ -57,7 +57,7 @@ TEST(ResultSurvival, KilledAtAnyMomentItOpensWithWholeRunsOnly) {
     });
     std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
     ::kill(child, SIGKILL);
-    exit_code(child);
+    wait_for_exit(child);
     const std::size_t claimed = count_whole_runs(folder / "out.h5.part");
     const ResultWriter writer = ResultWriter::resume(folder / "out.h5", plan, {});
     EXPECT_TRUE(writer.notes().empty()) << writer.notes().front();  // no claimed run was torn
@@ -81,7 +81,7 @@ TEST(ResultSurvival, AFullDiskIsAnErrorThatKeepsWhatIsStored) {
     ::setrlimit(RLIMIT_FSIZE, &limit);
     for (std::uint64_t run = 0; run < plan.runs; ++run) store_run(writer, plan, run);
   });
-  EXPECT_EQ(exit_code(child), 7);
+  EXPECT_EQ(wait_for_exit(child), 7);
   ResultWriter writer = ResultWriter::resume(folder / "out.h5", plan, {});
   EXPECT_TRUE(writer.notes().empty());
 }
@@ -95,7 +95,7 @@ TEST(ResultSurvival, AFullDiskWhileLayingOutLeavesNothing) {
     ::setrlimit(RLIMIT_FSIZE, &limit);
     ResultWriter::create(folder / "out.h5", plan, {}, Existing::refuse);
   });
-  EXPECT_EQ(exit_code(child), 8);
+  EXPECT_EQ(wait_for_exit(child), 8);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 

@@ -3,21 +3,24 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/result_file.hpp"
+#include "tests/doubles/complaint.hpp"
 #include "tests/doubles/reader_program.hpp"
 #include "tests/doubles/result_writing.hpp"
+#include "tests/doubles/same_results.hpp"
+#include "tests/doubles/scratch_folder.hpp"
+#include "tests/doubles/scripted_result.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <fstream>
 
 namespace montecarta::engine {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
 
 class ResultWriterTest : public ResultWriting {};
 
@@ -86,24 +89,6 @@ TEST_F(ResultWriterTest, ResumesWithWhatIsThere) {
   EXPECT_EQ(ResultFile(path_).wall_seconds(), 3.5);
 }
 
-TEST_F(ResultWriterTest, ResumedFileEqualsOneWrittenAtOnce) {
-  if (!installed("h5diff")) GTEST_SKIP() << "h5diff (hdf5-tools) is not installed";
-  {
-    ResultWriter writer = create();
-    store_run(writer, plan_, 2);
-  }
-  {
-    ResultWriter writer = resume();
-    store_run(writer, plan_, 0);
-    store_run(writer, plan_, 1);
-    writer.finish();
-  }
-  write_result(folder_ / "once.h5", plan_);
-  const std::string diff = "h5diff " + path_.string() + " " + (folder_ / "once.h5").string();
-  EXPECT_EQ(std::system((diff + " /cells /cells").c_str()), 0);
-  EXPECT_EQ(std::system((diff + " /truth /truth").c_str()), 0);
-}
-
 TEST_F(ResultWriterTest, BeginsWhereThereIsNothingToResume) {
   ResultWriter writer = resume();
   EXPECT_EQ(writer.status(0, 0), RunStatus::missing);
@@ -128,12 +113,8 @@ TEST_F(ResultWriterTest, ComputesTornRunsAgain) {
   std::fstream file(part_, std::ios::binary | std::ios::in | std::ios::out);
   std::string content = bytes_of(part_);
   // A power cut that lost one page: flip the first mean of run 1 of the first cell.
-  Drive drive;
-  plan_.drives->generate(1, drive);
-  const RecordLayout layout(plan_.cells[0], plan_.columns, plan_.drives->itinerary());
-  RunRecord record(layout);
-  fill_record(plan_, 0, 1, drive, record);
-  const auto mean = record.bytes(*layout.find("pose_mean"));
+  const FilledRecord filled(plan_, 0, 1);
+  const auto mean = filled.record.bytes(*filled.layout.find("pose_mean"));
   const auto at =
       content.find(std::string(reinterpret_cast<const char*>(mean.data()), mean.size()));
   ASSERT_NE(at, std::string::npos);
@@ -149,8 +130,7 @@ TEST_F(ResultWriterTest, ComputesTornRunsAgain) {
 
 TEST_F(ResultWriterTest, RefusesWhatIsThereUnlessForced) {
   write_result(path_, plan_);
-  EXPECT_THAT(message<StudyError>([&] { create(); }),
-              AllOf(HasSubstr("out.h5: exists"), HasSubstr("--force")));
+  EXPECT_THAT(message<StudyError>([&] { create(); }), HasSubstr("out.h5: exists"));
   const std::string before = bytes_of(path_);
   {
     ResultWriter writer = create(Existing::replace);
@@ -164,8 +144,7 @@ TEST_F(ResultWriterTest, RefusesUnfinishedWorkUnlessForced) {
     ResultWriter writer = create();
     store_run(writer, plan_, 0);
   }
-  EXPECT_THAT(message<StudyError>([&] { create(); }),
-              AllOf(HasSubstr(".part"), HasSubstr("--resume")));
+  EXPECT_THAT(message<StudyError>([&] { create(); }), HasSubstr(".part"));
   EXPECT_EQ(create(Existing::replace).status(0, 0), RunStatus::missing);
 }
 
@@ -198,14 +177,12 @@ TEST_F(ResultWriterTest, RefusesACutFile) {
     store_run(writer, plan_, 0);
   }
   std::filesystem::resize_file(part_, std::filesystem::file_size(part_) / 2);
-  EXPECT_THAT(message<StudyError>([&] { resume(); }),
-              AllOf(HasSubstr("cannot be resumed"), HasSubstr("--force")));
+  EXPECT_THAT(message<StudyError>([&] { resume(); }), HasSubstr("cannot be resumed"));
 }
 
 TEST_F(ResultWriterTest, NamesAPathThatCannotBeWritten) {
   path_ = folder_ / "nowhere" / "out.h5";
-  EXPECT_THAT(message<StudyError>([&] { create(); }),
-              AllOf(HasSubstr("nowhere"), HasSubstr("make the folder")));
+  EXPECT_THAT(message<StudyError>([&] { create(); }), HasSubstr("nowhere"));
   path_ = folder_.path();
   EXPECT_THAT(message<StudyError>([&] { create(); }), HasSubstr("is a folder"));
 }
@@ -226,6 +203,146 @@ TEST_F(ResultWriterTest, LogsAResumptionByAnotherBuild) {
   const ResultWriter writer = ResultWriter::resume(path_, plan_, {{"git", "def"}, {"host", "a"}});
   EXPECT_THAT(writer.notes(), ElementsAre(AllOf(HasSubstr("abc"), HasSubstr("def"))));
   EXPECT_THAT(bytes_of(part_), HasSubstr("git=def\n"));
+}
+
+class ResumeResult : public ResultWriting {};
+
+TEST_F(ResumeResult, ResumesBesideAnOlderResultOnlyWhereItIsOfTheSameStudyAndRuns) {
+  begin();
+  StudyPlan other = plan_;
+  other.resolved_text += "seed = 8\n";
+  const auto older = folder_ / "older.h5";
+  write_result(older, other);
+  std::filesystem::rename(older, path_);
+  const std::string before = bytes_of(path_);
+  EXPECT_THAT(message<StudyError>([&] { resume(); }), HasSubstr("out.h5: exists"));
+  EXPECT_EQ(bytes_of(path_), before);
+  write_result(older, part_of_plan(plan_, 1, 3));
+  std::filesystem::rename(older, path_);
+  EXPECT_THAT(message<StudyError>([&] { resume(); }), HasSubstr("out.h5: exists"));
+  std::ofstream(path_) << "no result at all";
+  EXPECT_THAT(message<StudyError>([&] { resume(); }), HasSubstr("out.h5: exists"));
+  write_result(older, plan_);
+  std::filesystem::rename(older, path_);
+  EXPECT_EQ(resume().status(0, 0), RunStatus::complete);
+}
+
+TEST_F(ResumeResult, ReplacesAnotherResultAfterAResumptionWhereTheStartWasForced) {
+  StudyPlan other = plan_;
+  other.resolved_text += "seed = 8\n";
+  write_result(path_, other);
+  begin(Existing::replace);
+  ResultWriter writer = resume();
+  store_run(writer, plan_, 1);
+  store_run(writer, plan_, 2);
+  writer.finish();
+  EXPECT_EQ(ResultFile(path_).study_text(), plan_.resolved_text);
+}
+
+TEST_F(ResumeResult, TellsUnfinishedWorkUnderAFinalNameFromAResult) {
+  begin();
+  std::filesystem::rename(part_, path_);
+  EXPECT_THAT(message<StudyError>([&] { resume(); }), HasSubstr("4 of 6 runs are missing"));
+}
+
+// Several attempts at one result, one after the other and at the same time.
+
+class Attempt : public ResultWriting {
+ protected:
+  Attempt() { plan_ = small_result_plan(4); }
+  ResultWriter begin() const { return ResultWriter::attempt(path_, plan_, {{"host", "here"}}); }
+  void store_missing(ResultWriter& writer) const {
+    for (std::uint64_t run = 0; run < plan_.runs; ++run) {
+      if (writer.status(0, run) == RunStatus::missing) store_run(writer, plan_, run);
+    }
+  }
+  std::vector<std::string> names() const {
+    std::vector<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+      found.push_back(entry.path().filename().string());
+    std::ranges::sort(found);
+    return found;
+  }
+  void expect_the_whole_and_nothing_else() const {
+    EXPECT_THAT(names(), ElementsAre("out.h5"));
+    write_result(folder_ / "once.h5", plan_);
+    EXPECT_EQ(difference(ResultFile(path_), ResultFile(folder_ / "once.h5")), "");
+  }
+};
+
+TEST_F(Attempt, HandsOverWhatItStoredUnderOneNameWithoutACopy) {
+  {
+    ResultWriter first = begin();
+    EXPECT_THAT(names(), ElementsAre(HasSubstr("out.h5.part.")));
+    store_run(first, plan_, 2);
+    first.suspend();
+  }
+  EXPECT_THAT(names(), ElementsAre("out.h5.part"));
+  ResultWriter second = begin();
+  EXPECT_THAT(names(), ElementsAre(HasSubstr("out.h5.part.")));
+  EXPECT_EQ(second.status(1, 2), RunStatus::complete);
+  store_missing(second);
+  second.finish();
+  expect_the_whole_and_nothing_else();
+}
+
+TEST_F(Attempt, TakesOverWhatOneThatDiedOrIsCutOffStored) {
+  ResultWriter cut_off = begin();
+  store_run(cut_off, plan_, 0);
+  ResultWriter second = begin();
+  EXPECT_EQ(second.status(0, 0), RunStatus::complete);
+  EXPECT_EQ(second.status(0, 1), RunStatus::missing);
+  EXPECT_THAT(second.notes(), ElementsAre(HasSubstr("2 runs were taken over from out.h5.part.")));
+  store_run(cut_off, plan_, 1);  // goes on alone, and harms nobody
+  store_missing(second);
+  second.finish();
+  store_missing(cut_off);
+  cut_off.finish();
+  expect_the_whole_and_nothing_else();
+}
+
+TEST_F(Attempt, TheOneThatWasCutOffMayBeFirst) {
+  ResultWriter cut_off = begin();
+  ResultWriter second = begin();
+  store_missing(cut_off);
+  cut_off.finish();
+  store_run(second, plan_, 3);
+  second.suspend();
+  EXPECT_THAT(begin().notes(), ElementsAre(HasSubstr("is complete already")));
+  expect_the_whole_and_nothing_else();
+}
+
+TEST_F(Attempt, DamagedRunsAndCutFilesAreNotTakenOver) {
+  std::string other;
+  {
+    const ResultWriter died = begin();
+    other = names().front();
+  }
+  const auto size = std::filesystem::file_size(folder_ / other);
+  std::filesystem::copy_file(folder_ / other, folder_ / "out.h5.part.cut");
+  std::filesystem::resize_file(folder_ / "out.h5.part.cut", size / 2);
+  std::ofstream(folder_ / "out.h5.part") << "torn";
+  {
+    ResultWriter dies = begin();
+    store_run(dies, plan_, 1);
+  }
+  ResultWriter last = begin();
+  EXPECT_EQ(last.status(0, 1), RunStatus::complete);
+  EXPECT_EQ(last.status(0, 2), RunStatus::missing);
+  store_missing(last);
+  last.finish();
+  expect_the_whole_and_nothing_else();
+}
+
+TEST_F(Attempt, OtherStudiesAndOtherRunsAreRefusedAndKept) {
+  begin().suspend();
+  StudyPlan other = plan_;
+  other.resolved_text += "seed = 8\n";
+  EXPECT_THAT(complaint_of([&] { ResultWriter::attempt(path_, other, {}); }),
+              HasSubstr("another study"));
+  EXPECT_THAT(complaint_of([&] { ResultWriter::attempt(path_, part_of_plan(plan_, 1, 3), {}); }),
+              HasSubstr("other runs"));
+  EXPECT_THAT(names(), ElementsAre("out.h5.part"));
 }
 
 }  // namespace

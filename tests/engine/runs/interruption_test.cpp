@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/runs/interruption.hpp"
 
+#include "engine/runs/monte_carlo.hpp"
+#include "engine/runs/progress.hpp"
+
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -57,6 +60,58 @@ void be_signalled_twice(int signal) {
 TEST(InterruptionDeathTest, EndsAtOnceAtTheSecondSignal) {
   EXPECT_EXIT(be_signalled_twice(SIGINT), testing::ExitedWithCode(130), "");
   EXPECT_EXIT(be_signalled_twice(SIGTERM), testing::ExitedWithCode(143), "");
+}
+
+using Clock = std::chrono::steady_clock;
+
+/// Waits until somebody asks to stop; says why.
+StopReason wait_for(const StopRequest& stop) {
+  const auto give_up = Clock::now() + std::chrono::minutes(1);
+  while (!stop.is_set() && Clock::now() < give_up) std::this_thread::yield();
+  return stop.reason();
+}
+
+class WatchTest : public testing::Test {
+ protected:
+  Interruption interruption;
+  StopRequest stop;
+  Progress progress{ProgressStyle::none, {}};
+};
+
+TEST_F(WatchTest, AsksToStopWhenASignalComes) {
+  const Watch watch({interruption, std::nullopt}, stop, progress);
+  EXPECT_FALSE(stop.is_set());
+  raise(SIGTERM);
+  EXPECT_EQ(wait_for(stop), StopReason::sigterm);
+}
+
+TEST_F(WatchTest, AsksToStopWhenTheBudgetIsUsedUp) {
+  const auto begin = Clock::now();
+  const Watch watch({interruption, 0.1}, stop, progress);
+  EXPECT_EQ(wait_for(stop), StopReason::time_budget);
+  EXPECT_GE(Clock::now() - begin, std::chrono::milliseconds(100));
+}
+
+TEST_F(WatchTest, TakesABudgetLongerThanTheClockCanCount) {
+  const Watch watch({interruption, 1e300}, stop, progress);
+  std::this_thread::sleep_for(std::chrono::milliseconds(60));
+  EXPECT_FALSE(stop.is_set());
+}
+
+RunOutcome stopped_by(StopReason reason) {
+  return {.stopped = reason,
+          .cells = {{.label = "a", .complete = 3, .failed = 1, .missing = 2},
+                    {.label = "b", .complete = 4, .failed = 0, .missing = 2}}};
+}
+
+TEST(RunOutcome, HasTheExitCodesOfTheCommandLine) {
+  EXPECT_EQ(exit_code({}, false), 0);
+  EXPECT_EQ(exit_code(stopped_by(StopReason::complete), false), 3);
+  EXPECT_EQ(exit_code(stopped_by(StopReason::time_budget), false), 85);
+  EXPECT_EQ(exit_code(stopped_by(StopReason::sigterm), true), 85);
+  EXPECT_EQ(exit_code(stopped_by(StopReason::sigterm), false), 143);
+  EXPECT_EQ(exit_code(stopped_by(StopReason::sigint), true), 130);
+  EXPECT_THROW(exit_code(stopped_by(StopReason::error), false), std::logic_error);
 }
 
 }  // namespace

@@ -17,11 +17,12 @@
 namespace montecarta::engine {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
+using Clock = std::chrono::steady_clock;
+
 constexpr std::uint64_t kRuns = 16;
-constexpr int kPace = 20000;  // [us] a step: a study of some 15 s on two threads, if not stopped
+constexpr int kPace = 8000;  // [us] a step: a study of some 5 s on two threads, if not stopped
 
 /// A process running the scripted study.
 class Child {
@@ -92,15 +93,6 @@ TEST_F(KilledStudy, LosesNothingToKill9) {
   child.send(SIGKILL);
   EXPECT_EQ(child.wait(), -SIGKILL);
   EXPECT_GE(stored(part), 3U);
-  EXPECT_LT(stored(part), 2 * kRuns);
-  expect_resumes_to_the_same_bits();
-}
-
-TEST_F(KilledStudy, ClosesItsFileWhenInterrupted) {
-  const Child child(output, kPace);
-  wait_until_under_way();
-  child.send(SIGINT);
-  EXPECT_EQ(child.wait(), 130);
   EXPECT_LT(stored(part), 2 * kRuns);
   expect_resumes_to_the_same_bits();
 }

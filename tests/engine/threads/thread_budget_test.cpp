@@ -2,11 +2,15 @@
 #include "engine/threads/thread_budget.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/threads/parallel.hpp"
+#include "tests/doubles/scratch_folder.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <map>
+#include <string>
 
 namespace montecarta::engine {
 namespace {
@@ -74,6 +78,62 @@ TEST(ThreadBudget, DoesNotReadWhatDoesNotCount) {
 TEST(ThreadBudget, OfThisProcessIsPositive) {
   EXPECT_GE(cpu_limits().affinity, 1);
   EXPECT_GE(thread_budget(std::nullopt).threads, 1);
+}
+
+/// A file system root of our own making.
+class CgroupQuota : public testing::Test {
+ protected:
+  void write(const std::string& path, const std::string& text) const {
+    std::filesystem::create_directories((root / path).parent_path());
+    std::ofstream(root / path) << text << '\n';
+  }
+
+  const ScratchFolder folder;
+  const std::filesystem::path root = folder.path();
+};
+
+TEST_F(CgroupQuota, IsTheTightestOfAllParentsInVersion2) {
+  EXPECT_EQ(cgroup_quota(root), std::nullopt) << "without groups";
+  write("proc/self/cgroup", "0::/batch/job_7");
+  write("sys/fs/cgroup/cpu.max", "max 100000");
+  EXPECT_EQ(cgroup_quota(root), std::nullopt);
+  write("sys/fs/cgroup/batch/cpu.max", "150000 100000");
+  write("sys/fs/cgroup/batch/job_7/cpu.max", "400000 100000");
+  EXPECT_EQ(cgroup_quota(root), 1.5);
+}
+
+TEST_F(CgroupQuota, IsReadOfVersion1AndOfTheMountInAContainer) {
+  const auto write_limits = [&](const std::string& group, const char* quota) {
+    write("sys/fs/cgroup/" + group + "/cpu.cfs_quota_us", quota);
+    write("sys/fs/cgroup/" + group + "/cpu.cfs_period_us", "100000");
+  };
+  write("proc/self/cgroup", "5:memory:/x\n4:cpu,cpuacct:/docker/abc");
+  write_limits("cpu,cpuacct", "-1");
+  write_limits("cpu,cpuacct/docker/abc", "300000");
+  EXPECT_EQ(cgroup_quota(root), 3.0);
+  write("proc/self/cgroup", "4:cpu:/out/of/sight");
+  write_limits("cpu", "200000");
+  EXPECT_EQ(cgroup_quota(root), 2.0);
+}
+
+TEST(SpareThreads, AreLentOnceAWorkerHasNothingToDo) {
+  const Parallel parallel(Backend::tbb, 2);
+  SpareThreads spare(parallel, 2);
+  EXPECT_EQ(&spare.lend(1000), &Parallel::serial());
+  spare.gain_one();
+  EXPECT_EQ(&spare.lend(1000), &parallel);
+}
+
+TEST(SpareThreads, AreLentFromTheStartWhereRunsAreFewer) {
+  const Parallel parallel(Backend::tbb, 4);
+  EXPECT_EQ(&SpareThreads(parallel, 3).lend(1000), &parallel);
+}
+
+TEST(SpareThreads, DoNotPayForFewParticles) {
+  const Parallel parallel(Backend::tbb, 2);
+  const SpareThreads spare(parallel, 1);
+  EXPECT_EQ(&spare.lend(SpareThreads::kLeastParticles - 1), &Parallel::serial());
+  EXPECT_EQ(&spare.lend(SpareThreads::kLeastParticles), &parallel);
 }
 
 }  // namespace

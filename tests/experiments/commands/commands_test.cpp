@@ -1,34 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/commands/commands.hpp"
 
+#include "engine/errors.hpp"
+#include "experiments/commands/arguments.hpp"
 #include "tests/experiments/commands/program.hpp"
 
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 namespace montecarta::experiments {
 namespace {
 
+using testing::AllOf;
+using testing::ContainsRegex;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::Not;
+using testing::StartsWith;
 
-class Commands : public Program {
+class Commands : public BlinkProgram {
  protected:
-  Commands() {
-    write("blink.ini", kBlink);
-    write("blink.csv", kBlinkWorld);
-  }
   /// A call that may write no file beyond a few kilobytes.
   Called call_limited(const std::vector<std::string>& words) const {
     return call(words, "ulimit -f 8 && ");
   }
-  /// The call must end as wrong input, saying `words` and nothing else.
-  void expect_refused(const std::vector<std::string>& arguments, const std::string& words) const {
-    const Called called = call(arguments);
-    EXPECT_EQ(called.code, 2) << called.err;
-    EXPECT_THAT(called.err, HasSubstr(words));
-    EXPECT_THAT(called.out, IsEmpty());
-  }
+
   /// Likewise, and there must be no result.
   void expect_wrong(const std::vector<std::string>& arguments, const std::string& words) const {
     expect_refused(arguments, words);
@@ -63,25 +59,7 @@ TEST_F(Commands, WrongInputIsNamedWithItsRemedy) {
   expect_wrong({"run", "blink.ini", "--shard", "0/3"}, "-o OUT.h5 is missing");
   expect_wrong({"run", "blink.ini", "--set", "study.name=../a"}, "'../a' names no file here");
   expect_wrong({"run", "-o", "out.h5"}, "STUDY.ini is missing");
-  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--thrads", "2"}, "did you mean --threads?");
-  expect_wrong({"run", "blink.ini", "-o", "out.h5", "stray"}, "stray: stray argument");
-  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--threads"}, "threads");
-  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--threads", "0"}, "threads");
-  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--backend", "cuda"},
-               "one of tbb, openmp, serial");
-  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--set", "study.runs=0"},
-               "--set study.runs: runs = 0");
-  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--runs", "2:9"}, "--runs 2:9");
-  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--shard", "3/3"}, "--shard 3/3");
-  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--runs", "0:1", "--shard", "0/3"},
-               "remove one of them");
-  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--time-budget", "soon"}, "--time-budget soon");
-  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--time-budget", "0"}, "--time-budget 0");
-  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--set", "study.seed=-1"},
-               "from 0 to 18446744073709551615 is");
   expect_wrong({"run", "absent.ini", "-o", "out.h5"}, "absent.ini: cannot be opened");
-  expect_wrong({"run", "blink.ini", "-o", "out.h5", "--set", "scenario.world=no.csv"},
-               "no.csv: no such world file");
   expect_wrong({"list", "filtres"}, "did you mean filters?");
   expect_wrong({"info", "absent.h5"}, "absent.h5");
   expect_wrong({"bounds", "--runs", "30"}, "--dim D");
@@ -89,6 +67,25 @@ TEST_F(Commands, WrongInputIsNamedWithItsRemedy) {
   expect_wrong({"report", "absent.h5"}, "figures need a place");
   expect_wrong({"plan", "--dim", "3"}, "--ratio R");
   expect_wrong({"plan", "--dim", "3", "--ratio", "1"}, "neither 1 nor 0");
+  const std::vector<std::pair<std::vector<std::string>, std::string>> options = {
+      {{"--thrads", "2"}, "did you mean --threads?"},
+      {{"stray"}, "stray: stray argument"},
+      {{"--threads"}, "threads"},
+      {{"--threads", "0"}, "threads"},
+      {{"--backend", "cuda"}, "one of tbb, openmp, serial"},
+      {{"--set", "study.runs=0"}, "--set study.runs: runs = 0"},
+      {{"--runs", "2:9"}, "--runs 2:9"},
+      {{"--shard", "3/3"}, "--shard 3/3"},
+      {{"--runs", "0:1", "--shard", "0/3"}, "remove one of them"},
+      {{"--time-budget", "soon"}, "--time-budget soon"},
+      {{"--time-budget", "0"}, "--time-budget 0"},
+      {{"--set", "study.seed=-1"}, "from 0 to 18446744073709551615 is"},
+      {{"--set", "scenario.world=no.csv"}, "no.csv: no such world file"}};
+  for (const auto& [more, words] : options) {
+    std::vector<std::string> arguments = {"run", "blink.ini", "-o", "out.h5"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expect_wrong(arguments, words);
+  }
 }
 
 TEST_F(Commands, RunStoresAndTellsWhereAndOverwritesNothing) {
@@ -236,16 +233,14 @@ TEST_F(Commands, AnalyzeOnAFullDiskLeavesWhatWasThere) {
   ASSERT_EQ(call({"run", "blink.ini", "-o", "out.h5", "--quiet"}).code, 0);
   const std::string older = "\x89HDF\r\n\x1a\nmine";
   write("metrics.h5", older);
-  const std::string line = "cd " + shell_quoted(folder_.string()) +
-                           " && trap '' XFSZ && ulimit -f 8 && " MONTECARTA_EXECUTABLE
-                           " analyze out.h5 -o metrics.h5 --force > stdout 2> stderr";
-  EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 1);
-  EXPECT_THAT(text_of("stderr"), HasSubstr("metrics.h5"));
-  EXPECT_THAT(text_of("stderr"), HasSubstr("cannot be written"));
+  const std::vector<std::string> analyze = {"analyze", "out.h5", "-o", "metrics.h5", "--force"};
+  const Called full = call(analyze, "trap '' XFSZ && ulimit -f 8 && ");
+  EXPECT_EQ(full.code, 1);
+  EXPECT_THAT(full.err, HasSubstr("metrics.h5"));
   EXPECT_EQ(text_of("metrics.h5"), older);
   for (const auto& entry : std::filesystem::directory_iterator(folder_))
     EXPECT_NE(entry.path().extension(), ".new") << "a draft is left";
-  EXPECT_EQ(call({"analyze", "out.h5", "-o", "metrics.h5", "--force"}).code, 0);
+  EXPECT_EQ(call(analyze).code, 0);
   EXPECT_THAT(text_of("metrics.h5"), testing::Not(testing::HasSubstr("mine")));
 }
 
@@ -264,11 +259,9 @@ TEST_F(Commands, TablesAndReportsAreNotOverwrittenUnasked) {
 
 TEST_F(Commands, ReportWithoutGnuplotWritesNothing) {
   ASSERT_EQ(call({"run", "blink.ini", "-o", "out.h5", "--quiet"}).code, 0);
-  const std::string line = "cd " + shell_quoted(folder_.string()) +
-                           " && PATH=/nowhere " MONTECARTA_EXECUTABLE
-                           " report out.h5 -o report 2> stderr";
-  EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 2);
-  EXPECT_THAT(text_of("stderr"), HasSubstr("gnuplot: not found"));
+  const Called called = call({"report", "out.h5", "-o", "report"}, "PATH=/nowhere ");
+  EXPECT_EQ(called.code, 2);
+  EXPECT_THAT(called.err, HasSubstr("gnuplot: not found"));
   EXPECT_FALSE(exists("report"));
 }
 
@@ -284,9 +277,105 @@ TEST_F(Commands, AnalyzeOfManyFilesNamesEachAndRefusesAStranger) {
 }
 
 TEST_F(Commands, FullStandardOutputIsAFailure) {
-  const std::string line =
-      std::string(MONTECARTA_EXECUTABLE) + " list settings > /dev/full 2> /dev/null";
-  EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 1);
+  EXPECT_EQ(call({"list", "settings"}, "exec > /dev/full; ").code, 1);
+}
+
+// What the scripts of cluster/ call: run --attempt, and status --each.
+
+class AttemptCommand : public BlinkProgram {
+ protected:
+  Called attempt(const std::vector<std::string>& more = {}) const {
+    return call_with({"run", "blink.ini", "-o", "out.h5", "--attempt", "--quiet"}, more);
+  }
+};
+
+TEST_F(AttemptCommand, StopsAtACheckpointAndTheSameCommandGoesOn) {
+  const std::vector<std::string> many{"--set", "study.runs=3000", "--threads", "1"};
+  std::vector<std::string> stopped = many;
+  stopped.insert(stopped.end(), {"--time-budget", "0.01"});
+  ASSERT_EQ(attempt(stopped).code, 85);
+  EXPECT_TRUE(exists("out.h5.part"));
+  EXPECT_THAT(call({"status", "--each", "out.h5.part"}).out,
+              StartsWith("out.h5.part\tunfinished\t"));
+  EXPECT_EQ(attempt(many).code, 0);
+  EXPECT_FALSE(exists("out.h5.part"));
+  EXPECT_EQ(attempt(many).code, 0) << "complete already";
+}
+
+TEST_F(AttemptCommand, ForceContradictsIt) {
+  const Called called = attempt({"--force"});
+  EXPECT_EQ(called.code, 2);
+  EXPECT_THAT(called.err, HasSubstr("--force and --attempt"));
+}
+
+TEST_F(AttemptCommand, EachFileHasALineWhateverItIs) {
+  ASSERT_EQ(attempt().code, 0);
+  write("torn.h5", "torn");
+  const Called called = call({"status", "--each", "--whole", "out.h5", "torn.h5", "absent.h5"});
+  EXPECT_EQ(called.code, 0) << called.err;
+  EXPECT_THAT(called.out,
+              AllOf(ContainsRegex("^out.h5\tcomplete\t[0-9a-f]+\t6\t0\t0\t[0-9]+\\.[0-9]+\t\n"),
+                    HasSubstr("\ntorn.h5\tdamaged\t\t0\t0\t0\t0\ttorn.h5: "),
+                    HasSubstr("\nabsent.h5\tdamaged\t")));
+  std::string bytes = text_of("out.h5");
+  for (std::size_t at = bytes.size() / 2; at < bytes.size(); at += 512) bytes[at] ^= 1;
+  write("out.h5", bytes);
+  EXPECT_THAT(call({"status", "--each", "--whole", "out.h5"}).out, StartsWith("out.h5\tdamaged\t"));
+}
+
+const CommandSpec kSpec{.name = "bake",
+                        .summary = "bakes",
+                        .operands = {{"DOUGH", 1, 1}, {"TIN", 0, SIZE_MAX}},
+                        .options = {{"output", "o", {"OUT"}, "where to"},
+                                    {"set", "", {"K=V"}, "", true},
+                                    {"hot", "", {}, "quickly"},
+                                    {"match", "", {"LO", "HI"}, ""}},
+                        .details = {}};
+
+std::string complaint_about(const std::vector<std::string>& words) {
+  try {
+    const Arguments arguments(kSpec, words);
+  } catch (const StudyError& error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+TEST(Arguments, AreOptionsAndOperandsInAnyOrder) {
+  const Arguments arguments(kSpec, {"--set", "a=1", "rye", "-o", "bread", "--hot", "--set=b=2",
+                                    "tin", "--match", "1", "2"});
+  EXPECT_THAT(arguments.operands(), ElementsAre("rye", "tin"));
+  EXPECT_EQ(arguments.text("output"), "bread");
+  EXPECT_TRUE(arguments.has("hot"));
+  EXPECT_THAT(arguments.texts("set"), ElementsAre("a=1", "b=2"));
+  EXPECT_THAT(arguments.texts("match"), ElementsAre("1", "2"));
+}
+
+TEST(Arguments, AreRefusedWhereTheyAreNotWhatTheCommandTakes) {
+  EXPECT_THAT(complaint_about({}), HasSubstr("DOUGH is missing"));
+  EXPECT_THAT(complaint_about({"rye", "--outptu", "x"}), HasSubstr("did you mean --output?"));
+  EXPECT_THAT(complaint_about({"rye", "--out", "x"}), HasSubstr("--out: unknown option"))
+      << "no guessing";
+  EXPECT_THAT(complaint_about({"rye", "--hot", "--hot"}), HasSubstr("--hot: given 2 times"));
+  EXPECT_THAT(complaint_about({"rye", "-o", "a", "-o", "b"}), HasSubstr("--output: given 2 times"));
+  EXPECT_THAT(complaint_about({"rye", "--match", "1"}), HasSubstr("--match: 1 values"));
+  EXPECT_THAT(complaint_about({"rye", "-o"}), testing::StartsWith("bake: "));
+}
+
+TEST(Arguments, ReadNumbersWithinLimits) {
+  const Arguments arguments(kSpec, {"rye", "-o", "7", "--set", "2.5"});
+  EXPECT_EQ(arguments.count("output", 1, 9), 7U);
+  EXPECT_EQ(arguments.number("set", 0.0, 9.0), 2.5);
+  EXPECT_EQ(arguments.number("match", 0.0, 9.0), std::nullopt);
+  EXPECT_THROW(arguments.count("output", 8, 9), StudyError);
+  EXPECT_THROW(arguments.count("set", 0, 9), StudyError);
+}
+
+TEST(ShellQuoted, ReadsBackAsOneWord) {
+  EXPECT_EQ(shell_quoted("a/b-c.h5"), "a/b-c.h5");
+  EXPECT_EQ(shell_quoted("a b"), "'a b'");
+  EXPECT_EQ(shell_quoted("it's"), "'it'\\''s'");
+  EXPECT_EQ(shell_quoted(""), "''");
 }
 
 }  // namespace

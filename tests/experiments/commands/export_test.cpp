@@ -7,6 +7,7 @@
 #include "tests/experiments/commands/program.hpp"
 
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <bit>
 
@@ -15,6 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 std::vector<std::uint64_t> bits_of(const Itinerary& itinerary, const Drive& drive) {
   std::vector<std::uint64_t> bits;
@@ -30,16 +32,10 @@ std::vector<std::uint64_t> bits_of(const Itinerary& itinerary, const Drive& driv
   return bits;
 }
 
-class Export : public Program {
+class Export : public BlinkProgram {
  protected:
-  Export() {
-    write("blink.csv", kBlinkWorld);
-    write("study.ini", kBlink);
-  }
   Called run_export(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words{"export", "study.ini", "-o", "drives"};
-    words.insert(words.end(), more.begin(), more.end());
-    return call(words);
+    return call_with({"export", "blink.ini", "-o", "drives"}, more);
   }
   /// The drive of a run as its exported log has it, truth added to what an estimator sees.
   RecordedDrive exported(const std::string& run) const {
@@ -59,7 +55,7 @@ TEST_F(Export, ALogReadBackIsTheSameDrive) {
     for (const std::string& text : overrides) words.insert(words.end(), {"--set", text});
     const Called called = run_export(words);
     ASSERT_EQ(called.code, 0) << called.err;
-    const Study study = read_study(folder_ / "study.ini", overrides);
+    const Study study = read_study(folder_ / "blink.ini", overrides);
     const auto drives = drives_of(study, study.settings.count("study", "seed"));
     Drive simulated, read;
     for (const std::uint64_t run : {0, 2}) {
@@ -93,8 +89,40 @@ TEST_F(Export, AnEstimatorSeesNoTruth) {
 
 TEST_F(Export, WrongInputIsNamed) {
   ASSERT_EQ(run_export().code, 0);
-  EXPECT_THAT(run_export().err, HasSubstr("drives: not a new folder"));
-  EXPECT_EQ(call({"export", "study.ini"}).code, 2);
+  expect_refused({"export", "blink.ini", "-o", "drives"}, "drives: not a new folder");
+  EXPECT_EQ(call({"export", "blink.ini"}).code, 2);
+}
+
+class Compare : public BlinkProgram {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(call({"run", "blink.ini", "-o", "out.h5", "--quiet"}).code, 0);
+  }
+};
+
+TEST_F(Compare, SaysWhatEachCellHasMoreThanTheBaseline) {
+  const Called called = call({"compare", "out.h5", "--baseline", "ekf_slam", "--csv", "tables"});
+  EXPECT_EQ(called.code, 0) << called.err;
+  for (const char* words : {"position_rmse [m]", "heading_rmse [rad]", "nees_distance",
+                            "cpu_seconds [s]", "row beats", "on the Pareto front", "Holm"}) {
+    EXPECT_THAT(called.out, HasSubstr(words));
+  }
+  EXPECT_THAT(text_of("tables/comparison.csv"), StartsWith("metric,units,cell,baseline,verdict,"));
+  EXPECT_THAT(text_of("tables/wins.csv"), HasSubstr("\nposition_rmse,fastslam2_m10,ekf_slam,"));
+  EXPECT_THAT(text_of("tables/pareto.csv"), HasSubstr("\nfastslam2_m10,"));
+  expect_refused({"compare", "out.h5", "--baseline", "ekf_slam", "--csv", "tables"},
+                 "comparison.csv: is there already");
+}
+
+TEST_F(Compare, NamesTheNearestSpelling) {
+  const std::vector<std::string> words = {"compare", "out.h5", "--baseline", "ekf_slam",
+                                          "--metric"};
+  expect_refused({"compare", "out.h5", "--baseline", "ekf_slan"}, "did you mean ekf_slam?");
+  expect_refused({"compare", "out.h5"}, "--baseline CELL");
+  EXPECT_THAT(call_with(words, {"postion_rmse"}).err, HasSubstr("did you mean position_rmse?"));
+  const std::string both = call_with(words, {"position_error, nees"}).out;
+  EXPECT_THAT(both, HasSubstr("position_error [m]"));
+  EXPECT_THAT(both, testing::Not(HasSubstr("heading_rmse")));
 }
 
 }  // namespace

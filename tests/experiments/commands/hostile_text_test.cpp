@@ -5,17 +5,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 namespace montecarta::experiments {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using testing::AllOf;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::Not;
 
-class HostileText : public Program {
+class HostileText : public BlinkProgram {
  protected:
-  HostileText() { write("blink.csv", kBlinkWorld); }
   Called run(const std::string& study) const {
     write("blink.ini", study);
     return call({"run", "blink.ini", "-o", "out.h5", "--quiet", "--force"});
@@ -58,14 +59,11 @@ TEST_F(HostileText, AWayPointThatIsNotReachedIsNamedByItsLine) {
 }
 
 TEST_F(HostileText, APageIsMadeOfNumbersBeyondAnyAxis) {
-  write("e_0.csv",
-        "time_s,x_m,y_m,heading_rad,cov_0_0,cov_0_1,cov_0_2,cov_1_0,cov_1_1,cov_1_2,"
-        "cov_2_0,cov_2_1,cov_2_2\n1,1e308,0,0,1,0,0,0,1,0,0,0,1\n"
-        "2,-1e308,1,0,1,0,0,0,1,0,0,0,1\n");
-  write("e_1.csv",
-        "time_s,x_m,y_m,heading_rad,cov_0_0,cov_0_1,cov_0_2,cov_1_0,cov_1_1,cov_1_2,"
-        "cov_2_0,cov_2_1,cov_2_2\n1,0,0,0,1,0,0,0,1,0,0,0,1\n"
-        "2,0,1,0,1,0,0,0,1,0,0,0,1\n");
+  const std::string header =
+      "time_s,x_m,y_m,heading_rad,cov_0_0,cov_0_1,cov_0_2,cov_1_0,cov_1_1,cov_1_2,cov_2_0,cov_2_1,"
+      "cov_2_2\n";
+  write("e_0.csv", header + "1,1e308,0,0,1,0,0,0,1,0,0,0,1\n2,-1e308,1,0,1,0,0,0,1,0,0,0,1\n");
+  write("e_1.csv", header + "1,0,0,0,1,0,0,0,1,0,0,0,1\n2,0,1,0,1,0,0,0,1,0,0,0,1\n");
   write("truth.csv", "time_s,x_m,y_m,heading_rad\n1,0,0,0\n2,0,0,0\n");
   ASSERT_EQ(call({"judge", "e_0.csv", "e_1.csv", "--truth", "truth.csv", "--error", "world", "-o",
                   "mine.h5"})
@@ -80,6 +78,58 @@ TEST_F(HostileText, AVectorHasOneConvention) {
   write("e_0.csv", "time_s,a_m,cov_0_0\n1,0.5,1\n2,-0.5,1\n");
   write("truth.csv", "time_s,a_m\n1,0\n2,0\n");
   EXPECT_EQ(call({"judge", "e_0.csv", "--truth", "truth.csv", "-o", "mine.h5"}).code, 0);
+}
+
+// What is no regular file is refused: a pipe would be waited for.
+class SpecialFiles : public BlinkProgram {
+ protected:
+  void expect_refused(const std::vector<std::string>& words) const {
+    const Called called = call(words, "mkfifo -m 600 pipe.h5 2> stderr; timeout 20 ");
+    EXPECT_EQ(called.code, 2) << testing::PrintToString(words) << called.err;
+    EXPECT_THAT(called.err, HasSubstr(".h5: ")) << testing::PrintToString(words);
+  }
+};
+
+TEST_F(SpecialFiles, AreNoResults) {
+  for (const char* command : {"info", "status", "analyze", "compare", "verify"}) {
+    expect_refused({command, "pipe.h5"});
+  }
+  expect_refused({"report", "pipe.h5", "-o", "report"});
+  expect_refused({"replay", "pipe.h5", "--cell", "ekf_slam", "--run", "0", "-o", "replay.h5"});
+  expect_refused({"merge", "out.h5", "pipe.h5", "pipe.h5"});
+  expect_refused({"run", "blink.ini", "--resume", "-o", "pipe.h5"});
+}
+
+// --force replaces a result, and nothing else: the pipe is still one afterwards.
+TEST_F(SpecialFiles, AreNotReplaced) {
+  ASSERT_EQ(call({"run", "blink.ini", "-o", "whole.h5", "--quiet"}).code, 0);
+  write("e_0.csv", "time_s,a_m,cov_0_0\n1,0.5,1\n");
+  write("truth.csv", "time_s,a_m\n1,0\n");
+  const std::vector<std::string> judge = {"judge",   "e_0.csv", "--truth", "truth.csv",
+                                          "--error", "world",   "--force", "-o"};
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"run", "blink.ini", "--force", "--quiet", "-o"},
+           {"replay", "whole.h5", "--cell", "ekf_slam", "--run", "0", "--force", "-o"},
+           {"analyze", "whole.h5", "--force", "-o"},
+           {"merge", "--force"},
+           judge}) {
+    for (const char* output : {"pipe.h5", "nowhere.h5", ""}) {
+      std::vector<std::string> all = words;
+      all.emplace_back(output);
+      if (words.front() == "merge") all.emplace_back("whole.h5");
+      const Called called =
+          call(all, "ln -sf missing/x.h5 nowhere.h5; mkfifo -m 600 pipe.h5 2> stderr; timeout 20 ");
+      EXPECT_EQ(called.code, 2) << testing::PrintToString(all) << called.err;
+      EXPECT_TRUE(std::filesystem::is_fifo(folder_ / "pipe.h5")) << words.front();
+    }
+  }
+}
+
+TEST_F(SpecialFiles, AreNoTables) {
+  ASSERT_EQ(call({"run", "blink.ini", "-o", "whole.h5", "--quiet"}).code, 0);
+  const Called called = call({"analyze", "whole.h5", "--csv", ".", "--force"},
+                             "mkfifo -m 600 cells.csv; timeout 20 ");
+  EXPECT_EQ(called.code, 2) << called.err;
 }
 
 }  // namespace

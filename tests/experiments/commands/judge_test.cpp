@@ -27,18 +27,13 @@ std::string row_of(std::span<const double> numbers) {
   return row + "\n";
 }
 
-class Judge : public Program {
+class Judge : public BlinkProgram {
  protected:
-  Judge() {
-    write("blink.csv", kBlinkWorld);
-    write("study.ini", kBlink);
-  }
-
   /// Runs the study of two filters and writes what they estimated, as another program would, beside
   /// the drives that `export` writes: drives/CELL/run_000N.csv.
   void write_own_estimates() const {
-    ASSERT_EQ(call({"run", "study.ini", "-o", "own.h5", "--quiet"}).code, 0);
-    ASSERT_EQ(call({"export", "study.ini", "-o", "drives"}).code, 0);
+    ASSERT_EQ(call({"run", "blink.ini", "-o", "own.h5", "--quiet"}).code, 0);
+    ASSERT_EQ(call({"export", "blink.ini", "-o", "drives"}).code, 0);
     const ResultFile file(folder_ / "own.h5");
     for (const StoredCell& cell : file.cells()) {
       const std::string suffix = cell.has("pose_mean_mixture") ? "_mixture" : "";
@@ -66,8 +61,7 @@ class Judge : public Program {
   }
   Called judge(std::vector<std::string> words, const std::vector<std::string>& more) const {
     words.insert(words.begin(), "judge");
-    words.insert(words.end(), more.begin(), more.end());
-    return call(words);
+    return call_with(words, more);
   }
   analysis::StudyAnalysis analyzed(const std::string& name) const {
     return analysis::analyze(ResultFile(folder_ / name));
@@ -176,21 +170,6 @@ TEST_F(Judge, AVectorHasItsOwnDimension) {
   EXPECT_THAT(judge({"e_0.csv", "e_1.csv"}, words).err, HasSubstr("not of a vector"));
 }
 
-TEST_F(Judge, InnovationsAreJudgedToo) {
-  const std::string header = "time_s,a_m,cov_0_0,nis,nis_dof\n";
-  write("e_0.csv", header + "1,1,1,6,2\n2,1,1,6,2\n");
-  write("e_1.csv", header + "1,1,1,2,2\n2,1,1,2,2\n");
-  write("truth.csv", "time_s,a_m\n1,0\n2,0\n");
-  const std::vector<std::string> more = {"--truth", "truth.csv", "--error", "world",
-                                         "-o",      "mine.h5",   "--force"};
-  ASSERT_EQ(judge({"e_0.csv", "e_1.csv"}, more).code, 0);
-  const auto numbers = numbers_of(analyzed("mine.h5").cells[0]);
-  const auto nis = std::ranges::find(numbers, "nis_per_component", &analysis::NamedNumber::name);
-  EXPECT_NEAR(nis->value, 2.0, 1e-12);
-  write("e_1.csv", "time_s,a_m,cov_0_0\n1,1,1\n2,1,1\n");
-  EXPECT_THAT(judge({"e_0.csv", "e_1.csv"}, more).err, HasSubstr("e_1.csv: no nis"));
-}
-
 TEST_F(Judge, PosesInSpaceAreJudgedAndCompared) {
   std::string header = "time_s,x_m,y_m,z_m,qx,qy,qz,qw";
   for (int i = 0; i < 6; ++i) {
@@ -236,8 +215,7 @@ TEST_F(Judge, WrongInputIsNamed) {
       HasSubstr("did you mean world"));
   const Called none = judge({"e_0.csv"}, {"--truth", "truth.csv", "-o", "mine.h5"});
   EXPECT_EQ(none.code, 2);
-  EXPECT_THAT(none.err, AllOf(HasSubstr("--error is missing"), HasSubstr("R_mean'"),
-                              HasSubstr("right-invariant")));
+  EXPECT_THAT(none.err, HasSubstr("--error is missing"));
   EXPECT_THAT(judge({"e_0.csv"}, {"--error", "world", "-o", "mine.h5"}).err,
               HasSubstr("--truth is missing"));
   EXPECT_THAT(judge({"e_0.csv"}, {"--error", "world", "-o", "m.h5", "--truth", "nowhere.csv"}).err,
@@ -263,6 +241,89 @@ TEST_F(Judge, RunsThatAreNotAlikeAreNamed) {
                    "time_s,x_m,v_mps,cov_0_0,cov_0_1,cov_1_1\n1,0,0,1,0,1\n2,0,0,1,0,1\n"),
               HasSubstr("e_1.csv: another state than in e_0.csv"));
   EXPECT_FALSE(exists("mine.h5"));
+}
+
+// What 'montecarta judge' reads besides one CSV file a run, and what the file keeps of it.
+class JudgeLayouts : public Judge {
+ protected:
+  Called judge_by(const std::string& error, const std::vector<std::string>& files,
+                  const std::vector<std::string>& more = {"--force"}) const {
+    std::vector<std::string> options = {"--truth", "truth.csv", "--error", error, "-o", "mine.h5"};
+    options.insert(options.end(), more.begin(), more.end());
+    return judge(files, options);
+  }
+  /// Two estimates and their truth.
+  void write_estimates() const {
+    const std::string header = "time_s,x_m,y_m,cov_0_0,cov_0_1,cov_1_1\n";
+    write("e_0.csv", header + "1,0.3,0,0.01,0,0.09\n");
+    write("e_1.csv", header + "1,0,0.6,0.01,0,0.09\n");
+    write("truth.csv", "time_s,x_m,y_m\n1,0,0\n");
+  }
+};
+
+TEST_F(JudgeLayouts, ATrajectoryIsSentToItsConverter) {
+  write("e_0.txt", "# timestamp tx ty tz qx qy qz qw\n1 0.3 0 0 0 0 0 1\n");
+  write("truth.csv", "time_s,x_m,y_m\n1,0,0\n");
+  EXPECT_THAT(judge_by("world", {"e_0.txt"}).err, HasSubstr("e_0.txt:2"));
+}
+
+// The same estimates are another study with other innovations beside.
+TEST_F(JudgeLayouts, WhatLiesBesideIsJudgedAndPartOfTheStudy) {
+  write_estimates();
+  std::filesystem::create_directory(folder_ / "run_0");
+  std::filesystem::create_directory(folder_ / "run_1");
+  for (const char* run : {"0", "1"}) {
+    const std::string to = "run_" + std::string(run);
+    write(to + "/estimate.csv", text_of("e_" + std::string(run) + ".csv"));
+    write(to + "/innovation.csv", "time_s,nis,nis_dof\n1,6,2\n");
+  }
+  const std::vector<std::string> files = {"run_0/estimate.csv", "run_1/estimate.csv"};
+  ASSERT_EQ(judge_by("world", files).code, 0);
+  const ResultFile file(folder_ / "mine.h5");
+  const auto numbers = numbers_of(analysis::analyze(file).cells[0]);
+  const auto nis = std::ranges::find(numbers, "nis_per_component", &analysis::NamedNumber::name);
+  EXPECT_NEAR(nis->value, 3.0, 1e-12);
+  write("run_1/innovation.csv", "time_s,nis,nis_dof\n1,5,2\n");
+  ASSERT_EQ(judge_by("world", files).code, 0);
+  EXPECT_NE(ResultFile(folder_ / "mine.h5").study_sha256(), file.study_sha256());
+  std::filesystem::remove(folder_ / "run_1/innovation.csv");
+  EXPECT_THAT(judge_by("world", files).err, HasSubstr("estimate.csv: no nis"));
+}
+
+TEST_F(JudgeLayouts, TheHintIsSaidByAnalyzeAndReportFromTheFileAlone) {
+  std::string P = ",0.01,0,0,0,1,0,0,0,0.01\n", header = "time_s,x_m,y_m,heading_rad";
+  for (int k = 0; k < 9; ++k)
+    header += ",cov_" + std::to_string(k / 3) + "_" + std::to_string(k % 3);
+  // Headed along y, the small deviation is across in the frame of the body.
+  std::vector<std::string> files;
+  for (int run = 0; run < 20; ++run) {
+    const double e = run % 2 == 0 ? 1.0 : -1.0;
+    files.push_back("e_" + std::to_string(run) + ".csv");
+    write(files.back(), header + "\n1," + std::to_string(-e) + "," + std::to_string(0.1 * e) +
+                            ",1.5707963267948966" + P);
+  }
+  write("truth.csv", "time_s,x_m,y_m,heading_rad\n1,0,0,1.4707963267948966\n");
+  ASSERT_EQ(judge_by("world", files).code, 0);
+  const auto is_hint = AllOf(HasSubstr("Hint, no verdict: "), HasSubstr("body (ANEES 3"));
+  EXPECT_THAT(call({"analyze", "mine.h5"}).out, is_hint);
+  ASSERT_EQ(call({"report", "mine.h5", "-o", "page"}).code, 0);
+  EXPECT_THAT(text_of("page/index.html"), HasSubstr("Hint, no verdict: "));
+  EXPECT_EQ(call({"gate", "mine.h5", "--cell", "e"}).code, 4) << "a hint is no verdict";
+}
+
+TEST_F(JudgeLayouts, TheMarginIsStored) {
+  write_estimates();
+  ASSERT_EQ(judge_by("world", {"e_0.csv", "e_1.csv"}, {"--within", "1.7"}).code, 0);
+  EXPECT_EQ(analysis::analyze(ResultFile(folder_ / "mine.h5")).within, 1.7);
+  ASSERT_EQ(judge_by("world", {"e_0.csv", "e_1.csv"}).code, 0);
+  EXPECT_EQ(analysis::analyze(ResultFile(folder_ / "mine.h5")).within, analysis::kUsualMargin);
+}
+
+TEST_F(JudgeLayouts, TwoComponentsOfOneNameAreToldApart) {
+  write("e_0.csv", "time_s,v_m,v_rad,cov_0_0,cov_0_1,cov_1_1\n1,1,1,1,0,1\n");
+  write("truth.csv", "time_s,v_m,v_rad\n1,1,1\n");
+  EXPECT_THAT(judge_by("world", {"e_0.csv"}).err,
+              HasSubstr("e_0.csv:1: 'v_m' and 'v_rad' are both"));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "experiments/commands/arguments.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -61,6 +62,19 @@ class Program : public testing::Test {
     return called;
   }
 
+  /// The same with more words behind.
+  Called call_with(std::vector<std::string> words, const std::vector<std::string>& more) const {
+    words.insert(words.end(), more.begin(), more.end());
+    return call(words);
+  }
+  /// The call must end as wrong input, saying `words` and nothing else.
+  void expect_refused(const std::vector<std::string>& arguments, const std::string& words) const {
+    const Called called = call(arguments);
+    EXPECT_EQ(called.code, 2) << called.err;
+    EXPECT_THAT(called.err, testing::HasSubstr(words));
+    EXPECT_EQ(called.out, "");
+  }
+
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name) << text;
   }
@@ -85,5 +99,14 @@ cell = fastslam2 particles=10
 )";
 inline const std::string kBlinkWorld =
     "kind,x,y\nwaypoint,10,0\nwaypoint,20,1\nlandmark,15,5\nlandmark,25,-4\n";
+
+/// A folder that holds this study and its world.
+class BlinkProgram : public Program {
+ protected:
+  explicit BlinkProgram(const std::string& study = kBlink) {
+    write("blink.ini", study);
+    write("blink.csv", kBlinkWorld);
+  }
+};
 
 }  // namespace montecarta::experiments

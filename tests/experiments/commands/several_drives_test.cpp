@@ -6,6 +6,7 @@
 #include "tests/experiments/commands/program.hpp"
 
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 namespace montecarta::experiments {
 namespace {
@@ -31,12 +32,10 @@ cell = ekf_slam
 cell = fastslam2 particles=10
 )";
 
-class SeveralDrives : public Program {
+class SeveralDrives : public BlinkProgram {
  protected:
   /// Three simulated drives, cut to lengths of their own, with fixes that tell their errors.
   SeveralDrives() {
-    write("blink.csv", kBlinkWorld);
-    write("blink.ini", kBlink);
     write("drives.ini", kDrives);
     call({"export", "blink.ini", "-o", "exported"});
     make("long", "run_0000", 1.0);
@@ -61,9 +60,7 @@ class SeveralDrives : public Program {
   }
 
   Called run(const std::string& output, const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words{"run", "drives.ini", "-o", output, "--quiet"};
-    words.insert(words.end(), more.begin(), more.end());
-    return call(words);
+    return call_with({"run", "drives.ini", "-o", output, "--quiet"}, more);
   }
 };
 
@@ -137,18 +134,61 @@ TEST_F(SeveralDrives, AnalysisJudgesThemAsIndependent) {
 }
 
 TEST_F(SeveralDrives, SayWhatDoesNotFitTogether) {
-  EXPECT_THAT(run("x.h5", {"--set", "study.runs=2"}).err,
-              HasSubstr("with 3 drives in scenario.path (each drive is one run): set runs = 3"));
-  EXPECT_THAT(run("x.h5", {"--set", "record.rate=control"}).err, HasSubstr("set rate = scan"));
-  EXPECT_THAT(run("x.h5", {"--set", "scenario.path=long, short, long"}).err,
-              HasSubstr("long holds the drive of long again"));
-  EXPECT_THAT(run("x.h5", {"--set", "scenario.path=long,,short"}).err,
-              HasSubstr("folders are separated by commas"));
+  const auto refused = [&](const std::string& setting, const std::string& words) {
+    expect_refused({"run", "drives.ini", "-o", "x.h5", "--quiet", "--set", setting}, words);
+  };
+  refused("study.runs=2", "set runs = 3");
+  refused("record.rate=control", "set rate = scan");
+  refused("scenario.path=long, short, long", "long holds the drive of long again");
+  refused("scenario.path=long,,short", "folders are separated by commas");
   std::filesystem::rename(folder_ / "short/reference.csv", folder_ / "short/reference_gps.csv");
-  EXPECT_THAT(run("x.h5").err, HasSubstr("drive 2 has the references"));
+  refused("study.runs=3", "drive 2 has the references");
   std::filesystem::rename(folder_ / "short/reference_gps.csv", folder_ / "short/reference.csv");
-  std::ofstream(folder_ / "short/landmarks.csv") << "x_m,y_m\n1,2\n";
-  EXPECT_THAT(run("x.h5").err, HasSubstr("drive 2 has other surveyed landmarks"));
+  write("short/landmarks.csv", "x_m,y_m\n1,2\n");
+  refused("study.runs=3", "drive 2 has other surveyed landmarks");
+}
+
+const std::string kYard = R"([study]
+name = yard
+runs = 1
+[scenario]
+kind = log
+path = yard
+[belief]
+vehicle = differential_drive
+sigma_speed = 0.1
+sigma_yaw_rate_deg = 1
+sigma_range = 0.1
+sigma_bearing_deg = 1
+[cells]
+cell = ekf_slam
+)";
+
+class RecordedLog : public Program {
+ protected:
+  RecordedLog() {
+    write("yard.ini", kYard);
+    std::filesystem::create_directory(folder_ / "yard");
+    write("yard/start.csv", "time_s,x_m,y_m,heading_rad\n0,0,0,0\n");
+    write("yard/odometry.csv", "time_s,speed_mps,yaw_rate_radps\n0,1,0\n1,1,0.1\n2,1,0\n");
+    write("yard/reference.csv", "time_s,x_m,y_m\n0.5,0.5,0\n1.5,1.5,0\n");
+  }
+  /// What the study in full says of the association.
+  std::string association(const std::vector<std::string>& more = {}) const {
+    const Called called = call_with({"check", "yard.ini", "--text"}, more);
+    EXPECT_EQ(called.code, 0) << called.err;
+    const std::size_t section = called.out.find("[association]\nkind = ");
+    return called.out.substr(section + 21, called.out.find('\n', section + 21) - section - 21);
+  }
+};
+
+TEST_F(RecordedLog, UsesItsIdentitiesUnlessTheStudySaysOtherwise) {
+  write("yard/detections.csv", "time_s,range_m,bearing_rad,identity\n0.5,5,0.1,0\n1.5,4,0.2,0\n");
+  EXPECT_EQ(association(), "known");
+  EXPECT_THAT(call({"check", "yard.ini"}).out, HasSubstr("association: known"));
+  EXPECT_EQ(association({"--set", "association.kind=nearest"}), "nearest");
+  write("yard/detections.csv", "time_s,range_m,bearing_rad\n0.5,5,0.1\n1.5,4,0.2\n");
+  EXPECT_EQ(association(), "nearest");
 }
 
 }  // namespace

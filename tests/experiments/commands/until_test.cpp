@@ -31,96 +31,69 @@ double ratio_width(const std::string& csv) {
   return std::log(number("ratio_upper") / number("ratio_lower"));
 }
 
-class UntilPrecise : public Program {
+/// A study that stops as soon as enough is known of a cell.
+class Until : public BlinkProgram {
  protected:
-  UntilPrecise() {
-    write("blink.ini", kBlink);
-    write("blink.csv", kBlinkWorld);
+  using BlinkProgram::BlinkProgram;
+  Called run(const std::string& output, const std::vector<std::string>& more = {}) const {
+    return call_with({"run", "blink.ini", "-o", output, "--quiet"}, more);
   }
-  /// The study with 200 runs, which stops where it is precise to `half_width`.
-  std::vector<std::string> run(const std::string& output, const std::string& half_width,
-                               const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words = {"run",
-                                      "blink.ini",
-                                      "-o",
-                                      output,
-                                      "--quiet",
-                                      "--set",
-                                      "study.runs=200",
-                                      "--set",
-                                      "study.until=position_rmse < " + half_width};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
+  void expect_same_bits(const std::string& a, const std::string& b) const {
+    EXPECT_EQ(difference(ResultFile(folder_ / a), ResultFile(folder_ / b)), "") << b;
   }
-  std::string difference_of(const std::string& a, const std::string& b) const {
-    return difference(ResultFile(folder_ / a), ResultFile(folder_ / b));
+  /// On any number of threads, and killed at some moments.
+  void expect_same_bits_however_run(const std::vector<std::string>& seconds) const {
+    ASSERT_EQ(run("one.h5", {"--threads", "1"}).code, 0);
+    ASSERT_EQ(run("two.h5", {"--threads", "2"}).code, 0);
+    expect_same_bits("one.h5", "two.h5");
+    for (const std::string& after : seconds) {
+      const std::string killed = "killed" + after + ".h5";
+      call({"run", "blink.ini", "-o", killed, "--quiet"}, "timeout -s KILL " + after + " ");
+      ASSERT_EQ(run(killed, {"--resume"}).code, 0);
+      expect_same_bits("one.h5", killed);
+    }
+  }
+};
+
+/// Precise to a half-width between those of 32 and of 200 runs, so that it is not enough at once.
+class UntilPrecise : public Until {
+ protected:
+  UntilPrecise() : Until("[study]\nuntil = position_rmse < 0.01\n" + kBlink) {
+    std::string study = text_of("blink.ini");
+    write("blink.ini", study.replace(study.find("runs = 3"), 8, "runs = 200"));
   }
 };
 
 TEST_F(UntilPrecise, IsShownWhereverRunsAreCounted) {
-  const Called ran = call(run("out.h5", "100"));
+  const Called ran = run("out.h5", {"--set", "study.until=position_rmse < 100"});
   ASSERT_EQ(ran.code, 0) << ran.err;
   EXPECT_THAT(call({"status", "out.h5"}).out, ContainsRegex("ekf_slam +32 +0 +0 +200 +168"));
   EXPECT_THAT(call({"info", "out.h5"}).out, ContainsRegex("32 +0 +0 +168"));
-  EXPECT_THAT(call({"analyze", "out.h5"}).out,
-              HasSubstr("32 complete, stopped at 32 of 200: precise enough"));
+  EXPECT_THAT(call({"analyze", "out.h5"}).out, HasSubstr("32 complete, stopped at 32 of 200"));
   EXPECT_EQ(call({"verify", "out.h5", "--sample", "3"}).code, 0);
   EXPECT_THAT(call({"verify", "out.h5", "--sample", "1000"}).out, HasSubstr("out of 64 stored"));
 }
 
-TEST_F(UntilPrecise, MakesAllRunsWhereItNeverIs) {
-  ASSERT_EQ(call(run("out.h5", "1e-9")).code, 0);
-  EXPECT_THAT(call({"status", "out.h5"}).out, ContainsRegex("ekf_slam +200 +0 +0 +200\n"));
-}
-
-// A half-width between those of 32 and of 200 runs, so that the answer is not the same at once.
 TEST_F(UntilPrecise, GivesTheSameBitsOnAnyThreadsKilledAndResumed) {
-  ASSERT_EQ(call(run("one.h5", "0.01", {"--threads", "1"})).code, 0);
-  ASSERT_EQ(call(run("two.h5", "0.01", {"--threads", "2"})).code, 0);
-  EXPECT_EQ(difference_of("one.h5", "two.h5"), "");
+  expect_same_bits_however_run({"0.05", "0.2"});
   EXPECT_THAT(call({"status", "one.h5"}).out, ContainsRegex(" (64|128) +0 +0 +200 +(136|72)\n"));
-  for (const char* seconds : {"0.05", "0.1", "0.2"}) {
-    call(run("killed.h5", "0.01"), "timeout -s KILL " + std::string(seconds) + " ");
-    ASSERT_EQ(call(run("killed.h5", "0.01", {"--resume"})).code, 0);
-    EXPECT_EQ(difference_of("one.h5", "killed.h5"), "") << "killed after " << seconds << " s";
-    std::filesystem::remove(folder_ / "killed.h5");
-  }
 }
 
 TEST_F(UntilPrecise, IsNothingForPartOfTheRuns) {
-  for (const char* part : {"--shard", "--runs"}) {
-    const Called called = call(run("out.h5", "1", {part, part[2] == 's' ? "0/2" : "0:100"}));
-    EXPECT_EQ(called.code, 2);
-    EXPECT_THAT(called.err, HasSubstr("--set study.until="));
-    EXPECT_FALSE(exists("out.h5.part"));
-  }
-}
-
-TEST_F(UntilPrecise, IsExplainedByCheck) {
-  const Called called = call({"check", "blink.ini", "--set", "study.until=position_rmse < 0.02"});
-  EXPECT_EQ(called.code, 0) << called.err;
-  EXPECT_THAT(called.out, HasSubstr("a cell stops after 32, 64, 128, ... runs"));
+  expect_refused({"run", "blink.ini", "-o", "out.h5", "--shard", "0/2"}, "--set study.until=");
+  expect_refused({"run", "blink.ini", "-o", "out.h5", "--runs", "0:100"}, "--set study.until=");
+  EXPECT_FALSE(exists("out.h5.part"));
 }
 
 /// The same study in the world that its filters assume: dead reckoning as it is, and one that
 /// believes half of the noise.
-class UntilVerdict : public Program {
+class UntilVerdict : public Until {
  protected:
-  UntilVerdict() {
-    write("blink.csv", kBlinkWorld);
-    write("blink.ini",
-          "[study]\nname = blink\nruns = 500\nuntil = verdict\nwithin = 1.3\n[scenario]\n"
-          "world = blink.csv\nnoise = matched\n[cells]\ncell = dead_reckoning label=right\n"
-          "cell = dead_reckoning label=too_sure motion_noise=0.5\n");
-  }
-  Called run(const std::string& output, const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words = {"run", "blink.ini", "-o", output, "--quiet"};
-    words.insert(words.end(), more.begin(), more.end());
-    return call(words);
-  }
-  std::string difference_of(const std::string& a, const std::string& b) const {
-    return difference(ResultFile(folder_ / a), ResultFile(folder_ / b));
-  }
+  UntilVerdict()
+      : Until(
+            "[study]\nname = blink\nruns = 500\nuntil = verdict\nwithin = 1.3\n[scenario]\n"
+            "world = blink.csv\nnoise = matched\n[cells]\ncell = dead_reckoning label=right\n"
+            "cell = dead_reckoning label=too_sure motion_noise=0.5\n") {}
 };
 
 TEST_F(UntilVerdict, StopsACellWhenItIsKnownAndSaysAtWhichLook) {
@@ -148,16 +121,7 @@ TEST_F(UntilVerdict, WidensTheIntervalOfTheFile) {
 }
 
 TEST_F(UntilVerdict, GivesTheSameBitsOnAnyThreadsKilledAndResumed) {
-  ASSERT_EQ(run("one.h5", {"--threads", "1"}).code, 0);
-  ASSERT_EQ(run("two.h5", {"--threads", "2"}).code, 0);
-  EXPECT_EQ(difference_of("one.h5", "two.h5"), "");
-  for (const char* seconds : {"0.1", "0.3"}) {
-    call({"run", "blink.ini", "-o", "killed.h5", "--quiet"},
-         "timeout -s KILL " + std::string(seconds) + " ");
-    ASSERT_EQ(run("killed.h5", {"--resume"}).code, 0);
-    EXPECT_EQ(difference_of("one.h5", "killed.h5"), "") << "killed after " << seconds << " s";
-    std::filesystem::remove(folder_ / "killed.h5");
-  }
+  expect_same_bits_however_run({"0.1", "0.3"});
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include "engine/records/h5.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/records/result_layout.hpp"
-#include "engine/records/result_slabs.hpp"
+#include "experiments/text/words.hpp"
 #include "tests/experiments/commands/program.hpp"
 
 #include <gmock/gmock.h>
@@ -15,16 +15,11 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-class Verify : public Program {
+class Verify : public BlinkProgram {
  protected:
-  Verify() {
-    write("blink.ini", kBlink + "cell = marginal particles=5\n");
-    write("blink.csv", kBlinkWorld);
-  }
+  Verify() : BlinkProgram(kBlink + "cell = marginal particles=5\n") {}
   void run(const std::vector<std::string>& more) const {
-    std::vector<std::string> words{"run", "blink.ini", "-o", "out.h5", "--quiet"};
-    words.insert(words.end(), more.begin(), more.end());
-    ASSERT_EQ(call(words).code, 0);
+    ASSERT_EQ(call_with({"run", "blink.ini", "-o", "out.h5", "--quiet"}, more).code, 0);
     std::filesystem::remove(folder_ / "blink.ini");
     std::filesystem::remove(folder_ / "blink.csv");  // the file alone must do
   }
@@ -89,15 +84,15 @@ TEST_F(Verify, OneAlteredBitIsFoundNamedAndExitCode4) {
 
 TEST_F(Verify, WrongInputIsNamed) {
   run({});
+  const auto refused = [&](const std::string& cell, const std::string& number,
+                           const std::string& output, const std::string& words) {
+    expect_refused({"replay", "out.h5", "--cell", cell, "--run", number, "-o", output}, words);
+  };
   EXPECT_EQ(call({"verify", "out.h5", "--sample", "0"}).code, 2);
-  EXPECT_THAT(
-      call({"replay", "out.h5", "--cell", "fastslam2_m1", "--run", "1", "-o", "one.h5"}).err,
-      HasSubstr("did you mean fastslam2_m10?"));
-  EXPECT_THAT(call({"replay", "out.h5", "--cell", "ekf_slam", "--run", "3", "-o", "one.h5"}).err,
-              HasSubstr("from 0 to 2"));
-  EXPECT_THAT(call({"replay", "out.h5", "--cell", "ekf_slam", "--run", "1"}).err,
-              HasSubstr("--output is missing"));
-  EXPECT_EQ(call({"replay", "out.h5", "--cell", "ekf_slam", "--run", "1", "-o", "out.h5"}).code, 2);
+  refused("fastslam2_m1", "1", "one.h5", "did you mean fastslam2_m10?");
+  refused("ekf_slam", "3", "one.h5", "from 0 to 2");
+  refused("ekf_slam", "1", "out.h5", "out.h5");
+  expect_refused({"replay", "out.h5", "--cell", "ekf_slam", "--run", "1"}, "--output is missing");
   EXPECT_FALSE(exists("one.h5"));
 }
 
@@ -141,6 +136,80 @@ TEST_F(Verify, ARecordedDriveIsFoundByDataOrMissedByName) {
   const Called replayed = call({"replay", "log.h5", "--cell", "fastslam2_m10", "--run", "0", "-o",
                                 "one.h5", "--data", "here/drive"});
   EXPECT_EQ(replayed.code, 0) << replayed.err;
+}
+
+// Who starts a program that a study names, and what verify finds out about it.
+
+class ExternalCommands : public Program {
+ protected:
+  ExternalCommands() { write("blink.csv", kBlinkWorld); }
+  /// A study with a cell that runs the scripted program.
+  void write_study(const std::string& arguments, const std::string& options = "") const {
+    write("study.ini", kBlink + "cell = external command=" +
+                           in_quotes(MONTECARTA_SCRIPTED_PROGRAM " " + arguments) + " label=mine " +
+                           options + "\n");
+  }
+  Called run(const std::vector<std::string>& more) const {
+    return call_with({"run", "study.ini", "-o", "out.h5", "--quiet"}, more);
+  }
+};
+
+TEST_F(ExternalCommands, NothingIsStartedUnasked) {
+  write_study("orphan 0 started");
+  const Called refused = run({});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("study.ini:"), HasSubstr("scripted_program orphan"),
+                                 HasSubstr("add --allow-external")));
+  EXPECT_FALSE(exists("out.h5.part"));
+  const Called checked = call({"check", "study.ini"});
+  EXPECT_EQ(checked.code, 0);
+  EXPECT_THAT(checked.out, HasSubstr("external program, mine     ? "));  // nobody knows how long
+  EXPECT_FALSE(exists("started"));
+  ASSERT_EQ(run({"--allow-external"}).code, 0);
+  ASSERT_TRUE(exists("started"));
+  std::filesystem::remove(folder_ / "started");
+  EXPECT_THAT(call({"verify", "out.h5"}).err, HasSubstr("add --allow-external"));
+  EXPECT_EQ(call({"replay", "out.h5", "--cell", "mine", "--run", "1", "-o", "one.h5"}).code, 2);
+  EXPECT_EQ(call({"replay", "out.h5", "--cell", "ekf_slam", "--run", "1", "-o", "one.h5"}).code, 0);
+  EXPECT_EQ(call({"analyze", "out.h5"}).code, 0);
+  EXPECT_EQ(call({"report", "out.h5", "-o", "page"}).code, 0);
+  EXPECT_FALSE(exists("started"));
+  EXPECT_EQ(call({"check", "study.ini", "--allow-external"}).code, 0);
+  EXPECT_TRUE(exists("started"));
+}
+
+TEST_F(ExternalCommands, VerifyTellsWhetherAProgramIsDeterministic) {
+  write_study("");
+  ASSERT_EQ(run({"--allow-external"}).code, 0);
+  EXPECT_EQ(call({"verify", "out.h5", "--sample", "9", "--allow-external"}).code, 0);
+  EXPECT_EQ(
+      call({"replay", "out.h5", "--cell", "mine", "--run", "2", "-o", "one.h5", "--allow-external"})
+          .code,
+      0);
+}
+
+TEST_F(ExternalCommands, VerifyFindsWhatAProgramKeepsFromRunToRun) {
+  write_study("count");
+  ASSERT_EQ(run({"--allow-external", "--threads", "1"}).code, 0);
+  const Called verified = call({"verify", "out.h5", "--sample", "9", "--allow-external"});
+  EXPECT_EQ(verified.code, 4);
+  EXPECT_THAT(verified.out, HasSubstr("mine, run 2: pose_mean differs"));
+}
+
+TEST_F(ExternalCommands, AStopEndsTheWaitAndIsNoFailure) {
+  write("study.ini", kBlink);
+  const std::string cell = "external command=" + in_quotes(MONTECARTA_SCRIPTED_PROGRAM " hang 0");
+  const Called stopped = run({"--allow-external", "--time-budget", "0.2", "--set",
+                              "cells.cell=" + cell + " answer_limit=86400"});  // a day
+  EXPECT_EQ(stopped.code, 85) << stopped.err;
+  EXPECT_THAT(stopped.err, HasSubstr("3 runs are missing"));
+  EXPECT_THAT(stopped.err, HasSubstr("--allow-external"));
+}
+
+TEST_F(ExternalCommands, FailedRunsAreAResult) {
+  write_study("exit 2");
+  EXPECT_EQ(run({"--allow-external"}).code, 3);
+  EXPECT_THAT(call({"analyze", "out.h5"}).out, HasSubstr("exit code 7: last words"));
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 namespace montecarta::experiments {
 namespace {
 
-const std::string kOwnFilters = MONTECARTA_SOURCE_DIR "/experiments/external";
 constexpr double kLeastVariance = 1.001e-18;  // of a fix [m2, rad2]
 const std::string kBeliefOfAll = R"(wheelbase = 4
 sigma_speed = 0.3
@@ -107,71 +106,33 @@ class SlowThreeWays : public Program {
         call({"run", "study.ini", "-o", output, "--quiet", "--force", "--allow-external"});
     ASSERT_EQ(called.code, 0) << called.err;
   }
-
-  /// `command` of a program; empty: the cell ekf_slam of this build.
-  void expect_one_anees(const std::string& command) const {
-    const std::string cell =
-        command.empty() ? "ekf_slam"
-                        : "external command=\"" + command + "\" label=mine answer_limit=300";
-    const std::string simulated = "world = blink.csv\nnoise = matched\n";
-    run(study(simulated, cell), "cell.h5");
-    ASSERT_EQ(call({"export", "study.ini", "-o", "drives"}).code, 0);
-    const double as_cell = anees_in("cell.h5");
-    EXPECT_GT(as_cell, 0.1);
-
-    if (command.empty()) {
-      write_own_estimates();
-    } else {
-      const Called outside = call({"help"}, "/usr/bin/python3 outside.py '" + command +
-                                                "' estimate drives/runs/run_000[0-2] && ");
-      ASSERT_EQ(outside.code, 0) << outside.err;
-    }
-    const Called judged =
-        call({"judge", "drives/runs/run_0000/estimate.csv", "drives/runs/run_0001/estimate.csv",
-              "drives/runs/run_0002/estimate.csv", "--truth", "drives", "--error", "world", "-o",
-              "judged.h5", "--force"});
-    ASSERT_EQ(judged.code, 0) << judged.err;
-    EXPECT_NEAR(anees_in("judged.h5") / as_cell, 1.0, 1e-12);
-
-    make_logs();
-    run(study("kind = log\npath = logs/run_0000, logs/run_0001, logs/run_0002\n", cell), "logs.h5");
-    // The variance of the fixes, though the least that a reference may have, is part of the NEES.
-    EXPECT_NEAR(anees_of_drives("logs.h5") / as_cell, 1.0, 1e-11);
-  }
-
-  /// Of the cell of this build, which no program outside has.
-  void write_own_estimates() const {
-    const ResultFile file(folder_ / "cell.h5");
-    const StoredCell& cell = file.cells().front();
-    std::vector<double> mean(3 * file.times().size()), P(9 * file.times().size());
-    for (std::size_t run = 0; run < file.runs().size(); ++run) {
-      file.read(cell, "pose_mean", run, std::span(mean));
-      file.read(cell, "pose_covariance", run, std::span(P));
-      std::string text =
-          "time_s,x_m,y_m,heading_rad,cov_0_0,cov_0_1,cov_0_2,cov_1_0,cov_1_1,cov_1_2,cov_2_0,"
-          "cov_2_1,cov_2_2\n";
-      for (std::size_t s = 0; s < file.times().size(); ++s) {
-        text += to_text(file.times()[s]);
-        for (std::size_t k = 0; k < 3; ++k) text += "," + to_text(mean[3 * s + k]);
-        for (std::size_t k = 0; k < 9; ++k) text += "," + to_text(P[9 * s + k]);
-        text += "\n";
-      }
-      write("drives/runs/run_000" + std::to_string(run) + "/estimate.csv", text);
-    }
-  }
 };
-
-TEST_F(SlowThreeWays, AnEstimatorInCpp) { expect_one_anees(""); }
 
 TEST_F(SlowThreeWays, AnEstimatorInPython) {
   if (!python_has("numpy")) GTEST_SKIP() << "numpy (python3-numpy) is not installed";
-  expect_one_anees("/usr/bin/python3 -B " + kOwnFilters + "/python/ekf_slam.py");
-}
+  const std::string command =
+      "/usr/bin/python3 -B " MONTECARTA_SOURCE_DIR "/experiments/external/python/ekf_slam.py";
+  const std::string cell = "external command=\"" + command + "\" label=mine answer_limit=300";
+  const std::string simulated = "world = blink.csv\nnoise = matched\n";
+  run(study(simulated, cell), "cell.h5");
+  ASSERT_EQ(call({"export", "study.ini", "-o", "drives"}).code, 0);
+  const double as_cell = anees_in("cell.h5");
+  EXPECT_GT(as_cell, 0.1);
 
-TEST_F(SlowThreeWays, AnEstimatorInOctave) {
-  if (!installed("octave-cli")) GTEST_SKIP() << "octave is not installed";
-  expect_one_anees("octave-cli --quiet --no-init-file --no-history --path " + kOwnFilters +
-                   "/octave --eval ekf_slam");
+  const Called outside = call({"help"}, "/usr/bin/python3 outside.py '" + command +
+                                            "' estimate drives/runs/run_000[0-2] && ");
+  ASSERT_EQ(outside.code, 0) << outside.err;
+  const Called judged =
+      call({"judge", "drives/runs/run_0000/estimate.csv", "drives/runs/run_0001/estimate.csv",
+            "drives/runs/run_0002/estimate.csv", "--truth", "drives", "--error", "world", "-o",
+            "judged.h5", "--force"});
+  ASSERT_EQ(judged.code, 0) << judged.err;
+  EXPECT_NEAR(anees_in("judged.h5") / as_cell, 1.0, 1e-12);
+
+  make_logs();
+  run(study("kind = log\npath = logs/run_0000, logs/run_0001, logs/run_0002\n", cell), "logs.h5");
+  // The variance of the fixes, though the least that a reference may have, is part of the NEES.
+  EXPECT_NEAR(anees_of_drives("logs.h5") / as_cell, 1.0, 1e-11);
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Damaged studies, worlds and estimates: read, or refused with the name of the file. (Damaged
-// recorded drives: recordings/readers_fuzz_test.cpp.)
-#include "experiments/judging/state_rows.hpp"
+// Damaged studies, worlds, estimates and recorded drives: read, or refused with the name of the
+// file.
+#include "experiments/judging/state_columns.hpp"
+#include "experiments/recordings/drive_log.hpp"
+#include "experiments/recordings/log_csv.hpp"
 #include "experiments/study/study.hpp"
 #include "experiments/worlds/world.hpp"
 #include "tests/doubles/complaint.hpp"
@@ -11,8 +13,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <functional>
-#include <iterator>
+#include <string>
+#include <vector>
 
 namespace montecarta::experiments {
 namespace {
@@ -22,62 +27,74 @@ namespace fs = std::filesystem;
 constexpr const char* kWorld =
     "# a yard\nkind,x,y\nwaypoint,10,0\nwaypoint,20,1\nlandmark,15,5\nlandmark,25,-4.5\n";
 
-std::string text_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// Damages a file `cases` times; returns how often it was refused.
-std::size_t refused(const fs::path& path, std::uint64_t cases, const std::function<void()>& read) {
-  const std::string good = text_of(path);
+/// Damages a file `cases` times; returns how often it was refused, with `name` in what was said.
+std::size_t refused(const fs::path& path, const std::string& name, std::uint64_t cases,
+                    const std::function<void()>& read) {
+  const std::string good = engine::text_in(path);
   std::size_t count = 0;
   for (std::uint64_t seed = 0; seed < damaged_files(cases); ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
+    SCOPED_TRACE(path.filename().string() + " seed " + std::to_string(seed));
     write_text(path, damaged_text(good, seed));
     const std::string said = complaint_of(read);
-    EXPECT_TRUE(said == "nothing" || said.find(path.filename()) != said.npos) << said;
+    EXPECT_TRUE(said == "nothing" || said.find(name) != said.npos) << said;
     count += said != "nothing" ? 1 : 0;
   }
+  write_text(path, good);
   return count;
 }
 
-TEST(InputsFuzz, WorldCsv) {
+using Reader = std::function<void(const fs::path&)>;
+
+/// Most of 2000 damaged files of this text are refused.
+void expect_refusals(const std::string& name, const std::string& text, const Reader& read) {
   const ScratchFolder folder;
-  const fs::path path = folder / "yard.csv";
-  write_text(path, kWorld);
-  EXPECT_GT(refused(path, 2000, [&] { read_world_file(path); }), 500U);
+  const fs::path path = folder / name;
+  write_text(folder / "yard.csv", kWorld);
+  write_text(path, text);
+  EXPECT_GT(refused(path, name, 2000, [&] { read(path); }), 500U);
+}
+
+TEST(InputsFuzz, WorldCsv) {
+  expect_refusals("yard.csv", kWorld, [](const fs::path& path) { read_world_file(path); });
 }
 
 TEST(InputsFuzz, Estimates) {
-  const ScratchFolder folder;
-  const fs::path path = folder / "estimate.csv";
-  write_text(path, "time_s,x_m,qual,cov_0_0,cov_1_0,cov_1_1\n0.5,1,2,3,0.5,4\n1.5,1,2,3,0.5,4\n");
-  EXPECT_GT(refused(path, 2000, [&] { read_estimates(path); }), 500U);
+  expect_refusals("estimate.csv",
+                  "time_s,x_m,qual,cov_0_0,cov_1_0,cov_1_1\n0.5,1,2,3,0.5,4\n1.5,1,2,3,0.5,4\n",
+                  [](const fs::path& path) { read_estimates(path); });
 }
 
 TEST(InputsFuzz, Innovations) {
-  const ScratchFolder folder;
-  const fs::path path = folder / "innovation.csv";
-  write_text(path, "time_s,r_m,b_rad,cov_0_0,cov_1_0,cov_1_1\n1,1,2,3,0.5,4\n2,1,2,3,0.5,4\n");
-  const auto read = [&] {
-    StateRows rows;
-    rows.time = {1.0, 2.0};
-    read_innovations(path, "estimate.csv", 1e-6, rows);
-  };
-  EXPECT_GT(refused(path, 2000, read), 500U);
+  expect_refusals("innovation.csv",
+                  "time_s,r_m,b_rad,cov_0_0,cov_1_0,cov_1_1\n1,1,2,3,0.5,4\n2,1,2,3,0.5,4\n",
+                  [](const fs::path& path) {
+                    StateRows rows;
+                    rows.time = {1.0, 2.0};
+                    read_innovations(path, "estimate.csv", 1e-6, rows);
+                  });
 }
 
 TEST(InputsFuzz, Study) {
+  expect_refusals("blink.ini",
+                  "[study]\nname = blink\ntitle = A blink\nruns = 3\nuntil = position_rmse < 0.02\n"
+                  "[scenario]\nworld = yard.csv\nnoise = matched\nscan_rate = 5 # Hz\n"
+                  "[association]\nkind = nearest\n[record]\ncolumns = pose, covariance\n"
+                  "[cells]\ncell = ekf_slam\ncell = fastslam2 particles=3,10 motion_noise=1,2\n",
+                  [](const fs::path& path) { resolved_text(read_study(path)); });
+}
+
+// The reader gives a log that passes its check, or says what is wrong.
+TEST(ReadersFuzz, CsvLogs) {
   const ScratchFolder folder;
-  const fs::path path = folder / "blink.ini";
-  write_text(folder / "yard.csv", kWorld);
-  write_text(
-      path,
-      "[study]\nname = blink\ntitle = A blink\nruns = 3\nuntil = position_rmse < 0.02\n"
-      "[scenario]\nworld = yard.csv\nnoise = matched\nscan_rate = 5 # Hz\n"
-      "[association]\nkind = nearest\n[record]\ncolumns = pose, covariance\n"
-      "[cells]\ncell = ekf_slam\ncell = fastslam2 particles=3,10 motion_noise=1,2\n");
-  EXPECT_GT(refused(path, 2000, [&] { resolved_text(read_study(path)); }), 500U);
+  write_log_csv(full_log(), folder / "log");
+  std::size_t count = 0;
+  std::vector<fs::path> files(fs::directory_iterator(folder / "log"), {});
+  std::ranges::sort(files);
+  for (const fs::path& path : files) {
+    count += refused(path, (folder / "log").string(), 400,
+                     [&] { check_log(read_log_csv(folder / "log"), "read"); });
+  }
+  EXPECT_GT(count, 600U);
 }
 
 }  // namespace

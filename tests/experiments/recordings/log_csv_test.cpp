@@ -1,21 +1,56 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/recordings/log_csv.hpp"
 
+#include "experiments/recordings/drive_log.hpp"
+#include "experiments/recordings/recorded_drive.hpp"
 #include "tests/doubles/complaint.hpp"
 #include "tests/doubles/scratch_folder.hpp"
-#include "tests/experiments/recordings/same_log.hpp"
 #include "tests/experiments/recordings/small_drives.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
 #include <filesystem>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
 
 namespace montecarta::experiments {
 namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+
+/// Every number of a log by its bits, with the counts that tell where each part ends.
+std::vector<std::uint64_t> bits_of(const DriveLog& log) {
+  std::vector<std::uint64_t> bits;
+  const auto add = [&bits](auto... numbers) {
+    (bits.push_back(std::bit_cast<std::uint64_t>(static_cast<double>(numbers))), ...);
+  };
+  add(log.start.x, log.start.y, log.start.heading, log.odometry.size(), log.scans.size());
+  for (const auto& [time, control] : log.odometry) add(time, control[0], control[1]);
+  for (const auto& [time, detections] : log.scans) {
+    add(time, detections.size());
+    for (const auto& [values, identity] : detections) add(values[0], values[1], identity);
+  }
+  for (const auto& [name, times, positions, headings, covariances] : log.references) {
+    add(times.size(), headings.size());
+    for (const char c : name) add(c);
+    for (const double time : times) add(time);
+    for (const auto& position : positions) add(position.x(), position.y());
+    for (const double heading : headings) add(heading);
+    for (const auto& covariance : covariances) {
+      for (const double element : covariance.reshaped()) add(element);
+    }
+  }
+  for (const auto& landmark : log.landmarks) add(landmark.x(), landmark.y());
+  return bits;
+}
+
+bool same_log(const DriveLog& a, const DriveLog& b) { return bits_of(a) == bits_of(b); }
 
 /// A folder with a small good log.
 class LogCsv : public testing::Test {
@@ -87,28 +122,25 @@ TEST_F(LogCsv, WritesOnlyToAnEmptyFolderAndOnlyWhatReadsBackTheSame) {
 }
 
 TEST_F(LogCsv, NamesFileAndLineOfAMistake) {
-  EXPECT_THAT(complaint("odometry.csv", "time_s,speed_mps,steer_rad\n0.1,1\n"),
-              AllOf(HasSubstr("odometry.csv:2"), HasSubstr("2 fields")));
-  EXPECT_THAT(complaint("odometry.csv", "time_s,speed_mps,steer_rad\n0.1,nan,0\n"),
-              AllOf(HasSubstr("odometry.csv:2"), HasSubstr("'nan' is no speed")));
-  EXPECT_THAT(complaint("odometry.csv", "time,speed,steer\n0.1,1,0\n"),
-              AllOf(HasSubstr("odometry.csv:1"), HasSubstr("begin with time_s,speed_mps")));
-  EXPECT_THAT(complaint("odometry.csv", ""), HasSubstr("odometry.csv: empty"));
-  EXPECT_THAT(complaint("odometry.csv", "time_s,speed_mps,steer_rad\n"), HasSubstr("no records"));
-  EXPECT_THAT(complaint("odometry.csv", "time_s,speed_mps,steer_rad\n1,1,0\n0.5,1,0\n"),
-              AllOf(HasSubstr("odometry.csv: record 2"), HasSubstr("times must increase")));
-}
-
-TEST_F(LogCsv, NamesMistakesOfScans) {
-  const std::string head = "time_s,range_m,bearing_rad,identity\n";
-  EXPECT_THAT(complaint("detections.csv", head + "0.1,5,0.2,-1\n"), HasSubstr("is no identity"));
-  EXPECT_THAT(complaint("detections.csv", head + "0.1,5,0.2,1.5\n"), HasSubstr("is no identity"));
-  EXPECT_THAT(complaint("detections.csv", head + "0.1,5,,1\n"), HasSubstr("'' is no bearing"));
-  EXPECT_THAT(complaint("detections.csv", head + "0.1,,,\n0.1,5,0,1\n"),
-              AllOf(HasSubstr("detections.csv:3"), HasSubstr("saw nothing has other rows")));
-  EXPECT_THAT(complaint("detections.csv", head + "0.2,5,0,1\n0.1,5,0,1\n"),
-              HasSubstr("times must increase"));
-  EXPECT_EQ(complaint("detections.csv", head + "0.2,5,0,\n0.3,5,0,1\n"), "nothing");
+  const std::string odometry = "time_s,speed_mps,steer_rad\n";
+  const std::string scans = "time_s,range_m,bearing_rad,identity\n";
+  const std::vector<std::array<std::string, 3>> cases = {
+      {"odometry.csv", odometry + "0.1,1\n", "odometry.csv:2: 2 fields"},
+      {"odometry.csv", odometry + "0.1,nan,0\n", "odometry.csv:2: 'nan' is no speed"},
+      {"odometry.csv", "time,speed,steer\n0.1,1,0\n", "odometry.csv:1"},
+      {"odometry.csv", "", "odometry.csv: empty"},
+      {"odometry.csv", odometry, "no records"},
+      {"odometry.csv", odometry + "1,1,0\n0.5,1,0\n", "odometry.csv: record 2"},
+      {"odometry.csv", odometry + "0.1,1,0\n0.2,1,0.1\n", "nothing"},
+      {"detections.csv", scans + "0.1,5,0.2,-1\n", "is no identity"},
+      {"detections.csv", scans + "0.1,5,0.2,1.5\n", "is no identity"},
+      {"detections.csv", scans + "0.1,5,,1\n", "'' is no bearing"},
+      {"detections.csv", scans + "0.1,,,\n0.1,5,0,1\n", "detections.csv:3"},
+      {"detections.csv", scans + "0.2,5,0,1\n0.1,5,0,1\n", "times must increase"},
+      {"detections.csv", scans + "0.2,5,0,\n0.3,5,0,1\n", "nothing"}};
+  for (const auto& [name, text, words] : cases) {
+    EXPECT_THAT(complaint(name, text), HasSubstr(words)) << text;
+  }
   EXPECT_EQ(read().scans[0].detections[0].identity, Detection::kClutter);
 }
 
@@ -135,8 +167,157 @@ TEST_F(LogCsv, NamesMistakesOfOtherFiles) {
   write("start.csv", "time_s,x_m,y_m,heading_rad\n0,1,2,3\n");
   std::filesystem::remove(folder_ / "reference_gps.csv");
   EXPECT_THAT(complaint_of([this] { read(); }), HasSubstr("no reference"));
-  EXPECT_THAT(complaint_of([this] { read_log_csv(folder_ / "absent"); }),
-              HasSubstr("cannot be opened"));
+  EXPECT_THAT(complaint_of([this] { read_log_csv(folder_ / "absent"); }), HasSubstr("cannot be"));
+}
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// A change to a good log, and what is said of the log then; "nothing" where it may be so.
+struct ChangedLog {
+  std::function<void(DriveLog&)> change;
+  std::string words;
+};
+
+void expect_complaints(const std::vector<ChangedLog>& cases) {
+  for (const auto& [change, words] : cases) {
+    DriveLog log = full_log();
+    change(log);
+    EXPECT_THAT(complaint_of([&] { check_log(log, "yard"); }), HasSubstr(words));
+  }
+}
+
+TEST(CheckLog, WantsEachPart) {
+  expect_complaints({
+      {[](auto&) {}, "nothing"},
+      {[](auto& log) { log.odometry.clear(); }, "yard (odometry): no records"},
+      {[](auto& log) { log.scans.clear(); }, "yard (scans): no records"},
+      {[](auto& log) { log.references.clear(); }, "no reference"},
+      {[](auto& log) { log.references[1].name = "reference"; }, "references called reference"},
+      {[](auto& log) { log.references[1].name = "../x"; }, "is no name"},
+      {[](auto& log) { log.references[0].heading.pop_back(); }, "or headings"},
+  });
+}
+
+TEST(CheckLog, WantsTimesToIncrease) {
+  expect_complaints({
+      {[](auto& log) { log.odometry[1].time = 0.1; }, "record 2"},
+      {[](auto& log) { log.scans[2].time = 0.15; }, "(scans): record 3"},
+      {[](auto& log) { log.references[0].time[1] = -1; }, "(reference reference): record 2"},
+      {[](auto& log) { log.scans[1].time = kNan; }, "record 2: time nan"},
+      {[](auto& log) { log.start_time = 0.15; }, "yard (scans): the first is at 0.1 s"},
+      {[](auto& log) {
+         log.scans.push_back({5.4, {}});
+       },
+       "the last scan at 5.4 s"},
+      {[](auto& log) {
+         log.scans.push_back({5.2, {}});
+       },
+       "nothing"},
+  });
+}
+
+TEST(CheckLog, WantsNumbersThatCanBe) {
+  expect_complaints({
+      {[](auto& log) { log.odometry[0].control[0] = kNan; }, "(odometry): record 1: speed nan"},
+      {[](auto& log) { log.odometry[1].control[1] = 5; }, "record 2: steering 5 (radians"},
+      {[](auto& log) { log.scans[1].detections[0][0] = kNan; }, "(scans): record 2: range nan"},
+      {[](auto& log) { log.scans[1].detections[0][0] = 0; }, "record 2: range 0"},
+      {[](auto& log) { log.scans[1].detections[0][1] = 45; }, "record 2: bearing 45 (radians"},
+      {[](auto& log) { log.references[1].position[0].x() = 5e6; }, "(reference gps): record 1"},
+      {[](auto& log) { log.landmarks[1].y() = kNan; }, "(landmarks): record 2: coordinate nan"},
+      {[](auto& log) { log.references[0].heading[1] = kNan; }, "record 2: heading nan"},
+      {[](auto& log) { log.start.heading = kNan; }, "yard (start)"},
+  });
+}
+
+TEST(CheckLog, WantsIdentitiesOnceInAScanAndForAllOrNone) {
+  const auto again = [](std::int32_t identity) {
+    return [=](DriveLog& log) { log.scans[1].detections.push_back({4.0, 0.0, identity}); };
+  };
+  const auto identify = [](std::int32_t identity) {
+    return [=](DriveLog& log) { log.scans[2].detections[0].identity = identity; };
+  };
+  expect_complaints({{again(1), "(scans): record 2, at 0.2 s: identity 1 twice"},
+                     {again(Detection::kClutter), "nothing"},
+                     {identify(Detection::kUnidentified), "all or none"},
+                     {identify(2), "identity 2 of 2 landmarks"},
+                     {identify(-3), "identity -3"},
+                     {identify(kMostIdentities), "identity 1000000"}});
+}
+
+const std::string kSigmas = "time_s,x_m,y_m,heading_rad,sigma_x_m,sigma_y_m,sigma_heading_rad\n";
+const std::string kCovariance = "time_s,x_m,y_m,var_x_m2,cov_x_y_m2,var_y_m2\n";
+const std::string kWhole =
+    "time_s,x_m,y_m,heading_rad,var_x_m2,cov_x_y_m2,var_y_m2,"
+    "cov_x_heading_m_rad,cov_y_heading_m_rad,var_heading_rad2\n";
+
+class ReferenceCsv : public testing::Test {
+ protected:
+  ReferencePath read(const std::string& text) const {
+    write_text(folder_ / "reference.csv", text);
+    return read_reference_csv(folder_ / "reference.csv", "reference");
+  }
+  std::string complaint(const std::string& text) const {
+    return complaint_of([&] { read(text); });
+  }
+  ScratchFolder folder_;
+};
+
+TEST_F(ReferenceCsv, WithoutErrorsHasNoCovariance) {
+  EXPECT_TRUE(read("time_s,x_m,y_m\n0,1,2\n").covariance.empty());
+  const ReferencePath pose = read("time_s,x_m,y_m,heading_rad\n0,1,2,0.5\n");
+  EXPECT_EQ(pose.heading.at(0), 0.5);
+  EXPECT_TRUE(pose.covariance.empty());
+}
+
+TEST_F(ReferenceCsv, SquaresStandardDeviations) {
+  const ReferencePath pose = read(kSigmas + "0,1,2,0.5,3,4,0.5\n1,1,2,0.5,1,1,1\n");
+  EXPECT_EQ(pose.dimension(), 3);
+  ASSERT_EQ(pose.covariance.size(), 2U);
+  EXPECT_EQ(pose.covariance[0], Eigen::Matrix3d(Eigen::Vector3d(9, 16, 0.25).asDiagonal()));
+  const ReferencePath place = read("time_s,x_m,y_m,sigma_x_m,sigma_y_m\n0,1,2,3,4\n");
+  EXPECT_EQ(place.dimension(), 2);
+  EXPECT_EQ(place.covariance.at(0), Eigen::Matrix3d(Eigen::Vector3d(9, 16, 0).asDiagonal()));
+}
+
+TEST_F(ReferenceCsv, ReadsACovarianceByItsLowerTriangle) {
+  const Eigen::Matrix3d pose{{4, 1, 0.2}, {1, 9, 0.3}, {0.2, 0.3, 0.25}};
+  EXPECT_EQ(read(kWhole + "0,1,2,0.5,4,1,9,0.2,0.3,0.25\n").covariance.at(0), pose);
+  const Eigen::Matrix3d place{{4, 1, 0}, {1, 9, 0}, {0, 0, 0}};
+  EXPECT_EQ(read(kCovariance + "0,1,2,4,1,9\n").covariance.at(0), place);
+}
+
+TEST_F(ReferenceCsv, ReadsBackWhatItWrote) {
+  for (const ReferencePath& reference : full_log().references) {
+    const ReferencePath again = read(csv_of(reference));
+    EXPECT_EQ(again.covariance, reference.covariance);
+    EXPECT_EQ(again.heading, reference.heading);
+  }
+  const std::string place = kCovariance + "0,1,2,4,1,9\n";
+  EXPECT_EQ(csv_of(read(place)), place);
+}
+
+TEST_F(ReferenceCsv, RefusesErrorsThatNoFixHas) {
+  EXPECT_THAT(complaint(kSigmas + "0,1,2,0.5,3,4,0.5\n1,1,2,0.5,3,-4,0.5\n"),
+              AllOf(HasSubstr("reference.csv:3"), HasSubstr("standard deviation -4")));
+  EXPECT_THAT(complaint(kSigmas + "0,1,2,0.5,3,0,0.5\n"), HasSubstr("at least 1e-9"));
+  EXPECT_THAT(complaint(kSigmas + "0,1,2,0.5,3,,0.5\n"), HasSubstr("is no standard deviation"));
+  EXPECT_THAT(complaint(kSigmas + "0,1,2,0.5,3,4,12\n"), HasSubstr("record 1"));
+  EXPECT_THAT(complaint(kCovariance + "0,1,2,4,6,9\n"), HasSubstr("reference.csv:2"));
+  EXPECT_THAT(complaint(kCovariance + "0,1,2,4,0,-9\n"), HasSubstr("not positive definite"));
+  EXPECT_THAT(complaint(kWhole + "0,1,2,0.5,1,0.9,1,0.9,-0.9,1\n"), HasSubstr("not positive"));
+}
+
+TEST_F(ReferenceCsv, AHeadingWithoutASigmaIsNamedWithTheHeaderThatHasIt) {
+  EXPECT_THAT(complaint("time_s,x_m,y_m,heading_rad,sigma_x_m,sigma_y_m\n0,1,2,0.5,1,1\n"),
+              AllOf(HasSubstr("reference.csv:1"), HasSubstr("is not the header"),
+                    HasSubstr("sigma_x_m,sigma_y_m,sigma_heading_rad")));
+}
+
+TEST_F(ReferenceCsv, ErrorsBelongToTheFingerprintOfADrive) {
+  DriveLog log = full_log(), other = log;
+  other.references[0].covariance[1](2, 2) += 1e-12;
+  EXPECT_NE(fingerprint_of(log), fingerprint_of(other));
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/recordings/recorded_drive.hpp"
 
-#include "experiments/recordings/find_recording.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/errors.hpp"
 #include "experiments/study/study.hpp"
+#include "tests/doubles/complaint.hpp"
 
 #include <string>
 #include <vector>
@@ -31,12 +31,7 @@ inline Study parsed(const std::string& text, const std::vector<std::string>& ove
 /// What parsing complains of; "nothing" where it does not.
 inline std::string complaint(const std::string& text,
                              const std::vector<std::string>& overrides = {}) {
-  try {
-    parsed(text, overrides);
-  } catch (const StudyError& error) {
-    return error.what();
-  }
-  return "nothing";
+  return engine::complaint_of([&] { parsed(text, overrides); });
 }
 
 }  // namespace montecarta::experiments

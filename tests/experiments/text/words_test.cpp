@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/text/words.hpp"
 
+#include "analysis/output/number_text.hpp"
+#include "analysis/output/text_table.hpp"
+#include "engine/random/stream.hpp"
+#include "engine/records/posix_file.hpp"
+#include "tests/doubles/complaint.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +14,8 @@ namespace montecarta::experiments {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
 
 TEST(Words, AreCutAndJoined) {
   EXPECT_THAT(split(" a, b ,,c", ','), ElementsAre("a", "b", "", "c"));
@@ -41,6 +49,49 @@ TEST(Numbers, AreWholeTextsAndFinite) {
 TEST(Numbers, ReadBackAsWritten) {
   for (const double value : {0.1, 1.0 / 3.0, 1e-300, -123456.789, 5e-324})
     EXPECT_EQ(to_number(to_text(value)), value);
+}
+
+TEST(QuotedWords, QuotesHoldAWordTogether) {
+  EXPECT_THAT(quoted_words("  a  b\tc "), ElementsAre("a", "b", "c"));
+  EXPECT_THAT(quoted_words(R"(key="a b,c" d)"), ElementsAre("key=a b,c", "d"));
+  EXPECT_THAT(quoted_words(R"(python3 'my filter.py' --name="x y" '')"),
+              ElementsAre("python3", "my filter.py", "--name=x y", ""));
+  EXPECT_THAT(quoted_words(R"("a \"b\" \\ 'c'" '\n' \n)"),
+              ElementsAre(R"(a "b" \ 'c')", R"(\n)", R"(\n)"));
+  EXPECT_THAT(quoted_words(""), IsEmpty());
+}
+
+TEST(QuotedWords, AnOpenQuoteIsAMistake) {
+  for (const char* text : {"\"", "a 'b", "a \"b\\\"", "'\""}) {
+    EXPECT_THAT(complaint_of([&] { quoted_words(text); }), HasSubstr("is not closed")) << text;
+  }
+}
+
+TEST(QuotedWords, WhateverIsQuotedReadsBack) {
+  RngStream random(StreamIdentity{.seed = 1});
+  const std::string characters = "ab \t\"'\\$*`;|&\xc3\xa9";
+  for (int i = 0; i < 1000; ++i) {
+    std::string word;
+    for (std::uint32_t n = random.below(12); n > 0; --n)
+      word += characters[random.below(static_cast<std::uint32_t>(characters.size()))];
+    EXPECT_THAT(quoted_words("x " + in_quotes(word)), ElementsAre("x", word));
+  }
+}
+
+TEST(Table, AlignsColumnsAndLeavesNoTrailingSpace) {
+  EXPECT_EQ(aligned({{"a", "bb", "c"}, {"ddd", "e"}}), "  a    bb  c\n  ddd  e\n");
+  EXPECT_EQ(aligned({{"a", ""}}, 0), "a\n");
+}
+
+TEST(Table, WritesSizesAndTimesAsPeopleDo) {
+  EXPECT_EQ(bytes_text(17), "17 B");
+  EXPECT_EQ(bytes_text(999.7), "1.0 kB");
+  EXPECT_EQ(bytes_text(3'760'000), "3.8 MB");
+  EXPECT_EQ(bytes_text(64e9), "64 GB");
+  EXPECT_EQ(duration_text(4.21), "4.2 s");
+  EXPECT_EQ(duration_text(59.97), "1 min 00 s");
+  EXPECT_EQ(duration_text(200), "3 min 20 s");
+  EXPECT_EQ(duration_text(3900), "1 h 05 min");
 }
 
 }  // namespace

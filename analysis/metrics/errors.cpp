@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// What a run cost, and how often its arithmetic needed a fallback.
 #include "analysis/metrics/cell_panels.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
@@ -92,6 +93,16 @@ std::vector<Figure> errors_figures(const StudyAnalysis& study) { return {rmse_fi
 
 Metric errors_metric() {
   return {.scores = kErrorsScores, .scan_series = kErrorsSeries, .figures = errors_figures};
+}
+
+Metric cost_metric() {
+  static constexpr Score kScores[] = {
+      {"numerical_faults", "1", "factorisations answered by a fallback",
+       [](const MeasuredRun& run) { return sum_of(run.rows.numerical_faults); }},
+      {"cpu_seconds", "s", "processor time of a run",
+       [](const MeasuredRun& run) { return run.rows.cpu_seconds; }},
+  };
+  return {.scores = kScores};
 }
 
 }  // namespace montecarta::analysis

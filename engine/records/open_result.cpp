@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A cluster may run two copies of one task: a node that was cut off goes on while the scheduler
+// starts the task elsewhere, and on network file systems no lock keeps them apart. So nobody ever
+// writes a file that another process may be writing, and every byte taken over is checked.
+#include "engine/records/open_result.hpp"
+
+#include "engine/errors.hpp"
+#include "engine/records/merge.hpp"
+#include "engine/records/posix_file.hpp"
+#include "engine/records/result_layout.hpp"
+#include "engine/records/seal.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <optional>
+#include <system_error>
+#include <unistd.h>
+
+namespace montecarta::engine {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path with_suffix(fs::path path, const char* suffix) { return path += suffix; }
+
+bool is_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+void refuse_existing(const fs::path& path) {
+  expect_free(path);
+  if (is_there(part_of(path))) {
+    throw StudyError(
+        part_of(path).string() +
+        ": holds unfinished work: continue it with --resume, or start afresh with --force");
+  }
+}
+
+}  // namespace
+
+void expect_room(const fs::path& path, double bytes) {
+  std::error_code ignored;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const fs::space_info space = fs::space(folder, ignored);
+  if (ignored || bytes <= static_cast<double>(space.available)) return;
+  throw RunError(path.string() + ": " + bytes_text(bytes) + " are needed, " +
+                 bytes_text(static_cast<double>(space.available)) +
+                 " are free: free space, choose another disk, or store fewer runs or columns");
+}
+
+PosixFile lay_out_new(const fs::path& path, const ResultDescription& description) {
+  PosixFile file(path, PosixFile::Mode::create);
+  file.lock();
+  try {
+    expect_room(path, description.bytes_per_run() * static_cast<double>(description.runs.size()));
+    lay_out(path, description);
+    put_seal(file, written_later(find_slabs(path, description), description.runs.size()));
+    file.reserve();
+    file.sync();
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(path, ignored);
+    throw;
+  }
+  return file;
+}
+
+OpenResult create_result(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance,
+                         Existing existing) {
+  if (is_folder(path)) throw StudyError(path.string() + ": is a folder: name a file in it");
+  if (existing == Existing::refuse) refuse_existing(path);
+  ResultDescription description = describe(plan, provenance);
+  if (is_there(path)) description.provenance.emplace_back(format::kReplaces, "an older result");
+  std::optional<PosixFile> replaced;  // its lock proves that nobody writes the work we replace
+  if (is_there(part_of(path))) replaced.emplace(part_of(path), PosixFile::Mode::write).lock();
+  OpenResult result{lay_out_new(with_suffix(part_of(path), ".new"), description), {}, {}, {}, {}};
+  result.file.rename(part_of(path),
+                     replaced ? PosixFile::Target::replace : PosixFile::Target::keep);
+  result.slabs = find_slabs(result.file.path(), description);
+  result.status.assign(plan.cells.size(), std::vector<RunStatus>(plan.runs_here()));
+  result.truth_stored.assign(plan.runs_here(), false);
+  if (existing == Existing::replace) result.target = PosixFile::Target::replace;
+  return result;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+ResultDescription read_description_of(const fs::path& path) {
+  try {
+    return read_description(open_checked(path), path);
+  } catch (const std::runtime_error& error) {
+    throw StudyError(path.string() + ": cannot be resumed (" + error.what() +
+                     "): start afresh with --force");
+  }
+}
+
+std::string range(const ResultDescription& result) {
+  return std::to_string(result.runs.front()) + ":" + std::to_string(result.runs.back() + 1);
+}
+
+void expect_same(const fs::path& path, const ResultDescription& planned,
+                 const ResultDescription& stored) {
+  if (const auto different = difference(planned, stored, path)) throw StudyError(*different);
+  if (stored.runs == planned.runs) return;
+  throw StudyError(path.string() + ": holds runs " + range(stored) + " (asked for: " +
+                   range(planned) + "): give the same --runs or --shard as at the start");
+}
+
+bool begun_with_force(const ResultDescription& stored) {
+  return std::ranges::any_of(stored.provenance,
+                             [](const auto& pair) { return pair.first == format::kReplaces; });
+}
+
+bool holds_the_same(const fs::path& path, const ResultDescription& planned) {
+  try {
+    const ResultDescription stored = read_description(open_checked(path), path);
+    return stored.runs == planned.runs && !difference(planned, stored, path);
+  } catch (const std::runtime_error&) {
+    return false;  // no result at all: the user's own file, which is not ours to replace either
+  }
+}
+
+/// Finishing replaces what is at `path`; the user must have asked for that, or lose nothing by it.
+void expect_replaceable(const fs::path& path, const ResultDescription& planned,
+                        const ResultDescription& begun) {
+  if (!is_there(path) || begun_with_force(begun) || holds_the_same(path, planned)) return;
+  throw StudyError(path.string() + ": exists and is not the result that " + part_of(path).string() +
+                   " becomes (finishing would replace it): move it away, then continue with "
+                   "--resume, or start afresh with --force");
+}
+
+void forget(OpenResult& result, std::size_t cell, std::size_t run_index) {
+  const std::byte missing{static_cast<std::uint8_t>(RunStatus::missing)};
+  result.status[cell][run_index] = RunStatus::missing;
+  result.file.write_at(result.slabs.cells[cell].status.at(run_index), std::span(&missing, 1));
+}
+
+/// Marks what is torn as missing; tells how many runs of cells that were.
+std::size_t reset_torn_runs(OpenResult& result) {
+  std::vector<std::byte> buffer;
+  std::size_t torn = 0;
+  for (std::size_t run = 0; run < result.truth_stored.size(); ++run) {
+    result.truth_stored[run] = truth_is_whole(result.file, result.slabs, run, buffer);
+    for (std::size_t cell = 0; cell < result.status.size(); ++cell) {
+      if (!is_stored(result.status[cell][run])) continue;
+      if (result.truth_stored[run] &&
+          run_is_whole(result.file, result.slabs.cells[cell], run, buffer))
+        continue;
+      forget(result, cell, run);
+      ++torn;
+    }
+  }
+  return torn;
+}
+
+/// What differs from how the work was begun, "name=value" each, in one line.
+std::string differences(const TextPairs& begun, const TextPairs& now) {
+  std::string line;
+  for (const auto& pair : now) {
+    if (std::ranges::find(begun, pair) == begun.end())
+      line += pair.first + "=" + pair.second + "; ";
+  }
+  return line.empty() ? "resumed" : line.substr(0, line.size() - 2);
+}
+
+/// Adds a line to the log of resumptions; once it is full, no more.
+void log_session(const OpenResult& result, const std::string& line) {
+  std::string log(format::kSittingsBytes, '\0');
+  result.file.read_at(result.slabs.sittings.offset, std::as_writable_bytes(std::span(log)));
+  const std::size_t length = std::min(log.find('\0'), log.size());
+  if (length + line.size() + 1 > log.size()) return;
+  (line + "\n").copy(log.data() + length, line.size() + 1);
+  result.file.write_at(result.slabs.sittings.offset, std::as_bytes(std::span(log)));
+}
+
+OpenResult open_existing(const fs::path& path, PosixFile::Mode mode,
+                         const ResultDescription& planned, ResultDescription& stored) {
+  OpenResult result{PosixFile(path, mode), {}, {}, {}, {}};
+  if (mode == PosixFile::Mode::write) result.file.lock();
+  stored = read_description_of(path);
+  expect_same(path, planned, stored);
+  result.slabs = find_slabs(path, stored);
+  for (const CellSlabs& cell : result.slabs.cells)
+    result.status.push_back(read_statuses(result.file, cell, stored.runs.size()));
+  result.truth_stored.assign(stored.runs.size(), true);
+  return result;
+}
+
+/// A file has its final name only once nothing is missing, unless somebody else renamed it.
+void expect_finished(const OpenResult& result) {
+  std::size_t missing = 0;
+  std::size_t all = 0;
+  for (const auto& of_cell : result.status) {
+    missing += static_cast<std::size_t>(std::ranges::count(of_cell, RunStatus::missing));
+    all += of_cell.size();
+  }
+  if (missing == 0) return;
+  const fs::path& path = result.file.path();
+  throw StudyError(path.string() + ": " + std::to_string(missing) + " of " + std::to_string(all) +
+                   " runs are missing (unfinished work under a final name): rename it to " +
+                   part_of(path).string() + ", then continue with --resume");
+}
+
+}  // namespace
+
+OpenResult finished_result(const fs::path& path, const ResultDescription& planned) {
+  ResultDescription stored;
+  OpenResult finished = open_existing(path, PosixFile::Mode::read, planned, stored);
+  expect_finished(finished);
+  finished.notes.push_back(path.string() + " is complete already");
+  return finished;
+}
+
+OpenResult continued_work(const fs::path& work, const fs::path& path,
+                          const ResultDescription& planned) {
+  ResultDescription stored;
+  OpenResult result = open_existing(work, PosixFile::Mode::write, planned, stored);
+  expect_replaceable(path, planned, stored);
+  if (is_there(path)) result.target = PosixFile::Target::replace;
+  const std::size_t torn = reset_torn_runs(result);
+  if (torn > 0) {
+    result.notes.push_back(std::to_string(torn) +
+                           " stored runs were damaged (a power cut?) and are computed again");
+  }
+  for (std::string& note : build_differences(stored.provenance, planned.provenance))
+    result.notes.push_back(std::move(note));
+  log_session(result, differences(stored.provenance, planned.provenance));
+  return result;
+}
+
+OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const TextPairs& provenance) {
+  const bool begun = is_there(part_of(path));
+  if (!begun && !is_there(path)) return create_result(path, plan, provenance, Existing::refuse);
+  const ResultDescription planned = describe(plan, provenance);
+  return begun ? continued_work(part_of(path), path, planned) : finished_result(path, planned);
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A name nobody else has: OUT.h5.part.HOST.PID.TIME.
+fs::path own_name(const fs::path& path) {
+  std::array<char, 65> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  const auto now = std::chrono::system_clock::now().time_since_epoch().count();
+  fs::path name = part_of(path);
+  return name += "." + std::string(host.data()) + "." + std::to_string(::getpid()) + "." +
+                 std::to_string(now);
+}
+
+/// What attempts at `path` left or are writing: OUT.h5.part.*
+std::vector<fs::path> attempts_at(const fs::path& path) {
+  const std::string prefix = part_of(path).filename().string() + ".";
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  std::vector<fs::path> found;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().filename().string().starts_with(prefix)) found.push_back(entry.path());
+  }
+  return found;
+}
+
+/// What a file of ours says of itself; nullopt where it is in the making, cut short or gone. Throws
+/// StudyError where it is of another study: completing this one would remove it.
+std::optional<ResultDescription> description_of(const fs::path& work,
+                                                const ResultDescription& planned) {
+  std::optional<ResultDescription> stored;
+  try {
+    stored = read_description(open_checked(work), work);
+  } catch (const std::runtime_error&) {
+    return std::nullopt;
+  }
+  if (const auto differs = difference(planned, *stored, work)) throw StudyError(*differs);
+  if (stored->runs == planned.runs) return stored;
+  throw StudyError(work.string() +
+                   ": holds other runs of the study than are asked for (another "
+                   "number of shards?): give the same --runs or --shard as at the start");
+}
+
+/// Makes OUT.h5.part, which its writer let go of, ours by its name; false where there is none or
+/// another attempt was faster. A network may report a failure of what it did.
+bool take_checkpoint(const fs::path& path, const fs::path& own, const ResultDescription& planned) {
+  if (!description_of(part_of(path), planned)) return false;
+  std::error_code failed;
+  fs::rename(part_of(path), own, failed);
+  return !failed || is_there(own);
+}
+
+OpenResult new_attempt(const fs::path& path, const fs::path& own,
+                       const ResultDescription& planned) {
+  fs::path draft = own;
+  OpenResult result{lay_out_new(draft += ".new", planned), {}, {}, {}, {}};
+  result.file.rename(own, PosixFile::Target::keep);
+  result.slabs = find_slabs(own, planned);
+  result.status.assign(planned.cells.size(), std::vector<RunStatus>(planned.runs.size()));
+  result.truth_stored.assign(planned.runs.size(), false);
+  if (is_there(path)) result.target = PosixFile::Target::replace;
+  return result;
+}
+
+/// Copies what is whole in another attempt's file and missing here; tells how many runs of cells
+/// that were.
+std::size_t copy_complete_runs(const PosixFile& from, const ResultSlabs& slabs, OpenResult& to) {
+  std::vector<std::byte> buffer;
+  std::size_t copied = 0;
+  for (std::size_t cell = 0; cell < to.status.size(); ++cell) {
+    const auto status = read_statuses(from, slabs.cells[cell], to.truth_stored.size());
+    for (std::size_t run = 0; run < status.size(); ++run) {
+      if (!is_stored(status[run]) || to.status[cell][run] != RunStatus::missing) continue;
+      if (!truth_is_whole(from, slabs, run, buffer) ||
+          !run_is_whole(from, slabs.cells[cell], run, buffer))
+        continue;
+      if (!to.truth_stored[run]) copy_truth(from, slabs, to.file, to.slabs, run);
+      to.truth_stored[run] = true;
+      copy_cell(from, slabs.cells[cell], to.file, to.slabs.cells[cell], run);
+      to.status[cell][run] = status[run];
+      ++copied;
+    }
+  }
+  return copied;
+}
+
+/// Takes over what another attempt stored and may still be writing.
+void copy_complete_runs(const fs::path& other, const ResultDescription& planned, OpenResult& to) {
+  const auto stored = description_of(other, planned);
+  if (!stored) return;
+  const std::string name = other.filename().string();
+  try {
+    const PosixFile from(other, PosixFile::Mode::read);
+    const std::size_t copied = copy_complete_runs(from, find_slabs(other, *stored), to);
+    if (copied > 0)
+      to.notes.push_back(std::to_string(copied) + " runs were taken over from " + name);
+  } catch (const std::runtime_error& error) {
+    to.notes.push_back("the rest of " + name + " is computed again: " + error.what());
+  }
+}
+
+}  // namespace
+
+OpenResult attempt_result(const fs::path& path, const StudyPlan& plan,
+                          const TextPairs& provenance) {
+  const ResultDescription planned = describe(plan, provenance);
+  if (is_there(path)) return finished_result(path, planned);
+  const fs::path own = own_name(path);
+  OpenResult result = take_checkpoint(path, own, planned) ? continued_work(own, path, planned)
+                                                          : new_attempt(path, own, planned);
+  result.claim = Claim::attempt;
+  for (const fs::path& other : attempts_at(path)) {
+    if (other != own && other.extension() != ".new") copy_complete_runs(other, planned, result);
+  }
+  return result;
+}
+
+void rename_finished(OpenResult& attempt, const fs::path& path) {
+  std::error_code ignored;
+  if (is_there(path)) {  // another attempt was first
+    fs::remove(attempt.file.path(), ignored);
+    return;
+  }
+  if (is_there(part_of(path))) return;
+  try {
+    attempt.file.rename(part_of(path), PosixFile::Target::keep);
+  } catch (const std::runtime_error&) {  // then the next one finds it by its own name
+  }
+}
+
+void complete_attempt(OpenResult& attempt, const fs::path& path) {
+  try {
+    if (!is_there(path)) attempt.file.rename(path, PosixFile::Target::keep);
+  } catch (const std::runtime_error&) {
+    if (!is_there(path)) throw;  // else another attempt was first, with the same bytes
+  }
+  std::error_code ignored;
+  for (const fs::path& left : attempts_at(path)) fs::remove(left, ignored);
+  fs::remove(part_of(path), ignored);
+}
+
+}  // namespace montecarta::engine

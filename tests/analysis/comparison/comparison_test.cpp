@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/comparison/cell_comparison.hpp"
+#include "analysis/comparison/pareto.hpp"
+#include "analysis/comparison/study_comparison.hpp"
+#include "analysis/metrics/nees_accumulator.hpp"
+#include "analysis/metrics/paired_runs.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/statistics/bootstrap.hpp"
+#include "engine/errors.hpp"
+#include "engine/random/stream.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace montecarta::analysis {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Pair;
+
+/// A cell whose runs 0, 1, ... have these position RMSEs and as many seconds of CPU time; a
+/// negative one is a run that failed.
+CellAnalysis compared_cell(const std::string& label, const std::vector<double>& rmse,
+                           double cpu_seconds = 1.0) {
+  CellAnalysis cell;
+  cell.label = label;
+  for (std::size_t i = 0; i < rmse.size(); ++i) {
+    if (rmse[i] < 0.0) {
+      cell.failures.push_back({i, 0, "lost"});
+      continue;
+    }
+    const ScoreTable::Value scores[] = {{"position_rmse", rmse[i]}, {"cpu_seconds", cpu_seconds}};
+    cell.runs.push_back(i);
+    cell.scores.add(scores);
+  }
+  cell.complete = cell.runs.size();
+  return cell;
+}
+
+StudyAnalysis compared_study(std::vector<CellAnalysis> cells) {
+  StudyAnalysis study;
+  study.file = "study.h5";
+  study.cells = std::move(cells);
+  return study;
+}
+
+std::vector<const Score*> scores(const std::vector<std::string>& names) {
+  std::vector<const Score*> found;
+  for (const std::string& name : names) found.push_back(find_score(name));
+  return found;
+}
+
+/// Runs whose errors have the worlds' share, common to all cells, and the cell's own.
+std::vector<double> errors(std::size_t runs, double mean, std::uint64_t cell) {
+  RngStream world({.seed = 1, .purpose = Draw::test}),
+      own({.seed = 2 + cell, .purpose = Draw::test});
+  std::vector<double> values(runs);
+  for (double& value : values) value = mean + std::abs(world.normal()) + 0.1 * own.normal() + 1.0;
+  return values;
+}
+
+TEST(CompareCells, FindsASmallDifferenceInTheSameWorlds) {
+  const StudyAnalysis study = compared_study({compared_cell("base", errors(200, 1.0, 0)),
+                                              compared_cell("worse", errors(200, 1.1, 1)),
+                                              compared_cell("same", errors(200, 1.0, 2))});
+  const Comparisons found = compare_cells(study, "base", scores({"position_rmse"}));
+  ASSERT_EQ(found.rows.size(), 2u);
+  const CellComparison& worse = found.rows[0];
+  EXPECT_EQ(worse.cell, "worse");
+  EXPECT_EQ(worse.verdict(0.95), "worse");
+  EXPECT_GT(worse.interval.lower, 0.0);
+  EXPECT_LT(worse.interval.lower, 0.1);
+  EXPECT_GT(worse.interval.upper, 0.1);
+  EXPECT_NEAR(worse.difference, worse.mean - worse.baseline_mean, 1e-12);
+  EXPECT_DOUBLE_EQ(worse.ratio, worse.mean / worse.baseline_mean);
+  EXPECT_GE(worse.wins.p_holm, worse.wins.p);
+  EXPECT_EQ(found.rows[1].verdict(0.95), "undecided");
+}
+
+TEST(CompareCells, CountsFailuresAsLostAndLeavesThemOutOfDifferences) {
+  const std::vector<double> base(12, 2.0);
+  std::vector<double> cell(12, 1.0);
+  for (std::size_t i = 0; i < 11; ++i) cell[i] = -1;
+  const Comparisons found =
+      compare_cells(compared_study({compared_cell("base", base), compared_cell("fragile", cell)}),
+                    "base", scores({"position_rmse"}));
+  const CellComparison& row = found.rows.at(0);
+  EXPECT_EQ(row.pairs, 1u);
+  EXPECT_EQ(row.without, 11u);
+  EXPECT_DOUBLE_EQ(row.difference, -1.0);
+  EXPECT_EQ(row.wins.won, 1u);
+  EXPECT_EQ(row.wins.lost, 11u);
+  EXPECT_NEAR(row.wins.share(), 1.0 / 12.0, 1e-15);
+  EXPECT_EQ(row.verdict(0.95), "worse");  // although its one complete run is the better one
+  EXPECT_TRUE(std::isnan(row.interval.lower));
+}
+
+TEST(CompareCells, KnowsWhichSideIsBetter) {
+  CellAnalysis few = compared_cell("few", std::vector<double>(20, 1.0));
+  few.scores = {};
+  CellAnalysis many = few;
+  many.label = "many";
+  for (std::size_t i = 0; i < 20; ++i) {
+    const double value = 5.0 + 0.01 * static_cast<double>(i);
+    few.scores.add(std::vector<ScoreTable::Value>{{"ess", value}, {"nees", value}});
+    many.scores.add(std::vector<ScoreTable::Value>{{"ess", 50.0}, {"nees", 50.0}});
+  }
+  const Comparisons found =
+      compare_cells(compared_study({few, many}), "few", scores({"ess", "nees"}));
+  EXPECT_EQ(found.rows.at(0).verdict(0.95), "better");
+  EXPECT_EQ(found.rows.at(0).wins.won, 20u);
+  EXPECT_EQ(found.rows.at(1).verdict(0.95), "higher");
+  EXPECT_EQ(found.rows.at(1).wins.lost, 20u);
+}
+
+// EKF-SLAM has no effective particles: no row, rather than one that it loses.
+TEST(CompareCells, LeaveOutWhatDoesNotApply) {
+  const CellAnalysis ekf = compared_cell("ekf", {1.0, 2.0});
+  CellAnalysis particles = compared_cell("particles", {1.0, 2.0});
+  particles.scores = {};
+  for (const double rmse : {1.0, 2.0}) {
+    particles.scores.add(std::vector<ScoreTable::Value>{{"position_rmse", rmse}, {"ess", 10.0}});
+  }
+  EXPECT_TRUE(compare_cells(compared_study({ekf, particles}), "ekf", scores({"ess"})).rows.empty());
+  EXPECT_THROW(compare_cells(compared_study({ekf}), "efk", scores({"ess"})), StudyError);
+}
+
+// Three of four runs a little better, the fourth much worse: most runs and the mean disagree.
+TEST(CompareCells, SaysWhereTheMeanIsOnTheOtherSideOfMostRuns) {
+  std::vector<double> base(200), risky(200), even(200);
+  for (std::size_t i = 0; i < 200; ++i) {
+    const double share = static_cast<double>(i % 20) / 20.0;
+    base[i] = 10.0 + share;
+    risky[i] = base[i] - 0.5 + 20.0 * (i % 4 == 0 ? 1.0 : 0.0);
+    even[i] = base[i] - 0.5 + 2.0 * (i % 4 == 0 ? 1.0 : 0.0);
+  }
+  const Comparisons found =
+      compare_cells(compared_study({compared_cell("base", base), compared_cell("risky", risky),
+                                    compared_cell("even", even)}),
+                    "base", scores({"position_rmse"}));
+  EXPECT_GT(found.rows.at(0).interval.lower, 0.0);
+  EXPECT_LT(found.rows.at(0).wins.p_holm, 0.05);
+  EXPECT_NE(found.rows.at(0).verdict(0.95), "better");
+  EXPECT_EQ(found.rows.at(1).verdict(0.95), "better in most runs");
+}
+
+// Two cells without difference, in nine of ten studies at least no false word at 10 %.
+TEST(CompareCells, SaysNothingFalseMoreOftenThanItsLevel) {
+  const std::vector<const Score*> chosen = scores({"position_rmse"});
+  std::size_t false_words = 0;
+  constexpr std::size_t kStudies = 400;
+  for (std::uint64_t s = 0; s < kStudies; ++s) {
+    const auto cell = [&](const char* label, std::uint64_t c) {
+      return compared_cell(label, errors(24, 1.0, 10 + 3 * s + c));
+    };
+    StudyAnalysis study = compared_study({cell("a", 0), cell("b", 1), cell("c", 2)});
+    study.level = 0.9;
+    const Comparisons found = compare_cells(study, "a", chosen);
+    const auto is_false = [&](const CellComparison& row) {
+      return row.verdict(0.9) != "undecided";
+    };
+    false_words += std::ranges::any_of(found.rows, is_false) ? 1 : 0;
+  }
+  EXPECT_LT(static_cast<double>(false_words) / kStudies, 0.1 + 5.0 * std::sqrt(0.09 / kStudies));
+  EXPECT_GT(false_words, 0u);
+}
+
+TEST(NeesDistance, CountsDoublings) {
+  EXPECT_DOUBLE_EQ(nees_distance(3.0, 3), 0.0);
+  EXPECT_DOUBLE_EQ(nees_distance(6.0, 3), 1.0);
+  EXPECT_DOUBLE_EQ(nees_distance(1.5, 3), 1.0);
+  EXPECT_TRUE(std::isnan(nees_distance(NAN, 3)));
+}
+
+TEST(ParetoFront, HoldsWhatNothingBeats) {
+  const std::vector<Offer> offers = {{1, 5}, {2, 3}, {2, 4}, {3, 3}, {5, 1}, {0.5, NAN}, {9, 9}};
+  EXPECT_THAT(pareto_front(offers), ElementsAre(true, true, false, false, true, false, false));
+  const std::vector<Offer> equal = {{1, 1}, {1, 1}};
+  EXPECT_THAT(pareto_front(equal), ElementsAre(true, true));
+}
+
+StudyAnalysis priced_study() {
+  StudyAnalysis study = compared_study(
+      {compared_cell("fast", {3.0, 3.0}, 0.1), compared_cell("good", {1.0, 1.0}, 2.0),
+       compared_cell("beaten", {4.0, 4.0}, 5.0), compared_cell("failed", {-1, -1}, 1.0)});
+  for (std::size_t i = 0; i < 3; ++i) {
+    NeesResult nees;
+    nees.consistency.verdict = Verdict::optimistic;
+    nees.consistency.mean = i == 2 ? 3.0 : 12.0;
+    nees.series.dimension = 3;
+    study.cells[i].nees = {nees};
+  }
+  return study;
+}
+
+TEST(CellValues, NameTheCellsOnTheFronts) {
+  const std::vector<CellValue> values = cell_values(priced_study());
+  ASSERT_EQ(values.size(), 3u);  // no complete run, no value
+  EXPECT_TRUE(values[0].accurate_for_cost && values[0].consistent_for_cost);
+  EXPECT_TRUE(values[1].accurate_for_cost);
+  EXPECT_FALSE(values[1].consistent_for_cost);  // as consistent as "fast", and dearer
+  EXPECT_FALSE(values[2].accurate_for_cost);
+  EXPECT_TRUE(values[2].consistent_for_cost);
+  EXPECT_DOUBLE_EQ(values[0].nees_distance, 2.0);
+  StudyAnalysis in_space = priced_study();
+  in_space.cells[0].nees[0].series.dimension = 6;
+  EXPECT_DOUBLE_EQ(cell_values(in_space)[0].nees_distance, 1.0);
+  StudyAnalysis without = priced_study();
+  without.has_truth = false;
+  EXPECT_TRUE(cell_values(without).empty());
+}
+
+TEST(ParetoFigure, HasAnAxisWhateverRunsCost) {
+  for (const double cost : {5e-324, 1.7e308, std::numeric_limits<double>::infinity()}) {
+    CellValue value;
+    value.cell = "odd";
+    value.cpu_seconds.mean = cost;
+    value.position_rmse.mean = 1.0;
+    const Figure figure = pareto_figure(std::vector{value, value});
+    EXPECT_GT(figure.chart.x_to, figure.chart.x_from) << cost;
+    EXPECT_TRUE(std::isfinite(figure.chart.x_to)) << cost;
+  }
+}
+
+// Rows and columns are two views of the same tests.
+TEST(WinMatrix, OfARowAndAColumnAddUp) {
+  std::vector<double> good(20, 1.0), bad(20, 2.0), mixed(20, 1.0);
+  for (std::size_t i = 0; i < 5; ++i) mixed[i] = -1;
+  const StudyAnalysis study = compared_study(
+      {compared_cell("good", good), compared_cell("bad", bad), compared_cell("mixed", mixed)});
+  const WinMatrix matrix = win_matrix(study, *find_score("position_rmse"));
+  ASSERT_EQ(matrix.cells.size(), 3u);
+  EXPECT_EQ(matrix.wins[0][1].won, 20u);
+  EXPECT_EQ(matrix.wins[1][0].lost, 20u);
+  EXPECT_EQ(matrix.wins[0][2].won, 5u);
+  EXPECT_EQ(matrix.wins[0][2].tied, 15u);
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_EQ(matrix.wins[r][c].won, matrix.wins[c][r].lost);
+      EXPECT_DOUBLE_EQ(matrix.wins[r][c].p_holm, matrix.wins[c][r].p_holm);
+    }
+  }
+  EXPECT_DOUBLE_EQ(matrix.wins[0][1].p_holm, 3.0 * sign_test(20, 0));
+  EXPECT_DOUBLE_EQ(matrix.wins[1][2].p_holm, 2.0 * sign_test(5, 15));
+  EXPECT_DOUBLE_EQ(matrix.wins[0][2].p_holm, 2.0 * sign_test(5, 15));  // Holm's p do not fall
+  EXPECT_THAT(win_table(matrix, 0.95).rows[0], ElementsAre("good", "-", "100.0 % *", "25.0 %"));
+}
+
+TEST(WinMatrix, HasNoCellThatIsNotJudged) {
+  const StudyAnalysis study =
+      compared_study({compared_cell("a", {1.0}), compared_cell("b", {1.0})});
+  EXPECT_TRUE(win_matrix(study, *find_score("ess")).cells.empty());
+}
+
+const Score& rmse() { return *find_score("position_rmse"); }
+
+TEST(CommonPlaces, AreThoseOfSharedNumbers) {
+  const std::vector<std::uint64_t> left = {1, 3, 4, 9}, right = {0, 3, 9, 10};
+  EXPECT_THAT(common_places(left, right), ElementsAre(Pair(1, 1), Pair(3, 2)));
+  EXPECT_THAT(common_places(left, {}), IsEmpty());
+}
+
+TEST(PairedRuns, CountWhatIsMissingOnEitherSide) {
+  const CellAnalysis left = compared_cell("left", {1.0, -1, 3.0, -1, 5.0});
+  const CellAnalysis right = compared_cell("right", {2.0, 2.0, -1, -1, 4.0, 7.0});
+  const PairedRuns pairs = paired_runs(left, right, rmse());
+  EXPECT_THAT(pairs.left, ElementsAre(1.0, 5.0));
+  EXPECT_THAT(pairs.right, ElementsAre(2.0, 4.0));
+  EXPECT_THAT(pairs.differences(), ElementsAre(-1.0, 1.0));
+  EXPECT_EQ(pairs.left_alone, 1u);
+  EXPECT_EQ(pairs.right_alone, 1u);
+  EXPECT_EQ(pairs.neither, 1u);
+  EXPECT_EQ(pairs.unpaired, 1u);  // run 5 is not in the left cell
+}
+
+// A score that is not a finite number is as good as none: never averaged, never dropped.
+TEST(PairedRuns, TakeWhatIsNoNumberForAFailure) {
+  const CellAnalysis left = compared_cell("left", {1.0, NAN, INFINITY});
+  const CellAnalysis right = compared_cell("right", {2.0, 2.0, 2.0});
+  const PairedRuns pairs = paired_runs(left, right, rmse());
+  EXPECT_THAT(pairs.left, ElementsAre(1.0));
+  EXPECT_EQ(pairs.right_alone, 2u);
+}
+
+TEST(PairedRuns, KnowWhatACellIsJudgedBy) {
+  EXPECT_TRUE(is_judged_by(compared_cell("some", {1.0, NAN}), rmse()));
+  EXPECT_FALSE(is_judged_by(compared_cell("none", {NAN, NAN}), rmse()));
+  EXPECT_TRUE(is_judged_by(compared_cell("all failed", {-1, -1}), rmse()));
+  EXPECT_FALSE(has_score(compared_cell("all failed", {-1, -1}), rmse()));
+}
+
+}  // namespace
+}  // namespace montecarta::analysis
