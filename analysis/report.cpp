@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/report.hpp"
 
-#include "analysis/comparison/pareto.hpp"
 #include "analysis/comparison/study_comparison.hpp"
 #include "analysis/figures/ancestry_figure.hpp"
 #include "analysis/figures/path_figure.hpp"
@@ -44,7 +43,6 @@ constexpr std::array kReadingOrder = {"title",
                                       "replay",
                                       "figure_paths",
                                       "figure_reference_error",
-                                      "figure_reference_particles",
                                       "figure_map_size",
                                       "figure_anees",
                                       "figure_anees_parts",
@@ -63,7 +61,6 @@ constexpr std::array kReadingOrder = {"title",
                                       "figure_calibration",
                                       "figure_ranks",
                                       "comparison",
-                                      "figure_pareto",
                                       "association",
                                       "error_anatomy",
                                       "diversity",
@@ -87,8 +84,8 @@ std::vector<Section> all_sections(const ResultFile& file, const StudyAnalysis& s
                   {title_section(study), failure_section(study), replay_section(file, options.run),
                    comparison_section(study, comparison), origin_section(file, study)});
   std::vector<Figure> figures = figures_of(study);
-  figures.insert(figures.end(), {path_figure(file, options.run), ancestry_figure(file, options.run),
-                                 pareto_figure(comparison.values)});
+  figures.insert(figures.end(),
+                 {path_figure(file, options.run), ancestry_figure(file, options.run)});
   for (const Figure& figure : figures) {
     if (!figure.data.empty())
       sections.push_back({"figure_" + figure.name, "", {}, false, {figure}});

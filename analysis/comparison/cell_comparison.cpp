@@ -135,8 +135,7 @@ Comparisons compare_cells(const StudyAnalysis& study, const std::string& baselin
 
 std::vector<const Score*> usual_scores(bool has_truth) {
   const std::vector<std::string> names =
-      has_truth ? std::vector<std::string>{"position_rmse", "heading_rmse", "nees_distance",
-                                           "cpu_seconds"}
+      has_truth ? std::vector<std::string>{"position_rmse", "heading_rmse", "nees", "cpu_seconds"}
                 : std::vector<std::string>{"reference_rms", "reference_aligned_rms", "cpu_seconds"};
   std::vector<const Score*> scores;
   for (const std::string& name : names) scores.push_back(find_score(name));

@@ -12,7 +12,6 @@ namespace {
 
 constexpr const char* kComparison = "comparison.csv";
 constexpr const char* kWins = "wins.csv";
-constexpr const char* kPareto = "pareto.csv";
 
 double count(std::size_t n) { return static_cast<double>(n); }
 
@@ -68,25 +67,11 @@ void write_wins(const WinMatrix& matrix, NamedRows& file) {
   }
 }
 
-void write_values(const std::vector<CellValue>& values, const std::filesystem::path& path) {
-  NamedRows file(path);
-  for (const CellValue& value : values) {
-    file.row({{"cell", value.cell}, {"verdict", value.verdict}},
-             {{"cpu_seconds_mean", "s", value.cpu_seconds.mean},
-              {"position_rmse_mean", "m", value.position_rmse.mean},
-              {"nees_distance", "1", value.nees_distance},
-              {"runs_failed", "1", count(value.failed)},
-              {"on_accuracy_front", "1", value.accurate_for_cost ? 1.0 : 0.0},
-              {"on_consistency_front", "1", value.consistent_for_cost ? 1.0 : 0.0}});
-  }
-  file.close();
-}
-
 }  // namespace
 
 StudyComparison compare_study(const StudyAnalysis& study, const std::string& baseline,
                               std::span<const Score* const> scores) {
-  StudyComparison comparison{compare_cells(study, baseline, scores), {}, cell_values(study)};
+  StudyComparison comparison{compare_cells(study, baseline, scores), {}};
   for (const Score* score : scores) {
     WinMatrix matrix = win_matrix(study, *score);
     if (matrix.cells.size() > 1) comparison.matrices.push_back(std::move(matrix));
@@ -94,7 +79,7 @@ StudyComparison compare_study(const StudyAnalysis& study, const std::string& bas
   return comparison;
 }
 
-std::vector<std::string> comparison_csv_names() { return {kComparison, kWins, kPareto}; }
+std::vector<std::string> comparison_csv_names() { return {kComparison, kWins}; }
 
 void write_comparison_csv(const StudyComparison& comparison,
                           const std::filesystem::path& directory) {
@@ -103,7 +88,6 @@ void write_comparison_csv(const StudyComparison& comparison,
   NamedRows wins(directory / kWins);
   for (const WinMatrix& matrix : comparison.matrices) write_wins(matrix, wins);
   wins.close();
-  write_values(comparison.values, directory / kPareto);
 }
 
 namespace {
@@ -132,11 +116,6 @@ std::vector<std::string> row_of(const CellComparison& row, double level) {
           readable(row.wins.p_holm, 2),
           readable(row.rank_p_holm, 2),
           pairs_text(row)};
-}
-
-std::string front_text(const CellValue& value) {
-  if (value.accurate_for_cost && value.consistent_for_cost) return "both";
-  return value.accurate_for_cost ? "accuracy" : value.consistent_for_cost ? "consistency" : "no";
 }
 
 /// "40 of 200 runs" of failures in words; nothing where there are none.
@@ -185,24 +164,6 @@ TextTable win_table(const WinMatrix& matrix, double level) {
   return table;
 }
 
-TextTable pareto_table(std::span<const CellValue> values) {
-  TextTable table;
-  table.headings = {{"cell", Align::left},
-                    {"CPU [s]"},
-                    {"position RMSE [m]"},
-                    {"verdict", Align::left},
-                    {"NEES distance"},
-                    {"failed"},
-                    {"on the Pareto front", Align::left}};
-  for (const CellValue& value : values) {
-    table.rows.push_back(
-        {value.cell, with_error(value.cpu_seconds.mean, value.cpu_seconds.standard_error()),
-         with_error(value.position_rmse.mean, value.position_rmse.standard_error()), value.verdict,
-         readable(value.nees_distance), std::to_string(value.failed), front_text(value)});
-  }
-  return table;
-}
-
 std::vector<std::string> comparison_notes(const StudyAnalysis& study,
                                           const Comparisons& comparisons) {
   const std::string level = level_text(comparisons.level);
@@ -225,13 +186,7 @@ std::vector<std::string> comparison_notes(const StudyAnalysis& study,
           level_text(1.0 - comparisons.level) +
           ". Both look at runs, not at the mean: where the interval of the mean difference holds 0 "
           "the word is 'in most runs', and 'mixed' where it lies on the other side. 'heavy tail' "
-          "stands where a few runs decide the mean difference, so that no interval can be given.",
-      "'nees_distance' is how many times the mean NEES of the pose of a run must be halved or "
-      "doubled to be " +
-          std::to_string(study.imported.components.size()) +
-          ", what a consistent filter has: 0 is consistent, 1 is off by a factor of 2. No cell is "
-          "called better by it: the NEES of most runs is below its mean, so that a covariance that "
-          "is somewhat too small lowers the distance of most runs."};
+          "stands where a few runs decide the mean difference, so that no interval can be given."};
   note_failures(study, notes);
   return notes;
 }
@@ -243,15 +198,6 @@ std::string win_note(double level) {
          "the "
          "two wins more often than chance would have it (exact sign test at " +
          level_text(1.0 - level) + " for the whole matrix, by Holm's correction).";
-}
-
-std::string pareto_note() {
-  return "On the Pareto front is a cell when no other is as fast and more accurate (or as accurate "
-         "and faster): all others are beaten by one of these outright. 'consistency' says the same "
-         "of the NEES distance, how many times ANEES must be halved or doubled to be that of a "
-         "consistent filter. All of complete runs alone, by their means: cells whose numbers "
-         "differ by "
-         "less than their +- may change places with more runs.";
 }
 
 }  // namespace montecarta::analysis

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "analysis/comparison/cell_comparison.hpp"
-#include "analysis/comparison/pareto.hpp"
 #include "analysis/metrics/verdict_table.hpp"
 
 #include <filesystem>
@@ -16,7 +15,6 @@ namespace montecarta::analysis {
 struct StudyComparison {
   Comparisons comparisons;
   std::vector<WinMatrix> matrices;  ///< {score} that two cells or more are judged by
-  std::vector<CellValue> values;    ///< empty where nobody knows the true path
 };
 
 StudyComparison compare_study(const StudyAnalysis& study, const std::string& baseline,
@@ -25,9 +23,9 @@ StudyComparison compare_study(const StudyAnalysis& study, const std::string& bas
 /// Names of the files that write_comparison_csv() makes.
 std::vector<std::string> comparison_csv_names();
 
-/// Writes comparison.csv (one row a cell and score), wins.csv (one row a score and ordered pair of
-/// cells) and pareto.csv (one row a cell) into `directory`, which is made where it is missing.
-/// Throws RunError naming the file that cannot be written.
+/// Writes comparison.csv (one row a cell and score) and wins.csv (one row a score and ordered pair
+/// of cells) into `directory`, which is made where it is missing. Throws RunError naming the file
+/// that cannot be written.
 void write_comparison_csv(const StudyComparison& comparison,
                           const std::filesystem::path& directory);
 
@@ -35,13 +33,10 @@ void write_comparison_csv(const StudyComparison& comparison,
 TextTable comparison_table(const Comparisons& comparisons);
 /// One row and one column a cell: in what share of runs the row beats the column.
 TextTable win_table(const WinMatrix& matrix, double level);
-/// One row a cell: what it costs and what it gives.
-TextTable pareto_table(std::span<const CellValue> values);
 
 /// Each table's meaning, a sentence each, for someone who never heard of a p value.
 std::vector<std::string> comparison_notes(const StudyAnalysis& study,
                                           const Comparisons& comparisons);
 std::string win_note(double level);
-std::string pareto_note();
 
 }  // namespace montecarta::analysis

@@ -49,10 +49,6 @@ class BandsOf {
 
 }  // namespace
 
-double nees_distance(double nees, std::size_t dimension) {
-  return std::abs(std::log2(nees / static_cast<double>(dimension)));
-}
-
 NeesAccumulator::NeesAccumulator(ErrorBlock block, Moments moments, std::size_t scans,
                                  std::size_t dimension)
     : block_(block),
@@ -142,13 +138,6 @@ constexpr Score kNeesScores[] = {
      [](const MeasuredRun& run) { return mean_nees(run, ErrorBlock::pose); }, Better::neither},
     {"nees_position", "1", "mean NEES of the position",
      [](const MeasuredRun& run) { return mean_nees(run, ErrorBlock::position); }, Better::neither},
-    {"nees_distance", "1", "NEES distance from consistency [doublings]",
-     [](const MeasuredRun& run) {
-       const NeesRows* nees = run.metrics.leading_nees();
-       return nees_distance(mean_nees(run, ErrorBlock::pose),
-                            nees == nullptr ? 3 : nees->dimension[0]);
-     },
-     Better::neither},
 };
 
 class NeesOverRuns final : public MetricSums {

@@ -14,10 +14,6 @@
 
 namespace montecarta::analysis {
 
-/// How many doublings (or halvings) an average NEES of `dimension` components is away from that of
-/// a consistent filter: |log2(nees / dimension)|, 0 where they agree.
-double nees_distance(double nees, std::size_t dimension);
-
 /// Adds up the NEES of one block by one definition over runs. Memory depends on the scans, and
 /// grows by one number with every run.
 class NeesAccumulator {

@@ -6,7 +6,6 @@
 #include "analysis/metrics/map_scores.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
-#include "analysis/metrics/particle_curves.hpp"
 #include "analysis/metrics/reference_scores.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/output/csv_file.hpp"
@@ -412,21 +411,8 @@ Figure map_size_figure(const StudyAnalysis& study) {
   return figure;
 }
 
-Figure particles_figure(const StudyAnalysis& study) {
-  Figure figure{"reference_particles", "Do more particles help?", ""};
-  const std::vector<ParticleCurve> curves = particle_curves(study);
-  if (curves.empty()) return figure;
-  figure.sentence = "RMS distance to " + study.references.front().name +
-                    " against the number of particles, one curve a filter: left as it stands, "
-                    "right after the best turn and shift of the whole path. Points are means over "
-                    "runs, bars reach from the best run to the worst, the dashed line is EKF-SLAM.";
-  draw_particle_curves(curves, baseline_errors(study), figure);
-  return figure;
-}
-
 std::vector<Figure> reference_figures(const StudyAnalysis& study) {
-  std::vector<Figure> figures = {reference_error_figure(study), particles_figure(study),
-                                 map_size_figure(study)};
+  std::vector<Figure> figures = {reference_error_figure(study), map_size_figure(study)};
   std::erase_if(figures, [](const Figure& figure) { return figure.data.empty(); });
   return figures;
 }

@@ -232,8 +232,6 @@ Section comparison_section(const StudyAnalysis& study, const StudyComparison& co
     section.add("wins_" + std::string(matrix.score->name), win_table(matrix, all.level));
   }
   section.add(std::vector{win_note(all.level)});
-  section.add("pareto", pareto_table(comparison.values));
-  section.add(std::vector{pareto_note()});
   return section;
 }
 

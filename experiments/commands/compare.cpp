@@ -65,11 +65,6 @@ void print(const StudyAnalysis& study, const StudyComparison& comparison) {
   }
   out << '\n';
   if (!comparison.matrices.empty()) print_wrapped(out, win_note(level));
-  if (comparison.values.empty()) return;
-  out << '\n';
-  print_table(out, pareto_table(comparison.values));
-  out << '\n';
-  print_wrapped(out, pareto_note());
 }
 
 int compare(const Arguments& arguments) {
@@ -99,15 +94,15 @@ Command compare_command() {
                     "",
                     {"NAME,..."},
                     "numbers of a run; default: position_rmse, "
-                    "heading_rmse, nees_distance, cpu_seconds"},
+                    "heading_rmse, nees, cpu_seconds"},
                    {"level", "", {"L"}, "probability inside the intervals; default 0.95"},
                    {"within", "", {"R"}, kWithinMeaning},
-                   {"csv", "", {"DIR"}, "write comparison.csv, wins.csv and pareto.csv"},
+                   {"csv", "", {"DIR"}, "write comparison.csv and wins.csv"},
                    {"force", "", {}, "replace the tables in DIR"},
                    {"threads", "", {"N"}, "default: what this process may use"},
                    {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},
        .details = "example:\n  montecarta compare first_study.h5 --baseline ekf_slam --metric "
-                  "position_rmse,nees_distance\n"},
+                  "position_rmse,heading_rmse\n"},
       compare};
 }
 

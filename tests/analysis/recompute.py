@@ -165,7 +165,7 @@ class Cell:
         return {
             "position_rmse": np.sqrt(ees[..., :2].sum(-1).mean(axis=1)),
             "heading_rmse": np.sqrt(ees[..., 2].mean(axis=1)),
-            "nees_distance": np.abs(np.log2(nees / 3)),
+            "nees": nees,
             "cpu_seconds": self.cpu,
         }
 
@@ -254,7 +254,7 @@ def check_comparison(cells, folder, baseline):
         rank = 1.0
         if len(moved):
             rank = stats.wilcoxon(difference, method="exact" if exact else "approx").pvalue
-        tolerance = 1e-9 if row["metric"] == "nees_distance" else TOLERANCE  # quantiles of F
+        tolerance = 1e-9 if row["metric"] == "nees" else TOLERANCE  # quantiles of F
         check(name + ": difference", float(row["difference"]), difference.mean(), tolerance)
         check(name + ": won, lost", [float(row["won"]), float(row["lost"])], [won, lost])
         check(name + ": sign test", float(row["p_sign"]), sign_p(won, lost))

@@ -66,9 +66,8 @@ TEST(Report, JudgesARecordedDriveByItsReferences) {
   EXPECT_THAT(page, HasSubstr("' to record.columns of the study"));
   EXPECT_THAT(page, HasSubstr("nobody knows its true path"));
   for (const char* name :
-       {"figures/paths.svg", "figures/reference_error.svg", "figures/reference_particles.svg",
-        "figures/map_size.svg", "tables/reference.tex", "tables/baseline.tex", "tables/map.tex",
-        "tables/references.csv"}) {
+       {"figures/paths.svg", "figures/reference_error.svg", "figures/map_size.svg",
+        "tables/reference.tex", "tables/baseline.tex", "tables/map.tex", "tables/references.csv"}) {
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "report" / name)) << name;
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "report/figures/rmse.svg"));

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/metrics/particle_curves.hpp"
 #include "analysis/metrics/reference_report.hpp"
 #include "analysis/metrics/reference_scores.hpp"
 #include "analysis/tables/tables.hpp"
@@ -174,30 +173,9 @@ TEST(ReferenceFigures, ShowErrorsParticlesAndMaps) {
   const auto figures = reference_figures(study_of({cell_of("ekf_slam", "ekf_slam", 0, 1.0),
                                                    cell_of("fastslam2_m20", "fastslam2", 20, 2.0),
                                                    cell_of("fastslam2_m3", "fastslam2", 3, 4.0)}));
-  EXPECT_THAT(names_of(figures), ElementsAre("reference_error", "reference_particles", "map_size"));
+  EXPECT_THAT(names_of(figures), ElementsAre("reference_error", "map_size"));
   EXPECT_EQ(figures[0].data[0].rows[1][0], 1.0);  // over the times of the fixes
   EXPECT_EQ(figures[0].data[0].rows[1][3], 8.0);
-  const FigureData& curve = figures[1].data.at(0);
-  EXPECT_EQ(curve.name, "rms_fastslam2.csv");
-  ASSERT_EQ(curve.rows.size(), 2u);
-  EXPECT_EQ(curve.rows[0][0], 3.0);
-  EXPECT_EQ(curve.rows[0][2], 5.0);
-  EXPECT_EQ(curve.rows[0][5], 4.0);
-  EXPECT_EQ(curve.rows[1][11], 3.0);
-  EXPECT_EQ(figures[1].chart.panels.at(0).curves.back().legend, "EKF-SLAM");
-}
-
-TEST(ReferenceFigures, DrawParticlesOnlyWhereAFilterHasTwoNumbersOfThem) {
-  EXPECT_THAT(particle_curves(study_of({cell_of("fastslam2_m20", "fastslam2", 20, 2.0),
-                                        cell_of("ufastslam_m3", "ufastslam", 3, 4.0)})),
-              IsEmpty());
-  const auto curves = particle_curves(
-      study_of({cell_of("fs_m3_raw", "fs", 3, 2.0), cell_of("fs_m3_gps", "fs", 3, 2.0),
-                cell_of("fs_m30_raw", "fs", 30, 1.0)}));
-  ASSERT_EQ(curves.size(), 2u);
-  EXPECT_EQ(curves[0].legend, "fs_raw");
-  EXPECT_EQ(curves[0].points.size(), 2u);
-  EXPECT_EQ(curves[1].legend, "fs_gps");
 }
 
 TEST(ReferenceFigures, SpreadManyCellsOverAPanelForEachNumberOfParticles) {

@@ -265,7 +265,7 @@ TEST(FirstValues, AreThoseOfTheAnalysis) {
   write_synthetic_result(folder / "out.h5", 10, 80);
   const ResultFile file(folder / "out.h5");
   const StudyAnalysis study = analyze(file);
-  for (const std::string name : {"position_rmse", "nees_distance"}) {
+  for (const std::string name : {"position_rmse", "nees"}) {
     const Score& score = *find_score(name);
     for (std::size_t c = 0; c < 2; ++c) {
       const auto values = first_values(file, file.cells()[c], score, 7, Parallel(Backend::tbb, 2));

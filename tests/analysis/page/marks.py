@@ -64,28 +64,6 @@ class Maps(OnPage):
         self.assertEqual(self.panels(), 3)
 
 
-class Points(OnPage):
-
-    def test_say_whose_they_are_and_what_they_cost(self):
-        for panel, chart in enumerate(self.chart("pareto")["panels"]):
-            for mark in chart["marks"][1:]:
-                box = self.page.evaluate(f"""(() => {{
-                    const group = document.querySelectorAll("#figure_pareto g.panel")[{panel}];
-                    group.scrollIntoView({{block: "center", behavior: "instant"}});
-                    const dot = group.querySelector("g.marks[data-cell={mark["legend"]}] path");
-                    const box = dot.getBoundingClientRect();
-                    return [box.left + box.width / 2, box.top + box.height / 2];
-                }})()""")
-                self.page.hover(box)
-                title, facts = self.said("pareto")
-                self.assertEqual(title, mark["legend"])
-                for fact in mark["facts"]:
-                    name, unit = fact["label"].rstrip("]").split(" [")
-                    ratio = float(facts[name].split()[0]) / fact["values"][0]
-                    self.assertAlmostEqual(ratio, 1, delta=1e-3)
-                    self.assertTrue(facts[name].endswith(unit))
-
-
 class Tree(OnPage):
 
     def ends(self):
