@@ -4,7 +4,6 @@
 #include "engine/records/result_file.hpp"
 #include "engine/threads/parallel.hpp"
 
-#include <cstddef>
 #include <filesystem>
 #include <optional>
 

@@ -4,7 +4,6 @@
 #include "engine/namespaces.hpp"
 
 #include <algorithm>
-#include <cstdint>
 
 namespace montecarta::engine {
 namespace {

@@ -8,7 +8,7 @@ prints the comparison as Markdown.
 The .printed file beside a study has one statement in a line:
 
     source = Authors: title, year; Table 1
-    runs = 20                  # the printed numbers are means over so many runs; 1 if not given
+    runs = 20                  # the printed numbers are means over so many runs
     baseline = fastslam2       # if its number is far off, no other cell's is compared
     band = position 1.3 2.79   # the band that the paper drew for its average NEES
     value = cell=srcd metric=position_rmse printed=2.8211 note="Table 1"
@@ -66,9 +66,21 @@ def fields_of(text, required, optional):
     return fields
 
 
+def count_in(text):
+    count = int(text)
+    if count < 1:
+        raise ValueError(f"runs = {text} (a whole number above 0 is needed): correct it")
+    return count
+
+
 def value_of(text):
     value = fields_of(text, ["cell", "metric", "printed"], ["relative_to", "runs", "note"])
     value["number"] = float(value["printed"])
+    if not math.isfinite(value["number"]):
+        raise ValueError(f"printed={value['printed']} is no finite number: write it as the paper "
+                         "does")
+    if "runs" in value:
+        value["runs"] = count_in(value["runs"])
     decimals = re.sub("[eE].*", "", value["printed"]).partition(".")[2]
     value["rounding"] = 0.5 * 10.0 ** -len(decimals)
     if "relative_to" in value and BAND_METRIC.match(value["metric"]):
@@ -81,6 +93,8 @@ def claim_of(text):
     if len(words) not in (4, 5) or words[2] not in ("<", ">", "~") or (
             len(words) == 5 and not words[4].startswith("note=")):
         raise ValueError("write claim = METRIC LABEL < LABEL [note=\"...\"] (or >, ~)")
+    if words[2] == "~" and BAND_METRIC.match(words[0]):
+        raise ValueError(f"~ has no meaning for {words[0]}: claim < or >")
     note = words[4].removeprefix("note=") if len(words) == 5 else ""
     return {"metric": words[0], "left": words[1], "relation": words[2], "right": words[3],
             "note": note}
@@ -95,7 +109,7 @@ def band_of(text):
 
 def read_printed(path):
     """What a .printed file says, as a dictionary of its keys. Raises PrintedError."""
-    printed = {"source": "", "runs": 1, "baseline": "", "band": {}, "value": [], "claim": [],
+    printed = {"source": "", "runs": None, "baseline": "", "band": {}, "value": [], "claim": [],
                "assume": []}
     try:
         with open(path, encoding="utf-8") as file:
@@ -112,13 +126,17 @@ def read_printed(path):
                                  f"{', '.join(printed)}")
             if key == "band":
                 block, band = band_of(text)
+                if block in printed[key]:
+                    raise ValueError(f"band of the {block} is given twice: remove one of the two")
                 printed[key][block] = band
             elif key in ("value", "claim"):
                 printed[key].append(value_of(text) if key == "value" else claim_of(text))
             elif key == "assume":
                 printed[key].append(text)
+            elif printed[key]:
+                raise ValueError(f"{key} is given twice: remove one of the two")
             else:
-                printed[key] = max(1, int(text)) if key == "runs" else text
+                printed[key] = count_in(text) if key == "runs" else text
         except ValueError as error:
             raise PrintedError(f"{path}:{number}: {error}") from None
     return printed
@@ -233,7 +251,7 @@ def judge_value(value, printed, measured, batches):
         lowest, median, highest = numbers[cut], np.median(numbers), numbers[-1 - cut]
         agrees = lowest - rounding <= number <= highest + rounding
         return median, (lowest, highest), "agrees" if agrees else distance_text(median, number)
-    paper_runs = int(value.get("runs", printed["runs"]))
+    paper_runs = value.get("runs", printed["runs"]) or 1
     if "relative_to" in value:
         pairs = paired(measured, cell, value["relative_to"], metric)
         if not len(pairs):
@@ -286,6 +304,9 @@ def judge_claim(claim, printed, measured, batches):
         differences = np.array([0.0 if l == r else l - r for l, r in pairs])
         holds, fails = (sign * differences > 0).sum(), (sign * differences < 0).sum()
         n = len(differences)
+        if n == 1:
+            verdict = "holds" if holds else "contradicted" if fails else "undecided"
+            return differences[0], None, f"{verdict}, over all runs"
         verdict = (f"holds in {n} of {n} batches" if holds == n else
                    f"contradicted in {n} of {n} batches" if fails == n else
                    f"undecided: holds in {holds} of {n} batches, contradicted in {fails}")
@@ -351,17 +372,20 @@ def compare(printed, measured, batches):
                  "where"], values)
     print_table(["paper says", "we measure: left - right", "95 % interval", "verdict", "where"],
                 claims)
-    print(f"\nThe paper's numbers are taken as means over {printed['runs']} run(s). A printed "
+    of = (f"are means over {printed['runs']} runs" if printed["runs"] else
+          "are taken as those of one run, since it does not say of how many they are")
+    print(f"\nThe paper's numbers {of}. A printed "
           "number agrees if the mean of so many of our runs would lie as far from our mean with "
           "a probability of 5 % or more, or if it rounds to the printed digits. It is not "
           f"reproduced if it is off by more than a factor of {REPRODUCED_WITHIN:g}. A claim holds "
           "or is contradicted if the whole 95 % interval of the difference, run by run on the "
           "same worlds and noise, lies on one side; ~ claims a difference below 10 %.")
     if any(BAND_METRIC.match(each["metric"]) for each in printed["value"] + printed["claim"]):
-        print(f"\nNumbers from a band of the average NEES are those of {max(1, len(batches))} "
-              "batch(es) with as many runs as the paper had: their median, and the range in which "
-              "95 % of them lie. A printed number agrees if it lies in that range, and a claim "
-              "holds if it holds in all batches.")
+        print(f"\nNumbers from a band of the average NEES are those of {len(batches)} batches with "
+              "as many runs as the paper had: their median, and the range in which 95 % of them "
+              "lie. A printed number agrees if it lies in that range, and a claim holds if it "
+              "holds in all batches." if len(batches) > 1 else
+              "\nNumbers from a band of the average NEES are those of all runs together.")
     if printed["assume"]:
         print("\nWhat the paper leaves open, and what is assumed:\n")
         for each in printed["assume"]:

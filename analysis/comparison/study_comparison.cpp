@@ -1,13 +1,167 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/comparison/study_comparison.hpp"
 
+#include "analysis/metrics/paired_runs.hpp"
 #include "analysis/output/csv_file.hpp"
 #include "analysis/output/number_text.hpp"
+#include "analysis/statistics/bootstrap.hpp"
+#include "engine/errors.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace montecarta::analysis {
+namespace {
+
+Wins wins_of(const PairedRuns& pairs, const Score& score) {
+  Wins wins{pairs.left_alone, pairs.right_alone, pairs.neither};
+  for (std::size_t i = 0; i < pairs.left.size(); ++i) {
+    const double behind = disadvantage(score, pairs.left[i], pairs.right[i]);
+    ++(behind < 0.0 ? wins.won : behind > 0.0 ? wins.lost : wins.tied);
+  }
+  wins.p = wins.p_holm = sign_test(wins.won, wins.lost);
+  return wins;
+}
+
+CellComparison compare_pair(const CellAnalysis& cell, const CellAnalysis& baseline,
+                            const Score& score, double level) {
+  const PairedRuns pairs = paired_runs(cell, baseline, score);
+  const std::vector<double> differences = pairs.differences();
+  CellComparison row{.cell = cell.label, .score = &score};
+  row.pairs = pairs.left.size();
+  row.without = pairs.right_alone;
+  row.baseline_without = pairs.left_alone;
+  row.neither = pairs.neither;
+  row.unpaired = pairs.unpaired;
+  row.mean = spread_of(pairs.left).summary.mean;
+  row.baseline_mean = spread_of(pairs.right).summary.mean;
+  row.difference = spread_of(differences).summary.mean;
+  row.interval = bootstrap_mean(differences, level);
+  row.has_heavy_tail = is_heavy_tailed(differences);
+  row.ratio = row.mean / row.baseline_mean;
+  row.wins = wins_of(pairs, score);
+  row.rank = signed_rank_test(differences);
+  return row;
+}
+
+/// Both tests of every row are one family.
+void adjust(std::vector<CellComparison>& rows) {
+  std::vector<double> p;
+  for (const CellComparison& row : rows) p.insert(p.end(), {row.wins.p, row.rank.p});
+  const std::vector<double> adjusted = holm(p);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].wins.p_holm = adjusted[2 * i];
+    rows[i].rank_p_holm = adjusted[2 * i + 1];
+  }
+}
+
+const CellAnalysis& cell_called(const StudyAnalysis& study, const std::string& label) {
+  const auto found = std::ranges::find(study.cells, label, &CellAnalysis::label);
+  if (found != study.cells.end()) return *found;
+  throw StudyError(label + ": no cell of " + study.file +
+                   " (each is compared with one of its own): choose another");
+}
+
+Wins seen_from_the_other(Wins wins) {
+  std::swap(wins.won, wins.lost);
+  return wins;
+}
+
+/// Each pair is one test, whichever side it is seen from.
+void adjust(WinMatrix& matrix) {
+  const std::size_t n = matrix.cells.size();
+  std::vector<double> p;
+  for (std::size_t r = 0; r < n; ++r) {
+    for (std::size_t c = r + 1; c < n; ++c) p.push_back(matrix.wins[r][c].p);
+  }
+  const std::vector<double> adjusted = holm(p);
+  auto next = adjusted.begin();
+  for (std::size_t r = 0; r < n; ++r) {
+    for (std::size_t c = r + 1; c < n; ++c) {
+      matrix.wins[r][c].p_holm = matrix.wins[c][r].p_holm = *next++;
+    }
+  }
+}
+
+}  // namespace
+
+double Wins::share() const {
+  const auto all = static_cast<double>(won + lost + tied);
+  return static_cast<double>(won) / all;
+}
+
+std::string CellComparison::verdict(double level) const {
+  const double significant = 1.0 - level;
+  int ahead = 0, behind = 0;
+  if (wins.p_holm < significant) ++(wins.won > wins.lost ? ahead : behind);
+  if (rank_p_holm < significant) {
+    const double towards = disadvantage(*score, rank.positive, rank.negative);
+    ++(towards < 0.0 ? ahead : behind);
+  }
+  if ((ahead > 0) == (behind > 0)) return "undecided";
+  const bool directed = score->better != Better::neither;
+  std::string word = directed ? (ahead > 0 ? "better" : "worse") : (ahead > 0 ? "lower" : "higher");
+  if (std::isnan(interval.lower)) return word;
+  const double side = ahead > 0 ? 1.0 : -1.0;
+  const double one = side * disadvantage(*score, interval.lower, 0.0);
+  const double other = side * disadvantage(*score, interval.upper, 0.0);
+  if (!has_heavy_tail && one > 0.0 && other > 0.0) return "mixed";
+  return !has_heavy_tail && one < 0.0 && other < 0.0 ? word : word + " in most runs";
+}
+
+double disadvantage(const Score& score, double left, double right) {
+  return score.better == Better::higher ? right - left : left - right;
+}
+
+Wins wins_of(const CellAnalysis& left, const CellAnalysis& right, const Score& score) {
+  return wins_of(paired_runs(left, right, score), score);
+}
+
+Comparisons compare_cells(const StudyAnalysis& study, const std::string& baseline,
+                          std::span<const Score* const> scores) {
+  const CellAnalysis& base = cell_called(study, baseline);
+  Comparisons comparisons{baseline, study.level, {}};
+  for (const Score* score : scores) {
+    for (const CellAnalysis& cell : study.cells) {
+      if (&cell == &base || !is_judged_by(cell, *score) || !is_judged_by(base, *score)) continue;
+      CellComparison row = compare_pair(cell, base, *score, study.level);
+      const bool none = row.pairs + row.without + row.baseline_without == 0;
+      if (!none) comparisons.rows.push_back(std::move(row));
+    }
+  }
+  adjust(comparisons.rows);
+  return comparisons;
+}
+
+std::vector<const Score*> usual_scores(bool has_truth) {
+  const std::vector<std::string> names =
+      has_truth ? std::vector<std::string>{"position_rmse", "heading_rmse", "nees", "cpu_seconds"}
+                : std::vector<std::string>{"reference_rms", "reference_aligned_rms", "cpu_seconds"};
+  std::vector<const Score*> scores;
+  for (const std::string& name : names) scores.push_back(find_score(name));
+  return scores;
+}
+
+WinMatrix win_matrix(const StudyAnalysis& study, const Score& score) {
+  WinMatrix matrix{&score, {}, {}};
+  std::vector<const CellAnalysis*> cells;
+  for (const CellAnalysis& cell : study.cells) {
+    if (!is_judged_by(cell, score)) continue;
+    cells.push_back(&cell);
+    matrix.cells.push_back(cell.label);
+  }
+  matrix.wins.assign(cells.size(), std::vector<Wins>(cells.size()));
+  for (std::size_t r = 0; r < cells.size(); ++r) {
+    for (std::size_t c = r + 1; c < cells.size(); ++c) {
+      matrix.wins[r][c] = wins_of(*cells[r], *cells[c], score);
+      matrix.wins[c][r] = seen_from_the_other(matrix.wins[r][c]);
+    }
+  }
+  adjust(matrix);
+  return matrix;
+}
+
 namespace {
 
 constexpr const char* kComparison = "comparison.csv";

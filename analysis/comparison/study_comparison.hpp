@@ -1,15 +1,84 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/comparison/cell_comparison.hpp"
+#include "analysis/metrics/study_analysis.hpp"
 #include "analysis/metrics/verdict_table.hpp"
+#include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/statistics/paired_tests.hpp"
+#include "analysis/statistics/spread.hpp"
 
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace montecarta::analysis {
+
+/// How often the one of two cells was better, run by run in the same worlds. A run that failed in
+/// one of them is won by the other.
+struct Wins {
+  std::size_t won = 0, lost = 0, tied = 0;
+  double p = 1.0;       ///< of the exact sign test
+  double p_holm = 1.0;  ///< adjusted for all tests of its table
+
+  /// Of all runs that ended in both; NaN without any.
+  double share() const;
+};
+
+/// One cell against the baseline by one score.
+struct CellComparison {
+  std::string cell;
+  const Score* score = nullptr;
+  std::size_t pairs = 0;    ///< runs in which both have a value: the difference is of them
+  std::size_t without = 0;  ///< runs in which only the baseline has one: failed, counted lost
+  std::size_t baseline_without = 0;          ///< runs in which only the cell has one: counted won
+  std::size_t neither = 0;                   ///< runs that failed in both
+  std::size_t unpaired = 0;                  ///< runs that ended in one of the two cells only
+  double mean = kNaN, baseline_mean = kNaN;  ///< over the pairs
+  double difference = kNaN;                  ///< mean - baseline_mean
+  Interval interval{};                       ///< of the difference
+  bool has_heavy_tail = false;               ///< which makes that interval worthless
+  double ratio = kNaN;                       ///< mean / baseline_mean
+  Wins wins{};
+  SignedRank rank{};         ///< of the differences
+  double rank_p_holm = 1.0;  ///< adjusted for all tests of the table
+
+  /// "better", "worse", "undecided"; "lower" and "higher" where neither is better. What the tests
+  /// over runs say of most runs, and the interval of the mean difference does not, or is worthless:
+  /// "better in most runs", and "mixed" where that interval is on the other side.
+  std::string verdict(double level) const;
+};
+
+/// Every other cell against one.
+struct Comparisons {
+  std::string baseline;
+  double level = 0.95;  ///< of intervals; tests are at 1 - level, by Holm over the whole table
+  std::vector<CellComparison> rows;  ///< score by score, in the order of the cells
+};
+
+/// Which of two values of a score is better: below zero where `left` is.
+double disadvantage(const Score& score, double left, double right);
+
+Wins wins_of(const CellAnalysis& left, const CellAnalysis& right, const Score& score);
+
+/// Cells that have no value of a score, or share no run with the baseline, have no row. The level
+/// is the study's. Throws StudyError where there is no cell `baseline`.
+Comparisons compare_cells(const StudyAnalysis& study, const std::string& baseline,
+                          std::span<const Score* const> scores);
+
+/// Accuracy, consistency and cost; without a true path the distance to the leading reference.
+std::vector<const Score*> usual_scores(bool has_truth);
+
+/// Every cell against every other by one score.
+struct WinMatrix {
+  const Score* score = nullptr;
+  std::vector<std::string> cells;       ///< that can be judged by the score
+  std::vector<std::vector<Wins>> wins;  ///< {row, column}: of the row; empty on the diagonal
+};
+
+/// Tests are adjusted for all pairs of the matrix.
+WinMatrix win_matrix(const StudyAnalysis& study, const Score& score);
 
 /// What is said of the cells beside each other, whoever it is said to.
 struct StudyComparison {

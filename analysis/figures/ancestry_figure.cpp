@@ -7,10 +7,8 @@
 #include "engine/errors.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace montecarta::analysis {
 namespace {

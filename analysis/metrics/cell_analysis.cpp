@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/cell_analysis.hpp"
 
-#include "analysis/statistics/spread.hpp"
-
 #include <algorithm>
 #include <cmath>
 

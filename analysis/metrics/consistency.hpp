@@ -6,7 +6,6 @@
 #include "analysis/statistics/whole_run_band.hpp"
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>

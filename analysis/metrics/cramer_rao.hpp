@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/metrics/simulated_world.hpp"
 #include "engine/core/drive.hpp"
 #include "engine/core/pose.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/threads/parallel.hpp"
-#include "filters/models/point.hpp"
+#include "filters/models/field_of_view.hpp"
+#include "filters/models/range_bearing.hpp"
 #include "filters/models/sensor.hpp"
 #include "filters/models/vehicle.hpp"
 
@@ -14,11 +14,27 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace montecarta::analysis {
+
+/// Vehicle, sensor and their noise as they really are in a simulation, whatever filters believe.
+struct SimulatedWorld {
+  Vehicle vehicle;
+  ControlNoise control_noise;
+  Eigen::Vector2d sigma_observation;  ///< of the sensor's components (deviations_of())
+  double detected = 1.0;              ///< probability that what is in view is detected
+  FieldOfView view;
+  bool same_path = true;  ///< of all runs: the noise is on the controls that filters are given
+  Sensor sensor = {};
+};
+
+/// What the file says of its world in the attributes of /scenario; nullopt where it is not that of
+/// a simulation, or lacks any of it.
+std::optional<SimulatedWorld> simulated_world_of(const ResultFile& file);
 
 /// The Cramer-Rao bound on pose and landmarks together, as a covariance that is carried along a
 /// known path: the recursion of a Kalman filter with all Jacobians at the truth, and nothing known

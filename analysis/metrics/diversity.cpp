@@ -3,7 +3,6 @@
 
 #include "engine/errors.hpp"
 
-#include <algorithm>
 #include <numeric>
 #include <string>
 

@@ -2,14 +2,12 @@
 #include "analysis/metrics/drive_scores.hpp"
 
 #include "analysis/metrics/consistency.hpp"
-#include "analysis/metrics/nees.hpp"
 #include "analysis/statistics/sampler_scale.hpp"
 #include "analysis/statistics/spread.hpp"
 
 #include <Eigen/Cholesky>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>

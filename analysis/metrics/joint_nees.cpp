@@ -16,11 +16,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <set>
 #include <utility>
-#include <vector>
 
 namespace montecarta::analysis {
 namespace {

@@ -10,7 +10,6 @@
 #include "analysis/statistics/spread.hpp"
 
 #include <cmath>
-#include <numeric>
 
 namespace montecarta::analysis {
 namespace {

@@ -3,7 +3,6 @@
 #include "analysis/metrics/map_errors.hpp"
 
 #include "analysis/metrics/cramer_rao.hpp"
-#include "analysis/metrics/map_scores.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/score.hpp"
@@ -15,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <string>
 #include <string_view>
 
 namespace montecarta::analysis {

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/measured_run.hpp"
 
-#include "analysis/data/run_reader.hpp"
 #include "analysis/data/study_settings.hpp"
-#include "analysis/metrics/nees.hpp"
-#include "analysis/metrics/simulated_world.hpp"
+#include "analysis/metrics/cramer_rao.hpp"
 #include "analysis/statistics/group_sequential.hpp"
 #include "analysis/statistics/sampler_scale.hpp"
 #include "analysis/statistics/spread.hpp"

@@ -7,8 +7,6 @@
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/reference_scores.hpp"
-#include "analysis/metrics/study_analysis.hpp"
-#include "analysis/output/csv_file.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/numbers/angle.hpp"
@@ -16,8 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
-#include <utility>
 
 namespace montecarta::analysis {
 namespace {

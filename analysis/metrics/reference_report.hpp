@@ -48,7 +48,6 @@ Figure reference_error_figure(const StudyAnalysis& study);
 /// Raw and aligned RMS to the leading reference against the number of particles, one curve a
 /// filter, with the least and the greatest run as bars; only where a filter has two numbers or
 /// more.
-Figure particles_figure(const StudyAnalysis& study);
 /// Landmarks in the map over time, one curve a cell; of a drive without truth.
 Figure map_size_figure(const StudyAnalysis& study);
 

@@ -3,14 +3,11 @@
 
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/score.hpp"
-#include "analysis/statistics/spread.hpp"
 #include "engine/errors.hpp"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
 
 namespace montecarta::analysis {
 namespace {

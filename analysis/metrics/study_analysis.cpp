@@ -4,13 +4,11 @@
 #include "analysis/data/run_reader.hpp"
 #include "analysis/data/study_settings.hpp"
 #include "analysis/metrics/cell_sums.hpp"
-#include "analysis/metrics/cramer_rao.hpp"
 #include "analysis/metrics/imported_estimates.hpp"
 #include "engine/errors.hpp"
 #include "engine/runs/monte_carlo.hpp"
 
 #include <algorithm>
-#include <span>
 
 namespace montecarta::analysis {
 namespace {

@@ -1,16 +1,100 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/output/chart.hpp"
 #include "analysis/output/csv_file.hpp"
 
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace montecarta::analysis {
+
+/// In place of the number of a curve: of what is no cell, such as a bound; dashed, in the colour of
+/// the text.
+inline constexpr std::size_t kReferenceStyle = static_cast<std::size_t>(-1);
+/// Of the truth, below what filters think of it.
+inline constexpr std::size_t kTruthStyle = static_cast<std::size_t>(-2);
+
+/// Line colour of curve `i`, "#0072B2": told apart by the colour-blind (Okabe and Ito).
+std::string line_colour(std::size_t i);
+/// How curve `i` is dashed, from 1, a full line: from the seventh on curves differ by that.
+std::size_t line_dashes(std::size_t i);
+
+/// A horizontal band, e.g. where a consistent filter stays. It keeps the vertical axis near: from
+/// 0.3 times its lower end to 1000 times its upper one at most, so that it is seen beside a filter
+/// that is off by many powers of ten.
+struct Band {
+  std::string legend;
+  double lower = 0.0;
+  double upper = 0.0;  ///< may be infinite: no end above
+};
+
+/// A vertical axis.
+struct ChartAxis {
+  bool logarithmic = false;
+  double low = 0.0;
+  double high = 0.0;  ///< NaN: as far as the curves reach
+};
+
+/// What is drawn at places of its own rather than over the panel's common x. The pointer is told
+/// the facts of the nearest.
+struct ChartMarks {
+  enum class Shape { line, points, crosses, ellipses, boxes };
+  /// One value for each place.
+  struct Fact {
+    std::string label;  ///< with unit
+    std::vector<double> values;
+  };
+  std::string name;       ///< what such a mark is
+  std::string cell;       ///< hidden with it; empty: always shown
+  std::size_t style = 0;  ///< for line_colour()
+  Shape shape = Shape::line;
+  double thickness = 0.0;             ///< [px] of lines and points; 0: the usual
+  std::vector<double> x, y;           ///< NaN: a gap in a line
+  std::vector<double> width, height;  ///< of ellipses (diameters) and boxes
+  std::vector<double> angle;          ///< [deg] of ellipses
+  std::vector<std::string> fill;      ///< colour of each box; empty: that of the style, thinly
+  std::vector<std::string> text;      ///< within each box, beside each point; empty: none
+  std::vector<Fact> facts;            ///< none: the pointer passes over them
+};
+
+/// Axes with curves, ready to draw.
+struct ChartPanel {
+  struct Curve {
+    std::string legend;          ///< curves of one legend are one cell: a page hides them together
+    std::size_t style = 0;       ///< for line_colour()
+    std::vector<double> values;  ///< one for each of `x`; NaN: a gap
+    std::vector<double> least = {}, greatest = {};  ///< ends of a bar at each value; empty: none
+  };
+  std::string label;  ///< of the vertical axis, with unit
+  ChartAxis axis;
+  std::vector<double> x;  ///< increasing
+  std::vector<Curve> curves;
+  std::vector<Band> bands;
+  std::string cell = {};  ///< a panel of one cell: hidden with it
+  std::vector<ChartMarks> marks = {};
+  std::vector<std::string> x_names = {}, y_names = {};  ///< at 0, 1, 2, ..., in place of numbers
+};
+
+/// What a figure shows: gnuplot draws it for print, the page to be zoomed into and asked. All
+/// panels have one horizontal axis.
+struct Chart {
+  std::string x_label = "time [s]";
+  double x_from = 0.0, x_to = 0.0;
+  std::vector<ChartPanel> panels;
+  bool x_logarithmic = false;
+  std::vector<double> x_ticks = {};  ///< in print; empty: round numbers
+  /// Where it begins before it is zoomed; NaN: at x_from.
+  double x_first = std::numeric_limits<double>::quiet_NaN();
+  std::size_t columns = 1;  ///< side by side, where there is room; else one above the other
+  std::size_t least = 0;    ///< [px] the width of a panel
+  double aspect = 0.0;      ///< height of a panel by its width; 0: the usual
+  double height = 0.0;      ///< [px] of a panel in print, where it has no aspect; 0: the usual
+  bool is_map = false;      ///< one scale in both directions, whatever is zoomed
+};
 
 /// Series over one common time, short enough to draw.
 struct ThinnedSeries {

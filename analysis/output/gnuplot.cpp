@@ -5,8 +5,6 @@
 #include "engine/errors.hpp"
 #include "engine/visible_text.hpp"
 
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -15,8 +13,8 @@
 #include <fcntl.h>
 #include <fstream>
 #include <spawn.h>
+#include <sys/wait.h>
 #include <unistd.h>
-#include <vector>
 
 namespace montecarta::analysis {
 namespace {

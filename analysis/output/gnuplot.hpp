@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/output/chart.hpp"
+#include "analysis/output/figure.hpp"
 
 #include <cstddef>
 #include <filesystem>

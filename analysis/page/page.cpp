@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/page/page.hpp"
 
-#include "analysis/comparison/study_comparison.hpp"
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/csv_file.hpp"
 #include "analysis/page/html.hpp"
-#include "analysis/page/json.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
 

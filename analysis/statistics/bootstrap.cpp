@@ -3,7 +3,6 @@
 
 #include "analysis/statistics/spread.hpp"
 #include "engine/errors.hpp"
-#include "engine/random/normals.hpp"
 #include "engine/random/stream.hpp"
 
 #include <boost/math/distributions/normal.hpp>

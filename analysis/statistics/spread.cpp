@@ -7,8 +7,6 @@
 #include <boost/math/distributions/students_t.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <vector>
 
 namespace montecarta::analysis {
 namespace {

@@ -2,7 +2,6 @@
 #include "analysis/statistics/whole_run_band.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/random/normals.hpp"
 #include "engine/random/stream.hpp"
 
 #include <algorithm>

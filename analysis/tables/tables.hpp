@@ -29,7 +29,8 @@ void print_tables(std::ostream& out, const StudyAnalysis& study,
                   Explanations explanations = Explanations::hidden);
 
 /// Writes failures.csv, cells.csv (one row a cell), consistency.csv (one row a cell and definition
-/// of error and covariance), runs.csv (the scores of every complete run), the files of metrics that apply (Metric::files)
+/// of error and covariance), runs.csv (the scores of every complete run), the files of metrics that
+/// apply (Metric::files)
 /// and, for each cell, series_<label>.csv (one row a scan) into `directory`, which is made where it
 /// is missing. Throws RunError naming the file that cannot be written.
 void write_csv(const StudyAnalysis& study, const std::filesystem::path& directory);

@@ -53,8 +53,9 @@ struct Cell {
   std::function<std::unique_ptr<SlamFilter>()> make_filter;   ///< callable from any thread
 };
 
-/// Asked between rounds (monte_carlo.hpp), when the first `runs` runs of a cell have ended, whether they
-/// are enough. Must follow from those runs, as they are stored in `unfinished`, and nothing else.
+/// Asked between rounds (monte_carlo.hpp), when the first `runs` runs of a cell have ended, whether
+/// they are enough. Must follow from those runs, as they are stored in `unfinished`, and nothing
+/// else.
 using EnoughRuns = std::function<bool(const std::filesystem::path& unfinished, std::size_t cell,
                                       std::uint64_t runs, const Parallel& parallel)>;
 

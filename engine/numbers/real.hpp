@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <type_traits>
-#include <utility>
 
 /// The functions that per-particle arithmetic is written in, for `Real` = double and `Real` = Lanes
 /// alike. Every lane is a function of that lane alone, so a result never depends on which particles

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/step_context.hpp"
+#include "engine/core/slam_filter.hpp"
 #include "engine/numbers/real.hpp"
 
 #include <algorithm>

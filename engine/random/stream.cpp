@@ -2,9 +2,12 @@
 #include "engine/random/stream.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/random/normals.hpp"
 
+#include <boost/math/special_functions/erf.hpp>
+
+#include <algorithm>
 #include <bit>
+#include <numbers>
 
 namespace montecarta::engine {
 
@@ -53,6 +56,15 @@ double RngStream::normal() {
   spare_ = spare;
   has_spare_ = true;
   return normal;
+}
+
+double normal_quantile(double probability) {
+  constexpr double kMost = 1.0 - 0x1p-53;  // the number before 1, to which shares may round
+  return -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * std::min(probability, kMost));
+}
+
+double normal_tails(double deviations) {
+  return boost::math::erfc(deviations / std::numbers::sqrt2);
 }
 
 }  // namespace montecarta::engine

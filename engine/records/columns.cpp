@@ -4,10 +4,8 @@
 #include "engine/errors.hpp"
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <numeric>
-#include <string_view>
 #include <utility>
 
 namespace montecarta::engine {

@@ -10,7 +10,6 @@
 #include <xxhash.h>
 
 #include <array>
-#include <memory>
 
 namespace montecarta::engine {
 namespace {

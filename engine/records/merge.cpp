@@ -4,7 +4,6 @@
 #include "engine/errors.hpp"
 #include "engine/records/open_result.hpp"
 #include "engine/records/posix_file.hpp"
-#include "engine/records/result_layout.hpp"
 #include "engine/records/seal.hpp"
 
 #include <algorithm>

@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A cluster may run two copies of one task: a node that was cut off goes on while the scheduler
-// starts the task elsewhere, and on network file systems no lock keeps them apart. So nobody ever
-// writes a file that another process may be writing, and every byte taken over is checked.
 #include "engine/records/open_result.hpp"
 
 #include "engine/errors.hpp"
 #include "engine/records/merge.hpp"
-#include "engine/records/posix_file.hpp"
-#include "engine/records/result_layout.hpp"
 #include "engine/records/seal.hpp"
 
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <optional>
 #include <system_error>
 #include <unistd.h>
 
@@ -242,6 +236,10 @@ OpenResult resume_result(const fs::path& path, const StudyPlan& plan, const Text
 namespace {
 
 namespace fs = std::filesystem;
+
+// A cluster may run two copies of one task: a node that was cut off goes on while the scheduler
+// starts the task elsewhere, and on network file systems no lock keeps them apart. So nobody ever
+// writes a file that another process may be writing, and every byte taken over is checked.
 
 /// A name nobody else has: OUT.h5.part.HOST.PID.TIME.
 fs::path own_name(const fs::path& path) {

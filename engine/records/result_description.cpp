@@ -2,9 +2,7 @@
 #include "engine/records/result_description.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/records/columns.hpp"
 #include "engine/records/fingerprint.hpp"
-#include "engine/records/read_numbers.hpp"
 #include "engine/records/result_layout.hpp"
 #include "engine/records/run_record.hpp"
 #include "engine/visible_text.hpp"
@@ -12,13 +10,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <numeric>
 #include <optional>
-#include <span>
-#include <string>
-#include <string_view>
 
 namespace montecarta::engine {
 namespace {
@@ -177,50 +171,14 @@ StoredCell read_cell(const h5::Handle& cells, const std::string& label, std::siz
   return cell;
 }
 
-void read_axes(const h5::Handle& file, ResultDescription& result) {
-  result.runs = read_all<std::uint64_t>(file, "run", Element::u64);
-  result.times = read_all<double>(file, "time", Element::f64);
-  result.scan_times = read_all<double>(file, "scan", Element::f64);
-  result.scan_steps = read_all<std::uint32_t>(file, "scan_step", Element::u32);
-  result.scan_rows = read_all<std::uint32_t>(file, "scan_row", Element::u32);
-  if (h5::has(file, "joint_scan")) {
-    result.joint_scans = read_all<std::uint32_t>(file, "joint_scan", Element::u32);
-  }
-}
-
-void read_scenario(const h5::Handle& file, ResultDescription& result) {
-  const h5::Handle group = h5::open_group(file, "scenario");
-  result.scenario = h5::texts(group);
-  h5::read(h5::open_dataset(group, "start"), Element::f64,
-           std::as_writable_bytes(std::span(&result.start, 1)));
-  result.landmarks = read_points(group, "landmarks");
-  result.waypoints = read_points(group, "waypoints");
-  result.references = read_references(group);
-  result.drives = read_own_drives(group);
-}
-
-void read_provenance(const h5::Handle& file, ResultDescription& result) {
-  const h5::Handle group = h5::open_group(file, "provenance");
-  result.provenance = h5::texts(group);
-  std::erase_if(result.provenance, [](const auto& pair) { return pair.first == "study_sha256"; });
-  result.study_sha256 = h5::text(group, "study_sha256");
-  result.study_text = h5::read_text(h5::open_dataset(group, "study"));
-}
-
 }  // namespace
 
 ResultDescription read_description(const h5::Handle& file, const std::filesystem::path& path) {
   expect_result_file(file, path);
   ResultDescription result;
-  result.study_name = h5::text(file, "study");
-  result.title = h5::text(file, "title");
-  result.seed = h5::number(file, "seed");
-  result.study_runs = h5::number(file, "runs");
-  read_axes(file, result);
-  read_scenario(file, result);
+  read_schema(file, result);
   result.has_truth = h5::has(file, "truth");
   result.own_landmarks = result.has_truth && h5::has(h5::open_group(file, "truth"), "landmarks");
-  read_provenance(file, result);
   const h5::Handle cells = h5::open_group(file, "cells");
   for (const std::string& label : h5::members(cells))
     result.cells.push_back(read_cell(cells, label, result.runs.size()));

@@ -5,7 +5,6 @@
 #include "engine/records/h5.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/result_layout.hpp"
-#include "engine/records/run_record.hpp"
 #include "engine/records/seal.hpp"
 #include "engine/visible_text.hpp"
 

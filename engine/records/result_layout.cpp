@@ -3,8 +3,6 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
-#include "engine/records/h5.hpp"
-#include "engine/records/run_record.hpp"
 
 #include <algorithm>
 #include <array>
@@ -196,75 +194,6 @@ void add_index_scale(const h5::Handle& parent, const std::string& name, std::siz
 
 namespace {
 
-using Points = std::vector<std::pair<double, double>>;
-
-void put_root(const h5::Handle& file, const ResultDescription& result) {
-  h5::put_text(file, "filetype", std::string(format::kFiletype));
-  h5::put_numbers(file, "format_version", std::array{format::kMajor, format::kMinor});
-  h5::put_text(file, "title", result.title);
-  h5::put_text(file, "study", result.study_name);
-  h5::put_numbers(file, "seed", std::array{result.seed});
-  h5::put_numbers(file, "runs", std::array{result.study_runs});
-}
-
-void add_indices(const h5::Handle& file, const std::string& name, const std::string& dimension,
-                 const std::vector<std::uint32_t>& values, const std::string& long_name,
-                 const Scales& scales) {
-  const auto dataset =
-      add_dataset(file, name, Element::u32, {values.size()}, {dimension}, {"1", long_name}, scales);
-  h5::write(dataset, Element::u32, values.data());
-}
-
-void add_joint_axis(const h5::Handle& file, const ResultDescription& result, Scales& scales) {
-  if (result.joint_scans.empty()) return;
-  std::vector<double> times;
-  for (const std::uint32_t scan : result.joint_scans) times.push_back(result.scan_times[scan]);
-  add_scale(file, "joint", times, {"s", "time of the joint estimate"}, scales);
-  add_indices(file, "joint_scan", "joint", result.joint_scans, "scan of the joint estimate",
-              scales);
-}
-
-void add_axes(const h5::Handle& file, const ResultDescription& result, Scales& scales) {
-  add_scale(file, "run", result.runs, {"1", "number of the run in the study"}, scales);
-  add_scale(file, "time", result.times, {"s", "time of the estimate"}, scales);
-  add_scale(file, "scan", result.scan_times, {"s", "time of the scan"}, scales);
-  const std::string components = "component of a pose: 0 x, 1 y, 2 heading";
-  const std::string coordinates = "coordinate of a point: 0 x, 1 y";
-  add_index_scale(file, "component", 3, {"1", components}, scales);
-  add_index_scale(file, "component_column", 3, {"1", components}, scales);
-  add_index_scale(file, "coordinate", 2, {"1", coordinates}, scales);
-  add_index_scale(file, "coordinate_column", 2, {"1", coordinates}, scales);
-  add_index_scale(file, "character", kFailureReasonBytes, {"1", "place in a text"}, scales);
-  add_indices(file, "scan_step", "scan", result.scan_steps,
-              "control step after which the scan is taken", scales);
-  add_indices(file, "scan_row", "scan", result.scan_rows, "row of time at which the scan is taken",
-              scales);
-  add_joint_axis(file, result, scales);
-}
-
-void add_points(const h5::Handle& group, const std::string& one, const Points& points,
-                const std::string& long_name, Scales& scales) {
-  static_assert(sizeof(Points::value_type) == 2 * sizeof(double));
-  if (points.empty()) return;
-  add_index_scale(group, one, points.size(), {"1", "identity of the " + one}, scales);
-  const auto dataset = add_dataset(group, one + "s", Element::f64, {points.size(), 2},
-                                   {one, "coordinate"}, {"m", long_name}, scales);
-  h5::write(dataset, Element::f64, points.data());
-}
-
-void add_scenario(const h5::Handle& file, const ResultDescription& result, Scales& scales) {
-  static_assert(sizeof(Pose) == 3 * sizeof(double));
-  const h5::Handle group = h5::create_group(file, "scenario");
-  for (const auto& [name, value] : result.scenario) h5::put_text(group, name, value);
-  const auto start = add_dataset(group, "start", Element::f64, {3}, {"component"},
-                                 {"m, m, rad", "pose before the first step"}, scales);
-  h5::write(start, Element::f64, &result.start);
-  add_points(group, "landmark", result.landmarks, "true position of the landmark", scales);
-  add_points(group, "waypoint", result.waypoints, "position of the way-point", scales);
-  add_references(group, result.references, scales);
-  add_own_drives(group, result.drives, scales);
-}
-
 /// Bookkeeping must not depend on what happens to lie in the new file.
 void write_zeros(const h5::Handle& dataset, Element element, std::size_t count) {
   const std::vector<std::byte> zeros(count * size_of(element));
@@ -356,30 +285,22 @@ void add_timing(const h5::Handle& file, const ResultDescription& result, const S
   }
 }
 
-void add_provenance(const h5::Handle& file, const ResultDescription& result) {
-  const h5::Handle group = h5::create_group(file, "provenance");
-  for (const auto& [name, value] : result.provenance) h5::put_text(group, name, value);
-  h5::put_text(group, "study_sha256", result.study_sha256);
-  add_text(group, "study", result.study_text, result.study_text.size(),
-           {"1", "study file with everything filled in"});
-  add_text(
-      group, "sittings", "", format::kSittingsBytes,
-      {"1", "one line for each resumption of the work: what was different from its beginning"});
-}
-
 }  // namespace
 
 void lay_out(const std::filesystem::path& path, const ResultDescription& result) {
   h5::Handle file = h5::create_file(path);
   Scales scales;
-  put_root(file, result);
-  add_axes(file, result, scales);
-  add_scenario(file, result, scales);
-  if (result.has_truth) add_truth(file, result, scales);
-  const h5::Handle cells = h5::create_group(file, "cells");
-  for (const StoredCell& cell : result.cells) add_cell(cells, cell, result.runs.size(), scales);
-  add_timing(file, result, scales);
-  add_provenance(file, result);
+  h5::put_text(file, "filetype", std::string(format::kFiletype));
+  h5::put_numbers(file, "format_version", std::array{format::kMajor, format::kMinor});
+  write_schema(file, result, scales, [&] {
+    if (result.has_truth) add_truth(file, result, scales);
+    const h5::Handle cells = h5::create_group(file, "cells");
+    for (const StoredCell& cell : result.cells) add_cell(cells, cell, result.runs.size(), scales);
+    add_timing(file, result, scales);
+  });
+  add_text(
+      h5::open_group(file, "provenance"), "sittings", "", format::kSittingsBytes,
+      {"1", "one line for each resumption of the work: what was different from its beginning"});
   scales.clear();
   h5::close_file(std::move(file));
 }

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -95,10 +96,6 @@ inline constexpr std::uint64_t kMinor = 8;           ///< grows when something i
 inline constexpr std::size_t kSittingsBytes = 4096;  ///< room for the log of resumptions
 /// Fact of /provenance: --force allowed finishing to replace what had the final name.
 inline constexpr std::string_view kReplaces = "replaces";
-/// Group of /scenario, with one group for each independent measurement of the path.
-inline constexpr const char* kReferences = "references";
-/// Group of /scenario, with one group for each run where every run is a recorded drive of its own.
-inline constexpr const char* kDrives = "drives";
 }  // namespace format
 
 /// Creates at `path` a complete, closed result file in which every run is missing: all groups,
@@ -106,15 +103,13 @@ inline constexpr const char* kDrives = "drives";
 /// fails.
 void lay_out(const std::filesystem::path& path, const ResultDescription& description);
 
-/// Group `references` in `scenario`, or in one of its drives; nothing where there are none.
-void add_references(const h5::Handle& scenario, const std::vector<ReferencePath>& references,
-                    Scales& scales);
-/// Group `drives` in `scenario`, with a group for each; nothing where there are none.
-void add_own_drives(const h5::Handle& scenario, const std::vector<OwnDrive>& drives,
-                    Scales& scales);
+/// Writes all that a result file says of itself into a new file. `add_runs` adds truth, cells and
+/// timing, whose scales are in `scales` then.
+void write_schema(const h5::Handle& file, const ResultDescription& description, Scales& scales,
+                  const std::function<void()>& add_runs);
 
-std::vector<ReferencePath> read_references(const h5::Handle& scenario);
-std::vector<OwnDrive> read_own_drives(const h5::Handle& scenario);
+/// Reads the same. Throws StudyError where something that must be there cannot be read.
+void read_schema(const h5::Handle& file, ResultDescription& description);
 
 /// Throws StudyError unless all that a file says of itself goes together: every number in it that
 /// is an index, a count or a time of others is one, and all columns of a cell have the same axes.

@@ -2,7 +2,6 @@
 #include "engine/records/run_record.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/records/columns.hpp"
 #include "engine/records/fingerprint.hpp"
 
 #include <algorithm>

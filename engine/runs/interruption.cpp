@@ -3,7 +3,6 @@
 
 #include "engine/errors.hpp"
 
-#include <atomic>
 #include <unistd.h>
 
 namespace montecarta::engine {

@@ -2,8 +2,6 @@
 #include "engine/runs/monte_carlo.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/runs/interruption.hpp"
-#include "engine/runs/progress.hpp"
 #include "engine/runs/worker.hpp"
 
 #include <algorithm>

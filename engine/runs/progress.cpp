@@ -3,15 +3,13 @@
 
 #include "engine/runs/monte_carlo.hpp"
 
-#include <sys/ioctl.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <string_view>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace montecarta::engine {

@@ -2,7 +2,6 @@
 #include "engine/runs/worker.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/threads/cpu_clock.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,15 +3,14 @@
 
 #include "engine/errors.hpp"
 
+#include <omp.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <atomic>
 #include <exception>
-#include <omp.h>
 
 namespace montecarta::engine {
 namespace {

@@ -10,7 +10,6 @@
 #include <fstream>
 #include <sched.h>
 #include <sstream>
-#include <string>
 #include <thread>
 
 namespace montecarta::engine {

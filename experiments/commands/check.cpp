@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "experiments/commands/check.hpp"
+
 #include "analysis/output/number_text.hpp"
 #include "analysis/output/text_table.hpp"
 #include "engine/records/fingerprint.hpp"
@@ -6,12 +8,157 @@
 #include "engine/records/run_record.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
-#include "experiments/commands/trial.hpp"
+
+#include <sys/resource.h>
 
 #include <algorithm>
+#include <chrono>
+#include <fstream>
 #include <iostream>
+#include <limits>
+#include <malloc.h>
+#include <new>
+#include <set>
+#include <unistd.h>
 
 namespace montecarta::experiments {
+namespace {
+
+constexpr double kTrialSeconds = 0.25;
+
+/// [bytes] of memory that this process has touched and not given back.
+double resident_bytes() {
+  std::ifstream file("/proc/self/statm");
+  double all = 0.0, resident = 0.0;
+  file >> all >> resident;
+  return resident * static_cast<double>(::sysconf(_SC_PAGESIZE));
+}
+
+/// While one lives, this process gets no more memory than the machine has free, and is told so
+/// instead of being killed.
+class WithinFreeMemory {
+ public:
+  WithinFreeMemory() {
+    ::getrlimit(RLIMIT_AS, &before_);
+    std::ifstream file("/proc/self/statm");
+    double pages = 0.0;
+    file >> pages;
+    const auto page = static_cast<double>(::sysconf(_SC_PAGESIZE));
+    const double free = static_cast<double>(::sysconf(_SC_AVPHYS_PAGES)) * page;
+    struct rlimit within = before_;
+    within.rlim_cur = std::min(before_.rlim_cur, static_cast<rlim_t>(pages * page + 0.9 * free));
+    ::setrlimit(RLIMIT_AS, &within);
+  }
+  ~WithinFreeMemory() { ::setrlimit(RLIMIT_AS, &before_); }
+  WithinFreeMemory(const WithinFreeMemory&) = delete;
+  WithinFreeMemory& operator=(const WithinFreeMemory&) = delete;
+
+ private:
+  struct rlimit before_ {};
+};
+
+/// One step as the engine takes it; `scan` is the next scan of the itinerary.
+void step_through(SlamFilter& filter, const StudyPlan& plan, const Drive& drive, std::size_t k,
+                  std::size_t& scan) {
+  const Itinerary& itinerary = plan.drives->itinerary_of(plan.first_run);
+  const StepContext context(plan.seed, plan.first_run, static_cast<std::uint32_t>(k),
+                            Parallel::serial());
+  const Control& control = drive.controls[k];
+  if (!control.stands(itinerary.moving_controls))
+    filter.predict(context, control, itinerary.duration(k));
+  if (scan < itinerary.scans() && itinerary.scan_step[scan] == k)
+    filter.update(context, drive.scan(scan++));
+  (void)filter.estimate();
+}
+
+/// How many landmarks are detected in the first `scans` scans.
+double landmarks_in(const Drive& drive, std::size_t scans) {
+  std::set<std::int32_t> seen;
+  for (std::size_t s = 0; s < scans; ++s) {
+    for (const Detection& detection : drive.scan(s)) seen.insert(detection.identity);
+  }
+  return static_cast<double>(seen.size());
+}
+
+/// Memory after some steps.
+struct Held {
+  std::size_t steps = 0;
+  double bytes = 0.0;
+};
+
+/// What a filter holds at the end of a drive, from what it held at two times: it grows with the
+/// landmarks of each particle's map, or with their square in one covariance; one that keeps its
+/// path grows with the steps.
+double bytes_at_end(const Cell& cell, const Itinerary& itinerary, const Drive& drive,
+                    const Held& half, const Held& end) {
+  const auto landmarks_by = [&](std::size_t steps) {
+    std::size_t scans = 0;
+    while (scans < itinerary.scans() && itinerary.scan_step[scans] < steps) ++scans;
+    return landmarks_in(drive, scans);
+  };
+  const double before = landmarks_by(half.steps), now = landmarks_by(end.steps);
+  const double all = landmarks_by(itinerary.steps());
+  const double by_steps = static_cast<double>(itinerary.steps() - end.steps) /
+                          static_cast<double>(std::max<std::size_t>(end.steps - half.steps, 1));
+  double rest = by_steps;  // of the growth between the two times
+  if (now > before && cell.particles > 0) rest = (all - now) / (now - before);
+  if (now > before && cell.particles == 0)
+    rest = std::max(by_steps, (all * all - now * now) / (now * now - before * before));
+  return end.bytes + rest * std::max(0.0, end.bytes - half.bytes);
+}
+
+}  // namespace
+
+std::optional<Trial> trial_of(const Cell& cell, const StudyPlan& plan, const Drive& drive) {
+  using Clock = std::chrono::steady_clock;
+  const Itinerary& itinerary = plan.drives->itinerary_of(plan.first_run);
+  const std::size_t steps = itinerary.steps();
+  const WithinFreeMemory limit;
+  ::malloc_trim(0);  // what an earlier trial left would hide what this one takes
+  const double before = resident_bytes();
+  Clock::time_point begin;
+  const auto passed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  double first = 0.0, all = 0.0;
+  Held half, end;
+  std::size_t k = 0;
+  try {
+    const std::unique_ptr<SlamFilter> filter = cell.make_filter();
+    std::size_t scan = 0;
+    filter->start(itinerary.start);  // a program starts with the first step of its first run
+    step_through(*filter, plan, drive, 0, scan);
+    scan = 0;
+    begin = Clock::now();
+    filter->start(itinerary.start);
+    for (; k < steps && all < kTrialSeconds; ++k) {
+      step_through(*filter, plan, drive, k, scan);
+      all = passed();
+      if (k == 0) first = all;
+      if (half.steps == 0 && scan > 0 && 2.0 * all > kTrialSeconds) {
+        half = {k + 1, resident_bytes() - before};
+      }
+    }
+    end = {k, resident_bytes() - before};
+  } catch (const std::bad_alloc&) {
+    return Trial{.seconds = 0.0, .bytes = std::numeric_limits<double>::infinity()};
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+  const double share =
+      static_cast<double>(steps - 1) / static_cast<double>(std::max<std::size_t>(k, 2) - 1);
+  return Trial{.seconds = first + (all - first) * share,
+               .bytes = bytes_at_end(cell, itinerary, drive, half, end)};
+}
+
+double runs_like_the_first(const StudyPlan& plan) {
+  if (plan.drives->own_drives() == 0) return static_cast<double>(plan.runs_here());
+  const auto steps = [&](std::uint64_t run) {
+    return static_cast<double>(plan.drives->itinerary_of(run).steps());
+  };
+  double all = 0.0;
+  for (std::uint64_t run = plan.first_run; run < plan.last_run; ++run) all += steps(run);
+  return all / steps(plan.first_run);
+}
+
 namespace {
 
 std::string memory_text(double bytes) {

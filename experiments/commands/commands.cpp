@@ -4,7 +4,6 @@
 #include "analysis/output/text_table.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/provenance.hpp"
-#include "experiments/commands/arguments.hpp"
 #include "experiments/commands/output_guard.hpp"
 #include "experiments/text/words.hpp"
 

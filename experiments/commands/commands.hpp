@@ -4,7 +4,6 @@
 #include "experiments/commands/arguments.hpp"
 
 #include <functional>
-#include <span>
 #include <string>
 #include <vector>
 

@@ -6,7 +6,6 @@
 #include "experiments/external/external_filter.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/study/cell_spec.hpp"
-#include "experiments/study/ini_text.hpp"
 #include "experiments/study/settings.hpp"
 #include "experiments/text/words.hpp"
 #include "experiments/worlds/world.hpp"
@@ -54,8 +53,8 @@ std::string fallback_text(const Setting& setting) {
 std::string meaning_of(const Setting& setting) {
   std::string meaning = setting.meaning;
   const bool is_of_all =
-      setting.chosen == (setting.chooser == "sensor" ? sensor_names() : vehicle_names());
-  if (!setting.chosen.empty() && !is_of_all) meaning += " (" + joined(setting.chosen) + ")";
+      setting.applies_to == (setting.chooser == "sensor" ? sensor_names() : vehicle_names());
+  if (!setting.applies_to.empty() && !is_of_all) meaning += " (" + joined(setting.applies_to) + ")";
   if (!setting.kinds.empty()) meaning += " (" + joined(setting.kinds) + ")";
   return meaning;
 }

@@ -8,7 +8,6 @@
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>

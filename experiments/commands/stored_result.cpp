@@ -6,7 +6,6 @@
 #include "engine/records/open_result.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/provenance.hpp"
-#include "experiments/commands/arguments.hpp"
 #include "experiments/judging/judged_study.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
 #include "experiments/text/words.hpp"

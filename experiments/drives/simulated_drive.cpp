@@ -3,12 +3,10 @@
 
 #include "engine/errors.hpp"
 #include "engine/numbers/real.hpp"
-#include "engine/random/stream.hpp"
 #include "experiments/text/words.hpp"
 #include "filters/models/ackermann.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace montecarta::experiments {
 namespace {
@@ -50,7 +48,7 @@ Detection SimulatedSensor::noisy(const Eigen::Vector2d& exact, std::int32_t iden
     double value = exact(at);
     if (noise != nullptr) value += sigma_(at) * noise->normal();
     if (quantity == Quantity::range) value = std::max(value, kLeastRange);
-    detection[i++] = is_angle(quantity) ? wrap(value) : value;
+    detection[i++] = wraps(quantity) ? wrap(value) : value;
   }
   return detection;
 }

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/step_context.hpp"
-
-#include <sys/types.h>
+#include "engine/core/slam_filter.hpp"
 
 #include <cstddef>
 #include <filesystem>
@@ -11,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <sys/types.h>
 
 namespace montecarta::experiments {
 

@@ -2,11 +2,9 @@
 #include "experiments/external/external_filter.hpp"
 
 #include "engine/errors.hpp"
-#include "experiments/external/messages.hpp"
 #include "experiments/text/words.hpp"
 
 #include <utility>
-#include <vector>
 
 namespace montecarta::experiments {
 

@@ -101,6 +101,9 @@ std::string map_message(std::uint64_t id) { return json_message(id, "map").dump(
 
 namespace {
 
+/// What a program answers, by name: an answer may have very many members.
+using Answer = nlohmann::json;
+
 constexpr int kDeepest = 4;  // of brackets within brackets; no answer needs more
 /// Of a correlation matrix: what rounding leaves of an eigenvalue that is zero.
 constexpr double kEigenvalueRounding = 1e-9;
@@ -123,18 +126,18 @@ bool is_too_deep(std::string_view line) {
   return false;
 }
 
-Json parsed_answer(std::string_view line) {
+Answer parsed_answer(std::string_view line) {
   if (is_too_deep(line)) refuse_answer("answer has too many brackets within brackets");
-  Json answer = Json::parse(line, nullptr, false);
+  Answer answer = Answer::parse(line, nullptr, false);
   if (!answer.is_discarded()) return answer;
   if (names_no_number(line)) refuse_answer("answer holds NaN or Infinity");
   refuse_answer("answer is not JSON: " + excerpt(line));
 }
 
 /// The object in a line that answers message `id` and has no members but those.
-Json object_in(std::string_view line, std::uint64_t id,
-               std::initializer_list<std::string_view> members) {
-  Json answer = parsed_answer(line);
+Answer object_in(std::string_view line, std::uint64_t id,
+                 std::initializer_list<std::string_view> members) {
+  Answer answer = parsed_answer(line);
   if (!answer.is_object()) refuse_answer("answer is no JSON object: " + excerpt(line));
   const auto number = answer.find("id");
   if (number == answer.end() || !number->is_number_unsigned() || *number != id)
@@ -146,7 +149,7 @@ Json object_in(std::string_view line, std::uint64_t id,
   return answer;
 }
 
-double finite_number(const Json& value, const std::string& what) {
+double finite_number(const Answer& value, const std::string& what) {
   if (value.is_null()) refuse_answer(what + " is not a number");
   if (!value.is_number()) refuse_answer(what + " is not a number: " + excerpt(value.dump()));
   const double number = value.get<double>();
@@ -154,13 +157,13 @@ double finite_number(const Json& value, const std::string& what) {
   return number;
 }
 
-const Json& member(const Json& answer, const char* name) {
+const Answer& member(const Answer& answer, const char* name) {
   const auto found = answer.find(name);
   if (found == answer.end()) refuse_answer(std::string("answer has no ") + name);
   return *found;
 }
 
-void expect_array(const Json& value, std::size_t size, const std::string& what) {
+void expect_array(const Answer& value, std::size_t size, const std::string& what) {
   if (value.is_array() && value.size() == size) return;
   refuse_answer(what + " is no array of " + std::to_string(size));
 }
@@ -185,11 +188,11 @@ void expect_covariance(const Eigen::MatrixXd& C, const std::string& what) {
   if (raised.llt().info() != Eigen::Success) refuse_answer(what + " is not positive definite");
 }
 
-Eigen::Matrix3d covariance_in(const Json& value) {
+Eigen::Matrix3d covariance_in(const Answer& value) {
   expect_array(value, 3, "covariance");
   Eigen::Matrix3d C;
   for (int i = 0; i < 3; ++i) {
-    const Json& row = value[static_cast<std::size_t>(i)];
+    const Answer& row = value[static_cast<std::size_t>(i)];
     expect_array(row, 3, "a row of the covariance");
     for (int j = 0; j < 3; ++j)
       C(i, j) = finite_number(row[static_cast<std::size_t>(j)], "covariance");
@@ -206,12 +209,12 @@ Eigen::Matrix3d covariance_in(const Json& value) {
   return C;
 }
 
-double optional_number(const Json& answer, const char* name) {
+double optional_number(const Answer& answer, const char* name) {
   const auto found = answer.find(name);
   return found == answer.end() ? 0.0 : finite_number(*found, name);
 }
 
-std::uint32_t optional_count(const Json& answer, const char* name) {
+std::uint32_t optional_count(const Answer& answer, const char* name) {
   const auto found = answer.find(name);
   if (found == answer.end()) return 0;
   const bool fits = found->is_number_unsigned() &&
@@ -222,7 +225,7 @@ std::uint32_t optional_count(const Json& answer, const char* name) {
 }
 
 /// One row of a map: number, x, y, xx, xy, yy.
-std::pair<std::size_t, LandmarkEstimate> landmark_in(const Json& row) {
+std::pair<std::size_t, LandmarkEstimate> landmark_in(const Answer& row) {
   expect_array(row, 6, "a landmark of the map");
   if (!row[0].is_number_unsigned())
     refuse_answer("a landmark's number is no whole number from 0: " + excerpt(row[0].dump()));
@@ -239,9 +242,9 @@ std::pair<std::size_t, LandmarkEstimate> landmark_in(const Json& row) {
 void read_started(std::string_view line, std::uint64_t id) { object_in(line, id, {}); }
 
 ProgramEstimate read_estimate(std::string_view line, std::uint64_t id) {
-  const Json answer = object_in(
+  const Answer answer = object_in(
       line, id, {"mean", "covariance", "log_likelihood", "nis", "nis_dof", "ess", "map_size"});
-  const Json& mean = member(answer, "mean");
+  const Answer& mean = member(answer, "mean");
   expect_array(mean, 3, "mean");
   ProgramEstimate estimate;
   estimate.pose.mean = {.x = finite_number(mean[0], "mean"),
@@ -258,10 +261,10 @@ ProgramEstimate read_estimate(std::string_view line, std::uint64_t id) {
 
 void read_map(std::string_view line, std::uint64_t id, Association association,
               std::span<std::optional<LandmarkEstimate>> landmarks) {
-  const Json answer = object_in(line, id, {"map"});
-  const Json& map = member(answer, "map");
+  const Answer answer = object_in(line, id, {"map"});
+  const Answer& map = member(answer, "map");
   if (!map.is_array()) refuse_answer("map is no array");
-  for (const Json& row : map) {
+  for (const Answer& row : map) {
     const auto [number, landmark] = landmark_in(row);
     if (number >= landmarks.size()) {
       if (association == Association::nearest) continue;

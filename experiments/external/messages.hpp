@@ -15,7 +15,7 @@
 namespace montecarta::experiments {
 
 // What a program is told, one line of JSON a message; EXTERNAL_FILTERS.md describes them. Numbers
-// are the shortest text that reads back as the same bits.
+// are texts that read back as the same bits.
 
 /// One control step: the controls of the vehicle, then its duration [s].
 using ControlRow = std::vector<double>;

@@ -6,7 +6,6 @@
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/posix_file.hpp"
 #include "experiments/files/files.hpp"
-#include "experiments/judging/state_columns.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

@@ -4,7 +4,6 @@
 #include "analysis/metrics/nees.hpp"
 #include "engine/errors.hpp"
 #include "engine/numbers/angle.hpp"
-#include "experiments/files/csv_rows.hpp"
 #include "experiments/files/files.hpp"
 #include "experiments/text/words.hpp"
 
@@ -15,8 +14,6 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <optional>
-#include <string>
 #include <string_view>
 
 namespace montecarta::experiments {

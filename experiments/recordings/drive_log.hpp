@@ -7,7 +7,6 @@
 
 #include <Eigen/Core>
 
-#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>

@@ -3,9 +3,7 @@
 
 #include "analysis/output/csv_file.hpp"
 #include "engine/errors.hpp"
-#include "experiments/files/csv_rows.hpp"
-#include "experiments/recordings/drive_log.hpp"
-#include "experiments/recordings/log_csv_names.hpp"
+#include "experiments/files/files.hpp"
 #include "experiments/text/words.hpp"
 #include "filters/models/vehicle_settings.hpp"
 

@@ -3,7 +3,7 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
-#include "experiments/recordings/log_csv_names.hpp"
+#include "experiments/recordings/log_csv.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
@@ -11,7 +11,6 @@
 #include <iterator>
 #include <limits>
 #include <optional>
-#include <string>
 #include <system_error>
 #include <utility>
 

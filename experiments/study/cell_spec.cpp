@@ -4,7 +4,6 @@
 #include "engine/errors.hpp"
 #include "experiments/external/external_filter.hpp"
 #include "experiments/study/make_drives.hpp"
-#include "experiments/study/settings.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "experiments/study/ini_text.hpp"
 #include "experiments/study/settings.hpp"
 #include "filters/factory.hpp"
 

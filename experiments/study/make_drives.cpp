@@ -5,7 +5,6 @@
 #include "experiments/drives/simulated_drive.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
 #include "experiments/text/words.hpp"
-#include "filters/models/vehicle_settings.hpp"
 
 #include <algorithm>
 #include <cmath>

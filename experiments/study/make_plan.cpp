@@ -2,7 +2,7 @@
 #include "experiments/study/make_plan.hpp"
 
 #include "engine/errors.hpp"
-#include "engine/random/normals.hpp"
+#include "engine/random/stream.hpp"
 #include "engine/records/columns.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/recordings/recorded_drive.hpp"

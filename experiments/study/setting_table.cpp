@@ -62,7 +62,7 @@ Setting deviation_setting(const char* section, Quantity quantity, double least) 
   Setting setting{component_of(quantity).sigma, section};
   setting.least = least;
   setting.chooser = "sensor";
-  setting.chosen = sensors_with(quantity);
+  setting.applies_to = sensors_with(quantity);
   return setting;
 }
 
@@ -111,7 +111,7 @@ void add_drive(std::vector<Setting>& table) {
   Setting pilot = choice(s, "pilot", {"closed_loop", "open_loop"},
                          "steers by the true pose, or takes the controls of the noise-free drive");
   pilot.chooser = "noise";
-  pilot.chosen = {"matched"};
+  pilot.applies_to = {"matched"};
   add(pilot);
   add(choice(s, "map", {"fixed", "random"},
              "landmarks where the world has them, or displaced anew in every run"));

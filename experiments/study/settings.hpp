@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "experiments/study/ini_text.hpp"
-#include "filters/setup/filter_options.hpp"
+#include "filters/setup/filter_setup.hpp"
 
 #include <cstdint>
 #include <map>
@@ -15,6 +14,30 @@
 
 namespace montecarta::experiments {
 
+/// One `key = value` of an INI text, and where it stands.
+struct IniEntry {
+  std::string section;
+  std::string key;
+  std::string value;
+  std::string place;  ///< "file:line"
+};
+
+/// A `[section]` line, and where it stands.
+struct IniSection {
+  std::string name;
+  std::string place;
+};
+
+/// What an INI text says, in its order.
+struct IniText {
+  std::vector<IniSection> sections;
+  std::vector<IniEntry> entries;
+};
+
+/// Reads INI: sections in brackets, `key = value`, # begins a comment. `name` stands before line
+/// numbers. Throws StudyError at stray text and at entries before the first section.
+IniText read_ini(const std::string& text, const std::string& name);
+
 inline constexpr const char* kFromScenario = "scenario";
 inline constexpr const char* kRequired = "(required)";
 inline constexpr const char* kUsualWithin = "1.1";  ///< kUsualMargin of the analysis
@@ -26,7 +49,7 @@ struct Setting : Parameter {
   /// Kinds of scenario (scenario.kind) that it says something of; empty: all.
   std::vector<std::string> kinds = {};
   /// "vehicle", "sensor" or "noise": the setting of the same section that decides whether this one
-  /// says something, by its values in `chosen`; empty: always.
+  /// says something, by its values in `applies_to`; empty: always.
   std::string chooser = {};
   /// (kind of scenario, its fallback) where that differs. kFromScenario: the scenario's value of
   /// that key; kRequired: must be given.

@@ -3,7 +3,6 @@
 
 #include "engine/numbers/angle.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace montecarta::filters {

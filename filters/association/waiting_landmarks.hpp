@@ -52,7 +52,7 @@ class WaitingLandmarks {
   /// that are kept: whether they cross_well() or cross() at all, and the squared_distance() of the
   /// detection from either side.
   template <class Pair>
-  static bool advances(Waiting& waiting, const Pair& pair) {
+  static bool can_advance(Waiting& waiting, const Pair& pair) {
     switch (waiting.stage) {
       case Stage::unseen:
         return true;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/numbers/real.hpp"
-#include "engine/random/normals.hpp"
+#include "engine/random/stream.hpp"
 
 #include <array>
 #include <cstddef>

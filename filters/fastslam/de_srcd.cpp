@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/fastslam/de_srcd.hpp"
 
-#include "filters/setup/filter_options.hpp"
+#include "filters/setup/filter_setup.hpp"
 
 #include <string>
-#include <vector>
 
 namespace montecarta::filters {
 namespace {

@@ -136,7 +136,7 @@ class InitialisationOnPaths {
   bool advance(const Detection& detection, const std::vector<BasicPose<Real>>& poses) {
     Waiting& waiting = waiting_.entry(detection.identity);
     open(waiting.kept);
-    if (!waiting_.advances(waiting, Pairs{*this, waiting.kept, detection, poses})) return false;
+    if (!waiting_.can_advance(waiting, Pairs{*this, waiting.kept, detection, poses})) return false;
     return waiting_.advance(waiting, [&] { keep(waiting.kept, detection, poses); });
   }
 

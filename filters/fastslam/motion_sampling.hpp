@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/particles/blocks.hpp"
-#include "engine/random/normals.hpp"
+#include "engine/random/stream.hpp"
 #include "filters/fastslam/concepts.hpp"
 #include "filters/models/ackermann.hpp"
 #include "filters/moments/sigma_points.hpp"

@@ -116,10 +116,10 @@ double DelayedInitialisation::Pair::squared_distance(double side) const {
   return std::pow(detection[0] - seen->value(0), 2) / S;
 }
 
-bool DelayedInitialisation::advances(const CompressedGaussian& gaussian,
-                                     const Detection& detection) {
+bool DelayedInitialisation::can_advance(const CompressedGaussian& gaussian,
+                                        const Detection& detection) {
   Waiting& waiting = waiting_.entry(detection.identity);
-  return waiting_.advances(waiting, Pair{*this, gaussian, waiting.kept, detection});
+  return waiting_.can_advance(waiting, Pair{*this, gaussian, waiting.kept, detection});
 }
 
 /// In the place of a point that nothing is kept in, if there is one.

@@ -23,9 +23,9 @@ class DelayedInitialisation {
   /// Points of the Gaussian that are kept for a landmark, to make near.
   void add_points_of(std::int32_t identity, std::vector<std::uint32_t>& slots) const;
   /// Whether this detection can take its landmark a step further. The points are near.
-  bool advances(const CompressedGaussian& gaussian, const Detection& detection);
-  /// Takes it that step, where advances(). Returns the point that now is the landmark, if any. The
-  /// points of other landmarks may be far then.
+  bool can_advance(const CompressedGaussian& gaussian, const Detection& detection);
+  /// Takes it that step, where can_advance(). Returns the point that now is the landmark, if any.
+  /// The points of other landmarks may be far then.
   std::optional<std::uint32_t> advance(CompressedGaussian& gaussian, const Detection& detection);
 
  private:

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/joint/joint_belief.hpp"
 
-#include "filters/association/map_association.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -115,7 +113,7 @@ void JointBelief::find_advancing(Scan scan) {
   }
   gaussian_.make_near(matched_);
   for (std::size_t k = 0; k < scan.size(); ++k) {
-    if (is_fresh(k)) advancing_[k] = delayed_.advances(gaussian_, scan[k]);
+    if (is_fresh(k)) advancing_[k] = delayed_.can_advance(gaussian_, scan[k]);
   }
 }
 

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/joint/joint_filter.hpp"
 
-#include "engine/core/slam_filter.hpp"
 #include "filters/joint/joint_belief.hpp"
 #include "filters/moments/control_motion.hpp"
 #include "filters/population/population.hpp"
-#include "filters/setup/filter_options.hpp"
 
 #include <cmath>
 #include <stdexcept>

@@ -3,8 +3,6 @@
 
 #include <Eigen/Cholesky>
 
-#include <algorithm>
-
 namespace montecarta::filters {
 namespace {
 

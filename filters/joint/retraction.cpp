@@ -2,7 +2,6 @@
 #include "filters/joint/retraction.hpp"
 
 #include <array>
-#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>

@@ -3,7 +3,7 @@
 
 #include "engine/core/slam_filter.hpp"
 #include "filters/joint/map_moments.hpp"
-#include "filters/setup/filter_options.hpp"
+#include "filters/setup/filter_setup.hpp"
 
 #include <Eigen/Core>
 

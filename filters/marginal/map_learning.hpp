@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/core/step_context.hpp"
+#include "engine/core/slam_filter.hpp"
 #include "engine/particles/weights.hpp"
 #include "filters/evolution/differential_evolution.hpp"
 #include "filters/marginal/marginal_options.hpp"
@@ -14,7 +14,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <vector>
 
 namespace montecarta::filters {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/marginal/shared_map.hpp"
 
-#include "filters/moments/linearised.hpp"
-
 #include <cmath>
 
 namespace montecarta::filters {

@@ -4,7 +4,7 @@
 #include "engine/core/drive.hpp"
 #include "engine/core/pose.hpp"
 #include "engine/numbers/real.hpp"
-#include "filters/models/point.hpp"
+#include "filters/models/range_bearing.hpp"
 #include "filters/models/vehicle.hpp"
 
 namespace montecarta::models {

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 
 /// What the files of vehicles share (EQUATIONS 1). A vehicle is a struct that says how a control
 /// moves it; vehicle.hpp lists them and says what a vehicle must offer.

@@ -8,8 +8,9 @@
 
 namespace montecarta::models {
 
-/// One thing that a user may set: of a filter behind its name in a cell line, of a study in a
-/// section of its file. Keys that end in _deg are in degrees, all others in SI units.
+/// One thing that a user may set: of a filter behind its name in a cell line (an option of that
+/// filter), of a study in a section of its file (a setting). Keys that end in _deg are in degrees,
+/// all others in SI units.
 struct Parameter {
   enum class Kind : std::uint8_t {
     text,     ///< anything
@@ -31,7 +32,7 @@ struct Parameter {
   /// (scenario.noise = measured-control), if that differs.
   std::optional<std::string> fallback_if_measured = {};
   /// Vehicles or sensors that have it; empty: all.
-  std::vector<std::string> chosen = {};
+  std::vector<std::string> applies_to = {};
 };
 
 Parameter number_parameter(const char* key, const char* fallback, double least, double most,
@@ -54,7 +55,8 @@ enum class Quantity : std::uint8_t {
   left_speed
 };
 
-constexpr bool is_angle(Quantity quantity) { return quantity == Quantity::bearing; }
+/// Whether a detection of it is an angle, which wraps.
+constexpr bool wraps(Quantity quantity) { return quantity == Quantity::bearing; }
 
 /// A component as messages, logs and study files name it.
 struct Component {

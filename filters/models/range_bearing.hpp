@@ -3,12 +3,27 @@
 
 #include "engine/core/drive.hpp"
 #include "engine/core/pose.hpp"
+#include "engine/namespaces.hpp"
 #include "engine/numbers/real.hpp"
-#include "filters/models/point.hpp"
 
 #include <cmath>
 
 namespace montecarta::models {
+
+/// A place in the map frame; `Real` is double or Lanes.
+template <class Real>
+struct BasicPoint {
+  Real x{};  ///< [m]
+  Real y{};  ///< [m]
+
+  [[gnu::always_inline]] friend BasicPoint operator+(const BasicPoint& a, const BasicPoint& b) {
+    return {a.x + b.x, a.y + b.y};
+  }
+  [[gnu::always_inline]] friend BasicPoint operator-(const BasicPoint& a, const BasicPoint& b) {
+    return {a.x - b.x, a.y - b.y};
+  }
+};
+using Point = BasicPoint<double>;
 
 /// A landmark seen from a pose, or the difference of two such observations.
 template <class Real>

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/models/sensor.hpp"
 
-#include "engine/numbers/angle.hpp"
-#include "engine/numbers/real.hpp"
-
-#include <algorithm>
-
 namespace montecarta::models {
 
 Pose Mounting::pose_of(const Pose& pose) const {
@@ -104,7 +99,7 @@ std::optional<PlacedLandmark> placed_landmark(const Sensor& sensor, const Pose& 
 Wraps wraps_of(const Sensor& sensor) {
   Wraps wraps{};
   std::ranges::transform(components_of(sensor), wraps.begin(),
-                         [](Quantity quantity) { return is_angle(quantity); });
+                         [](Quantity quantity) { return models::wraps(quantity); });
   return wraps;
 }
 

@@ -10,7 +10,6 @@
 #include <Eigen/Core>
 
 #include <array>
-#include <cstddef>
 #include <optional>
 
 /// The sensors that there are (EQUATIONS 2). sensor.hpp lists them and says what one must offer.

@@ -11,7 +11,6 @@
 #include <cstddef>
 #include <span>
 #include <tuple>
-#include <type_traits>
 #include <variant>
 
 namespace montecarta::models {

@@ -53,7 +53,7 @@ template <class V>
 void add_parameter(Parameter parameter, const V& vehicle, std::vector<Parameter>& all) {
   auto found = std::ranges::find(all, parameter.key, &Parameter::key);
   if (found == all.end()) found = all.insert(found, std::move(parameter));
-  for (const char* name : vehicle.kNames) found->chosen.emplace_back(name);
+  for (const char* name : vehicle.kNames) found->applies_to.emplace_back(name);
 }
 
 /// Calls `use(key, member)` for the choice of integration of a vehicle that has it.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/moments/control_motion.hpp"
 
-#include "filters/moments/motion_increment.hpp"
-
 #include <array>
 #include <cmath>
 #include <string>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "filters/moments/motion_increment.hpp"
-#include "filters/setup/filter_options.hpp"
+#include "filters/setup/filter_setup.hpp"
 
 namespace montecarta::filters {
 

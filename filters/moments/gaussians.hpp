@@ -3,7 +3,7 @@
 
 #include "engine/core/pose.hpp"
 #include "engine/numbers/real.hpp"
-#include "engine/random/normals.hpp"
+#include "engine/random/stream.hpp"
 #include "filters/models/range_bearing.hpp"
 
 #include <Eigen/Core>

@@ -85,7 +85,7 @@ template <class Kind, class Real>
   const Real first = a.range - b.range;
   if constexpr (kHasTwoComponents<Kind>) {
     return {first, a.bearing - b.bearing};
-  } else if constexpr (is_angle(Kind::kComponents[0])) {
+  } else if constexpr (wraps(Kind::kComponents[0])) {
     return {shorter_way(first), Real(0.0)};
   } else {
     return {first, Real(0.0)};

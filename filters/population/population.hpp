@@ -16,7 +16,6 @@
 #include <array>
 #include <cstddef>
 #include <numeric>
-#include <string>
 #include <utility>
 #include <vector>
 

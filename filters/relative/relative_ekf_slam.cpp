@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/relative/relative_ekf_slam.hpp"
 
-#include "filters/association/map_association.hpp"
 #include "filters/joint/joint_gaussian.hpp"
-#include "filters/setup/filter_options.hpp"
+#include "filters/setup/filter_setup.hpp"
 
 #include <algorithm>
 

@@ -5,10 +5,8 @@
 #include "filters/models/sensor_kinds.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <tuple>
-#include <utility>
 
 namespace montecarta::filters {
 namespace {

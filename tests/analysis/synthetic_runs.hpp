@@ -9,7 +9,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>

@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <map>
-#include <string>
 #include <vector>
 
 namespace montecarta::analysis {

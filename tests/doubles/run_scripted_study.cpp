@@ -6,7 +6,6 @@
 
 #include <cstdio>
 #include <exception>
-#include <string>
 
 int main(int n_arguments, char** arguments) {
   using namespace montecarta::engine;

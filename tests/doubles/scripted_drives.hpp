@@ -4,7 +4,6 @@
 #include "engine/core/drive.hpp"
 #include "engine/random/stream.hpp"
 
-#include <cmath>
 #include <cstdint>
 
 namespace montecarta::engine {

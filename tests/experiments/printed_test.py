@@ -111,12 +111,13 @@ class Printed(unittest.TestCase):
                 "value = cell=a metric=share_inside_pose printed=0.5\n"
                 "value = cell=b metric=stays_above_from_pose printed=0.5\n"
                 "claim = stays_above_from_pose b > a\nclaim = share_inside_pose a > b\n"
-                "claim = share_above_pose b ~ b\n")
+                )
         self.assertEqual(self.verdicts(text, batches[0], batches),
                          ["agrees", "not reproduced: 1.1e+02 times smaller", "agrees",
                           "not reproduced: never", "holds in 2 of 2 batches",
-                          "contradicted in 2 of 2 batches",
-                          "undecided: holds in 0 of 2 batches, contradicted in 0"])
+                          "contradicted in 2 of 2 batches"])
+        self.assertEqual(self.verdicts("claim = stays_above_from_pose b > a\n", batches[0]),
+                         ["holds, over all runs"])
         # Without a printed band: of 30 runs and 3 components, [2.19, 3.93] as well.
         self.assertAlmostEqual(batches[0].by_band("a", "share_inside_pose", {}), 0.25)
         self.assertAlmostEqual(batches[0].by_band("a", "share_inside_pose", {"pose": (0, 9)}), 1.0)
@@ -125,7 +126,10 @@ class Printed(unittest.TestCase):
         for line in ("quote = 3", "value = cell=a printed=1", "value = cell=a metric=b printed=one",
                      "value = cell=a metric=share_inside_pose printed=1 relative_to=b",
                      "value = cell=a cell=b metric=c printed=1", "claim = nees a < ", "runs = many",
-                     "claim = nees a = b", "band = pose 3 2", "value = cell=a note=\"open"):
+                     "claim = nees a = b", "band = pose 3 2", "source = again", "runs = -3",
+                     "claim = share_inside_pose a ~ b",
+                     "value = cell=a metric=b printed=inf",
+                     "value = cell=a metric=b printed=1 runs=0", "value = cell=a note=\"open"):
             with self.assertRaisesRegex(printed.PrintedError, "paper.printed:2: "):
                 self.says("source = A paper\n" + line)
 

@@ -78,7 +78,7 @@ inline void look_around(const SmallWorldSettings& settings, std::uint32_t step, 
     for (const Quantity quantity : components_of(sensor)) {
       const double value = exact(static_cast<Eigen::Index>(i)) +
                            deviation_of(quantity, settings.noise) * draw.normal();
-      detection[i++] = is_angle(quantity) ? wrap(value) : value;
+      detection[i++] = wraps(quantity) ? wrap(value) : value;
     }
     world.drive.detections.push_back(detection);
   }

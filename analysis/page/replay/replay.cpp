@@ -2,17 +2,13 @@
 #include "analysis/page/replay/replay.hpp"
 
 #include "analysis/data/run_reader.hpp"
-#include "analysis/figures/path_figure.hpp"
-#include "analysis/figures/stored_map.hpp"
 #include "analysis/output/figure.hpp"
 #include "analysis/page/html.hpp"
-#include "analysis/page/json.hpp"
 #include "analysis/page/page.hpp"
 #include "engine/errors.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 namespace montecarta::analysis {
@@ -237,7 +233,7 @@ Json relative_places(const std::vector<double>& places, double centre, double un
   Json array = Json::array();
   for (const double place : places) {
     const double units = std::round((place - centre) / unit);
-    array.push_back(std::abs(units) < 1e9 ? Json(static_cast<int>(units)) : rounded(place));
+    array.push_back(std::abs(units) < 1e9 ? Json(static_cast<int>(units)) : rounded(units, 9));
   }
   return array;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/figures/stored_map.hpp"
+#include "analysis/figures/path_figure.hpp"
 #include "engine/records/result_file.hpp"
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Brings every figure that has data to life; without scripts its drawing stays.
 
-/** The data in a script element; JSON has no infinite numbers, which are texts there. */
+/** The data in a script element; JSON has no infinite numbers, which are these texts there. */
 function parsed(element) {
   return JSON.parse(element.textContent, (key, value) =>
     value === "+inf" ? Infinity : value === "-inf" ? -Infinity : value);

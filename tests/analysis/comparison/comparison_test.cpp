@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/comparison/cell_comparison.hpp"
 #include "analysis/comparison/study_comparison.hpp"
 #include "analysis/metrics/nees_accumulator.hpp"
 #include "analysis/metrics/paired_runs.hpp"
@@ -13,7 +12,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>

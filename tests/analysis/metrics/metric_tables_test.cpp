@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/error_anatomy.hpp"
-#include "analysis/metrics/innovations.hpp"
 #include "analysis/metrics/lineages.hpp"
 #include "analysis/metrics/mismatch.hpp"
 #include "analysis/metrics/study_analysis.hpp"
@@ -13,7 +12,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -47,39 +45,6 @@ TEST(ErrorAnatomyTable, NamesTheWorstDirectionAndWhatFewParticlesCost) {
   EXPECT_THAT(table.rows.at(0),
               ElementsAre("srcd_m10", "9.00", testing::_, "heading 97 %", "25.0 %", "12.5 %"));
   EXPECT_EQ(table.rows[0].size(), table.headings.size());
-}
-
-TEST(InnovationTable, ShowsTheLagThatIsWorst) {
-  CellAnalysis cell;
-  Innovations found;
-  found.mean = 1.25;
-  found.interval = {1.2, 1.3};
-  found.share_inside = 0.5;
-  found.autocorrelation.assign(kInnovationLags, 0.01);
-  found.autocorrelation[4] = -0.2;
-  found.white_bound.assign(kInnovationLags, 0.05);
-  found.worst_lag = 5;
-  cell.findings.put(found);
-  const TextTable table = reported_table(study_of(cell), "innovations");
-  EXPECT_THAT(table.rows[0], ElementsAre("srcd_m10", "1.250 [1.200, 1.300]", "50.0 %", "0.0100",
-                                         "-0.200 at 5", "0.0500", "not white"));
-  EXPECT_EQ(table.rows[0].size(), table.headings.size());
-}
-
-TEST(DiversityTable, LeavesOpenWhatIsNotStored) {
-  const auto kept = std::make_unique<CellAnalysis>();  // on the stack g++ 12 takes it for unset
-  CellAnalysis& cell = *kept;
-  cell.scores.add(std::vector<ScoreTable::Value>{{"ess", 5.0}, {"resampling_rate", 0.5}});
-  cell.scan_series = {{"ess", "1", {5.0}}};
-  const TextTable without = reported_table(study_of(cell), "diversity");
-  EXPECT_THAT(without.rows[0], ElementsAre("srcd_m10", "5.00", "50.0 %", "-", "-", "-", "-", "-"));
-  LineageSummary lineages;
-  lineages.ancestors.fill(2.0);
-  lineages.coalescence = kNaN;
-  cell.findings.put(lineages);
-  EXPECT_THAT(reported_table(study_of(cell), "diversity").rows[0],
-              ElementsAre("srcd_m10", "5.00", "50.0 %", "2.00", "2.00", "2.00", "-", "0.0 %"));
-  EXPECT_EQ(without.rows[0].size(), without.headings.size());
 }
 
 class MismatchOfAFile : public ::testing::Test {

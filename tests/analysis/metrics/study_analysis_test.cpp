@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/study_analysis.hpp"
 
-#include "analysis/comparison/cell_comparison.hpp"
+#include "analysis/comparison/study_comparison.hpp"
 #include "analysis/metrics/calibration.hpp"
 #include "analysis/metrics/cell_sums.hpp"
 #include "analysis/metrics/cramer_rao.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "analysis/figures/stored_map.hpp"
+#include "analysis/figures/path_figure.hpp"
 #include "analysis/output/csv_file.hpp"
 #include "analysis/output/figure.hpp"
 #include "analysis/output/gnuplot.hpp"

@@ -2,7 +2,6 @@
 #include "analysis/page/html.hpp"
 
 #include "analysis/output/figure.hpp"
-#include "analysis/page/json.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -51,6 +50,7 @@ TEST(Json, RoundsNumbersToWhatIsSeenAndSaysWhatIsNone) {
 }
 
 TEST(Json, TextCannotEndTheScriptItStandsIn) {
+  EXPECT_EQ(script_text("\xed\xa0\x80"), "\"\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd\"");  // no UTF-8
   EXPECT_EQ(script_text("</script> \"quoted\" \\ \n \xc3\xa9"),
             "\"\\u003c/script> \\\"quoted\\\" \\\\ \\n \xc3\xa9\"");
 }

@@ -13,7 +13,7 @@ import unittest
 
 import chromium
 from figures import Hover, Legend, Touch, Zoom  # noqa: F401: found by unittest
-from marks import Maps, Points, Tiles, Tree  # noqa: F401
+from marks import Maps, Tiles, Tree  # noqa: F401
 from on_page import STUDY, TILES, OnPage, make_report
 from opening import Opening  # noqa: F401
 from player import Player  # noqa: F401

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/bootstrap.hpp"
 
+#include "analysis/metrics/nees_accumulator.hpp"
 #include "analysis/metrics/survival.hpp"
 #include "analysis/statistics/paired_tests.hpp"
-#include "analysis/statistics/quantile_table.hpp"
 #include "engine/random/stream.hpp"
 
 #include <boost/math/distributions/normal.hpp>

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/random/stream.hpp"
 
-#include "engine/random/normals.hpp"
-
 #include <Random123/philox.h>
 #include <gtest/gtest.h>
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiments/commands/trial.hpp"
-
+#include "experiments/commands/check.hpp"
 #include "tests/doubles/scripted_drives.hpp"
 #include "tests/doubles/scripted_filter.hpp"
 

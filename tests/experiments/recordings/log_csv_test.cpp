@@ -195,6 +195,14 @@ TEST(CheckLog, WantsEachPart) {
       {[](auto& log) { log.references[1].name = "reference"; }, "references called reference"},
       {[](auto& log) { log.references[1].name = "../x"; }, "is no name"},
       {[](auto& log) { log.references[0].heading.pop_back(); }, "or headings"},
+      {[](auto& log) {
+         log.scans.push_back({5.2, {}});
+       },
+       "nothing"},
+      {[](auto& log) {
+         log.scans.push_back({5.4, {}});
+       },
+       "the last record is at 0.3"},
   });
 }
 
@@ -219,7 +227,7 @@ TEST(CheckLog, WantsTimesToIncrease) {
 TEST(CheckLog, WantsNumbersThatCanBe) {
   expect_complaints({
       {[](auto& log) { log.odometry[0].control[0] = kNan; }, "(odometry): record 1: speed nan"},
-      {[](auto& log) { log.odometry[1].control[1] = 5; }, "record 2: steering 5 (radians"},
+      {[](auto& log) { log.odometry[1].control[1] = 5; }, "record 2: steer 5 (radians"},
       {[](auto& log) { log.scans[1].detections[0][0] = kNan; }, "(scans): record 2: range nan"},
       {[](auto& log) { log.scans[1].detections[0][0] = 0; }, "record 2: range 0"},
       {[](auto& log) { log.scans[1].detections[0][1] = 45; }, "record 2: bearing 45 (radians"},

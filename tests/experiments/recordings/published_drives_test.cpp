@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/map_scores.hpp"
 #include "analysis/metrics/reference_scores.hpp"
-#include "engine/core/step_context.hpp"
+#include "engine/core/slam_filter.hpp"
 #include "experiments/study/make_plan.hpp"
 #include "experiments/study/study.hpp"
 #include "tests/doubles/published_data.hpp"

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <vector>
 
 // Small drives of our own making.
 namespace montecarta::experiments {

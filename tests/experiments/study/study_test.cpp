@@ -195,15 +195,15 @@ std::string complaint_about(const std::string& line) {
 
 TEST(Cells, TakeAnotherDefaultWhereControlsAreMeasured) {
   auto filters = paper_filters();
-  Parameter& option = filters.back().options.back();
+  Parameter& option = filters.front().options.back();
   option.fallback_if_measured = option.choices.back();
   const auto value_of = [&](const std::string& line, bool measured) {
     return cells_of(filters, {line}, measured).at(0).options.back().second;
   };
-  const std::string plain = filters.back().name;
-  EXPECT_EQ(value_of(plain, false), *option.fallback);
-  EXPECT_EQ(value_of(plain, true), option.choices.back());
-  EXPECT_EQ(value_of(plain + " " + option.key + "=" + *option.fallback, true), *option.fallback);
+  const std::string name = filters.front().name;
+  EXPECT_EQ(value_of(name, false), *option.fallback);
+  EXPECT_EQ(value_of(name, true), option.choices.back());
+  EXPECT_EQ(value_of(name + " " + option.key + "=" + *option.fallback, true), *option.fallback);
 }
 
 TEST(Cells, AreLabelledByWhatDistinguishesThem) {

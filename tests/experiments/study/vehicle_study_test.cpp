@@ -110,8 +110,7 @@ TEST(SensorStudy, ASensorHasItsOwnNoiseAndNoOther) {
                     Not(HasSubstr("sigma_bearing"))));
   EXPECT_EQ(resolved_text(parsed(text)), text);
   EXPECT_THAT(resolved_text(parsed(of_cell("ekf_slam"))),
-              AllOf(HasSubstr("sigma_range"), Not(HasSubstr("sensor =")), Not(HasSubstr("mount")),
-                    Not(HasSubstr("min_range")), Not(HasSubstr("sigma_position"))));
+              AllOf(HasSubstr("sigma_range"), Not(HasSubstr("sigma_position"))));
   EXPECT_THAT(
       complaint(of_cell("ekf_slam"), {"scenario.sensor=bearing_only", "scenario.sigma_range=1"}),
       AllOf(HasSubstr("scenario.sigma_range says nothing of a sensor bearing_only"),
@@ -256,7 +255,7 @@ TEST_F(RobotLog, IsWrittenAsItWasRead) {
 TEST_F(RobotLog, InDegreesIsRefused) {
   const std::string odometry = "time_s,speed_mps,yaw_rate_radps\n0,0.5,0\n";
   write_text(folder_ / "odometry.csv", odometry + "1,0,180\n");
-  EXPECT_THAT(complaint_of([this] { read(); }), HasSubstr("record 2: yaw rate 180"));
+  EXPECT_THAT(complaint_of([this] { read(); }), HasSubstr("record 2: yaw_rate 180"));
   write_text(folder_ / "odometry.csv", odometry);
   write_text(folder_ / "detections.csv", "time_s,bearing_rad\n1.5,45\n");
   EXPECT_THAT(complaint_of([this] { read(); }), HasSubstr("record 1: bearing 45"));

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/threads/cpu_clock.hpp"
+#include "engine/runs/worker.hpp"
 #include "filters/factory.hpp"
 #include "filters/models/ackermann.hpp"
-#include "filters/models/point.hpp"
 #include "filters/models/range_bearing.hpp"
 #include "tests/filters/reference/fast_slams.hpp"
 

@@ -13,7 +13,6 @@
 #include <memory>
 #include <ostream>
 #include <string>
-#include <vector>
 
 /// A filter of the family in one setting, and how it is made.
 namespace montecarta::filters {

@@ -10,7 +10,6 @@
 #include <barrier>
 #include <cmath>
 #include <map>
-#include <ostream>
 #include <string>
 #include <vector>
 

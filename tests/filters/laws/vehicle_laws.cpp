@@ -9,7 +9,6 @@
 
 #include <string>
 #include <tuple>
-#include <vector>
 
 namespace montecarta::filters {
 namespace {

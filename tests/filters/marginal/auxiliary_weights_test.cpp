@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "engine/random/normals.hpp"
+#include "engine/random/stream.hpp"
 #include "filters/marginal/kernel_sums.hpp"
 #include "filters/marginal/shared_map.hpp"
 #include "filters/moments/gaussians.hpp"

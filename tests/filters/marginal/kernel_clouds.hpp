@@ -5,7 +5,6 @@
 #include "filters/moments/motion_increment.hpp"
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace montecarta::filters {

@@ -93,7 +93,7 @@ std::vector<BasicPose<Real>> poses(std::size_t n) {
   return column;
 }
 
-void report(benchmark::State& state, std::size_t n) {
+void report_candidates(benchmark::State& state, std::size_t n) {
   state.counters["per_pair"] = benchmark::Counter(
       static_cast<double>(n * kCandidates),
       benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
@@ -109,7 +109,7 @@ void MapFitness(benchmark::State& state, MapObjective objective) {
     for (std::size_t k = 0; k < kCandidates; ++k)
       benchmark::DoNotOptimize(evidence.cost(candidate(k)));
   }
-  report(state, n);
+  report_candidates(state, n);
 }
 
 void MapFitnessPlain(benchmark::State& state) {
@@ -128,7 +128,7 @@ void MapFitnessPlain(benchmark::State& state) {
       benchmark::DoNotOptimize(-2.0 * std::log(sum));
     }
   }
-  report(state, n);
+  report_candidates(state, n);
 }
 
 BENCHMARK(MapFitnessPlain)->Arg(30)->Arg(100)->Arg(1000)->MinTime(0.05);

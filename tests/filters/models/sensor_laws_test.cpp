@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What holds for every sensor, wherever it is mounted.
 #include "engine/random/stream.hpp"
+#include "filters/models/eigen_jacobians.hpp"
 #include "filters/models/field_of_view.hpp"
+#include "filters/models/range_bearing.hpp"
 #include "filters/models/triangulation.hpp"
 #include "tests/filters/some_models.hpp"
 
@@ -9,6 +11,30 @@
 
 namespace montecarta::models {
 namespace {
+
+// Derivatives and placing are held to the laws of every sensor.
+TEST(RangeBearing, PredictedIsWhatIsLinearised) {
+  RngStream draw({.seed = 31, .purpose = Draw::test});
+  for (int n = 0; n < 200; ++n) {
+    const Pose pose{10.0 * draw.normal(), 10.0 * draw.normal(), wrap(7.0 * draw.normal())};
+    const Point landmark{20.0 * draw.normal(), 20.0 * draw.normal()};
+    const auto change = residual(predicted_observation(pose, landmark),
+                                 linearised_observation(pose, landmark).observation);
+    EXPECT_LT(to_vector(change).norm(), 1e-12) << "case " << n;
+  }
+}
+
+TEST(RangeBearing, ResidualCrossesTheBackwardDirection) {
+  const auto difference =
+      residual(RangeBearing<double>{5.0, kPi - 0.1}, RangeBearing<double>{4.5, -kPi + 0.1});
+  EXPECT_DOUBLE_EQ(difference.range, 0.5);
+  EXPECT_NEAR(difference.bearing, -0.2, 1e-12);
+}
+
+TEST(RangeBearing, KnowsWhenALandmarkIsTooNear) {
+  EXPECT_TRUE(too_near(predicted_observation(Pose{1.0, 1.0, 0.0}, Point{1.0 + 1e-7, 1.0})));
+  EXPECT_FALSE(too_near(predicted_observation(Pose{1.0, 1.0, 0.0}, Point{1.001, 1.0})));
+}
 
 /// Pose (x, y, heading) and landmark (x, y).
 using Scene = Eigen::Matrix<double, 5, 1>;
@@ -156,4 +182,5 @@ TEST(Triangulation, CirclesCutOnBothSides) {
 }
 
 }  // namespace
+
 }  // namespace montecarta::models

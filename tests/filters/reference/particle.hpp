@@ -3,7 +3,6 @@
 
 #include "engine/core/pose.hpp"
 #include "engine/core/slam_filter.hpp"
-#include "engine/core/step_context.hpp"
 #include "engine/numbers/angle.hpp"
 #include "filters/association/pairing.hpp"
 #include "filters/factory.hpp"

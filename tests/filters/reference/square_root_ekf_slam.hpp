@@ -8,7 +8,6 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
-#include <cmath>
 
 namespace montecarta::filters::reference {
 

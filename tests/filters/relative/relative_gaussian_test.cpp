@@ -7,8 +7,6 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-#include <array>
-
 namespace montecarta::filters {
 namespace {
 

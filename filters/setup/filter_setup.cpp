@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "filters/setup/filter_options.hpp"
+#include "filters/setup/filter_setup.hpp"
 
 #include "engine/errors.hpp"
 
 #include <charconv>
-#include <string>
 
 namespace montecarta::filters {
 
