@@ -5,7 +5,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 
 namespace montecarta::analysis {
@@ -85,9 +84,9 @@ std::string exact_text(double value) {
 
 std::string duration_text(double seconds) {
   if (seconds < 59.95) return printed("%.*f", seconds < 9.95 ? 1 : 0, seconds) + " s";
-  const auto whole = static_cast<std::uint64_t>(seconds + 0.5);
+  const auto whole = std::llround(seconds);
   const bool has_hours = whole >= 3600;
-  const std::uint64_t rest = has_hours ? whole / 60 % 60 : whole % 60;
+  const auto rest = has_hours ? whole / 60 % 60 : whole % 60;
   return std::to_string(has_hours ? whole / 3600 : whole / 60) + (has_hours ? " h " : " min ") +
          (rest < 10 ? "0" : "") + std::to_string(rest) + (has_hours ? " min" : " s");
 }

@@ -44,7 +44,6 @@ TEST(ErrorAnatomyTable, NamesTheWorstDirectionAndWhatFewParticlesCost) {
   const TextTable table = reported_table(study_of(cell), "error_anatomy");
   EXPECT_THAT(table.rows.at(0),
               ElementsAre("srcd_m10", "9.00", testing::_, "heading 97 %", "25.0 %", "12.5 %"));
-  EXPECT_EQ(table.rows[0].size(), table.headings.size());
 }
 
 class MismatchOfAFile : public ::testing::Test {

@@ -65,9 +65,8 @@ TEST(VehicleStudy, WhatIsOfAnotherVehicleIsRefused) {
 TEST(VehicleStudy, ThePilotIsOfMatchedNoise) {
   EXPECT_THAT(complaint(kRobot, {"scenario.noise=measured-control", "scenario.pilot=open_loop"}),
               HasSubstr("scenario.pilot says nothing of a noise measured-control"));
-  const Study study = parsed(kRobot, {"scenario.noise=matched", "scenario.pilot=open_loop"});
-  EXPECT_EQ(study.settings.text("scenario", "pilot"), "open_loop");
-  EXPECT_THAT(resolved_text(study), HasSubstr("pilot = open_loop\n"));
+  EXPECT_THAT(resolved_text(parsed(kRobot, {"scenario.noise=matched", "scenario.pilot=open_loop"})),
+              HasSubstr("pilot = open_loop\n"));
 }
 
 TEST(VehicleStudy, AFilterThatBelievesInOtherControlsIsRefused) {
@@ -108,7 +107,6 @@ TEST(SensorStudy, ASensorHasItsOwnNoiseAndNoOther) {
               AllOf(HasSubstr("sensor = position\n"), HasSubstr("sigma_position_left = 0.3\n"),
                     HasSubstr("sigma_position_forward = 0.1\n"), Not(HasSubstr("sigma_range")),
                     Not(HasSubstr("sigma_bearing"))));
-  EXPECT_EQ(resolved_text(parsed(text)), text);
   EXPECT_THAT(resolved_text(parsed(of_cell("ekf_slam"))),
               AllOf(HasSubstr("sigma_range"), Not(HasSubstr("sigma_position"))));
   EXPECT_THAT(
