@@ -9,7 +9,7 @@ namespace montecarta::analysis {
 namespace {
 
 constexpr std::string_view kFinalMapSeen = "final_map_seen";
-constexpr double kRounding = 1e-6;  // [landmarks]
+constexpr double kRoundingOfCounts = 1e-6;  // [landmarks]
 
 }  // namespace
 
@@ -72,7 +72,8 @@ void RunReader::read_final_map(std::size_t i, RunRows& rows, Scratch& scratch) c
   if (seen_column == cell_->columns.end()) return;
   const std::size_t landmarks = seen_column->shape.back();
   // A mean over weights that add up to one but for rounding.
-  if (!rows.map_size.empty() && rows.map_size.back() > static_cast<double>(landmarks) + kRounding)
+  if (!rows.map_size.empty() &&
+      rows.map_size.back() > static_cast<double>(landmarks) + kRoundingOfCounts)
     return;  // record.map_rows left part of it out
   const auto last = [&](const char* name, std::size_t width) {
     read_whole(prefix + name, i, scratch);

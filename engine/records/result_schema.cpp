@@ -181,7 +181,7 @@ class FieldReader {
   void covariances(ReferencePath& path) {
     if (!h5::has(object_, "covariance")) return;
     const int d = path.dimension();
-    const auto block = static_cast<std::size_t>(d * d);
+    const auto block = static_cast<std::size_t>(d) * static_cast<std::size_t>(d);
     const auto numbers = read_all<double>("covariance");
     for (std::size_t first = 0; first + block <= numbers.size(); first += block) {
       path.covariance.emplace_back(Eigen::Matrix3d::Zero());
