@@ -3,10 +3,11 @@
 
 #include "engine/errors.hpp"
 
-#include <algorithm>
-#include <array>
 #include <hdf5.h>
 #include <hdf5_hl.h>
+
+#include <algorithm>
+#include <array>
 #include <numeric>
 #include <type_traits>
 

@@ -9,8 +9,6 @@
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <chrono>
 #include <fstream>
@@ -19,6 +17,7 @@
 #include <malloc.h>
 #include <new>
 #include <set>
+#include <sys/resource.h>
 #include <unistd.h>
 
 namespace montecarta::experiments {

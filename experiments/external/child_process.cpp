@@ -4,10 +4,6 @@
 #include "engine/errors.hpp"
 #include "experiments/text/words.hpp"
 
-#include <sys/socket.h>
-#include <sys/syscall.h>
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -18,6 +14,9 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
 #include <unistd.h>
 #include <vector>
 
