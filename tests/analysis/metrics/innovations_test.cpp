@@ -159,7 +159,7 @@ bool is_called_white(const WhiteStudy& study, std::uint64_t seed) {
 
 // The squares of one degree of freedom have heavy tails; of a single run 7 % are called not white.
 TEST(SlowWhiteness, OfARightFilterIsRejectedAtItsLevel) {
-  const std::uint64_t studies = studies_of_a_line(100);
+  const std::uint64_t studies = studies_of_a_line(200);
   std::printf("scans  runs  components  not white [%%]\n");
   for (const WhiteStudy& study :
        {WhiteStudy{20, 1, 2}, WhiteStudy{20, 20, 1}, WhiteStudy{20, 20, 2}, WhiteStudy{20, 200, 1},

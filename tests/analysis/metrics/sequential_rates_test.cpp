@@ -73,7 +73,7 @@ class SlowSequential : public ::testing::TestWithParam<double> {};
 TEST_P(SlowSequential, LooksCostNoErrors) {
   const double memory = GetParam();
   if (memory != 0.7 && memory != 1.0 && !is_table_wanted()) GTEST_SKIP() << kHowToGetTheTable;
-  const std::uint64_t studies = studies_of_a_line(300);
+  const std::uint64_t studies = studies_of_a_line(500);
   const double widened = level_of_a_look(0.95, rounds_of(kSequentialRuns).size());
   std::printf("interval   memory  ratio  rejected [%%]  consistent  interval holds  mean runs\n");
   for (const double ratio : {1.0, kUsualMargin, 1.0 / kUsualMargin}) {
@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(OfMemory, SlowSequential, ::testing::Values(0.0, 0.7, 0
 // The interval of a single look, taken at five: the widening is needed.
 TEST(SlowSequentialWithoutWidening, RejectsMoreThanPromised) {
   const GaussianLaw law{.memory = 1.0};
-  const SequentialRates rates = sequential_rates(law, 0.95, studies_of_a_line(300));
+  const SequentialRates rates = sequential_rates(law, 0.95, studies_of_a_line(500));
   print_line("single", law, rates);
   EXPECT_GT(rates.rejected, 0.08);
   EXPECT_LT(rates.covered, 0.93);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the verdict promises, by simulated studies: a table of rates for every number of runs and
 // components. `MONTECARTA_STUDIES=4000 build/analysis_tests --gtest_filter='*SlowVerdict*'` prints
-// the whole of it from so many studies a line; without the variable 1000 studies of a few lines.
+// the whole of it from so many studies a line; without the variable 2000 studies of a few lines.
 #include "tests/analysis/verdict_studies.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ TEST_P(SlowVerdictRates, RejectAConsistentFilterInFivePercentOfStudies) {
   const auto [runs, dimension] = GetParam();
   const bool is_sample = (runs == 20 || runs == 200) && dimension != 2;
   if (!is_sample && !is_table_wanted()) GTEST_SKIP() << kHowToGetTheTable;
-  const std::uint64_t studies = studies_of_a_line(1000);
+  const std::uint64_t studies = studies_of_a_line(2000);
   std::printf("runs  dim  memory  rejected [%%]  above  below  interval holds  stays outside\n");
   for (const double memory : {0.0, 0.7, 0.95, 0.99, 1.0}) {
     const VerdictRates rates =
@@ -51,7 +51,7 @@ class SlowVerdictAnswers : public ::testing::TestWithParam<std::uint64_t> {};
 // A filter that is off is called consistent within 1.1 where its ratio is beyond that, or rejected
 // of the wrong side, in at most 2.5 % of studies.
 TEST_P(SlowVerdictAnswers, AreWrongSeldom) {
-  const std::uint64_t runs = GetParam(), studies = studies_of_a_line(800) / 4;
+  const std::uint64_t runs = GetParam(), studies = studies_of_a_line(2000) / 4;
   if (runs != 200 && !is_table_wanted()) GTEST_SKIP() << kHowToGetTheTable;
   std::printf("runs  memory  ratio  consistent [%%]  optimistic  conservative  undecided\n");
   for (const double memory : {0.0, 0.95, 1.0}) {
@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(OfRuns, SlowVerdictAnswers, ::testing::Values(20U, 30U,
 // is said of a time at which it is not yet above in at most 5 % of studies.
 TEST(SlowVerdictTimes, AreSeldomTooEarly) {
   constexpr std::size_t kScans = 100;
-  const std::uint64_t studies = studies_of_a_line(400);
+  const std::uint64_t studies = studies_of_a_line(2000);
   const std::vector<double> times = scan_times(kScans, 0.2);
   const BandWalks walks(kScans);
   for (const std::uint64_t runs : {20U, 200U}) {

@@ -17,7 +17,7 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr std::uint64_t kTailStudies = 1000;
+constexpr std::uint64_t kTailStudies = 2000;
 
 /// exp(sigma times a normal); its mean is exp(sigma^2 / 2), its median 1.
 std::vector<double> log_normals(std::uint64_t study, std::size_t n, double sigma) {
@@ -61,13 +61,13 @@ Coverage coverage_of(const Sample& sample, double truth, const std::string& name
 
 class SlowHeavyTail : public testing::TestWithParam<std::size_t> {};
 
-// Three standard errors of 7 % in 1000 studies are 2.4 %, of 5 % 2.1 %.
+// Three standard errors of 7 % in 2000 studies are 1.7 %, of 5 % 1.5 %.
 TEST_P(SlowHeavyTail, IsSaidWhereIntervalsOfLogNormalMeansWouldNotHold) {
   for (const double sigma : {0.5, 1.0, 1.5, 2.5}) {
     const auto sample = [&](std::uint64_t study) { return log_normals(study, GetParam(), sigma); };
     const Coverage found =
         coverage_of(sample, std::exp(0.5 * sigma * sigma), "log_normal_" + std::to_string(sigma));
-    EXPECT_LT(found.missed, 0.07 + 0.024) << sigma;
+    EXPECT_LT(found.missed, 0.07 + 0.017) << sigma;
     EXPECT_GT(found.flagged, sigma >= 1.5 ? 0.9 : 0.0) << sigma;
   }
 }
@@ -75,7 +75,7 @@ TEST_P(SlowHeavyTail, IsSaidWhereIntervalsOfLogNormalMeansWouldNotHold) {
 TEST_P(SlowHeavyTail, IsHardlyEverSaidOfAConsistentFilter) {
   const auto sample = [&](std::uint64_t study) { return chi_squares(study, GetParam()); };
   const Coverage found = coverage_of(sample, 3.0, "chi_square");
-  EXPECT_LT(found.missed, 0.05 + 0.021);
+  EXPECT_LT(found.missed, 0.07);
   EXPECT_LT(found.flagged, GetParam() < 100 ? 0.4 : 0.05);
 }
 

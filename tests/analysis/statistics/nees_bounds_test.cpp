@@ -3,6 +3,7 @@
 
 #include "analysis/statistics/nees_power.hpp"
 #include "engine/errors.hpp"
+#include "tests/analysis/statistics/nees_bounds_golden.hpp"
 #include "tests/analysis/verdict_studies.hpp"
 
 #include <gtest/gtest.h>
@@ -14,28 +15,6 @@
 
 namespace montecarta::analysis {
 namespace {
-
-struct GoldenBounds {
-  std::uint64_t runs, dimension;
-  double level, lower, upper;
-};
-
-/// Computed with scipy.stats.chi2.ppf, ten decimals; SlowRecompute has SciPy compute more of them.
-constexpr std::array kGoldenBounds = std::to_array<GoldenBounds>({
-    {1, 1, 0.90, 0.0039321400, 3.8414588207},
-    {5, 1, 0.99, 0.0823483808, 3.3499204687},
-    {50, 1, 0.95, 0.6471472739, 1.4284039038},
-    {1000, 1, 0.99, 0.8885635232, 1.1189480663},
-    {1, 2, 0.95, 0.0506356160, 7.3777589082},
-    {20, 2, 0.90, 1.3254651598, 2.7879239639},
-    {100, 2, 0.95, 1.6272798250, 2.4105789551},
-    {10000, 2, 0.99, 1.9488591219, 2.0518921896},
-    {1, 3, 0.99, 0.0717217746, 12.8381564666},
-    {10, 3, 0.90, 1.8492660982, 4.3772971826},
-    {30, 3, 0.95, 2.1882205859, 3.9378630854},
-    {500, 3, 0.95, 2.7891100611, 3.2184664357},
-    {10000, 3, 0.90, 2.9598235020, 3.0404039029},
-});
 
 TEST(NeesBounds, EqualTheGoldenValues) {
   for (const auto& golden : kGoldenBounds) {
@@ -126,7 +105,7 @@ TEST(NeesPlan, NamesTheFewest) {
 void expect_promise_kept(const GaussianLaw& law, std::size_t scans, double power) {
   const NeesPlan plan({.dimension = law.dimension, .scans = law.memory < 1.0 ? scans : 1});
   const std::uint64_t runs = plan.runs_to_find(law.ratio, power);
-  const std::uint64_t studies = studies_of_a_line(200);
+  const std::uint64_t studies = studies_of_a_line(400);
   const VerdictRates rates = verdict_rates(law, runs, scans, studies);
   const double found = law.ratio > 1.0 ? rates.above : rates.below;
   std::printf("%zu components, %s, ratio %.2f: %llu runs, promised %.1f %%, found %.1f %%\n",

@@ -4,12 +4,24 @@
 #include <Random123/philox.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <set>
 #include <vector>
 
 namespace montecarta::engine {
 namespace {
+
+TEST(Philox, EqualsPublishedTestVectors) {  // kat_vectors of Random123
+  const std::array<std::uint64_t, 4> zeros{}, ones{0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff};
+  const std::array<std::uint64_t, 4> pi{0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344};
+  using Words = std::array<std::uint64_t, 4>;
+  EXPECT_EQ(philox(zeros, {0, 0}), (Words{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
+  EXPECT_EQ(philox(ones, {0xffffffff, 0xffffffff}),
+            (Words{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}));
+  EXPECT_EQ(philox(pi, {0xa4093822, 0x299f31d0}),
+            (Words{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
+}
 
 TEST(Philox, EqualsRandom123) {
   r123::Philox4x32 theirs;
