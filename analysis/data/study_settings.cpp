@@ -33,7 +33,9 @@ double margin_in(const std::string& study_text) {
 }
 
 std::vector<std::uint64_t> looks_in(const std::string& study_text, std::uint64_t runs) {
-  if (study_setting(study_text, "until") != kUntilVerdict) return {};
+  const std::string until = study_setting(study_text, "until").value_or("");
+  const std::string with_runs = std::string(kUntilVerdict) + ", ";  // "verdict, 100 runs"
+  if (until != kUntilVerdict && !until.starts_with(with_runs)) return {};
   return rounds_of(runs);
 }
 

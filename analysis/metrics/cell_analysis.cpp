@@ -37,13 +37,4 @@ const std::vector<double>& CellAnalysis::over_time(std::string_view series) cons
   return found == scan_series.end() ? none : found->values;
 }
 
-Consistency CellAnalysis::consistency() const {
-  const NeesResult* pose = find_nees(ErrorBlock::pose, leading);
-  if (pose != nullptr) return pose->consistency;
-  Consistency untested;
-  untested.runs = complete + failures.size();
-  untested.failed = failures.size();
-  return untested;
-}
-
 }  // namespace montecarta::analysis

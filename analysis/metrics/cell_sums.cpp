@@ -11,7 +11,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// Fills CellAnalysis::score_intervals, and Consistency::average_interval of every test from its
+/// Fills CellAnalysis::score_intervals, and NeesResult::average_interval of every NEES from its
 /// runs: one bootstrap over runs at `level`, and one over the judged runs where some are not.
 void put_score_intervals(CellAnalysis& cell, double level) {
   std::vector<std::vector<double>> columns;
@@ -24,9 +24,9 @@ void put_score_intervals(CellAnalysis& cell, double level) {
   const std::size_t scores = all_scores().size();
   for (std::size_t k = 0; k < cell.nees.size(); ++k) {
     NeesResult& nees = cell.nees[k];
-    nees.consistency.average_interval = nees.series.unjudged_runs == 0
-                                            ? intervals[scores + k]
-                                            : bootstrap_mean(nees.series.run_averages, level);
+    nees.average_interval = nees.series.unjudged_runs == 0
+                                ? intervals[scores + k]
+                                : bootstrap_mean(nees.series.run_averages, level);
   }
   intervals.resize(scores);
   cell.score_intervals = std::move(intervals);

@@ -6,14 +6,15 @@
 #include "analysis/metrics/metric.hpp"
 #include "analysis/output/number_text.hpp"
 
+#include <algorithm>
 #include <optional>
 
 namespace montecarta::analysis {
 namespace {
 
-/// Whether the test of the verdict does not reject it.
-bool fits_errors(const Consistency& found) {
-  return found.verdict == Verdict::consistent || found.verdict == Verdict::undecided;
+/// Whether no family rejects it.
+bool fits_errors(const Verdict& found) {
+  return std::ranges::none_of(found.families, &FamilyTest::is_rejected);
 }
 
 std::string comma_joined(const std::vector<std::string>& parts) {
@@ -33,8 +34,8 @@ class HintsOverRuns final : public MetricSums {
   }
   void put(CellAnalysis& cell) override {
     if (!hints_) return;
-    cell.findings.put(hints_->result(criteria_->times, criteria_->verdict_level(), criteria_->walks,
-                                     criteria_->within));
+    const double level = criteria_->verdict_level(cell.complete + cell.failures.size());
+    cell.findings.put(hints_->result(criteria_->times, level, criteria_->within));
   }
 
  private:
@@ -45,18 +46,22 @@ class HintsOverRuns final : public MetricSums {
 }  // namespace
 
 ConventionHints::ConventionHints(std::size_t components, std::size_t scans)
-    : nees_(kErrorConventions.size(),
-            NeesAccumulator(ErrorBlock::pose, Moments::spread, scans, components)) {}
+    : components_(static_cast<double>(components)),
+      nees_(kErrorConventions.size(), SummedError(scans)) {}
 
 void ConventionHints::add(const std::array<std::vector<double>, kErrorConventions.size()>& nees) {
-  for (std::size_t k = 0; k < nees_.size(); ++k) nees_[k].add(nees[k]);
+  ++runs_;
+  for (std::size_t k = 0; k < nees_.size(); ++k) {
+    for (std::size_t s = 0; s < nees[k].size(); ++s) nees_[k].add(s, nees[k][s], components_);
+  }
 }
 
 ConventionHint ConventionHints::result(std::span<const double> times, double level,
-                                       const BandWalks& walks, double within) const {
+                                       double within) const {
   ConventionHint hint;
-  for (const NeesAccumulator& nees : nees_)
-    hint.by_convention.push_back(nees.result(times, level, walks, within).consistency);
+  for (const SummedError& nees : nees_) {
+    hint.by_convention.push_back(judge(nees.families(level, times), level, within, runs_));
+  }
   return hint;
 }
 
@@ -64,14 +69,14 @@ std::string in_words(const ConventionHint& hint, const std::string& cell, const 
   std::vector<std::string> fitting, others;
   bool said_fits = false;
   for (std::size_t k = 0; k < hint.by_convention.size(); ++k) {
-    const Consistency& found = hint.by_convention[k];
-    if (found.verdict == Verdict::untested) return "";
+    const Verdict& found = hint.by_convention[k];
+    if (found.answer == Answer::untested) return "";
     if (said == kErrorConventions[k].name) {
       said_fits = fits_errors(found);
     } else {
       (fits_errors(found) ? fitting : others)
-          .push_back(std::string(kErrorConventions[k].name) + " (ANEES " + compact(found.mean) +
-                     ")");
+          .push_back(std::string(kErrorConventions[k].name) + " (NEES ratio " +
+                     compact(found.ratio_estimate()) + ")");
     }
   }
   if (fitting.empty() && others.empty()) return "";

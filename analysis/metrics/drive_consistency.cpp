@@ -59,10 +59,10 @@ DriveScores mean_scores(std::span<const DriveScores> runs) {
   return all;
 }
 
-Verdict verdict_of_drive(const Interval& ratio, double within) {
-  if (ratio.lower >= 1.0 / within && ratio.upper <= within) return Verdict::consistent;
-  if (ratio.lower > 1.0) return Verdict::optimistic;
-  return ratio.upper < 1.0 ? Verdict::conservative : Verdict::undecided;
+Answer answer_of_drive(const Interval& ratio, double within) {
+  if (ratio.lower >= 1.0 / within && ratio.upper <= within) return Answer::consistent;
+  if (ratio.lower > 1.0) return Answer::optimistic;
+  return ratio.upper < 1.0 ? Answer::conservative : Answer::undecided;
 }
 
 /// Of runs that all have the block.
@@ -102,7 +102,7 @@ DriveScores sums_over_drives(std::span<const DriveScores> runs, double level) {
 void decide(double level, DriveConsistency& result) {
   const CorrelatedAverage& leads = result.mean.leads();
   if (!(leads.effective_samples > 0.0) || result.mean.is_the_reference) return;
-  result.verdict = verdict_of_drive(leads.ratio, result.within);
+  result.answer = answer_of_drive(leads.ratio, result.within);
   result.minutes = result.mean.seconds / 60.0 *
                    samples_that_decide(dimension_of(result.mean.leading), level, result.within) /
                    leads.effective_samples;
@@ -126,9 +126,10 @@ std::string minutes_text(const DriveConsistency& drive) {
          compact(std::max(drive.minutes, 1.0)) + " minutes";
 }
 
-std::string by_words(const Interval& ratio) {
-  if (std::isinf(ratio.upper)) return " by more than " + compact(ratio.lower);
-  return " by " + compact(ratio.lower) + " to " + compact(ratio.upper);
+/// "1.2 to 1.4", "more than 1.2"
+std::string factor_words(double lower, double upper) {
+  if (std::isinf(upper)) return "more than " + compact(lower);
+  return compact(lower) + " to " + compact(upper);
 }
 
 }  // namespace
@@ -154,16 +155,19 @@ DriveConsistency judge_own_drives(std::span<const DriveScores> runs, double leve
 }
 
 std::string in_words(const DriveConsistency& drive) {
-  switch (drive.verdict) {
-    case Verdict::consistent:
+  const Interval& ratio = drive.mean.leads().ratio;
+  switch (drive.answer) {
+    case Answer::consistent:
       return "consistent within " + exact_text(drive.within);
-    case Verdict::optimistic:
-      return "optimistic" + by_words(drive.mean.leads().ratio);
-    case Verdict::conservative:
-      return "conservative" + by_words(drive.mean.leads().ratio);
-    case Verdict::undecided:
+    case Answer::optimistic:
+      return "optimistic: NEES " + factor_words(ratio.lower, ratio.upper) + " times too large";
+    case Answer::conservative:
+      return "conservative: NEES " + factor_words(1.0 / ratio.upper, 1.0 / ratio.lower) +
+             " times too small";
+    case Answer::undecided:
       return minutes_text(drive);
-    case Verdict::untested:
+    case Answer::inconsistent:
+    case Answer::untested:
       break;
   }
   return drive.mean.is_the_reference ? "refused: the reference is this estimate" : "not tested";
@@ -224,7 +228,7 @@ std::string block_text(const DriveConsistency& drive, ErrorBlock block) {
 std::vector<std::string> drive_row(const CellAnalysis& cell, const JudgedReference& reference,
                                    const DriveConsistency& drive) {
   const Innovations* innovations = cell.find<Innovations>();
-  const bool is_judged = drive.verdict != Verdict::untested;
+  const bool is_judged = drive.answer != Answer::untested;
   return {cell.label,
           reference.name,
           runs_in_words(cell),

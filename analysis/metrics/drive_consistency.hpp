@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "analysis/metrics/consistency.hpp"
 #include "analysis/metrics/drive_scores.hpp"
+#include "analysis/verdict/verdict.hpp"
 
 #include <span>
 #include <string>
@@ -13,7 +13,7 @@ namespace montecarta::analysis {
 /// filter's random numbers alone, and many say no more of the drive than one; where each met its
 /// own they are independent.
 struct DriveConsistency {
-  Verdict verdict = Verdict::untested;
+  Answer answer = Answer::untested;
   double within = kUsualMargin;
   DriveScores mean;        ///< means over runs; of counts and flags the largest
   double minutes = 0.0;    ///< of driving like this that decide; infinite where none does

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/drive_scores.hpp"
 
-#include "analysis/metrics/consistency.hpp"
 #include "analysis/statistics/sampler_scale.hpp"
 #include "analysis/statistics/spread.hpp"
 
 #include <Eigen/Cholesky>
+#include <boost/math/distributions/chi_squared.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +14,10 @@
 
 namespace montecarta::analysis {
 namespace {
+
+double median_of_chi_square(std::size_t dimension) {
+  return boost::math::median(boost::math::chi_squared(static_cast<double>(dimension)));
+}
 
 Pose pose_at(std::span<const double> path, std::size_t row) {
   return {path[3 * row], path[3 * row + 1], path[3 * row + 2]};
@@ -222,7 +226,7 @@ void judge_leading(const FixErrors& errors, double level, DriveScores& scores) {
   scores.in_gaps = errors.in_gaps;
   scores.undefined = errors.undefined;
   if (scores.fixes < kFewestFixes) return;
-  scores.median = median_of(errors.nees) / expected_median(dimension_of(scores.leading));
+  scores.median = median_of(errors.nees) / median_of_chi_square(dimension_of(scores.leading));
   scores.seconds = errors.times.back() - errors.times.front();
   scores.is_the_reference = farthest_square(errors.by_reference) < kSameWithin * kSameWithin;
   scores.is_below_reference = correlated_average(errors.by_reference, level).ratio.upper < 1.0;

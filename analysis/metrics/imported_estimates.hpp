@@ -2,10 +2,13 @@
 #pragma once
 
 #include "analysis/data/run_rows.hpp"
-#include "analysis/metrics/nees_accumulator.hpp"
 #include "analysis/metrics/study_analysis.hpp"
+#include "analysis/verdict/summed_error.hpp"
+#include "analysis/verdict/verdict.hpp"
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,7 +28,7 @@ std::vector<std::string> imported_notes(const StudyAnalysis& study);
 
 /// What imported estimates of a cell would be by each convention of their error.
 struct ConventionHint {
-  std::vector<Consistency> by_convention;  ///< {kErrorConventions}; empty where there is one only
+  std::vector<Verdict> by_convention;  ///< {kErrorConventions}; empty where there is one only
 };
 
 /// Adds up runs by every convention.
@@ -36,12 +39,13 @@ class ConventionHints {
 
   /// One run: {kErrorConventions}{scan}.
   void add(const std::array<std::vector<double>, kErrorConventions.size()>& nees);
-  /// As NeesAccumulator::result().
-  ConventionHint result(std::span<const double> times, double level, const BandWalks& walks,
-                        double within) const;
+  /// Judged by size and scans at `level`; `times` [s] of the scans.
+  ConventionHint result(std::span<const double> times, double level, double within) const;
 
  private:
-  std::vector<NeesAccumulator> nees_;  ///< {kErrorConventions}
+  double components_;
+  std::uint64_t runs_ = 0;
+  std::vector<SummedError> nees_;  ///< {kErrorConventions}
 };
 
 /// What a user should hear besides the verdict on `cell` by `said`: which other conventions fit the

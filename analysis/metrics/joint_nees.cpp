@@ -49,66 +49,7 @@ Eigen::VectorXd error_of(std::span<const double> mean, std::span<const double> p
   return error;
 }
 
-Interval bounds_per_component(double dimensions, double level) {
-  const Interval sum = nees_bounds(1, static_cast<std::uint64_t>(dimensions), level);
-  return {sum.lower / dimensions, sum.upper / dimensions};
-}
-
-/// Consistent where every row is shown to be within the margin, else rejected where one is shown to
-/// be off; too large goes before too small.
-void judge_rows(JointConsistency& found) {
-  bool is_within = true;
-  double highest = 1.0, lowest = 1.0;
-  for (std::size_t k = 0; k < found.average.size(); ++k) {
-    if (found.runs[k] == 0) continue;
-    const Interval ratio = ratio_of_row(found, k);
-    found.verdict = Verdict::undecided;
-    is_within = is_within && ratio.upper <= found.within && ratio.lower * found.within >= 1.0;
-    if (ratio.lower > highest) {
-      highest = ratio.lower;
-      found.highest_row = k;
-    }
-    if (ratio.upper < lowest) {
-      lowest = ratio.upper;
-      found.lowest_row = k;
-    }
-  }
-  if (found.verdict == Verdict::untested) return;
-  found.verdict = is_within           ? Verdict::consistent
-                  : found.highest_row ? Verdict::optimistic
-                  : found.lowest_row  ? Verdict::conservative
-                                      : Verdict::undecided;
-}
-
-/// Runs after which the interval of no row is longer, in logarithms, than the margin, so that it
-/// excludes 1 or is inside.
-std::uint64_t more_runs_that_decide(const JointConsistency& found, double row_level) {
-  std::uint64_t more = 1;
-  for (std::size_t k = 0; k < found.average.size(); ++k) {
-    const auto runs = static_cast<std::uint64_t>(found.runs[k]);
-    if (runs == 0) continue;
-    const auto decide = [&](std::uint64_t n) {
-      const Interval bounds =
-          bounds_per_component(static_cast<double>(n) * found.dimension[k], row_level);
-      return bounds.upper <= found.within * bounds.lower;
-    };
-    std::uint64_t enough = runs, too_few = runs;
-    while (!decide(enough)) enough *= 2;
-    while (enough - too_few > 1) {
-      const std::uint64_t middle = too_few + (enough - too_few) / 2;
-      (decide(middle) ? enough : too_few) = middle;
-    }
-    more = std::max(more, enough - runs);
-  }
-  return more;
-}
-
 }  // namespace
-
-Interval ratio_of_row(const JointConsistency& joint, std::size_t row) {
-  return {joint.average[row] / joint.bounds[row].upper,
-          joint.average[row] / joint.bounds[row].lower};
-}
 
 std::vector<JointScore> joint_scores(const JointRows& rows, std::span<const std::uint32_t> scans,
                                      std::span<const double> truth,
@@ -138,47 +79,42 @@ double nees_per_component(std::span<const JointScore> scores) {
   return sum / dimensions;
 }
 
+JointNeesSums::JointNeesSums(std::span<const double> times)
+    : times_(times.begin(), times.end()), nees_(times.size()), all_dimensions_(times.size()) {}
+
 void JointNeesSums::add(std::span<const JointScore> run) {
   if (run.empty()) return;
   ++n_runs_;
-  rows_.resize(run.size());
   for (std::size_t k = 0; k < run.size(); ++k) {
     const auto dimension = static_cast<double>(run[k].dimension);
-    rows_[k].all_dimensions += dimension;
-    if (std::isnan(run[k].nees)) continue;
-    rows_[k].nees += run[k].nees;
-    rows_[k].dimensions += dimension;
-    ++rows_[k].runs;
+    all_dimensions_[k] += dimension;
+    nees_.add(k, run[k].nees, dimension);
   }
 }
 
-/// The sum over runs is chi-square with the sum of the dimensions; each of K rows is tested at
-/// 1 - (1 - level) / K, so that a consistent filter passes all with probability `level` at least.
 JointConsistency JointNeesSums::result(double level, bool identities_known, double within) const {
   JointConsistency found;
-  found.within = within;
   found.stored = n_runs_ > 0;
   if (!found.stored) return found;
   if (!identities_known) {
     found.missing = "nobody knows which landmark is which";
     return found;
   }
-  const double row_level = 1.0 - (1.0 - level) / static_cast<double>(rows_.size());
-  for (const Sums& row : rows_) {
+  found.verdict = judge(nees_.families(level, times_), level, within, n_runs_);
+  const FamilyTest* rows = found.verdict.find(Family::scan);
+  auto member = rows == nullptr ? std::vector<Member>::const_iterator() : rows->members.begin();
+  for (std::size_t k = 0; k < times_.size(); ++k) {
+    const SummedError::Scan& row = nees_.scans()[k];
+    const bool is_defined = row.runs > 0.0;
     found.samples += n_runs_;
-    found.undefined += n_runs_ - row.runs;
-    found.runs.push_back(row.runs);
-    found.dimension.push_back(row.all_dimensions / static_cast<double>(n_runs_));
-    found.average.push_back(row.nees / row.dimensions);
-    if (row.runs == 0) {
-      found.bounds.push_back({kNaN, kNaN});
-      continue;
-    }
-    found.bounds.push_back(bounds_per_component(row.dimensions, row_level));
-  }
-  judge_rows(found);
-  if (found.verdict == Verdict::undecided) {
-    found.more_runs = more_runs_that_decide(found, row_level);
+    found.undefined += n_runs_ - static_cast<std::uint64_t>(row.runs);
+    found.runs.push_back(static_cast<std::uint32_t>(row.runs));
+    found.dimension.push_back(all_dimensions_[k] / static_cast<double>(n_runs_));
+    found.average.push_back(row.ratio());
+    found.bounds.push_back({kNaN, kNaN});
+    if (!is_defined) continue;
+    const Interval& ratio = (member++)->simultaneous;
+    found.bounds.back() = {row.ratio() / ratio.upper, row.ratio() / ratio.lower};
   }
   return found;
 }
@@ -192,13 +128,21 @@ constexpr Score kJointNeesScores[] = {
      },
      Better::neither}};
 
+/// [s] of the joint estimates.
+std::vector<double> times_of(const RunCriteria& criteria) {
+  std::vector<double> times;
+  for (const std::uint32_t scan : criteria.joint_scans) times.push_back(criteria.times[scan]);
+  return times;
+}
+
 class JointNeesOverRuns final : public MetricSums {
  public:
-  explicit JointNeesOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
+  explicit JointNeesOverRuns(const RunCriteria& criteria)
+      : criteria_(&criteria), joint_(times_of(criteria)) {}
   void add(const MeasuredRun& run) override { joint_.add(run.joint); }
   void put(CellAnalysis& cell) override {
-    cell.findings.put(joint_.result(criteria_->verdict_level(), criteria_->map.identities_known,
-                                    criteria_->within));
+    const double level = criteria_->verdict_level(cell.complete + cell.failures.size());
+    cell.findings.put(joint_.result(level, criteria_->map.identities_known, criteria_->within));
   }
 
  private:
@@ -209,7 +153,7 @@ class JointNeesOverRuns final : public MetricSums {
 /// At the last stored scan.
 void joint_nees_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
   const JointConsistency& joint = cell.get<JointConsistency>();
-  const bool known = joint.verdict != Verdict::untested;
+  const bool known = joint.is_judged();
   const Interval bounds = known ? joint.bounds.back() : Interval{kNaN, kNaN};
   all.push_back({"joint_components", "1", known ? joint.dimension.back() : kNaN});
   all.push_back({"joint_nees_per_component", "1", known ? joint.average.back() : kNaN});
@@ -218,19 +162,7 @@ void joint_nees_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all)
   all.push_back({"joint_undefined", "1", static_cast<double>(joint.undefined)});
 }
 
-bool is_judged(const CellAnalysis& cell) {
-  return cell.get<JointConsistency>().verdict != Verdict::untested;
-}
-
-std::string words_of(const JointConsistency& joint, const std::vector<double>& times) {
-  Consistency found;
-  found.verdict = joint.verdict;
-  found.within = joint.within;
-  if (const auto row = joint.highest_row) found.highest = {ratio_of_row(joint, *row), times[*row]};
-  if (const auto row = joint.lowest_row) found.lowest = {ratio_of_row(joint, *row), times[*row]};
-  found.more_runs = joint.more_runs;
-  return in_words(found);
-}
+bool is_judged(const CellAnalysis& cell) { return cell.get<JointConsistency>().is_judged(); }
 
 /// The stored scan at which the average is farthest from 1.
 std::size_t worst_row(const JointConsistency& joint) {
@@ -249,7 +181,7 @@ std::vector<std::string> row_of(const CellAnalysis& cell, const std::vector<doub
           readable(joint.average.back()),
           interval_text(joint.bounds.back()),
           readable(joint.average[worst]) + " at " + readable(times[worst]) + " s",
-          words_of(joint, times)};
+          in_words(joint.verdict)};
 }
 
 /// Whether any cell was judged by its joint estimates.
@@ -278,8 +210,7 @@ std::vector<std::string> joint_notes(const StudyAnalysis& study) {
         "Pose and map together: the squared error of the vehicle and of all landmarks at once, "
         "measured by the covariance that the filter has of them all, for each component (1 is "
         "expected, more is overconfident). It also sees wrong correlations, which no part by "
-        "itself shows. It is consistent where the average of every stored scan is shown to be "
-        "within the margin. 'Expected within' is where a consistent filter stays at all " +
+        "itself shows. 'Expected within' is where a consistent filter stays at all " +
         std::to_string(study.joint_times.size()) + " stored scans with a probability of " +
         percent(study.level) + " at least.");
   }
@@ -341,7 +272,7 @@ Figure joint_figure(const StudyAnalysis& study) {
   std::set<std::vector<std::uint32_t>> runs;
   for (std::size_t i = 0; i < study.cells.size(); ++i) {
     const CellAnalysis& cell = study.cells[i];
-    if (cell.get<JointConsistency>().verdict == Verdict::untested) continue;
+    if (!is_judged(cell)) continue;
     panel.curves.push_back({cell.label, i, cell.get<JointConsistency>().average});
     if (runs.insert(cell.get<JointConsistency>().runs).second)
       add_band(cell, study.level, runs.size() == 1, panel);

@@ -2,12 +2,12 @@
 #pragma once
 
 #include "analysis/data/run_rows.hpp"
-#include "analysis/metrics/consistency.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/verdict/summed_error.hpp"
+#include "analysis/verdict/verdict.hpp"
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,34 +38,29 @@ struct JointConsistency {
   std::vector<std::uint32_t> runs;  ///< {joint} with a defined NEES
   std::uint64_t samples = 0;        ///< rows x complete runs
   std::uint64_t undefined = 0;      ///< of them, without a NEES
-  Verdict verdict = Verdict::untested;
-  double within = kUsualMargin;            ///< what counts as consistent
-  std::optional<std::size_t> highest_row;  ///< of the rows outside their bounds that farthest above
-  std::optional<std::size_t> lowest_row;   ///< and that farthest below
-  std::optional<std::uint64_t> more_runs;  ///< that decide what is undecided
-  bool stored = false;                     ///< whether the cell has joint estimates
+  Verdict verdict;                  ///< by size and rows
+  bool stored = false;              ///< whether the cell has joint estimates
   std::string missing = {};  ///< why those that are stored were not judged; empty where they were
-};
 
-/// Where the expected average of a row lies, as far as it is off by a factor.
-Interval ratio_of_row(const JointConsistency& joint, std::size_t row);
+  bool is_judged() const { return verdict.answer != Answer::untested; }
+};
 
 /// Adds up complete runs in the order of the calls.
 class JointNeesSums {
  public:
+  /// `times` [s] of the rows.
+  explicit JointNeesSums(std::span<const double> times);
+
   /// Nothing: the run has no joint estimates.
   void add(std::span<const JointScore> run);
   /// `identities_known`: whether anybody knows which landmark is which.
-  /// `within`: rows whose intervals are all inside [1 / within, within] are consistent.
   JointConsistency result(double level, bool identities_known, double within = kUsualMargin) const;
 
  private:
-  struct Sums {
-    double nees = 0.0, dimensions = 0.0, all_dimensions = 0.0;
-    std::uint32_t runs = 0;
-  };
-  std::vector<Sums> rows_;    ///< {joint}
-  std::uint64_t n_runs_ = 0;  ///< with joint estimates
+  std::vector<double> times_;
+  SummedError nees_;                    ///< {joint}
+  std::vector<double> all_dimensions_;  ///< {joint} also where the NEES is not defined
+  std::uint64_t n_runs_ = 0;            ///< with joint estimates
 };
 
 }  // namespace montecarta::analysis

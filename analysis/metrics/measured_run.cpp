@@ -3,6 +3,8 @@
 
 #include "analysis/data/study_settings.hpp"
 #include "analysis/metrics/cramer_rao.hpp"
+#include "analysis/metrics/error_anatomy.hpp"
+#include "analysis/metrics/imported_estimates.hpp"
 #include "analysis/statistics/group_sequential.hpp"
 #include "analysis/statistics/sampler_scale.hpp"
 #include "analysis/statistics/spread.hpp"
@@ -54,6 +56,27 @@ void measure_imported(const ErrorRows& errors, bool is_pose, NeesRows& rows) {
   }
 }
 
+/// Turns forward and left of a vehicle of this heading [rad] out of x and y.
+Eigen::Matrix3d vehicle_from_map(double heading) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-heading).toRotationMatrix();
+  return turn;
+}
+
+/// Makes errors of drawn poses normal: the squares of all components together, and each component
+/// by itself, become as large as they are probable (STATISTICS 4).
+void put_on_normal_scale(const EffectiveDraws& draws, std::size_t rank, std::span<double> whitened,
+                         std::span<double> standardised) {
+  double squares = 0.0;
+  for (const double u : whitened) squares += std::isnan(u) ? 0.0 : u * u;
+  const double scale =
+      squares > 0.0 ? std::sqrt(sampler_scale(rank)(squares, draws) / squares) : 1.0;
+  for (double& u : whitened) u *= scale;
+  for (double& z : standardised) {
+    z = std::copysign(std::sqrt(sampler_scale(1)(z * z, draws)), z);
+  }
+}
+
 void put_on_full_scale(NeesRows& rows) {
   for (std::size_t b = 0; b < rows.value.size(); ++b) {
     for (std::size_t s = 0; s < rows.value[b].size(); ++s) {
@@ -85,13 +108,11 @@ void RunMetrics::measure_errors(const RunRows& rows, std::size_t scans) {
 void RunMetrics::turn_into_vehicle(const RunRows& rows) {
   const std::vector<double>& covariance = estimate_of(rows).covariance;
   for (std::size_t s = 0; s < errors_.size(); ++s) {
-    const double heading = pose_of(rows.truth, s).heading;
-    Eigen::Matrix3d vehicle_from_map = Eigen::Matrix3d::Identity();
-    vehicle_from_map.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-heading).toRotationMatrix();
-    errors_[s] = vehicle_from_map * errors_[s];
+    const Eigen::Matrix3d turn = vehicle_from_map(pose_of(rows.truth, s).heading);
+    errors_[s] = turn * errors_[s];
     if (covariance.empty()) continue;
     const Eigen::Matrix3d P = Eigen::Map<const RowMajor3>(covariance.data() + 9 * s);
-    covariances_.emplace_back(vehicle_from_map * P * vehicle_from_map.transpose());
+    covariances_.emplace_back(turn * P * turn.transpose());
   }
 }
 
@@ -128,6 +149,39 @@ void RunMetrics::correct_spread(const RunRows& rows, std::size_t particles) {
   }
 }
 
+/// Writes one scan of a pose by the moments that lead there.
+void RunMetrics::whiten_pose(const RunRows& rows, std::size_t particles, std::size_t s) {
+  const bool is_drawn_here = particles > 0 && is_drawn(rows, s);
+  const bool by_mixture = particles > 0 && !is_drawn_here;
+  const MomentRows& moments = by_mixture ? rows.mixture : rows.spread;
+  const Eigen::Matrix3d turn = vehicle_from_map(pose_of(rows.truth, s).heading);
+  const Eigen::Vector3d error = turn * boxminus(pose_of(moments.mean, s), pose_of(rows.truth, s));
+  const Eigen::Matrix3d P = Eigen::Map<const RowMajor3>(moments.covariance.data() + 9 * s);
+  const auto u = std::span(whitened_.whitened).subspan(3 * s, 3);
+  const auto z = std::span(whitened_.standardised).subspan(3 * s, 3);
+  const std::size_t rank = whiten(error, turn * P * turn.transpose(), least_pose_deviation(), u, z);
+  if (is_drawn_here && rank > 0) put_on_normal_scale(draws_at(rows, particles, s), rank, u, z);
+}
+
+void RunMetrics::whiten_errors(const RunRows& rows, std::size_t particles) {
+  const NeesRows* leading = leading_nees();
+  whitened_.dimension = leading == nullptr ? 0 : leading->dimension[0];
+  const std::size_t d = whitened_.dimension, scans = d == 0 ? 0 : leading->value[0].size();
+  whitened_.whitened.assign(scans * d, kNaN);
+  whitened_.standardised.assign(scans * d, kNaN);
+  const Eigen::VectorXd exact = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(d));
+  for (std::size_t s = 0; s < scans; ++s) {
+    if (std::isnan(leading->value[0][s])) continue;
+    if (rows.error.components() == 0) {
+      whiten_pose(rows, particles, s);
+      continue;
+    }
+    whiten(rows.error.error(s), rows.error.covariance_of(s), exact,
+           std::span(whitened_.whitened).subspan(d * s, d),
+           std::span(whitened_.standardised).subspan(d * s, d));
+  }
+}
+
 void RunMetrics::measure(const RunRows& rows, std::size_t particles,
                          std::span<const double> times) {
   measure_errors(rows, times.size());
@@ -140,6 +194,7 @@ void RunMetrics::measure(const RunRows& rows, std::size_t particles,
   measure_nees(rows.truth, rows.mixture, nees_[static_cast<std::size_t>(Moments::mixture)]);
   correct_spread(rows, particles);
   for (NeesRows& all : nees_) put_on_full_scale(all);
+  whiten_errors(rows, particles);
   diversity_ = nullptr;
   lineages_.reset();
   if (rows.ancestor.empty()) return;
@@ -180,8 +235,11 @@ DriveCriteria criteria_of_drive(const MetDrive& drive) {
 
 }  // namespace
 
+double RunCriteria::verdict_level(std::uint64_t runs) const {
+  return level_of_look(level, looks, runs);
+}
+
 RunCriteria criteria_of(const ResultFile& file, double level, double within) {
-  const std::size_t scans = file.has_errors() ? file.scan_times().size() : 0;
   RunCriteria criteria{.times = file.scan_times(),
                        .level = level,
                        .within = within,
@@ -189,11 +247,12 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
                        .beacons = {},
                        .map = map_criteria_of(file),
                        .joint_scans = file.description().joint_scans,
-                       .walks = BandWalks(scans),
                        .calibrates = noise_is_matched(file),
-                       .look_level = {}};
-  const auto looks = looks_in(file.study_text(), file.study_runs());
-  if (looks.size() > 1) criteria.look_level = level_of_a_look(level, looks.size());
+                       .looks = looks_in(file.study_text(), file.study_runs()),
+                       .components = {kErrorComponents.begin(), kErrorComponents.end()}};
+  const ImportedState imported =
+      file.cells().empty() ? ImportedState() : imported_state(file.cells().front());
+  if (imported.is_imported()) criteria.components = imported.components;
   for (const ReferencePath& path : file.references()) {
     criteria.references.emplace_back(path, file.times(), file.description().start);
     if (path.covariance.empty()) continue;

@@ -3,8 +3,8 @@
 
 #include "analysis/data/run_reader.hpp"
 #include "analysis/data/run_rows.hpp"
+#include "analysis/data/study_settings.hpp"
 #include "analysis/metrics/calibration.hpp"
-#include "analysis/metrics/consistency.hpp"
 #include "analysis/metrics/diversity.hpp"
 #include "analysis/metrics/drive_scores.hpp"
 #include "analysis/metrics/joint_nees.hpp"
@@ -12,7 +12,7 @@
 #include "analysis/metrics/map_scores.hpp"
 #include "analysis/metrics/nees.hpp"
 #include "analysis/metrics/reference_scores.hpp"
-#include "analysis/statistics/whole_run_band.hpp"
+#include "analysis/verdict/whole_error.hpp"
 #include "engine/records/result_file.hpp"
 
 #include <Eigen/Core>
@@ -22,6 +22,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace montecarta::analysis {
@@ -57,6 +58,10 @@ class RunMetrics {
   const NeesRows& nees(Moments moments) const { return nees_[static_cast<std::size_t>(moments)]; }
   /// By the first of kMoments that is there; nullptr where none is.
   const NeesRows* leading_nees() const;
+  /// Errors in units of the covariance by the moments that lead, in the frame of the true vehicle,
+  /// or in the convention of imported estimates. Where poses were drawn each is on the scale of the
+  /// normal law (SamplerScale). Of dimension 0 where there is no covariance.
+  const WhitenedRun& whitened() const { return whitened_; }
   /// [m^2] {scan}, of the mean of estimate_of().
   const std::vector<double>& squared_position() const { return squared_position_; }
   /// [rad^2] {scan}
@@ -75,8 +80,11 @@ class RunMetrics {
   void turn_into_vehicle(const RunRows& rows);
 
   void correct_spread(const RunRows& rows, std::size_t particles);
+  void whiten_pose(const RunRows& rows, std::size_t particles, std::size_t s);
+  void whiten_errors(const RunRows& rows, std::size_t particles);
 
   std::array<NeesRows, kMoments.size()> nees_;  ///< {Moments}
+  WhitenedRun whitened_;
   std::vector<double> squared_position_, squared_heading_;
   std::vector<Eigen::Vector3d> errors_;
   std::vector<Eigen::Matrix3d> covariances_;
@@ -102,16 +110,18 @@ struct RunCriteria {
   std::vector<Eigen::Vector2d> beacons;        ///< [m]
   MapCriteria map;                             ///< of a simulation
   std::span<const std::uint32_t> joint_scans;  ///< of joint estimates
-  BandWalks walks;                             ///< of as many scans where there is a truth
   std::vector<PathAtFixes> judged_fixes = {};  ///< of the scans, of references with known errors
   bool calibrates = false;  ///< whether calibration is judged: where noise is matched
-  /// Of each verdict where cells stop by verdict, so that all looks together have `level`.
-  std::optional<double> look_level = {};
+  /// Runs at each interim analysis, if cells stop when their verdict is known.
+  std::vector<std::uint64_t> looks = {};
+  /// Components of the errors that are judged.
+  std::vector<std::string> components = {};
   /// {run of the study} Where every run is a drive of its own; then times are those of the longest
   /// one, references and judged_fixes those of the first.
   std::vector<DriveCriteria> drives = {};
 
-  double verdict_level() const { return look_level.value_or(level); }
+  /// Level of a verdict on so many runs, so that all interim analyses together have `level`.
+  double verdict_level(std::uint64_t runs) const;
 };
 
 RunCriteria criteria_of(const ResultFile& file, double level, double within = kUsualMargin);

@@ -48,10 +48,10 @@ MismatchGrid grid_of(const std::vector<const CellAnalysis*>& cells) {
                          std::numeric_limits<double>::quiet_NaN());
   for (const CellAnalysis* cell : cells) {
     const NeesResult* pose = cell->find_nees(ErrorBlock::pose, cell->leading);
-    if (pose == nullptr || pose->consistency.verdict == Verdict::untested) continue;
+    if (pose == nullptr || !pose->is_tested()) continue;
     grid.anees(place_of(cell->mismatch.motion_noise, grid.motion_noise),
                place_of(cell->mismatch.sensor_noise, grid.sensor_noise)) =
-        pose->consistency.mean / static_cast<double>(pose->series.dimension);
+        pose->mean / static_cast<double>(pose->series.dimension);
   }
   return grid;
 }

@@ -34,6 +34,7 @@ constexpr double kRounding = 1e-9;          // error of a component that is know
 constexpr double kFarthestOutside = 10.0;   // standard deviations; second-order effects are smaller
 constexpr double kLargestAsymmetry = 1e-6;  // of the deviations: as six printed digits leave it
 constexpr double kLastTail = 1e-6;          // beyond, a consistent filter hardly ever is
+constexpr double kLargestError = 1e30;      // in deviations; its square is kLargestNees
 const Eigen::Vector3d kLeastDeviation{1e-9, 1e-9, 1e-10};
 
 template <int D>
@@ -43,15 +44,14 @@ using Mat = Eigen::Matrix<double, D, D>;
 
 double capped(double nees) { return nees <= kLargestNees ? nees : kLargestNees; }
 
-/// e' P^-1 e by Cholesky of the correlation matrix, whose pivots do not depend on units; nullopt
-/// if P is singular.
+/// L^-1 e with P = L L', by Cholesky of the correlation matrix, whose pivots do not depend on
+/// units; nullopt if P is singular.
 template <int D>
-std::optional<double> quadratic_form(const Vec<D>& error, const Mat<D>& covariance,
-                                     const Vec<D>& least_variance) {
+std::optional<Vec<D>> whitened(const Vec<D>& error, const Mat<D>& covariance,
+                               const Vec<D>& least_variance) {
   if (!(covariance.diagonal().array() > least_variance.array()).all()) return std::nullopt;
   const Vec<D> scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
   Mat<D> L = Mat<D>::Zero(error.size(), error.size());
-  double sum = 0.0;
   Vec<D> y(error.size());
   for (int i = 0; i < error.size(); ++i) {
     double rest = error(i) * scale(i);
@@ -66,8 +66,18 @@ std::optional<double> quadratic_form(const Vec<D>& error, const Mat<D>& covarian
     if (!(pivot > kLeastPivot)) return std::nullopt;
     L(i, i) = std::sqrt(pivot);
     y(i) = rest / L(i, i);
-    sum += y(i) * y(i);
   }
+  return y;
+}
+
+/// e' P^-1 e; nullopt if P is singular.
+template <int D>
+std::optional<double> quadratic_form(const Vec<D>& error, const Mat<D>& covariance,
+                                     const Vec<D>& least_variance) {
+  const std::optional<Vec<D>> y = whitened<D>(error, covariance, least_variance);
+  if (!y) return std::nullopt;
+  double sum = 0.0;
+  for (int i = 0; i < y->size(); ++i) sum += (*y)(i) * (*y)(i);
   return sum;
 }
 
@@ -157,6 +167,32 @@ Nees imported_nees(const Eigen::VectorXd& error, const Eigen::MatrixXd& P) {
   }
   return nees_in_range(error, P, least);
 }
+
+std::size_t whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance,
+                   const Eigen::VectorXd& least_deviation, std::span<double> whitened_error,
+                   std::span<double> standardised) {
+  std::ranges::fill(whitened_error, kNaN);
+  std::ranges::fill(standardised, kNaN);
+  if (!error.allFinite() || !covariance.allFinite()) return 0;
+  const Eigen::VectorXd least = least_deviation.cwiseAbs2();
+  std::vector<Eigen::Index> open;
+  for (Eigen::Index i = 0; i < error.size(); ++i) {
+    if (covariance(i, i) > least(i)) open.push_back(i);
+  }
+  const auto y = whitened<Eigen::Dynamic>(error(open), covariance(open, open), least(open));
+  if (!y) return 0;
+  const double largest = open.empty() ? 0.0 : y->cwiseAbs().maxCoeff();
+  const double scale = largest > kLargestError ? kLargestError / largest : 1.0;
+  for (std::size_t k = 0; k < open.size(); ++k) {
+    const auto component = static_cast<std::size_t>(open[k]);
+    const double by_deviation = error(open[k]) / std::sqrt(covariance(open[k], open[k]));
+    whitened_error[component] = scale * (*y)(static_cast<Eigen::Index>(k));
+    standardised[component] = std::clamp(by_deviation, -kLargestError, kLargestError);
+  }
+  return open.size();
+}
+
+Eigen::VectorXd least_pose_deviation() { return kLeastDeviation; }
 
 double on_full_scale(const Nees& sample, std::size_t dimension) {
   if (sample.rank <= 0) return kNaN;

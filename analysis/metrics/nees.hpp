@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 
 namespace montecarta::analysis {
 
@@ -74,6 +75,17 @@ Nees nees(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, int f
 /// NEES of an imported estimate: `error` {d} with `covariance` {d, d}, which is also unusable if it
 /// is not symmetric (to 1e-6 of the standard deviations).
 Nees imported_nees(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance);
+
+/// Writes the error in units of its covariance (STATISTICS 5): L^-1 e with P = L L', and each
+/// component divided by its own deviation, cut to 1e30 deviations. Components whose deviation is at
+/// most `least_deviation` are known exactly and NaN; all are NaN if the rest of P is singular, or
+/// anything is not finite. Returns the number of components that are not NaN.
+std::size_t whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance,
+                   const Eigen::VectorXd& least_deviation, std::span<double> whitened_error,
+                   std::span<double> standardised);
+
+/// Deviations that are taken for 0 in a pose: x [m], y [m], heading [rad].
+Eigen::VectorXd least_pose_deviation();
 
 /// Puts the NEES of a covariance of lower rank on the scale of `dimension` components: it becomes
 /// the value that is as probable under the chi-square law of `dimension` degrees of freedom. What a

@@ -13,110 +13,44 @@
 #include "analysis/statistics/spread.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 
 namespace montecarta::analysis {
 namespace {
 
-// Exponent and first four bits of the fraction of a double number the bins of all positive doubles
-// in increasing order.
-constexpr int kFractionBits = 4;
-constexpr int kShift = 52 - kFractionBits;
-constexpr int kLeastExponent = -12;
-constexpr int kMostExponent = 32;
-constexpr std::size_t kBins = std::size_t{kMostExponent - kLeastExponent} << kFractionBits;
-
-std::size_t bin_of(double value) {
-  const double least = std::ldexp(1.0, kLeastExponent);
-  const double most = std::nextafter(std::ldexp(1.0, kMostExponent), 0.0);
-  const auto number = [](double v) { return std::bit_cast<std::uint64_t>(v) >> kShift; };
-  return static_cast<std::size_t>(number(std::clamp(value, least, most)) - number(least));
-}
-
-double lower_edge(std::size_t bin) {
-  const double octave = std::ldexp(1.0, kLeastExponent + static_cast<int>(bin >> kFractionBits));
-  const double part = static_cast<double>(bin & ((1u << kFractionBits) - 1));
-  return octave * (1.0 + part / (1 << kFractionBits));
-}
-
-/// Where a share `part` of a bin lies below.
-double within(std::size_t bin, double part) {
-  return std::lerp(lower_edge(bin), lower_edge(bin + 1), part);
-}
-
-double count_of(std::span<const std::uint32_t> bins) {
-  return static_cast<double>(std::accumulate(bins.begin(), bins.end(), std::uint64_t{0}));
-}
-
-}  // namespace
-
-QuantileTable::QuantileTable(std::size_t scans) : counts_(scans * kBins) {}
-
-void QuantileTable::add(std::size_t scan, double value) { ++counts_[scan * kBins + bin_of(value)]; }
-
-std::span<const std::uint32_t> QuantileTable::bins_of(std::size_t scan) const {
-  return std::span(counts_).subspan(scan * kBins, kBins);
-}
-
-double QuantileTable::median(std::size_t scan) const {
-  const auto bins = bins_of(scan);
-  const double half = 0.5 * count_of(bins);
-  double below = 0.0;
-  for (std::size_t b = 0; b < kBins; ++b) {
-    const double here = bins[b];
-    if (here > 0.0 && below + here >= half) return within(b, (half - below) / here);
-    below += here;
-  }
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
-double QuantileTable::trimmed_mean(std::size_t scan, double trim) const {
-  const auto bins = bins_of(scan);
-  const double first = trim * count_of(bins), last = (1.0 - trim) * count_of(bins);
-  double below = 0.0, sum = 0.0;
-  for (std::size_t b = 0; b < kBins && below < last; ++b) {
-    const double here = bins[b];
-    const double from = std::max(below, first), to = std::min(below + here, last);
-    below += here;
-    if (to <= from) continue;
-    sum += (to - from) * within(b, (0.5 * (from + to) - (below - here)) / here);
-  }
-  return sum / (last - first);
-}
-
-namespace {
-
-/// A consistent filter's NEES is above ten times its mean once in a million samples.
-constexpr double kCapFactor = 10.0;
-
-/// Both bands of every scan, from the runs that are valid there: nearly always of one number.
-class BandsOf {
+/// Bounds of every scan by the runs that are valid there: nearly always the same number.
+class BoundsOfRuns {
  public:
-  BandsOf(std::size_t dimension, double level, double whole_run_level)
-      : dimension_(dimension), level_(level), whole_run_level_(whole_run_level) {}
+  BoundsOfRuns(std::size_t dimension, double level) : dimension_(dimension), level_(level) {}
 
-  struct Bands {
-    Interval pointwise, whole_run;
-  };
-  const Bands& of(std::uint32_t runs) {
+  Interval of(std::uint32_t runs) {
     const auto [found, is_new] = known_.try_emplace(runs);
-    if (is_new && runs > 0) {
-      found->second = {nees_bounds(runs, dimension_, level_),
-                       nees_bounds(runs, dimension_, whole_run_level_)};
-    }
+    if (is_new && runs > 0) found->second = nees_bounds(runs, dimension_, level_);
     return found->second;
   }
 
  private:
   std::size_t dimension_;
-  double level_, whole_run_level_;
-  std::map<std::uint32_t, Bands> known_;
+  double level_;
+  std::map<std::uint32_t, Interval> known_;
 };
+
+/// Shares of scans outside the bounds of a scan.
+void count_shares(NeesResult& result) {
+  const NeesSeries& series = result.series;
+  double tested = 0.0, above = 0.0, below = 0.0;
+  for (std::size_t s = 0; s < series.average.size(); ++s) {
+    const double average = series.average[s];
+    if (std::isnan(average)) continue;
+    tested += 1.0;
+    above += average > series.bounds[s].upper ? 1.0 : 0.0;
+    below += average < series.bounds[s].lower ? 1.0 : 0.0;
+  }
+  result.share_above = above / tested;
+  result.share_below = below / tested;
+}
 
 }  // namespace
 
@@ -126,9 +60,7 @@ NeesAccumulator::NeesAccumulator(ErrorBlock block, Moments moments, std::size_t 
       moments_(moments),
       dimension_(dimension == 0 ? dimension_of(block) : dimension),
       sum_(scans),
-      runs_(scans),
-      table_(scans),
-      neighbours_(scans) {}
+      runs_(scans) {}
 
 void NeesAccumulator::add(const RunMetrics& metrics) {
   const auto block = static_cast<std::size_t>(block_);
@@ -153,9 +85,7 @@ void NeesAccumulator::add(std::span<const double> value, std::span<const int> ra
     }
     sum_[s] += value[s];
     ++runs_[s];
-    table_.add(s, value[s]);
   }
-  neighbours_.add(value, kCapFactor * static_cast<double>(dimension_));
   const double average = mean_of_finite(value);
   if (std::isnan(average)) {
     ++unjudged_runs_;
@@ -164,8 +94,7 @@ void NeesAccumulator::add(std::span<const double> value, std::span<const int> ra
   }
 }
 
-NeesSeries NeesAccumulator::series(double level, double verdict_level,
-                                   const BandWalks& walks) const {
+NeesSeries NeesAccumulator::series(double level) const {
   NeesSeries series;
   series.dimension = dimension_;
   series.samples = samples_;
@@ -175,24 +104,17 @@ NeesSeries NeesAccumulator::series(double level, double verdict_level,
   series.runs = runs_;
   series.run_averages = run_averages_;
   series.unjudged_runs = unjudged_runs_;
-  series.test =
-      walks.test(neighbours_.result(), run_averages_.size(), series.dimension, verdict_level);
-  BandsOf bands(series.dimension, level, std::erf(series.test.deviate / std::sqrt(2.0)));
+  BoundsOfRuns bounds(series.dimension, level);
   for (std::size_t s = 0; s < sum_.size(); ++s) {
-    series.bounds.push_back(bands.of(runs_[s]).pointwise);
-    series.whole_run_bounds.push_back(bands.of(runs_[s]).whole_run);
+    series.bounds.push_back(bounds.of(runs_[s]));
     series.average.push_back(sum_[s] / runs_[s]);  // NaN where no run is valid
-    series.median.push_back(table_.median(s));
-    series.trimmed.push_back(table_.trimmed_mean(s, kTrimmedShare));
   }
   return series;
 }
 
-NeesResult NeesAccumulator::result(std::span<const double> times, double level,
-                                   const BandWalks& walks, double within,
-                                   std::optional<double> look_level) const {
-  NeesResult result{block_, moments_, series(level, look_level.value_or(level), walks), {}};
-  result.consistency = judge(result.series, times, within);
+NeesResult NeesAccumulator::result(double level) const {
+  NeesResult result{block_, moments_, series(level), mean_of_finite(run_averages_), {}, 0.0, 0.0};
+  count_shares(result);
   return result;
 }
 
@@ -222,8 +144,7 @@ class NeesOverRuns final : public MetricSums {
   void put(CellAnalysis& cell) override {
     if (!nees_.empty()) cell.leading = nees_.front().moments();
     for (const NeesAccumulator& nees : nees_) {
-      cell.nees.push_back(nees.result(criteria_->times, criteria_->level, criteria_->walks,
-                                      criteria_->within, criteria_->look_level));
+      cell.nees.push_back(nees.result(criteria_->level));
     }
   }
 
@@ -250,14 +171,8 @@ void add_nees(const NeesResult& nees, std::vector<NamedSeries>& all) {
   const NeesSeries& series = nees.series;
   const std::string suffix = "_" + name_of(nees.block) + "_" + name_of(nees.moments);
   all.push_back({"anees" + suffix, "1", series.average});
-  all.push_back({"median_nees" + suffix, "1", series.median});
   all.push_back({"lower" + suffix, "1", ends_of(series.bounds, &Interval::lower)});
   all.push_back({"upper" + suffix, "1", ends_of(series.bounds, &Interval::upper)});
-  all.push_back({"trimmed_nees" + suffix, "1", series.trimmed});
-  all.push_back(
-      {"whole_run_lower" + suffix, "1", ends_of(series.whole_run_bounds, &Interval::lower)});
-  all.push_back(
-      {"whole_run_upper" + suffix, "1", ends_of(series.whole_run_bounds, &Interval::upper)});
   all.push_back({"runs" + suffix, "1", {series.runs.begin(), series.runs.end()}});
 }
 
@@ -320,6 +235,9 @@ Figure anees_parts_figure(const StudyAnalysis& study) {
 
 Section verdict_section(const StudyAnalysis& study) {
   Section section{"verdict", "Verdict"};
+  for (const CellAnalysis& cell : study.cells) {
+    section.blocks.push_back(Section::Lead{sentence(cell.label, cell.verdict)});
+  }
   section.add("verdict", verdict_table(study));
   const bool has_poses = !study.imported.is_imported() || study.imported.state == "pose";
   if (has_poses) section.add("accuracy", accuracy_table(study));

@@ -12,6 +12,7 @@ namespace montecarta::analysis {
 // Each is defined in a file of metrics/.
 Metric errors_metric();
 Metric nees_metric();
+Metric verdict_metric();
 Metric imported_metric();
 Metric convention_hints_metric();
 Metric map_size_metric();
@@ -35,15 +36,18 @@ Metric cost_metric();
 Metric smoother_metric();
 
 std::span<const Metric> all_metrics() {
-  static const std::vector<Metric> all = {
-      errors_metric(),      nees_metric(),          imported_metric(),
-      map_size_metric(),    particles_metric(),     lineages_metric(),
-      association_metric(), references_metric(),    drive_metric(),
-      beacons_metric(),     bound_metric(),         map_metric(),
-      joint_nees_metric(),  error_anatomy_metric(), survival_metric(),
-      innovations_metric(), diversity_metric(),     calibration_metric(),
-      mismatch_metric(),    cost_metric(),          convention_hints_metric(),
-      smoother_metric(),    observability_metric()};
+  static const std::vector<Metric> all = {errors_metric(),        nees_metric(),
+                                          verdict_metric(),       imported_metric(),
+                                          map_size_metric(),      particles_metric(),
+                                          lineages_metric(),      association_metric(),
+                                          references_metric(),    drive_metric(),
+                                          beacons_metric(),       bound_metric(),
+                                          map_metric(),           joint_nees_metric(),
+                                          error_anatomy_metric(), survival_metric(),
+                                          innovations_metric(),   diversity_metric(),
+                                          calibration_metric(),   mismatch_metric(),
+                                          cost_metric(),          convention_hints_metric(),
+                                          smoother_metric(),      observability_metric()};
   return all;
 }
 

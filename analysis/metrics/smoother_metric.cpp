@@ -47,12 +47,12 @@ std::vector<std::string> row_beside(const CellAnalysis& cell, const CellAnalysis
                                     double level) {
   const auto cpu = [](const CellAnalysis& of) { return of.over_runs("cpu_seconds").mean; };
   const auto is_judged = [](const CellAnalysis& of) {
-    return of.consistency().verdict != Verdict::untested;
+    return of.verdict.answer != Answer::untested;
   };
   return {cell.label, efficiency_text(cell, smoother, "position_mse", level),
           efficiency_text(cell, smoother, "heading_mse", level),
           is_judged(cell) && is_judged(smoother)
-              ? compact(cell.consistency().mean / smoother.consistency().mean)
+              ? compact(cell.verdict.ratio_estimate() / smoother.verdict.ratio_estimate())
               : "-",
           readable(cpu(cell) / cpu(smoother))};
 }

@@ -80,13 +80,8 @@ CellAnalysis cell_by(const RunCriteria& criteria, const ResultFile& file, const 
   CellSums sums(criteria);
   add_runs(RunReader(file, stored), complete, stored.particles, criteria, parallel, slots, sums);
   sums.put(cell);
-  for (NeesResult& nees : cell.nees) {
-    Consistency& found = nees.consistency;
-    found.runs = cell.complete + cell.failures.size();
-    found.failed = cell.failures.size();
-    found.samples = nees.series.samples;
-    found.unusable = nees.series.unusable;
-  }
+  cell.verdict.runs = cell.complete + cell.failures.size();
+  cell.verdict.failed = cell.failures.size();
   return cell;
 }
 

@@ -28,6 +28,15 @@ Interval wilson(double hits, double n, double level) {
 
 }  // namespace
 
+std::optional<std::size_t> first_lasting(const std::vector<bool>& above, std::size_t length) {
+  std::size_t in_a_row = 0;
+  for (std::size_t s = 0; s < above.size(); ++s) {
+    in_a_row = above[s] ? in_a_row + 1 : 0;
+    if (in_a_row == length) return s + 1 - length;
+  }
+  return std::nullopt;
+}
+
 Survival survival_of(std::span<const double> ends, std::span<const double> times, double level) {
   Survival survival;
   survival.runs = ends.size();

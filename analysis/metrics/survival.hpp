@@ -4,10 +4,18 @@
 #include "analysis/statistics/nees_bounds.hpp"
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace montecarta::analysis {
+
+/// A single run is lost when its NEES stays above its upper bound for so many consecutive scans
+/// (5 s at 5 Hz); a single scan above it means nothing (STATISTICS 7).
+inline constexpr std::size_t kLastingScans = 25;
+
+/// Index at which the first `length` consecutive true values begin; nullopt if there are none.
+std::optional<std::size_t> first_lasting(const std::vector<bool>& above, std::size_t length);
 
 /// How many runs are still right, each judged by itself: until its own NEES stays above the band of
 /// one run for kLastingScans, or until it fails.

@@ -10,7 +10,6 @@
 #include "engine/numbers/angle.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace montecarta::analysis {
 namespace {
@@ -21,22 +20,6 @@ constexpr double kDegrees = 180.0 / kPi;
 std::string band_text(const CellAnalysis& cell, std::size_t dimension, double level) {
   if (cell.complete == 0) return "-";
   return interval_text(nees_bounds(cell.complete, dimension, level));
-}
-
-/// From when to the end the average is outside the band for all scans.
-std::string outside_text(const Consistency& found) {
-  if (found.stays_above_from) return fixed_seconds(*found.stays_above_from) + ", above";
-  if (found.stays_below_from) return fixed_seconds(*found.stays_below_from) + ", below";
-  return "never";
-}
-
-/// The average divided by the expected one, with its interval.
-std::string ratio_text(const NeesResult& nees, double level) {
-  const Consistency& found = nees.consistency;
-  const auto d = static_cast<double>(nees.series.dimension);
-  if (!found.is_overdispersed) return with_interval(found.mean / d, found.ratio);
-  return text_of_mean(nees.series.run_averages, found.mean,
-                      {d * found.ratio.lower, d * found.ratio.upper}, 1.0 / d, level);
 }
 
 std::string median_exit_text(const CellAnalysis& cell) {
@@ -51,20 +34,15 @@ std::string score_text(const CellAnalysis& cell, std::string_view score, double 
                       cell.interval_of(score), factor, level);
 }
 
-std::vector<std::string> verdict_row(const CellAnalysis& cell, double level) {
+std::vector<std::string> verdict_row(const CellAnalysis& cell) {
   const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
-  const Consistency found = cell.consistency();
-  std::vector<std::string> row = {cell.label, runs_in_words(cell), in_words(found),
-                                  cell.leading == Moments::corrected ? "particles" : "Gaussian"};
-  if (found.verdict == Verdict::untested) {
-    row.insert(row.end(), 5, "-");
-  } else {
-    row.insert(row.end(),
-               {compact(found.mean), ratio_text(*pose, level), readable(found.least_ratios.upper),
-                percent(found.share_inside), outside_text(found)});
-  }
-  row.push_back(median_exit_text(cell));
-  return row;
+  const bool is_tested = pose != nullptr && pose->is_tested();
+  return {cell.label,
+          runs_in_words(cell),
+          in_words(cell.verdict),
+          is_tested ? with_interval(cell.verdict.ratio_estimate(), cell.verdict.ratio()) : "-",
+          is_tested ? percent(pose->share_inside()) : "-",
+          median_exit_text(cell)};
 }
 
 std::vector<std::string> accuracy_row(const CellAnalysis& cell, double level) {
@@ -86,20 +64,18 @@ double ideal_nees(const CellAnalysis& cell, const NeesResult& nees) {
 
 std::vector<std::string> consistency_row(const CellAnalysis& cell, const NeesResult& nees,
                                          double level) {
-  const Consistency& found = nees.consistency;
+  const auto d = static_cast<double>(nees.series.dimension);
+  const Interval& average = nees.average_interval;
   return {cell.label,
           name_of(nees.block),
           name_of(nees.moments),
-          in_words(found),
-          compact(found.mean),
-          ratio_text(nees, level),
-          readable(found.median / expected_median(nees.series.dimension)),
-          readable(found.trimmed / expected_trimmed(nees.series.dimension)),
+          compact(nees.mean),
+          with_interval(nees.mean / d, {average.lower / d, average.upper / d}),
           readable(ideal_nees(cell, nees)),
           band_text(cell, nees.series.dimension, level),
-          percent(found.share_inside),
-          percent(found.share_above),
-          percent(found.share_below),
+          percent(nees.share_inside()),
+          percent(nees.share_above),
+          percent(nees.share_below),
           std::to_string(nees.series.lower_rank),
           std::to_string(nees.series.unusable),
           std::to_string(nees.series.too_few),
@@ -122,37 +98,18 @@ std::string name_of(Moments moments) {
 
 std::vector<NamedNumber> numbers_of(const CellAnalysis& cell, const NeesResult& nees,
                                     double level) {
-  const Consistency& found = nees.consistency;
   const std::size_t dimension = nees.series.dimension;
   const Interval band = nees_bounds(cell.complete, dimension, level);
-  constexpr double kNever = std::numeric_limits<double>::infinity();
   return {{"level", "1", level},
           {"dimension", "1", static_cast<double>(dimension)},
-          {"anees_mean", "1", found.mean},
-          {"anees_mean_lower", "1", found.average_interval.lower},
-          {"anees_mean_upper", "1", found.average_interval.upper},
-          {"expected_anees_lower", "1", found.average_bounds.lower},
-          {"expected_anees_upper", "1", found.average_bounds.upper},
-          {"within", "1", found.within},
-          {"ratio_lower", "1", found.ratio.lower},
-          {"ratio_upper", "1", found.ratio.upper},
-          {"least_ratio_found_below", "1", found.least_ratios.lower},
-          {"least_ratio_found_above", "1", found.least_ratios.upper},
-          {"overdispersed", "1", found.is_overdispersed ? 1.0 : 0.0},
-          {"more_runs", "1", found.more_runs ? static_cast<double>(*found.more_runs) : kNaN},
-          {"nees_median", "1", found.median},
-          {"expected_median", "1", expected_median(dimension)},
-          {"nees_trimmed", "1", found.trimmed},
-          {"expected_trimmed", "1", expected_trimmed(dimension)},
+          {"anees_mean", "1", nees.mean},
+          {"anees_mean_lower", "1", nees.average_interval.lower},
+          {"anees_mean_upper", "1", nees.average_interval.upper},
           {"lower", "1", band.lower},
           {"upper", "1", band.upper},
-          {"share_inside", "1", found.share_inside},
-          {"share_above", "1", found.share_above},
-          {"share_below", "1", found.share_below},
-          {"above_whole_run_band_s", "s", found.above_from.value_or(kNever)},
-          {"below_whole_run_band_s", "s", found.below_from.value_or(kNever)},
-          {"stays_above_from_s", "s", found.stays_above_from.value_or(kNever)},
-          {"stays_below_from_s", "s", found.stays_below_from.value_or(kNever)},
+          {"share_inside", "1", nees.share_inside()},
+          {"share_above", "1", nees.share_above},
+          {"share_below", "1", nees.share_below},
           {"samples", "1", static_cast<double>(nees.series.samples)},
           {"lower_rank", "1", static_cast<double>(nees.series.lower_rank)},
           {"unusable", "1", static_cast<double>(nees.series.unusable)},
@@ -177,17 +134,10 @@ std::string runs_in_words(const CellAnalysis& cell) {
 
 TextTable verdict_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {{"cell", Align::left},
-                    {"runs", Align::left},
-                    {"verdict", Align::left},
-                    {"NEES of", Align::left},
-                    {"ANEES"},
-                    {"/ expected [" + level_text(study.level) + "]"},
-                    {"would find"},
-                    {"scans inside"},
-                    {"outside to the end from"},
-                    {"half the runs lost at"}};
-  for (const CellAnalysis& cell : study.cells) table.rows.push_back(verdict_row(cell, study.level));
+  table.headings = {{"cell", Align::left},    {"runs", Align::left},
+                    {"verdict", Align::left}, {"NEES ratio [" + level_text(study.level) + "]"},
+                    {"scans inside"},         {"half the runs lost at"}};
+  for (const CellAnalysis& cell : study.cells) table.rows.push_back(verdict_row(cell));
   return table;
 }
 
@@ -210,11 +160,8 @@ TextTable consistency_table(const StudyAnalysis& study) {
   table.headings = {{"cell", Align::left},
                     {"error", Align::left},
                     {"covariance", Align::left},
-                    {"verdict", Align::left},
                     {"ANEES"},
                     {"/ expected [" + level_text(study.level) + "]"},
-                    {"median / expected"},
-                    {"trimmed / expected"},
                     {"ideal"},
                     {level_text(study.level) + " band"},
                     {"inside"},
@@ -258,58 +205,50 @@ std::string text_of_mean(const std::vector<double>& values, double mean, const I
 
 namespace {
 
-std::string anees_note(const StudyAnalysis& study, const std::string& level) {
-  const std::string dimension = std::to_string(study.imported.components.size());
-  return "ANEES compares the errors that happened with the errors the filter expected (its "
-         "covariance), averaged over runs and scans: " +
-         dimension +
-         " means it knows how wrong it is (as many components: " + components_text(study) +
-         "), more means it is overconfident, less that it is conservative. '/ expected' divides it "
-         "by " +
-         dimension + "; the brackets hold what infinitely many runs would give in at least " +
-         level +
-         " of studies. Where a few runs decide the mean no interval holds it: 'heavy tail', and "
-         "the median over runs follows with its interval. 'Would find' is the least ratio that "
-         "this study finds with a probability of " +
-         level_text(kPowerSaid) + ".";
+std::string ratio_note(const StudyAnalysis& study) {
+  return "The NEES ratio compares squared errors with what the filter's covariance says of them (" +
+         components_text(study) +
+         "), averaged over runs and scans: 1 is right, more is overconfident, less is "
+         "conservative. The brackets hold the ratio of infinitely many runs in at least " +
+         level_text(study.level) + " of studies.";
+}
+
+std::string answers_note(const StudyAnalysis& study) {
+  const std::string margin = exact_text(study.within);
+  return "A cell is consistent within " + margin +
+         " if this ratio, that of every component and that of every eighth of the drive are shown "
+         "to lie between 1/" +
+         margin + " and " + margin +
+         ", and if bias and correlations are shown to be negligible. It is optimistic or "
+         "conservative if squared errors are shown to be too large or too small, inconsistent if "
+         "both are shown in different parts, or bias, correlation or a spread between runs alone. "
+         "A consistent filter is called one of these in at most " +
+         level_text(1.0 - study.level) +
+         " of studies, however many scans they have and however long its errors last. If nothing "
+         "is shown the verdict is undecided, and says about how many more runs would decide.";
 }
 
 std::string looks_note(const StudyAnalysis& study) {
   return "A cell of this study stops when its verdict is known, which is looked at after up to " +
          std::to_string(study.looks.size()) + " numbers of runs, " +
          std::to_string(study.looks[0]) +
-         " first. Brackets and bands of the verdict are widened so that all looks together "
-         "reject a consistent filter in at most " +
-         level_text(1.0 - study.level) + " of studies. Those of other numbers are not.";
+         " first. The error probability is spent over the looks, little at the first ones "
+         "(O'Brien and Fleming), so that all of them together reject a consistent filter in at "
+         "most " +
+         level_text(1.0 - study.level) + " of studies. Intervals of other numbers are not widened.";
 }
 
 }  // namespace
 
 std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
-  const std::string level = level_text(study.level), margin = exact_text(study.within);
   std::vector<std::string> notes = {
-      anees_note(study, level),
-      "'NEES of particles' is by the spread of the poses that a scan drew, on the scale on which a "
-      "perfect filter of as many draws has 3, as a Gaussian filter has: all rows of this table are "
-      "on one scale.",
-      "'Consistent within " + margin + "': the brackets lie between 1/" + margin + " and " +
-          margin +
-          ", and no scan is shown to be farther off. 'Optimistic' or 'conservative by a to b': 1 "
-          "is outside the brackets or, 'at t', a scan is outside a band that is wide enough for "
-          "all scans together; a consistent filter is rejected so in at most " +
-          level_text(1.0 - study.level) +
-          " of studies, however long they are. 'Undecided': neither is shown; after so many more "
-          "runs one of them will be, if runs go on to vary as they do.",
-      "'Outside to the end from': all scans from then on are outside the band for all scans, so "
-      "that, with a probability of " +
-          level +
-          ", the filter is off at every one of them; it may be so earlier. 'Never' means not "
-          "within the " +
-          readable(study.duration, 4) +
-          " s of this study. A single run is lost when its own NEES is above its band for " +
+      ratio_note(study), answers_note(study),
+      "Particle filters are judged by the spread of the poses that a scan drew, corrected for the "
+      "number of effective draws, so that all rows are on one scale.",
+      "'scans inside' counts the scans whose average lies in the " + level_text(study.level) +
+          " band of a single scan: as many are expected of a consistent filter. A single run is "
+          "lost when its own NEES is above its band for " +
           std::to_string(kLastingScans) + " scans in a row, or when it fails.",
-      "'scans inside' counts the scans whose average lies in the pointwise band: " + level +
-          " of them are expected of a consistent filter, and neighbouring scans are correlated.",
       "RMSE is the mean over runs, with the interval that holds it for infinitely many; ESS is the "
       "effective number of particles, roots how many of the first particles still have descendants "
       "at the end, CPU the filter's own time in a run; all of complete runs only."};
@@ -319,9 +258,9 @@ std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
 
 std::vector<std::string> consistency_notes() {
   return {
-      "Each row is one test: of the pose or of a part of it. The first covariance of a cell "
-      "decides its verdict: the only one of a Kalman filter, 'corrected' of a particle filter. "
-      "Only these are on one scale.",
+      "Each row is the average NEES of the pose or of a part of it, by one covariance. The verdict "
+      "is by the first covariance of a cell: the only one of a Kalman filter, 'corrected' of a "
+      "particle filter. Only these are on one scale.",
       "The spread of few particles is too small by construction, and so is the mixture: 'ideal' is "
       "the ANEES of a perfect filter, the number of components or, by the spread of M particles "
       "that are independent draws from the truth's distribution, more. 'corrected' puts the NEES "
@@ -329,9 +268,7 @@ std::vector<std::string> consistency_notes() {
       "the number of components again (Hotelling's distribution of the effective number of draws "
       "to the chi-square), so that few draws alone make no filter optimistic. Where a scan drew "
       "none it is that of the mixture.",
-      "'median' is the middle run instead of the average one, 'trimmed' the mean without the tenth "
-      "of the runs at either end, each divided by what a consistent filter has: near 1 while ANEES "
-      "is far too large they say that few bad runs make the average. 'lower rank' counts singular "
+      "'lower rank' counts singular "
       "covariances: they are judged by the components that they leave. 'unusable' counts samples "
       "that are left out because error or covariance is not finite or the covariance is not "
       "positive semidefinite. 'too few draws' counts covariances of no more effective draws than "

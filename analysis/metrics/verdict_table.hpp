@@ -16,11 +16,11 @@ TextTable verdict_table(const StudyAnalysis& study);
 /// One row a cell: errors, particles that count, and what a run costs.
 TextTable accuracy_table(const StudyAnalysis& study);
 
-/// One row a cell and definition of covariance and error: the whole NEES test.
+/// One row a cell and definition of covariance and error: the average NEES.
 TextTable consistency_table(const StudyAnalysis& study);
 /// How to read it.
 std::vector<std::string> consistency_notes();
-/// One NEES test in single numbers. The band is that of all complete runs.
+/// One average NEES in single numbers. The band is that of all complete runs.
 std::vector<NamedNumber> numbers_of(const CellAnalysis& cell, const NeesResult& nees, double level);
 
 /// One row for each failed run: cell, run, step, reason.

@@ -46,12 +46,16 @@ struct Section {
   struct Note {
     std::string text;
   };
+  /// A sentence that says the result, before all tables.
+  struct Lead {
+    std::string text;
+  };
   /// Of the page alone.
   struct Html {
     std::string text;
   };
 
-  using Block = std::variant<Table, Note, Html>;
+  using Block = std::variant<Table, Note, Lead, Html>;
 
   std::string name;   ///< its place in the order of reading
   std::string title;  ///< a heading; empty: none

@@ -71,6 +71,9 @@ struct HtmlOf {
   std::string operator()(const Section::Note& note) const {
     return "<p class=\"soft\">" + html_escape(note.text) + "</p>\n";
   }
+  std::string operator()(const Section::Lead& lead) const {
+    return "<p class=\"lead\">" + html_escape(lead.text) + "</p>\n";
+  }
   std::string operator()(const Section::Html& html) const { return html.text; }
 };
 

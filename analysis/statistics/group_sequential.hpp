@@ -2,18 +2,19 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 namespace montecarta::analysis {
 
-/// Probability that a normal statistic that is looked at `looks` times, each time after twice as
-/// many runs as before, is at some look farther from 0 than what it exceeds at a single look with
-/// probability `single` (two-sided).
-double crossing_probability(std::uint64_t looks, double single);
+/// Share of the error probability `alpha` that interim analyses have spent when `information`, in
+/// [0, 1], of the runs are there: 2 - 2 Phi(z / sqrt(information)), which resembles the boundaries
+/// of O'Brien and Fleming (Lan and DeMets 1983).
+double spent(double alpha, double information);
 
-/// The level of each of `looks` looks, so that the verdicts at all of them reject a consistent
-/// filter with a probability of 1 - level at most: the same at every look (Pocock), with looks
-/// after 1, 2, 4, ... times as many runs. `level` itself where there is one look. The average over
-/// the run counts by its correlation between looks, the band for all scans by Bonferroni.
-double level_of_a_look(double level, std::uint64_t looks);
+/// Level of the interim analysis of `runs` runs, where `looks` are the numbers of runs at which a
+/// study is analysed, increasing: what is spent since the look before is its own error probability,
+/// so that all looks together reject with 1 - level at most, whatever they have to do with each
+/// other. Between two looks it is that of the next one. `level` itself without looks.
+double level_of_look(double level, std::span<const std::uint64_t> looks, std::uint64_t runs);
 
 }  // namespace montecarta::analysis

@@ -1,115 +1,66 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/nees_power.hpp"
 
+#include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/statistics/squares_law.hpp"
 #include "engine/errors.hpp"
 
-#include <boost/math/distributions/gamma.hpp>
 #include <boost/math/distributions/normal.hpp>
+#include <boost/math/special_functions/gamma.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
-#include <vector>
 
 namespace montecarta::analysis {
 namespace {
 
-constexpr double kLeastVariation = 1e-9;      // of run averages that are equal
-constexpr double kOverdispersedErrors = 3.0;  // standard errors
-constexpr double kLeastTail = 1e-300;
-constexpr double kLeastExactVariance = 1e-7;
+constexpr double kFamiliesOfAVerdict = 7.0;
+constexpr double kStretchesOfARun = 8.0;
 
-/// Squared deviation of the values in units of their mean; NaN where it is not a number.
-double variation_of(std::span<const double> values) {
-  const auto n = static_cast<double>(values.size());
-  double mean = 0.0, squares = 0.0;
-  for (const double value : values) mean += value / n;
-  for (const double value : values) squares += (value - mean) * (value - mean);
-  return squares / (n - 1.0) / mean / mean;
-}
+/// A sum of squares over runs: `independent` scans of `block` components in each run.
+struct PlannedSum {
+  double runs, independent, block;
 
-/// Quantile of a gamma of mean 1 and this variance, where a normal distribution has `deviate`. With
-/// few runs the deviate is so large that no double holds the tail: the end of the distribution
-/// then. Of a small variance, where Boost's series need too many terms, by Wilson and Hilferty, to
-/// 1e-8.
-double gamma_quantile(double variance, double deviate) {
-  if (variance < kLeastExactVariance) {
-    const double third = variance / 9.0;
-    return std::pow(1.0 - third + deviate * std::sqrt(third), 3);
+  double freedom() const { return runs * independent * block; }
+
+  /// The law that the verdict will estimate: of N n d independent squares the mean squared product
+  /// has a standard error of sqrt(8 / (N n d)) of itself, which makes N n d / 4 degrees of freedom.
+  SquaresLaw law() const {
+    const double terms = independent * block, error = std::sqrt(8.0 / freedom());
+    Traces traces = traces_of_constant_errors(terms, block);
+    if (runs >= 20.0) {
+      traces.second = std::min(traces.second, terms * (1.0 + error));
+      traces.third = traces.second * traces.second / terms;
+      traces.freedom = std::max(2.0, 0.25 * freedom());
+    }
+    return {traces, runs};
   }
-  const double tail = boost::math::cdf(boost::math::normal(), -std::abs(deviate));
-  if (tail < kLeastTail) return deviate < 0.0 ? 0.0 : std::numeric_limits<double>::infinity();
-  const boost::math::gamma_distribution<> gamma(1.0 / variance, variance);
-  return deviate < 0.0 ? boost::math::quantile(gamma, tail)
-                       : boost::math::quantile(boost::math::complement(gamma, tail));
-}
 
-/// The normal deviate z of a studentised mean whose z + c (2 z^2 + 1) is `deviate`: the first term
-/// of its Edgeworth expansion in the skewness (Hall). Where there is none, the vertex.
-double without_skew(double deviate, double c) {
-  if (c == 0.0) return deviate;
-  const double root = 1.0 - 8.0 * c * (c - deviate);
-  return (std::sqrt(std::max(root, 0.0)) - 1.0) / (4.0 * c);
-}
-
-}  // namespace
-
-Interval AverageLaw::bounds() const {
-  if (runs < 3.0) return {0.0, std::numeric_limits<double>::infinity()};
-  // A gamma of this variance has a skewness of 2 sqrt(variation), which its quantiles know of.
-  const double c = (skew - 1.0) * std::sqrt(variation / runs) / 3.0;
-  return {gamma_quantile(variation / runs, without_skew(-deviate, c)),
-          gamma_quantile(variation / runs, without_skew(deviate, c))};
-}
-
-AverageLaw average_law(std::span<const double> run_averages, std::size_t dimension, double deviate,
-                       double skew) {
-  const double most = 2.0 / static_cast<double>(dimension);
-  const double estimate = variation_of(run_averages);
-  return {.variation = estimate <= most ? std::max(estimate, kLeastVariation) : most,
-          .runs = static_cast<double>(run_averages.size()),
-          .deviate = deviate,
-          .skew = skew};
-}
-
-bool is_overdispersed(std::span<const double> run_averages, std::size_t dimension) {
-  const auto n = static_cast<double>(run_averages.size());
-  if (n < 3.0) return false;
-  const double most = 2.0 / static_cast<double>(dimension);
-  const double excess = std::log(variation_of(run_averages) / most);
-  return !(excess <= kOverdispersedErrors * std::sqrt((2.0 + 2.0 * most) / n));  // also NaN
-}
-
-Interval least_ratios(const AverageLaw& law, double power) {
-  const Interval bounds = law.bounds();
-  if (law.runs < 3.0) return {0.0, std::numeric_limits<double>::infinity()};
-  const double deviate = boost::math::quantile(boost::math::normal(), power);
-  const double variance = law.variation / law.runs;
-  return {bounds.lower / gamma_quantile(variance, deviate),
-          bounds.upper / gamma_quantile(variance, -deviate)};
-}
-
-std::uint64_t runs_that_decide(AverageLaw law, double within) {
-  const auto decide = [&](std::uint64_t runs) {
-    law.runs = static_cast<double>(runs);
-    const Interval bounds = law.bounds();
-    return bounds.upper <= within * bounds.lower;
-  };
-  std::uint64_t enough = 3;
-  while (!decide(enough) && enough < kMostDecidingRuns) enough *= 2;
-  std::uint64_t too_few = enough / 2;
-  while (enough - too_few > 1) {
-    const std::uint64_t middle = too_few + (enough - too_few) / 2;
-    (decide(middle) ? enough : too_few) = middle;
+  /// Probability that the mean is below `ratio` times its expectation.
+  double below(double ratio) const {
+    return ratio <= 0.0        ? 0.0
+           : std::isinf(ratio) ? 1.0
+                               : boost::math::gamma_p(0.5 * freedom(), 0.5 * freedom() * ratio);
   }
-  return std::min(enough, kMostDecidingRuns);
+
+  /// Probability that the interval of a filter whose ratio is 1 is not within the margin.
+  double not_shown(double within, double level) const {
+    const Interval unit = law().interval(1.0, level);
+    const double lowest = 1.0 / (within * unit.lower), highest = within / unit.upper;
+    return lowest < highest ? below(lowest) + 1.0 - below(highest) : 1.0;
+  }
+};
+
+/// Probability that the interval of a mean that is zero is not within +-`margin`, of `n` values
+/// with deviation 1.
+double mean_not_shown(double margin, double n, double level) {
+  const double room = margin * std::sqrt(n) - t_score(level, n - 1.0);
+  return room <= 0.0 ? 1.0 : t_p_value(room, n - 1.0);
 }
 
-namespace {
-
-std::size_t checked_scans(const NeesTest& test) {
-  if (test.scans > 0 && test.scans <= kMostPlannedScans) return test.scans;
+void expect_scans_of_a_run(const NeesTest& test) {
+  if (test.scans > 0 && test.scans <= kMostPlannedScans) return;
   throw StudyError("scans = " + std::to_string(test.scans) +
                    " (a run has 1 to 100000 independent scans): give what a run has");
 }
@@ -133,42 +84,36 @@ void expect_margin(double within) {
                    " (a ratio above 1 is needed): give for instance 1.1");
 }
 
-/// Probability that an average of this law is below `value` times its expectation.
-double below(const AverageLaw& law, double value) {
-  const double variance = law.variation / law.runs;
-  if (value <= 0.0) return 0.0;
-  if (std::isinf(value)) return 1.0;
-  return boost::math::cdf(boost::math::gamma_distribution<>(1.0 / variance, variance), value);
-}
-
 }  // namespace
 
-NeesPlan::NeesPlan(const NeesTest& test) : test_(test), walks_(checked_scans(test)) {
+NeesPlan::NeesPlan(const NeesTest& test) : test_(test) {
+  expect_scans_of_a_run(test);
   nees_bounds(1, test.dimension, test.level);  // refuses what is no dimension or level
-}
-
-AverageLaw NeesPlan::law(std::uint64_t runs) const {
-  const std::vector<double> independent(test_.scans - 1, 0.0);
-  const WholeRunTest test = walks_.test(independent, runs, test_.dimension, test_.level);
-  return {.variation = 2.0 / static_cast<double>(test_.dimension * test_.scans),
-          .runs = static_cast<double>(runs),
-          .deviate = test.average_deviate};
 }
 
 double NeesPlan::found(double ratio, std::uint64_t runs) const {
   expect_ratio(ratio);
-  const AverageLaw average = law(runs);
-  const Interval bounds = average.bounds();
-  return ratio > 1.0 ? 1.0 - below(average, bounds.upper / ratio)
-                     : below(average, bounds.lower / ratio);
+  const PlannedSum size{static_cast<double>(runs), static_cast<double>(test_.scans),
+                        static_cast<double>(test_.dimension)};
+  const Interval unit = size.law().interval(1.0, 1.0 - (1.0 - test_.level) / kFamiliesOfAVerdict);
+  return ratio > 1.0 ? 1.0 - size.below(1.0 / (unit.lower * ratio))
+                     : size.below(1.0 / (unit.upper * ratio));
 }
 
 double NeesPlan::shown(double within, std::uint64_t runs) const {
   expect_margin(within);
-  const AverageLaw average = law(runs);
-  const Interval bounds = average.bounds();
-  return std::max(0.0,
-                  below(average, bounds.lower * within) - below(average, bounds.upper / within));
+  const auto n = static_cast<double>(runs), scans = static_cast<double>(test_.scans);
+  const auto d = static_cast<double>(test_.dimension);
+  const double level = test_.level;
+  double missed = PlannedSum{n, scans, d}.not_shown(within, level);
+  if (d > 1.0) missed += d * PlannedSum{n, scans, 1.0}.not_shown(within, level);
+  if (scans > 1.0) {  // errors that never change are the same in all stretches
+    const double independent = std::max(1.0, std::floor(scans / kStretchesOfARun));
+    missed += kStretchesOfARun * PlannedSum{n, independent, d}.not_shown(within, level);
+  }
+  missed += d * mean_not_shown(std::sqrt(within - 1.0), n * scans, level);
+  missed += 0.5 * d * (d - 1.0) * mean_not_shown(within - 1.0, n * scans, level);
+  return std::max(0.0, 1.0 - missed);
 }
 
 std::uint64_t NeesPlan::runs_to_find(double ratio, double power) const {
@@ -181,14 +126,6 @@ std::uint64_t NeesPlan::runs_to_show(double within, double power) const {
   expect_margin(within);
   expect_power(power);
   return fewest([&](std::uint64_t runs) { return shown(within, runs) >= power; });
-}
-
-std::uint64_t NeesPlan::runs_to_decide(double within) const {
-  expect_margin(within);
-  return fewest([&](std::uint64_t runs) {
-    const Interval bounds = law(runs).bounds();
-    return bounds.upper <= within * bounds.lower;
-  });
 }
 
 std::uint64_t NeesPlan::fewest(const std::function<bool(std::uint64_t)>& is_enough) const {

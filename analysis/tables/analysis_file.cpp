@@ -68,14 +68,13 @@ void write_cell(const h5::Handle& cells, const StudyAnalysis& study, const CellA
   const auto group = h5::create_group(cells, cell.label);
   h5::put_text(group, "filter", cell.filter);
   h5::put_text(group, "long_name", cell.long_name);
-  h5::put_text(group, "verdict", in_words(cell.consistency()));
+  h5::put_text(group, "verdict", in_words(cell.verdict));
   const auto numbers = h5::create_group(group, "numbers");
   for (const NamedNumber& number : numbers_of(cell)) write_number(numbers, number);
   const auto consistency = h5::create_group(group, "consistency");
   for (const NeesResult& nees : cell.nees) {
     const auto test =
         h5::create_group(consistency, name_of(nees.block) + "_" + name_of(nees.moments));
-    h5::put_text(test, "verdict", in_words(nees.consistency));
     for (const NamedNumber& number : numbers_of(cell, nees, level)) write_number(test, number);
   }
   const auto series = h5::create_group(group, "series");

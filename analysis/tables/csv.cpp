@@ -17,9 +17,8 @@ std::string series_name(const std::string& label) { return "series_" + label + "
 void write_cells(const StudyAnalysis& study, const std::filesystem::path& path) {
   NamedRows file(path);
   for (const CellAnalysis& cell : study.cells) {
-    file.row(
-        {{"cell", cell.label}, {"filter", cell.filter}, {"verdict", in_words(cell.consistency())}},
-        numbers_of(cell));
+    file.row({{"cell", cell.label}, {"filter", cell.filter}, {"verdict", in_words(cell.verdict)}},
+             numbers_of(cell));
   }
   file.close();
 }
@@ -30,8 +29,7 @@ void write_consistency(const StudyAnalysis& study, const std::filesystem::path& 
     for (const NeesResult& nees : cell.nees) {
       file.row({{"cell", cell.label},
                 {"error", name_of(nees.block)},
-                {"covariance", name_of(nees.moments)},
-                {"verdict", in_words(nees.consistency)}},
+                {"covariance", name_of(nees.moments)}},
                numbers_of(cell, nees, study.level));
     }
   }

@@ -70,6 +70,17 @@ std::vector<Section> terminal_sections(const StudyAnalysis& study) {
   return sections;
 }
 
+void print_leads(std::ostream& out, const Section& section) {
+  bool has_any = false;
+  for (const Section::Block& block : section.blocks) {
+    const auto* lead = std::get_if<Section::Lead>(&block);
+    if (lead == nullptr) continue;
+    print_wrapped(out, lead->text);
+    has_any = true;
+  }
+  if (has_any) out << '\n';
+}
+
 /// A blank line behind each.
 void print_section_tables(std::ostream& out, const Section& section) {
   for (const Section::Block& block : section.blocks) {
@@ -97,6 +108,7 @@ void print_tables(std::ostream& out, const StudyAnalysis& study, Explanations ex
     print_wrapped(out, no_truth_sentence(study));
     out << '\n';
   }
+  for (const Section& section : sections) print_leads(out, section);
   for (const Section& section : sections) print_section_tables(out, section);
   if (study.has_truth) print_warnings(out, study);
   if (explanations == Explanations::shown) {

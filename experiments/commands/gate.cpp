@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/data/study_settings.hpp"
-#include "analysis/metrics/consistency.hpp"
 #include "analysis/metrics/study_analysis.hpp"
+#include "analysis/page/html.hpp"
+#include "analysis/verdict/verdict.hpp"
 #include "engine/errors.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
@@ -47,6 +48,62 @@ int code_of(GateAnswer answer) {
                                               : kUndecided;
 }
 
+const char* name_of(GateAnswer answer) {
+  return answer == GateAnswer::consistent     ? "consistent"
+         : answer == GateAnswer::inconsistent ? "inconsistent"
+                                              : "undecided";
+}
+
+/// Why a gate is closed that the errors alone would have opened.
+std::string too_many(const Verdict& verdict, const Allowance& allowed) {
+  const auto words = [](const std::string& what, std::uint64_t most) {
+    return " More " + what + " than are allowed (" + std::to_string(most) + ").";
+  };
+  if (verdict.failed > allowed.failed) return words("runs failed", allowed.failed);
+  if (verdict.unusable > allowed.unusable) return words("samples are unusable", allowed.unusable);
+  return "";
+}
+
+Json json_of(const Interval& interval) {
+  return {rounded(interval.lower), rounded(interval.upper)};
+}
+
+Json json_of(const Member& member, bool is_shown) {
+  return {{"name", analysis::name_of(member)},
+          {"estimate", rounded(member.estimate)},
+          {"interval", json_of(member.interval)},
+          {"simultaneous_interval", json_of(member.simultaneous)},
+          {"p", member.p},
+          {"shown", is_shown}};
+}
+
+/// Everything that the verdict rests on. Scans stand there by the one of the least p-value alone.
+Json json_of(const std::string& label, const Verdict& verdict, GateAnswer answer) {
+  Json families = Json::array();
+  for (const FamilyTest& test : verdict.families) {
+    Json members = Json::array();
+    for (const Member& member : test.members) {
+      if (test.family == Family::scan && &member != &test.strongest()) continue;
+      members.push_back(json_of(member, test.is_shown(member)));
+    }
+    families.push_back({{"family", key_of(test.family)},
+                        {"p", test.p},
+                        {"rejected", test.is_rejected},
+                        {"members", std::move(members)}});
+  }
+  return {{"cell", label},
+          {"gate", name_of(answer)},
+          {"verdict", analysis::name_of(verdict.answer)},
+          {"reason", sentence(label, verdict)},
+          {"within", verdict.within},
+          {"level", verdict.level},
+          {"runs", verdict.runs},
+          {"failed", verdict.failed},
+          {"samples", verdict.samples},
+          {"unusable", verdict.unusable},
+          {"families", std::move(families)}};
+}
+
 int gate_file(const Arguments& arguments) {
   const auto within = arguments.number("within", kLeastMargin, kMostMargin);
   const Allowance allowed = {.failed = arguments.count("failed", 0, UINT64_MAX).value_or(0),
@@ -63,9 +120,13 @@ int gate_file(const Arguments& arguments) {
   const CellAnalysis cell =
       analyze_cell(file, stored, kGateLevel, file.runs().size(), parallel_of(arguments), within);
   try {
-    const Gate found = gate(cell.consistency(), allowed);
-    std::cout << stored.label << ": " << found.why << "\n";
-    return code_of(found.answer);
+    const GateAnswer answer = gate(cell.verdict, allowed);
+    if (arguments.has("json")) {
+      std::cout << json_of(stored.label, cell.verdict, answer).dump(2) << "\n";
+    } else {
+      std::cout << sentence(stored.label, cell.verdict) << too_many(cell.verdict, allowed) << "\n";
+    }
+    return code_of(answer);
   } catch (const StudyError& error) {
     throw StudyError(place + ": cell " + stored.label + ": " + error.what());
   }
@@ -82,12 +143,14 @@ Command gate_command() {
                    {"within", "", {"R"}, kWithinMeaning},
                    {"failed", "", {"N"}, "accept so many failed runs; default 0"},
                    {"invalid", "", {"N"}, "accept so many unusable samples; default 0"},
+                   {"json", "", {}, "print the tests behind the answer as JSON"},
                    {"threads", "", {"N"}, "default: what this process may use"},
                    {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},
        .details =
            "Prints one line that says why. Exit codes: 0 shown to be consistent within R, "
-           "4 not (optimistic,\nconservative, or more failed runs or unusable samples than "
-           "accepted), 5 too few runs to know, 2 wrong\ninput or nothing to judge, 1 failed. "
+           "4 not (optimistic,\nconservative, inconsistent, or more failed runs or unusable "
+           "samples "
+           "than accepted), 5 too few runs to\nknow, 2 wrong input or nothing to judge, 1 failed. "
            "A sample is unusable if its error or covariance is not finite\nor the covariance "
            "is not positive semidefinite. The verdict is that of montecarta analyze at\n95 "
            "%.\n\n"

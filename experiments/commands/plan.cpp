@@ -23,11 +23,10 @@ struct Question {
 TableRow row_of(const std::string& what, const NeesTest& test, const Question& question) {
   const NeesPlan plan(test);
   return {what, std::to_string(plan.runs_to_find(question.ratio, question.power)),
-          std::to_string(plan.runs_to_show(question.within, question.power)),
-          std::to_string(plan.runs_to_decide(question.within))};
+          std::to_string(plan.runs_to_show(question.within, question.power))};
 }
 
-/// For who does not know what a chi-square is.
+/// Explains the table to a reader who does not know what a chi-square is.
 std::string meaning_of(const NeesTest& test, const Question& question) {
   const double d = static_cast<double>(test.dimension);
   const double off = std::sqrt(question.ratio);
@@ -38,11 +37,12 @@ std::string meaning_of(const NeesTest& test, const Question& question) {
   return "NEES is the squared error in units of what the filter expected of it: " + readable(d) +
          " on the average of a consistent filter, here\n" + readable(d * question.ratio) +
          ", which means errors " + way + ".\n'find': such a filter is called " +
-         (question.ratio > 1.0 ? "optimistic" : "conservative") + " in " + power +
-         " of studies, where it is not within the margin.\n'show': a consistent filter is called "
+         (question.ratio > 1.0 ? "optimistic" : "conservative") + " in at least " + power +
+         " of studies, unless that is within the margin.\n'show': a consistent filter is called "
          "consistent within " +
-         margin + " in " + power + " of studies, and rejected in " + level_text(1.0 - test.level) +
-         " at most.\n'decide': whatever the filter, one of the three is said.\n";
+         margin + " in at least " + power +
+         " of studies: in every component and every\neighth of the drive, without bias and "
+         "without correlation.\n";
 }
 
 std::string about_scans(std::uint64_t scans) {
@@ -68,7 +68,7 @@ int plan(const Arguments& arguments) {
       .power = probability("power", 0.9)};
   const std::uint64_t scans = arguments.count("scans", 1, kMostPlannedScans).value_or(1);
   std::vector<TableRow> rows{{"NEES within a run", "runs: find " + readable(*ratio),
-                              "show within " + readable(question.within), "decide"}};
+                              "show within " + readable(question.within)}};
   rows.push_back(row_of("constant", test, question));
   test.scans = scans;
   if (scans > 1)

@@ -39,12 +39,21 @@ const Score* score_called(const std::string& name, const std::string& place) {
                    nearest_spelling(name, usable_scores()));
 }
 
+/// Rare divergence is what an early end would miss: "consistent" needs `least_runs`.
 bool is_verdict_known(const ResultFile& file, std::size_t cell, std::uint64_t runs,
-                      const Parallel& parallel) {
+                      std::uint64_t least_runs, const Parallel& parallel) {
   const CellAnalysis found =
       analyze_cell(file, file.cells().at(cell), Until::kLevel, runs, parallel);
-  const Verdict verdict = found.consistency().verdict;
-  return verdict != Verdict::undecided && verdict != Verdict::untested;
+  const analysis::Answer answer = found.verdict.answer;
+  if (answer == analysis::Answer::consistent) return runs >= least_runs;
+  return answer != analysis::Answer::undecided && answer != analysis::Answer::untested;
+}
+
+/// The number behind "verdict," of "verdict, 100 runs"; nullopt where it is not understood.
+std::optional<std::uint64_t> least_runs_in(const std::string& text) {
+  const std::vector<std::string> parts = split(text, ',');
+  if (parts.size() != 2 || parts[0] != kUntilVerdict || !parts[1].ends_with(" runs")) return {};
+  return to_count(parts[1].substr(0, parts[1].size() - 5));
 }
 
 }  // namespace
@@ -52,18 +61,30 @@ bool is_verdict_known(const ResultFile& file, std::size_t cell, std::uint64_t ru
 std::optional<Until> parse_until(const std::string& text, const std::string& place) {
   if (text.empty()) return std::nullopt;
   if (trimmed(text) == kUntilVerdict) return Until{};
+  if (const auto least_runs = least_runs_in(text)) {
+    Until until;
+    until.least_runs = *least_runs;
+    return until;
+  }
   const std::vector<std::string> sides = split(text, '<');
   const auto width = sides.size() == 2 ? to_number(sides[1]) : std::nullopt;
   if (!width || !(*width > 0.0)) {
     throw StudyError(place + ": until = " + text +
                      " (METRIC < HALF-WIDTH, the half-width above 0, or verdict is needed): give "
-                     "e.g. until = position_rmse < 0.02, or nothing to make all runs");
+                     "e.g. until = position_rmse < 0.02, until = verdict, until = verdict, 100 "
+                     "runs, or nothing to make all runs");
   }
-  return Until{score_called(sides[0], place), *width};
+  Until until;
+  until.score = score_called(sides[0], place);
+  until.half_width = *width;
+  return until;
 }
 
 std::string text_of(const Until& until) {
-  if (until.score == nullptr) return kUntilVerdict;
+  if (until.score == nullptr && until.least_runs == Until::kUsualLeastRuns) return kUntilVerdict;
+  if (until.score == nullptr) {
+    return std::string(kUntilVerdict) + ", " + std::to_string(until.least_runs) + " runs";
+  }
   return std::string(until.score->name) + " < " + to_text(until.half_width);
 }
 
@@ -71,7 +92,9 @@ EnoughRuns rule_of(const Until& until) {
   return [until](const std::filesystem::path& unfinished, std::size_t cell, std::uint64_t runs,
                  const Parallel& parallel) {
     const ResultFile file(unfinished);
-    if (until.score == nullptr) return is_verdict_known(file, cell, runs, parallel);
+    if (until.score == nullptr) {
+      return is_verdict_known(file, cell, runs, until.least_runs, parallel);
+    }
     const auto values = first_values(file, file.cells().at(cell), *until.score, runs, parallel);
     return is_precise(values, Until::kLevel, until.half_width);
   };

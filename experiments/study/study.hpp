@@ -18,12 +18,16 @@
 namespace montecarta::experiments {
 
 /// study.until = METRIC < HALF-WIDTH: a cell stops when so precise; or verdict: when its verdict is
-/// known.
+/// known; or verdict, N runs: likewise, with another number of runs that "consistent" needs.
 struct Until {
   static constexpr double kLevel = 0.95;
 
   const Score* score = nullptr;  ///< nullptr: the verdict
   double half_width = 0.0;  ///< of the kLevel interval of the mean over runs, in the score's unit
+  /// A cell is not called consistent before so many runs: rare divergence is what an early end
+  /// misses.
+  std::uint64_t least_runs = kUsualLeastRuns;
+  static constexpr std::uint64_t kUsualLeastRuns = 300;
 };
 
 /// nullopt where `text` is empty: all runs are made. Throws StudyError, beginning with `place`,

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The verdict on the whole error: all families of tests of every cell.
+#include "analysis/metrics/measured_run.hpp"
+#include "analysis/metrics/metric.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/output/number_text.hpp"
+#include "analysis/verdict/whole_error.hpp"
+
+#include <algorithm>
+#include <optional>
+
+namespace montecarta::analysis {
+namespace {
+
+class VerdictOverRuns final : public MetricSums {
+ public:
+  explicit VerdictOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
+  void add(const MeasuredRun& run) override {
+    const WhitenedRun& errors = run.metrics.whitened();
+    if (errors.dimension == 0) return;
+    if (!sums_) sums_.emplace(errors.dimension, criteria_->times.size());
+    sums_->add(errors, run.metrics.leading_nees()->value[0]);
+  }
+  void put(CellAnalysis& cell) override {
+    if (!sums_) return;
+    const std::uint64_t ended = cell.complete + cell.failures.size();
+    const double level = criteria_->verdict_level(ended);
+    cell.verdict = judge(sums_->families(level, {criteria_->components, criteria_->times}), level,
+                         criteria_->within, cell.complete);
+    const NeesSeries& series = cell.nees.front().series;
+    cell.verdict.samples = series.samples;
+    cell.verdict.unusable = series.unusable;
+    const bool has_samples = !series.run_averages.empty();
+    if (cell.verdict.families.empty() && has_samples) cell.verdict.answer = Answer::undecided;
+  }
+
+ private:
+  const RunCriteria* criteria_;
+  std::optional<WholeError> sums_;
+};
+
+void verdict_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
+  const Verdict& found = cell.verdict;
+  all.push_back({"verdict_level", "1", found.level});
+  all.push_back({"within", "1", found.within});
+  all.push_back({"nees_ratio", "1", found.ratio_estimate()});
+  all.push_back({"nees_ratio_lower", "1", found.ratio().lower});
+  all.push_back({"nees_ratio_upper", "1", found.ratio().upper});
+  all.push_back({"more_runs", "1", found.more_runs ? static_cast<double>(*found.more_runs) : kNaN});
+  for (const Family family : kFamilies) {
+    const FamilyTest* test = found.find(family);
+    all.push_back({"p_" + key_of(family), "1", test == nullptr ? kNaN : test->p});
+  }
+}
+
+/// Where the ratio of every scan lies, all tests together; NaN where a scan is not judged.
+void verdict_series(const CellAnalysis& cell, std::vector<NamedSeries>& all) {
+  const FamilyTest* scans = cell.verdict.find(Family::scan);
+  if (scans == nullptr) return;
+  const std::size_t n = cell.nees.front().series.average.size();
+  NamedSeries lower{"nees_ratio_lower", "1", std::vector<double>(n, kNaN)};
+  NamedSeries upper{"nees_ratio_upper", "1", std::vector<double>(n, kNaN)};
+  auto member = scans->members.begin();
+  for (std::size_t s = 0; s < n; ++s) {
+    if (std::isnan(cell.nees.front().series.average[s])) continue;
+    lower.values[s] = member->simultaneous.lower;
+    upper.values[s] = member->simultaneous.upper;
+    ++member;
+  }
+  all.push_back(std::move(lower));
+  all.push_back(std::move(upper));
+}
+
+TextTable family_table(const StudyAnalysis& study) {
+  TextTable table;
+  table.headings = {{"cell", Align::left},
+                    {"family", Align::left},
+                    {"p"},
+                    {"farthest from right", Align::left},
+                    {"estimate [" + level_text(study.level) + "]"},
+                    {"shown", Align::left}};
+  for (const CellAnalysis& cell : study.cells) {
+    for (const FamilyTest& test : cell.verdict.families) {
+      const Member& member = test.strongest();
+      table.rows.push_back({cell.label, name_of(test.family), readable(test.p, 2), name_of(member),
+                            with_interval(member.estimate, member.interval),
+                            test.is_rejected ? "yes" : "no"});
+    }
+  }
+  return table;
+}
+
+std::vector<Section> verdict_sections(const StudyAnalysis& study) {
+  if (!study.has_truth) return {};
+  Section section{"families", "All tests of the verdict"};
+  section.is_for_terminal = false;
+  section.add("families", family_table(study));
+  section.add(std::vector<std::string>{
+      "Seven families of tests make the verdict. Size, component, stretch and scan compare squared "
+      "errors with the expected ones, where 1 is right: all together, by component, by eighth of "
+      "the drive, by scan. Bias is the mean error in standard deviations, correlation what errors "
+      "have in common beyond what the filter reports, and between runs the standard deviation of "
+      "scales that runs have of their own: 0 is right. p-values are corrected for the number of "
+      "tests of all families."});
+  return {section};
+}
+
+/// One row for each member of each family; of scans too.
+void write_families(const StudyAnalysis& study, const std::filesystem::path& path) {
+  NamedRows file(path);
+  for (const CellAnalysis& cell : study.cells) {
+    for (const FamilyTest& test : cell.verdict.families) {
+      for (const Member& member : test.members) {
+        file.row(
+            {{"cell", cell.label}, {"family", key_of(test.family)}, {"member", name_of(member)}},
+            {{"from", "s", member.from},
+             {"to", "s", member.to},
+             {"estimate", "1", member.estimate},
+             {"lower", "1", member.interval.lower},
+             {"upper", "1", member.interval.upper},
+             {"simultaneous_lower", "1", member.simultaneous.lower},
+             {"simultaneous_upper", "1", member.simultaneous.upper},
+             {"p", "1", member.p},
+             {"family_p", "1", test.p},
+             {"shown", "1", test.is_shown(member) ? 1.0 : 0.0}});
+      }
+    }
+  }
+  file.close();
+}
+
+bool has_families(const StudyAnalysis& study) {
+  return std::ranges::any_of(
+      study.cells, [](const CellAnalysis& cell) { return !cell.verdict.families.empty(); });
+}
+
+}  // namespace
+
+Metric verdict_metric() {
+  return {.sums = make_sums<VerdictOverRuns>,
+          .add_numbers = verdict_numbers,
+          .add_series = verdict_series,
+          .sections = verdict_sections,
+          .files = {{"families.csv", has_families, write_families}}};
+}
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/statistics/squares_law.hpp"
+
+#include "engine/errors.hpp"
+
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/math/special_functions/gamma.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace montecarta::analysis {
+namespace {
+
+constexpr std::size_t kLanes = 8;      // sums of a scalar product, added in a fixed order
+constexpr double kFarthestScore = 37;  // the normal law has no double beyond
+constexpr double kFewestDegrees = 2.0;
+constexpr double kLeastTail = 1e-17;  // of a level that rounding made 1
+
+using Lanes = std::array<double, kLanes>;
+
+double total(const Lanes& sums) {
+  return ((sums[0] + sums[4]) + (sums[2] + sums[6])) + ((sums[1] + sums[5]) + (sums[3] + sums[7]));
+}
+
+/// Scalar products of `row` with four others, all of the same `length`, a multiple of kLanes.
+std::array<double, 4> products_with_four(const double* row, std::array<const double*, 4> others,
+                                         std::size_t length) {
+  std::array<Lanes, 4> sums{};
+  for (std::size_t k = 0; k < length; k += kLanes) {
+    for (std::size_t o = 0; o < 4; ++o) {
+      for (std::size_t l = 0; l < kLanes; ++l) sums[o][l] += row[k + l] * others[o][k + l];
+    }
+  }
+  return {total(sums[0]), total(sums[1]), total(sums[2]), total(sums[3])};
+}
+
+std::vector<double> padded(std::span<const double> rows, std::size_t runs, std::size_t length,
+                           std::size_t width) {
+  std::vector<double> all(runs * width);
+  for (std::size_t i = 0; i < runs; ++i) {
+    std::ranges::copy(rows.subspan(i * length, length),
+                      all.begin() + static_cast<std::ptrdiff_t>(i * width));
+  }
+  return all;
+}
+
+}  // namespace
+
+void RunProducts::add(std::span<const double> rows, std::size_t length) {
+  expect(rows.size() == runs_ * length, "rows are {run, length}");
+  const std::size_t width = (length + kLanes - 1) / kLanes * kLanes;
+  const std::vector<double> all = padded(rows, runs_, length, width);
+  const auto row = [&](std::size_t i) { return all.data() + std::min(i, runs_ - 1) * width; };
+  for (std::size_t i = 0; i < runs_; ++i) {
+    for (std::size_t j = i; j < runs_; j += 4) {
+      const auto found =
+          products_with_four(row(i), {row(j), row(j + 1), row(j + 2), row(j + 3)}, width);
+      for (std::size_t o = 0; o < std::min<std::size_t>(4, runs_ - j); ++o) {
+        products_[i * runs_ + j + o] += found[o];
+        if (j + o > i) products_[(j + o) * runs_ + i] += found[o];
+      }
+    }
+  }
+}
+
+void RunProducts::add(const RunProducts& other) {
+  expect(runs_ == other.runs_, "products are of the same runs");
+  for (std::size_t k = 0; k < products_.size(); ++k) products_[k] += other.products_[k];
+}
+
+double RunProducts::squares_with_others(std::size_t i) const {
+  double sum = 0.0;
+  for (std::size_t j = 0; j < runs_; ++j) {
+    if (j != i) sum += (*this)(i, j) * (*this)(i, j);
+  }
+  return sum;
+}
+
+double RunProducts::cycles() const {
+  std::vector<double> others = products_;
+  for (std::size_t i = 0; i < runs_; ++i) others[i * runs_ + i] = 0.0;
+  RunProducts squared(runs_);
+  squared.add(others, runs_);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < others.size(); ++k) sum += others[k] * squared.products_[k];
+  return sum;
+}
+
+Estimate mean_squared_product(const RunProducts& products) {
+  const std::size_t runs = products.runs();
+  expect(runs >= 3, "a jackknife needs three runs");
+  const auto n = static_cast<double>(runs);
+  std::vector<double> by_run(runs);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < runs; ++i) sum += by_run[i] = products.squares_with_others(i);
+  Estimate found{sum / (n * (n - 1.0)), 0.0};
+  double squares = 0.0;
+  for (const double of_run : by_run) {
+    const double without = (sum - 2.0 * of_run) / ((n - 1.0) * (n - 2.0));
+    squares += (without - found.mean) * (without - found.mean);
+  }
+  found.deviation = std::sqrt(squares * (n - 1.0) / n);
+  return found;
+}
+
+Traces traces_of(const RunProducts& products, double terms, double block, double share) {
+  const auto n = static_cast<double>(products.runs());
+  const Estimate mean = mean_squared_product(products);
+  Traces traces{.first = terms};
+  // Errors were divided by the root mean square of the sample itself: two factors correct that.
+  const double second = (n + 2.0) / n * (mean.mean + mean.deviation) / share;
+  traces.second = std::clamp(second, terms, terms * terms / block);
+  const double third = (n + 2.0) * (n + 4.0) / (n * n) * products.cycles() /
+                       (n * (n - 1.0) * (n - 2.0)) / (share * share);
+  traces.third = std::clamp(third, traces.second * traces.second / terms,
+                            traces.second * std::sqrt(traces.second));
+  const double relative = mean.deviation / mean.mean;
+  traces.freedom = std::max(kFewestDegrees, 2.0 / (relative * relative));
+  return traces;
+}
+
+Traces traces_of_constant_errors(double terms, double block) {
+  const double second = terms * terms / block;
+  return {.first = terms, .second = second, .third = second * second / terms};
+}
+
+namespace {
+
+/// The normal score whose upper or lower tail, whichever is smaller, is given.
+double score_of_tails(double lower, double upper) {
+  const boost::math::normal normal;
+  const double tail = std::min(lower, upper);
+  const double score = tail > 0.0 ? -boost::math::quantile(normal, tail) : kFarthestScore;
+  return lower < upper ? -std::min(score, kFarthestScore) : std::min(score, kFarthestScore);
+}
+
+}  // namespace
+
+SquaresLaw::SquaresLaw(const Traces& traces, double runs) : freedom_(traces.freedom) {
+  const double t1 = traces.first, t2 = traces.second, t3 = traces.third;
+  shape_ = runs * t2 * t2 * t2 / (2.0 * t3 * t3);
+  scale_ = 2.0 * t3 / (runs * t2 * t1);
+  shift_ = 1.0 - shape_ * scale_;
+}
+
+double SquaresLaw::score(double ratio) const {
+  const double x = (ratio - shift_) / scale_;
+  if (!(x > 0.0)) return -kFarthestScore;
+  if (!std::isfinite(x)) return kFarthestScore;
+  return score_of_tails(boost::math::gamma_p(shape_, x), boost::math::gamma_q(shape_, x));
+}
+
+double SquaresLaw::quantile(double score) const {
+  const double tail =
+      boost::math::cdf(boost::math::normal(), -std::min(std::abs(score), kFarthestScore));
+  const double x =
+      score < 0.0 ? boost::math::gamma_p_inv(shape_, tail) : boost::math::gamma_q_inv(shape_, tail);
+  return shift_ + scale_ * x;
+}
+
+double SquaresLaw::p_value(double ratio) const { return t_p_value(score(ratio), freedom_); }
+
+Interval SquaresLaw::interval(double ratio, double level) const {
+  const double score = t_score(level, freedom_);
+  const double low = quantile(-score);
+  return {ratio / quantile(score),
+          low > 0.0 ? ratio / low : std::numeric_limits<double>::infinity()};
+}
+
+double t_p_value(double t, double freedom) {
+  const double distance = std::abs(t);
+  if (!std::isfinite(distance)) return std::isnan(distance) ? distance : 0.0;
+  return 2.0 * (std::isfinite(freedom)
+                    ? boost::math::cdf(
+                          boost::math::complement(boost::math::students_t(freedom), distance))
+                    : boost::math::cdf(boost::math::complement(boost::math::normal(), distance)));
+}
+
+double t_score(double level, double freedom) {
+  const double tail = std::max(0.5 * (1.0 - level), kLeastTail);
+  return std::isfinite(freedom)
+             ? boost::math::quantile(
+                   boost::math::complement(boost::math::students_t(freedom), tail))
+             : boost::math::quantile(boost::math::complement(boost::math::normal(), tail));
+}
+
+}  // namespace montecarta::analysis

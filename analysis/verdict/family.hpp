@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/statistics/spread.hpp"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace montecarta::analysis {
+
+/// What a family of tests compares with what a filter claims (STATISTICS 5).
+enum class Family {
+  size,         ///< squared errors of all components at all scans
+  component,    ///< squared errors of one component at all scans
+  stretch,      ///< squared errors of all components in one eighth of the scans
+  scan,         ///< squared errors of all components at one scan
+  bias,         ///< mean error of one component, in deviations
+  correlation,  ///< between two components, beyond the reported one
+  between_runs  ///< standard deviation of the scales that runs have of their own
+};
+
+inline constexpr std::array kFamilies = {
+    Family::size, Family::component,   Family::stretch,     Family::scan,
+    Family::bias, Family::correlation, Family::between_runs};
+
+/// Whether members of a family are ratios of squared errors to the expected ones; else they are
+/// numbers that are zero if the filter is consistent.
+constexpr bool is_ratio(Family family) {
+  return family == Family::size || family == Family::component || family == Family::stretch ||
+         family == Family::scan;
+}
+
+/// "between runs", for readers.
+std::string name_of(Family family);
+/// "between_runs", for files.
+std::string key_of(Family family);
+
+/// One test of a family.
+struct Member {
+  std::string name = {};             ///< "heading", "forward and left"; empty where times name it
+  double from = kNaN, to = kNaN;     ///< [s] of a stretch or a scan
+  double estimate = kNaN;            ///< ratio, or number that should be zero
+  Interval interval = {kNaN, kNaN};  ///< of this member alone
+  Interval simultaneous = {kNaN, kNaN};  ///< all members of all families hold with the level
+  double p = kNaN;                       ///< two-sided, of this member alone
+};
+
+/// "heading", "12 s to 24 s", "at 12.4 s"
+std::string name_of(const Member& member);
+
+/// A family with its members, and whether it rejects that the filter is consistent.
+struct FamilyTest {
+  Family family = Family::size;
+  std::vector<Member> members;
+  double p = 1.0;           ///< of the family: Bonferroni over members, Holm over families
+  double member_limit = 0;  ///< members whose p is at most this are shown to be off
+  bool is_rejected = false;
+
+  /// The member of the least p-value.
+  const Member& strongest() const;
+  /// Whether `member` is shown to differ from what it should be.
+  bool is_shown(const Member& member) const { return is_rejected && member.p <= member_limit; }
+};
+
+/// Corrects the p-values of families of tests that are judged together at `level`: Bonferroni over
+/// the members of each, Holm (1979) over the families. Fills p, member_limit and is_rejected.
+void judge_together(std::vector<FamilyTest>& families, double level);
+
+}  // namespace montecarta::analysis

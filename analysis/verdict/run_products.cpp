@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/verdict/run_products.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace montecarta::analysis {
+namespace {
+
+constexpr double kLeastShare = 0.5;    // of errors that two runs have in common
+constexpr double kFewestErrors = 3.0;  // of which a root mean square is taken
+
+}  // namespace
+
+void AspectProducts::add(const AspectProducts& other) {
+  products.add(other.products);
+  for (std::size_t run = 0; run < terms_of_run.size(); ++run) {
+    terms_of_run[run] += other.terms_of_run[run];
+  }
+  common_terms += other.common_terms;
+}
+
+double AspectProducts::terms() const { return mean_of(terms_of_run); }
+
+Traces AspectProducts::traces(double block) const {
+  const double share = common_terms / terms();
+  if (products.runs() < kFewestRunsOfTraces || !(share >= kLeastShare)) {
+    return traces_of_constant_errors(terms(), block);
+  }
+  return traces_of(products, terms(), block, share);
+}
+
+// With all sums in units of t_1: Var z = 2 t_2 (1 + v) + v t_1^2, where v is the variance of the
+// scales, and the mean of G_ij^2 is t_2. The factors correct the division of the errors by the
+// sample's own root mean square.
+Summary AspectProducts::variance_of_scales() const {
+  const auto n = static_cast<double>(products.runs());
+  std::vector<double> by_run(products.runs());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < by_run.size(); ++i) {
+    sum += by_run[i] = products.squares_with_others(i);
+  }
+  const double mean = sum / (n * (n - 1.0));
+  const double scale = mean + 0.5 * terms() * terms();
+  SummaryOf variance;
+  for (std::size_t i = 0; i < by_run.size(); ++i) {
+    const double deviation = products(i, i) - terms_of_run[i];
+    const double own = (n + 2.0) / (n - 1.0) * 0.5 * deviation * deviation;
+    const double without = (sum - 2.0 * by_run[i]) / ((n - 1.0) * (n - 2.0));
+    const double others = (n + 2.0) / n * (n * mean - (n - 1.0) * without);
+    variance.add((own - others) / scale);
+  }
+  return variance.result();
+}
+
+DividedErrors::DividedErrors(std::vector<double> errors, std::size_t scans, std::size_t dimension)
+    : dimension_(dimension),
+      errors_(std::move(errors)),
+      is_there_(errors_.size(), 1),
+      counts_(scans * dimension) {
+  for (std::size_t place = 0; place < counts_.size(); ++place) divide(place);
+}
+
+void DividedErrors::divide(std::size_t place) {
+  double squares = 0.0, n = 0.0;
+  for (std::size_t i = place; i < errors_.size(); i += counts_.size()) {
+    if (std::isnan(errors_[i])) {
+      errors_[i] = 0.0;
+      is_there_[i] = 0;
+    }
+    squares += errors_[i] * errors_[i];
+    n += is_there_[i];
+  }
+  const bool is_usable = n >= kFewestErrors && squares > 0.0;
+  counts_[place] = is_usable ? n : 0.0;
+  const double scale = is_usable ? 1.0 / std::sqrt(squares / n) : 0.0;
+  for (std::size_t i = place; i < errors_.size(); i += counts_.size()) {
+    errors_[i] *= scale;
+    if (!is_usable) is_there_[i] = 0;
+  }
+}
+
+AspectProducts DividedErrors::products(const Aspect& aspect) const {
+  AspectProducts found(runs());
+  const auto n = static_cast<double>(runs());
+  std::vector<std::size_t> places;
+  for (std::size_t s = aspect.first_scan; s < aspect.end_scan; ++s) {
+    for (std::size_t k = aspect.first_component; k < aspect.end_component; ++k) {
+      places.push_back(s * dimension_ + k);
+    }
+  }
+  std::vector<double> rows;
+  rows.reserve(runs() * places.size());
+  for (std::size_t run = 0; run < runs(); ++run) {
+    for (const std::size_t place : places) {
+      rows.push_back(errors_[run * counts_.size() + place]);
+      found.terms_of_run[run] += is_there_[run * counts_.size() + place];
+    }
+  }
+  found.products.add(rows, places.size());
+  for (const std::size_t place : places) {
+    found.common_terms += counts_[place] * std::max(counts_[place] - 1.0, 0.0) / (n * (n - 1.0));
+  }
+  return found;
+}
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/statistics/spread.hpp"
+#include "analysis/statistics/squares_law.hpp"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace montecarta::analysis {
+
+/// Studies of fewer runs are judged by the law of errors that never change within a run.
+inline constexpr std::size_t kFewestRunsOfTraces = 20;
+
+/// A range of scans and of components; ends lie behind the last one.
+struct Aspect {
+  std::size_t first_scan, end_scan;
+  std::size_t first_component, end_component;
+};
+
+/// What the products of the errors of different runs say of an aspect (STATISTICS 5).
+struct AspectProducts {
+  explicit AspectProducts(std::size_t runs) : products(runs), terms_of_run(runs) {}
+
+  /// Adds an aspect that has no error in common with this one.
+  void add(const AspectProducts& other);
+  /// Errors of a run, on the average.
+  double terms() const;
+  /// Traces of the sum of squares. `block` errors of one scan are independent.
+  Traces traces(double block) const;
+  /// How much more the sums of squares vary between runs than the products of different runs say:
+  /// the variance of the scales that runs have of their own, which is 0 if they have none. Its
+  /// standard error follows from the pseudo-values of the jackknife.
+  Summary variance_of_scales() const;
+
+  RunProducts products;
+  std::vector<double> terms_of_run;
+  double common_terms = 0.0;  ///< errors that two runs have in common, on the average
+};
+
+/// Errors of some runs, divided by their root mean square over these runs at every scan and in
+/// every component.
+class DividedErrors {
+ public:
+  /// `errors` {run, scan, component}, NaN where there is none.
+  DividedErrors(std::vector<double> errors, std::size_t scans, std::size_t dimension);
+
+  std::size_t runs() const { return errors_.size() / counts_.size(); }
+  AspectProducts products(const Aspect& aspect) const;
+
+ private:
+  void divide(std::size_t place);
+
+  std::size_t dimension_;
+  std::vector<double> errors_;  ///< {run, scan, component}, 0 where there is none
+  std::vector<char> is_there_;  ///< {run, scan, component}
+  std::vector<double> counts_;  ///< {scan, component} of runs; 0 where they are too few
+};
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/verdict/summed_error.hpp"
+
+#include "analysis/statistics/squares_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <utility>
+
+namespace montecarta::analysis {
+namespace {
+
+/// Laws of the ratio of single scans by their degrees of freedom, which are nearly always the same.
+class ScanLaws {
+ public:
+  double p_value(double freedom, double ratio) { return law(freedom).p_value(ratio); }
+  Interval interval(double freedom, double ratio, double level) {
+    const auto [found, is_new] = intervals_.try_emplace({freedom, level});
+    if (is_new) found->second = law(freedom).interval(1.0, level);
+    return {ratio * found->second.lower, ratio * found->second.upper};
+  }
+
+ private:
+  /// The exact law: so many squares of independent standard normal variables.
+  const SquaresLaw& law(double freedom) {
+    return laws_.try_emplace(freedom, Traces{1.0, 1.0, 1.0}, freedom).first->second;
+  }
+
+  std::map<double, SquaresLaw> laws_;
+  std::map<std::pair<double, double>, Interval> intervals_;
+};
+
+}  // namespace
+
+std::vector<FamilyTest> judge_candidates(std::span<const Candidate> candidates, double level) {
+  std::vector<FamilyTest> families;
+  for (const Candidate& one : candidates) {
+    if (families.empty() || families.back().family != one.family) {
+      families.push_back({.family = one.family, .members = {}});
+    }
+    families.back().members.push_back(one.member);
+  }
+  auto candidate = candidates.begin();
+  for (FamilyTest& test : families) {
+    const auto tests = static_cast<double>(families.size() * test.members.size());
+    for (Member& member : test.members) {
+      member.interval = candidate->interval(level);
+      member.simultaneous = candidate->interval(1.0 - (1.0 - level) / tests);
+      ++candidate;
+    }
+  }
+  judge_together(families, level);
+  return families;
+}
+
+void SummedError::add(std::size_t scan, double nees, double dimension) {
+  if (std::isnan(nees)) return;
+  scans_[scan].nees += nees;
+  scans_[scan].dimensions += dimension;
+  scans_[scan].runs += 1.0;
+}
+
+std::vector<Candidate> SummedError::scan_candidates(std::span<const double> times) const {
+  std::vector<Candidate> all;
+  const auto laws = std::make_shared<ScanLaws>();
+  for (std::size_t s = 0; s < scans_.size(); ++s) {
+    const double freedom = scans_[s].dimensions;
+    if (!(freedom > 0.0)) continue;
+    const double ratio = scans_[s].ratio();
+    Member member{.from = times[s], .to = times[s], .estimate = ratio};
+    member.p = laws->p_value(freedom, ratio);
+    all.push_back({Family::scan, std::move(member), [laws, freedom, ratio](double level) {
+                     return laws->interval(freedom, ratio, level);
+                   }});
+  }
+  return all;
+}
+
+std::vector<FamilyTest> SummedError::families(double level, std::span<const double> times) const {
+  Scan sum;
+  double deviation = 0.0;  // of a run's sum, over the square root of 2
+  for (const Scan& scan : scans_) {
+    if (!(scan.runs > 0.0)) continue;
+    sum.nees += scan.nees;
+    sum.dimensions += scan.dimensions;
+    sum.runs = std::max(sum.runs, scan.runs);
+    deviation += std::sqrt(scan.dimensions / scan.runs);
+  }
+  if (!(sum.runs > 0.0)) return {};
+  const double terms = sum.dimensions / sum.runs;
+  const SquaresLaw law(traces_of_constant_errors(terms, terms * terms / (deviation * deviation)),
+                       sum.runs);
+  const double ratio = sum.ratio();
+  std::vector<Candidate> all = {{Family::size,
+                                 {.name = "all", .estimate = ratio, .p = law.p_value(ratio)},
+                                 [law, ratio](double of) { return law.interval(ratio, of); }}};
+  std::ranges::move(scan_candidates(times), std::back_inserter(all));
+  return judge_candidates(all, level);
+}
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/verdict/family.hpp"
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace montecarta::analysis {
+
+/// A member of a family whose intervals are yet to be computed.
+struct Candidate {
+  Family family = Family::size;
+  Member member;
+  std::function<Interval(double level)> interval;
+};
+
+/// Families in the order of their candidates, with intervals, judged together at `level`.
+std::vector<FamilyTest> judge_candidates(std::span<const Candidate> candidates, double level);
+
+/// Adds up the NEES of every scan over runs, and tests the sums of single scans, which are exactly
+/// chi-square whatever the errors of a run have to do with each other (STATISTICS 5).
+class SummedError {
+ public:
+  explicit SummedError(std::size_t scans) : scans_(scans) {}
+
+  /// A NEES of `dimension` components; one that is NaN is left out.
+  void add(std::size_t scan, double nees, double dimension);
+
+  struct Scan {
+    double nees = 0.0, dimensions = 0.0, runs = 0.0;
+    double ratio() const { return nees / dimensions; }
+  };
+  const std::vector<Scan>& scans() const { return scans_; }
+
+  /// The family of scans; `times` [s].
+  std::vector<Candidate> scan_candidates(std::span<const double> times) const;
+  /// Size and scans alone, for errors of which only the NEES is known: the size by the law of
+  /// errors that never change within a run, which is the widest.
+  std::vector<FamilyTest> families(double level, std::span<const double> times) const;
+
+ private:
+  std::vector<Scan> scans_;
+};
+
+}  // namespace montecarta::analysis

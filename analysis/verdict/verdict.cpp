@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/verdict/verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace montecarta::analysis {
+namespace {
+
+bool is_inside(const Interval& interval, const Interval& margin) {
+  return interval.lower >= margin.lower && interval.upper <= margin.upper;
+}
+
+bool is_outside(const Interval& interval, const Interval& margin) {
+  return interval.lower > margin.upper || interval.upper < margin.lower;
+}
+
+/// What counts as negligible in members of a family, by the margin of ratios.
+Interval margin_of(Family family, double within) {
+  if (is_ratio(family)) return {1.0 / within, within};
+  const double most = family == Family::bias ? std::sqrt(within - 1.0) : within - 1.0;
+  return {-most, most};
+}
+
+/// Whether a member allows the answer "consistent": shown to be within the margin, or, of scans and
+/// the spread between runs, not shown to be beyond it.
+bool allows_consistency(Family family, const Member& member, double within) {
+  const Interval margin = margin_of(family, within);
+  if (family == Family::scan || family == Family::between_runs) {
+    return !is_outside(member.simultaneous, margin);
+  }
+  return is_inside(member.interval, margin);
+}
+
+bool is_within_margin(const Verdict& verdict) {
+  if (verdict.find(Family::size) == nullptr) return false;
+  return std::ranges::all_of(verdict.families, [&](const FamilyTest& test) {
+    return std::ranges::all_of(test.members, [&](const Member& member) {
+      return allows_consistency(test.family, member, verdict.within);
+    });
+  });
+}
+
+Answer answer_of(const Verdict& verdict) {
+  if (verdict.families.empty()) return Answer::untested;
+  if (is_within_margin(verdict)) return Answer::consistent;
+  bool is_above = false, is_below = false, is_rejected = false;
+  for (const FamilyTest& test : verdict.families) {
+    is_rejected = is_rejected || test.is_rejected;
+    if (!is_ratio(test.family)) continue;
+    for (const Member& member : test.members) {
+      if (!test.is_shown(member)) continue;
+      (member.estimate > 1.0 ? is_above : is_below) = true;
+    }
+  }
+  if (is_above != is_below) return is_above ? Answer::optimistic : Answer::conservative;
+  return is_rejected ? Answer::inconsistent : Answer::undecided;
+}
+
+/// By which factor runs must grow for this interval to be so short that it is within the margin or
+/// shows a deviation: no longer than half of the margin's length.
+double growth_needed(Family family, const Member& member, double within) {
+  if (family == Family::scan || family == Family::between_runs) return 1.0;
+  const Interval margin = margin_of(family, within), found = member.interval;
+  const double length =
+      is_ratio(family) ? std::log(found.upper / found.lower) : found.upper - found.lower;
+  const double wanted = is_ratio(family) ? std::log(within) : margin.upper;
+  return (length / wanted) * (length / wanted);
+}
+
+std::optional<std::uint64_t> more_runs_of(const Verdict& verdict, std::uint64_t runs) {
+  double growth = 1.0;
+  for (const FamilyTest& test : verdict.families) {
+    for (const Member& member : test.members) {
+      growth = std::max(growth, growth_needed(test.family, member, verdict.within));
+    }
+  }
+  constexpr double kMost = 1e9;
+  const double more = std::ceil((growth - 1.0) * static_cast<double>(runs));
+  if (!(more < kMost)) return std::nullopt;
+  return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(more));
+}
+
+}  // namespace
+
+std::string name_of(Answer answer) {
+  switch (answer) {
+    case Answer::untested:
+      return "untested";
+    case Answer::consistent:
+      return "consistent";
+    case Answer::optimistic:
+      return "optimistic";
+    case Answer::conservative:
+      return "conservative";
+    case Answer::inconsistent:
+      return "inconsistent";
+    case Answer::undecided:
+      break;
+  }
+  return "undecided";
+}
+
+const FamilyTest* Verdict::find(Family family) const {
+  const auto found = std::ranges::find(families, family, &FamilyTest::family);
+  return found == families.end() ? nullptr : &*found;
+}
+
+Interval Verdict::ratio() const {
+  const FamilyTest* size = find(Family::size);
+  return size == nullptr ? Interval{kNaN, kNaN} : size->members.front().interval;
+}
+
+double Verdict::ratio_estimate() const {
+  const FamilyTest* size = find(Family::size);
+  return size == nullptr ? kNaN : size->members.front().estimate;
+}
+
+Verdict judge(std::vector<FamilyTest> families, double level, double within, std::uint64_t runs) {
+  Verdict verdict{.level = level, .within = within, .families = std::move(families)};
+  verdict.runs = runs;
+  verdict.answer = answer_of(verdict);
+  if (verdict.answer == Answer::undecided) verdict.more_runs = more_runs_of(verdict, runs);
+  return verdict;
+}
+
+}  // namespace montecarta::analysis

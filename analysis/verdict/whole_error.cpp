@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/verdict/whole_error.hpp"
+
+#include "analysis/statistics/squares_law.hpp"
+#include "analysis/verdict/run_products.hpp"
+#include "engine/errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace montecarta::analysis {
+namespace {
+
+constexpr std::size_t kStretches = 8;
+constexpr std::size_t kMostKeptRuns = 256;
+constexpr std::size_t kMostKeptErrors = 8'000'000;  // 64 MB
+
+Candidate ratio_candidate(Family family, Member member, const SquaresLaw& law) {
+  const double ratio = member.estimate;
+  member.p = law.p_value(ratio);
+  return {family, std::move(member),
+          [law, ratio](double level) { return law.interval(ratio, level); }};
+}
+
+Interval interval_of_mean(const Summary& mean, double level) {
+  const double half = t_score(level, static_cast<double>(mean.n) - 1.0) * mean.standard_error();
+  return {mean.mean - half, mean.mean + half};
+}
+
+double t_of(const Summary& mean) { return mean.mean / mean.standard_error(); }
+
+/// The mean over runs of a number that is zero if the filter is consistent.
+void add_zero_mean(Family family, std::string name, const Summary& mean,
+                   std::vector<Candidate>& all) {
+  if (mean.n < kFewestJudgedRuns || !(mean.sd > 0.0)) return;
+  Member member{.name = std::move(name), .estimate = mean.mean};
+  member.p = t_p_value(t_of(mean), static_cast<double>(mean.n) - 1.0);
+  all.push_back(
+      {family, std::move(member), [mean](double level) { return interval_of_mean(mean, level); }});
+}
+
+/// The deviation of the scales that runs have of their own; only too large a one counts.
+Candidate spread_candidate(const Summary& variance) {
+  const auto root = [](double value) { return std::sqrt(std::max(0.0, value)); };
+  Member member{.name = "runs", .estimate = root(variance.mean)};
+  const double t = t_of(variance);
+  member.p = t > 0.0 ? 0.5 * t_p_value(t, static_cast<double>(variance.n) - 1.0) : 1.0;
+  return {Family::between_runs, std::move(member), [variance, root](double level) {
+            const Interval of_variance = interval_of_mean(variance, level);
+            return Interval{root(of_variance.lower), root(of_variance.upper)};
+          }};
+}
+
+}  // namespace
+
+void WholeError::Sum::add(double error) {
+  if (std::isnan(error)) return;
+  squares += error * error;
+  terms += 1.0;
+}
+
+WholeError::WholeError(std::size_t dimension, std::size_t scans)
+    : dimension_(dimension),
+      scans_(scans),
+      stretches_(scans < 2 * kStretches ? 1 : kStretches),
+      component_(dimension),
+      stretch_(stretches_),
+      nees_(scans),
+      bias_(dimension),
+      correlation_(dimension * (dimension - 1) / 2) {}
+
+void WholeError::add(const WhitenedRun& run, std::span<const double> nees) {
+  expect(run.dimension == dimension_ && run.whitened.size() == scans_ * dimension_,
+         "errors are {scan, component}");
+  for (std::size_t s = 0; s < scans_; ++s) {
+    nees_.add(s, nees[s], static_cast<double>(dimension_));
+  }
+  if (std::ranges::all_of(run.whitened, [](double u) { return std::isnan(u); })) return;
+  ++runs_;
+  add_squares(run);
+  add_means(run);
+  const std::size_t length = std::max<std::size_t>(run.whitened.size(), 1);
+  const std::size_t limit =
+      std::clamp(kMostKeptErrors / length, kFewestRunsOfSpread, kMostKeptRuns);
+  if (runs_ > limit) return;
+  whitened_.insert(whitened_.end(), run.whitened.begin(), run.whitened.end());
+  standardised_.insert(standardised_.end(), run.standardised.begin(), run.standardised.end());
+}
+
+void WholeError::add_squares(const WhitenedRun& run) {
+  for (std::size_t stretch = 0; stretch < stretches_; ++stretch) {
+    for (std::size_t s = first_scan(stretch); s < first_scan(stretch + 1); ++s) {
+      for (std::size_t k = 0; k < dimension_; ++k) {
+        size_.add(run.whitened[s * dimension_ + k]);
+        stretch_[stretch].add(run.whitened[s * dimension_ + k]);
+        component_[k].add(run.standardised[s * dimension_ + k]);
+      }
+    }
+  }
+}
+
+void WholeError::add_means(const WhitenedRun& run) {
+  const auto add_mean = [&](SummaryOf& sums, auto value_at) {
+    double sum = 0.0, n = 0.0;
+    for (std::size_t at = 0; at < scans_ * dimension_; at += dimension_) {
+      const double value = value_at(at);
+      if (std::isnan(value)) continue;
+      sum += value;
+      n += 1.0;
+    }
+    if (n > 0.0) sums.add(sum / n);
+  };
+  std::size_t pair = 0;
+  for (std::size_t a = 0; a < dimension_; ++a) {
+    add_mean(bias_[a], [&](std::size_t at) { return run.standardised[at + a]; });
+    for (std::size_t b = a + 1; b < dimension_; ++b) {
+      add_mean(correlation_[pair++],
+               [&](std::size_t at) { return run.whitened[at + a] * run.whitened[at + b]; });
+    }
+  }
+}
+
+std::vector<Candidate> WholeError::variances(const ErrorNames& names, const DividedErrors& whitened,
+                                             Candidate& spread) const {
+  const auto runs = static_cast<double>(runs_), d = static_cast<double>(dimension_);
+  std::vector<Candidate> stretches;
+  AspectProducts size(whitened.runs());
+  for (std::size_t s = 0; s < stretches_; ++s) {
+    const std::size_t first = first_scan(s), end = first_scan(s + 1);
+    const AspectProducts found = whitened.products({first, end, 0, dimension_});
+    size.add(found);
+    if (stretches_ == 1 || !(found.terms() > 0.0)) continue;
+    Member member{.from = names.times[first], .to = names.times[end - 1]};
+    member.estimate = stretch_[s].ratio();
+    stretches.push_back(
+        ratio_candidate(Family::stretch, member, SquaresLaw(found.traces(d), runs)));
+  }
+  std::vector<Candidate> all;
+  if (!(size.terms() > 0.0)) return all;
+  all.push_back(ratio_candidate(Family::size, {.name = "all", .estimate = size_.ratio()},
+                                SquaresLaw(size.traces(d), runs)));
+  add_components(names, all);
+  std::ranges::move(stretches, std::back_inserter(all));
+  if (whitened.runs() >= kFewestRunsOfSpread) spread = spread_candidate(size.variance_of_scales());
+  return all;
+}
+
+void WholeError::add_components(const ErrorNames& names, std::vector<Candidate>& all) const {
+  if (dimension_ == 1) return;
+  const DividedErrors errors(standardised_, scans_, dimension_);
+  for (std::size_t k = 0; k < dimension_; ++k) {
+    const AspectProducts found = errors.products({0, scans_, k, k + 1});
+    if (!(found.terms() > 0.0)) continue;
+    Member member{.name = names.components[k], .estimate = component_[k].ratio()};
+    const SquaresLaw law(found.traces(1.0), static_cast<double>(runs_));
+    all.push_back(ratio_candidate(Family::component, std::move(member), law));
+  }
+}
+
+void WholeError::add_means(const ErrorNames& names, std::vector<Candidate>& all) const {
+  for (std::size_t a = 0; a < dimension_; ++a) {
+    add_zero_mean(Family::bias, names.components[a], bias_[a].result(), all);
+  }
+  std::size_t pair = 0;
+  for (std::size_t a = 0; a < dimension_; ++a) {
+    for (std::size_t b = a + 1; b < dimension_; ++b) {
+      add_zero_mean(Family::correlation, names.components[a] + " and " + names.components[b],
+                    correlation_[pair++].result(), all);
+    }
+  }
+}
+
+std::vector<FamilyTest> WholeError::families(double level, const ErrorNames& names) const {
+  if (runs_ < kFewestJudgedRuns) return {};
+  Candidate spread;
+  std::vector<Candidate> all =
+      variances(names, DividedErrors(whitened_, scans_, dimension_), spread);
+  std::ranges::move(nees_.scan_candidates(names.times), std::back_inserter(all));
+  add_means(names, all);
+  if (spread.interval) all.push_back(std::move(spread));
+  return judge_candidates(all, level);
+}
+
+}  // namespace montecarta::analysis

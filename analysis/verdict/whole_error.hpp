@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/statistics/spread.hpp"
+#include "analysis/verdict/summed_error.hpp"
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace montecarta::analysis {
+
+/// The spread between runs is judged from so many runs on.
+inline constexpr std::size_t kFewestRunsOfSpread = 50;
+/// Fewer runs are not judged.
+inline constexpr std::size_t kFewestJudgedRuns = 3;
+
+/// Errors of one run in units of the covariance that its filter reported, {scan, component}. What
+/// cannot be judged by its components is NaN.
+struct WhitenedRun {
+  std::size_t dimension = 0;
+  std::vector<double> whitened;      ///< L^-1 e, where the covariance is L L'
+  std::vector<double> standardised;  ///< each component divided by its own deviation
+};
+
+/// Names of the components and times [s] of the scans, for the members of families.
+struct ErrorNames {
+  std::span<const std::string> components;
+  std::span<const double> times;
+};
+
+class DividedErrors;
+
+/// Adds up the errors of the complete runs of one cell and tests them (STATISTICS 5). Memory
+/// depends on the scans alone: the errors of the first runs are kept, at most 256 of them.
+class WholeError {
+ public:
+  WholeError(std::size_t dimension, std::size_t scans);
+
+  /// One run, with its NEES {scan}, which is NaN where it is not judged.
+  void add(const WhitenedRun& run, std::span<const double> nees);
+  /// The families that apply, judged together at `level`; none of fewer than kFewestJudgedRuns.
+  std::vector<FamilyTest> families(double level, const ErrorNames& names) const;
+
+ private:
+  struct Sum {
+    double squares = 0.0, terms = 0.0;
+    void add(double error);
+    double ratio() const { return squares / terms; }
+  };
+
+  std::size_t first_scan(std::size_t stretch) const { return stretch * scans_ / stretches_; }
+  void add_squares(const WhitenedRun& run);
+  void add_means(const WhitenedRun& run);
+  std::vector<Candidate> variances(const ErrorNames& names, const DividedErrors& whitened,
+                                   Candidate& spread) const;
+  void add_components(const ErrorNames& names, std::vector<Candidate>& all) const;
+  void add_means(const ErrorNames& names, std::vector<Candidate>& all) const;
+
+  std::size_t dimension_, scans_, stretches_;
+  std::size_t runs_ = 0;  ///< with errors that are judged by their components
+  Sum size_;
+  std::vector<Sum> component_, stretch_;
+  SummedError nees_;
+  std::vector<SummaryOf> bias_, correlation_;    ///< of the means of runs
+  std::vector<double> whitened_, standardised_;  ///< {kept run, scan, component}
+};
+
+}  // namespace montecarta::analysis
