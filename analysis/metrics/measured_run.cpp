@@ -152,8 +152,8 @@ void RunMetrics::correct_spread(const RunRows& rows, std::size_t particles) {
 /// Writes one scan of a pose by the moments that lead there.
 void RunMetrics::whiten_pose(const RunRows& rows, std::size_t particles, std::size_t s) {
   const bool is_drawn_here = particles > 0 && is_drawn(rows, s);
-  const bool by_mixture = particles > 0 && !is_drawn_here;
-  const MomentRows& moments = by_mixture ? rows.mixture : rows.spread;
+  const MomentRows& moments =
+      is_drawn_here || rows.mixture.covariance.empty() ? rows.spread : rows.mixture;
   const Eigen::Matrix3d turn = vehicle_from_map(pose_of(rows.truth, s).heading);
   const Eigen::Vector3d error = turn * boxminus(pose_of(moments.mean, s), pose_of(rows.truth, s));
   const Eigen::Matrix3d P = Eigen::Map<const RowMajor3>(moments.covariance.data() + 9 * s);

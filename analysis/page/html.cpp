@@ -141,8 +141,8 @@ constexpr const char* kNoNetwork =
 /// Verdicts and failures are seen at a glance; the word itself says the same without the colour.
 std::string class_of(const std::string& text, Align align) {
   std::string names = align == Align::right ? "right" : "";
-  const bool bad = text.starts_with("optimistic") || text.starts_with("better in no") ||
-                   text.find("FAILED") != std::string::npos;
+  const bool bad = text.starts_with("optimistic") || text.starts_with("inconsistent") ||
+                   text.starts_with("better in no") || text.find("FAILED") != std::string::npos;
   if (bad) names += " bad";
   const bool good = text.starts_with("consistent within") || text.starts_with("better in every");
   if (good) names += " good";

@@ -111,10 +111,10 @@ Traces traces_of(const RunProducts& products, double terms, double block, double
   const Estimate mean = mean_squared_product(products);
   Traces traces{.first = terms};
   // Errors were divided by the root mean square of the sample itself: two factors correct that.
-  const double second = (n + 2.0) / n * (mean.mean + mean.deviation) / share;
+  const double second = (n + 2.0) / n * (mean.mean + mean.deviation) / (share * share);
   traces.second = std::clamp(second, terms, terms * terms / block);
   const double third = (n + 2.0) * (n + 4.0) / (n * n) * products.cycles() /
-                       (n * (n - 1.0) * (n - 2.0)) / (share * share);
+                       (n * (n - 1.0) * (n - 2.0)) / (share * share * share);
   traces.third = std::clamp(third, traces.second * traces.second / terms,
                             traces.second * std::sqrt(traces.second));
   const double relative = mean.deviation / mean.mean;

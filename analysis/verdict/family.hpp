@@ -53,7 +53,7 @@ std::string name_of(const Member& member);
 /// A family with its members, and whether it rejects that the filter is consistent.
 struct FamilyTest {
   Family family = Family::size;
-  std::vector<Member> members;
+  std::vector<Member> members = {};
   double p = 1.0;           ///< of the family: Bonferroni over members, Holm over families
   double member_limit = 0;  ///< members whose p is at most this are shown to be off
   bool is_rejected = false;

@@ -34,9 +34,10 @@ double t_of(const Summary& mean) { return mean.mean / mean.standard_error(); }
 /// The mean over runs of a number that is zero if the filter is consistent.
 void add_zero_mean(Family family, std::string name, const Summary& mean,
                    std::vector<Candidate>& all) {
-  if (mean.n < kFewestJudgedRuns || !(mean.sd > 0.0)) return;
+  if (mean.n < kFewestJudgedRuns) return;
   Member member{.name = std::move(name), .estimate = mean.mean};
-  member.p = t_p_value(t_of(mean), static_cast<double>(mean.n) - 1.0);
+  const bool is_zero = mean.mean == 0.0 && mean.sd == 0.0;
+  member.p = is_zero ? 1.0 : t_p_value(t_of(mean), static_cast<double>(mean.n) - 1.0);
   all.push_back(
       {family, std::move(member), [mean](double level) { return interval_of_mean(mean, level); }});
 }

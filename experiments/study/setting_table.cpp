@@ -202,9 +202,9 @@ void add_study(std::vector<Setting>& table) {
   table.push_back(required(count(s, "runs", "", 1, 1e7, "repetitions of every cell"), "100"));
   table.push_back(
       text(s, "until",
-           "METRIC < HALF-WIDTH or verdict: a cell stops when so precise or judged; else empty"));
+           "METRIC < HALF-WIDTH, verdict, or verdict, N runs: when a cell stops; else empty"));
   table.push_back(number(s, "within", "1", kUsualWithin, kLeastMargin, kMostMargin,
-                         "consistent: ANEES so many times too large or small at most"));
+                         "consistent: squared errors so many times too large or small at most"));
 }
 
 /// The fallback gates are chi-square 5.991 (95 %) and 25 with two degrees of freedom.

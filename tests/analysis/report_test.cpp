@@ -88,7 +88,7 @@ TEST(Report, KnowsMixturesWithoutParticlesAndWithFew) {
   });
   const StudyAnalysis study = analyze(ResultFile(folder / "out.h5"));
   EXPECT_EQ(study.cells[0].leading, Moments::mixture);
-  EXPECT_NE(study.cells[0].consistency().verdict, Verdict::untested);
+  EXPECT_NE(study.cells[0].verdict.answer, Answer::untested);
   EXPECT_EQ(study.cells[0].find_nees(ErrorBlock::pose, Moments::corrected), nullptr);
   EXPECT_TRUE(study.cells[0].over_time("ess").empty());
   EXPECT_TRUE(study.cells[1].over_time("ancestors_at_start").empty());

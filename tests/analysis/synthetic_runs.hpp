@@ -30,7 +30,7 @@ inline RunCriteria criteria_of_scans(std::span<const double> times) {
           .beacons = {},
           .map = {},
           .joint_scans = {},
-          .walks = BandWalks(times.size())};
+          .components = {"forward", "left", "heading"}};
 }
 
 /// Runs whose errors are drawn, independently at each scan, from a known Gaussian.

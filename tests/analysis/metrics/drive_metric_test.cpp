@@ -77,7 +77,7 @@ class Drive10 : public ::testing::Test {
 };
 
 TEST_F(Drive10, AFilterThatForgetsIsJudgedByTheDrive) {
-  EXPECT_THAT(in_words(judged(run(5.0, 0.3))), StartsWith("optimistic by "));
+  EXPECT_THAT(in_words(judged(run(5.0, 0.3))), StartsWith("optimistic: NEES "));
   EXPECT_EQ(in_words(judged(run(1.0, 0.3), 3.0)), "consistent within 3");
   const DriveConsistency right = judged(run(1.0, 0.3));
   EXPECT_THAT(in_words(right), StartsWith("this drive cannot tell: it would need "));
@@ -87,7 +87,7 @@ TEST_F(Drive10, AFilterThatForgetsIsJudgedByTheDrive) {
 
 TEST_F(Drive10, AFilterWhoseErrorsLastIsNot) {
   const DriveConsistency found = judged(run(1.0, 1.0 - 1e-9));
-  EXPECT_EQ(found.verdict, Verdict::undecided);
+  EXPECT_EQ(found.answer, Answer::undecided);
   EXPECT_LT(found.mean.leads().ratio.lower, 0.7);
 }
 
@@ -97,7 +97,7 @@ TEST_F(Drive10, AConservativeFilterIsFound) {
     reference_.position[s] = {times_[s], 0.0};
     reference_.heading[s] = 0.0;
   }
-  EXPECT_THAT(in_words(judged(run(0.05, 0.3))), StartsWith("conservative by 0."));
+  EXPECT_THAT(in_words(judged(run(0.05, 0.3))), StartsWith("conservative: NEES "));
 }
 
 TEST_F(Drive10, ManyRunsOnOneDriveSayNoMoreThanOne) {
@@ -158,7 +158,7 @@ TEST_F(Drive10, ItsTableHasARowForACellAndSaysWhatToConsider) {
   const TextTable table = reported_table(study, "drive");
   ASSERT_EQ(table.rows.size(), 1U);
   EXPECT_EQ(table.rows[0][0], "mine");
-  EXPECT_THAT(table.rows[0][3], StartsWith("optimistic by "));
+  EXPECT_THAT(table.rows[0][3], StartsWith("optimistic: NEES "));
   EXPECT_EQ(table.rows[0][8], "600");
   const Section section = reported_section(study, "drive");
   const auto* warnings = std::get_if<Section::Table>(&section.blocks.at(1));
@@ -194,7 +194,7 @@ TEST(OwnDrives, OneIsJudgedAsADrive) {
                          one = judge_drive(runs, 0.95, 1.1);
   EXPECT_NEAR(own.mean.leads().ratio.lower, one.mean.leads().ratio.lower, 1e-12);
   EXPECT_NEAR(own.mean.leads().ratio.upper, one.mean.leads().ratio.upper, 1e-12);
-  EXPECT_EQ(own.verdict, one.verdict);
+  EXPECT_EQ(own.answer, one.answer);
 }
 
 // Each drive by itself knows one sample, and all together as many as there are drives.
@@ -202,14 +202,14 @@ TEST(OwnDrives, ManyFindWhatLastsForAWholeDrive) {
   const auto runs = drives_with(2.5, 20);
   const DriveConsistency own = judge_own_drives(runs, 0.95, 1.1);
   EXPECT_NEAR(own.mean.leads().effective_samples, 20.0, 1e-6);
-  EXPECT_EQ(own.verdict, Verdict::optimistic);
+  EXPECT_EQ(own.answer, Answer::optimistic);
   EXPECT_EQ(own.mean.fixes, 20U * 50U + 10U * 190U);
-  EXPECT_EQ(judge_drive(runs, 0.95, 1.1).verdict, Verdict::undecided) << "were they one drive";
+  EXPECT_EQ(judge_drive(runs, 0.95, 1.1).answer, Answer::undecided) << "were they one drive";
 }
 
 TEST(OwnDrives, SayHowManyWouldDecide) {
   const DriveConsistency right = judge_own_drives(drives_with(1.0, 5), 0.95, 1.5);
-  ASSERT_EQ(right.verdict, Verdict::undecided);
+  ASSERT_EQ(right.answer, Answer::undecided);
   EXPECT_THAT(in_words(right), StartsWith("5 drives cannot tell: it would take "));
   EXPECT_THAT(in_words(right), HasSubstr(" like them"));
 }
@@ -224,7 +224,7 @@ TEST(OwnDrives, WithoutAJudgedFixAreLeftOut) {
   EXPECT_EQ(found.drives, 3U);
   EXPECT_EQ(found.mean.in_gaps, 7U);
   EXPECT_DOUBLE_EQ(found.mean.leads().mean, mean);
-  EXPECT_EQ(judge_own_drives({}, 0.95, 1.1).verdict, Verdict::untested);
+  EXPECT_EQ(judge_own_drives({}, 0.95, 1.1).answer, Answer::untested);
 }
 
 TEST(OwnDrives, HaveNoMeanOverTime) {

@@ -6,6 +6,7 @@
 #include "engine/numbers/angle.hpp"
 #include "engine/random/stream.hpp"
 #include "tests/analysis/reported.hpp"
+#include "tests/analysis/synthetic_runs.hpp"
 #include "tests/doubles/csv_table.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 
@@ -100,7 +101,7 @@ TEST(JointScores, AreNoNumberWhereThereIsNone) {
 JointConsistency study_of(std::size_t runs, const Eigen::MatrixXd& drawn,
                           const Eigen::MatrixXd& told, std::uint64_t seed) {
   const Eigen::MatrixXd L = drawn.llt().matrixL();
-  JointNeesSums sums;
+  JointNeesSums sums(scan_times(4, 5.0));
   for (std::uint64_t run = 0; run < runs; ++run) {
     RngStream draw({.seed = seed, .run = run, .purpose = Draw::test});
     std::vector<JointScore> scores;
@@ -118,7 +119,7 @@ TEST(JointConsistency, RejectsAConsistentFilterSeldom) {
   int rejected = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     const Verdict verdict = study_of(20, covariance(), covariance(), seed).verdict;
-    rejected += verdict == Verdict::optimistic || verdict == Verdict::conservative ? 1 : 0;
+    rejected += verdict.find(Family::size)->is_rejected || verdict.find(Family::scan)->is_rejected;
   }
   // 5 % or a little less, and 5 standard errors of 400 studies
   EXPECT_LE(rejected, 400 * 0.05 + 5.0 * std::sqrt(400 * 0.05 * 0.95));
@@ -126,49 +127,51 @@ TEST(JointConsistency, RejectsAConsistentFilterSeldom) {
 }
 
 TEST(JointConsistency, FindsTheScaleOfACovariance) {
-  EXPECT_EQ(study_of(60, 1.3 * covariance(), covariance(), 1).verdict, Verdict::optimistic);
+  EXPECT_EQ(study_of(60, 1.3 * covariance(), covariance(), 1).verdict.answer, Answer::optimistic);
   const JointConsistency cautious = study_of(60, 0.7 * covariance(), covariance(), 1);
-  EXPECT_EQ(cautious.verdict, Verdict::conservative);
+  EXPECT_EQ(cautious.verdict.answer, Answer::conservative);
   EXPECT_NEAR(cautious.average.back(), 0.7, 0.1);
   EXPECT_THAT(cautious.runs, Each(60u));
   EXPECT_THAT(cautious.dimension, Each(7.0));
 }
 
-// 4 rows at 1.25 % each: 2.498 deviations of sqrt(2 / (7 N)) on either side are half of log 1.1.
-TEST(JointConsistency, IsConsistentWhereEveryRowIsShownToBeWithinTheMargin) {
+// By the law of errors that never change, of 7 components: 1.96 deviations of sqrt(2 / (7 N)) are
+// half of log 1.1 after 484 runs.
+TEST(JointConsistency, IsConsistentWhereTheSizeIsShownToBeWithinTheMargin) {
   const JointConsistency few = study_of(60, covariance(), covariance(), 1);
-  EXPECT_EQ(few.verdict, Verdict::undecided);
-  ASSERT_TRUE(few.more_runs);
-  EXPECT_NEAR(static_cast<double>(*few.more_runs), 725.0, 5.0);
-  EXPECT_EQ(study_of(2000, covariance(), covariance(), 1).verdict, Verdict::consistent);
-  EXPECT_EQ(study_of(2000, 1.15 * covariance(), covariance(), 1).verdict, Verdict::optimistic);
+  EXPECT_EQ(few.verdict.answer, Answer::undecided);
+  ASSERT_TRUE(few.verdict.more_runs);
+  EXPECT_NEAR(static_cast<double>(*few.verdict.more_runs), 424.0, 25.0);
+  const Eigen::MatrixXd larger = 1.15 * covariance();
+  EXPECT_EQ(study_of(2000, covariance(), covariance(), 1).verdict.answer, Answer::consistent);
+  EXPECT_EQ(study_of(2000, larger, covariance(), 1).verdict.answer, Answer::optimistic);
 }
 
-TEST(JointConsistency, NamesTheRowsThatAreFarthestOff) {
-  JointNeesSums sums;
-  sums.add(std::vector<JointScore>{{7000.0, 10'000}, {13'000.0, 10'000}, {10'000.0, 10'000}});
+TEST(JointConsistency, IsInconsistentWhereRowsAreOffInBothDirections) {
+  JointNeesSums sums(scan_times(3));
+  for (int run = 0; run < 5; ++run) {
+    sums.add(std::vector<JointScore>{{7000.0, 10'000}, {13'000.0, 10'000}, {10'000.0, 10'000}});
+  }
   const JointConsistency found = sums.result(0.95, true);
-  EXPECT_EQ(found.verdict, Verdict::optimistic) << "too large goes before too small";
-  EXPECT_EQ(found.highest_row, 1u);
-  EXPECT_EQ(found.lowest_row, 0u);
-  EXPECT_LT(ratio_of_row(found, 0).upper, 0.75);
+  EXPECT_EQ(found.verdict.answer, Answer::inconsistent);
+  EXPECT_LT(found.verdict.find(Family::scan)->members[0].simultaneous.upper, 0.75);
 }
 
 TEST(JointConsistency, FindsCorrelationsForgotten) {
   const Eigen::MatrixXd alone = covariance().diagonal().asDiagonal();
-  EXPECT_EQ(study_of(60, alone, covariance(), 1).verdict, Verdict::optimistic)
+  EXPECT_EQ(study_of(60, alone, covariance(), 1).verdict.answer, Answer::optimistic)
       << "every part by itself is right";
 }
 
 TEST(JointConsistency, HasTheBoundsOfTheSum) {
   const JointConsistency found = study_of(60, covariance(), covariance(), 1);
-  const Interval one = nees_bounds(60, 7, 1.0 - 0.05 / 4.0);
+  const Interval one = nees_bounds(60, 7, 1.0 - 0.05 / 8.0);  // two families, four rows
   EXPECT_NEAR(found.bounds[2].lower, one.lower / 7.0, 1e-12);
   EXPECT_NEAR(found.bounds[2].upper, one.upper / 7.0, 1e-12);
 }
 
 TEST(JointConsistency, CountsWhatIsNoNumber) {
-  JointNeesSums sums;
+  JointNeesSums sums(scan_times(2));
   const std::vector<JointScore> whole = {{7.0, 7}, {5.0, 5}}, part = {{kNaN, 7}, {6.0, 5}};
   sums.add(whole);
   sums.add(part);
@@ -184,11 +187,11 @@ TEST(JointConsistency, CountsWhatIsNoNumber) {
 }
 
 TEST(JointConsistency, SaysWhyItIsNotTested) {
-  JointNeesSums sums;
+  JointNeesSums sums(scan_times(1));
   EXPECT_FALSE(sums.result(0.95, true).stored);
   sums.add(std::vector<JointScore>{{7.0, 7}});
   const JointConsistency found = sums.result(0.95, false);
-  EXPECT_EQ(found.verdict, Verdict::untested);
+  EXPECT_FALSE(found.is_judged());
   EXPECT_THAT(found.missing, HasSubstr("which landmark is which"));
 }
 
@@ -206,9 +209,13 @@ StudyAnalysis study_of_two() {
   joint.runs = {20, 19};
   joint.samples = 40;
   joint.undefined = 1;
-  joint.verdict = Verdict::optimistic;
-  joint.highest_row = 1;
-  joint.lowest_row = 0;
+  FamilyTest size{.family = Family::size, .members = {{.name = "all"}}};
+  size.members[0].estimate = 1.2;
+  size.members[0].interval = size.members[0].simultaneous = {1.14, 1.26};
+  size.members[0].p = 1e-6;
+  joint.verdict.families = {size};
+  judge_together(joint.verdict.families, 0.95);
+  joint.verdict.answer = Answer::optimistic;
   judged.findings.put(joint);
   without.label = "fastslam2_m100";
   study.cells = {judged, without};
@@ -220,7 +227,7 @@ TEST(JointTable, HasARowForACellThatWasJudged) {
   ASSERT_EQ(table.rows.size(), 1u);
   EXPECT_THAT(table.rows[0],
               ElementsAre("ekf_slam", "9.50", "1.20", "[0.950, 1.05]", "0.500 at 5.00 s",
-                          "optimistic by 1.14 to 1.26 at 10.0 s"));
+                          "optimistic: NEES 1.14 to 1.26 times too large"));
 }
 
 TEST(JointTable, IsFarthestWhereThereIsANumber) {

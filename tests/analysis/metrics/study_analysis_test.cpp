@@ -40,11 +40,10 @@ TEST_F(StudyAnalysisOfAFile, JudgesEveryCellAndNamesFailedRuns) {
   EXPECT_EQ(study.times.size(), 100u);
   EXPECT_EQ(study.cells[0].complete, 12u);
   EXPECT_EQ(study.cells[0].leading, Moments::corrected);
-  EXPECT_EQ(study.cells[0].consistency().verdict, Verdict::undecided) << "of 12 runs";
-  EXPECT_EQ(
-      analyze(ResultFile(path_), 0.95, Parallel::serial(), 1.5).cells[0].consistency().verdict,
-      Verdict::consistent);
-  EXPECT_EQ(study.cells[1].consistency().verdict, Verdict::optimistic);
+  EXPECT_EQ(study.cells[0].verdict.answer, Answer::undecided) << "of 12 runs";
+  EXPECT_EQ(analyze(ResultFile(path_), 0.95, Parallel::serial(), 4.0).cells[0].verdict.answer,
+            Answer::consistent);
+  EXPECT_EQ(study.cells[1].verdict.answer, Answer::optimistic);
   ASSERT_EQ(study.cells[1].failures.size(), 1u);
   EXPECT_EQ(study.cells[1].complete, 11u);
   EXPECT_EQ(study.cells[1].failures[0].run, 11u);
@@ -107,7 +106,7 @@ TEST_F(ARecordedDrive, HasReferencesAndNoVerdict) {
   EXPECT_EQ(study.references[1].times.size(), 300u);  // of 320: ten before, ten after the drive
   for (const CellAnalysis& cell : study.cells) {
     EXPECT_TRUE(cell.nees.empty());
-    EXPECT_EQ(cell.consistency().verdict, Verdict::untested);
+    EXPECT_EQ(cell.verdict.answer, Answer::untested);
     EXPECT_TRUE(std::isnan(cell.over_runs("position_rmse").mean));
     EXPECT_TRUE(cell.over_time("position_rmse").empty());
     EXPECT_EQ(cell.get<ReferenceAnalyses>().size(), 2u);
@@ -192,13 +191,13 @@ TEST(ADriveWithTruth, IsJudgedByPoseAndMapTogetherWhereThatIsStored) {
   const StudyAnalysis study = joint_of("known");
   ASSERT_EQ(study.joint_times.size(), 16u);
   EXPECT_EQ(study.joint_times.back(), study.times.back());
-  EXPECT_EQ(study.cells[0].get<JointConsistency>().verdict, Verdict::optimistic)
+  EXPECT_EQ(study.cells[0].get<JointConsistency>().verdict.answer, Answer::optimistic)
       << "its means are all wrong";
   EXPECT_EQ(study.cells[0].get<JointConsistency>().dimension.back(), 9.0);
   EXPECT_GT(study.cells[0].scores.column("joint_nees")[1], 1.0);
   EXPECT_FALSE(study.cells[1].get<JointConsistency>().stored);
   const StudyAnalysis unknown = joint_of("nearest");
-  EXPECT_EQ(unknown.cells[0].get<JointConsistency>().verdict, Verdict::untested);
+  EXPECT_EQ(unknown.cells[0].get<JointConsistency>().verdict.answer, Answer::untested);
   EXPECT_TRUE(std::isnan(unknown.cells[0].scores.column("joint_nees")[1]));
 }
 

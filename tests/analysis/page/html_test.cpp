@@ -24,7 +24,7 @@ TEST(Html, ColoursWhatIsShownAndNothingElse) {
     return html_table({.headings = {{"verdict", Align::left}}, .rows = {{verdict}}});
   };
   EXPECT_THAT(row("consistent within 1.1"), testing::HasSubstr("good"));
-  EXPECT_THAT(row("optimistic by 1.2 to 1.4"), testing::HasSubstr("bad"));
+  EXPECT_THAT(row("optimistic: NEES 1.2 to 1.4 times too large"), testing::HasSubstr("bad"));
   EXPECT_THAT(row("undecided: 12 more runs decide"), testing::HasSubstr("<td>undecided"));
 }
 

@@ -75,18 +75,12 @@ TEST(MatchInterval, RefusesWhatIsNoInterval) {
   EXPECT_THROW(match_interval(-1.0, 2.0), StudyError);
 }
 
-// Where runs are many all is normal: the average has a deviation of sqrt(2 / (3 x 100 N)), the test
-// leaves 2.05 of it on either side (WholeRunTest.IsSidaks...), and 90 % is 1.2816 of them.
+// Where runs are many all is normal: the average has a deviation of sqrt(2 / (3 x 100 N)), one of
+// seven families leaves 2.69 of it on either side, and 90 % is 1.2816 of them.
 TEST(NeesPlan, IsTheNormalLawWhereRunsAreMany) {
   const NeesPlan plan({.dimension = 3, .scans = 100});
-  const double variance = 2.0 / 300.0, step = std::log(1.02);
-  const double to_find = std::pow((2.05 + 1.2816) / step, 2) * variance;
+  const double to_find = std::pow((2.69 + 1.2816) / std::log(1.02), 2) * 2.0 / 300.0;
   EXPECT_NEAR(static_cast<double>(plan.runs_to_find(1.02, 0.9)) / to_find, 1.0, 0.06);
-  const double to_decide = std::pow(2.0 * 2.05 / step, 2) * variance;
-  EXPECT_NEAR(static_cast<double>(plan.runs_to_decide(1.02)) / to_decide, 1.0, 0.06);
-  // Of a consistent filter either end may be beyond the margin, each in 5 % of studies: 1.6449.
-  const double to_show = std::pow((2.05 + 1.6449) / step, 2) * variance;
-  EXPECT_NEAR(static_cast<double>(plan.runs_to_show(1.02, 0.9)) / to_show, 1.0, 0.06);
 }
 
 TEST(NeesPlan, NamesTheFewest) {
@@ -100,27 +94,37 @@ TEST(NeesPlan, NamesTheFewest) {
   }
 }
 
+/// Share of studies of a law in which the size is shown to be off.
+double share_found(const PlantedLaw& law, std::uint64_t runs, std::size_t scans,
+                   std::uint64_t studies) {
+  double found = 0.0;
+  for (std::uint64_t study = 0; study < studies; ++study) {
+    const Verdict verdict = verdict_of(law, study, runs, scans);
+    found += verdict.find(Family::size)->is_rejected ? 1.0 : 0.0;
+  }
+  return found / static_cast<double>(studies);
+}
+
 // The promise is kept by the verdict itself: 4 standard errors, and 3 % since the plan knows the
-// deviation that the verdict estimates.
-void expect_promise_kept(const GaussianLaw& law, std::size_t scans, double power) {
-  const NeesPlan plan({.dimension = law.dimension, .scans = law.memory < 1.0 ? scans : 1});
+// traces that the verdict estimates. It may be exceeded: families that reject help each other.
+void expect_promise_kept(const PlantedLaw& law, std::size_t scans, double power) {
+  const bool is_white = law.memory == Memory::white;
+  const NeesPlan plan({.dimension = law.dimension, .scans = is_white ? scans : 1});
   const std::uint64_t runs = plan.runs_to_find(law.ratio, power);
-  const std::uint64_t studies = studies_of_a_line(400);
-  const VerdictRates rates = verdict_rates(law, runs, scans, studies);
-  const double found = law.ratio > 1.0 ? rates.above : rates.below;
+  const std::uint64_t studies = studies_of_a_line(200);
+  const double found = share_found(law, runs, scans, studies);
   std::printf("%zu components, %s, ratio %.2f: %llu runs, promised %.1f %%, found %.1f %%\n",
-              law.dimension, law.memory < 1.0 ? "independent scans" : "constant", law.ratio,
+              law.dimension, is_white ? "independent scans" : "constant", law.ratio,
               static_cast<unsigned long long>(runs), 100.0 * plan.found(law.ratio, runs),
               100.0 * found);
-  EXPECT_NEAR(found, plan.found(law.ratio, runs),
-              0.03 + 4.0 * std::sqrt(power * (1.0 - power) / static_cast<double>(studies)));
+  EXPECT_GE(found, plan.found(law.ratio, runs) - 0.03 - share_errors(power, studies, 4.0));
 }
 
 // MONTECARTA_STUDIES=2000 gives the table of STATISTICS 17.
 TEST(NeesPlan, IsWhatSimulatedStudiesHave) {
   for (const std::size_t dimension : {1u, 2u, 3u, 6u}) {
-    expect_promise_kept({.dimension = dimension, .memory = 1.0, .ratio = 1.5}, 2, 0.9);
-    expect_promise_kept({.dimension = dimension, .memory = 1.0, .ratio = 0.6}, 2, 0.9);
+    expect_promise_kept({.dimension = dimension, .memory = Memory::constant, .ratio = 1.5}, 2, 0.9);
+    expect_promise_kept({.dimension = dimension, .memory = Memory::constant, .ratio = 0.6}, 2, 0.9);
     expect_promise_kept({.dimension = dimension, .ratio = 1.1}, 20, 0.9);
   }
 }
@@ -140,10 +144,14 @@ TEST(NeesPlan, AnswersForEveryDimension) {
   }
 }
 
-TEST(NeesPlan, ShowsAConsistentFilterAsOftenAsItSays) {
+TEST(NeesPlan, ShowsAConsistentFilterAtLeastAsOftenAsItSays) {
   const NeesPlan plan({.dimension = 3, .scans = 20});
-  const std::uint64_t runs = plan.runs_to_show(1.1, 0.8);
-  EXPECT_NEAR(verdict_rates({}, runs, 20, 400).answer(Verdict::consistent), 0.8, 0.1);
+  const std::uint64_t runs = plan.runs_to_show(1.2, 0.8);
+  double shown = 0.0;
+  for (std::uint64_t study = 0; study < 100; ++study) {
+    shown += verdict_of({}, study, runs, 20, 1.2).answer == Answer::consistent ? 0.01 : 0.0;
+  }
+  EXPECT_GE(shown, 0.8 - share_errors(0.8, 100));
 }
 
 TEST(NeesPlan, RefusesWhatIsNoQuestion) {
@@ -154,7 +162,7 @@ TEST(NeesPlan, RefusesWhatIsNoQuestion) {
   for (const double power : {0.0, 1.0, -0.5, std::nan("")}) {
     EXPECT_THROW(plan.runs_to_find(1.5, power), StudyError) << power;
   }
-  EXPECT_THROW(plan.runs_to_decide(1.0), StudyError);
+  EXPECT_THROW(plan.runs_to_show(1.0, 0.9), StudyError);
   EXPECT_THROW(NeesPlan({.dimension = 0}), StudyError);
   EXPECT_THROW(NeesPlan({.level = 1.0}), StudyError);
   EXPECT_THROW(NeesPlan({.scans = 0}), StudyError);

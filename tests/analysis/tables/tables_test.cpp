@@ -34,14 +34,15 @@ CellAnalysis consistent_cell() {
   NeesResult pose;
   pose.series.dimension = 3;
   pose.series.average = {3.0, 3.5};
-  pose.series.median = {2.4, 2.5};
-  pose.series.trimmed = {2.6, 2.7};
   pose.series.runs = {30, 30};
-  for (int run = 0; run < 30; ++run) pose.series.run_averages.push_back(run % 2 == 0 ? 3.2 : 3.3);
-  pose.series.test = {.average_deviate = 2.364, .average_level = 0.975};
-  pose.series.whole_run_bounds.assign(2, nees_bounds(30, 3, 0.99));
   pose.series.bounds.assign(2, nees_bounds(30, 3, 0.95));
-  pose.consistency = judge(pose.series, std::vector<double>{0.2, 0.4});
+  pose.mean = 3.25;
+  Member size{.name = "all", .estimate = 1.02, .interval = {0.97, 1.07}};
+  size.simultaneous = {0.95, 1.1};
+  size.p = 0.4;
+  std::vector<FamilyTest> families = {{.family = Family::size, .members = {size}}};
+  judge_together(families, 0.95);
+  cell.verdict = judge(families, 0.95, 1.1, 30);
   cell.nees = {pose};
   cell.scan_series = {{"position_rmse", "m", {0.1, 0.2}}, {"heading_rmse", "rad", {0.01, 0.02}}};
   return cell;
@@ -110,12 +111,12 @@ TEST(WriteCsv, WritesOneRowACellAndOneRowAScan) {
   EXPECT_THAT(text_in(folder / "csv/cells.csv"),
               HasSubstr("\nekf_slam,ekf_slam,consistent within 1.1,0,30,0"));
   EXPECT_THAT(text_in(folder / "csv/consistency.csv"),
-              HasSubstr("ekf_slam,pose,spread,consistent within 1.1"));
+              HasSubstr("ekf_slam,pose,spread,0.95,3,3.25"));
   EXPECT_THAT(text_in(folder / "csv/failures.csv"),
               HasSubstr("fastslam2_m30,7,120,\"weights, all of them, are zero\""));
   const std::string series = text_in(folder / "csv/series_ekf_slam.csv");
   EXPECT_THAT(series, testing::StartsWith("time [s],position_rmse [m],heading_rmse [rad],anees"));
-  EXPECT_THAT(series, HasSubstr("\n0.4,0.2,0.02,3.5,2.5,"));
+  EXPECT_THAT(series, HasSubstr("\n0.4,0.2,0.02,3.5,"));
 }
 
 TEST(WriteCsv, NamesTheFileItCannotWrite) {

@@ -186,8 +186,8 @@ TEST_F(Commands, BoundsAreExact) {
 
 TEST_F(Commands, PlanSaysHowManyRuns) {
   const std::string out = call({"plan", "--dim", "3", "--ratio", "1.2", "--scans", "100"}).out;
-  EXPECT_THAT(out, testing::ContainsRegex("constant +215 +966 +1152\n"));
-  EXPECT_THAT(out, testing::ContainsRegex("100 independent scans +5 +12 +16\n"));
+  EXPECT_THAT(out, testing::ContainsRegex("constant +314 +3686\n"));
+  EXPECT_THAT(out, testing::ContainsRegex("100 independent scans +20 +124\n"));
   EXPECT_THAT(out, HasSubstr("Neighbouring scans are correlated"));
   expect_wrong({"plan", "--dim", "3", "--ratio", "1.2", "--within", "1"}, "--within");
 }

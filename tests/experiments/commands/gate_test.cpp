@@ -47,13 +47,15 @@ TEST_F(GateOfAFile, TellsByItsExitCode) {
   run();
   const Called right = gate("right", {"--within", "1.5"});
   EXPECT_EQ(right.code, 0) << right.out << right.err;
-  EXPECT_THAT(right.out, ContainsRegex("^right: consistent within 1.5; .*100 runs\n$"));
+  EXPECT_THAT(right.out, ContainsRegex("^right is consistent within 1.5 in every component"));
   const Called too_sure = gate("too_sure", {"--within", "1.5"});
   EXPECT_EQ(too_sure.code, 4);
-  EXPECT_THAT(too_sure.out, ContainsRegex("^too_sure: not consistent, optimistic by [3-5]"));
+  EXPECT_THAT(too_sure.out,
+              ContainsRegex("^too_sure is overconfident: its squared errors are [3-5]"));
   const Called open = gate("right", {"--within", "1.01"});
   EXPECT_EQ(open.code, 5);
-  EXPECT_THAT(open.out, ContainsRegex("undecided: [0-9]+ more runs decide"));
+  EXPECT_THAT(open.out,
+              ContainsRegex("undecided: 100 runs do not show .* about [0-9]+ more would"));
   for (const char* code : {"0 shown", "4 not", "5 too few"}) {
     EXPECT_THAT(call({"gate", "--help"}).out, HasSubstr(code));
   }
@@ -70,7 +72,7 @@ TEST_F(GateOfAFile, NamesWhatItCannotJudge) {
   expect_refused({"gate", "out.h5"}, "--cell CELL");
   expect_refused({"gate", "out.h5", "--cell", "right", "--within", "1"}, "--within 1: not usable");
   run({"study.runs=20", "record.columns=pose"});
-  expect_refused({"gate", "out.h5", "--cell", "right"}, "out.h5: cell right: no NEES to judge");
+  expect_refused({"gate", "out.h5", "--cell", "right"}, "out.h5: cell right: no errors to judge");
 }
 
 TEST_F(GateOfAFile, NeedsNoNameOfTheOnlyCell) {
@@ -139,7 +141,7 @@ TEST_F(GateOfEstimates, StopsDivergenceBeyondTheRangeOfDoubles) {
       },
       {"--invalid", "9"});
   EXPECT_EQ(called.code, 4) << called.out << called.err;
-  EXPECT_THAT(called.out, HasSubstr("optimistic"));
+  EXPECT_THAT(called.out, HasSubstr("overconfident"));
 }
 
 TEST_F(GateOfEstimates, StopsNegativeVariances) {
@@ -155,7 +157,7 @@ TEST_F(GateOfEstimates, StopsAVarianceOfZeroWhereTheErrorIsLarge) {
     return Sample{n, std::abs(n) > 1.2 ? 0.0 : 0.46};
   });
   EXPECT_EQ(called.code, 4) << called.out << called.err;
-  EXPECT_THAT(called.out, HasSubstr("optimistic"));
+  EXPECT_THAT(called.out, HasSubstr("overconfident"));
 }
 
 // Few runs, or runs that hardly differ, leave no double for the tails that the verdict asks for.

@@ -89,10 +89,11 @@ TEST_F(Judge, OwnEstimatesHaveTheVerdictOfTheirFilter) {
   ASSERT_EQ(mine.nees.size(), 3U);
   for (std::size_t b = 0; b < 3; ++b) {
     EXPECT_EQ(own.nees[b].series.lower_rank, 0U);
-    const double expected = own.nees[b].consistency.mean;
-    EXPECT_NEAR(mine.nees[b].consistency.mean, expected, 1e-12 * expected);
-    EXPECT_EQ(in_words(mine.nees[b].consistency), in_words(own.nees[b].consistency));
+    const double expected = own.nees[b].mean;
+    EXPECT_NEAR(mine.nees[b].mean, expected, 1e-12 * expected);
   }
+  EXPECT_EQ(mine.verdict.answer, own.verdict.answer);
+  EXPECT_NEAR(mine.verdict.ratio().lower, own.verdict.ratio().lower, 1e-9);
   EXPECT_DOUBLE_EQ(mine.over_runs("position_rmse").mean, own.over_runs("position_rmse").mean);
 }
 
@@ -162,7 +163,7 @@ TEST_F(Judge, AVectorHasItsOwnDimension) {
   const analysis::StudyAnalysis study = analyzed("mine.h5");
   ASSERT_EQ(study.cells[0].nees.size(), 1U);
   EXPECT_EQ(study.cells[0].nees[0].series.dimension, 2U);
-  EXPECT_NEAR(study.cells[0].consistency().mean, 1.5, 1e-12);
+  EXPECT_NEAR(study.cells[0].nees[0].mean, 1.5, 1e-12);
   EXPECT_THAT(call({"analyze", "mine.h5", "--explain"}).out, HasSubstr("components: a, b"));
   EXPECT_EQ(call({"report", "mine.h5", "-o", "page"}).code, 0);
   EXPECT_THAT(call({"compare", "mine.h5", "--baseline", "e"}).err, HasSubstr("has one cell, e"));
@@ -195,8 +196,8 @@ TEST_F(Judge, PosesInSpaceAreJudgedAndCompared) {
   EXPECT_THAT(testing::PrintToString(called.out),
               HasSubstr("Hint, no verdict: good: the verdict is"));
   const analysis::StudyAnalysis study = analyzed("mine.h5");
-  EXPECT_NEAR(study.cells[0].consistency().mean, 36.0, 1e-9);  // bold: 0.6^2 / 0.01
-  EXPECT_NEAR(study.cells[1].consistency().mean, 4.0, 1e-9);
+  EXPECT_NEAR(study.cells[0].nees[0].mean, 36.0, 1e-9);  // bold: 0.6^2 / 0.01
+  EXPECT_NEAR(study.cells[1].nees[0].mean, 4.0, 1e-9);
   EXPECT_EQ(study.cells[0].nees[0].series.dimension, 6U);
   EXPECT_EQ(call({"report", "mine.h5", "-o", "page"}).code, 0);
   const Called compared = call({"compare", "mine.h5", "--baseline", "good"});
@@ -302,7 +303,7 @@ TEST_F(JudgeLayouts, TheHintIsSaidByAnalyzeAndReportFromTheFileAlone) {
   }
   write("truth.csv", "time_s,x_m,y_m,heading_rad\n1,0,0,1.4707963267948966\n");
   ASSERT_EQ(judge_by("world", files).code, 0);
-  const auto is_hint = AllOf(HasSubstr("Hint, no verdict: "), HasSubstr("body (ANEES 3"));
+  const auto is_hint = AllOf(HasSubstr("Hint, no verdict: "), HasSubstr("body (NEES ratio"));
   EXPECT_THAT(call({"analyze", "mine.h5"}).out, is_hint);
   ASSERT_EQ(call({"report", "mine.h5", "-o", "page"}).code, 0);
   EXPECT_THAT(text_of("page/index.html"), HasSubstr("Hint, no verdict: "));

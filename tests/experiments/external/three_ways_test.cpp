@@ -92,7 +92,7 @@ class SlowThreeWays : public Program {
     }
   }
   double anees_in(const std::string& file) const {
-    return analysis::analyze(ResultFile(folder_ / file)).cells.front().consistency().mean;
+    return analysis::analyze(ResultFile(folder_ / file)).cells.front().nees.front().mean;
   }
   /// By the table of drives, over the three components.
   double anees_of_drives(const std::string& file) const {

@@ -197,7 +197,7 @@ ConventionHint hint_of(const StateShape& shape, ErrorConvention right, std::uint
     hints.add(nees);
   }
   const std::vector<double> times = analysis::scan_times(kScans, 0.2);
-  return hints.result(times, 0.95, analysis::BandWalks(kScans), 1.1);
+  return hints.result(times, 0.95, 1.1);
 }
 
 /// Of how many studies the right convention fits, and a wrong one does.
@@ -216,7 +216,7 @@ Fitting fitting_in(const StateShape& shape, ErrorConvention right, std::uint64_t
     const std::string by_other = in_words(hint, "mine", name_of(other));
     const std::string fits = by_other.substr(0, by_other.find(", but as"));
     const bool has_it = fits.find("not have been rejected") != std::string::npos &&
-                        fits.find(" " + name_of(right) + " (ANEES") != std::string::npos;
+                        fits.find(" " + name_of(right) + " (NEES ratio") != std::string::npos;
     fitting.right += has_it ? 1.0 : 0.0;
     fitting.named += has_it && by_other.find("were they meant so") != std::string::npos ? 1.0 : 0.0;
   }
@@ -243,10 +243,10 @@ TEST(ConventionHintsSlow, NameTheRightConvention) {
 
 TEST(ConventionHints, SayWhatCannotBeToldApart) {
   const ConventionHint hint = hint_of(plane_shape(), ErrorConvention::body, 1);
-  EXPECT_THAT(in_words(hint, "mine", "world"), HasSubstr("not have been rejected as body (ANEES "));
-  EXPECT_THAT(in_words(hint, "mine", "body"), HasSubstr("would have been rejected: world (ANEES "));
+  EXPECT_THAT(in_words(hint, "mine", "world"), HasSubstr("not have been rejected as body (NEES ratio "));
+  EXPECT_THAT(in_words(hint, "mine", "body"), HasSubstr("would have been rejected: world (NEES ratio "));
   const ConventionHint none{{hint.by_convention[0], hint.by_convention[0], hint.by_convention[0]}};
-  EXPECT_THAT(in_words(none, "mine", "body"), HasSubstr("rejected as well: world (ANEES "));
+  EXPECT_THAT(in_words(none, "mine", "body"), HasSubstr("rejected as well: world (NEES ratio "));
   const ConventionHint alike{{hint.by_convention[1], hint.by_convention[1]}};
   EXPECT_THAT(in_words(alike, "mine", "body"), HasSubstr("cannot tell them apart"));
   EXPECT_EQ(in_words(ConventionHint{}, "mine", "world"), "") << "of a vector";

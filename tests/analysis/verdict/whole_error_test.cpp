@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/verdict/whole_error.hpp"
+
+#include "analysis/statistics/nees_bounds.hpp"
+#include "tests/analysis/verdict_studies.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace montecarta::analysis {
+namespace {
+
+using testing::ElementsAre;
+
+constexpr std::size_t kScansOfARun = 64;
+
+std::vector<Family> families_of(const Verdict& verdict) {
+  std::vector<Family> all;
+  for (const FamilyTest& test : verdict.families) all.push_back(test.family);
+  return all;
+}
+
+TEST(WholeError, HasSevenFamiliesWithTheirMembers) {
+  const Verdict found = verdict_of(PlantedLaw{}, 1, 60, kScansOfARun);
+  EXPECT_THAT(families_of(found),
+              ElementsAre(Family::size, Family::component, Family::stretch, Family::scan,
+                          Family::bias, Family::correlation, Family::between_runs));
+  std::vector<std::size_t> members;
+  for (const FamilyTest& test : found.families) members.push_back(test.members.size());
+  EXPECT_THAT(members, ElementsAre(1, 3, 8, 64, 3, 3, 1));
+  EXPECT_EQ(found.find(Family::correlation)->members[1].name, "a and c");
+  EXPECT_EQ(found.find(Family::stretch)->members[7].from, 57.0);
+  EXPECT_EQ(found.find(Family::stretch)->members[7].to, 64.0);
+}
+
+TEST(WholeError, LeavesOutFamiliesThatDoNotApply) {
+  EXPECT_THAT(families_of(verdict_of({.dimension = 1}, 1, 20, 15)),
+              ElementsAre(Family::size, Family::scan, Family::bias));
+  EXPECT_TRUE(verdict_of(PlantedLaw{}, 1, 2, kScansOfARun).families.empty());
+}
+
+/// 60 runs of two scans and one component with these errors in even runs, and minus them in odd
+/// ones.
+WholeError two_scans(double first, double second) {
+  WholeError sums(1, 2);
+  for (int run = 0; run < 60; ++run) {
+    const double sign = run % 2 == 0 ? 1.0 : -1.0;
+    const WhitenedRun errors{1, {sign * first, sign * second}, {sign * first, sign * second}};
+    sums.add(errors, nees_of(errors));
+  }
+  return sums;
+}
+
+TEST(WholeError, EstimatesByHand) {
+  const Verdict found = verdict_of(two_scans(1.0, 2.0), 1, 2, 60);
+  EXPECT_DOUBLE_EQ(found.ratio_estimate(), 2.5);
+  const FamilyTest& scans = *found.find(Family::scan);
+  EXPECT_DOUBLE_EQ(scans.members[0].estimate, 1.0);
+  EXPECT_DOUBLE_EQ(scans.members[1].estimate, 4.0);
+  const Interval exact = nees_bounds(60, 1, 0.95);
+  EXPECT_NEAR(scans.members[1].interval.lower, 4.0 / exact.upper, 1e-9);
+  EXPECT_NEAR(scans.members[1].interval.upper, 4.0 / exact.lower, 1e-9);
+  EXPECT_EQ(found.find(Family::bias)->members[0].estimate, 0.0);
+}
+
+// One run has no error at the first scan, another none at all: they are left out of what they have
+// no number of.
+TEST(WholeError, LeavesOutWhatIsMissing) {
+  WholeError sums = two_scans(1.0, 1.0);
+  const WhitenedRun half{1, {kNaN, 3.0}, {kNaN, 3.0}}, none{1, {kNaN, kNaN}, {kNaN, kNaN}};
+  sums.add(half, std::vector<double>{kNaN, 9.0});
+  sums.add(none, std::vector<double>{kNaN, 5.0});  // a singular covariance: its NEES counts
+  const Verdict found = verdict_of(sums, 1, 2, 62);
+  EXPECT_DOUBLE_EQ(found.ratio_estimate(), 129.0 / 121.0);
+  EXPECT_DOUBLE_EQ(found.find(Family::scan)->members[0].estimate, 1.0);
+  EXPECT_DOUBLE_EQ(found.find(Family::scan)->members[1].estimate, 74.0 / 62.0);
+}
+
+TEST(WholeError, RejectsABiasThatNeverVaries) {
+  WholeError sums(1, 4);
+  const WhitenedRun errors{1, {0.5, 0.5, 0.5, 0.5}, {0.5, 0.5, 0.5, 0.5}};
+  for (int run = 0; run < 30; ++run) sums.add(errors, nees_of(errors));
+  EXPECT_EQ(verdict_of(sums, 1, 4, 30).find(Family::bias)->p, 0.0);
+}
+
+// Law: the names of runs mean nothing, so their order changes nothing but rounding.
+TEST(WholeError, DoesNotDependOnTheOrderOfTheRuns) {
+  WholeError forwards(2, 20), backwards(2, 20);
+  for (std::uint64_t run = 0; run < 60; ++run) {
+    const WhitenedRun one = drawn_run({.dimension = 2}, 3, run, 20);
+    const WhitenedRun other = drawn_run({.dimension = 2}, 3, 59 - run, 20);
+    forwards.add(one, nees_of(one));
+    backwards.add(other, nees_of(other));
+  }
+  const Verdict a = verdict_of(forwards, 2, 20, 60), b = verdict_of(backwards, 2, 20, 60);
+  for (std::size_t f = 0; f < a.families.size(); ++f) {
+    for (std::size_t m = 0; m < a.families[f].members.size(); ++m) {
+      EXPECT_NEAR(a.families[f].members[m].p, b.families[f].members[m].p, 1e-9);
+    }
+  }
+}
+
+// Law: a filter that is off by one factor at all scans has the p-value and interval of the right
+// one, scaled: the null is imposed before the traces are taken.
+TEST(WholeError, ScalesItsIntervalWithTheRatio) {
+  const Verdict right = verdict_of({.memory = Memory::ar95}, 5, 60, kScansOfARun);
+  const Verdict off = verdict_of({.memory = Memory::ar95, .ratio = 4.0}, 5, 60, kScansOfARun);
+  EXPECT_NEAR(off.ratio().lower, 4.0 * right.ratio().lower, 1e-9);
+  EXPECT_NEAR(off.ratio().upper, 4.0 * right.ratio().upper, 1e-9);
+  EXPECT_NEAR(off.find(Family::between_runs)->p, right.find(Family::between_runs)->p, 1e-9);
+}
+
+TEST(WholeError, FindsPlantedFaultsAndNamesThem) {
+  const auto expect_named = [](PlantedLaw law, Family family) {
+    law.memory = Memory::ar95;
+    const Verdict found = verdict_of(law, 1, 200, kScansOfARun);
+    EXPECT_NE(found.answer, Answer::consistent);
+    EXPECT_TRUE(found.find(family)->is_rejected) << name_of(family);
+  };
+  expect_named({.by_component = {0.5, 0.5, 2.0}}, Family::component);
+  expect_named({.even_runs = 0.5, .odd_runs = 1.5}, Family::between_runs);
+  expect_named({.covered_bias = 1.0}, Family::bias);
+  expect_named({.first_half = 0.7, .second_half = 1.3}, Family::stretch);
+  expect_named({.correlation = 0.9}, Family::correlation);
+}
+
+}  // namespace
+}  // namespace montecarta::analysis
