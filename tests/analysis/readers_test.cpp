@@ -83,7 +83,8 @@ TEST_F(SlowReaders, TheModuleNamesItsArraysAndReadsTheTables) {
 import sys, montecarta
 results = montecarta.open(sys.argv[1])
 tables = results.tables(sys.argv[2])
-verdicts = tables["consistency"]
+averages = tables["consistency"]
+assert list(tables["cells"].cell) == list(results.labels) and "verdict" in tables["cells"]
 for label in results.labels:
     cell = montecarta.at_scans(results[label])
     assert list(cell.component.values) == ["x", "y", "heading"], cell.component
@@ -93,7 +94,7 @@ for label in results.labels:
     rmse = (error ** 2).sum("component", skipna=False).mean("run").values ** 0.5
     theirs = tables["series_" + label]["position_rmse [m]"].values
     assert abs(rmse / theirs - 1).max() < 1e-12, label
-    print(label, *verdicts.query("cell == @label and error == 'pose'").anees_mean[:1])
+    print(label, *averages.query("cell == @label and error == 'pose'").anees_mean[:1])
 for wrong, error in [(lambda: results["none"], KeyError),
                      (lambda: montecarta.open("/none"), OSError)]:
     try:
