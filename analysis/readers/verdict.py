@@ -20,7 +20,7 @@ Member = namedtuple("Member", "family name estimate p interval")  # interval(lev
 
 
 def errors_of(path, label):
-    """(5.1): whitened and standardised errors {run, scan, component}; times of the scans [s]."""
+    """Whitened and standardised errors {run, scan, component}, and the times of the scans [s]."""
     with h5py.File(path, "r") as file:
         cell, rows = file["cells"][label], file["scan_row"][:]
         if cell.attrs["particles"] > 0 or "error" in cell or "pose_covariance" not in cell:
@@ -41,7 +41,7 @@ def errors_of(path, label):
 
 
 def products(x):
-    """(5.3): G of x {run, term}, the mean of G_ij^2, and that mean without each run."""
+    """(5.1): G of x {run, term}, the mean of G_ij^2, and that mean without each run."""
     n, x = len(x), x / np.sqrt((x**2).mean(axis=0))
     G = x @ x.T
     squares = (G**2).sum(axis=1) - np.diag(G) ** 2
@@ -50,7 +50,7 @@ def products(x):
 
 
 def traces(x, block):
-    """(5.4) to (5.6): t1, t2, t3 and the degrees of freedom of t2."""
+    """(5.2), (5.3): t1, t2, t3 and the degrees of freedom of t2."""
     n, t1 = x.shape
     if n < 20:
         return t1, t1**2 / block, t1**3 / block**2, np.inf
@@ -63,7 +63,7 @@ def traces(x, block):
 
 
 def ratio_member(family, name, ratio, runs, t1, t2, t3, freedom):
-    """(5.7), (5.8): a mean of squares over runs by the shifted gamma law."""
+    """(5.4), (5.5): a mean of squares over runs by the shifted gamma law."""
     shape, scale = runs * t2**3 / (2 * t3**2), 2 * t3 / (runs * t2 * t1)
     shift = 1 - shape * scale
     x = max((ratio - shift) / scale, 0)
@@ -79,7 +79,7 @@ def ratio_member(family, name, ratio, runs, t1, t2, t3, freedom):
 
 
 def mean_member(family, name, values):
-    """(5.9): a mean over runs that should be zero, by Student's t."""
+    """A mean over runs that should be zero, by Student's t."""
     n, mean, error = len(values), values.mean(), stats.sem(values)
 
     def interval(level):
@@ -90,7 +90,7 @@ def mean_member(family, name, values):
 
 
 def spread_member(x):
-    """(5.10): the standard deviation of the scales that runs have of their own, one-sided."""
+    """(5.6): the standard deviation of the scales that runs have of their own, one-sided."""
     n, t1 = x.shape
     G, mean, without = products(x)
     own = (n + 2) / (n - 1) * (np.diag(G) - t1) ** 2 / 2
@@ -126,8 +126,8 @@ def members_of(u, z, times):
 
 
 def judge(members, level, within):
-    """(5.11), (5.12): the answer, and for each member its interval, its simultaneous interval, the
-    p-value of its family, and whether it is shown to be off."""
+    """The answer, and for each member its interval, its simultaneous interval, the p-value of its
+    family, and whether it is shown to be off."""
     alpha, sizes = 1 - level, Counter(member.family for member in members)
     least = {f: min(1.0, n * min(m.p for m in members if m.family == f)) for f, n in sizes.items()}
     adjusted, largest = {}, 0.0
