@@ -23,7 +23,8 @@ def errors_of(path, label):
     """Whitened and standardised errors {run, scan, component}, and the times of the scans [s]."""
     with h5py.File(path, "r") as file:
         cell, rows = file["cells"][label], file["scan_row"][:]
-        if cell.attrs["particles"] > 0 or "error" in cell or "pose_covariance" not in cell:
+        is_several = cell.attrs["particles"] > 0 or "pose_mean_mixture" in cell
+        if is_several or "error" in cell or "pose_covariance" not in cell:
             sys.exit(f"{label}: verdict.py takes only poses by one Gaussian with its covariance")
         runs, times = np.flatnonzero(cell["status"][:] == 1), file["scan"][:]
         truth, mean, P = (dataset[:][runs][:, rows] for dataset in (
