@@ -15,15 +15,15 @@ import montecarta
 path, figure, *program = sys.argv[1:]
 results = montecarta.open(path)
 tables = results.tables(*program)
-judged = tables["consistency"].query("error == 'pose' and verdict.notna()")
-verdicts = judged.groupby("cell").first()
+leading = tables["consistency"].query("error == 'pose'").drop_duplicates("cell")  # of the verdict
+covariances = leading[leading.anees_mean.notna()].set_index("cell").covariance
 
 axes = plt.figure(figsize=(8, 4.5)).add_subplot(yscale="log", xlabel="time [s]",
                                                 ylabel="ANEES of the pose")
 for label in results.labels:
-    if label not in verdicts.index:
+    if label not in covariances:
         continue
-    series, which = tables["series_" + label], "pose_" + verdicts.covariance[label]
+    series, which = tables["series_" + label], "pose_" + covariances[label]
     if not axes.collections:
         axes.fill_between(series["time [s]"], series["lower_" + which], series["upper_" + which],
                           color="0.8", label="95 % band")

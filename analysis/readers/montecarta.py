@@ -10,7 +10,7 @@ tables(), which the program computes.
     cell = results["ekf_slam"]                      # xarray.Dataset, read where it is used
     cell.pose_mean.sel(component="x").sel(time=12.5, method="nearest")
     montecarta.at_scans(cell)                       # complete runs, at the scans
-    results.tables()["consistency"]                 # pandas.DataFrame
+    results.tables()["cells"]                       # pandas.DataFrame, with the verdicts
 """
 import os
 import subprocess
@@ -74,10 +74,10 @@ class Results:
         return cell.assign_coords(names)
 
     def tables(self, program="montecarta", *options):
-        """What `montecarta analyze` says, as {name: pandas.DataFrame}: "consistency" has the
-        verdicts, "cells" errors and costs, "series_LABEL" everything over time. `options` as for
-        the command, e.g. "--within", "1.2". Raises subprocess.CalledProcessError where the program
-        fails."""
+        """What `montecarta analyze` says, as {name: pandas.DataFrame}: "cells" has verdicts, errors
+        and costs, "families" the tests of each verdict, "consistency" the average NEES by every
+        covariance, "series_LABEL" everything over time. `options` as for the command, e.g.
+        "--within", "1.2". Raises subprocess.CalledProcessError where the program fails."""
         with tempfile.TemporaryDirectory() as folder:
             subprocess.run([program, "analyze", self.path, "--csv", folder, "--force", *options],
                            check=True, stdout=subprocess.DEVNULL)

@@ -84,6 +84,7 @@ import sys, montecarta
 results = montecarta.open(sys.argv[1])
 tables = results.tables(sys.argv[2])
 averages = tables["consistency"]
+assert list(tables["cells"].cell) == list(results.labels) and "verdict" in tables["cells"]
 for label in results.labels:
     cell = montecarta.at_scans(results[label])
     assert list(cell.component.values) == ["x", "y", "heading"], cell.component
@@ -139,6 +140,16 @@ void add_noise(std::size_t cell, std::uint64_t run, RunRecord& record) {
   const auto mixture = record.layout().find("pose_mean_mixture");
   const auto leading = mixture ? mixture : record.layout().find("pose_mean");
   for (double& value : record.column<double>(*leading)) value += 0.3 * draw.normal();
+}
+
+/// Filters that estimate by one Gaussian.
+void leave_out_particles(StudyPlan& plan) {
+  plan.columns.ancestry = false;
+  plan.columns.particles = false;
+  for (Cell& cell : plan.cells) {
+    cell.particles = 0;
+    cell.mixture = false;
+  }
 }
 
 /// Particle filters that have no mixture: their verdict is of the corrected spread.
@@ -199,6 +210,22 @@ class SlowRecompute : public testing::Test {
 
   ScratchFolder folder_;
 };
+
+/// Of 12 runs by the law of errors that never change, of 30 by traces, of 300 by those of some runs
+/// and with the spread between runs.
+TEST_F(SlowRecompute, TheVerdictOnTheWholeError) {
+  for (const std::uint64_t runs : {12u, 30u, 300u}) {
+    const std::string result = folder_ / ("gaussian_" + std::to_string(runs) + ".h5"),
+                      analyzed = folder_ / ("gaussian_" + std::to_string(runs));
+    write_synthetic_result(result, runs, 400, {}, leave_out_particles);
+    montecarta("analyze " + result + " --csv " + analyzed);
+    const auto outcome = run_program("HDF5_USE_FILE_LOCKING= PYTHONPATH=" + kReaders +
+                                     " /usr/bin/python3 -B " + MONTECARTA_SOURCE_DIR +
+                                     "/tests/analysis/check_verdict.py " + result + " " + analyzed);
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    EXPECT_THAT(outcome.output, testing::HasSubstr(", 0 differ"));
+  }
+}
 
 TEST_F(SlowRecompute, AFewRunsWithExactTests) { expect_same_numbers(12, "scripted_m4"); }
 TEST_F(SlowRecompute, ManyRunsWithTheNormalApproximation) {

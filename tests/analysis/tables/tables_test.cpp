@@ -58,6 +58,7 @@ StudyAnalysis small_study() {
   broken.label = "fastslam2_m30";
   broken.missing = 3;
   broken.failures = {{7, 120, "weights, all of them, are zero"}};
+  broken.verdict.runs = broken.verdict.failed = 1;
   study.cells = {consistent_cell(), broken};
   return study;
 }
