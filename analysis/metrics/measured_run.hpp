@@ -104,7 +104,7 @@ struct RunCriteria {
   std::span<const std::uint32_t> joint_scans;  ///< of joint estimates
   BandWalks walks;                             ///< of as many scans where there is a truth
   std::vector<PathAtFixes> judged_fixes = {};  ///< of the scans, of references with known errors
-  bool calibrates = false;  ///< whether calibration is judged: where noise is matched
+  bool calibrates = false;  ///< whether the PITs of errors are judged: only with matched noise
   /// Of each verdict where cells stop by verdict, so that all looks together have `level`.
   std::optional<double> look_level = {};
   /// {run of the study} Where every run is a drive of its own; then times are those of the longest
@@ -127,7 +127,7 @@ struct MeasuredRun {
   std::optional<MapScores> map;         ///< where it is stored and the world is known
   std::vector<JointScore> joint;        ///< where joint estimates are stored
   bool has_identities = false;          ///< whether anybody knows which landmark is which
-  RunPits pits;                         ///< where calibration is judged
+  RunPits pits;                         ///< of errors and NEES
 
   /// Of `rows` of a complete run.
   void measure(const RunCriteria& criteria, std::size_t particles);
