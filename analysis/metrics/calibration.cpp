@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the truth lies in what filters hold for possible; only where the noise is matched.
+// Probability integral transforms of errors (with matched noise) and of the NEES, over runs.
 #include "analysis/metrics/calibration.hpp"
 
+#include "analysis/metrics/cell_panels.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/nees.hpp"
@@ -11,11 +12,13 @@
 #include "analysis/statistics/spread.hpp"
 #include "engine/numbers/angle.hpp"
 
+#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <map>
 
 namespace montecarta::analysis {
@@ -121,68 +124,85 @@ RunPits pits_of(const RunRows& rows, std::size_t particles, std::uint64_t run,
   return pits;
 }
 
+std::array<double, kQuarters> nees_pits(std::span<const double> nees, std::size_t dimension) {
+  const boost::math::chi_squared law(static_cast<double>(dimension));
+  std::array<double, kQuarters> pits;
+  const auto scans = calibration_scans(nees.size());
+  for (std::size_t m = 0; m < kQuarters; ++m) {
+    const double value = nees[scans[m]];
+    pits[m] = std::isfinite(value) ? boost::math::cdf(law, value) : kNaN;
+  }
+  return pits;
+}
+
 namespace {
 
 constexpr std::array kComponents = {"x", "y", "heading"};
+constexpr const char* kNees = "NEES";
 
-/// Histograms with the bands of their numbers of values, which are nearly always the same; all of
-/// the cell keep them together (Bonferroni).
-class Histograms {
+/// Judges the transforms of a cell by bands that all hold together (Bonferroni). The bands belong
+/// to numbers of values, which are nearly always the same.
+class PitJudge {
  public:
-  Histograms(std::span<const RunPits> runs, std::size_t tests, double level)
+  PitJudge(std::span<const RunPits> runs, std::size_t tests, double level)
       : runs_(runs), level_(1.0 - (1.0 - level) / static_cast<double>(tests)) {}
 
-  void add(PitHistogram blank, const std::function<double(const RunPits&)>& value_of) {
+  void add(JudgedPits blank, PitOf kind, const std::function<double(const RunPits&)>& value_of) {
     std::vector<double> values;
     for (const RunPits& run : runs_) {
       const double value = value_of(run);
       if (std::isfinite(value)) values.push_back(value);
     }
     blank.undefined = runs_.size() - values.size();
-    const auto [band, fresh] = bands_.try_emplace(values.size());
-    if (fresh) band->second = band_for(values.size(), level_);
-    blank.test = judge_uniformity(values, band->second);
+    const auto [band, is_new] = bands_.try_emplace(values.size());
+    if (is_new) band->second = ecdf_band(values.size(), level_);
+    blank.test = judge_uniformity(values, band->second, kind);
     found.push_back(std::move(blank));
   }
 
-  std::vector<PitHistogram> found;
+  std::vector<JudgedPits> found;
 
  private:
   std::span<const RunPits> runs_;
   double level_;
-  std::map<std::size_t, CountBand> bands_;
+  std::map<std::size_t, EcdfBand> bands_;
 };
 
-/// How many histograms a cell has whose runs are like `run`.
-std::size_t tests_of(const RunPits& run) {
-  const std::size_t of_pose = 3 * kQuarters;
-  return (run.has_pose ? of_pose : 0) + (run.has_rank ? of_pose : 0) + (run.has_landmark ? 2 : 0);
+/// The largest number of tests of any cell, so that cells with as many runs have the same band.
+std::size_t most_tests(const RunPits& run) {
+  const bool has_components = run.has_pose || run.has_rank || run.has_landmark;
+  const std::size_t of_components = 2 * kQuarters * kComponents.size() + run.landmark.size();
+  return run.nees.size() + (has_components ? of_components : 0);
 }
 
 }  // namespace
 
-std::vector<PitHistogram> CalibrationSums::result(std::span<const double> times,
-                                                  double level) const {
+std::vector<JudgedPits> CalibrationSums::result(std::span<const double> times, double level) const {
   if (runs_.empty()) return {};
-  Histograms histograms(runs_, tests_of(runs_.front()), level);
+  const RunPits& first = runs_.front();
+  PitJudge judge(runs_, most_tests(first), level);
   const auto scans = calibration_scans(times.size());
   const auto add_pose = [&](const char* by, auto RunPits::*pits) {
     for (std::size_t m = 0; m < kQuarters; ++m) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        histograms.add({kComponents[c], by, times[scans[m]], 0, {}},
-                       [=](const RunPits& run) { return (run.*pits)[m][c]; });
+      for (std::size_t c = 0; c < kComponents.size(); ++c) {
+        judge.add({kComponents[c], by, times[scans[m]], 0, {}}, PitOf::error,
+                  [=](const RunPits& run) { return (run.*pits)[m][c]; });
       }
     }
   };
-  if (runs_.front().has_pose) add_pose("Gaussian", &RunPits::pose);
-  if (runs_.front().has_rank) add_pose("particles", &RunPits::rank);
-  if (runs_.front().has_landmark) {
-    for (std::size_t c = 0; c < 2; ++c) {
-      histograms.add({std::string("landmark ") + kComponents[c], "Gaussian", times.back(), 0, {}},
-                     [=](const RunPits& run) { return run.landmark[c]; });
+  if (first.has_pose) add_pose("Gaussian", &RunPits::pose);
+  if (first.has_rank) add_pose("particles", &RunPits::rank);
+  if (first.has_landmark) {
+    for (std::size_t c = 0; c < first.landmark.size(); ++c) {
+      judge.add({std::string("landmark ") + kComponents[c], "Gaussian", times.back(), 0, {}},
+                PitOf::error, [=](const RunPits& run) { return run.landmark[c]; });
     }
   }
-  return std::move(histograms.found);
+  for (std::size_t m = 0; m < (first.has_nees ? kQuarters : 0); ++m) {
+    judge.add({kNees, "Gaussian", times[scans[m]], 0, {}}, PitOf::squared_error,
+              [=](const RunPits& run) { return run.nees[m]; });
+  }
+  return std::move(judge.found);
 }
 
 namespace {
@@ -190,9 +210,7 @@ namespace {
 class CalibrationOverRuns final : public MetricSums {
  public:
   explicit CalibrationOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
-  void add(const MeasuredRun& run) override {
-    if (criteria_->calibrates) calibration_.add(run.pits);
-  }
+  void add(const MeasuredRun& run) override { calibration_.add(run.pits); }
   void put(CellAnalysis& cell) override {
     cell.findings.put(calibration_.result(criteria_->times, criteria_->level));
   }
@@ -202,241 +220,233 @@ class CalibrationOverRuns final : public MetricSums {
   CalibrationSums calibration_;
 };
 
-constexpr std::array kQuantities = {"x", "y", "heading", "landmark x", "landmark y"};
+using Chosen = std::function<bool(const JudgedPits&)>;
 
-/// What is said of a quantity at the end of the run; "-" where it is not judged.
-std::string last_verdict(const CellAnalysis& cell, const std::string& by,
-                         const std::string& quantity) {
-  std::string words = "-";
-  for (const PitHistogram& one : cell.get<Calibrations>()) {
-    if (one.by == by && one.quantity == quantity) words = in_words(one.test.verdict);
+/// The tests of a cell that are chosen.
+std::vector<const JudgedPits*> tests_of(const CellAnalysis& cell, const Chosen& chosen) {
+  std::vector<const JudgedPits*> found;
+  for (const JudgedPits& one : cell.get<Calibrations>()) {
+    if (chosen(one)) found.push_back(&one);
   }
-  return words;
+  return found;
+}
+
+/// Whether any cell has a test that is chosen.
+bool has_test(const StudyAnalysis& study, const Chosen& chosen) {
+  return std::ranges::any_of(
+      study.cells, [&](const CellAnalysis& cell) { return !tests_of(cell, chosen).empty(); });
+}
+
+bool has_calibration(const StudyAnalysis& study) {
+  return has_test(study, [](const JudgedPits&) { return true; });
+}
+
+bool is_of_error(const JudgedPits& one) { return one.quantity != kNees; }
+bool is_of_nees(const JudgedPits& one) { return one.quantity == kNees; }
+
+/// Names of the quantities that any cell has.
+std::vector<std::string> quantities_of(const StudyAnalysis& study) {
+  std::vector<std::string> found;
+  for (const char* name : {"x", "y", "heading", "landmark x", "landmark y", kNees}) {
+    if (has_test(study, [&](const JudgedPits& one) { return one.quantity == name; })) {
+      found.push_back(name);
+    }
+  }
+  return found;
 }
 
 /// "2 of 14": tests of all moments that were made and found a fault.
-std::string faults_text(const CellAnalysis& cell, const std::string& by) {
-  std::size_t tests = 0, faults = 0;
-  for (const PitHistogram& one : cell.get<Calibrations>()) {
-    if (one.by != by || one.test.verdict == Calibration::untested) continue;
-    ++tests;
-    if (one.test.verdict != Calibration::calibrated) ++faults;
+std::string faults_text(const std::vector<const JudgedPits*>& tests) {
+  std::size_t made = 0, faults = 0;
+  for (const JudgedPits* one : tests) {
+    if (one->test.verdict == Calibration::untested) continue;
+    ++made;
+    if (one->test.verdict != Calibration::calibrated) ++faults;
   }
-  return std::to_string(faults) + " of " + std::to_string(tests);
+  return std::to_string(faults) + " of " + std::to_string(made);
 }
 
-std::vector<std::string> row_of(const CellAnalysis& cell, const std::string& by) {
+/// The verdicts at the end of the run; "-" if a quantity is not judged.
+std::vector<std::string> row_of(const CellAnalysis& cell, const std::string& by,
+                                const std::vector<std::string>& quantities) {
   std::vector<std::string> row = {cell.label, by};
-  for (const char* quantity : kQuantities) row.push_back(last_verdict(cell, by, quantity));
-  row.push_back(faults_text(cell, by));
+  const auto tests = tests_of(cell, [&](const JudgedPits& one) { return one.by == by; });
+  for (const std::string& quantity : quantities) {
+    row.push_back("-");
+    for (const JudgedPits* one : tests) {
+      if (one->quantity == quantity) row.back() = in_words(one->test.verdict);
+    }
+  }
+  row.push_back(faults_text(tests));
   return row;
 }
 
-std::size_t most_bins(const StudyAnalysis& study) {
-  std::size_t most = 0;
-  for (const CellAnalysis& cell : study.cells) {
-    for (const PitHistogram& one : cell.get<Calibrations>())
-      most = std::max(most, one.test.counts.size());
-  }
-  return most;
-}
-
-std::vector<std::string> fields_of(const CellAnalysis& cell, const PitHistogram& one) {
-  const auto count = [](std::size_t n) { return std::to_string(n); };
-  std::vector<std::string> fields = {cell.label,
-                                     one.quantity,
-                                     one.by,
-                                     exact_text(one.time),
-                                     in_words(one.test.verdict),
-                                     count(one.undefined),
-                                     exact_text(one.test.mean),
-                                     exact_text(one.test.variance),
-                                     count(one.test.band.lower),
-                                     count(one.test.band.upper),
-                                     exact_text(one.test.band.joint)};
-  for (const std::size_t n : one.test.counts) fields.push_back(count(n));
-  return fields;
-}
-
-/// Whether any cell has histograms to judge.
-bool has_calibration(const StudyAnalysis& study) {
-  return std::ranges::any_of(
-      study.cells, [](const CellAnalysis& cell) { return !cell.get<Calibrations>().empty(); });
-}
-
-/// One row a cell and way of judging: the verdicts at the end of the run, and in how many of all
-/// tests of all moments there is another verdict than calibrated. Without rows where nothing is
-/// judged.
+/// One row for each cell and way of judging: the verdicts at the end of the run, and the number of
+/// faults at all moments. No rows if nothing is judged.
 TextTable calibration_table(const StudyAnalysis& study) {
   TextTable table;
+  const std::vector<std::string> quantities = quantities_of(study);
   table.headings = {{"cell", Align::left}, {"by", Align::left}};
-  for (const char* quantity : kQuantities) table.headings.push_back({quantity, Align::left});
+  for (const std::string& name : quantities) table.headings.push_back({name, Align::left});
   table.headings.push_back({"faults at all moments"});
   for (const CellAnalysis& cell : study.cells) {
     for (const char* by : {"Gaussian", "particles"}) {
-      const bool judged = std::ranges::any_of(
-          cell.get<Calibrations>(), [&](const PitHistogram& one) { return one.by == by; });
-      if (judged) table.rows.push_back(row_of(cell, by));
+      const bool is_judged =
+          !tests_of(cell, [&](const JudgedPits& one) { return one.by == by; }).empty();
+      if (is_judged) table.rows.push_back(row_of(cell, by, quantities));
     }
   }
   return table;
 }
 
-/// How to read it, a sentence each; none where there is no table.
+/// Tells how to read the table; no notes without a table.
 std::vector<std::string> calibration_notes(const StudyAnalysis& study) {
-  if (!has_calibration(study)) return {};
-  std::vector<std::string> notes = {
-      "Calibration asks, at the end of each quarter of the run, which share of what the filter "
-      "holds "
-      "for possible lies below the truth (its Gaussian, or its weighted particles): over runs that "
-      "share should be anything from 0 to 1 equally often. 'too narrow': the truth lies at the "
-      "ends "
-      "too often; 'too wide': in the middle too often; 'shifted': on one side.",
-      "A histogram is calibrated where all of its bins are inside a band that chance keeps all "
-      "histograms of a cell in at once, in " +
-          level_text(study.level) +
-          " of studies at least. Every run gives "
-          "one landmark, another one from run to run, and less than " +
-          std::to_string(kLeastValues) + " runs say nothing."};
+  std::vector<std::string> notes;
+  if (has_test(study, is_of_error)) {
+    notes.push_back(
+        "The probability integral transform (PIT) of an error is the probability of a value below "
+        "the truth, in the Gaussian of the filter or among its weighted particles. Over runs it is "
+        "uniform if the filter is calibrated. 'too narrow': values near 0 and 1 are too frequent; "
+        "'too wide': values near 1/2 are; 'shifted': values on one side are. Every run gives one "
+        "landmark, another one from run to run.");
+  }
+  if (has_test(study, is_of_nees)) {
+    notes.push_back(
+        "The PIT of the NEES is the probability of a smaller value under the chi-square law. 'too "
+        "narrow': the NEES is too large; 'too wide': it is too small; 'wrong shape': it is neither "
+        "on average, but has another distribution.");
+  }
+  if (notes.empty()) return {};
+  notes.push_back(
+      "Columns are verdicts at the end of the run; the last one counts faults at the end of each "
+      "quarter. A fault is an empirical distribution function outside its simultaneous band. A "
+      "calibrated filter stays within the bands of all tests of its cell with a probability of at "
+      "least " +
+      level_text(study.level) + ". Fewer than " + std::to_string(kLeastValues) +
+      " runs are not judged.");
   for (const CellAnalysis& cell : study.cells) {
     std::size_t undefined = 0;
-    for (const PitHistogram& one : cell.get<Calibrations>()) undefined += one.undefined;
+    for (const JudgedPits& one : cell.get<Calibrations>()) undefined += one.undefined;
     if (undefined == 0) continue;
     notes.push_back(cell.label + ": " + std::to_string(undefined) +
-                    " values had no positive variance or no landmark (left out).");
+                    " values are left out (no positive variance, no landmark, or a NEES of too few "
+                    "draws or without a usable covariance).");
   }
   return notes;
 }
 
-/// One row a histogram: its counts with their band, mean, variance and verdict.
+/// One row for each test. The p-value is that of the test alone.
 void write_calibration(const StudyAnalysis& study, const std::filesystem::path& path) {
   CsvFile file(path);
-  std::vector<std::string> headings = {"cell",       "quantity",   "by",        "time [s]",
-                                       "verdict",    "undefined",  "mean",      "variance",
-                                       "band_lower", "band_upper", "band_joint"};
-  const std::size_t bins = most_bins(study);
-  for (std::size_t b = 0; b < bins; ++b) headings.push_back("bin_" + std::to_string(b + 1));
-  file.row(headings);
+  file.row(std::vector<std::string>{"cell", "quantity", "by", "time [s]", "verdict", "values",
+                                    "undefined", "mean", "variance", "largest_deviation", "p_value",
+                                    "band_joint"});
   for (const CellAnalysis& cell : study.cells) {
-    for (const PitHistogram& one : cell.get<Calibrations>()) {
-      std::vector<std::string> fields = fields_of(cell, one);
-      fields.resize(headings.size());
-      file.row(fields);
+    for (const JudgedPits& one : cell.get<Calibrations>()) {
+      const Uniformity& test = one.test;
+      file.row(std::vector<std::string>{cell.label, one.quantity, one.by, exact_text(one.time),
+                                        in_words(test.verdict), std::to_string(test.band.values),
+                                        std::to_string(one.undefined), exact_text(test.mean),
+                                        exact_text(test.variance), exact_text(test.deviation),
+                                        exact_text(p_value(test)), exact_text(test.band.joint)});
     }
   }
   file.close();
 }
 
-constexpr std::size_t kMostRows = 8;
-
-/// A histogram that is drawn.
-struct DrawnHistogram {
-  std::size_t cell = 0;
-  std::string label;
-  const PitHistogram* histogram = nullptr;
-};
-
-/// Those of one cell at the end of the run.
-std::vector<DrawnHistogram> last_of(const StudyAnalysis& study, std::size_t c,
-                                    const std::string& by) {
-  std::vector<DrawnHistogram> drawn;
-  const CellAnalysis& cell = study.cells[c];
-  for (const PitHistogram& one : cell.get<Calibrations>()) {
-    if (one.by == by && one.time == study.times.back()) drawn.push_back({c, cell.label, &one});
+/// Counts as shares of all values, minus the points of the ECDF.
+std::vector<double> deviations(std::size_t values,
+                               const std::function<std::size_t(std::size_t)>& count_at) {
+  std::vector<double> found;
+  for (std::size_t j = 0; j <= kEcdfSteps; ++j) {
+    found.push_back(static_cast<double>(count_at(j)) / static_cast<double>(values) - ecdf_point(j));
   }
-  return drawn;
+  return found;
 }
 
-/// Share of runs in every bin, as a multiple of what is expected.
-FigureData data_of(const std::string& name, const DrawnHistogram& drawn) {
-  FigureData data{name, {"from", "to", "count / expected", "lower", "upper"}, {}};
-  const Uniformity& test = drawn.histogram->test;
-  double all = 0.0;
-  for (const std::size_t n : test.counts) all += static_cast<double>(n);
-  const auto bins = static_cast<double>(test.counts.size());
-  const double expected = std::max(all, 1.0) / bins;  // without values all bins are empty
-  for (std::size_t b = 0; b < test.counts.size(); ++b) {
-    data.rows.push_back({static_cast<double>(b) / bins, static_cast<double>(b + 1) / bins,
-                         static_cast<double>(test.counts[b]) / expected,
-                         static_cast<double>(test.band.lower) / expected,
-                         static_cast<double>(test.band.upper) / expected});
+/// The curves of all cells with the band of the cell that has most values.
+std::vector<Panel> panels_like(const StudyAnalysis& study, const JudgedPits& like,
+                               const std::string& name) {
+  Panel blank{name, "ECDF - PIT, " + like.quantity + " at " + fixed_seconds(like.time), {}, {}};
+  blank.scale = Scale::around_zero;
+  EcdfBand band;
+  const auto is_drawn_here = [&](const JudgedPits& one) {
+    return one.is_like(like) && one.test.verdict != Calibration::untested;
+  };
+  const auto values_of = [&](const CellAnalysis& cell) -> std::vector<double> {
+    const auto tests = tests_of(cell, is_drawn_here);
+    if (tests.empty()) return {};
+    const Uniformity& test = tests.front()->test;
+    if (test.band.values > band.values) band = test.band;
+    return deviations(test.band.values, [&](std::size_t j) { return test.counts[j]; });
+  };
+  std::vector<Panel> panels = cell_panels(study, blank, values_of);
+  for (Panel& panel : panels) {
+    const auto add = [&](const char* legend, const auto& count_at) {
+      panel.curves.push_back({legend, kReferenceStyle, deviations(band.values, count_at)});
+    };
+    add("band, upper end", [&](std::size_t j) { return band.upper(j); });
+    add("band, lower end", [&](std::size_t j) { return band.lower[j]; });
   }
-  return data;
+  return panels;
 }
 
-/// From the rows of data_of(). The band is that of all bins.
-ChartPanel chart_panel(const DrawnHistogram& drawn, const FigureData& data) {
-  ChartPanel panel{drawn.label + ", " + drawn.histogram->quantity,
-                   {false, 0.0, 0.0},
-                   {},
-                   {},
-                   {{"band of a calibrated filter", data.rows.front()[3], data.rows.front()[4]}},
-                   drawn.label};
-  ChartMarks& bars = panel.marks.emplace_back();
-  bars.cell = drawn.label;
-  bars.name = drawn.histogram->quantity;
-  bars.style = drawn.cell;
-  bars.shape = ChartMarks::Shape::boxes;
-  bars.facts = {{"from", {}}, {"to", {}}, {"count / expected", {}}};
-  double highest = std::max(1.0, panel.bands.front().upper);
-  for (const auto& row : data.rows) {
-    bars.x.push_back(0.5 * (row[0] + row[1]));
-    bars.y.push_back(0.5 * row[2]);
-    bars.width.push_back(row[1] - row[0]);
-    bars.height.push_back(row[2]);
-    for (std::size_t f = 0; f < bars.facts.size(); ++f) bars.facts[f].values.push_back(row[f]);
-    highest = std::max(highest, row[2]);
-  }
-  panel.axis.high = 1.1 * highest;
-  return panel;
-}
-
-Chart empty_chart(std::size_t columns) {
-  Chart chart{"from the lower (0) to the upper end (1)", 0.0, 1.0, {}};
-  chart.columns = columns;
-  chart.least = 150;
-  chart.aspect = 0.5;
-  return chart;
-}
-
-Figure figure_of(const StudyAnalysis& study, const std::string& by, Figure figure) {
-  std::vector<std::vector<DrawnHistogram>> rows;
-  for (std::size_t c = 0; c < study.cells.size() && rows.size() < kMostRows; ++c) {
-    if (auto row = last_of(study, c, by); !row.empty()) rows.push_back(std::move(row));
-  }
-  if (rows.empty()) return figure;
-  std::size_t columns = 0;
-  for (const auto& row : rows) columns = std::max(columns, row.size());
-  figure.chart = empty_chart(columns);
-  for (const auto& row : rows) {
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      const std::string name =
-          figure.name + "_" + row[c].label + "_" + std::to_string(c + 1) + ".csv";
-      figure.data.push_back(data_of(name, row[c]));
-      figure.chart.panels.push_back(chart_panel(row[c], figure.data.back()));
+/// A panel for each quantity and time that is chosen. No data if nothing is judged.
+Figure figure_of(const StudyAnalysis& study, const Chosen& chosen, Figure figure) {
+  std::vector<const JudgedPits*> drawn;
+  for (const CellAnalysis& cell : study.cells) {
+    for (const JudgedPits* one : tests_of(cell, chosen)) {
+      const bool is_new = std::ranges::none_of(
+          drawn, [&](const JudgedPits* other) { return other->is_like(*one); });
+      if (is_new && one->test.verdict != Calibration::untested) drawn.push_back(one);
     }
   }
+  std::vector<Panel> panels;
+  for (const JudgedPits* one : drawn) {
+    const std::string name = figure.name + "_" + std::to_string(panels.size() + 1);
+    std::ranges::move(panels_like(study, *one, name), std::back_inserter(panels));
+  }
+  std::vector<double> points;
+  for (std::size_t j = 0; j <= kEcdfSteps; ++j) points.push_back(ecdf_point(j));
+  figure.chart.x_label = "probability integral transform (PIT)";
+  figure.chart.columns = drawn.size() == kQuarters ? 2 : 3;
+  figure.chart.least = 260;
+  figure.chart.aspect = 0.6;
+  add_panels(panels, points, figure);
   return figure;
 }
 
-/// Histograms of where the truth lies in what filters hold for possible, at the end of the run: by
-/// their Gaussian, and by their particles where they are stored; a row for each of the first eight
-/// cells. Without data where nothing is judged.
+/// ECDFs at the end of the run by the Gaussian and by the particles where they are stored, and of
+/// the NEES at the end of each quarter.
 std::vector<Figure> calibration_figures(const StudyAnalysis& study) {
-  const std::string reading =
-      " Bars are shares of runs, 1 is what they should be; bars that all stay in the grey band "
-      "belong to a calibrated filter. A valley: the filter is overconfident; a hill: "
-      "conservative; a slope: it is off to one side.";
-  Figure gaussian{"calibration", "Does the truth lie where the filter says?", ""};
-  gaussian.sentence =
-      "Where the truth lies in the Gaussian of the filter at the end of the run, from its lower "
-      "(0) "
-      "to its upper end (1)." +
-      reading;
-  Figure particles{"ranks", "Does the truth lie among the particles?", ""};
-  particles.sentence =
-      "Which share of the weighted particles lies below the truth at the end of the run." + reading;
-  return {figure_of(study, "Gaussian", gaussian), figure_of(study, "particles", particles)};
+  const std::string share = "Share of runs whose PIT is at most the value on the axis, minus it, ";
+  const std::string band =
+      " The curve of a calibrated filter stays within the dashed band, which is that of the cell "
+      "with most runs. ";
+  const std::string of_errors = band +
+                                "Above zero on the left and below on the right: overconfident; the "
+                                "other way round: conservative; an arc on one side: shifted.";
+  const auto is_last = [&](const JudgedPits& one, const char* by) {
+    return is_of_error(one) && one.by == by && one.time == study.times.back();
+  };
+  return {figure_of(study, is_of_nees,
+                    {"nees_quantiles", "Is the NEES distributed as chi-square?",
+                     share +
+                         "at the end of each quarter of the run. The PIT is the probability of "
+                         "a smaller NEES under the chi-square law." +
+                         band + "Below zero: overconfident; above zero: conservative."}),
+          figure_of(study, [&](const JudgedPits& one) { return is_last(one, "Gaussian"); },
+                    {"calibration", "Does the truth lie where the filter says?",
+                     share +
+                         "at the end of the run. The PIT is the probability, by the Gaussian "
+                         "of the filter, of a value below the truth." +
+                         of_errors}),
+          figure_of(study, [&](const JudgedPits& one) { return is_last(one, "particles"); },
+                    {"ranks", "Does the truth lie among the particles?",
+                     share +
+                         "at the end of the run. The PIT is the share of the weighted "
+                         "particles below the truth." +
+                         of_errors})};
 }
 
 std::vector<Section> calibration_sections(const StudyAnalysis& study) {

@@ -269,6 +269,23 @@ RunCriteria criteria_of(const ResultFile& file, double level, double within) {
   return criteria;
 }
 
+namespace {
+
+RunPits measured_pits(const MeasuredRun& run, const RunCriteria& criteria, std::size_t particles) {
+  RunPits pits;
+  if (criteria.calibrates) {
+    const std::span<const Eigen::Vector2d> landmarks(run.rows.landmarks);
+    pits = pits_of(run.rows, particles, run.rows.run,
+                   landmarks.first(criteria.map.identities_known ? landmarks.size() : 0));
+  }
+  const NeesRows* nees = run.metrics.leading_nees();
+  pits.has_nees = nees != nullptr;
+  if (nees != nullptr) pits.nees = nees_pits(nees->value[0], nees->dimension[0]);
+  return pits;
+}
+
+}  // namespace
+
 void MeasuredRun::measure(const RunCriteria& criteria, std::size_t particles) {
   const DriveCriteria* own = criteria.drives.empty() ? nullptr : &criteria.drives.at(rows.run);
   const std::span<const double> times = own != nullptr ? own->times : criteria.times;
@@ -292,10 +309,7 @@ void MeasuredRun::measure(const RunCriteria& criteria, std::size_t particles) {
   if (!rows.truth.empty()) {
     joint = joint_scores(rows.joint, criteria.joint_scans, rows.truth, rows.landmarks);
   }
-  if (criteria.calibrates)
-    pits = pits_of(rows, particles, rows.run,
-                   criteria.map.identities_known ? std::span<const Eigen::Vector2d>(rows.landmarks)
-                                                 : std::span<const Eigen::Vector2d>());
+  pits = measured_pits(*this, criteria, particles);
   beacons.reset();
   if (criteria.beacons.empty() || !rows.final_map) return;
   if (references.empty() && !rows.truth.empty()) return;  // the truth is the better reference

@@ -111,7 +111,7 @@ struct RunCriteria {
   MapCriteria map;                             ///< of a simulation
   std::span<const std::uint32_t> joint_scans;  ///< of joint estimates
   std::vector<PathAtFixes> judged_fixes = {};  ///< of the scans, of references with known errors
-  bool calibrates = false;  ///< whether calibration is judged: where noise is matched
+  bool calibrates = false;  ///< whether the PITs of errors are judged: only with matched noise
   /// Runs at each interim analysis, if cells stop when their verdict is known.
   std::vector<std::uint64_t> looks = {};
   /// Components of the errors that are judged.
@@ -137,7 +137,7 @@ struct MeasuredRun {
   std::optional<MapScores> map;         ///< where it is stored and the world is known
   std::vector<JointScore> joint;        ///< where joint estimates are stored
   bool has_identities = false;          ///< whether anybody knows which landmark is which
-  RunPits pits;                         ///< where calibration is judged
+  RunPits pits;                         ///< of errors and NEES
 
   /// Of `rows` of a complete run.
   void measure(const RunCriteria& criteria, std::size_t particles);

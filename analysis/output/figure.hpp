@@ -56,7 +56,7 @@ struct ChartMarks {
   std::vector<double> x, y;           ///< NaN: a gap in a line
   std::vector<double> width, height;  ///< of ellipses (diameters) and boxes
   std::vector<double> angle;          ///< [deg] of ellipses
-  std::vector<std::string> fill;      ///< colour of each box; empty: that of the style, thinly
+  std::vector<std::string> fill;      ///< colour of each box
   std::vector<std::string> text;      ///< within each box, beside each point; empty: none
   std::vector<Fact> facts;            ///< none: the pointer passes over them
 };

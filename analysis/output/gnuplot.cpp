@@ -224,11 +224,6 @@ class PanelWriter {
 
   void add_boxes(const ChartMarks& marks) {
     const std::string corners = "1:2:($1-$3/2):($1+$3/2):($2-$4/2):($2+$4/2)";
-    if (marks.fill.empty()) {
-      plot({&marks.x, &marks.y, &marks.width, &marks.height}, corners,
-           "boxxyerror " + line_style(marks.style) + " fillstyle transparent solid 0.35 border");
-      return;
-    }
     std::vector<double> colours;
     for (const std::string& fill : marks.fill) {
       colours.push_back(static_cast<double>(std::stoul(fill.substr(1), nullptr, 16)));

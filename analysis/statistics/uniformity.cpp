@@ -1,102 +1,163 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/statistics/uniformity.hpp"
 
+#include "engine/errors.hpp"
+
 #include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/poisson.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
+#include <vector>
 
 namespace montecarta::analysis {
 namespace {
 
-/// Logarithm of the Poisson probability of `count` where `mean` is expected.
-double log_poisson(std::size_t count, double mean) {
-  const auto k = static_cast<double>(count);
-  return k * std::log(mean) - mean - std::lgamma(k + 1.0);
+/// Probability of at most `count` of `values` at or below the point.
+double probability_up_to(std::size_t count, std::size_t values, std::size_t point) {
+  const boost::math::binomial law(static_cast<double>(values), ecdf_point(point));
+  return boost::math::cdf(law, static_cast<double>(count));
 }
 
-/// Probability that all bins hold between `lower` and `upper` of `values`, uniform over `bins`.
-double probability_within(std::size_t values, std::size_t bins, std::size_t lower,
-                          std::size_t upper) {
-  const double mean = static_cast<double>(values) / static_cast<double>(bins);
-  std::vector<double> one(values + 1, 0.0), sum(values + 1, 0.0);
-  for (std::size_t k = lower; k <= std::min(upper, values); ++k) {
-    one[k] = std::exp(log_poisson(k, mean));
+/// Poisson probabilities of first, first + 1, ...; those below 1e-20 are left out.
+struct Increments {
+  std::size_t first = 0;
+  std::vector<double> probability;
+};
+
+Increments poisson_increments(std::size_t values) {
+  const double mean = static_cast<double>(values) / static_cast<double>(kEcdfSteps);
+  const boost::math::poisson law(mean);
+  Increments found;
+  for (std::size_t k = 0; k <= values; ++k) {
+    const double probability = boost::math::pdf(law, static_cast<double>(k));
+    const bool is_negligible = probability < 1e-20;
+    if (is_negligible && static_cast<double>(k) > mean) break;
+    if (is_negligible) found.first = k + 1;
+    if (!is_negligible) found.probability.push_back(probability);
   }
-  sum[0] = 1.0;
-  for (std::size_t bin = 0; bin < bins; ++bin) {
-    std::vector<double> next(values + 1, 0.0);
-    for (std::size_t k = 0; k <= values; ++k) {
-      if (sum[k] == 0.0) continue;
-      for (std::size_t more = lower; more <= std::min(upper, values - k); ++more) {
-        next[k + more] += sum[k] * one[more];
+  return found;
+}
+
+/// Counts of uniform values are those of a Poisson process given its total. The recursion follows
+/// the count from point to point, through paths that stay within the band.
+double joint_probability(const EcdfBand& band) {
+  const std::size_t n = band.values;
+  const Increments step = poisson_increments(n);
+  std::vector<double> now(n + 1, 0.0);
+  now[0] = 1.0;
+  for (std::size_t point = 1; point <= kEcdfSteps; ++point) {
+    std::vector<double> next(n + 1, 0.0);
+    for (std::size_t k = band.lower[point - 1]; k <= band.upper(point - 1); ++k) {
+      if (now[k] == 0.0) continue;
+      const std::size_t begin = std::max(k + step.first, band.lower[point]);
+      const std::size_t end =
+          std::min(k + step.first + step.probability.size(), band.upper(point) + 1);
+      for (std::size_t m = begin; m < end; ++m) {
+        next[m] += now[k] * step.probability[m - k - step.first];
       }
     }
-    sum = std::move(next);
+    now = std::move(next);
   }
-  return sum[values] / std::exp(log_poisson(values, static_cast<double>(values)));
+  const auto total = static_cast<double>(n);
+  return now[n] / boost::math::pdf(boost::math::poisson(total), total);
 }
 
-/// The band that each bin by itself leaves with probability `tail` at most on either side.
-CountBand band_with_tails(std::size_t values, std::size_t bins, double tail) {
-  const boost::math::binomial bin(static_cast<double>(values), 1.0 / static_cast<double>(bins));
-  CountBand band{0, values, 1.0};
-  while (band.lower < values && cdf(bin, static_cast<double>(band.lower)) <= tail) ++band.lower;
-  while (band.upper > band.lower &&
-         cdf(complement(bin, static_cast<double>(band.upper - 1))) <= tail) {
-    --band.upper;
+/// The band that the count at each point leaves with probability `tail` at most on either side.
+EcdfBand band_with_tails(std::size_t values, double tail) {
+  EcdfBand band{.values = values, .lower = {}};
+  for (std::size_t point = 1; point < kEcdfSteps; ++point) {
+    band.lower[point] = *std::ranges::partition_point(
+        std::views::iota(band.lower[point - 1], values),
+        [&](std::size_t count) { return probability_up_to(count, values, point) <= tail; });
   }
+  band.lower[kEcdfSteps] = values;
+  band.joint = joint_probability(band);
   return band;
 }
 
-Calibration name_fault(const Uniformity& found, double n) {
+/// The least pointwise tail of the counts: bands with larger tails are left.
+double least_tail(const EcdfCounts& counts, std::size_t values) {
+  double least = 1.0;
+  for (std::size_t point = 1; point < kEcdfSteps; ++point) {
+    least = std::min({least, probability_up_to(counts[point], values, point),
+                      probability_up_to(values - counts[point], values, kEcdfSteps - point)});
+  }
+  return least;
+}
+
+bool stays_within(const EcdfCounts& counts, const EcdfBand& band) {
+  return std::ranges::all_of(std::views::iota(std::size_t{0}, counts.size()), [&](std::size_t j) {
+    return counts[j] >= band.lower[j] && counts[j] <= band.upper(j);
+  });
+}
+
+void evaluate(std::span<const double> values, Uniformity& found) {
+  const auto n = static_cast<double>(values.size());
+  std::vector<double> sorted(values.begin(), values.end());
+  std::ranges::sort(sorted);
+  found.deviation = found.mean = found.variance = 0.0;
+  for (std::size_t j = 0; j < found.counts.size(); ++j) {
+    found.counts[j] =
+        static_cast<std::size_t>(std::ranges::upper_bound(sorted, ecdf_point(j)) - sorted.begin());
+    const double deviation = static_cast<double>(found.counts[j]) / n - ecdf_point(j);
+    if (std::abs(deviation) > std::abs(found.deviation)) found.deviation = deviation;
+  }
+  for (const double value : values) found.mean += value / n;
+  for (const double value : values) {
+    found.variance += (value - found.mean) * (value - found.mean) / n;
+  }
+}
+
+Calibration name_fault(const Uniformity& found, PitOf kind) {
+  const auto n = static_cast<double>(found.band.values);
   const double shift = (found.mean - 0.5) * std::sqrt(12.0 * n);
   const double spread = (found.variance - 1.0 / 12.0) * std::sqrt(180.0 * n);
-  if (std::abs(shift) > std::abs(spread)) return Calibration::shifted;
-  return spread > 0.0 ? Calibration::too_narrow : Calibration::too_wide;
+  const bool is_shifted = std::abs(shift) > std::abs(spread);
+  if (kind == PitOf::error) {
+    if (is_shifted) return Calibration::shifted;
+    return spread > 0.0 ? Calibration::too_narrow : Calibration::too_wide;
+  }
+  if (!is_shifted) return Calibration::wrong_shape;
+  return shift > 0.0 ? Calibration::too_narrow : Calibration::too_wide;
 }
 
 }  // namespace
 
-CountBand joint_band(std::size_t values, std::size_t bins, double level) {
-  double inside = 0.0, outside = 0.5;  // tails that are small enough and that are not
-  CountBand best{0, values, 1.0};
-  for (int halving = 0; halving < 30; ++halving) {
-    const double tail = 0.5 * (inside + outside);
-    CountBand band = band_with_tails(values, bins, tail);
-    band.joint = probability_within(values, bins, band.lower, band.upper);
-    const bool wide = band.joint >= level;
-    (wide ? inside : outside) = tail;
-    if (wide) best = band;
+EcdfBand ecdf_band(std::size_t values, double level) {
+  if (values == 0) return {};
+  // Bonferroni's inequality over all points, both sides; and the tails of one point alone.
+  double inside = 0.5 * (1.0 - level) / static_cast<double>(kEcdfSteps - 1);
+  double outside = 0.5 * (1.0 - level);
+  EcdfBand best = band_with_tails(values, inside);
+  for (int halving = 0; halving < 14; ++halving) {
+    const double tail = std::sqrt(inside * outside);
+    EcdfBand band = band_with_tails(values, tail);
+    const bool is_wide = band.joint >= level;
+    (is_wide ? inside : outside) = tail;
+    if (is_wide) best = band;
   }
   return best;
 }
 
-std::size_t bins_for(std::size_t values) { return std::clamp<std::size_t>(values / 10, 4, 10); }
-
-CountBand band_for(std::size_t values, double level) {
-  if (values < kLeastValues) return {0, values, 1.0};
-  return joint_band(values, bins_for(values), level);
-}
-
-Uniformity judge_uniformity(std::span<const double> values, const CountBand& band) {
+Uniformity judge_uniformity(std::span<const double> values, const EcdfBand& band, PitOf kind) {
+  expect(values.size() == band.values, "a band is that of the number of values");
   Uniformity found;
   found.band = band;
-  const std::size_t bins = bins_for(values.size());
-  found.counts.resize(bins);
-  const auto n = static_cast<double>(values.size());
-  for (const double value : values) {
-    const auto bin = static_cast<std::size_t>(value * static_cast<double>(bins));
-    ++found.counts[std::min(bin, bins - 1)];
-    found.mean += value / n;
-    found.variance += (value - 0.5) * (value - 0.5) / n;
-  }
   if (values.size() < kLeastValues) return found;
-  const bool fits = std::ranges::all_of(found.counts, [&](std::size_t count) {
-    return count >= found.band.lower && count <= found.band.upper;
-  });
-  found.verdict = fits ? Calibration::calibrated : name_fault(found, n);
+  evaluate(values, found);
+  const bool fits = stays_within(found.counts, band);
+  found.verdict = fits ? Calibration::calibrated : name_fault(found, kind);
   return found;
+}
+
+double p_value(const Uniformity& test) {
+  const std::size_t n = test.band.values;
+  if (n < kLeastValues) return Uniformity::kNone;
+  constexpr double kLeastTail = 1e-14;  // rounding of the joint probability is larger
+  const double tail = std::max(least_tail(test.counts, n), kLeastTail);
+  return std::clamp(1.0 - band_with_tails(n, tail).joint, 0.0, 1.0);
 }
 
 std::string in_words(Calibration verdict) {
@@ -109,6 +170,8 @@ std::string in_words(Calibration verdict) {
       return "too wide";
     case Calibration::shifted:
       return "shifted";
+    case Calibration::wrong_shape:
+      return "wrong shape";
     case Calibration::untested:
       break;
   }

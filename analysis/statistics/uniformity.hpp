@@ -1,57 +1,76 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace montecarta::analysis {
 
-/// Fewer values than this say nothing of a distribution.
-inline constexpr std::size_t kLeastValues = 40;
+/// Fewer values than this are not judged.
+inline constexpr std::size_t kLeastValues = 20;
 
-/// What the histogram of a probability integral transform says of a filter.
+/// The empirical distribution function (ECDF) is evaluated at ecdf_point(j), j = 0 ... kEcdfSteps.
+inline constexpr std::size_t kEcdfSteps = 100;
+constexpr double ecdf_point(std::size_t j) {
+  return static_cast<double>(j) / static_cast<double>(kEcdfSteps);
+}
+
+/// {point} How many values are at or below it.
+using EcdfCounts = std::array<std::size_t, kEcdfSteps + 1>;
+
+/// What probability integral transforms say of a filter.
 enum class Calibration {
-  untested,    ///< fewer than kLeastValues
-  calibrated,  ///< every bin within the band
-  too_narrow,  ///< too many values at both ends: the truth is farther off than the filter says
-  too_wide,    ///< too many values in the middle
-  shifted      ///< more on one side: the filter is off in one direction
+  untested,     ///< fewer than kLeastValues
+  calibrated,   ///< the ECDF stays within its band
+  too_narrow,   ///< the errors are larger than the filter reports
+  too_wide,     ///< the errors are smaller than the filter reports
+  shifted,      ///< the errors have one sign more often than the other
+  wrong_shape,  ///< squared errors of the right size on average, of another distribution
 };
 
-/// Counts that every bin of a histogram keeps at once with probability `joint`, if all values are
-/// independent and uniform.
-struct CountBand {
-  std::size_t lower = 0;
-  std::size_t upper = 0;
-  double joint = 0.0;
+/// The quantity that is transformed. It decides what a departure from the uniform law means.
+enum class PitOf {
+  error,         ///< a signed error: ends are too narrow, the middle is too wide
+  squared_error  ///< a NEES: large values are too narrow, small ones are too wide
 };
 
-/// The narrowest band, with equal tails of a bin's binomial, that `bins` counts of `values` in all
-/// keep together with probability `level` at least. Exact: the multinomial is that of Poisson
-/// counts given their sum, so its probability is a convolution.
-CountBand joint_band(std::size_t values, std::size_t bins, double level);
+/// Simultaneous band of the ECDF of independent uniform values.
+struct EcdfBand {
+  std::size_t values = 0;
+  EcdfCounts lower{};
+  double joint = 1.0;  ///< exact probability that the counts at all points stay within the band
 
-/// Values in (0, 1) against the uniform distribution.
+  /// The band is symmetric about the centre.
+  std::size_t upper(std::size_t point) const { return values - lower[kEcdfSteps - point]; }
+};
+
+/// The narrowest band with equal pointwise tails, of binomial counts, that has a joint probability
+/// of at least `level` (Saeilynoja, Buerkner, Vehtari 2022; STATISTICS 12). Its cost grows with
+/// values^1.5: milliseconds for 200, a tenth of a second for 10^4.
+EcdfBand ecdf_band(std::size_t values, double level);
+
+/// Values in [0, 1] compared to the uniform law. NaN if there are fewer than kLeastValues.
 struct Uniformity {
-  std::vector<std::size_t> counts;  ///< {bin}
-  CountBand band;
-  double mean = 0.0;      ///< of the values; 1/2 if uniform
-  double variance = 0.0;  ///< about 1/2; 1/12 if uniform
+  EcdfCounts counts{};
+  EcdfBand band;
+  double mean = kNone;       ///< 1/2 of a uniform variable
+  double variance = kNone;   ///< about the mean; 1/12 of a uniform variable
+  double deviation = kNone;  ///< ECDF - point at the point where it is largest, with its sign
   Calibration verdict = Calibration::untested;
+
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Bins for so many values: ten, fewer of less than 100.
-std::size_t bins_for(std::size_t values);
+/// Judges values by the band of their number. If the ECDF leaves it, mean or variance, whichever is
+/// farther from that of a uniform variable in standard errors, names the fault.
+Uniformity judge_uniformity(std::span<const double> values, const EcdfBand& band, PitOf kind);
 
-/// The band of so many values in their bins; without meaning below kLeastValues.
-CountBand band_for(std::size_t values, double level);
-
-/// Judges values by the band of their number, band_for(), which takes longer to find: every bin
-/// within it is calibrated; else the moment that is farther from what it should be, in standard
-/// errors, names what is wrong.
-Uniformity judge_uniformity(std::span<const double> values, const CountBand& band);
+/// The exact p-value of one test: the least probability of leaving a band that these counts leave.
+/// A value below about 1e-12 is given as that. NaN if there are fewer than kLeastValues.
+double p_value(const Uniformity& test);
 
 std::string in_words(Calibration verdict);
 

@@ -57,10 +57,9 @@ const SHAPES = {
   boxes(marks, plot, parent) {
     for (const i of placesOf(marks)) {
       const {left, right, top, bottom} = boxAt(marks, i, plot);
-      const colour = marks.fill?.[i] ?? lineStyle(marks).stroke;
-      svgElement("rect", {class: marks.fill ? "tile" : "curve bar", x: px(left), y: px(top),
-        width: px(right - left), height: px(Math.max(bottom - top, 0)),
-        style: `fill: ${colour}`, stroke: marks.fill ? "none" : colour}, parent);
+      svgElement("rect", {class: "tile", x: px(left), y: px(top), width: px(right - left),
+        height: px(Math.max(bottom - top, 0)), style: `fill: ${marks.fill[i]}`, stroke: "none"},
+      parent);
       if (!marks.text) continue;
       svgElement("text", {class: "x inside", x: px((left + right) / 2),
         y: px((top + bottom) / 2 + 4), text: marks.text[i]}, parent);
@@ -102,13 +101,12 @@ const NEAREST = {
     return best;
   },
 
-  /** Above and below a bar is as good as within. */
   boxes(marks, plot, at) {
     let best = null;
     const outside = (value, low, high) => Math.max(low - value, value - high, 0);
     for (const i of placesOf(marks)) {
       const {left, right, top, bottom} = boxAt(marks, i, plot);
-      const distance = outside(at.x, left, right) + 0.01 * outside(at.y, top, bottom);
+      const distance = Math.hypot(outside(at.x, left, right), outside(at.y, top, bottom));
       if (!best || distance < best.distance) best = {i, x: right, y: top, distance, left, bottom};
     }
     return best;

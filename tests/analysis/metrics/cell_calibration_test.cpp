@@ -15,8 +15,8 @@ namespace {
 
 using testing::ElementsAre;
 
-std::vector<PitHistogram> judged(const SyntheticStudy& study, std::size_t runs,
-                                 const std::vector<RunRows>& extra = {}) {
+std::vector<JudgedPits> judged(const SyntheticStudy& study, std::size_t runs,
+                               const std::vector<RunRows>& extra = {}) {
   CalibrationSums sums;
   for (std::size_t run = 0; run < runs; ++run) {
     RunRows rows = study.run(run);
@@ -29,8 +29,8 @@ std::vector<PitHistogram> judged(const SyntheticStudy& study, std::size_t runs,
   return sums.result(study.times(), 0.95);
 }
 
-bool all_are(const std::vector<PitHistogram>& found, Calibration verdict, std::string quantity) {
-  return std::ranges::all_of(found, [&](const PitHistogram& one) {
+bool all_are(const std::vector<JudgedPits>& found, Calibration verdict, std::string quantity) {
+  return std::ranges::all_of(found, [&](const JudgedPits& one) {
     return one.quantity != quantity || one.test.verdict == verdict;
   });
 }
@@ -47,14 +47,14 @@ TEST(CellCalibration, NamesWhatIsWrongWithAFilter) {
   EXPECT_TRUE(all_are(biased, Calibration::shifted, "x"));
 }
 
-// A cell has 12 histograms; 5 % of cells at most have a fault in any: 3 standard errors.
+// A cell has 12 tests, of up to 30; 5 % of cells at most have a fault in any: 3 standard errors.
 TEST(CellCalibration, FindsFaultWithAPerfectFilterInFivePercentOfStudies) {
   constexpr std::uint64_t kCells = 400;
   double rejected = 0.0;
   for (std::uint64_t seed = 0; seed < kCells; ++seed) {
     const auto found = judged({.scans = 4, .seed = 100 + seed}, 60);
     rejected += std::ranges::any_of(
-        found, [](const PitHistogram& one) { return one.test.verdict != Calibration::calibrated; });
+        found, [](const JudgedPits& one) { return one.test.verdict != Calibration::calibrated; });
   }
   EXPECT_LT(rejected, 0.05 * kCells + 3.0 * std::sqrt(0.05 * 0.95 * kCells));
   EXPECT_GT(rejected, 0.0) << "a test that never fails is none";
@@ -102,7 +102,7 @@ RunRows few_draws(std::size_t M, double weight_sigma, RngStream& draw) {
   return rows;
 }
 
-/// Share of histograms that find fault with a perfect sampler of so many draws.
+/// Share of tests that find fault with a perfect sampler of so many draws.
 double faulted(std::size_t M, double weight_sigma) {
   RngStream draw({.seed = 12, .index = static_cast<std::uint32_t>(M)});
   double faults = 0.0, tests = 0.0;
@@ -111,7 +111,7 @@ double faulted(std::size_t M, double weight_sigma) {
     for (std::uint64_t run = 0; run < 200; ++run) {
       sums.add(pits_of(few_draws(M, weight_sigma, draw), M, run, {}));
     }
-    for (const PitHistogram& one : sums.result(std::vector<double>{1, 2, 3, 4}, 0.95)) {
+    for (const JudgedPits& one : sums.result(std::vector<double>{1, 2, 3, 4}, 0.95)) {
       tests += 1.0;
       faults += one.test.verdict == Calibration::calibrated ? 0.0 : 1.0;
     }
@@ -119,7 +119,7 @@ double faulted(std::size_t M, double weight_sigma) {
   return faults / tests;
 }
 
-// 24 histograms in each of 60 studies: five standard errors of 5 % are 2.9 %. By the Gaussian of
+// 24 tests in each of 60 studies: five standard errors of 5 % are 2.9 %. By the Gaussian of
 // its moments a perfect sampler of ten draws would be at fault in a third of them.
 TEST(CellCalibration, DoesNotHoldFewDrawsAgainstAPerfectSampler) {
   EXPECT_LT(faulted(10, 0.0), 0.05 + 0.029);
@@ -184,36 +184,77 @@ TEST(CellCalibration, IsTestedAtTheEndOfEachQuarter) {
   EXPECT_THAT(calibration_scans(1), ElementsAre(0, 0, 0, 0));
 }
 
-/// No run has a value: no landmark was ever seen, or no covariance is one.
-TEST(CalibrationFigures, DrawEmptyBinsWhereThereIsNoValue) {
-  StudyAnalysis study;
-  study.times = {1.0};
-  study.cells.resize(1);
-  study.cells[0].findings.put(
-      Calibrations{{"landmark x", "Gaussian", 1.0, 3, judge_uniformity({}, band_for(0, 0.95))}});
-  const Figure figure = reported_figure(study, "calibration");
-  ASSERT_EQ(figure.data.size(), 1u);
-  for (const auto& row : figure.data[0].rows) EXPECT_EQ(row[2], 0.0);
-  EXPECT_GT(figure.chart.panels[0].axis.high, 0.0);
+/// Tests of the NEES of runs whose NEES of `dimension` components is `inflation` times chi-square.
+std::vector<JudgedPits> judged_nees(std::size_t dimension, double inflation, std::size_t runs) {
+  RngStream draw({.seed = 21, .index = static_cast<std::uint32_t>(dimension)});
+  CalibrationSums sums;
+  for (std::size_t run = 0; run < runs; ++run) {
+    std::vector<double> nees(8, 0.0);
+    for (double& value : nees) {
+      for (std::size_t c = 0; c < dimension; ++c) value += inflation * std::pow(draw.normal(), 2);
+    }
+    if (run < 3) nees.back() = kNaN;
+    RunPits pits;
+    pits.has_nees = true;
+    pits.nees = nees_pits(nees, dimension);
+    sums.add(pits);
+  }
+  return sums.result(scan_times(8), 0.95);
 }
 
-/// A cell of which the Gaussian was asked at the end of the run, and no particles are stored.
-StudyAnalysis without_particles() {
+TEST(CellCalibration, ComparesTheNeesToItsChiSquareLaw) {
+  for (const std::size_t dimension : {1u, 3u, 20u}) {
+    const auto all_nees = [&](double inflation, Calibration verdict) {
+      return all_are(judged_nees(dimension, inflation, 500), verdict, "NEES");
+    };
+    EXPECT_TRUE(all_nees(1.0, Calibration::calibrated)) << dimension;
+    EXPECT_TRUE(all_nees(1.7, Calibration::too_narrow)) << dimension;
+    EXPECT_TRUE(all_nees(0.5, Calibration::too_wide)) << dimension;
+  }
+  const auto found = judged_nees(3, 1.0, 60);
+  ASSERT_EQ(found.size(), 4u);
+  EXPECT_EQ(found[0].time, 2.0);
+  EXPECT_EQ(found[2].undefined, 0u);
+  EXPECT_EQ(found[3].undefined, 3u) << "no NEES at the end of three runs";
+}
+
+/// A study of `runs` with the NEES of one cell, and no particles.
+StudyAnalysis with_nees(std::size_t runs) {
   StudyAnalysis study;
-  study.times = {0.2, 0.4};
-  study.runs_here = 100;
-  CellAnalysis cell;
-  cell.label = "ekf_slam";
-  PitHistogram histogram{"x", "Gaussian", 0.4, 0, {}};
-  histogram.test.counts.assign(10, 10);
-  cell.findings.put(Calibrations{histogram});
-  study.cells = {cell};
+  study.times = scan_times(8);
+  study.cells.resize(1);
+  study.cells[0].label = "ekf_slam";
+  study.cells[0].findings.put(judged_nees(3, 1.7, runs));
   return study;
 }
 
-TEST(CalibrationFigures, DrawNothingOfParticlesThatAreNotStored) {
-  EXPECT_FALSE(reported_figure(without_particles(), "calibration").data.empty());
-  EXPECT_TRUE(reported_figure(without_particles(), "ranks").data.empty());
+TEST(CalibrationFigures, DrawTheEcdfWithItsBand) {
+  const StudyAnalysis study = with_nees(200);
+  const Figure figure = reported_figure(study, "nees_quantiles");
+  ASSERT_EQ(figure.data.size(), 4u) << "a panel for each quarter";
+  const auto& rows = figure.data[0].rows;
+  ASSERT_EQ(rows.size(), kEcdfSteps + 1);
+  const Uniformity& test = study.cells[0].get<Calibrations>()[0].test;
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    const double point = static_cast<double>(j) / kEcdfSteps;
+    const auto from_point = [&](std::size_t count) {
+      return static_cast<double>(count) / 200.0 - point;
+    };
+    EXPECT_THAT(rows[j],
+                ElementsAre(point, from_point(test.counts[j]), from_point(test.band.upper(j)),
+                            from_point(test.band.lower[j])));
+  }
+  EXPECT_TRUE(reported_figure(study, "ranks").data.empty()) << "no particles are stored";
+}
+
+TEST(CalibrationFigures, LeaveOutWhatIsNotJudged) {
+  EXPECT_TRUE(reported_figure(with_nees(kLeastValues - 1), "nees_quantiles").data.empty());
+}
+
+TEST(CalibrationTable, HasColumnsOfTheQuantitiesThatAreStored) {
+  const TextTable table = reported_table(with_nees(200), "calibration");
+  ASSERT_EQ(table.rows.size(), 1u);
+  EXPECT_THAT(table.rows[0], ElementsAre("ekf_slam", "Gaussian", "too narrow", "4 of 4"));
 }
 
 }  // namespace

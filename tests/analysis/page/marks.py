@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures of marks at places of their own: maps, points, trees, bars and tiles."""
+"""Figures of marks at places of their own: maps, points, trees and tiles."""
 
 from on_page import OnPage
 
@@ -107,19 +107,3 @@ class Tiles(OnPage):
                              (str(x + 1), str(y + 1)))
             value = tiles["facts"][2]["values"][i]
             self.assertAlmostEqual(float(facts["ANEES by components"]) / value, 1, delta=1e-3)
-
-    def test_bars_say_how_many_runs_they_hold(self):
-        panel = self.chart("calibration")["panels"][0]
-        bars = panel["marks"][0]
-        for i, wanted in enumerate(bars["facts"][2]["values"]):
-            # Above the bar, too: a bin without runs has none to point at.
-            self.page.hover(self.page.middle("#figure_calibration g.panel path.frame",
-                                             x=bars["x"][i], y=0.1))
-            facts = self.said("calibration")[1]
-            self.assertAlmostEqual(float(facts["count / expected"]), wanted, delta=1e-3)
-
-    def test_bars_of_a_hidden_cell_leave(self):
-        panels = "#figure_calibration g.panel:not([hidden])"
-        before = self.count(panels)
-        self.page.click(self.page.middle("#figure_calibration .legend button"))
-        self.assertEqual(self.count(panels), before * 3 // 4)

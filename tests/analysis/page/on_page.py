@@ -26,7 +26,7 @@ cell = ekf_slam
 [record]
 columns = pose, covariance, ancestry, particles, map
 """
-# Four filters that differ in what they believe, each tested for calibration.
+# Four filters that differ in what they believe.
 TILES = """[study]
 name = tiles
 runs = 40
