@@ -31,15 +31,17 @@ std::vector<const Member*> shown_in(const FamilyTest* test, Direction direction)
   return all;
 }
 
-/// The member that speaks for a direction: the size if it is shown, else that of the least p-value.
+/// The member that speaks for a direction: the size if it is shown, else the component or stretch
+/// of the least p-value, else the scan.
 std::optional<Shown> leading(const Verdict& verdict, Direction direction) {
   std::optional<Shown> best;
   for (const FamilyTest& test : verdict.families) {
-    if (!is_ratio(test.family)) continue;
+    const bool is_settled =
+        best && (best->test->family == Family::size || test.family == Family::scan);
+    if (!is_ratio(test.family) || is_settled) continue;
     for (const Member* member : shown_in(&test, direction)) {
       if (!best || member->p < best->member->p) best = Shown{&test, member};
     }
-    if (best && test.family == Family::size) return best;
   }
   return best;
 }
@@ -135,11 +137,12 @@ std::string other_words(const Verdict& verdict) {
   const std::string range = from_to(low, high);
   switch (best->test->family) {
     case Family::bias:
-      return "bias " + in_component(best->member->name) + " of " + range + " standard deviations";
+      return "a bias " + in_component(best->member->name) + " of " + range + " standard deviations";
     case Family::correlation:
-      return "errors " + best->member->name + " are correlated by " + range + " more than reported";
+      return "a correlation of " + range + " between " + best->member->name +
+             " that is not reported";
     default:
-      return "runs differ in scale more than by chance (standard deviation " + range + ")";
+      return "scales of their own in single runs (standard deviation " + range + ")";
   }
 }
 
@@ -150,7 +153,8 @@ std::string inconsistent_words(const Verdict& verdict) {
   return above + ", " + below.substr(below.find(' ') + 1);
 }
 
-/// ", slightly optimistic (1.02 to 1.06)" where a deviation within the margin is shown.
+/// ", slightly optimistic (1.02 to 1.06)", ", though with a bias in heading of ..." where a
+/// deviation within the margin is shown.
 std::string slight_words(const Verdict& verdict) {
   std::string words;
   for (const Direction direction : {Direction::above, Direction::below}) {
@@ -160,7 +164,8 @@ std::string slight_words(const Verdict& verdict) {
     words += std::string(", slightly ") + (is_above ? "optimistic" : "conservative") +
              place_of(*shown) + " (" + factor_text(*shown, direction) + ")";
   }
-  return words;
+  const std::string others = other_words(verdict);
+  return others.empty() ? words : words + ", though with " + others;
 }
 
 /// "3 of 300 runs failed, 20 of 9600 samples are unusable"; empty if there are none.

@@ -155,11 +155,11 @@ TEST(Words, NameWhatIsOffWhereTheSizeIsRight) {
             "inconsistent: NEES 1.90 to 2.10 times too large in heading, 2.00 to 2.50 times too "
             "small left");
   EXPECT_EQ(words(family(Family::bias, {{"forward", {-0.5, -0.3}}})),
-            "inconsistent: bias forward of 0.300 to 0.500 standard deviations");
+            "inconsistent: a bias forward of 0.300 to 0.500 standard deviations");
   EXPECT_EQ(words(family(Family::correlation, {{"a and b", {0.4, 0.6}}})),
-            "inconsistent: errors a and b are correlated by 0.400 to 0.600 more than reported");
+            "inconsistent: a correlation of 0.400 to 0.600 between a and b that is not reported");
   EXPECT_THAT(words(family(Family::between_runs, {{"runs", {0.3, 0.6}}})),
-              HasSubstr("runs differ in scale more than by chance"));
+              HasSubstr("scales of their own in single runs"));
 }
 
 TEST(Words, SaySlightDeviationsAndWhatIsNotExcluded) {
