@@ -14,8 +14,6 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr std::uint64_t kStudies = 1000;
-
 /// Errors of a run whose scans go together by `memory` (1: the same error at all scans); deviations
 /// `inflation` times as believed.
 struct Law {
