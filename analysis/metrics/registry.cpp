@@ -33,6 +33,7 @@ Metric calibration_metric();
 Metric mismatch_metric();
 Metric cost_metric();
 Metric smoother_metric();
+Metric proper_scores_metric();
 
 std::span<const Metric> all_metrics() {
   static const std::vector<Metric> all = {
@@ -43,7 +44,7 @@ std::span<const Metric> all_metrics() {
       joint_nees_metric(),  error_anatomy_metric(), survival_metric(),
       innovations_metric(), diversity_metric(),     calibration_metric(),
       mismatch_metric(),    cost_metric(),          convention_hints_metric(),
-      smoother_metric(),    observability_metric()};
+      smoother_metric(),    observability_metric(), proper_scores_metric()};
   return all;
 }
 
