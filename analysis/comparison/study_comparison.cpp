@@ -39,7 +39,7 @@ CellComparison compare_pair(const CellAnalysis& cell, const CellAnalysis& baseli
   row.difference = spread_of(differences).summary.mean;
   row.interval = bootstrap_mean(differences, level);
   row.has_heavy_tail = is_heavy_tailed(differences);
-  row.ratio = row.mean / row.baseline_mean;
+  if (score.has_ratio) row.ratio = row.mean / row.baseline_mean;
   row.wins = wins_of(pairs, score);
   row.rank = signed_rank_test(differences);
   return row;

@@ -39,7 +39,7 @@ struct CellComparison {
   double difference = kNaN;                  ///< mean - baseline_mean
   Interval interval{};                       ///< of the difference
   bool has_heavy_tail = false;               ///< which makes that interval worthless
-  double ratio = kNaN;                       ///< mean / baseline_mean
+  double ratio = kNaN;                       ///< mean / baseline_mean; NaN if !Score::has_ratio
   Wins wins{};
   SignedRank rank{};         ///< of the differences
   double rank_p_holm = 1.0;  ///< adjusted for all tests of the table

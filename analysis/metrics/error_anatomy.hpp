@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -13,32 +14,35 @@ namespace montecarta::analysis {
 /// Names of the components of an error in the frame of the true vehicle.
 inline constexpr std::array kErrorComponents = {"forward", "left", "heading"};
 
-/// Why a NEES is what it is: errors against what the filter believed of them, in the frame of the
-/// true vehicle (forward [m], left [m], heading [rad]), over runs.
+/// Errors over runs beside the covariance that the filter believes, in the frame of the true
+/// vehicle (forward [m], left [m], heading [rad]).
 struct ErrorAnatomy {
   std::array<std::vector<double>, 3> happened;  ///< {component}{scan} root mean square error
   std::array<std::vector<double>, 3> believed;  ///< {component}{scan} root mean variance
   std::array<std::vector<double>, 3> bias;      ///< {component}{scan} mean error
-  std::vector<double>
-      bias_share;  ///< {scan} of the NEES that the mean error makes, not its scatter
-  std::vector<double> worst_ratio;  ///< {scan} of mean squared error to mean variance in the
-                                    ///< direction where it is greatest (generalised eigenvalue)
-  double mean_bias_share = 0.0;     ///< over scans
-  double mean_worst_ratio = 0.0;    ///< geometric, over scans
-  std::array<double, 3> worst_direction{};  ///< share of each component in it, in units of its
-                                            ///< believed deviation, over scans; adds up to 1
+  /// {scan} share of the NEES that comes from the mean error rather than from its scatter
+  std::vector<double> bias_share;
+  double mean_bias_share = 0.0;  ///< over scans
 };
 
-/// What mean_worst_ratio at one scan is below with probability `level` if a filter is consistent:
-/// the largest of three ratios is above 1 even then.
-double expected_worst_ratio(std::size_t runs, double level);
+/// The errors of one run and the deviations that the filter believes, in the same frame.
+struct ErrorTrace {
+  std::uint64_t run = 0;                         ///< its number in the study
+  std::array<std::vector<double>, 3> error;      ///< {component}{scan}
+  std::array<std::vector<double>, 3> deviation;  ///< {component}{scan}
+};
+
+/// The trace of run number `run`; both {scan}, in the frame of the true vehicle.
+ErrorTrace error_trace(std::uint64_t run, std::span<const Eigen::Vector3d> errors,
+                       std::span<const Eigen::Matrix3d> covariances);
 
 /// Adds up the moments of errors and the covariances over runs.
 class ErrorMoments {
  public:
   explicit ErrorMoments(std::size_t scans) : scans_(scans) {}
 
-  /// One run, {scan}, both in the frame of the true vehicle; what is not finite is left out.
+  /// Adds one run, {scan}, both in the frame of the true vehicle. Scans with an error or a
+  /// covariance that is not finite are left out.
   void add(std::span<const Eigen::Vector3d> errors, std::span<const Eigen::Matrix3d> covariances);
   ErrorAnatomy result() const;
 

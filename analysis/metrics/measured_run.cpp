@@ -290,6 +290,7 @@ void MeasuredRun::measure(const RunCriteria& criteria, std::size_t particles) {
   const DriveCriteria* own = criteria.drives.empty() ? nullptr : &criteria.drives.at(rows.run);
   const std::span<const double> times = own != nullptr ? own->times : criteria.times;
   metrics.measure(rows, particles, times);
+  proper = proper_scores(rows, particles, metrics.errors(), metrics.covariances());
   references.clear();
   for (const PathAtFixes& fixes : own != nullptr ? own->references : criteria.references) {
     references.push_back(measure_against(fixes, rows.path));

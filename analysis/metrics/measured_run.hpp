@@ -11,6 +11,7 @@
 #include "analysis/metrics/lineages.hpp"
 #include "analysis/metrics/map_scores.hpp"
 #include "analysis/metrics/nees.hpp"
+#include "analysis/metrics/proper_scores.hpp"
 #include "analysis/metrics/reference_scores.hpp"
 #include "analysis/verdict/whole_error.hpp"
 #include "engine/records/result_file.hpp"
@@ -138,6 +139,7 @@ struct MeasuredRun {
   std::vector<JointScore> joint;        ///< where joint estimates are stored
   bool has_identities = false;          ///< whether anybody knows which landmark is which
   RunPits pits;                         ///< of errors and NEES
+  ProperScores proper;                  ///< of a known truth
 
   /// Of `rows` of a complete run.
   void measure(const RunCriteria& criteria, std::size_t particles);

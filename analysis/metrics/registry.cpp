@@ -34,6 +34,7 @@ Metric calibration_metric();
 Metric mismatch_metric();
 Metric cost_metric();
 Metric smoother_metric();
+Metric proper_scores_metric();
 
 std::span<const Metric> all_metrics() {
   static const std::vector<Metric> all = {errors_metric(),        nees_metric(),
@@ -47,7 +48,8 @@ std::span<const Metric> all_metrics() {
                                           innovations_metric(),   diversity_metric(),
                                           calibration_metric(),   mismatch_metric(),
                                           cost_metric(),          convention_hints_metric(),
-                                          smoother_metric(),      observability_metric()};
+                                          smoother_metric(),      proper_scores_metric(),
+                                          observability_metric()};
   return all;
 }
 

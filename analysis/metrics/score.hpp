@@ -22,6 +22,7 @@ struct Score {
   const char* words;                 ///< for tables
   double (*of)(const MeasuredRun&);  ///< NaN where it does not apply
   Better better = Better::lower;
+  bool has_ratio = true;  ///< whether two values may be divided: their zero is not arbitrary
 };
 
 /// A number that every scan of a run has one of; averaged over runs.

@@ -152,8 +152,10 @@ Range range_of(const Panel& panel) {
 ChartAxis around_zero(const Panel& panel) {
   double farthest = 0.0;
   for (const Curve& curve : panel.curves) {
-    for (const double value : curve.values) {
-      if (std::isfinite(value)) farthest = std::max(farthest, std::abs(value));
+    for (const std::vector<double>& values : {curve.values, curve.envelope}) {
+      for (const double value : values) {
+        if (std::isfinite(value)) farthest = std::max(farthest, std::abs(value));
+      }
     }
   }
   for (const Band& band : panel.bands) farthest = std::max({farthest, -band.lower, band.upper});
@@ -181,15 +183,21 @@ ChartAxis axis_of(const Panel& panel) {
 
 ThinnedSeries thinned(const Panel& panel, const std::vector<double>& places) {
   std::vector<NamedSeries> series;
-  for (const Curve& curve : panel.curves) series.push_back({curve.legend, "1", curve.values});
+  for (const Curve& curve : panel.curves) {
+    series.push_back({curve.legend, "1", curve.values});
+    if (!curve.envelope.empty())
+      series.push_back({curve.legend + " envelope", "1", curve.envelope});
+  }
   return thin(places, series, kBuckets);
 }
 
 ChartPanel chart_panel(const Panel& panel, const ChartAxis& axis, const ThinnedSeries& series) {
   ChartPanel chart{panel.label, axis, series.times, {}, panel.bands};
-  for (std::size_t i = 0; i < panel.curves.size(); ++i) {
-    chart.curves.push_back(
-        {panel.curves[i].legend, panel.curves[i].style, series.series[i].values});
+  auto next = series.series.begin();  // an envelope follows its curve
+  for (const Curve& curve : panel.curves) {
+    auto& drawn =
+        chart.curves.emplace_back(ChartPanel::Curve{curve.legend, curve.style, (next++)->values});
+    if (!curve.envelope.empty()) drawn.envelope = (next++)->values;
   }
   return chart;
 }

@@ -68,6 +68,7 @@ struct ChartPanel {
     std::size_t style = 0;       ///< for line_colour()
     std::vector<double> values;  ///< one for each of `x`; NaN: a gap
     std::vector<double> least = {}, greatest = {};  ///< ends of a bar at each value; empty: none
+    std::vector<double> envelope = {};              ///< as Curve::envelope
   };
   std::string label;  ///< of the vertical axis, with unit
   ChartAxis axis;
@@ -137,6 +138,9 @@ struct Curve {
   std::string legend;          ///< empty: none
   std::size_t style = 0;       ///< for line_colour()
   std::vector<double> values;  ///< one for each place on the common axis
+  /// Half the width of an envelope around zero at each place, such as three standard deviations;
+  /// empty: none.
+  std::vector<double> envelope = {};
 };
 
 /// The vertical axis.

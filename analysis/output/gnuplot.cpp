@@ -180,6 +180,7 @@ class PanelWriter {
 
   void add_curve(std::size_t i) {
     const ChartPanel::Curve& curve = panel_.curves[i];
+    if (!curve.envelope.empty()) add_envelope(curve);
     if (curve.least.empty()) {
       plot({&panel_.x, &curve.values}, "1:2", curve_style(curve.style));
       return;
@@ -205,6 +206,13 @@ class PanelWriter {
   PanelPlots result() const { return {numbers_, commands_.empty() ? "NaN notitle" : commands_}; }
 
  private:
+  void add_envelope(const ChartPanel::Curve& curve) {
+    std::vector<double> below = curve.envelope;
+    for (double& end : below) end = -end;
+    plot({&panel_.x, &below, &curve.envelope}, "1:2:3",
+         "filledcurves" + colour_of(curve.style) + " fillstyle transparent solid 0.25 noborder");
+  }
+
   void plot(const Columns& columns, const std::string& which, const std::string& how) {
     const std::string name = prefix_ + std::to_string(count_++);
     numbers_ += block(name, columns);
@@ -442,7 +450,9 @@ std::vector<LegendEntry> legend_of(const Chart& chart) {
   };
   for (const Band& band : chart.panels.front().bands) add(band_style(), band.legend);
   for (const ChartPanel& panel : chart.panels) {
-    for (const auto& curve : panel.curves) add(curve_style(curve.style), curve.legend);
+    for (const auto& curve : panel.curves) {
+      if (curve.legend != panel.cell) add(curve_style(curve.style), curve.legend);
+    }
     for (const ChartMarks& marks : panel.marks) {
       if (!marks.text.empty()) continue;
       const bool is_named = panel.cell == marks.cell;

@@ -34,6 +34,7 @@ Json json_of(const ChartPanel::Curve& curve) {
   json["y"] = rounded(curve.values);
   add_if_any("least", curve.least, json);
   add_if_any("greatest", curve.greatest, json);
+  add_if_any("envelope", curve.envelope, json);
   return json;
 }
 

@@ -57,9 +57,9 @@ void print_warnings(std::ostream& out, const StudyAnalysis& study) {
 }
 
 /// In this order; tables of other sections follow.
-constexpr std::array kTerminalOrder = {"verdict",     "drive",      "references",    "map_errors",
-                                       "joint_nees",  "smoother",   "error_anatomy", "diversity",
-                                       "innovations", "association"};
+constexpr std::array kTerminalOrder = {
+    "verdict",       "drive",         "references", "map_errors",  "joint_nees", "smoother",
+    "proper_scores", "error_anatomy", "diversity",  "innovations", "association"};
 
 std::vector<Section> terminal_sections(const StudyAnalysis& study) {
   std::vector<Section> sections = sections_of(study);

@@ -121,7 +121,8 @@ class Cell:
             errors[..., 2] = np.arctan2(np.sin(errors[..., 2]), np.cos(errors[..., 2]))
             self.of_moments[name] = errors, at_scans(cell["pose_covariance" + suffix])
         self.moments = list(self.of_moments)  # the first one leads
-        self.errors = self.of_moments["mixture" if "mixture" in self.moments else "spread"][0]
+        self.estimate = "mixture" if "mixture" in self.moments else "spread"
+        self.errors = self.of_moments[self.estimate][0]
         if "corrected" in self.moments:
             self.tables = {d: Corrected(d) for d in (1, 2, 3)}
             self.draws = effective_draws(self.particles, cell["ess"][:][self.runs])
@@ -158,6 +159,12 @@ class Cell:
         drawn = (covariances != self.of_moments["mixture"][1]).any(axis=(-2, -1))
         return np.where(drawn, values, self.nees(part, "mixture", by))
 
+    def log_score(self):
+        errors, covariances = self.of_moments[self.estimate]
+        densities = [[stats.multivariate_normal.logpdf(e, cov=P) for e, P in zip(*run)]
+                     for run in zip(errors, covariances)]
+        return -np.mean(densities, axis=1)
+
     def make_scores(self):
         """{metric: value of each complete run}."""
         ees = self.errors**2
@@ -166,6 +173,7 @@ class Cell:
             "position_rmse": np.sqrt(ees[..., :2].sum(-1).mean(axis=1)),
             "heading_rmse": np.sqrt(ees[..., 2].mean(axis=1)),
             "nees": nees,
+            "log_score": self.log_score(),
             "cpu_seconds": self.cpu,
         }
 
@@ -203,11 +211,10 @@ def check_cell(cell, folder):
     check(f"{cell.label} rmse", column(series, "heading_rmse [rad]"),
           np.sqrt(ees[..., 2].mean(axis=0)))
     numbers = {row["cell"]: row for row in rows_of(f"{folder}/cells.csv")}[cell.label]
-    for name, unit in (("position_rmse", "m"), ("heading_rmse", "rad")):
+    for name, unit in (("position_rmse", " [m]"), ("heading_rmse", " [rad]"), ("log_score", "")):
         values = cell.scores[name]
-        check(f"{cell.label} {name}", float(numbers[f"{name}_mean [{unit}]"]), values.mean())
-        check(f"{cell.label} {name}", float(numbers[f"{name}_sd [{unit}]"]), values.std(ddof=1))
-
+        check(f"{cell.label} {name}", float(numbers[f"{name}_mean{unit}"]), values.mean())
+        check(f"{cell.label} {name}", float(numbers[f"{name}_sd{unit}"]), values.std(ddof=1))
     if cell.joint:
         nees, components = cell.joint
         ours = [row for row in rows_of(f"{folder}/joint_nees.csv") if row["cell"] == cell.label]

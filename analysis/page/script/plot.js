@@ -109,6 +109,10 @@ class Plot {
   }
 
   drawCurve(curve, parent) {
+    if (curve.envelope) {
+      svgElement("path", {class: "envelope", "data-cell": curve.legend,
+        d: this.areaOf(curve.envelope), fill: lineStyle(curve).stroke}, parent);
+    }
     svgElement("path", {class: "curve", "data-cell": curve.legend, d: this.pathOf(curve),
       ...lineStyle(curve)}, parent);
     if (!curve.least) return;
@@ -120,6 +124,24 @@ class Plot {
     svgElement("path", {class: "curve", d: bars.join(""), stroke: lineStyle(curve).stroke}, parent);
     svgElement("path", {class: "curve dots", d: known.map((i) => `${at(i, curve.y[i])}h0`).join(""),
       stroke: lineStyle(curve).stroke}, parent);
+  }
+
+  /** The area of so much around zero, a part for each stretch without a gap. */
+  areaOf(envelope) {
+    const {x} = this.panel;
+    const corner = (side) => (i) =>
+      `${this.x(x[i]).toFixed(1)} ${this.y(side * envelope[i]).toFixed(1)}`;
+    let path = "", stretch = [];
+    for (let i = 0; i <= x.length; ++i) {
+      if (i < x.length && envelope[i] !== null) {
+        stretch.push(i);
+        continue;
+      }
+      const corners = [...stretch.map(corner(1)), ...stretch.reverse().map(corner(-1))];
+      if (corners.length > 0) path += `M${corners.join("L")}Z`;
+      stretch = [];
+    }
+    return path;
   }
 
   /** What is no number, or not positive on a logarithmic axis, is a gap. */

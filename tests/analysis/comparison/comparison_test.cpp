@@ -100,6 +100,23 @@ TEST(CompareCells, CountsFailuresAsLostAndLeavesThemOutOfDifferences) {
   EXPECT_TRUE(std::isnan(row.interval.lower));
 }
 
+TEST(CompareCells, GivesNoRatioOfAScoreWithoutANaturalZero) {
+  CellAnalysis base = compared_cell("base", std::vector<double>(20, 1.0));
+  base.scores = {};
+  CellAnalysis worse = base;
+  worse.label = "worse";
+  for (std::size_t i = 0; i < 20; ++i) {
+    const double value = 0.01 * static_cast<double>(i);
+    base.scores.add(std::vector<ScoreTable::Value>{{"log_score", value}});
+    worse.scores.add(std::vector<ScoreTable::Value>{{"log_score", value + 1.0}});
+  }
+  const Comparisons found =
+      compare_cells(compared_study({base, worse}), "base", scores({"log_score"}));
+  EXPECT_TRUE(std::isnan(found.rows.at(0).ratio));
+  EXPECT_NEAR(found.rows.at(0).difference, 1.0, 1e-12);
+  EXPECT_EQ(found.rows.at(0).verdict(0.95), "worse");
+}
+
 TEST(CompareCells, KnowsWhichSideIsBetter) {
   CellAnalysis few = compared_cell("few", std::vector<double>(20, 1.0));
   few.scores = {};

@@ -59,6 +59,14 @@ TEST(GnuplotChart, DrawsABandThatHasNoEndAbove) {
   EXPECT_THAT(gnuplot_chart(two_panels(), 900).numbers, HasSubstr("\n0,1,1e+100\n"));
 }
 
+TEST(GnuplotChart, DrawsAnEnvelopeAroundZero) {
+  Chart chart = two_panels();
+  chart.panels[0].curves[0].envelope = {3.0, 4.0};
+  EXPECT_THAT(gnuplot_chart(chart, 900).numbers, HasSubstr("\n1,-3,3\n2,-4,4\n"));
+  EXPECT_THAT(gnuplot_chart(chart, 900).commands,
+              HasSubstr("with filledcurves linecolor rgb '#0072B2' fillstyle transparent"));
+}
+
 TEST(GnuplotChart, InterruptsALineWhereAPlaceIsMissing) {
   Chart chart{"x [m]", 0.0, 2.0, {}};
   chart.panels = {{"panel", {false, 0.0, 3.0}, {}, {}, {}}};

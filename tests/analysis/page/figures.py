@@ -35,6 +35,14 @@ class Legend(OnPage):
         self.assertEqual(self.curves("anees", "ekf_slam"), 1)
         self.assertEqual(self.curves("anees", "fastslam2_m10"), 0)
 
+    def test_hides_the_envelopes_of_a_cell_with_its_panels(self):
+        shown = "#figure_error_envelopes g.panel:not([hidden]) path.envelope"
+        self.assertEqual(self.count(shown + "[data-cell=ekf_slam]"), 3)
+        others = self.count(shown) - 3
+        self.press("error_envelopes", "ekf_slam")
+        self.assertEqual(self.count(shown), others)
+        self.assertEqual(self.count(shown + "[data-cell=ekf_slam]"), 0)
+
 
 class Zoom(OnPage):
 

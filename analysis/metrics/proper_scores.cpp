@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Proper scoring rules, which rank distributions: log score and energy score (STATISTICS 23).
+#include "analysis/metrics/proper_scores.hpp"
+
+#include "analysis/metrics/measured_run.hpp"
+#include "analysis/metrics/metric.hpp"
+#include "analysis/metrics/nees.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/output/number_text.hpp"
+#include "analysis/statistics/spread.hpp"
+#include "engine/numbers/real.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace montecarta::analysis {
+namespace {
+
+constexpr std::size_t kDirections = 64;        // of half a turn
+constexpr double kNegativeByRounding = 1e-12;  // variance, as a share of the trace
+
+/// -log N(e; 0, P); NaN if the covariance is singular or unusable.
+double negative_log_density(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
+  const Nees sample = nees<3>(error, covariance);
+  if (sample.rank < 3) return kNaN;
+  const Eigen::Matrix3d L = covariance.llt().matrixL();
+  const double log_determinant = 2.0 * L.diagonal().array().log().sum();
+  return 0.5 * (3.0 * std::log(2.0 * std::numbers::pi) + log_determinant + sample.value);
+}
+
+/// E|X - y| - E|X - X'| / 2 of a normal X of one dimension, y so far from its mean (Gneiting and
+/// Raftery 2007, equation 21).
+double gaussian_crps(double distance, double deviation) {
+  if (deviation == 0.0) return std::abs(distance);
+  const double z = distance / deviation;
+  const double density = std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
+  return deviation *
+         (z * std::erf(z / std::numbers::sqrt2) + 2.0 * density - std::numbers::inv_sqrtpi);
+}
+
+/// The last scan of each of at most kMostEnergyScans equal parts of a run.
+std::vector<std::size_t> energy_scans(std::size_t scans) {
+  const std::size_t count = std::min(scans, kMostEnergyScans);
+  std::vector<std::size_t> chosen(count);
+  for (std::size_t k = 0; k < count; ++k) chosen[k] = (k + 1) * scans / count - 1;
+  return chosen;
+}
+
+/// Of the particles where the filter has some, else of its Gaussian.
+double energy_score_at(const RunRows& rows, std::size_t particles, std::size_t s) {
+  const Eigen::Vector2d truth(rows.truth[3 * s], rows.truth[3 * s + 1]);
+  if (particles > 0) {
+    return energy_score(std::span(rows.particle_pose).subspan(3 * particles * s, 3 * particles),
+                        std::span(rows.log_weight).subspan(particles * s, particles), truth);
+  }
+  const auto& [mean, covariance] = estimate_of(rows);
+  const double* P = covariance.data() + 9 * s;
+  Eigen::Matrix2d of_position;
+  of_position << P[0], P[1], P[3], P[4];
+  return energy_score(Eigen::Vector2d(mean[3 * s], mean[3 * s + 1]) - truth, of_position);
+}
+
+double mean_energy_score(const RunRows& rows, std::size_t particles) {
+  const bool is_stored = particles > 0 ? !rows.particle_pose.empty() && !rows.log_weight.empty()
+                                       : !estimate_of(rows).covariance.empty();
+  if (rows.truth.empty() || !is_stored) return kNaN;
+  std::vector<double> values;
+  for (const std::size_t s : energy_scans(rows.truth.size() / 3))
+    values.push_back(energy_score_at(rows, particles, s));
+  return mean_of_finite(values);
+}
+
+}  // namespace
+
+double log_score(std::span<const Eigen::Vector3d> errors,
+                 std::span<const Eigen::Matrix3d> covariances) {
+  std::vector<double> values;
+  for (std::size_t s = 0; s < covariances.size(); ++s)
+    values.push_back(negative_log_density(errors[s], covariances[s]));
+  return mean_of_finite(values);
+}
+
+double energy_score(std::span<const double> pose, std::span<const double> log_weight,
+                    const Eigen::Vector2d& truth) {
+  double sum = 0.0, distance = 0.0, pairs = 0.0;
+  std::vector<double> weight(log_weight.size());
+  for (std::size_t i = 0; i < weight.size(); ++i) {
+    weight[i] = std::exp(log_weight[i]);
+    const double x = pose[3 * i], y = pose[3 * i + 1];
+    double to_others = 0.0;
+    for (std::size_t j = 0; j < i; ++j)
+      to_others += weight[j] * length(pose[3 * j] - x, pose[3 * j + 1] - y);
+    sum += weight[i];
+    distance += weight[i] * length(truth.x() - x, truth.y() - y);
+    pairs += weight[i] * to_others;  // each pair once: half of the expectation
+  }
+  return distance / sum - pairs / (sum * sum);
+}
+
+// |v| is the mean of |u' v| over all directions u, times pi / 2, so that the score is that of the
+// projections, which are normal; their mean over half a turn is by the trapezoidal rule.
+double energy_score(const Eigen::Vector2d& error, const Eigen::Matrix2d& covariance) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < kDirections; ++k) {
+    const double angle = std::numbers::pi * static_cast<double>(k) / kDirections;
+    const Eigen::Vector2d u(std::cos(angle), std::sin(angle));
+    const double variance = u.dot(covariance * u);
+    if (!(variance >= -kNegativeByRounding * covariance.trace())) return kNaN;
+    sum += gaussian_crps(u.dot(error), std::sqrt(std::max(variance, 0.0)));
+  }
+  return 0.5 * std::numbers::pi * sum / kDirections;
+}
+
+ProperScores proper_scores(const RunRows& rows, std::size_t particles,
+                           std::span<const Eigen::Vector3d> errors,
+                           std::span<const Eigen::Matrix3d> covariances) {
+  return {log_score(errors, covariances), mean_energy_score(rows, particles)};
+}
+
+namespace {
+
+constexpr Score kProperScores[] = {
+    {"log_score", "1", "log score of the pose",
+     [](const MeasuredRun& run) { return run.proper.log_score; }, Better::lower, false},
+    {"energy_score", "m", "energy score of the position",
+     [](const MeasuredRun& run) { return run.proper.energy_score; }},
+};
+
+TextTable proper_scores_table(const StudyAnalysis& study) {
+  TextTable table;
+  table.headings = {{"cell", Align::left}, {"log score"}, {"median run"}, {"energy score [m]"}};
+  for (const CellAnalysis& cell : study.cells) {
+    const Spread log_scores = cell.known_over_runs("log_score");
+    if (log_scores.summary.n == 0) continue;
+    table.rows.push_back({cell.label, readable(log_scores.summary.mean),
+                          readable(log_scores.median),
+                          readable(cell.known_over_runs("energy_score").summary.mean)});
+  }
+  return table;
+}
+
+std::vector<Section> proper_scores_sections(const StudyAnalysis& study) {
+  const TextTable table = proper_scores_table(study);
+  if (table.rows.empty()) return {};
+  Section section{"proper_scores", "Which filter describes its errors best?"};
+  section.add("proper_scores", table);
+  section.add(std::vector<std::string>{
+      "Lower is better. Both scores rate error and covariance together: a filter that reports more "
+      "or less uncertainty than it has gets a higher score than a consistent one with the same "
+      "errors. A log score that is lower by 0.7 means twice the density at the true pose. The "
+      "energy score is a distance, and less sensitive to single runs that diverge; of a particle "
+      "filter it needs record.columns with particles."});
+  return {section};
+}
+
+}  // namespace
+
+Metric proper_scores_metric() {
+  return {.scores = kProperScores, .sections = proper_scores_sections};
+}
+
+}  // namespace montecarta::analysis

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "analysis/data/run_rows.hpp"
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <limits>
+#include <span>
+
+namespace montecarta::analysis {
+
+/// Proper scoring rules of one run (STATISTICS 23): the smaller, the better the filter's
+/// distribution agrees with the truth. Their mean is least for the distribution from which the
+/// truth is drawn, so neither a covariance that is too small nor one that is too large pays.
+struct ProperScores {
+  /// Negative logarithm of the density of the pose [m, m, rad], mean over scans; NaN without a
+  /// covariance.
+  double log_score = std::numeric_limits<double>::quiet_NaN();
+  /// [m] of the position, mean over at most kMostEnergyScans scans; NaN where particles are not
+  /// stored.
+  double energy_score = std::numeric_limits<double>::quiet_NaN();
+};
+
+inline constexpr std::size_t kMostEnergyScans = 100;
+
+/// -log N(e; 0, P), mean over scans; scans with a singular or unusable covariance are left out.
+/// Both {scan}, in one frame.
+double log_score(std::span<const Eigen::Vector3d> errors,
+                 std::span<const Eigen::Matrix3d> covariances);
+
+/// E|X - y| - E|X - X'| / 2 [m] of weighted positions X; `pose` {particle, 3} [m, m, rad],
+/// `log_weight` {particle} normalised, `truth` [m].
+double energy_score(std::span<const double> pose, std::span<const double> log_weight,
+                    const Eigen::Vector2d& truth);
+
+/// The same of a Gaussian; NaN if the covariance is not positive semidefinite. `error` [m],
+/// `covariance` [m^2].
+double energy_score(const Eigen::Vector2d& error, const Eigen::Matrix2d& covariance);
+
+/// Both scores of a run: `errors` and `covariances` are those of RunMetrics, `particles` is their
+/// number (0: the filter is Gaussian).
+ProperScores proper_scores(const RunRows& rows, std::size_t particles,
+                           std::span<const Eigen::Vector3d> errors,
+                           std::span<const Eigen::Matrix3d> covariances);
+
+}  // namespace montecarta::analysis

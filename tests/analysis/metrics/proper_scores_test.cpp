@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/metrics/proper_scores.hpp"
+
+#include "analysis/metrics/score.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/statistics/spread.hpp"
+#include "engine/random/stream.hpp"
+#include "tests/analysis/reported.hpp"
+#include "tests/analysis/synthetic_runs.hpp"
+
+#include <Eigen/Cholesky>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace montecarta::analysis {
+namespace {
+
+const double kLogTwoPi = std::log(2.0 * std::numbers::pi);
+
+double log_score_of(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
+  return log_score(std::vector{error}, std::vector{covariance});
+}
+
+TEST(LogScore, IsTheNegativeLogarithmOfTheDensity) {
+  const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+  EXPECT_NEAR(log_score_of({0, 0, 0}, one), 1.5 * kLogTwoPi, 1e-14);
+  // Of one dimension with deviation 2, an error of 2 has log(2 sqrt(2 pi)) + 1 / 2.
+  const Eigen::Matrix3d wide = Eigen::Vector3d(4, 1, 1).asDiagonal();
+  EXPECT_NEAR(log_score_of({2, 0, 0}, wide), std::log(2.0) + 0.5 + 1.5 * kLogTwoPi, 1e-14);
+  Eigen::Matrix3d correlated = one;
+  correlated.topLeftCorner<2, 2>() << 2, 1, 1, 2;  // determinant 3
+  EXPECT_NEAR(log_score_of({1, 1, 0}, correlated),
+              0.5 * std::log(3.0) + 1.0 / 3.0 + 1.5 * kLogTwoPi, 1e-14);
+}
+
+TEST(LogScore, LeavesOutScansWithoutADensity) {
+  const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d singular = Eigen::Vector3d(1, 1, 0).asDiagonal();
+  const Eigen::Matrix3d indefinite = Eigen::Vector3d(1, 1, -1).asDiagonal();
+  const Eigen::Vector3d none = Eigen::Vector3d::Zero();
+  EXPECT_NEAR(log_score(std::vector{none, none, none}, std::vector{singular, one, indefinite}),
+              1.5 * kLogTwoPi, 1e-14);
+  EXPECT_TRUE(std::isnan(log_score_of(none, singular)));
+  EXPECT_TRUE(std::isnan(log_score({}, {})));
+}
+
+TEST(EnergyScore, KnowsTwoParticlesByHand) {
+  const std::vector<double> pose = {0, 0, 0.1, 2, 0, 0.2};
+  const std::vector<double> equal = {std::log(0.5), std::log(0.5)};
+  // Mean distance to the truth 1; two draws differ by 2 in half of all cases: 1 - 1 / 2.
+  EXPECT_NEAR(energy_score(pose, equal, {0, 0}), 0.5, 1e-14);
+  const std::vector<double> unequal = {std::log(0.75), std::log(0.25)};
+  EXPECT_NEAR(energy_score(pose, unequal, {1, 0}), 1.0 - 0.375, 1e-14);
+  EXPECT_NEAR(energy_score(std::vector{3.0, 4.0, 0.0}, std::vector{0.0}, {0, 0}), 5.0, 1e-14);
+}
+
+TEST(EnergyScore, KnowsARoundGaussianByHand) {
+  const Eigen::Matrix2d round = 4.0 * Eigen::Matrix2d::Identity();
+  // E|X| is the deviation times sqrt(pi / 2), E|X - X'| that times sqrt(2).
+  const double at_mean = 2.0 * std::sqrt(0.5 * std::numbers::pi) * (1.0 - std::sqrt(0.5));
+  EXPECT_NEAR(energy_score(Eigen::Vector2d(0, 0), round), at_mean, 1e-12);
+  // Far away E|X - y| is r + deviation^2 / (2 r).
+  const double far = 500.0 + 4.0 / 1000.0 - std::sqrt(std::numbers::pi);
+  EXPECT_NEAR(energy_score(Eigen::Vector2d(300, 400), round), far, 0.05);
+}
+
+TEST(EnergyScore, OfAGaussianIsThatOfManyOfItsDraws) {
+  constexpr std::size_t kDraws = 3000;
+  Eigen::Matrix2d P;
+  P << 4.0, 0.9, 0.9, 0.25;
+  const Eigen::Matrix2d L = P.llt().matrixL();
+  RngStream draw({5, 0, 0, 0, Draw::test});
+  std::vector<double> pose;
+  for (std::size_t k = 0; k < kDraws; ++k) {
+    const Eigen::Vector2d x = L * Eigen::Vector2d(draw.normal(), draw.normal());
+    pose.insert(pose.end(), {x(0), x(1), 0.0});
+  }
+  const std::vector<double> log_weight(kDraws, -std::log(static_cast<double>(kDraws)));
+  for (const Eigen::Vector2d& error : {Eigen::Vector2d(0.5, -0.3), Eigen::Vector2d(3.0, 2.0)}) {
+    const double standard_error = 2.0 / std::sqrt(static_cast<double>(kDraws));
+    EXPECT_NEAR(energy_score(pose, log_weight, -error), energy_score(error, P),
+                3.0 * standard_error);
+  }
+}
+
+TEST(EnergyScore, OfACertainPositionIsItsError) {
+  EXPECT_NEAR(energy_score(Eigen::Vector2d(3, 4), Eigen::Matrix2d::Zero()), 5.0, 2e-3);
+  const Eigen::Matrix2d indefinite = Eigen::Vector2d(1, -1).asDiagonal();
+  EXPECT_TRUE(std::isnan(energy_score(Eigen::Vector2d(0, 0), indefinite)));
+  EXPECT_TRUE(std::isnan(energy_score(Eigen::Vector2d(kNaN, 0), Eigen::Matrix2d::Identity())));
+}
+
+MeasuredRun measured(const RunRows& rows, const std::vector<double>& times,
+                     std::size_t particles = 0) {
+  MeasuredRun run;
+  run.rows = rows;
+  run.measure(criteria_of_scans(times), particles);
+  return run;
+}
+
+/// Scores of a filter that reports `factor` times the covariance of its errors.
+ProperScores scores_of_a_filter(double factor) {
+  const SyntheticStudy study;
+  RunRows rows = study.run(0);
+  for (double& element : rows.spread.covariance) element *= factor;
+  return measured(rows, study.times()).proper;
+}
+
+TEST(ProperScores, AreWorseForAWrongCovarianceOfTheSameErrors) {
+  const ProperScores right = scores_of_a_filter(1.0);
+  for (const double factor : {0.25, 4.0}) {
+    const ProperScores wrong = scores_of_a_filter(factor);
+    const double expected = 1.5 * (std::log(factor) + 1.0 / factor - 1.0);
+    const double standard_error = std::sqrt(1.5 / 400.0) * std::abs(1.0 - 1.0 / factor);
+    EXPECT_NEAR(wrong.log_score - right.log_score, expected, 5.0 * standard_error) << factor;
+    EXPECT_GT(wrong.energy_score, 1.02 * right.energy_score) << factor;
+  }
+}
+
+/// Two hundred scans of one particle: an error of 1 m at every second scan, of 1000 m before.
+RunRows rows_of_a_particle() {
+  RunRows rows;
+  for (std::size_t s = 0; s < 200; ++s) {
+    const double error = s % 2 == 1 ? 1.0 : 1000.0;
+    rows.truth.insert(rows.truth.end(), {0.0, 0.0, 0.0});
+    rows.spread.mean.insert(rows.spread.mean.end(), {error, 0.0, 0.0});
+    rows.particle_pose.insert(rows.particle_pose.end(), {error, 0.0, 0.0});
+    rows.log_weight.push_back(0.0);
+  }
+  return rows;
+}
+
+TEST(ProperScores, TakeTheEnergyScoreAtAHundredScans) {
+  EXPECT_DOUBLE_EQ(measured(rows_of_a_particle(), scan_times(200), 1).proper.energy_score, 1.0);
+}
+
+TEST(ProperScores, AreNaNWithoutCovarianceOrParticles) {
+  RunRows rows = rows_of_a_particle();
+  rows.particle_pose.clear();
+  const std::vector<double> times = scan_times(200);
+  for (const std::size_t particles : {0u, 1u}) {
+    const MeasuredRun run = measured(rows, times, particles);
+    EXPECT_TRUE(std::isnan(find_score("log_score")->of(run)));
+    EXPECT_TRUE(std::isnan(find_score("energy_score")->of(run)));
+  }
+  rows.truth.clear();
+  EXPECT_TRUE(std::isnan(measured(rows, times).proper.energy_score));
+}
+
+TEST(ProperScores, AreTheTableOfCellsThatHaveACovariance) {
+  StudyAnalysis study;
+  study.cells.resize(2);
+  study.cells[0].label = "right";
+  for (const double score : {1.0, 2.0, 9.0})
+    study.cells[0].scores.add(std::vector<ScoreTable::Value>{{"log_score", score}});
+  const TextTable table = reported_table(study, "proper_scores");
+  ASSERT_EQ(table.rows.size(), 1u);
+  EXPECT_EQ(table.rows[0], (TableRow{"right", "4.00", "2.00", "-"}));
+}
+
+}  // namespace
+}  // namespace montecarta::analysis
