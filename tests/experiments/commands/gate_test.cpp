@@ -45,9 +45,9 @@ class GateOfAFile : public BlinkProgram {
 
 TEST_F(GateOfAFile, TellsByItsExitCode) {
   run();
-  const Called right = gate("right", {"--within", "1.5"});
+  const Called right = gate("right", {"--within", "2"});
   EXPECT_EQ(right.code, 0) << right.out << right.err;
-  EXPECT_THAT(right.out, ContainsRegex("^right is consistent within 1.5 in every component"));
+  EXPECT_THAT(right.out, ContainsRegex("^right is consistent within 2 in every component"));
   const Called too_sure = gate("too_sure", {"--within", "1.5"});
   EXPECT_EQ(too_sure.code, 4);
   EXPECT_THAT(too_sure.out,
@@ -62,7 +62,7 @@ TEST_F(GateOfAFile, TellsByItsExitCode) {
 }
 
 TEST_F(GateOfAFile, AsksForTheMarginOfTheStudy) {
-  run({"study.within=1.5"});
+  run({"study.within=2"});
   EXPECT_EQ(gate("right").code, 0);
 }
 
@@ -157,7 +157,7 @@ TEST_F(GateOfEstimates, StopsAVarianceOfZeroWhereTheErrorIsLarge) {
     return Sample{n, std::abs(n) > 1.2 ? 0.0 : 0.46};
   });
   EXPECT_EQ(called.code, 4) << called.out << called.err;
-  EXPECT_THAT(called.out, HasSubstr("overconfident"));
+  EXPECT_THAT(called.out, HasSubstr("times too large"));
 }
 
 // Few runs, or runs that hardly differ, leave no double for the tails that the verdict asks for.

@@ -164,7 +164,7 @@ TEST_F(Judge, AVectorHasItsOwnDimension) {
   ASSERT_EQ(study.cells[0].nees.size(), 1U);
   EXPECT_EQ(study.cells[0].nees[0].series.dimension, 2U);
   EXPECT_NEAR(study.cells[0].nees[0].mean, 1.5, 1e-12);
-  EXPECT_THAT(call({"analyze", "mine.h5", "--explain"}).out, HasSubstr("components: a, b"));
+  EXPECT_THAT(call({"analyze", "mine.h5", "--explain"}).out, HasSubstr("(a, b)"));
   EXPECT_EQ(call({"report", "mine.h5", "-o", "page"}).code, 0);
   EXPECT_THAT(call({"compare", "mine.h5", "--baseline", "e"}).err, HasSubstr("has one cell, e"));
   words.back() = "body";

@@ -243,8 +243,10 @@ TEST(ConventionHintsSlow, NameTheRightConvention) {
 
 TEST(ConventionHints, SayWhatCannotBeToldApart) {
   const ConventionHint hint = hint_of(plane_shape(), ErrorConvention::body, 1);
-  EXPECT_THAT(in_words(hint, "mine", "world"), HasSubstr("not have been rejected as body (NEES ratio "));
-  EXPECT_THAT(in_words(hint, "mine", "body"), HasSubstr("would have been rejected: world (NEES ratio "));
+  EXPECT_THAT(in_words(hint, "mine", "world"),
+              HasSubstr("not have been rejected as body (NEES ratio "));
+  EXPECT_THAT(in_words(hint, "mine", "body"),
+              HasSubstr("would have been rejected: world (NEES ratio "));
   const ConventionHint none{{hint.by_convention[0], hint.by_convention[0], hint.by_convention[0]}};
   EXPECT_THAT(in_words(none, "mine", "body"), HasSubstr("rejected as well: world (NEES ratio "));
   const ConventionHint alike{{hint.by_convention[1], hint.by_convention[1]}};

@@ -5,8 +5,8 @@
 usage: planted_faults_test.py MONTECARTA
 
 Each cell has 200 runs of 64 scans of a vector of three components, whose estimator reports the unit
-matrix. Errors follow an autoregression of 0.95 from scan to scan. `gate` must stop every fault, name
-its family within 1.1, and let the right estimator pass within 1.5."""
+matrix. Errors follow an autoregression of 0.95 from scan to scan. `gate` must stop every fault and
+name its family within 1.1, and let the right estimator pass within 1.5."""
 import json
 import math
 import pathlib
