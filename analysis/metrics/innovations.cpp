@@ -7,7 +7,6 @@
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/output/number_text.hpp"
-#include "analysis/statistics/bootstrap.hpp"
 #include "analysis/statistics/spread.hpp"
 
 #include <boost/math/distributions/normal.hpp>
@@ -36,7 +35,7 @@ double widest_bound(const Innovations& found) {
 class InnovationsOverRuns final : public MetricSums {
  public:
   explicit InnovationsOverRuns(const RunCriteria& criteria)
-      : level_(criteria.level),
+      : criteria_(&criteria),
         has_common_scans_(criteria.drives.empty()),
         innovations_(criteria.times.size()) {}
   void add(const MeasuredRun& run) override {
@@ -44,7 +43,7 @@ class InnovationsOverRuns final : public MetricSums {
   }
   void put(CellAnalysis& cell) override {
     if (innovations_.empty()) return;
-    Innovations found = innovations_.result(level_);
+    Innovations found = innovations_.result(criteria_->times, criteria_->level, criteria_->within);
     if (!has_common_scans_) {
       found.average.clear();
       found.bounds.clear();
@@ -53,7 +52,7 @@ class InnovationsOverRuns final : public MetricSums {
   }
 
  private:
-  double level_;
+  const RunCriteria* criteria_;
   bool has_common_scans_;  ///< else runs are drives of their own, without a mean over time
   InnovationSums innovations_;
 };
@@ -61,9 +60,9 @@ class InnovationsOverRuns final : public MetricSums {
 void innovations_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
   const bool known = cell.find<Innovations>() != nullptr;
   const Innovations& found = cell.get<Innovations>();
-  all.push_back({"nis_per_component", "1", known ? found.mean : kNaN});
-  all.push_back({"nis_per_component_lower", "1", known ? found.interval.lower : kNaN});
-  all.push_back({"nis_per_component_upper", "1", known ? found.interval.upper : kNaN});
+  all.push_back({"nis_per_component", "1", known ? found.verdict.ratio_estimate() : kNaN});
+  all.push_back({"nis_per_component_lower", "1", known ? found.verdict.ratio().lower : kNaN});
+  all.push_back({"nis_per_component_upper", "1", known ? found.verdict.ratio().upper : kNaN});
   all.push_back({"nis_share_inside", "1", known ? found.share_inside : kNaN});
   for (std::size_t lag = 1; lag <= kInnovationLags; ++lag) {
     all.push_back({"innovation_correlation_" + std::to_string(lag), "1",
@@ -84,7 +83,7 @@ std::vector<std::string> innovation_row(const CellAnalysis& cell) {
   const Innovations& found = *cell.find<Innovations>();
   const std::size_t lag = found.worst_lag;
   return {cell.label,
-          with_interval(found.mean, found.interval),
+          with_interval(found.verdict.ratio_estimate(), found.verdict.ratio()),
           percent(found.share_inside),
           readable(found.autocorrelation.front()),
           lag == 0 ? "-" : readable(found.autocorrelation[lag - 1]) + " at " + std::to_string(lag),
@@ -185,22 +184,20 @@ std::vector<Figure> innovations_figures(const StudyAnalysis& study) {
 }  // namespace
 
 InnovationSums::InnovationSums(std::size_t scans)
-    : nis_(scans), dof_(scans), products_(1 + std::min(kInnovationLags, scans / 4)) {}
+    : nis_(scans), products_(1 + std::min(kInnovationLags, scans / 4)) {}
 
 void InnovationSums::add(std::span<const double> nis, std::span<const std::uint32_t> dof) {
-  double sum = 0.0, freedom = 0.0;
+  bool has_any = false;
   deviations_.assign(nis.size(), kNaN);
   for (std::size_t s = 0; s < nis.size(); ++s) {
     if (dof[s] == 0 || !std::isfinite(nis[s])) continue;
     const double n = dof[s];
-    nis_[s] += nis[s];
-    dof_[s] += dof[s];
-    sum += nis[s];
-    freedom += n;
+    nis_.add(s, nis[s], n);
+    has_any = true;
     deviations_[s] = (nis[s] - n) / std::sqrt(2.0 * n);
   }
-  if (freedom == 0.0) return;
-  run_means_.push_back(sum / freedom);
+  if (!has_any) return;
+  ++runs_;
   for (std::size_t lag = 0; lag < products_.size(); ++lag) {
     Products& sums = products_[lag];
     for (std::size_t s = lag; s < deviations_.size(); ++s) {
@@ -213,22 +210,21 @@ void InnovationSums::add(std::span<const double> nis, std::span<const std::uint3
   }
 }
 
-Innovations InnovationSums::result(double level) const {
+Innovations InnovationSums::result(std::span<const double> times, double level,
+                                   double within) const {
   Innovations result;
   double tested = 0.0, inside = 0.0;
-  for (std::size_t s = 0; s < nis_.size(); ++s) {
-    const auto n = static_cast<double>(dof_[s]);
-    result.average.push_back(nis_[s] / n);  // NaN where there is none
-    result.bounds.push_back(dof_[s] == 0 ? Interval{} : nees_bounds(dof_[s], 1, level));
-    if (dof_[s] == 0) continue;
+  for (const SummedError::Scan& scan : nis_.scans()) {
+    const auto freedom = static_cast<std::uint64_t>(scan.dimensions);
+    result.average.push_back(scan.ratio());  // NaN where there is none
+    result.bounds.push_back(freedom == 0 ? Interval{} : nees_bounds(freedom, 1, level));
+    if (freedom == 0) continue;
     const Interval& band = result.bounds.back();
     tested += 1.0;
-    inside += band.lower <= result.average[s] && result.average[s] <= band.upper ? 1.0 : 0.0;
+    inside += band.lower <= scan.ratio() && scan.ratio() <= band.upper ? 1.0 : 0.0;
   }
-  const auto runs = static_cast<double>(run_means_.size());
-  for (const double mean : run_means_) result.mean += mean / runs;
   result.share_inside = inside / tested;
-  result.interval = bootstrap_mean(run_means_, level);
+  result.verdict = judge(nis_.white_families(level, times), level, within, runs_);
   result.autocorrelation.assign(kInnovationLags, kNaN);
   result.white_bound.assign(kInnovationLags, kNaN);
   const double mean = products_[0].both / (2.0 * products_[0].n);
@@ -252,8 +248,10 @@ bool Innovations::is_white() const {
 }
 
 std::string whiteness_in_words(const Innovations& found) {
-  if (found.worst_lag == 0) return "not tested";
-  return found.is_white() ? "white" : "not white";
+  const std::string white = found.worst_lag == 0 ? "whiteness not tested"
+                            : found.is_white()   ? "white"
+                                                 : "not white";
+  return white + ", " + name_of(found.verdict.answer);
 }
 
 Metric innovations_metric() {

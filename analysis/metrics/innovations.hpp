@@ -2,6 +2,8 @@
 #pragma once
 
 #include "analysis/statistics/nees_bounds.hpp"
+#include "analysis/verdict/summed_error.hpp"
+#include "analysis/verdict/verdict.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -21,8 +23,7 @@ struct Innovations {
   std::vector<double> average;   ///< {scan} NIS over degrees of freedom, over runs; NaN: none
   std::vector<Interval> bounds;  ///< {scan} of the average (chi-square)
   double share_inside = 0.0;     ///< of scans with a degree of freedom
-  double mean = 0.0;             ///< NIS over degrees of freedom, mean over runs
-  Interval interval = {};        ///< of that mean over infinitely many runs (bootstrap)
+  Verdict verdict;               ///< on size, stretches and scans, if the innovations are white
   std::vector<double> autocorrelation;  ///< {lag - 1} of the NIS, over all runs; NaN: not tested
   /// {lag - 1} which white innovations exceed at no lag with the probability of the level.
   std::vector<double> white_bound;
@@ -31,7 +32,7 @@ struct Innovations {
   bool is_white() const;  ///< whether no lag exceeds its bound; true if none is tested
 };
 
-/// "white", "not white" or "not tested".
+/// "white, consistent", "not white, optimistic", ...
 std::string whiteness_in_words(const Innovations& found);
 
 /// Adds up the NIS over runs.
@@ -41,13 +42,13 @@ class InnovationSums {
 
   /// One run, {scan}.
   void add(std::span<const double> nis, std::span<const std::uint32_t> dof);
-  bool empty() const { return run_means_.empty(); }
-  Innovations result(double level) const;
+  bool empty() const { return runs_ == 0; }
+  /// `times` [s] of the scans; `level` of the whiteness and of bounds, `within` the margin.
+  Innovations result(std::span<const double> times, double level, double within) const;
 
  private:
-  std::vector<double> nis_;         ///< {scan} over runs
-  std::vector<std::uint64_t> dof_;  ///< {scan} over runs
-  std::vector<double> run_means_;   ///< {run} NIS over degrees of freedom
+  SummedError nis_;         ///< {scan}
+  std::uint64_t runs_ = 0;  ///< with an innovation
   /// Sums over pairs of scans that both have innovations, over all runs.
   struct Products {
     double n = 0.0;        ///< pairs

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/verdict/summed_error.hpp"
 
-#include "analysis/statistics/squares_law.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -33,6 +31,13 @@ class ScanLaws {
 };
 
 }  // namespace
+
+Candidate ratio_candidate(Family family, Member member, const SquaresLaw& law) {
+  const double ratio = member.estimate;
+  member.p = law.p_value(ratio);
+  return {family, std::move(member),
+          [law, ratio](double level) { return law.interval(ratio, level); }};
+}
 
 std::vector<FamilyTest> judge_candidates(std::span<const Candidate> candidates, double level) {
   std::vector<FamilyTest> families;
@@ -96,6 +101,35 @@ std::vector<FamilyTest> SummedError::families(double level, std::span<const doub
   std::vector<Candidate> all = {{Family::size,
                                  {.name = "all", .estimate = ratio, .p = law.p_value(ratio)},
                                  [law, ratio](double of) { return law.interval(ratio, of); }}};
+  std::ranges::move(scan_candidates(times), std::back_inserter(all));
+  return judge_candidates(all, level);
+}
+
+SummedError::Scan SummedError::sum_of(std::size_t first, std::size_t end) const {
+  Scan sum;
+  for (std::size_t s = first; s < end; ++s) {
+    sum.nees += scans_[s].nees;
+    sum.dimensions += scans_[s].dimensions;
+  }
+  return sum;
+}
+
+std::vector<FamilyTest> SummedError::white_families(double level,
+                                                    std::span<const double> times) const {
+  const auto law_of = [](const Scan& sum) { return SquaresLaw({1.0, 1.0, 1.0}, sum.dimensions); };
+  const Scan whole = sum_of(0, scans_.size());
+  if (!(whole.dimensions > 0.0)) return {};
+  std::vector<Candidate> all = {
+      ratio_candidate(Family::size, {.name = "all", .estimate = whole.ratio()}, law_of(whole))};
+  const std::size_t stretches = scans_.size() < 2 * kStretches ? 0 : kStretches;
+  for (std::size_t k = 0; k < stretches; ++k) {
+    const std::size_t first = k * scans_.size() / stretches;
+    const std::size_t end = (k + 1) * scans_.size() / stretches;
+    const Scan sum = sum_of(first, end);
+    if (!(sum.dimensions > 0.0)) continue;
+    Member member{.from = times[first], .to = times[end - 1], .estimate = sum.ratio()};
+    all.push_back(ratio_candidate(Family::stretch, std::move(member), law_of(sum)));
+  }
   std::ranges::move(scan_candidates(times), std::back_inserter(all));
   return judge_candidates(all, level);
 }

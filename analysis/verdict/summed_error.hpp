@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/statistics/squares_law.hpp"
 #include "analysis/verdict/family.hpp"
 
 #include <cstddef>
@@ -10,12 +11,18 @@
 
 namespace montecarta::analysis {
 
+/// Stretches of a drive that are judged by themselves, where there are scans for twice as many.
+inline constexpr std::size_t kStretches = 8;
+
 /// A member of a family whose intervals are yet to be computed.
 struct Candidate {
   Family family = Family::size;
   Member member;
   std::function<Interval(double level)> interval;
 };
+
+/// A ratio of squared errors to the expected ones, member.estimate, with its law.
+Candidate ratio_candidate(Family family, Member member, const SquaresLaw& law);
 
 /// Families in the order of their candidates, with intervals, judged together at `level`.
 std::vector<FamilyTest> judge_candidates(std::span<const Candidate> candidates, double level);
@@ -40,8 +47,14 @@ class SummedError {
   /// Size and scans alone, for errors of which only the NEES is known: the size by the law of
   /// errors that never change within a run, which is the widest.
   std::vector<FamilyTest> families(double level, std::span<const double> times) const;
+  /// Size, stretches and scans of errors that are independent from scan to scan, as the innovations
+  /// of a consistent filter are: all of these sums are exactly chi-square.
+  std::vector<FamilyTest> white_families(double level, std::span<const double> times) const;
 
  private:
+  /// The sum over scans [first, end).
+  Scan sum_of(std::size_t first, std::size_t end) const;
+
   std::vector<Scan> scans_;
 };
 

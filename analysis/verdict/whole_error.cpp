@@ -13,16 +13,8 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr std::size_t kStretches = 8;
 constexpr std::size_t kMostKeptRuns = 256;
 constexpr std::size_t kMostKeptErrors = 8'000'000;  // 64 MB
-
-Candidate ratio_candidate(Family family, Member member, const SquaresLaw& law) {
-  const double ratio = member.estimate;
-  member.p = law.p_value(ratio);
-  return {family, std::move(member),
-          [law, ratio](double level) { return law.interval(ratio, level); }};
-}
 
 Interval interval_of_mean(const Summary& mean, double level) {
   const double half = t_score(level, static_cast<double>(mean.n) - 1.0) * mean.standard_error();

@@ -5,6 +5,7 @@
 #include "analysis/metrics/innovations.hpp"
 
 #include "engine/random/stream.hpp"
+#include "tests/analysis/synthetic_runs.hpp"
 #include "tests/analysis/verdict_studies.hpp"
 
 #include <gtest/gtest.h>
@@ -18,6 +19,10 @@ namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kInnovationScans = 300;
+
+Innovations judged(const InnovationSums& sums, std::size_t scans) {
+  return sums.result(scan_times(scans), 0.95, 1.1);
+}
 
 /// NIS of four degrees of freedom, `scale` times what they should be; each innovation is `memory`
 /// times the one before, plus news.
@@ -36,17 +41,19 @@ Innovations innovations_of(double scale, double memory, std::uint64_t seed = 23)
     }
     sums.add(nis, std::vector<std::uint32_t>(kInnovationScans, 4));
   }
-  return sums.result(0.95);
+  return judged(sums, kInnovationScans);
 }
 
 TEST(Innovations, OfAConsistentFilterAreWhiteAndOfTheRightSize) {
   const Innovations found = innovations_of(1.0, 0.0);
-  EXPECT_NEAR(found.mean, 1.0, 5.0 * std::sqrt(2.0 / (4.0 * 40.0 * kInnovationScans)));
-  EXPECT_LT(found.interval.lower, 1.0);
-  EXPECT_GT(found.interval.upper, 1.0);
+  EXPECT_NEAR(found.verdict.ratio_estimate(), 1.0,
+              5.0 * std::sqrt(2.0 / (4.0 * 40.0 * kInnovationScans)));
+  EXPECT_LT(found.verdict.ratio().lower, 1.0);
+  EXPECT_GT(found.verdict.ratio().upper, 1.0);
   EXPECT_NEAR(found.share_inside, 0.95, 5.0 * std::sqrt(0.95 * 0.05 / kInnovationScans));
   EXPECT_TRUE(found.is_white());
   EXPECT_LT(found.white_bound[0], 0.04);
+  EXPECT_EQ(found.verdict.answer, Answer::consistent);
 }
 
 // The squares of an autoregression of memory r go together by r^2.
@@ -59,10 +66,11 @@ TEST(Innovations, ThatRememberAreNotWhite) {
 
 TEST(Innovations, ThatAreTooLargeLeaveTheBand) {
   const Innovations found = innovations_of(1.5, 0.0);
-  EXPECT_GT(found.interval.lower, 1.4);
+  EXPECT_GT(found.verdict.ratio().lower, 1.4);
   EXPECT_LT(found.share_inside, 0.2);
   EXPECT_NEAR(found.autocorrelation[0], 0.0, 0.04);
   EXPECT_TRUE(found.is_white()) << "that they are too large is another fault";
+  EXPECT_EQ(whiteness_in_words(found), "white, optimistic");
 }
 
 /// Of one run.
@@ -70,7 +78,7 @@ Innovations innovations_of_run(const std::vector<double>& nis,
                                const std::vector<std::uint32_t>& dof) {
   InnovationSums sums(nis.size());
   sums.add(nis, dof);
-  return sums.result(0.95);
+  return judged(sums, nis.size());
 }
 
 // Deviations from their mean are -1/2, 1/2, ...: 7 pairs one scan apart, 6 pairs two scans apart;
@@ -112,7 +120,7 @@ TEST(Innovations, ThatAlternateAreNotWhite) {
     }
     sums.add(nis, std::vector<std::uint32_t>(kInnovationScans, 4));
   }
-  const Innovations found = sums.result(0.95);
+  const Innovations found = judged(sums, kInnovationScans);
   EXPECT_NEAR(found.autocorrelation[0], -0.5, 0.05);
   EXPECT_LT(*std::ranges::max_element(found.autocorrelation), found.white_bound[19]);
   EXPECT_FALSE(found.is_white());
@@ -120,7 +128,7 @@ TEST(Innovations, ThatAlternateAreNotWhite) {
 
 TEST(Innovations, ThatAreNoNumbersAreLeftOut) {
   const Innovations found = innovations_of_run({2.0, std::nan(""), 6.0}, {2, 2, 2});
-  EXPECT_DOUBLE_EQ(found.mean, 2.0);
+  EXPECT_DOUBLE_EQ(found.verdict.ratio_estimate(), 2.0);
   EXPECT_TRUE(std::isnan(found.average[1]));
 }
 
@@ -130,8 +138,8 @@ TEST(Innovations, ScansWithoutDetectionsAreLeftOut) {
   sums.add(std::vector{0.0, 0.0, 0.0}, std::vector<std::uint32_t>{0, 0, 0});
   EXPECT_TRUE(sums.empty());
   sums.add(std::vector{2.0, 0.0, 6.0}, std::vector<std::uint32_t>{2, 0, 2});
-  const Innovations found = sums.result(0.95);
-  EXPECT_DOUBLE_EQ(found.mean, 2.0);
+  const Innovations found = judged(sums, 3);
+  EXPECT_DOUBLE_EQ(found.verdict.ratio_estimate(), 2.0);
   EXPECT_DOUBLE_EQ(found.average[0], 1.0);
   EXPECT_TRUE(std::isnan(found.average[1]));
   EXPECT_DOUBLE_EQ(found.bounds[2].upper, nees_bounds(2, 1, 0.95).upper);
@@ -154,7 +162,7 @@ bool is_called_white(const WhiteStudy& study, std::uint64_t seed) {
     }
     sums.add(nis, dof);
   }
-  return sums.result(0.95).is_white();
+  return judged(sums, study.scans).is_white();
 }
 
 // The squares of one degree of freedom have heavy tails; of a single run 7 % are called not white.
