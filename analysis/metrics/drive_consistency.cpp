@@ -239,7 +239,7 @@ std::vector<std::string> drive_row(const CellAnalysis& cell, const JudgedReferen
           is_judged ? block_text(drive, ErrorBlock::heading) : "-",
           std::to_string(drive.mean.fixes),
           is_judged ? readable(drive.mean.leads().effective_samples) : "-",
-          innovations == nullptr ? "-" : readable(innovations->mean),
+          innovations == nullptr ? "-" : readable(innovations->verdict.ratio_estimate()),
           innovations == nullptr ? "-" : whiteness_in_words(*innovations)};
 }
 

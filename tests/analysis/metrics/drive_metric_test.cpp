@@ -245,7 +245,8 @@ TEST(OwnDrives, HaveNoMeanOverTime) {
   criteria.drives = {{scans, {}, {}}, {others, {}, {}}};
   EXPECT_TRUE(analysed().over_time("ess").empty());
   EXPECT_TRUE(analysed().get<Innovations>().average.empty());
-  EXPECT_DOUBLE_EQ(analysed().get<Innovations>().mean, 1.5) << "of whole runs there is one";
+  EXPECT_DOUBLE_EQ(analysed().get<Innovations>().verdict.ratio_estimate(), 1.5)
+      << "of whole runs there is one";
   EXPECT_TRUE(series_of(analysed()).empty());
 }
 
