@@ -159,7 +159,7 @@ void RunMetrics::whiten_pose(const RunRows& rows, std::size_t particles, std::si
   const Eigen::Matrix3d P = Eigen::Map<const RowMajor3>(moments.covariance.data() + 9 * s);
   const auto u = std::span(whitened_.whitened).subspan(3 * s, 3);
   const auto z = std::span(whitened_.standardised).subspan(3 * s, 3);
-  const std::size_t rank = whiten(error, turn * P * turn.transpose(), least_pose_deviation(), u, z);
+  const std::size_t rank = analysis::whiten_pose(error, turn * P * turn.transpose(), u, z);
   if (is_drawn_here && rank > 0) put_on_normal_scale(draws_at(rows, particles, s), rank, u, z);
 }
 

@@ -168,6 +168,23 @@ Nees imported_nees(const Eigen::VectorXd& error, const Eigen::MatrixXd& P) {
   return nees_in_range(error, P, least);
 }
 
+std::size_t whiten_pose(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance,
+                        std::span<double> whitened_error, std::span<double> standardised) {
+  const Eigen::Vector3d least = kLeastDeviation.cwiseAbs2();
+  const bool is_finite = error.allFinite() && covariance.allFinite();
+  const auto y = is_finite ? whitened<3>(error, covariance, least) : std::nullopt;
+  if (!y || y->cwiseAbs().maxCoeff() > kLargestError) {
+    return whiten(error, covariance, kLeastDeviation, whitened_error, standardised);
+  }
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const auto component = static_cast<std::size_t>(k);
+    whitened_error[component] = (*y)(k);
+    standardised[component] =
+        std::clamp(error(k) / std::sqrt(covariance(k, k)), -kLargestError, kLargestError);
+  }
+  return 3;
+}
+
 std::size_t whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance,
                    const Eigen::VectorXd& least_deviation, std::span<double> whitened_error,
                    std::span<double> standardised) {
@@ -191,8 +208,6 @@ std::size_t whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covarian
   }
   return open.size();
 }
-
-Eigen::VectorXd least_pose_deviation() { return kLeastDeviation; }
 
 double on_full_scale(const Nees& sample, std::size_t dimension) {
   if (sample.rank <= 0) return kNaN;

@@ -84,8 +84,9 @@ std::size_t whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covarian
                    const Eigen::VectorXd& least_deviation, std::span<double> whitened_error,
                    std::span<double> standardised);
 
-/// Deviations that are taken for 0 in a pose: x [m], y [m], heading [rad].
-Eigen::VectorXd least_pose_deviation();
+/// The same of a pose, whose components count as exact as in nees().
+std::size_t whiten_pose(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance,
+                        std::span<double> whitened_error, std::span<double> standardised);
 
 /// Puts the NEES of a covariance of lower rank on the scale of `dimension` components: it becomes
 /// the value that is as probable under the chi-square law of `dimension` degrees of freedom. What a

@@ -42,6 +42,15 @@ double gaussian_crps(double distance, double deviation) {
          (z * std::erf(z / std::numbers::sqrt2) + 2.0 * density - std::numbers::inv_sqrtpi);
 }
 
+std::vector<Eigen::Vector2d> directions_of_half_a_turn() {
+  std::vector<Eigen::Vector2d> all;
+  for (std::size_t k = 0; k < kDirections; ++k) {
+    const double angle = std::numbers::pi * static_cast<double>(k) / kDirections;
+    all.emplace_back(std::cos(angle), std::sin(angle));
+  }
+  return all;
+}
+
 /// The last scan of each of at most kMostEnergyScans equal parts of a run.
 std::vector<std::size_t> energy_scans(std::size_t scans) {
   const std::size_t count = std::min(scans, kMostEnergyScans);
@@ -104,10 +113,9 @@ double energy_score(std::span<const double> pose, std::span<const double> log_we
 // |v| is the mean of |u' v| over all directions u, times pi / 2, so that the score is that of the
 // projections, which are normal; their mean over half a turn is by the trapezoidal rule.
 double energy_score(const Eigen::Vector2d& error, const Eigen::Matrix2d& covariance) {
+  static const std::vector<Eigen::Vector2d> directions = directions_of_half_a_turn();
   double sum = 0.0;
-  for (std::size_t k = 0; k < kDirections; ++k) {
-    const double angle = std::numbers::pi * static_cast<double>(k) / kDirections;
-    const Eigen::Vector2d u(std::cos(angle), std::sin(angle));
+  for (const Eigen::Vector2d& u : directions) {
     const double variance = u.dot(covariance * u);
     if (!(variance >= -kNegativeByRounding * covariance.trace())) return kNaN;
     sum += gaussian_crps(u.dot(error), std::sqrt(std::max(variance, 0.0)));

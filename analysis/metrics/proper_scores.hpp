@@ -23,7 +23,7 @@ struct ProperScores {
   double energy_score = std::numeric_limits<double>::quiet_NaN();
 };
 
-inline constexpr std::size_t kMostEnergyScans = 100;
+inline constexpr std::size_t kMostEnergyScans = 20;
 
 /// -log N(e; 0, P), mean over scans; scans with a singular or unusable covariance are left out.
 /// Both {scan}, in one frame.

@@ -2,6 +2,7 @@
 #include "analysis/statistics/squares_law.hpp"
 
 #include "engine/errors.hpp"
+#include "engine/numbers/lanes.hpp"
 
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -14,27 +15,29 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr std::size_t kLanes = 8;      // sums of a scalar product, added in a fixed order
-constexpr double kFarthestScore = 37;  // the normal law has no double beyond
+constexpr std::size_t kLanes = engine::Lanes::kSize;  // sums of a product, added in a fixed order
+constexpr double kFarthestScore = 37;                 // the normal law has no double beyond
 constexpr double kFewestDegrees = 2.0;
 constexpr double kLeastTail = 1e-17;  // of a level that rounding made 1
 
-using Lanes = std::array<double, kLanes>;
-
-double total(const Lanes& sums) {
-  return ((sums[0] + sums[4]) + (sums[2] + sums[6])) + ((sums[1] + sums[5]) + (sums[3] + sums[7]));
+double total(const engine::Lanes& sums) {
+  std::array<double, kLanes> each{};
+  sums.store_unaligned(each.data());
+  return ((each[0] + each[4]) + (each[2] + each[6])) + ((each[1] + each[5]) + (each[3] + each[7]));
 }
 
 /// Scalar products of `row` with four others, all of the same `length`, a multiple of kLanes.
 std::array<double, 4> products_with_four(const double* row, std::array<const double*, 4> others,
                                          std::size_t length) {
-  std::array<Lanes, 4> sums{};
+  engine::Lanes a(0.0), b(0.0), c(0.0), d(0.0);
   for (std::size_t k = 0; k < length; k += kLanes) {
-    for (std::size_t o = 0; o < 4; ++o) {
-      for (std::size_t l = 0; l < kLanes; ++l) sums[o][l] += row[k + l] * others[o][k + l];
-    }
+    const engine::Lanes here = engine::Lanes::load_unaligned(row + k);
+    a += here * engine::Lanes::load_unaligned(others[0] + k);
+    b += here * engine::Lanes::load_unaligned(others[1] + k);
+    c += here * engine::Lanes::load_unaligned(others[2] + k);
+    d += here * engine::Lanes::load_unaligned(others[3] + k);
   }
-  return {total(sums[0]), total(sums[1]), total(sums[2]), total(sums[3])};
+  return {total(a), total(b), total(c), total(d)};
 }
 
 std::vector<double> padded(std::span<const double> rows, std::size_t runs, std::size_t length,

@@ -133,7 +133,7 @@ RunRows rows_of_a_particle() {
   return rows;
 }
 
-TEST(ProperScores, TakeTheEnergyScoreAtAHundredScans) {
+TEST(ProperScores, TakeTheEnergyScoreAtTwentyScans) {
   EXPECT_DOUBLE_EQ(measured(rows_of_a_particle(), scan_times(200), 1).proper.energy_score, 1.0);
 }
 
