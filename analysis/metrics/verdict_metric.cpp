@@ -22,9 +22,11 @@ class VerdictOverRuns final : public MetricSums {
     sums_->add(errors, run.metrics.leading_nees()->value[0]);
   }
   void put(CellAnalysis& cell) override {
-    if (!sums_) return;
     const std::uint64_t ended = cell.complete + cell.failures.size();
     const double level = criteria_->verdict_level(ended);
+    cell.verdict.level = level;
+    cell.verdict.within = criteria_->within;
+    if (!sums_) return;
     cell.verdict = judge(sums_->families(level, {criteria_->components, criteria_->times}), level,
                          criteria_->within, cell.complete);
     const NeesSeries& series = cell.nees.front().series;

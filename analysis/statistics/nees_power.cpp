@@ -28,7 +28,7 @@ struct PlannedSum {
   /// has a standard error of sqrt(8 / (N n d)) of itself, which makes N n d / 4 degrees of freedom.
   SquaresLaw law() const {
     const double terms = independent * block, error = std::sqrt(8.0 / freedom());
-    Traces traces = traces_of_constant_errors(terms, block);
+    Traces traces = traces_of_constant_errors(terms, terms * terms / block);
     if (runs >= 20.0) {
       traces.second = std::min(traces.second, terms * (1.0 + error));
       traces.third = traces.second * traces.second / terms;

@@ -109,13 +109,13 @@ Estimate mean_squared_product(const RunProducts& products) {
   return found;
 }
 
-Traces traces_of(const RunProducts& products, double terms, double block, double share) {
+Traces traces_of(const RunProducts& products, double terms, double largest, double share) {
   const auto n = static_cast<double>(products.runs());
   const Estimate mean = mean_squared_product(products);
   Traces traces{.first = terms};
   // Errors were divided by the root mean square of the sample itself: two factors correct that.
   const double second = (n + 2.0) / n * (mean.mean + mean.deviation) / (share * share);
-  traces.second = std::clamp(second, terms, terms * terms / block);
+  traces.second = std::clamp(second, terms, std::max(terms, largest));
   const double third = (n + 2.0) * (n + 4.0) / (n * n) * products.cycles() /
                        (n * (n - 1.0) * (n - 2.0)) / (share * share * share);
   traces.third = std::clamp(third, traces.second * traces.second / terms,
@@ -125,8 +125,8 @@ Traces traces_of(const RunProducts& products, double terms, double block, double
   return traces;
 }
 
-Traces traces_of_constant_errors(double terms, double block) {
-  const double second = terms * terms / block;
+Traces traces_of_constant_errors(double terms, double largest) {
+  const double second = std::max(terms, largest);
   return {.first = terms, .second = second, .third = second * second / terms};
 }
 

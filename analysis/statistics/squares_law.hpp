@@ -52,12 +52,12 @@ struct Estimate {
 Estimate mean_squared_product(const RunProducts& products);
 
 /// Traces of sums of `terms` squared errors, by the products of errors that were divided by their
-/// root mean square over the runs, scan by scan. `block` errors of one scan are independent.
-/// `share` of the terms that one run has another one has as well.
-Traces traces_of(const RunProducts& products, double terms, double block, double share);
+/// root mean square over the runs, scan by scan. `largest` is the second trace of errors that never
+/// change within a run; `share` of the terms that one run has another one has as well.
+Traces traces_of(const RunProducts& products, double terms, double largest, double share);
 
-/// Bound of the traces: errors that never change within a run.
-Traces traces_of_constant_errors(double terms, double block);
+/// Traces of errors that never change within a run: with `largest` as the second one.
+Traces traces_of_constant_errors(double terms, double largest);
 
 /// Law of the mean over runs of such a sum, divided by its expectation: the shifted gamma
 /// distribution with the cumulants that the traces give. Normal scores of it are compared with

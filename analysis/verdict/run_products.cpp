@@ -19,16 +19,17 @@ void AspectProducts::add(const AspectProducts& other) {
     terms_of_run[run] += other.terms_of_run[run];
   }
   common_terms += other.common_terms;
+  constant_root += other.constant_root;
 }
 
 double AspectProducts::terms() const { return mean_of(terms_of_run); }
 
-Traces AspectProducts::traces(double block) const {
-  const double share = common_terms / terms();
-  if (products.runs() < kFewestRunsOfTraces || !(share >= kLeastShare)) {
-    return traces_of_constant_errors(terms(), block);
+Traces AspectProducts::traces() const {
+  const double largest = constant_root * constant_root;
+  if (products.runs() < kFewestRunsOfTraces || !(share() >= kLeastShare)) {
+    return traces_of_constant_errors(terms(), largest);
   }
-  return traces_of(products, terms(), block, share);
+  return traces_of(products, terms(), largest, share());
 }
 
 // With all sums in units of t_1: Var z = 2 t_2 (1 + v) + v t_1^2, where v is the variance of the
@@ -99,6 +100,13 @@ AspectProducts DividedErrors::products(const Aspect& aspect) const {
     }
   }
   found.products.add(rows, places.size());
+  for (std::size_t s = aspect.first_scan; s < aspect.end_scan; ++s) {
+    double here = 0.0;
+    for (std::size_t k = aspect.first_component; k < aspect.end_component; ++k) {
+      here += counts_[s * dimension_ + k] / n;
+    }
+    found.constant_root += std::sqrt(here);
+  }
   for (const std::size_t place : places) {
     found.common_terms += counts_[place] * std::max(counts_[place] - 1.0, 0.0) / (n * (n - 1.0));
   }

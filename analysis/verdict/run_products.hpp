@@ -27,8 +27,9 @@ struct AspectProducts {
   void add(const AspectProducts& other);
   /// Errors of a run, on the average.
   double terms() const;
-  /// Traces of the sum of squares. `block` errors of one scan are independent.
-  Traces traces(double block) const;
+  /// Share of its errors that a run has in common with another one.
+  double share() const { return common_terms / terms(); }
+  Traces traces() const;
   /// How much more the sums of squares vary between runs than the products of different runs say:
   /// the variance of the scales that runs have of their own, which is 0 if they have none. Its
   /// standard error follows from the pseudo-values of the jackknife.
@@ -37,6 +38,9 @@ struct AspectProducts {
   RunProducts products;
   std::vector<double> terms_of_run;
   double common_terms = 0.0;  ///< errors that two runs have in common, on the average
+  /// Sum over scans of the root of the errors at a scan: its square is the second trace of errors
+  /// that never change, since errors of different components are independent.
+  double constant_root = 0.0;
 };
 
 /// Errors of some runs, divided by their root mean square over these runs at every scan and in

@@ -47,6 +47,7 @@ std::optional<Shown> leading(const Verdict& verdict, Direction direction) {
 }
 
 std::string from_to(double lower, double upper) {
+  if (std::isinf(lower)) return "infinitely many";
   const std::string from = compact(lower), to = compact(upper);
   if (std::isinf(upper)) return "at least " + from;
   return from == to ? from : from + " to " + to;
@@ -54,9 +55,9 @@ std::string from_to(double lower, double upper) {
 
 /// "1.28 to 2.25", larger than 1 in both directions. The size has an interval of its own; others
 /// were chosen among many.
-std::string factor_text(const Shown& shown, Direction direction) {
-  const bool is_size = shown.test->family == Family::size;
-  Interval ratio = is_size ? shown.member->interval : shown.member->simultaneous;
+std::string factor_text(const Shown& shown, Direction direction, bool is_slight = false) {
+  const bool is_alone = shown.test->family == Family::size || is_slight;
+  Interval ratio = is_alone ? shown.member->interval : shown.member->simultaneous;
   if (direction == Direction::below) ratio = {1.0 / ratio.upper, 1.0 / ratio.lower};
   return from_to(std::max(ratio.lower, 1.0), ratio.upper);
 }
@@ -159,10 +160,10 @@ std::string slight_words(const Verdict& verdict) {
   std::string words;
   for (const Direction direction : {Direction::above, Direction::below}) {
     const auto shown = leading(verdict, direction);
-    if (!shown) continue;
+    if (!shown || shown->test->family == Family::scan) continue;
     const bool is_above = direction == Direction::above;
     words += std::string(", slightly ") + (is_above ? "optimistic" : "conservative") +
-             place_of(*shown) + " (" + factor_text(*shown, direction) + ")";
+             place_of(*shown) + " (" + factor_text(*shown, direction, true) + ")";
   }
   const std::string others = other_words(verdict);
   return others.empty() ? words : words + ", though with " + others;
@@ -181,12 +182,18 @@ std::string exceptions_of(const Verdict& found) {
   return words;
 }
 
+/// Fewer runs are judged as if errors never changed within a run.
+constexpr std::uint64_t kFewRuns = 20;
+
+std::uint64_t complete_runs(const Verdict& verdict) { return verdict.runs - verdict.failed; }
+
 std::string within_words(const Verdict& verdict) {
   return "consistent within " + exact_text(verdict.within);
 }
 
 std::string undecided_words(const Verdict& verdict) {
-  if (!verdict.more_runs) return "undecided: too few runs";
+  if (complete_runs(verdict) < kFewRuns) return "undecided: take at least 20 runs";
+  if (!verdict.more_runs) return "undecided: many more runs decide";
   return "undecided: about " + std::to_string(*verdict.more_runs) + " more runs decide";
 }
 
@@ -223,12 +230,24 @@ std::string squared_errors(const Verdict& verdict, Direction direction) {
 }
 
 std::string consistent_sentence(const std::string& label, const Verdict& verdict) {
-  const std::uint64_t complete = verdict.runs - verdict.failed;
   const std::string parts = verdict.find(Family::stretch) != nullptr
                                 ? " in every component and in every eighth of the drive"
                                 : " in every component";
   return label + " is " + within_words(verdict) + parts + slight_words(verdict) +
-         "; events rarer than 1 in " + std::to_string(complete / 3) + " runs are not excluded";
+         "; events rarer than 1 in " + std::to_string(complete_runs(verdict) / 3) +
+         " runs are not excluded";
+}
+
+std::string undecided_sentence(const std::string& label, const Verdict& verdict) {
+  const std::uint64_t runs = complete_runs(verdict);
+  const std::string words = label + " is undecided: " + std::to_string(runs) +
+                            (runs == 1 ? " run does" : " runs do") + " not show whether it is " +
+                            within_words(verdict);
+  if (runs < kFewRuns) {
+    return words + "; fewer than 20 runs are judged as if errors never changed within a run";
+  }
+  if (!verdict.more_runs) return words;
+  return words + "; about " + std::to_string(*verdict.more_runs) + " more would";
 }
 
 std::string sentence_of(const std::string& label, const Verdict& verdict) {
@@ -242,10 +261,7 @@ std::string sentence_of(const std::string& label, const Verdict& verdict) {
     case Answer::inconsistent:
       return label + " is inconsistent: " + inconsistent_words(verdict);
     case Answer::undecided:
-      return label + " is undecided: " + std::to_string(verdict.runs) +
-             " runs do not show whether it is " + within_words(verdict) +
-             (verdict.more_runs ? "; about " + std::to_string(*verdict.more_runs) + " more would"
-                                : "");
+      return undecided_sentence(label, verdict);
     case Answer::untested:
       break;
   }
@@ -274,9 +290,8 @@ GateAnswer gate(const Verdict& verdict, const Allowance& allowed) {
   switch (verdict.answer) {
     case Answer::untested:
       throw StudyError(
-          "no errors to judge (fewer than three complete runs, no covariance, or too few effective "
-          "draws at all scans): make more runs, have covariance in record.columns, or take more "
-          "particles");
+          "no errors to judge (no complete run, no covariance, or too few effective draws at all "
+          "scans): make more runs, have covariance in record.columns, or take more particles");
     case Answer::consistent:
       return GateAnswer::consistent;
     case Answer::undecided:

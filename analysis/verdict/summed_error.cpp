@@ -83,24 +83,27 @@ std::vector<Candidate> SummedError::scan_candidates(std::span<const double> time
   return all;
 }
 
-std::vector<FamilyTest> SummedError::families(double level, std::span<const double> times) const {
-  Scan sum;
+double SummedError::most_runs() const {
+  double most = 0.0;
+  for (const Scan& scan : scans_) most = std::max(most, scan.runs);
+  return most;
+}
+
+Candidate SummedError::size_candidate() const {
+  const Scan sum = sum_of(0, scans_.size());
+  const double runs = most_runs();
   double deviation = 0.0;  // of a run's sum, over the square root of 2
   for (const Scan& scan : scans_) {
-    if (!(scan.runs > 0.0)) continue;
-    sum.nees += scan.nees;
-    sum.dimensions += scan.dimensions;
-    sum.runs = std::max(sum.runs, scan.runs);
-    deviation += std::sqrt(scan.dimensions / scan.runs);
+    if (scan.runs > 0.0) deviation += std::sqrt(scan.dimensions / scan.runs);
   }
-  if (!(sum.runs > 0.0)) return {};
-  const double terms = sum.dimensions / sum.runs;
-  const SquaresLaw law(traces_of_constant_errors(terms, terms * terms / (deviation * deviation)),
-                       sum.runs);
-  const double ratio = sum.ratio();
-  std::vector<Candidate> all = {{Family::size,
-                                 {.name = "all", .estimate = ratio, .p = law.p_value(ratio)},
-                                 [law, ratio](double of) { return law.interval(ratio, of); }}};
+  const SquaresLaw law(traces_of_constant_errors(sum.dimensions / runs, deviation * deviation),
+                       runs);
+  return ratio_candidate(Family::size, {.name = "NEES", .estimate = sum.ratio()}, law);
+}
+
+std::vector<FamilyTest> SummedError::families(double level, std::span<const double> times) const {
+  if (!(most_runs() > 0.0)) return {};
+  std::vector<Candidate> all = {size_candidate()};
   std::ranges::move(scan_candidates(times), std::back_inserter(all));
   return judge_candidates(all, level);
 }

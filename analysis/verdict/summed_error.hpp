@@ -42,10 +42,14 @@ class SummedError {
   };
   const std::vector<Scan>& scans() const { return scans_; }
 
+  /// The largest number of runs that a scan has.
+  double most_runs() const;
+  /// The size by the law of errors that never change within a run, which is the widest. There must
+  /// be a run.
+  Candidate size_candidate() const;
   /// The family of scans; `times` [s].
   std::vector<Candidate> scan_candidates(std::span<const double> times) const;
-  /// Size and scans alone, for errors of which only the NEES is known: the size by the law of
-  /// errors that never change within a run, which is the widest.
+  /// Size and scans alone, for errors of which only the NEES is known; none without a run.
   std::vector<FamilyTest> families(double level, std::span<const double> times) const;
   /// Size, stretches and scans of errors that are independent from scan to scan, as the innovations
   /// of a consistent filter are: all of these sums are exactly chi-square.

@@ -7,6 +7,8 @@
 namespace montecarta::analysis {
 namespace {
 
+constexpr std::uint64_t kFewestPlanningRuns = 20;
+
 bool is_inside(const Interval& interval, const Interval& margin) {
   return interval.lower >= margin.lower && interval.upper <= margin.upper;
 }
@@ -57,11 +59,12 @@ Answer answer_of(const Verdict& verdict) {
   return is_rejected ? Answer::inconsistent : Answer::undecided;
 }
 
-/// By which factor runs must grow for this interval to be so short that it is within the margin or
-/// shows a deviation: no longer than half of the margin's length.
+/// By which factor runs must grow for the interval of a member that is not within the margin to be
+/// so short that it either is or shows a deviation among all tests.
 double growth_needed(Family family, const Member& member, double within) {
   if (family == Family::scan || family == Family::between_runs) return 1.0;
-  const Interval margin = margin_of(family, within), found = member.interval;
+  const Interval margin = margin_of(family, within), found = member.simultaneous;
+  if (is_inside(member.interval, margin)) return 1.0;
   const double length =
       is_ratio(family) ? std::log(found.upper / found.lower) : found.upper - found.lower;
   const double wanted = is_ratio(family) ? std::log(within) : margin.upper;
@@ -75,7 +78,8 @@ std::optional<std::uint64_t> more_runs_of(const Verdict& verdict, std::uint64_t 
       growth = std::max(growth, growth_needed(test.family, member, verdict.within));
     }
   }
-  constexpr double kMost = 1e9;
+  constexpr double kMost = 1e9, kLeastGrowth = 1.1;
+  growth = std::max(growth, kLeastGrowth);
   const double more = std::ceil((growth - 1.0) * static_cast<double>(runs));
   if (!(more < kMost)) return std::nullopt;
   return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(more));
@@ -120,7 +124,10 @@ Verdict judge(std::vector<FamilyTest> families, double level, double within, std
   Verdict verdict{.level = level, .within = within, .families = std::move(families)};
   verdict.runs = runs;
   verdict.answer = answer_of(verdict);
-  if (verdict.answer == Answer::undecided) verdict.more_runs = more_runs_of(verdict, runs);
+  const bool are_few = runs < kFewestPlanningRuns;  // how many decide is not known from so few
+  if (verdict.answer == Answer::undecided) {
+    verdict.more_runs = are_few ? kFewestPlanningRuns - runs : more_runs_of(verdict, runs);
+  }
   return verdict;
 }
 

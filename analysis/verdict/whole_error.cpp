@@ -14,6 +14,8 @@ namespace montecarta::analysis {
 namespace {
 
 constexpr std::size_t kMostKeptRuns = 256;
+constexpr double kLeastShareOfSpread = 0.98;  // of errors that two runs have in common
+constexpr double kMostSingularSamples = 0.1;
 constexpr std::size_t kMostKeptErrors = 8'000'000;  // 64 MB
 
 Interval interval_of_mean(const Summary& mean, double level) {
@@ -52,6 +54,12 @@ void WholeError::Sum::add(double error) {
   if (std::isnan(error)) return;
   squares += error * error;
   terms += 1.0;
+  terms_of_run += 1.0;
+}
+
+void WholeError::Sum::end_run() {
+  squared_terms += terms_of_run * terms_of_run;
+  terms_of_run = 0.0;
 }
 
 WholeError::WholeError(std::size_t dimension, std::size_t scans)
@@ -83,6 +91,11 @@ void WholeError::add(const WhitenedRun& run, std::span<const double> nees) {
 }
 
 void WholeError::add_squares(const WhitenedRun& run) {
+  for (std::size_t s = 0; s < scans_; ++s) {
+    const auto errors = std::span(run.whitened).subspan(s * dimension_, dimension_);
+    const bool has_any = std::ranges::any_of(errors, [](double u) { return !std::isnan(u); });
+    whole_samples_ += has_any ? 1.0 : 0.0;
+  }
   for (std::size_t stretch = 0; stretch < stretches_; ++stretch) {
     for (std::size_t s = first_scan(stretch); s < first_scan(stretch + 1); ++s) {
       for (std::size_t k = 0; k < dimension_; ++k) {
@@ -91,7 +104,10 @@ void WholeError::add_squares(const WhitenedRun& run) {
         component_[k].add(run.standardised[s * dimension_ + k]);
       }
     }
+    stretch_[stretch].end_run();
   }
+  size_.end_run();
+  for (Sum& sum : component_) sum.end_run();
 }
 
 void WholeError::add_means(const WhitenedRun& run) {
@@ -115,9 +131,15 @@ void WholeError::add_means(const WhitenedRun& run) {
   }
 }
 
+/// Else the size is judged by the NEES as well, which singular covariances have too.
+bool WholeError::are_most_samples_whole() const {
+  double judged = 0.0;
+  for (const SummedError::Scan& scan : nees_.scans()) judged += scan.runs;
+  return whole_samples_ >= (1.0 - kMostSingularSamples) * judged;
+}
+
 std::vector<Candidate> WholeError::variances(const ErrorNames& names, const DividedErrors& whitened,
                                              Candidate& spread) const {
-  const auto runs = static_cast<double>(runs_), d = static_cast<double>(dimension_);
   std::vector<Candidate> stretches;
   AspectProducts size(whitened.runs());
   for (std::size_t s = 0; s < stretches_; ++s) {
@@ -128,15 +150,20 @@ std::vector<Candidate> WholeError::variances(const ErrorNames& names, const Divi
     Member member{.from = names.times[first], .to = names.times[end - 1]};
     member.estimate = stretch_[s].ratio();
     stretches.push_back(
-        ratio_candidate(Family::stretch, member, SquaresLaw(found.traces(d), runs)));
+        ratio_candidate(Family::stretch, member, SquaresLaw(found.traces(), stretch_[s].runs())));
   }
   std::vector<Candidate> all;
   if (!(size.terms() > 0.0)) return all;
+  if (!are_most_samples_whole()) all.push_back(nees_.size_candidate());
   all.push_back(ratio_candidate(Family::size, {.name = "all", .estimate = size_.ratio()},
-                                SquaresLaw(size.traces(d), runs)));
+                                SquaresLaw(size.traces(), size_.runs())));
   add_components(names, all);
   std::ranges::move(stretches, std::back_inserter(all));
-  if (whitened.runs() >= kFewestRunsOfSpread) spread = spread_candidate(size.variance_of_scales());
+  // Runs that lack samples vary more between each other than products of two of them say.
+  const bool are_alike = size.share() > kLeastShareOfSpread;
+  if (are_alike && whitened.runs() >= kFewestRunsOfSpread) {
+    spread = spread_candidate(size.variance_of_scales());
+  }
   return all;
 }
 
@@ -147,7 +174,7 @@ void WholeError::add_components(const ErrorNames& names, std::vector<Candidate>&
     const AspectProducts found = errors.products({0, scans_, k, k + 1});
     if (!(found.terms() > 0.0)) continue;
     Member member{.name = names.components[k], .estimate = component_[k].ratio()};
-    const SquaresLaw law(found.traces(1.0), static_cast<double>(runs_));
+    const SquaresLaw law(found.traces(), component_[k].runs());
     all.push_back(ratio_candidate(Family::component, std::move(member), law));
   }
 }
@@ -166,7 +193,10 @@ void WholeError::add_means(const ErrorNames& names, std::vector<Candidate>& all)
 }
 
 std::vector<FamilyTest> WholeError::families(double level, const ErrorNames& names) const {
-  if (runs_ < kFewestJudgedRuns) return {};
+  if (runs_ < kFewestJudgedRuns) {
+    return nees_.most_runs() < kFewestJudgedRuns ? std::vector<FamilyTest>{}
+                                                 : nees_.families(level, names.times);
+  }
   Candidate spread;
   std::vector<Candidate> all =
       variances(names, DividedErrors(whitened_, scans_, dimension_), spread);

@@ -46,20 +46,26 @@ class WholeError {
  private:
   struct Sum {
     double squares = 0.0, terms = 0.0;
+    double terms_of_run = 0.0, squared_terms = 0.0;
     void add(double error);
+    void end_run();
     double ratio() const { return squares / terms; }
+    /// Runs of equal numbers of terms whose mean varies as much.
+    double runs() const { return terms * terms / squared_terms; }
   };
 
   std::size_t first_scan(std::size_t stretch) const { return stretch * scans_ / stretches_; }
   void add_squares(const WhitenedRun& run);
   void add_means(const WhitenedRun& run);
+  bool are_most_samples_whole() const;
   std::vector<Candidate> variances(const ErrorNames& names, const DividedErrors& whitened,
                                    Candidate& spread) const;
   void add_components(const ErrorNames& names, std::vector<Candidate>& all) const;
   void add_means(const ErrorNames& names, std::vector<Candidate>& all) const;
 
   std::size_t dimension_, scans_, stretches_;
-  std::size_t runs_ = 0;  ///< with errors that are judged by their components
+  std::size_t runs_ = 0;        ///< with errors that are judged by their components
+  double whole_samples_ = 0.0;  ///< scans of runs with such errors
   Sum size_;
   std::vector<Sum> component_, stretch_;
   SummedError nees_;

@@ -78,7 +78,8 @@ Json json_of(const Member& member, bool is_shown) {
 }
 
 /// Everything that the verdict rests on. Scans stand there by the one of the least p-value alone.
-Json json_of(const std::string& label, const Verdict& verdict, GateAnswer answer) {
+Json json_of(const std::string& label, const Verdict& verdict, const Allowance& allowed,
+             GateAnswer answer) {
   Json families = Json::array();
   for (const FamilyTest& test : verdict.families) {
     Json members = Json::array();
@@ -94,13 +95,16 @@ Json json_of(const std::string& label, const Verdict& verdict, GateAnswer answer
   return {{"cell", label},
           {"gate", name_of(answer)},
           {"verdict", analysis::name_of(verdict.answer)},
-          {"reason", sentence(label, verdict)},
+          {"reason", sentence(label, verdict) + too_many(verdict, allowed)},
+          {"more_runs", verdict.more_runs ? Json(*verdict.more_runs) : Json()},
           {"within", verdict.within},
           {"level", verdict.level},
           {"runs", verdict.runs},
           {"failed", verdict.failed},
+          {"failed_allowed", allowed.failed},
           {"samples", verdict.samples},
           {"unusable", verdict.unusable},
+          {"unusable_allowed", allowed.unusable},
           {"families", std::move(families)}};
 }
 
@@ -122,7 +126,7 @@ int gate_file(const Arguments& arguments) {
   try {
     const GateAnswer answer = gate(cell.verdict, allowed);
     if (arguments.has("json")) {
-      std::cout << json_of(stored.label, cell.verdict, answer).dump(2) << "\n";
+      std::cout << json_of(stored.label, cell.verdict, allowed, answer).dump(2) << "\n";
     } else {
       std::cout << sentence(stored.label, cell.verdict) << too_many(cell.verdict, allowed) << "\n";
     }

@@ -53,7 +53,8 @@ bool is_verdict_known(const ResultFile& file, std::size_t cell, std::uint64_t ru
 std::optional<std::uint64_t> least_runs_in(const std::string& text) {
   const std::vector<std::string> parts = split(text, ',');
   if (parts.size() != 2 || parts[0] != kUntilVerdict || !parts[1].ends_with(" runs")) return {};
-  return to_count(parts[1].substr(0, parts[1].size() - 5));
+  const auto runs = to_count(parts[1].substr(0, parts[1].size() - 5));
+  return runs == std::uint64_t{0} ? std::nullopt : runs;
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ const boost::math::chi_squared& chi_squared(double freedom) {
 }
 
 TEST(SquaresLaw, IsTheChiSquareOfErrorsThatNeverChange) {
-  const SquaresLaw law(traces_of_constant_errors(300.0, 3.0), 20.0);  // 100 scans
+  const SquaresLaw law(traces_of_constant_errors(300.0, 30'000.0), 20.0);  // 100 scans
   for (const double score : {-3.0, -1.0, 0.5, 2.0}) {
     const double p = 0.5 * std::erfc(-score / std::sqrt(2.0));
     EXPECT_NEAR(law.quantile(score), boost::math::quantile(chi_squared(60.0), p) / 60.0, 1e-9);
@@ -70,7 +70,7 @@ TEST(SquaresLaw, HoldsTheRatioInAnIntervalThatExcludesOneIfItRejects) {
 }
 
 TEST(SquaresLaw, HasAnswersForWhatIsFarOff) {
-  const SquaresLaw law(traces_of_constant_errors(300.0, 3.0), 200.0);
+  const SquaresLaw law(traces_of_constant_errors(300.0, 30'000.0), 200.0);
   EXPECT_LT(law.p_value(1e60), 1e-200);
   EXPECT_LT(law.p_value(0.0), 1e-200);
   EXPECT_GT(law.interval(1e60, 0.95).lower, 1e59);
@@ -153,7 +153,7 @@ TEST(Traces, AreThoseOfTheCorrelationMatrix) {
   }
   for (const double missing : {0.0, 0.1}) {
     const DividedErrors errors(autoregression(256, kScans, 0.8, missing), kScans, 1);
-    const Traces found = errors.products({0, kScans, 0, 1}).traces(1.0);
+    const Traces found = errors.products({0, kScans, 0, 1}).traces();
     EXPECT_NEAR(found.first, kScans * (1.0 - missing), missing > 0.0 ? 0.5 : 1e-12);
     const double q = 1.0 - missing;  // a run has both of two errors with the probability q^2
     const double expected = q * q * (second - kScans) + q * kScans;
@@ -162,9 +162,22 @@ TEST(Traces, AreThoseOfTheCorrelationMatrix) {
   }
 }
 
+// Three components of which one is known exactly: errors that never change have 2 T eigenvalues.
+TEST(Traces, AreBoundedByTheComponentsThatAreOpen) {
+  std::vector<double> errors;
+  for (std::uint64_t run = 0; run < 30; ++run) {
+    RngStream draw({.seed = 9, .run = run, .purpose = Draw::test});
+    const double one = draw.normal(), other = draw.normal();
+    for (int s = 0; s < 10; ++s) errors.insert(errors.end(), {one, other, kNaN});
+  }
+  const AspectProducts found = DividedErrors(errors, 10, 3).products({0, 10, 0, 3});
+  EXPECT_EQ(found.terms(), 20.0);
+  EXPECT_NEAR(found.traces().second, 200.0, 1e-9);
+}
+
 TEST(Traces, OfFewRunsAreThoseOfConstantErrors) {
   const DividedErrors errors(autoregression(19, 60, 0.0, 0.0), 60, 1);
-  const Traces found = errors.products({0, 60, 0, 1}).traces(1.0);
+  const Traces found = errors.products({0, 60, 0, 1}).traces();
   EXPECT_EQ(found.second, 3600.0);
   EXPECT_TRUE(std::isinf(found.freedom));
 }

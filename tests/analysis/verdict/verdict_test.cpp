@@ -106,12 +106,15 @@ TEST(Judge, TellsTheDirection) {
 }
 
 TEST(Judge, SaysHowManyRunsDecide) {
-  const Verdict found = judged({size({1.0 / 1.1, 1.1})}, 1.05);  // as long as 4 x log 1.05
+  const Verdict found = judged({size({1.0 / 1.1, 1.1})}, 1.05);
   ASSERT_TRUE(found.more_runs);
-  EXPECT_NEAR(static_cast<double>(*found.more_runs),
-              200.0 * (std::pow(2.0 * std::log(1.1) / std::log(1.05), 2) - 1.0), 1.0);
+  const double growth = std::pow(2.0 * std::log(1.1) / std::log(1.05), 2);
+  EXPECT_NEAR(static_cast<double>(*found.more_runs), 200.0 * (growth - 1.0), 1.0);
   EXPECT_FALSE(judged({size({0.9, HUGE_VAL})}).more_runs);
   EXPECT_FALSE(judged({size(kRight)}).more_runs) << "it is decided";
+  std::vector<FamilyTest> few = {size({0.5, 2.0})};
+  judge_together(few, 0.95);
+  EXPECT_EQ(judge(few, 0.95, 1.1, 12).more_runs, 8u) << "of less than 20 it is not known";
 }
 
 TEST(JudgeTogether, CorrectsForMembersAndFamilies) {
@@ -172,8 +175,21 @@ TEST(Words, SaySlightDeviationsAndWhatIsNotExcluded) {
   open.more_runs = 130;
   EXPECT_EQ(in_words(open), "undecided: about 130 more runs decide");
   open.more_runs.reset();
-  EXPECT_EQ(in_words(open), "undecided: too few runs");
+  EXPECT_EQ(in_words(open), "undecided: many more runs decide");
+  open.runs = 1;
+  EXPECT_EQ(in_words(open), "undecided: take at least 20 runs");
+  EXPECT_THAT(sentence("a", open), HasSubstr("1 run does not show whether"));
   EXPECT_EQ(in_words(Verdict{}), "not tested");
+}
+
+TEST(Words, SayNothingOfSingleScansWithinTheMargin) {
+  EXPECT_EQ(in_words(judged({size(kRight), family(Family::scan, {{"at 1 s", {1.05, 1.5}}})})),
+            "consistent within 1.1");
+}
+
+TEST(Words, KnowErrorsOfZero) {
+  EXPECT_EQ(in_words(judged({size({0.0, 0.0})})),
+            "conservative: NEES infinitely many times too small");
 }
 
 TEST(Words, SayWhatFailed) {

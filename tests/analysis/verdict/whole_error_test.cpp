@@ -79,6 +79,76 @@ TEST(WholeError, LeavesOutWhatIsMissing) {
   EXPECT_DOUBLE_EQ(found.find(Family::scan)->members[1].estimate, 74.0 / 62.0);
 }
 
+/// Errors of a law whose samples are missing at random, some of them for a singular covariance.
+WholeError with_missing(const PlantedLaw& law, std::uint64_t study, std::uint64_t runs,
+                        double missing) {
+  WholeError sums(law.dimension, kScansOfARun);
+  for (std::uint64_t run = 0; run < runs; ++run) {
+    WhitenedRun errors = drawn_run(law, study, run, kScansOfARun);
+    const std::vector<double> nees = nees_of(errors);
+    RngStream draw({.seed = study, .run = run, .index = 1, .purpose = Draw::test});
+    for (std::size_t s = 0; s < kScansOfARun; ++s) {
+      if (draw.uniform() >= missing) continue;
+      for (std::size_t k = 0; k < law.dimension; ++k) {
+        errors.whitened[s * law.dimension + k] = errors.standardised[s * law.dimension + k] = kNaN;
+      }
+    }
+    sums.add(errors, nees);
+  }
+  return sums;
+}
+
+TEST(WholeError, RejectsAConsistentFilterSeldomWhereSamplesAreMissing) {
+  for (const Memory memory : {Memory::white, Memory::constant}) {
+    int rejected = 0;
+    for (std::uint64_t study = 0; study < 200; ++study) {
+      const WholeError sums = with_missing({.memory = memory}, study, 60, 0.3);
+      rejected += is_rejected(verdict_of(sums, 3, kScansOfARun, 60)) ? 1 : 0;
+    }
+    EXPECT_LT(rejected, 200 * (0.05 + share_errors(0.05, 200))) << name_of(memory);
+  }
+}
+
+// Five of six components are known exactly, so that errors have one sixth of the terms.
+TEST(WholeError, RejectsAConsistentFilterSeldomWhereComponentsAreExact) {
+  int rejected = 0;
+  for (std::uint64_t study = 0; study < 200; ++study) {
+    WholeError sums(6, 4);
+    for (std::uint64_t run = 0; run < 30; ++run) {
+      RngStream draw({.seed = study, .run = run, .purpose = Draw::test});
+      const double error = draw.normal();
+      WhitenedRun errors{6, std::vector<double>(24, kNaN), {}};
+      for (std::size_t s = 0; s < 4; ++s) errors.whitened[6 * s] = error;
+      errors.standardised = errors.whitened;
+      sums.add(errors, std::vector<double>(4, kNaN));
+    }
+    rejected += is_rejected(verdict_of(sums, 6, 4, 30)) ? 1 : 0;
+  }
+  EXPECT_LT(rejected, 200 * (0.05 + share_errors(0.05, 200)));
+}
+
+TEST(WholeError, JudgesCovariancesThatAreAlwaysSingularByTheirNees) {
+  WholeError sums(3, 20);
+  const WhitenedRun none{3, std::vector<double>(60, kNaN), std::vector<double>(60, kNaN)};
+  for (int run = 0; run < 50; ++run) sums.add(none, std::vector<double>(20, 300.0));
+  const Verdict found = verdict_of(sums, 3, 20, 50);
+  EXPECT_THAT(families_of(found), ElementsAre(Family::size, Family::scan));
+  EXPECT_EQ(found.answer, Answer::optimistic);
+}
+
+// Of 16 scans one alone has a covariance of full rank: it does not speak for the others.
+TEST(WholeError, IsNotConsistentByAFewWholeSamples) {
+  WholeError sums(3, 16);
+  for (std::uint64_t run = 0; run < 300; ++run) {
+    WhitenedRun errors = drawn_run(PlantedLaw{}, 2, run, 16);
+    std::vector<double> nees = nees_of(errors);
+    for (std::size_t i = 3; i < 48; ++i) errors.whitened[i] = errors.standardised[i] = kNaN;
+    for (std::size_t s = 1; s < 16; ++s) nees[s] *= 1.5;
+    sums.add(errors, nees);
+  }
+  EXPECT_EQ(verdict_of(sums, 3, 16, 300, 1.4).answer, Answer::optimistic);
+}
+
 TEST(WholeError, RejectsABiasThatNeverVaries) {
   WholeError sums(1, 4);
   const WhitenedRun errors{1, {0.5, 0.5, 0.5, 0.5}, {0.5, 0.5, 0.5, 0.5}};
