@@ -147,6 +147,12 @@ std::string other_words(const Verdict& verdict) {
   }
 }
 
+/// When the size is off, if its ratio alone would not say why it is.
+std::string time_words(const Verdict& verdict, Direction direction) {
+  const auto shown = leading(verdict, direction);
+  return shown && shown->test->family == Family::size ? when(verdict, direction) : "";
+}
+
 std::string inconsistent_words(const Verdict& verdict) {
   const std::string above = ratio_words(verdict, Direction::above);
   const std::string below = ratio_words(verdict, Direction::below);
@@ -204,9 +210,11 @@ std::string answer_words(const Verdict& verdict) {
     case Answer::consistent:
       return within_words(verdict) + slight_words(verdict);
     case Answer::optimistic:
-      return "optimistic: " + ratio_words(verdict, Direction::above);
+      return "optimistic: " + ratio_words(verdict, Direction::above) +
+             time_words(verdict, Direction::above);
     case Answer::conservative:
-      return "conservative: " + ratio_words(verdict, Direction::below);
+      return "conservative: " + ratio_words(verdict, Direction::below) +
+             time_words(verdict, Direction::below);
     case Answer::inconsistent:
       return "inconsistent: " + inconsistent_words(verdict);
     case Answer::undecided:

@@ -135,7 +135,7 @@ TEST(Words, SayHowMuchWhenAndWhere) {
       Family::component, {{"forward", {3.0, 4.0}}, {"left", {1.1, 1.6}}, {"heading", {1.0, 1.7}}});
   const Verdict late =
       judged({size({1.28, 2.25}), components, stretches({kRight, kRight, off, off})});
-  EXPECT_EQ(in_words(late), "optimistic: NEES 1.28 to 2.25 times too large");
+  EXPECT_EQ(in_words(late), "optimistic: NEES 1.28 to 2.25 times too large, from 20.0 s on");
   EXPECT_EQ(sentence("ekf_slam", late),
             "ekf_slam is overconfident: its squared errors are 1.28 to 2.25 times what it claims, "
             "from 20.0 s on, mainly forward.");
