@@ -249,7 +249,7 @@ std::vector<std::string> quantities_of(const StudyAnalysis& study) {
   std::vector<std::string> found;
   for (const char* name : {"x", "y", "heading", "landmark x", "landmark y", kNees}) {
     if (has_test(study, [&](const JudgedPits& one) { return one.quantity == name; })) {
-      found.push_back(name);
+      found.emplace_back(name);
     }
   }
   return found;
@@ -272,7 +272,7 @@ std::vector<std::string> row_of(const CellAnalysis& cell, const std::string& by,
   std::vector<std::string> row = {cell.label, by};
   const auto tests = tests_of(cell, [&](const JudgedPits& one) { return one.by == by; });
   for (const std::string& quantity : quantities) {
-    row.push_back("-");
+    row.emplace_back("-");
     for (const JudgedPits* one : tests) {
       if (one->quantity == quantity) row.back() = in_words(one->test.verdict);
     }
@@ -303,7 +303,7 @@ TextTable calibration_table(const StudyAnalysis& study) {
 std::vector<std::string> calibration_notes(const StudyAnalysis& study) {
   std::vector<std::string> notes;
   if (has_test(study, is_of_error)) {
-    notes.push_back(
+    notes.emplace_back(
         "The probability integral transform (PIT) of an error is the probability of a value below "
         "the truth, in the Gaussian of the filter or among its weighted particles. Over runs it is "
         "uniform if the filter is calibrated. 'too narrow': values near 0 and 1 are too frequent; "
@@ -311,13 +311,13 @@ std::vector<std::string> calibration_notes(const StudyAnalysis& study) {
         "landmark, another one from run to run.");
   }
   if (has_test(study, is_of_nees)) {
-    notes.push_back(
+    notes.emplace_back(
         "The PIT of the NEES is the probability of a smaller value under the chi-square law. 'too "
         "narrow': the NEES is too large; 'too wide': it is too small; 'wrong shape': it is neither "
         "on average, but has another distribution.");
   }
   if (notes.empty()) return {};
-  notes.push_back(
+  notes.emplace_back(
       "Columns are verdicts at the end of the run; the last one counts faults at the end of each "
       "quarter. A fault is an empirical distribution function outside its simultaneous band. A "
       "calibrated filter stays within the bands of all tests of its cell with a probability of at "

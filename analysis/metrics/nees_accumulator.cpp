@@ -236,7 +236,7 @@ Figure anees_parts_figure(const StudyAnalysis& study) {
 Section verdict_section(const StudyAnalysis& study) {
   Section section{"verdict", "Verdict"};
   for (const CellAnalysis& cell : study.cells) {
-    section.blocks.push_back(Section::Lead{sentence(cell.label, cell.verdict)});
+    section.blocks.emplace_back(Section::Lead{sentence(cell.label, cell.verdict)});
   }
   section.add("verdict", verdict_table(study));
   const bool has_poses = !study.imported.is_imported() || study.imported.state == "pose";

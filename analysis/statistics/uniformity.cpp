@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <vector>
 
 namespace montecarta::analysis {
@@ -68,9 +67,13 @@ double joint_probability(const EcdfBand& band) {
 EcdfBand band_with_tails(std::size_t values, double tail) {
   EcdfBand band{.values = values, .lower = {}};
   for (std::size_t point = 1; point < kEcdfSteps; ++point) {
-    band.lower[point] = *std::ranges::partition_point(
-        std::views::iota(band.lower[point - 1], values),
-        [&](std::size_t count) { return probability_up_to(count, values, point) <= tail; });
+    std::size_t count = band.lower[point - 1], end = values;  // by bisection
+    while (count < end) {
+      const std::size_t middle = count + (end - count) / 2;
+      const bool is_below = probability_up_to(middle, values, point) <= tail;
+      (is_below ? count : end) = is_below ? middle + 1 : middle;
+    }
+    band.lower[point] = count;
   }
   band.lower[kEcdfSteps] = values;
   band.joint = joint_probability(band);
@@ -88,9 +91,10 @@ double least_tail(const EcdfCounts& counts, std::size_t values) {
 }
 
 bool stays_within(const EcdfCounts& counts, const EcdfBand& band) {
-  return std::ranges::all_of(std::views::iota(std::size_t{0}, counts.size()), [&](std::size_t j) {
-    return counts[j] >= band.lower[j] && counts[j] <= band.upper(j);
-  });
+  for (std::size_t j = 0; j < counts.size(); ++j) {
+    if (counts[j] < band.lower[j] || counts[j] > band.upper(j)) return false;
+  }
+  return true;
 }
 
 void evaluate(std::span<const double> values, Uniformity& found) {
@@ -155,8 +159,8 @@ Uniformity judge_uniformity(std::span<const double> values, const EcdfBand& band
 double p_value(const Uniformity& test) {
   const std::size_t n = test.band.values;
   if (n < kLeastValues) return Uniformity::kNone;
-  constexpr double kLeastTail = 1e-14;  // rounding of the joint probability is larger
-  const double tail = std::max(least_tail(test.counts, n), kLeastTail);
+  constexpr double kLeastPointwiseTail = 1e-14;  // rounding of the joint probability is larger
+  const double tail = std::max(least_tail(test.counts, n), kLeastPointwiseTail);
   return std::clamp(1.0 - band_with_tails(n, tail).joint, 0.0, 1.0);
 }
 

@@ -229,7 +229,7 @@ std::string squared_errors(const Verdict& verdict, Direction direction) {
   if (!shown) return "";
   const std::string factor = factor_text(*shown, direction);
   const std::string place = place_of(*shown);
-  const std::string words =
+  std::string words =
       direction == Direction::above
           ? "its squared errors" + place + " are " + factor + " times what it claims"
           : "its squared errors" + place + " are " + factor + " times smaller than it claims";
@@ -248,9 +248,9 @@ std::string consistent_sentence(const std::string& label, const Verdict& verdict
 
 std::string undecided_sentence(const std::string& label, const Verdict& verdict) {
   const std::uint64_t runs = complete_runs(verdict);
-  const std::string words = label + " is undecided: " + std::to_string(runs) +
-                            (runs == 1 ? " run does" : " runs do") + " not show whether it is " +
-                            within_words(verdict);
+  std::string words = label + " is undecided: " + std::to_string(runs) +
+                      (runs == 1 ? " run does" : " runs do") + " not show whether it is " +
+                      within_words(verdict);
   if (runs < kFewRuns) {
     return words + "; fewer than 20 runs are judged as if errors never changed within a run";
   }

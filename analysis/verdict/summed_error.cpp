@@ -32,28 +32,28 @@ class ScanLaws {
 
 }  // namespace
 
-Candidate ratio_candidate(Family family, Member member, const SquaresLaw& law) {
+MemberTest ratio_test(Family family, Member member, const SquaresLaw& law) {
   const double ratio = member.estimate;
   member.p = law.p_value(ratio);
   return {family, std::move(member),
           [law, ratio](double level) { return law.interval(ratio, level); }};
 }
 
-std::vector<FamilyTest> judge_candidates(std::span<const Candidate> candidates, double level) {
+std::vector<FamilyTest> judge_tests(std::span<const MemberTest> tests, double level) {
   std::vector<FamilyTest> families;
-  for (const Candidate& one : candidates) {
+  for (const MemberTest& one : tests) {
     if (families.empty() || families.back().family != one.family) {
       families.push_back({.family = one.family, .members = {}});
     }
     families.back().members.push_back(one.member);
   }
-  auto candidate = candidates.begin();
-  for (FamilyTest& test : families) {
-    const auto tests = static_cast<double>(families.size() * test.members.size());
-    for (Member& member : test.members) {
-      member.interval = candidate->interval(level);
-      member.simultaneous = candidate->interval(1.0 - (1.0 - level) / tests);
-      ++candidate;
+  auto next = tests.begin();
+  for (FamilyTest& family : families) {
+    const auto count = static_cast<double>(families.size() * family.members.size());
+    for (Member& member : family.members) {
+      member.interval = next->interval(level);
+      member.simultaneous = next->interval(1.0 - (1.0 - level) / count);
+      ++next;
     }
   }
   judge_together(families, level);
@@ -67,8 +67,8 @@ void SummedError::add(std::size_t scan, double nees, double dimension) {
   scans_[scan].runs += 1.0;
 }
 
-std::vector<Candidate> SummedError::scan_candidates(std::span<const double> times) const {
-  std::vector<Candidate> all;
+std::vector<MemberTest> SummedError::scan_tests(std::span<const double> times) const {
+  std::vector<MemberTest> all;
   const auto laws = std::make_shared<ScanLaws>();
   for (std::size_t s = 0; s < scans_.size(); ++s) {
     const double freedom = scans_[s].dimensions;
@@ -89,7 +89,7 @@ double SummedError::most_runs() const {
   return most;
 }
 
-Candidate SummedError::size_candidate() const {
+MemberTest SummedError::size_test() const {
   const Scan sum = sum_of(0, scans_.size());
   const double runs = most_runs();
   double deviation = 0.0;  // of a run's sum, over the square root of 2
@@ -98,14 +98,14 @@ Candidate SummedError::size_candidate() const {
   }
   const SquaresLaw law(traces_of_constant_errors(sum.dimensions / runs, deviation * deviation),
                        runs);
-  return ratio_candidate(Family::size, {.name = "NEES", .estimate = sum.ratio()}, law);
+  return ratio_test(Family::size, {.name = "NEES", .estimate = sum.ratio()}, law);
 }
 
 std::vector<FamilyTest> SummedError::families(double level, std::span<const double> times) const {
   if (!(most_runs() > 0.0)) return {};
-  std::vector<Candidate> all = {size_candidate()};
-  std::ranges::move(scan_candidates(times), std::back_inserter(all));
-  return judge_candidates(all, level);
+  std::vector<MemberTest> all = {size_test()};
+  std::ranges::move(scan_tests(times), std::back_inserter(all));
+  return judge_tests(all, level);
 }
 
 SummedError::Scan SummedError::sum_of(std::size_t first, std::size_t end) const {
@@ -122,8 +122,8 @@ std::vector<FamilyTest> SummedError::white_families(double level,
   const auto law_of = [](const Scan& sum) { return SquaresLaw({1.0, 1.0, 1.0}, sum.dimensions); };
   const Scan whole = sum_of(0, scans_.size());
   if (!(whole.dimensions > 0.0)) return {};
-  std::vector<Candidate> all = {
-      ratio_candidate(Family::size, {.name = "all", .estimate = whole.ratio()}, law_of(whole))};
+  std::vector<MemberTest> all = {
+      ratio_test(Family::size, {.name = "all", .estimate = whole.ratio()}, law_of(whole))};
   const std::size_t stretches = scans_.size() < 2 * kStretches ? 0 : kStretches;
   for (std::size_t k = 0; k < stretches; ++k) {
     const std::size_t first = k * scans_.size() / stretches;
@@ -131,10 +131,10 @@ std::vector<FamilyTest> SummedError::white_families(double level,
     const Scan sum = sum_of(first, end);
     if (!(sum.dimensions > 0.0)) continue;
     Member member{.from = times[first], .to = times[end - 1], .estimate = sum.ratio()};
-    all.push_back(ratio_candidate(Family::stretch, std::move(member), law_of(sum)));
+    all.push_back(ratio_test(Family::stretch, std::move(member), law_of(sum)));
   }
-  std::ranges::move(scan_candidates(times), std::back_inserter(all));
-  return judge_candidates(all, level);
+  std::ranges::move(scan_tests(times), std::back_inserter(all));
+  return judge_tests(all, level);
 }
 
 }  // namespace montecarta::analysis

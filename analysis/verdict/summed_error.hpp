@@ -15,17 +15,17 @@ namespace montecarta::analysis {
 inline constexpr std::size_t kStretches = 8;
 
 /// A member of a family whose intervals are yet to be computed.
-struct Candidate {
+struct MemberTest {
   Family family = Family::size;
   Member member;
   std::function<Interval(double level)> interval;
 };
 
 /// A ratio of squared errors to the expected ones, member.estimate, with its law.
-Candidate ratio_candidate(Family family, Member member, const SquaresLaw& law);
+MemberTest ratio_test(Family family, Member member, const SquaresLaw& law);
 
-/// Families in the order of their candidates, with intervals, judged together at `level`.
-std::vector<FamilyTest> judge_candidates(std::span<const Candidate> candidates, double level);
+/// Families in the order of their tests, with intervals, judged together at `level`.
+std::vector<FamilyTest> judge_tests(std::span<const MemberTest> tests, double level);
 
 /// Adds up the NEES of every scan over runs, and tests the sums of single scans, which are exactly
 /// chi-square whatever the errors of a run have to do with each other (STATISTICS 5).
@@ -46,9 +46,9 @@ class SummedError {
   double most_runs() const;
   /// The size by the law of errors that never change within a run, which is the widest. There must
   /// be a run.
-  Candidate size_candidate() const;
+  MemberTest size_test() const;
   /// The family of scans; `times` [s].
-  std::vector<Candidate> scan_candidates(std::span<const double> times) const;
+  std::vector<MemberTest> scan_tests(std::span<const double> times) const;
   /// Size and scans alone, for errors of which only the NEES is known; none without a run.
   std::vector<FamilyTest> families(double level, std::span<const double> times) const;
   /// Size, stretches and scans of errors that are independent from scan to scan, as the innovations

@@ -26,10 +26,10 @@ Interval interval_of_mean(const Summary& mean, double level) {
 double t_of(const Summary& mean) { return mean.mean / mean.standard_error(); }
 
 /// The mean over runs of a number that is zero if the filter is consistent.
-void add_zero_mean(Family family, std::string name, const Summary& mean,
-                   std::vector<Candidate>& all) {
+void add_zero_mean(Family family, const std::string& name, const Summary& mean,
+                   std::vector<MemberTest>& all) {
   if (mean.n < kFewestJudgedRuns) return;
-  Member member{.name = std::move(name), .estimate = mean.mean};
+  Member member{.name = name, .estimate = mean.mean};
   const bool is_zero = mean.mean == 0.0 && mean.sd == 0.0;
   member.p = is_zero ? 1.0 : t_p_value(t_of(mean), static_cast<double>(mean.n) - 1.0);
   all.push_back(
@@ -37,7 +37,7 @@ void add_zero_mean(Family family, std::string name, const Summary& mean,
 }
 
 /// The deviation of the scales that runs have of their own; only too large a one counts.
-Candidate spread_candidate(const Summary& variance) {
+MemberTest spread_test(const Summary& variance) {
   const auto root = [](double value) { return std::sqrt(std::max(0.0, value)); };
   Member member{.name = "runs", .estimate = root(variance.mean)};
   const double t = t_of(variance);
@@ -138,9 +138,10 @@ bool WholeError::are_most_samples_whole() const {
   return whole_samples_ >= (1.0 - kMostSingularSamples) * judged;
 }
 
-std::vector<Candidate> WholeError::variances(const ErrorNames& names, const DividedErrors& whitened,
-                                             Candidate& spread) const {
-  std::vector<Candidate> stretches;
+std::vector<MemberTest> WholeError::variances(const ErrorNames& names,
+                                              const DividedErrors& whitened,
+                                              MemberTest& spread) const {
+  std::vector<MemberTest> stretches;
   AspectProducts size(whitened.runs());
   for (std::size_t s = 0; s < stretches_; ++s) {
     const std::size_t first = first_scan(s), end = first_scan(s + 1);
@@ -150,24 +151,24 @@ std::vector<Candidate> WholeError::variances(const ErrorNames& names, const Divi
     Member member{.from = names.times[first], .to = names.times[end - 1]};
     member.estimate = stretch_[s].ratio();
     stretches.push_back(
-        ratio_candidate(Family::stretch, member, SquaresLaw(found.traces(), stretch_[s].runs())));
+        ratio_test(Family::stretch, member, SquaresLaw(found.traces(), stretch_[s].runs())));
   }
-  std::vector<Candidate> all;
+  std::vector<MemberTest> all;
   if (!(size.terms() > 0.0)) return all;
-  if (!are_most_samples_whole()) all.push_back(nees_.size_candidate());
-  all.push_back(ratio_candidate(Family::size, {.name = "all", .estimate = size_.ratio()},
-                                SquaresLaw(size.traces(), size_.runs())));
+  if (!are_most_samples_whole()) all.push_back(nees_.size_test());
+  all.push_back(ratio_test(Family::size, {.name = "all", .estimate = size_.ratio()},
+                           SquaresLaw(size.traces(), size_.runs())));
   add_components(names, all);
   std::ranges::move(stretches, std::back_inserter(all));
   // Runs that lack samples vary more between each other than products of two of them say.
   const bool are_alike = size.share() > kLeastShareOfSpread;
   if (are_alike && whitened.runs() >= kFewestRunsOfSpread) {
-    spread = spread_candidate(size.variance_of_scales());
+    spread = spread_test(size.variance_of_scales());
   }
   return all;
 }
 
-void WholeError::add_components(const ErrorNames& names, std::vector<Candidate>& all) const {
+void WholeError::add_components(const ErrorNames& names, std::vector<MemberTest>& all) const {
   if (dimension_ == 1) return;
   const DividedErrors errors(standardised_, scans_, dimension_);
   for (std::size_t k = 0; k < dimension_; ++k) {
@@ -175,11 +176,11 @@ void WholeError::add_components(const ErrorNames& names, std::vector<Candidate>&
     if (!(found.terms() > 0.0)) continue;
     Member member{.name = names.components[k], .estimate = component_[k].ratio()};
     const SquaresLaw law(found.traces(), component_[k].runs());
-    all.push_back(ratio_candidate(Family::component, std::move(member), law));
+    all.push_back(ratio_test(Family::component, std::move(member), law));
   }
 }
 
-void WholeError::add_means(const ErrorNames& names, std::vector<Candidate>& all) const {
+void WholeError::add_means(const ErrorNames& names, std::vector<MemberTest>& all) const {
   for (std::size_t a = 0; a < dimension_; ++a) {
     add_zero_mean(Family::bias, names.components[a], bias_[a].result(), all);
   }
@@ -197,13 +198,13 @@ std::vector<FamilyTest> WholeError::families(double level, const ErrorNames& nam
     return nees_.most_runs() < kFewestJudgedRuns ? std::vector<FamilyTest>{}
                                                  : nees_.families(level, names.times);
   }
-  Candidate spread;
-  std::vector<Candidate> all =
+  MemberTest spread;
+  std::vector<MemberTest> all =
       variances(names, DividedErrors(whitened_, scans_, dimension_), spread);
-  std::ranges::move(nees_.scan_candidates(names.times), std::back_inserter(all));
+  std::ranges::move(nees_.scan_tests(names.times), std::back_inserter(all));
   add_means(names, all);
   if (spread.interval) all.push_back(std::move(spread));
-  return judge_candidates(all, level);
+  return judge_tests(all, level);
 }
 
 }  // namespace montecarta::analysis

@@ -58,10 +58,10 @@ class WholeError {
   void add_squares(const WhitenedRun& run);
   void add_means(const WhitenedRun& run);
   bool are_most_samples_whole() const;
-  std::vector<Candidate> variances(const ErrorNames& names, const DividedErrors& whitened,
-                                   Candidate& spread) const;
-  void add_components(const ErrorNames& names, std::vector<Candidate>& all) const;
-  void add_means(const ErrorNames& names, std::vector<Candidate>& all) const;
+  std::vector<MemberTest> variances(const ErrorNames& names, const DividedErrors& whitened,
+                                    MemberTest& spread) const;
+  void add_components(const ErrorNames& names, std::vector<MemberTest>& all) const;
+  void add_means(const ErrorNames& names, std::vector<MemberTest>& all) const;
 
   std::size_t dimension_, scans_, stretches_;
   std::size_t runs_ = 0;        ///< with errors that are judged by their components
