@@ -101,7 +101,7 @@ inline std::vector<double> draw_component(Memory memory, std::size_t component, 
 
 /// Errors of one run in units of the reported covariance, which has no correlations.
 inline WhitenedRun drawn_run(const PlantedLaw& law, std::uint64_t study, std::uint64_t run,
-                               std::size_t scans) {
+                             std::size_t scans) {
   RngStream draw({.seed = study, .run = run, .purpose = Draw::test});
   const std::size_t d = law.dimension;
   WhitenedRun errors{d, std::vector<double>(scans * d), {}};

@@ -169,7 +169,7 @@ Stopped stopped_study(const PlantedLaw& law, std::uint64_t study, std::size_t sc
 }
 
 TEST(SlowVerdictSequential, LooksCostNoErrors) {
-  const std::uint64_t studies = studies_of_a_line(150);
+  const std::uint64_t studies = studies_of_a_line(80);
   for (const Memory memory : {Memory::white, Memory::ar95, Memory::constant}) {
     for (const double ratio : {1.0, 1.1, 2.0}) {
       double rejected = 0.0, consistent = 0.0, runs = 0.0;
