@@ -20,9 +20,6 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr std::size_t kDirections = 64;        // of half a turn
-constexpr double kNegativeByRounding = 1e-12;  // variance, as a share of the trace
-
 /// -log N(e; 0, P); NaN if the covariance is singular or unusable.
 double negative_log_density(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
   const Nees sample = nees<3>(error, covariance);
@@ -30,25 +27,6 @@ double negative_log_density(const Eigen::Vector3d& error, const Eigen::Matrix3d&
   const Eigen::Matrix3d L = covariance.llt().matrixL();
   const double log_determinant = 2.0 * L.diagonal().array().log().sum();
   return 0.5 * (3.0 * std::log(2.0 * std::numbers::pi) + log_determinant + sample.value);
-}
-
-/// E|X - y| - E|X - X'| / 2 of a normal X of one dimension, y so far from its mean (Gneiting and
-/// Raftery 2007, equation 21).
-double gaussian_crps(double distance, double deviation) {
-  if (deviation == 0.0) return std::abs(distance);
-  const double z = distance / deviation;
-  const double density = std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
-  return deviation *
-         (z * std::erf(z / std::numbers::sqrt2) + 2.0 * density - std::numbers::inv_sqrtpi);
-}
-
-std::vector<Eigen::Vector2d> directions_of_half_a_turn() {
-  std::vector<Eigen::Vector2d> all;
-  for (std::size_t k = 0; k < kDirections; ++k) {
-    const double angle = std::numbers::pi * static_cast<double>(k) / kDirections;
-    all.emplace_back(std::cos(angle), std::sin(angle));
-  }
-  return all;
 }
 
 /// The last scan of each of at most kMostEnergyScans equal parts of a run.
@@ -59,27 +37,15 @@ std::vector<std::size_t> energy_scans(std::size_t scans) {
   return chosen;
 }
 
-/// Of the particles where the filter has some, else of its Gaussian.
-double energy_score_at(const RunRows& rows, std::size_t particles, std::size_t s) {
-  const Eigen::Vector2d truth(rows.truth[3 * s], rows.truth[3 * s + 1]);
-  if (particles > 0) {
-    return energy_score(std::span(rows.particle_pose).subspan(3 * particles * s, 3 * particles),
-                        std::span(rows.log_weight).subspan(particles * s, particles), truth);
-  }
-  const auto& [mean, covariance] = estimate_of(rows);
-  const double* P = covariance.data() + 9 * s;
-  Eigen::Matrix2d of_position;
-  of_position << P[0], P[1], P[3], P[4];
-  return energy_score(Eigen::Vector2d(mean[3 * s], mean[3 * s + 1]) - truth, of_position);
-}
-
 double mean_energy_score(const RunRows& rows, std::size_t particles) {
-  const bool is_stored = particles > 0 ? !rows.particle_pose.empty() && !rows.log_weight.empty()
-                                       : !estimate_of(rows).covariance.empty();
-  if (rows.truth.empty() || !is_stored) return kNaN;
+  if (rows.truth.empty() || rows.particle_pose.empty() || rows.log_weight.empty()) return kNaN;
   std::vector<double> values;
-  for (const std::size_t s : energy_scans(rows.truth.size() / 3))
-    values.push_back(energy_score_at(rows, particles, s));
+  for (const std::size_t s : energy_scans(rows.truth.size() / 3)) {
+    values.push_back(
+        energy_score(std::span(rows.particle_pose).subspan(3 * particles * s, 3 * particles),
+                     std::span(rows.log_weight).subspan(particles * s, particles),
+                     Eigen::Vector2d(rows.truth[3 * s], rows.truth[3 * s + 1])));
+  }
   return mean_of_finite(values);
 }
 
@@ -110,19 +76,6 @@ double energy_score(std::span<const double> pose, std::span<const double> log_we
   return distance / sum - pairs / (sum * sum);
 }
 
-// |v| is the mean of |u' v| over all directions u, times pi / 2, so that the score is that of the
-// projections, which are normal; their mean over half a turn is by the trapezoidal rule.
-double energy_score(const Eigen::Vector2d& error, const Eigen::Matrix2d& covariance) {
-  static const std::vector<Eigen::Vector2d> directions = directions_of_half_a_turn();
-  double sum = 0.0;
-  for (const Eigen::Vector2d& u : directions) {
-    const double variance = u.dot(covariance * u);
-    if (!(variance >= -kNegativeByRounding * covariance.trace())) return kNaN;
-    sum += gaussian_crps(u.dot(error), std::sqrt(std::max(variance, 0.0)));
-  }
-  return 0.5 * std::numbers::pi * sum / kDirections;
-}
-
 ProperScores proper_scores(const RunRows& rows, std::size_t particles,
                            std::span<const Eigen::Vector3d> errors,
                            std::span<const Eigen::Matrix3d> covariances) {
@@ -140,12 +93,11 @@ constexpr Score kProperScores[] = {
 
 TextTable proper_scores_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {{"cell", Align::left}, {"log score"}, {"median run"}, {"energy score [m]"}};
+  table.headings = {{"cell", Align::left}, {"log score"}, {"energy score [m]"}};
   for (const CellAnalysis& cell : study.cells) {
     const Spread log_scores = cell.known_over_runs("log_score");
     if (log_scores.summary.n == 0) continue;
     table.rows.push_back({cell.label, readable(log_scores.summary.mean),
-                          readable(log_scores.median),
                           readable(cell.known_over_runs("energy_score").summary.mean)});
   }
   return table;
@@ -160,8 +112,8 @@ std::vector<Section> proper_scores_sections(const StudyAnalysis& study) {
       "Lower is better. Both scores rate error and covariance together: a filter that reports more "
       "or less uncertainty than it has gets a higher score than a consistent one with the same "
       "errors. A log score that is lower by 0.7 means twice the density at the true pose. The "
-      "energy score is a distance, and less sensitive to single runs that diverge; of a particle "
-      "filter it needs record.columns with particles."});
+      "energy score compares the stored particles with the true position; it is a distance, and "
+      "less sensitive to single runs that diverge."});
   return {section};
 }
 

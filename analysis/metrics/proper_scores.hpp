@@ -35,12 +35,8 @@ double log_score(std::span<const Eigen::Vector3d> errors,
 double energy_score(std::span<const double> pose, std::span<const double> log_weight,
                     const Eigen::Vector2d& truth);
 
-/// The same of a Gaussian; NaN if the covariance is not positive semidefinite. `error` [m],
-/// `covariance` [m^2].
-double energy_score(const Eigen::Vector2d& error, const Eigen::Matrix2d& covariance);
-
 /// Both scores of a run: `errors` and `covariances` are those of RunMetrics, `particles` is their
-/// number (0: the filter is Gaussian).
+/// number.
 ProperScores proper_scores(const RunRows& rows, std::size_t particles,
                            std::span<const Eigen::Vector3d> errors,
                            std::span<const Eigen::Matrix3d> covariances);

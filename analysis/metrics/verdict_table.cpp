@@ -224,8 +224,8 @@ std::string answers_note(const StudyAnalysis& study) {
          "both are shown in different parts, or bias, correlation or a spread between runs alone. "
          "A consistent filter is called one of these in at most " +
          level_text(1.0 - study.level) +
-         " of studies, however many scans they have and however long its errors last. If nothing "
-         "is shown the verdict is undecided, and says about how many more runs would decide.";
+         " of studies, for any number of scans and any memory of its errors. If nothing is shown "
+         "the verdict is undecided, and says about how many more runs would decide.";
 }
 
 std::string looks_note(const StudyAnalysis& study) {

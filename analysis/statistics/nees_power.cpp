@@ -29,7 +29,7 @@ struct PlannedSum {
   SquaresLaw law() const {
     const double terms = independent * block, error = std::sqrt(8.0 / freedom());
     Traces traces = traces_of_constant_errors(terms, terms * terms / block);
-    if (runs >= 20.0) {
+    if (runs >= static_cast<double>(kFewestRunsOfTraces)) {
       traces.second = std::min(traces.second, terms * (1.0 + error));
       traces.third = traces.second * traces.second / terms;
       traces.freedom = std::max(2.0, 0.25 * freedom());

@@ -92,17 +92,17 @@ double RunProducts::cycles() const {
   return sum;
 }
 
-Estimate mean_squared_product(const RunProducts& products) {
+MeanSquaredProduct mean_squared_product(const RunProducts& products) {
   const std::size_t runs = products.runs();
   expect(runs >= 3, "a jackknife needs three runs");
   const auto n = static_cast<double>(runs);
   std::vector<double> by_run(runs);
   double sum = 0.0;
   for (std::size_t i = 0; i < runs; ++i) sum += by_run[i] = products.squares_with_others(i);
-  Estimate found{sum / (n * (n - 1.0)), 0.0};
+  MeanSquaredProduct found{.mean = sum / (n * (n - 1.0)), .deviation = 0.0, .without = by_run};
   double squares = 0.0;
-  for (const double of_run : by_run) {
-    const double without = (sum - 2.0 * of_run) / ((n - 1.0) * (n - 2.0));
+  for (double& without : found.without) {
+    without = (sum - 2.0 * without) / ((n - 1.0) * (n - 2.0));
     squares += (without - found.mean) * (without - found.mean);
   }
   found.deviation = std::sqrt(squares * (n - 1.0) / n);
@@ -111,15 +111,16 @@ Estimate mean_squared_product(const RunProducts& products) {
 
 Traces traces_of(const RunProducts& products, double terms, double largest, double share) {
   const auto n = static_cast<double>(products.runs());
-  const Estimate mean = mean_squared_product(products);
+  const MeanSquaredProduct mean = mean_squared_product(products);
   Traces traces{.first = terms};
   // Errors were divided by the root mean square of the sample itself: two factors correct that.
   const double second = (n + 2.0) / n * (mean.mean + mean.deviation) / (share * share);
   traces.second = std::clamp(second, terms, std::max(terms, largest));
   const double third = (n + 2.0) * (n + 4.0) / (n * n) * products.cycles() /
                        (n * (n - 1.0) * (n - 2.0)) / (share * share * share);
-  traces.third = std::clamp(third, traces.second * traces.second / terms,
-                            traces.second * std::sqrt(traces.second));
+  const double least = traces.second * traces.second / terms;
+  const double most = std::max(least, traces.second * std::sqrt(traces.second));
+  traces.third = std::clamp(third, least, most);
   const double relative = mean.deviation / mean.mean;
   traces.freedom = std::max(kFewestDegrees, 2.0 / (relative * relative));
   return traces;

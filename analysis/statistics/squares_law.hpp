@@ -21,6 +21,9 @@ struct Traces {
   double freedom = std::numeric_limits<double>::infinity();
 };
 
+/// Studies of fewer runs are judged by the law of errors that never change within a run.
+inline constexpr std::size_t kFewestRunsOfTraces = 20;
+
 /// Scalar products of the errors of every two runs: symmetric, {run, run}.
 class RunProducts {
  public:
@@ -42,14 +45,16 @@ class RunProducts {
   std::vector<double> products_;
 };
 
-/// A mean and the standard deviation of that mean.
-struct Estimate {
+/// Mean of G_ij^2 over different runs i and j, its standard deviation by the jackknife, and the
+/// same mean without each of the runs {run}.
+struct MeanSquaredProduct {
   double mean = 0.0;
   double deviation = 0.0;
+  std::vector<double> without;
 };
 
-/// Mean of G_ij^2 over different runs, at least three, with its deviation by the jackknife.
-Estimate mean_squared_product(const RunProducts& products);
+/// Needs at least three runs.
+MeanSquaredProduct mean_squared_product(const RunProducts& products);
 
 /// Traces of sums of `terms` squared errors, by the products of errors that were divided by their
 /// root mean square over the runs, scan by scan. `largest` is the second trace of errors that never

@@ -37,19 +37,13 @@ Traces AspectProducts::traces() const {
 // sample's own root mean square.
 Summary AspectProducts::variance_of_scales() const {
   const auto n = static_cast<double>(products.runs());
-  std::vector<double> by_run(products.runs());
-  double sum = 0.0;
-  for (std::size_t i = 0; i < by_run.size(); ++i) {
-    sum += by_run[i] = products.squares_with_others(i);
-  }
-  const double mean = sum / (n * (n - 1.0));
-  const double scale = mean + 0.5 * terms() * terms();
+  const MeanSquaredProduct squares = mean_squared_product(products);
+  const double scale = squares.mean + 0.5 * terms() * terms();
   SummaryOf variance;
-  for (std::size_t i = 0; i < by_run.size(); ++i) {
+  for (std::size_t i = 0; i < products.runs(); ++i) {
     const double deviation = products(i, i) - terms_of_run[i];
     const double own = (n + 2.0) / (n - 1.0) * 0.5 * deviation * deviation;
-    const double without = (sum - 2.0 * by_run[i]) / ((n - 1.0) * (n - 2.0));
-    const double others = (n + 2.0) / n * (n * mean - (n - 1.0) * without);
+    const double others = (n + 2.0) / n * (n * squares.mean - (n - 1.0) * squares.without[i]);
     variance.add((own - others) / scale);
   }
   return variance.result();

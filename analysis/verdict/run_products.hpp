@@ -10,9 +10,6 @@
 
 namespace montecarta::analysis {
 
-/// Studies of fewer runs are judged by the law of errors that never change within a run.
-inline constexpr std::size_t kFewestRunsOfTraces = 20;
-
 /// A range of scans and of components; ends lie behind the last one.
 struct Aspect {
   std::size_t first_scan, end_scan;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The verdict in words: short for a table, and as a sentence with time and component.
 #include "analysis/output/number_text.hpp"
+#include "analysis/statistics/squares_law.hpp"
 #include "analysis/verdict/verdict.hpp"
 #include "engine/errors.hpp"
 
@@ -188,9 +189,6 @@ std::string exceptions_of(const Verdict& found) {
   return words;
 }
 
-/// Fewer runs are judged as if errors never changed within a run.
-constexpr std::uint64_t kFewRuns = 20;
-
 std::uint64_t complete_runs(const Verdict& verdict) { return verdict.runs - verdict.failed; }
 
 std::string within_words(const Verdict& verdict) {
@@ -198,7 +196,9 @@ std::string within_words(const Verdict& verdict) {
 }
 
 std::string undecided_words(const Verdict& verdict) {
-  if (complete_runs(verdict) < kFewRuns) return "undecided: take at least 20 runs";
+  if (complete_runs(verdict) < kFewestRunsOfTraces) {
+    return "undecided: take at least " + std::to_string(kFewestRunsOfTraces) + " runs";
+  }
   if (!verdict.more_runs) return "undecided: many more runs decide";
   return "undecided: about " + std::to_string(*verdict.more_runs) + " more runs decide";
 }
@@ -251,8 +251,9 @@ std::string undecided_sentence(const std::string& label, const Verdict& verdict)
   std::string words = label + " is undecided: " + std::to_string(runs) +
                       (runs == 1 ? " run does" : " runs do") + " not show whether it is " +
                       within_words(verdict);
-  if (runs < kFewRuns) {
-    return words + "; fewer than 20 runs are judged as if errors never changed within a run";
+  if (runs < kFewestRunsOfTraces) {
+    return words + "; fewer than " + std::to_string(kFewestRunsOfTraces) +
+           " runs are judged as if errors never changed within a run";
   }
   if (!verdict.more_runs) return words;
   return words + "; about " + std::to_string(*verdict.more_runs) + " more would";

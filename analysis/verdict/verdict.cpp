@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/verdict/verdict.hpp"
 
+#include "analysis/statistics/squares_law.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace montecarta::analysis {
 namespace {
-
-constexpr std::uint64_t kFewestPlanningRuns = 20;
 
 bool is_inside(const Interval& interval, const Interval& margin) {
   return interval.lower >= margin.lower && interval.upper <= margin.upper;
@@ -124,9 +124,9 @@ Verdict judge(std::vector<FamilyTest> families, double level, double within, std
   Verdict verdict{.level = level, .within = within, .families = std::move(families)};
   verdict.runs = runs;
   verdict.answer = answer_of(verdict);
-  const bool are_few = runs < kFewestPlanningRuns;  // how many decide is not known from so few
+  const bool are_few = runs < kFewestRunsOfTraces;  // how many decide is not known from so few
   if (verdict.answer == Answer::undecided) {
-    verdict.more_runs = are_few ? kFewestPlanningRuns - runs : more_runs_of(verdict, runs);
+    verdict.more_runs = are_few ? kFewestRunsOfTraces - runs : more_runs_of(verdict, runs);
   }
   return verdict;
 }

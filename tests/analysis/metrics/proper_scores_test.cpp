@@ -4,11 +4,9 @@
 #include "analysis/metrics/score.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/statistics/spread.hpp"
-#include "engine/random/stream.hpp"
 #include "tests/analysis/reported.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
 
-#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -57,42 +55,6 @@ TEST(EnergyScore, KnowsTwoParticlesByHand) {
   EXPECT_NEAR(energy_score(std::vector{3.0, 4.0, 0.0}, std::vector{0.0}, {0, 0}), 5.0, 1e-14);
 }
 
-TEST(EnergyScore, KnowsARoundGaussianByHand) {
-  const Eigen::Matrix2d round = 4.0 * Eigen::Matrix2d::Identity();
-  // E|X| is the deviation times sqrt(pi / 2), E|X - X'| that times sqrt(2).
-  const double at_mean = 2.0 * std::sqrt(0.5 * std::numbers::pi) * (1.0 - std::sqrt(0.5));
-  EXPECT_NEAR(energy_score(Eigen::Vector2d(0, 0), round), at_mean, 1e-12);
-  // Far away E|X - y| is r + deviation^2 / (2 r).
-  const double far = 500.0 + 4.0 / 1000.0 - std::sqrt(std::numbers::pi);
-  EXPECT_NEAR(energy_score(Eigen::Vector2d(300, 400), round), far, 0.05);
-}
-
-TEST(EnergyScore, OfAGaussianIsThatOfManyOfItsDraws) {
-  constexpr std::size_t kDraws = 3000;
-  Eigen::Matrix2d P;
-  P << 4.0, 0.9, 0.9, 0.25;
-  const Eigen::Matrix2d L = P.llt().matrixL();
-  RngStream draw({5, 0, 0, 0, Draw::test});
-  std::vector<double> pose;
-  for (std::size_t k = 0; k < kDraws; ++k) {
-    const Eigen::Vector2d x = L * Eigen::Vector2d(draw.normal(), draw.normal());
-    pose.insert(pose.end(), {x(0), x(1), 0.0});
-  }
-  const std::vector<double> log_weight(kDraws, -std::log(static_cast<double>(kDraws)));
-  for (const Eigen::Vector2d& error : {Eigen::Vector2d(0.5, -0.3), Eigen::Vector2d(3.0, 2.0)}) {
-    const double standard_error = 2.0 / std::sqrt(static_cast<double>(kDraws));
-    EXPECT_NEAR(energy_score(pose, log_weight, -error), energy_score(error, P),
-                3.0 * standard_error);
-  }
-}
-
-TEST(EnergyScore, OfACertainPositionIsItsError) {
-  EXPECT_NEAR(energy_score(Eigen::Vector2d(3, 4), Eigen::Matrix2d::Zero()), 5.0, 2e-3);
-  const Eigen::Matrix2d indefinite = Eigen::Vector2d(1, -1).asDiagonal();
-  EXPECT_TRUE(std::isnan(energy_score(Eigen::Vector2d(0, 0), indefinite)));
-  EXPECT_TRUE(std::isnan(energy_score(Eigen::Vector2d(kNaN, 0), Eigen::Matrix2d::Identity())));
-}
-
 MeasuredRun measured(const RunRows& rows, const std::vector<double>& times,
                      std::size_t particles = 0) {
   MeasuredRun run;
@@ -116,7 +78,6 @@ TEST(ProperScores, AreWorseForAWrongCovarianceOfTheSameErrors) {
     const double expected = 1.5 * (std::log(factor) + 1.0 / factor - 1.0);
     const double standard_error = std::sqrt(1.5 / 400.0) * std::abs(1.0 - 1.0 / factor);
     EXPECT_NEAR(wrong.log_score - right.log_score, expected, 5.0 * standard_error) << factor;
-    EXPECT_GT(wrong.energy_score, 1.02 * right.energy_score) << factor;
   }
 }
 
@@ -158,7 +119,7 @@ TEST(ProperScores, AreTheTableOfCellsThatHaveACovariance) {
     study.cells[0].scores.add(std::vector<ScoreTable::Value>{{"log_score", score}});
   const TextTable table = reported_table(study, "proper_scores");
   ASSERT_EQ(table.rows.size(), 1u);
-  EXPECT_EQ(table.rows[0], (TableRow{"right", "4.00", "2.00", "-"}));
+  EXPECT_EQ(table.rows[0], (TableRow{"right", "4.00", "-"}));
 }
 
 }  // namespace

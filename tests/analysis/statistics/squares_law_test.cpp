@@ -107,9 +107,15 @@ TEST(RunProducts, AddUpCyclesOfThreeRuns) {
   EXPECT_EQ(products.cycles(), cycles);
 }
 
+TEST(TracesOf, KeepTheirOrderIfRunsHaveLessThanOneErrorOnAverage) {
+  const Traces traces = traces_of(products_of({1, 2, -1, 3, 0.5, 1.5}, 6), 0.5, 0.5, 1.0);
+  EXPECT_DOUBLE_EQ(traces.second, 0.5);
+  EXPECT_DOUBLE_EQ(traces.third, 0.5);  // the second one squared, by the first one
+}
+
 TEST(MeanSquaredProduct, HasTheDeviationOfTheJackknife) {
   const RunProducts products = products_of({1, 2, -1, 3, 0.5, 1.5}, 6);
-  const Estimate found = mean_squared_product(products);
+  const MeanSquaredProduct found = mean_squared_product(products);
   std::vector<double> without;
   for (std::size_t left_out = 0; left_out < 6; ++left_out) {
     double sum = 0.0;
