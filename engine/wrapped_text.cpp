@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/wrapped_text.hpp"
+
+#include "engine/namespaces.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+#include <sys/ioctl.h>
+
+namespace montecarta::engine {
+namespace {
+
+constexpr std::size_t kUsualWidth = 80;
+constexpr std::size_t kLeastWidth = 40;
+
+std::size_t characters_of(std::string_view text) {
+  const auto begins_one = [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; };
+  return static_cast<std::size_t>(std::ranges::count_if(text, begins_one));
+}
+
+std::size_t width_in_environment() {
+  const char* columns = std::getenv("COLUMNS");
+  const long width = columns == nullptr ? 0 : std::strtol(columns, nullptr, 10);
+  return width > 0 ? static_cast<std::size_t>(width) : kUsualWidth;
+}
+
+std::string wrapped_paragraph(const std::string& text, std::size_t width, std::size_t hang) {
+  std::string line(std::min(text.find_first_not_of(' '), text.size()), ' ');
+  const std::string indent(line.size() + hang, ' ');
+  std::istringstream words(text);
+  std::string lines;
+  bool begins_line = true;
+  for (std::string word; words >> word; begins_line = false) {
+    if (!begins_line && characters_of(line) + 1 + characters_of(word) > width) {
+      lines += line + '\n';
+      line = indent;
+      begins_line = true;
+    }
+    line += (begins_line ? "" : " ") + word;
+  }
+  return lines + (begins_line ? "" : line) + '\n';
+}
+
+}  // namespace
+
+std::size_t output_width(int descriptor) {
+  winsize size{};
+  const bool is_terminal = ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return std::max<std::size_t>(kLeastWidth, is_terminal ? size.ws_col : width_in_environment());
+}
+
+std::string wrapped(std::string_view text, std::size_t width, std::size_t hang) {
+  std::istringstream paragraphs{std::string(text)};
+  std::string lines;
+  for (std::string paragraph; std::getline(paragraphs, paragraph);)
+    lines += wrapped_paragraph(paragraph, width, hang);
+  return lines;
+}
+
+}  // namespace montecarta::engine

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace montecarta::engine {
+
+/// Columns of the terminal that `descriptor` is (1: standard output). If it is none, $COLUMNS, else
+/// 80. At least 40.
+std::size_t output_width(int descriptor = 1);
+
+/// `text` broken between words so that no line has more than `width` characters, unless one word
+/// does. Each line of `text` is a paragraph: its leading spaces are kept, its further lines are
+/// indented by `hang` more. Every line ends in a line break.
+std::string wrapped(std::string_view text, std::size_t width, std::size_t hang = 0);
+
+}  // namespace montecarta::engine

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "engine/wrapped_text.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+#include <unistd.h>
+
+namespace montecarta::engine {
+namespace {
+
+TEST(WrappedText, BreaksBetweenWordsAndIndentsWhatFollows) {
+  EXPECT_EQ(wrapped("one two three four", 9), "one two\nthree\nfour\n");
+  EXPECT_EQ(wrapped("one two three four", 9, 2), "one two\n  three\n  four\n");
+  EXPECT_EQ(wrapped("  one two\nthree", 7, 1), "  one\n   two\nthree\n");
+}
+
+TEST(WrappedText, KeepsEmptyLinesAndLongWords) {
+  EXPECT_EQ(wrapped("a\n\nb", 40), "a\n\nb\n");
+  EXPECT_EQ(wrapped("/a/long/path b", 6), "/a/long/path\nb\n");
+  EXPECT_EQ(wrapped("", 40), "");
+}
+
+TEST(WrappedText, CountsCharactersNotBytes) {
+  EXPECT_EQ(wrapped("\u00b1\u03c3 \u00b1\u03c3", 5), "\u00b1\u03c3 \u00b1\u03c3\n");
+}
+
+TEST(WrappedText, WidthOfWhatIsNoTerminalIs80OrThatOfTheEnvironment) {
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  const char* before = std::getenv("COLUMNS");
+  const std::string kept = before == nullptr ? "" : before;
+  const auto width_with = [&](const char* columns) {
+    ::setenv("COLUMNS", columns, 1);
+    return output_width(ends[1]);
+  };
+  EXPECT_EQ(width_with(""), 80u);
+  EXPECT_EQ(width_with("120"), 120u);
+  EXPECT_EQ(width_with("7"), 40u);
+  EXPECT_EQ(width_with("-3"), 80u);
+  ::setenv("COLUMNS", kept.c_str(), 1);
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
+}  // namespace
+}  // namespace montecarta::engine
