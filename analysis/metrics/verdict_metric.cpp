@@ -112,19 +112,16 @@ void write_families(const StudyAnalysis& study, const std::filesystem::path& pat
   NamedRows file(path);
   for (const CellAnalysis& cell : study.cells) {
     for (const FamilyTest& test : cell.verdict.families) {
-      for (const Member& member : test.members) {
-        file.row(
-            {{"cell", cell.label}, {"family", key_of(test.family)}, {"member", name_of(member)}},
-            {{"from", "s", member.from},
-             {"to", "s", member.to},
-             {"estimate", "1", member.estimate},
-             {"lower", "1", member.interval.lower},
-             {"upper", "1", member.interval.upper},
-             {"simultaneous_lower", "1", member.simultaneous.lower},
-             {"simultaneous_upper", "1", member.simultaneous.upper},
-             {"p", "1", member.p},
-             {"family_p", "1", test.p},
-             {"shown", "1", test.is_shown(member) ? 1.0 : 0.0}});
+      const std::vector<NamedSeries> columns = family_columns(test);
+      for (std::size_t m = 0; m < test.members.size(); ++m) {
+        std::vector<NamedNumber> row;
+        for (const NamedSeries& column : columns) {
+          row.push_back({column.name, column.units, column.values[m]});
+        }
+        file.row({{"cell", cell.label},
+                  {"family", key_of(test.family)},
+                  {"member", name_of(test.members[m])}},
+                 row);
       }
     }
   }

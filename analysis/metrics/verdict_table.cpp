@@ -10,6 +10,7 @@
 #include "engine/numbers/angle.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace montecarta::analysis {
 namespace {
@@ -177,6 +178,33 @@ TextTable consistency_table(const StudyAnalysis& study) {
     }
   }
   return table;
+}
+
+std::vector<NamedSeries> family_columns(const FamilyTest& test) {
+  std::vector<NamedSeries> columns = {{"from", "s", {}},
+                                      {"to", "s", {}},
+                                      {"estimate", "1", {}},
+                                      {"lower", "1", {}},
+                                      {"upper", "1", {}},
+                                      {"simultaneous_lower", "1", {}},
+                                      {"simultaneous_upper", "1", {}},
+                                      {"p", "1", {}},
+                                      {"family_p", "1", {}},
+                                      {"shown", "1", {}}};
+  for (const Member& member : test.members) {
+    const std::array<double, 10> row = {member.from,
+                                        member.to,
+                                        member.estimate,
+                                        member.interval.lower,
+                                        member.interval.upper,
+                                        member.simultaneous.lower,
+                                        member.simultaneous.upper,
+                                        member.p,
+                                        test.p,
+                                        test.is_shown(member) ? 1.0 : 0.0};
+    for (std::size_t c = 0; c < row.size(); ++c) columns[c].values.push_back(row[c]);
+  }
+  return columns;
 }
 
 TextTable failure_table(const StudyAnalysis& study) {

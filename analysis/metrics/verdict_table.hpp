@@ -23,6 +23,9 @@ std::vector<std::string> consistency_notes();
 /// One average NEES in single numbers. The band is that of all complete runs.
 std::vector<NamedNumber> numbers_of(const CellAnalysis& cell, const NeesResult& nees, double level);
 
+/// The members of a family as columns {member}, the same for CSV and HDF5.
+std::vector<NamedSeries> family_columns(const FamilyTest& test);
+
 /// One row for each failed run: cell, run, step, reason.
 TextTable failure_table(const StudyAnalysis& study);
 

@@ -62,6 +62,25 @@ void write_bound(const h5::Handle& file, const CramerRaoBound& bound, const h5::
   write_number(group, {"is_bound", "1", bound.is_bound ? 1.0 : 0.0});
 }
 
+/// Every test of the verdict: a group for each family, with columns over its members.
+void write_families(const h5::Handle& cell_group, const Verdict& verdict) {
+  const auto families = h5::create_group(cell_group, "families");
+  for (const FamilyTest& test : verdict.families) {
+    const auto group = h5::create_group(families, key_of(test.family));
+    std::string names;
+    for (const Member& member : test.members) {
+      if (!member.name.empty()) names += (names.empty() ? "" : "\n") + member.name;
+    }
+    if (!names.empty()) h5::put_text(group, "members", names);
+    for (const NamedSeries& column : family_columns(test)) {
+      const auto dataset =
+          h5::create_dataset(group, column.name, Element::f64, {column.values.size()});
+      h5::write(dataset, Element::f64, column.values.data());
+      h5::put_text(dataset, "units", column.units);
+    }
+  }
+}
+
 void write_cell(const h5::Handle& cells, const StudyAnalysis& study, const CellAnalysis& cell,
                 const Times& times) {
   const double level = study.level;
@@ -71,6 +90,7 @@ void write_cell(const h5::Handle& cells, const StudyAnalysis& study, const CellA
   h5::put_text(group, "verdict", in_words(cell.verdict));
   const auto numbers = h5::create_group(group, "numbers");
   for (const NamedNumber& number : numbers_of(cell)) write_number(numbers, number);
+  write_families(group, cell.verdict);
   const auto consistency = h5::create_group(group, "consistency");
   for (const NeesResult& nees : cell.nees) {
     const auto test =
