@@ -286,7 +286,7 @@ void note_failures(const StudyAnalysis& study, std::vector<std::string>& notes) 
 }  // namespace
 
 TextTable comparison_table(const Comparisons& comparisons) {
-  TextTable table;
+  TextTable table{.keys = 2};
   table.headings = {{"what", Align::left},
                     {"cell", Align::left},
                     {"verdict", Align::left},

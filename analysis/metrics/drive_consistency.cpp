@@ -245,7 +245,7 @@ std::vector<std::string> drive_row(const CellAnalysis& cell, const JudgedReferen
 
 TextTable drive_table(const StudyAnalysis& study) {
   const std::string level = " [" + level_text(study.level) + "]";
-  TextTable table;
+  TextTable table{.keys = 2};
   table.headings = {{"cell", Align::left},
                     {"reference", Align::left},
                     {"runs", Align::left},
@@ -336,6 +336,10 @@ std::vector<Section> drive_sections(const StudyAnalysis& study) {
   const TextTable table = drive_table(study);
   if (table.rows.empty()) return {};
   Section section{"drive", "Does the covariance cover the errors along the drive?"};
+  for_each_drive(study, [&](const auto& cell, const auto& reference, const auto& drive) {
+    section.blocks.emplace_back(
+        Section::Lead{cell.label + " by " + reference.name + ": " + in_words(drive) + "."});
+  });
   section.add("drive", table);
   section.add("drive_warnings", warning_table(study));
   section.add(drive_notes(study));

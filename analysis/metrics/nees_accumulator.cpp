@@ -242,7 +242,7 @@ Section verdict_section(const StudyAnalysis& study) {
   const bool has_poses = !study.imported.is_imported() || study.imported.state == "pose";
   if (has_poses) section.add("accuracy", accuracy_table(study));
   section.add(imported_notes(study));
-  section.add(too_few_notes(study));
+  section.add(cautions(study));
   section.add(verdict_notes(study));
   section.add(bound_notes(study.bound));
   return section;

@@ -127,7 +127,7 @@ const CellAnalysis* baseline_of(const StudyAnalysis& study) {
 }
 
 TextTable reference_table(const StudyAnalysis& study) {
-  TextTable table;
+  TextTable table{.keys = 2};
   table.headings = {{"cell", Align::left},  {"reference", Align::left},
                     {"runs", Align::left},  {"lost"},
                     {"raw RMS [m]"},        {"raw median [m]"},

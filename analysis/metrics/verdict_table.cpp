@@ -157,7 +157,7 @@ TextTable accuracy_table(const StudyAnalysis& study) {
 }
 
 TextTable consistency_table(const StudyAnalysis& study) {
-  TextTable table;
+  TextTable table{.keys = 3};
   table.headings = {{"cell", Align::left},
                     {"error", Align::left},
                     {"covariance", Align::left},
@@ -304,27 +304,39 @@ std::vector<std::string> consistency_notes() {
       "which no scan is left."};
 }
 
-std::vector<std::string> too_few_notes(const StudyAnalysis& study) {
-  std::vector<std::string> notes;
+std::vector<std::string> cautions(const StudyAnalysis& study) {
+  constexpr double kLeastShare = 0.01;
+  std::string runs, draws, singular;
+  const auto list = [](std::string& text, const CellAnalysis& cell, const std::string& count) {
+    text += (text.empty() ? "" : ", ") + cell.label + " " + count;
+  };
   for (const CellAnalysis& cell : study.cells) {
     const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
     if (pose == nullptr) continue;
-    if (pose->series.unjudged_runs > 0) {
-      notes.push_back(cell.label + ": " + std::to_string(pose->series.unjudged_runs) + " of " +
-                      std::to_string(cell.complete) +
-                      " complete runs have no scan that can be judged; ANEES and verdict are of "
-                      "the other runs.");
+    const NeesSeries& series = pose->series;
+    const auto share = [&](std::size_t count) {
+      return static_cast<double>(count) / static_cast<double>(series.samples);
+    };
+    if (series.unjudged_runs > 0) {
+      list(runs, cell,
+           std::to_string(series.unjudged_runs) + " of " + std::to_string(cell.complete));
     }
-    if (pose->series.too_few == 0) continue;
-    const double share =
-        static_cast<double>(pose->series.too_few) / static_cast<double>(pose->series.samples);
-    notes.push_back(cell.label + ": in " + std::to_string(pose->series.too_few) + " of " +
-                    std::to_string(pose->series.samples) + " scans (" + percent(share) +
-                    ") the weights leave no more than 5 effective draws (ESS), of which a "
-                    "covariance of three components cannot be judged; ANEES and verdict are of "
-                    "the other scans.");
+    if (share(series.too_few) >= kLeastShare) list(draws, cell, percent(share(series.too_few)));
+    const double lower = share(series.lower_rank);
+    if (lower >= kLeastShare && !study.imported.is_imported()) list(singular, cell, percent(lower));
   }
-  return notes;
+  std::vector<std::string> sentences;
+  if (!runs.empty()) sentences.push_back("Runs without a scan that can be judged: " + runs + ".");
+  if (!draws.empty()) {
+    sentences.push_back(
+        "Scans not judged, since at most 5 effective draws (ESS) give no covariance: " + draws +
+        ".");
+  }
+  if (!singular.empty()) {
+    sentences.push_back(
+        "Singular covariances, judged by the components that they leave: " + singular + ".");
+  }
+  return sentences;
 }
 
 }  // namespace montecarta::analysis

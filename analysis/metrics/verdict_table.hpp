@@ -32,8 +32,9 @@ TextTable failure_table(const StudyAnalysis& study);
 /// How to read the verdict table, a sentence each, for someone who never heard of chi-square.
 std::vector<std::string> verdict_notes(const StudyAnalysis& study);
 
-/// Of each cell with scans whose effective draws are too few to be judged: how many.
-std::vector<std::string> too_few_notes(const StudyAnalysis& study);
+/// At most a sentence each on runs, scans and covariances that the verdict judges in part or not at
+/// all. Cells with less than one in a hundred are not named; consistency_table() has all counts.
+std::vector<std::string> cautions(const StudyAnalysis& study);
 
 /// "40 complete", "2 FAILED, 38 complete", ...
 std::string runs_in_words(const CellAnalysis& cell);

@@ -20,20 +20,19 @@ struct TextTable {
     std::string text;
     Align align = Align::right;
   };
-  std::vector<Heading> headings;
-  std::vector<TableRow> rows;
+  std::vector<Heading> headings = {};
+  std::vector<TableRow> rows = {};
+  std::size_t keys = 1;  ///< first columns, which say what a row is of
 };
 
-/// Rows with their columns below each other, two spaces between, each line indented by `indent`.
+/// Rows with their columns below each other, `gap` spaces between, each line indented by `indent`.
 /// Columns without an element of `alignment` {column} are left-aligned; no line ends in spaces.
 std::string aligned(const std::vector<TableRow>& rows, std::size_t indent = 2,
-                    const std::vector<Align>& alignment = {});
+                    const std::vector<Align>& alignment = {}, std::size_t gap = 2);
 
-/// A table for a terminal: columns below each other.
-void print_table(std::ostream& out, const TextTable& table);
-
-/// A sentence broken into lines that a terminal holds.
-void print_wrapped(std::ostream& out, const std::string& sentence);
+/// A table for a terminal of `width` columns. If it is too wide, its headings and its texts are
+/// broken between words; if that is not enough, columns continue below, beside the keys again.
+void print_table(std::ostream& out, const TextTable& table, std::size_t width);
 
 /// A part of a report: tables and sentences, then figures. One that has none of them is left out.
 struct Section {

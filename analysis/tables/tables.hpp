@@ -20,13 +20,20 @@ std::string latex_tabular(const TextTable& table);
 /// The same below a comment that says which study it is of.
 std::string latex_table(const StudyAnalysis& study, const TextTable& table);
 
-/// Whether sentences say how tables are read.
-enum class Explanations { hidden, shown };
+/// The verdict on each cell in a sentence. This and the following are for a terminal of `width`
+/// columns.
+void print_sentences(std::ostream& out, const StudyAnalysis& study, std::size_t width);
 
-/// The tables of a terminal: failed runs first, then one row a cell with its verdict; of a recorded
-/// drive, one row a cell and reference instead.
-void print_tables(std::ostream& out, const StudyAnalysis& study,
-                  Explanations explanations = Explanations::hidden);
+/// Failed runs, sentences and one table: one row a cell with its verdict. For a recorded drive
+/// without a true path, the tables of its references.
+void print_summary(std::ostream& out, const StudyAnalysis& study, std::size_t width);
+
+/// Failed runs, sentences and all tables.
+void print_all(std::ostream& out, const StudyAnalysis& study, std::size_t width);
+
+/// One table and how to read it. Throws StudyError if no table has this name.
+void print_named(std::ostream& out, const StudyAnalysis& study, const std::string& name,
+                 std::size_t width);
 
 /// Writes failures.csv, cells.csv (one row a cell), consistency.csv (one row a cell and definition
 /// of error and covariance), runs.csv (the scores of every complete run), the files of metrics that

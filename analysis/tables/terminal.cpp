@@ -4,10 +4,14 @@
 #include "analysis/metrics/reference_report.hpp"
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/text_table.hpp"
+#include "analysis/tables/summary_table.hpp"
 #include "analysis/tables/tables.hpp"
+#include "engine/errors.hpp"
+#include "engine/wrapped_text.hpp"
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <ostream>
 #include <variant>
@@ -16,7 +20,7 @@ namespace montecarta::analysis {
 namespace {
 
 /// Runs of a cell that failed for one reason are one line.
-void print_failures(std::ostream& out, const StudyAnalysis& study) {
+void print_failures(std::ostream& out, const StudyAnalysis& study, std::size_t width) {
   constexpr std::size_t kMost = 20;
   TextTable table;
   table.headings = {
@@ -35,25 +39,10 @@ void print_failures(std::ostream& out, const StudyAnalysis& study) {
   const std::size_t reasons = table.rows.size();
   out << "Failed runs (" << all << "), left out of everything below:\n";
   table.rows.resize(std::min(reasons, kMost));
-  print_table(out, table);
+  print_table(out, table, width);
   if (reasons > kMost) out << "... and " << reasons - kMost << " other reasons\n";
   if (all > reasons) out << "Each of them: failures.csv (--csv DIR)\n";
   out << '\n';
-}
-
-/// What a reader must hear even if they look at one table only.
-void print_warnings(std::ostream& out, const StudyAnalysis& study) {
-  for (const CellAnalysis& cell : study.cells) {
-    const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
-    if (study.imported.is_imported()) break;  // imported_notes() say it
-    if (pose == nullptr || pose->series.lower_rank + pose->series.unusable == 0) continue;
-    print_wrapped(out, cell.label + ": of " + std::to_string(pose->series.samples) +
-                           " covariances " + std::to_string(pose->series.lower_rank) +
-                           " are singular (judged by the components that they leave) and " +
-                           std::to_string(pose->series.unusable) +
-                           " unusable (error or covariance is not finite, or the covariance is not "
-                           "positive semidefinite; left out of the average).");
-  }
 }
 
 /// In this order; tables of other sections follow.
@@ -70,53 +59,98 @@ std::vector<Section> terminal_sections(const StudyAnalysis& study) {
   return sections;
 }
 
-void print_leads(std::ostream& out, const Section& section) {
-  bool has_any = false;
-  for (const Section::Block& block : section.blocks) {
-    const auto* lead = std::get_if<Section::Lead>(&block);
-    if (lead == nullptr) continue;
-    print_wrapped(out, lead->text);
-    has_any = true;
-  }
-  if (has_any) out << '\n';
-}
-
 /// A blank line behind each.
-void print_section_tables(std::ostream& out, const Section& section) {
+void print_section_tables(std::ostream& out, const Section& section, std::size_t width) {
   for (const Section::Block& block : section.blocks) {
     const auto* table = std::get_if<Section::Table>(&block);
     if (table == nullptr) continue;
-    print_table(out, table->table);
+    print_table(out, table->table, width);
     out << '\n';
   }
 }
 
-void print_section_notes(std::ostream& out, const Section& section) {
-  for (const Section::Block& block : section.blocks) {
-    if (const auto* note = std::get_if<Section::Note>(&block)) print_wrapped(out, note->text);
-  }
+/// What was studied, which runs failed, and the verdict on each cell in a sentence.
+void print_head(std::ostream& out, const StudyAnalysis& study, std::size_t width) {
+  const std::string runs =
+      std::to_string(study.runs_here) +
+      (study.runs_here == study.study_runs ? "" : " of " + std::to_string(study.study_runs));
+  out << engine::wrapped(study.study_name + ": " + runs + " runs, " + study.scans_text() +
+                             ", seed " + std::to_string(study.seed),
+                         width)
+      << '\n';
+  if (study.has_failures()) print_failures(out, study, width);
+  if (!study.has_truth) out << engine::wrapped(no_truth_sentence(study), width) << '\n';
+  print_sentences(out, study, width);
+}
+
+/// What a reader must know even if they look at the summary only.
+void print_cautions(std::ostream& out, const StudyAnalysis& study, std::size_t width) {
+  std::vector<std::string> sentences = imported_notes(study);
+  std::ranges::copy(cautions(study), std::back_inserter(sentences));
+  for (const std::string& caution : sentences) out << engine::wrapped(caution, width, 2);
+  if (!sentences.empty()) out << '\n';
+}
+
+/// Of a recorded drive without a true path, what its references say.
+bool is_in_summary(const Section& section) {
+  return section.name == "drive" || section.name == "references";
 }
 
 }  // namespace
 
-void print_tables(std::ostream& out, const StudyAnalysis& study, Explanations explanations) {
-  const std::vector<Section> sections = terminal_sections(study);
-  out << study.study_name << ": " << study.runs_here << " of " << study.study_runs << " runs, "
-      << study.scans_text() << ", seed " << study.seed << "\n\n";
-  if (study.has_failures()) print_failures(out, study);
-  if (!study.has_truth) {
-    print_wrapped(out, no_truth_sentence(study));
+void print_sentences(std::ostream& out, const StudyAnalysis& study, std::size_t width) {
+  bool has_any = false;
+  for (const Section& section : terminal_sections(study)) {
+    for (const Section::Block& block : section.blocks) {
+      const auto* lead = std::get_if<Section::Lead>(&block);
+      if (lead == nullptr) continue;
+      out << engine::wrapped(lead->text, width, 2);
+      has_any = true;
+    }
+  }
+  if (has_any) out << '\n';
+}
+
+void print_summary(std::ostream& out, const StudyAnalysis& study, std::size_t width) {
+  print_head(out, study, width);
+  if (study.has_truth) {
+    print_table(out, summary_table(study), width);
     out << '\n';
-  }
-  for (const Section& section : sections) print_leads(out, section);
-  for (const Section& section : sections) print_section_tables(out, section);
-  if (study.has_truth) print_warnings(out, study);
-  if (explanations == Explanations::shown) {
-    for (const Section& section : sections) print_section_notes(out, section);
   } else {
-    for (const std::string& note : imported_notes(study)) print_wrapped(out, note);
-    for (const std::string& note : too_few_notes(study)) print_wrapped(out, note);
+    for (const Section& section : terminal_sections(study)) {
+      if (is_in_summary(section)) print_section_tables(out, section, width);
+    }
   }
+  print_cautions(out, study, width);
+}
+
+void print_all(std::ostream& out, const StudyAnalysis& study, std::size_t width) {
+  print_head(out, study, width);
+  for (const Section& section : terminal_sections(study)) {
+    print_section_tables(out, section, width);
+  }
+  print_cautions(out, study, width);
+}
+
+void print_named(std::ostream& out, const StudyAnalysis& study, const std::string& name,
+                 std::size_t width) {
+  std::string known;
+  for (const Section& section : sections_of(study)) {
+    for (const Section::Block& block : section.blocks) {
+      const auto* table = std::get_if<Section::Table>(&block);
+      if (table == nullptr) continue;
+      known += (known.empty() ? "" : ", ") + table->name;
+      if (table->name != name) continue;
+      print_table(out, table->table, width);
+      for (const Section::Block& other : section.blocks) {
+        const auto* note = std::get_if<Section::Note>(&other);
+        if (note != nullptr) out << '\n' << engine::wrapped(note->text, width);
+      }
+      return;
+    }
+  }
+  throw StudyError("--table " + name + ": no table of this study has that name: take one of " +
+                   known);
 }
 
 }  // namespace montecarta::analysis

@@ -3,6 +3,7 @@
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
+#include "engine/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_guard.hpp"
@@ -41,6 +42,18 @@ void expect_one_study(const std::vector<std::string>& names) {
   }
 }
 
+void print(const StudyAnalysis& study, const std::string& name, const Arguments& arguments) {
+  const std::size_t width = engine::output_width();
+  if (const auto table = arguments.text("table")) {
+    print_named(std::cout, study, *table, width);
+  } else if (arguments.has("all")) {
+    print_all(std::cout, study, width);
+  } else {
+    print_summary(std::cout, study, width);
+    print_where_to_look(name, "");
+  }
+}
+
 int analyze_files(const Arguments& arguments) {
   const double level = arguments.number("level", 1e-9, 1.0 - 1e-9).value_or(0.95);
   const auto within = arguments.number("within", kLeastMargin, kMostMargin);
@@ -57,9 +70,7 @@ int analyze_files(const Arguments& arguments) {
     check_outputs(arguments, file);
     const StudyAnalysis study = analyze(file, level, parallel_of(arguments), within);
     if (names.size() > 1) std::cout << (name == names.front() ? "" : "\n") << name << "\n";
-    const bool explains = arguments.has("explain");
-    print_tables(std::cout, study, explains ? Explanations::shown : Explanations::hidden);
-    if (!explains) tell_what_explains(name);
+    print(study, name, arguments);
     if (const auto directory = arguments.text("csv")) write_csv(study, *directory);
     if (const auto output = arguments.text("output")) write_analysis_file(study, *output);
   }
@@ -75,7 +86,8 @@ Command analyze_command() {
        .operands = {{"FILE.h5", 1, SIZE_MAX}},
        .options = {{"output", "o", {"OUT.h5"}, "write every metric over time as HDF5"},
                    {"csv", "", {"DIR"}, "write tables and series as CSV"},
-                   {"explain", "", {}, "say what the columns mean"},
+                   {"all", "", {}, "print all tables"},
+                   {"table", "", {"NAME"}, "print one table and how to read it"},
                    {"level", "", {"L"}, "probability inside the NEES bounds; default 0.95"},
                    {"within", "", {"R"}, kWithinMeaning},
                    {"force", "", {}, "replace OUT.h5 and the tables in DIR"},

@@ -2,7 +2,9 @@
 #include "analysis/comparison/study_comparison.hpp"
 #include "analysis/data/study_settings.hpp"
 #include "analysis/output/text_table.hpp"
+#include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
+#include "engine/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_guard.hpp"
@@ -53,18 +55,20 @@ std::string baseline_of(const Arguments& arguments, const ResultFile& file) {
 
 void print(const StudyAnalysis& study, const StudyComparison& comparison) {
   std::ostream& out = std::cout;
+  const std::size_t width = engine::output_width();
   const double level = comparison.comparisons.level;
-  print_table(out, comparison_table(comparison.comparisons));
+  print_sentences(out, study, width);
+  print_table(out, comparison_table(comparison.comparisons), width);
   out << '\n';
   for (const std::string& note : comparison_notes(study, comparison.comparisons)) {
-    print_wrapped(out, note);
+    out << engine::wrapped(note, width);
   }
   for (const WinMatrix& matrix : comparison.matrices) {
     out << '\n';
-    print_table(out, win_table(matrix, level));
+    print_table(out, win_table(matrix, level), width);
   }
   out << '\n';
-  if (!comparison.matrices.empty()) print_wrapped(out, win_note(level));
+  if (!comparison.matrices.empty()) out << engine::wrapped(win_note(level), width);
 }
 
 int compare(const Arguments& arguments) {

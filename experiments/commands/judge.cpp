@@ -4,6 +4,7 @@
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/result_file.hpp"
+#include "engine/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_guard.hpp"
@@ -62,8 +63,8 @@ int judge_estimates(const Arguments& arguments) {
   const JudgedFiles files = pair_files(arguments.operands(), truths, arguments.text("cell"));
   judge_files(files, options);
   const ResultFile file(options.output);
-  print_tables(std::cout, analyze(file, 0.95, parallel_of(arguments)));
-  tell_what_explains(options.output.string());
+  print_summary(std::cout, analyze(file, 0.95, parallel_of(arguments)), engine::output_width());
+  print_where_to_look(options.output.string(), "");
   std::cerr << "montecarta: " << files.runs.size() << " runs of " << files.cells.size()
             << (files.cells.size() == 1 ? " estimator" : " estimators") << ", stored in "
             << options.output.string() << "\n";

@@ -8,6 +8,7 @@
 #include "engine/records/result_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
 #include "engine/threads/thread_budget.hpp"
+#include "engine/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_guard.hpp"
@@ -90,19 +91,20 @@ void tell_how_to_resume(const RunOutcome& outcome, const RunOptions& options,
             << ". Go on with:\n  " << resuming_command(arguments) << "\n";
 }
 
-/// Results are safe by now: a report that cannot be drawn, e.g. without gnuplot, is no failure of
-/// the study.
-void draw_report(const ResultFile& file, const std::filesystem::path& folder,
-                 const RunOptions& options) {
+/// The page, or nothing if it cannot be drawn, e.g. without gnuplot: the results are safe by now,
+/// so that this is no failure of the study.
+std::string draw_report(const ResultFile& file, const std::filesystem::path& folder,
+                        const RunOptions& options) {
   analysis::ReportOptions how;
   how.existing =
       options.force ? analysis::ExistingReport::replace : analysis::ExistingReport::refuse;
   how.parallel = &options.parallel;
   try {
     analysis::write_report(file, folder, how);
-    std::cout << "Report: " << (folder / "index.html").string() << "\n";
+    return (folder / "index.html").string();
   } catch (const std::exception& error) {
     std::cerr << "montecarta: no report: " << error.what() << "\n";
+    return "";
   }
 }
 
@@ -116,9 +118,9 @@ void tell_results(const RunOptions& options, const std::optional<std::filesystem
     return;
   }
   const ResultFile file(options.output);
-  print_tables(std::cout, analyze(file, 0.95, options.parallel));
-  tell_what_explains(options.output.string());
-  if (report) draw_report(file, *report, options);
+  print_summary(std::cout, analyze(file, 0.95, options.parallel), engine::output_width());
+  std::cout << std::flush;
+  print_where_to_look(options.output.string(), report ? draw_report(file, *report, options) : "");
 }
 
 int run(const Arguments& arguments) {

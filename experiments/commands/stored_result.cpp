@@ -23,10 +23,10 @@ ResultFile open_stored(const std::string& name) {
   return ResultFile(part);
 }
 
-void tell_what_explains(const std::string& name) {
+void print_where_to_look(const std::string& name, const std::string& page) {
   const std::string file = shell_quoted(name);
-  std::cout << "How to read this: montecarta analyze " << file << " --explain\n"
-            << "With figures:     montecarta report " << file << " -o DIR\n";
+  std::cout << "Page: " << (page.empty() ? "montecarta report " + file + " -o DIR" : page) << "\n"
+            << "More: montecarta analyze " << file << " --all (or --table NAME)\n";
 }
 
 StatusCounts count_status(const std::vector<RunStatus>& status) {

@@ -14,8 +14,9 @@ namespace montecarta::experiments {
 /// error).
 ResultFile open_stored(const std::string& name);
 
-/// Names on standard output what explains the tables of a file.
-void tell_what_explains(const std::string& name);
+/// Says on standard output where the page of a result file is (empty: how to draw it), and how to
+/// see more of the file.
+void print_where_to_look(const std::string& name, const std::string& page);
 
 /// How many runs of a cell are in which state.
 struct StatusCounts {

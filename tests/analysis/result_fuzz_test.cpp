@@ -52,7 +52,7 @@ class ResultFuzz : public testing::Test {
       const ResultFile file(path_);
       const StudyAnalysis study = analyze(file);
       std::ostringstream tables;
-      if (with_tables) print_tables(tables, study);
+      if (with_tables) print_all(tables, study, 80);
       read_replay(file, file.runs().size() - 1);
       return false;
     } catch (const StudyError& error) {

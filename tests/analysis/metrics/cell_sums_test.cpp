@@ -189,9 +189,7 @@ TEST(CellSums, LeavesOutAndCountsARunWithoutAJudgedScan) {
   StudyAnalysis analysis;
   analysis.cells = {cell};
   analysis.cells[0].label = "kf";
-  EXPECT_EQ(too_few_notes(analysis).front(),
-            "kf: 1 of 12 complete runs have no scan that can be judged; ANEES and verdict are of "
-            "the other runs.");
+  EXPECT_EQ(cautions(analysis).front(), "Runs without a scan that can be judged: kf 1 of 12.");
 }
 
 TEST(CellSums, CountsWhatIsSingularOrUnusable) {

@@ -4,6 +4,7 @@
 #include "analysis/output/csv_file.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "analysis/tables/summary_table.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/h5.hpp"
 #include "tests/doubles/scratch_folder.hpp"
@@ -92,18 +93,43 @@ TEST(NumberText, IsShortAndSaysWhatItMeasured) {
   EXPECT_EQ(std::stod(exact_text(0.1 + 0.2)), 0.1 + 0.2);
 }
 
-TEST(PrintTables, PutFailedRunsFirstAndTheVerdictInWords) {
+TEST(PrintSummary, PutsFailedRunsFirstThenSentencesThenOneTable) {
   std::ostringstream out;
-  print_tables(out, small_study());
+  print_summary(out, small_study(), 80);
   const std::string text = out.str();
-  EXPECT_LT(text.find("weights, all of them"), text.find("verdict"));
-  EXPECT_THAT(text, HasSubstr("1 FAILED, 3 missing, 0 complete  not tested"));
-  EXPECT_THAT(text, HasSubstr("consistent within 1.1"));
-  EXPECT_THAT(text, HasSubstr("1.93 [1.81, 2.05]"));
-  std::ostringstream explained;
-  print_tables(explained, small_study(), Explanations::shown);
-  EXPECT_THAT(explained.str(), testing::StartsWith(text));
-  EXPECT_GT(explained.str().size(), text.size());
+  const std::size_t failures = text.find("weights, all of them"),
+                    sentence = text.find("ekf_slam is consistent"), table = text.find("NEES ratio");
+  EXPECT_LT(failures, sentence);
+  EXPECT_LT(sentence, table);
+  EXPECT_NE(table, std::string::npos);
+  EXPECT_EQ(text.find("NEES ratio", table + 1), std::string::npos);
+}
+
+TEST(PrintSummary, LeavesOutColumnsWithoutNumbers) {
+  const TextTable table = summary_table(small_study());
+  for (const TextTable::Heading& heading : table.headings) EXPECT_NE(heading.text, "ancestors");
+  EXPECT_EQ(table.rows.size(), 2u);
+}
+
+TEST(PrintAll, HasEveryTableInTheWidthOfTheTerminal) {
+  std::ostringstream out;
+  print_all(out, small_study(), 80);
+  EXPECT_THAT(out.str(), HasSubstr("1.93 [1.81, 2.05]"));
+  std::istringstream lines(out.str());
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80u) << line;
+}
+
+TEST(PrintNamed, PrintsATableWithItsNotesOrSaysWhichThereAre) {
+  std::ostringstream out;
+  print_named(out, small_study(), "accuracy", 80);
+  EXPECT_THAT(out.str(), HasSubstr("position RMSE"));
+  EXPECT_THAT(out.str(), HasSubstr("\n\n"));
+  try {
+    print_named(out, small_study(), "acuracy", 80);
+    FAIL();
+  } catch (const StudyError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("accuracy"));
+  }
 }
 
 TEST(WriteCsv, WritesOneRowACellAndOneRowAScan) {
@@ -164,6 +190,22 @@ TEST(WriteAnalysisFile, HoldsSeriesAndVerdicts) {
   EXPECT_THAT(values, ElementsAre(3.0, 3.5));
   EXPECT_EQ(h5::text(h5::open_group(file, "cells/fastslam2_m30"), "verdict"),
             "not tested (1 of 1 runs failed)");
+}
+
+TEST(WriteAnalysisFile, HoldsEveryTestOfTheVerdict) {
+  const ScratchFolder folder;
+  StudyAnalysis study = small_study();
+  Member x, heading;
+  x.name = "x", x.p = 0.5, heading.name = "heading", heading.p = 0.001;
+  study.cells[0].verdict.families = {{.family = Family::component, .members = {x, heading}}};
+  write_analysis_file(study, folder / "analysis.h5");
+  const auto file = h5::open_file(folder / "analysis.h5");
+  const std::string group = "cells/ekf_slam/families/component";
+  EXPECT_EQ(h5::text(h5::open_group(file, group), "members"), "x\nheading");
+  std::vector<double> p(2);
+  h5::read(h5::open_dataset(file, group + "/p"), Element::f64,
+           std::as_writable_bytes(std::span(p)));
+  EXPECT_THAT(p, ElementsAre(0.5, 0.001));
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ TEST_F(Commands, RunWithoutANameForResultsTakesTheStudysAndEndsWithAReport) {
   EXPECT_TRUE(exists("blink.h5"));
   EXPECT_THAT(ran.out, HasSubstr("ekf_slam"));
   if (ran.err.find("gnuplot") != std::string::npos) GTEST_SKIP() << "no gnuplot: no report";
-  EXPECT_THAT(ran.out, HasSubstr("Report: blink_report/index.html"));
+  EXPECT_THAT(ran.out, HasSubstr("Page: blink_report/index.html"));
   EXPECT_TRUE(exists("blink_report/index.html"));
   std::filesystem::remove(folder_ / "blink.h5");
   expect_refused({"run", "blink.ini"}, "blink_report/index.html: is there already");

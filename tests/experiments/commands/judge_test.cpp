@@ -82,9 +82,7 @@ TEST_F(Judge, OwnEstimatesHaveTheVerdictOfTheirFilter) {
   std::vector<std::string> files = estimates("ekf_slam");
   const Called called = judge(files, {"--truth", "drives", "--error", "world", "-o", "mine.h5"});
   ASSERT_EQ(called.code, 0) << called.err;
-  EXPECT_THAT(called.out, AllOf(HasSubstr("ekf_slam"), HasSubstr("Imported estimates"),
-                                HasSubstr("RMS of its deviation")))
-      << called.out;
+  EXPECT_THAT(called.out, AllOf(HasSubstr("ekf_slam"), HasSubstr("Imported estimates")));
   const auto own = analyzed("own.h5").cells[0], mine = analyzed("mine.h5").cells[0];
   ASSERT_EQ(mine.nees.size(), 3U);
   for (std::size_t b = 0; b < 3; ++b) {
@@ -103,7 +101,7 @@ TEST_F(Judge, AnalyzeReportAndCompareReadTheResult) {
   for (const std::string& name : estimates("fastslam2_m10")) files.push_back(name);
   ASSERT_EQ(judge(files, {"--truth", "drives", "--error", "body", "-o", "mine.h5"}).code, 0);
   for (const auto& words : std::vector<std::vector<std::string>>{
-           {"analyze", "mine.h5", "--explain", "--csv", "tables", "-o", "all.h5"},
+           {"analyze", "mine.h5", "--all", "--csv", "tables", "-o", "all.h5"},
            {"report", "mine.h5", "-o", "page"},
            {"compare", "mine.h5", "--baseline", "ekf_slam"},
            {"info", "mine.h5"}}) {
@@ -164,7 +162,7 @@ TEST_F(Judge, AVectorHasItsOwnDimension) {
   ASSERT_EQ(study.cells[0].nees.size(), 1U);
   EXPECT_EQ(study.cells[0].nees[0].series.dimension, 2U);
   EXPECT_NEAR(study.cells[0].nees[0].mean, 1.5, 1e-12);
-  EXPECT_THAT(call({"analyze", "mine.h5", "--explain"}).out, HasSubstr("(a, b)"));
+  EXPECT_THAT(call({"analyze", "mine.h5", "--table", "verdict"}).out, HasSubstr("(a, b)"));
   EXPECT_EQ(call({"report", "mine.h5", "-o", "page"}).code, 0);
   EXPECT_THAT(call({"compare", "mine.h5", "--baseline", "e"}).err, HasSubstr("has one cell, e"));
   words.back() = "body";
