@@ -67,7 +67,7 @@ class RunReader {
   const ResultFile* file_;
   const StoredCell* cell_;
   std::vector<double> cpu_seconds_;
-  mutable std::mutex reading_;  ///< an HDF5 library may be built for one thread
+  static inline std::mutex reading_;  ///< an HDF5 library may be built for one thread
 };
 
 /// One run alone, index `i`.

@@ -53,13 +53,21 @@ CellSums::CellSums(const RunCriteria& criteria)
   }
 }
 
-void CellSums::add(const MeasuredRun& run) {
-  scores_.add(run);
+void CellSums::add(std::span<const MeasuredRun> runs, const Parallel& parallel) {
+  parallel.for_each(metrics_.size() + 2, [&](std::size_t part) {
+    for (const MeasuredRun& run : runs) {
+      if (part < metrics_.size()) metrics_[part]->add(run);
+      if (part == metrics_.size()) scores_.add(run);
+      if (part > metrics_.size()) add_to_series(run);
+    }
+  });
+}
+
+void CellSums::add_to_series(const MeasuredRun& run) {
   for (std::size_t k = 0; k < over_time_.size(); ++k) {
     const std::vector<double> values = all_scan_series()[k].of(run);
     if (!values.empty()) over_time_[k].add(values);
   }
-  for (const auto& metric : metrics_) metric->add(run);
 }
 
 void CellSums::put_series(CellAnalysis& cell) const {
@@ -82,21 +90,19 @@ void CellSums::put(CellAnalysis& cell) {
   put_score_intervals(cell, level_);
 }
 
-std::vector<MeasuredRun> slots_for(const Parallel& parallel) {
-  return std::vector<MeasuredRun>(
-      parallel.threads() == 1 ? 1 : 4 * static_cast<std::size_t>(parallel.threads()));
-}
-
 void add_runs(const RunReader& reader, std::span<const std::size_t> runs, std::size_t particles,
-              const RunCriteria& criteria, const Parallel& parallel,
-              std::vector<MeasuredRun>& slots, CellSums& sums) {
+              const RunCriteria& criteria, const Parallel& parallel, std::size_t cells,
+              CellSums& sums) {
+  const auto threads = static_cast<std::size_t>(parallel.threads());
+  const std::size_t at_once = threads == 1 ? 1 : (4 * threads + cells - 1) / cells;
+  std::vector<MeasuredRun> slots(std::min(at_once, runs.size()));
   for (std::size_t first = 0; first < runs.size(); first += slots.size()) {
     const std::size_t here = std::min(slots.size(), runs.size() - first);
     parallel.for_each(here, [&](std::size_t k) {
       reader.read(runs[first + k], slots[k].rows, slots[k].scratch);
       slots[k].measure(criteria, particles);
     });
-    for (std::size_t k = 0; k < here; ++k) sums.add(slots[k]);
+    sums.add(std::span(slots).first(here), parallel);
   }
 }
 
@@ -108,9 +114,8 @@ std::vector<double> first_values(const ResultFile& file, const StoredCell& cell,
     if (status[i] == RunStatus::complete) complete.push_back(i);
   }
   const RunCriteria criteria = criteria_of(file, 0.95);
-  std::vector<MeasuredRun> slots = slots_for(parallel);
   CellSums sums(criteria);
-  add_runs(RunReader(file, cell), complete, cell.particles, criteria, parallel, slots, sums);
+  add_runs(RunReader(file, cell), complete, cell.particles, criteria, parallel, 1, sums);
   return sums.scores().column(score.name);
 }
 

@@ -35,13 +35,15 @@ class CellSums {
   /// `criteria` must outlive it.
   explicit CellSums(const RunCriteria& criteria);
 
-  void add(const MeasuredRun& run);
+  /// Metrics are added up at once, each by one thread in the order of the runs.
+  void add(std::span<const MeasuredRun> runs, const Parallel& parallel = Parallel::serial());
   /// Of the runs so far.
   const ScoreTable& scores() const { return scores_; }
   /// Fills all that complete runs say; label, failures and missing runs are there already.
   void put(CellAnalysis& cell);
 
  private:
+  void add_to_series(const MeasuredRun& run);
   void put_series(CellAnalysis& cell) const;
 
   double level_;
@@ -51,13 +53,11 @@ class CellSums {
   std::vector<std::unique_ptr<MetricSums>> metrics_;  ///< those that have any
 };
 
-/// As many as are worth measuring at once.
-std::vector<MeasuredRun> slots_for(const Parallel& parallel);
-
-/// Measures runs at once, a slot each, and adds them up in order, whoever was first.
+/// Measures `runs` of one cell, some at once, and adds them up in their order. `cells` is how many
+/// cells are added up at once: together they hold about four runs for each thread.
 void add_runs(const RunReader& reader, std::span<const std::size_t> runs, std::size_t particles,
-              const RunCriteria& criteria, const Parallel& parallel,
-              std::vector<MeasuredRun>& slots, CellSums& sums);
+              const RunCriteria& criteria, const Parallel& parallel, std::size_t cells,
+              CellSums& sums);
 
 /// A score of each complete run among the first `runs` that a file holds of a cell, in their order;
 /// the file may be unfinished. The same for any number of threads.

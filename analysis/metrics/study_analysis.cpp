@@ -9,6 +9,7 @@
 #include "engine/runs/monte_carlo.hpp"
 
 #include <algorithm>
+#include <deque>
 
 namespace montecarta::analysis {
 namespace {
@@ -68,22 +69,30 @@ std::vector<std::size_t> complete_runs(const ResultFile& file, const StoredCell&
   return complete;
 }
 
-CellAnalysis cell_by(const RunCriteria& criteria, const ResultFile& file, const StoredCell& stored,
-                     std::size_t runs, const Parallel& parallel, std::vector<MeasuredRun>& slots) {
+/// A cell whose runs are to be added up.
+struct CellTask {
+  CellTask(const ResultFile& file, const StoredCell& stored, std::size_t runs)
+      : reader(file, stored) {
+    cell.label = stored.label;
+    cell.filter = stored.filter;
+    cell.long_name = stored.long_name;
+    cell.particles = stored.particles;
+    cell.mismatch = mismatch_of(stored);
+    complete = complete_runs(file, stored, runs, cell);
+  }
+
+  void add_up(const RunCriteria& criteria, const Parallel& parallel, std::size_t cells) {
+    CellSums sums(criteria);
+    add_runs(reader, complete, cell.particles, criteria, parallel, cells, sums);
+    sums.put(cell);
+    cell.verdict.runs = cell.complete + cell.failures.size();
+    cell.verdict.failed = cell.failures.size();
+  }
+
   CellAnalysis cell;
-  cell.label = stored.label;
-  cell.filter = stored.filter;
-  cell.long_name = stored.long_name;
-  cell.particles = stored.particles;
-  cell.mismatch = mismatch_of(stored);
-  const auto complete = complete_runs(file, stored, runs, cell);
-  CellSums sums(criteria);
-  add_runs(RunReader(file, stored), complete, stored.particles, criteria, parallel, slots, sums);
-  sums.put(cell);
-  cell.verdict.runs = cell.complete + cell.failures.size();
-  cell.verdict.failed = cell.failures.size();
-  return cell;
-}
+  RunReader reader;
+  std::vector<std::size_t> complete;
+};
 
 /// What the study in the file says, by a function of its text.
 template <class Read>
@@ -170,10 +179,11 @@ StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& para
   expect_scans(file);
   const RunCriteria criteria = criteria_of(file, level, study.within);
   study.references = judged_references(criteria);
-  std::vector<MeasuredRun> slots = slots_for(parallel);
-  for (const StoredCell& cell : file.cells()) {
-    study.cells.push_back(cell_by(criteria, file, cell, file.runs().size(), parallel, slots));
-  }
+  std::deque<CellTask> tasks;  // a reader has one place
+  for (const StoredCell& cell : file.cells()) tasks.emplace_back(file, cell, file.runs().size());
+  parallel.for_each(tasks.size(),
+                    [&](std::size_t k) { tasks[k].add_up(criteria, parallel, tasks.size()); });
+  for (CellTask& task : tasks) study.cells.push_back(std::move(task.cell));
   study.bound = cramer_rao_bound(file, parallel);
   for (CellAnalysis& cell : study.cells) {
     cell.findings.put(efficiency_of(cell, study.bound));
@@ -186,8 +196,9 @@ CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& cell, double
                           std::optional<double> within) {
   expect_scans(file);
   const RunCriteria criteria = criteria_of(file, level, margin_of(file, within));
-  std::vector<MeasuredRun> slots = slots_for(parallel);
-  return cell_by(criteria, file, cell, runs, parallel, slots);
+  CellTask task(file, cell, runs);
+  task.add_up(criteria, parallel, 1);
+  return std::move(task.cell);
 }
 
 }  // namespace montecarta::analysis

@@ -142,7 +142,7 @@ TEST_F(Drive10, ItsTableHasARowForACellAndSaysWhatToConsider) {
   measured.rows = run(5.0, 0.3);
   measured.rows.path = measured.rows.spread.mean;
   measured.measure(criteria, 0);
-  sums.add(measured);
+  sums.add({&measured, 1});
   StudyAnalysis study;
   study.has_truth = false;
   study.times = times_;
@@ -161,7 +161,9 @@ TEST_F(Drive10, ItsTableHasARowForACellAndSaysWhatToConsider) {
   EXPECT_THAT(table.rows[0][3], StartsWith("optimistic: NEES "));
   EXPECT_EQ(table.rows[0][8], "600");
   const Section section = reported_section(study, "drive");
-  const auto* warnings = std::get_if<Section::Table>(&section.blocks.at(1));
+  ASSERT_GT(section.blocks.size(), 2U);
+  EXPECT_TRUE(std::holds_alternative<Section::Lead>(section.blocks[0]));
+  const auto* warnings = std::get_if<Section::Table>(&section.blocks[2]);
   ASSERT_NE(warnings, nullptr);
   EXPECT_EQ(warnings->table.rows.size(), 2U) << "it starts at a fix, and its author is another";
   study.references.front().has_errors = false;
@@ -235,7 +237,7 @@ TEST(OwnDrives, HaveNoMeanOverTime) {
   run.rows.nis_dof = {2, 2};
   const auto analysed = [&] {
     CellSums sums(criteria);
-    sums.add(run);
+    sums.add({&run, 1});
     CellAnalysis cell;
     sums.put(cell);
     return cell;
