@@ -26,6 +26,7 @@ std::size_t width_in_environment() {
 }
 
 std::string wrapped_paragraph(const std::string& text, std::size_t width, std::size_t hang) {
+  if (characters_of(text) <= width) return text + '\n';
   std::string line(std::min(text.find_first_not_of(' '), text.size()), ' ');
   const std::string indent(line.size() + hang, ' ');
   std::istringstream words(text);
@@ -44,10 +45,15 @@ std::string wrapped_paragraph(const std::string& text, std::size_t width, std::s
 
 }  // namespace
 
-std::size_t output_width(int descriptor) {
+std::optional<std::size_t> terminal_width(int descriptor) {
   winsize size{};
-  const bool is_terminal = ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  return std::max<std::size_t>(kLeastWidth, is_terminal ? size.ws_col : width_in_environment());
+  if (ioctl(descriptor, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return std::nullopt;
+  return size.ws_col;
+}
+
+std::size_t output_width(int descriptor) {
+  const std::optional<std::size_t> width = terminal_width(descriptor);
+  return std::max(kLeastWidth, width ? *width : width_in_environment());
 }
 
 std::string wrapped(std::string_view text, std::size_t width, std::size_t hang) {

@@ -18,6 +18,7 @@ TEST(WrappedText, BreaksBetweenWordsAndIndentsWhatFollows) {
 
 TEST(WrappedText, KeepsEmptyLinesAndLongWords) {
   EXPECT_EQ(wrapped("a\n\nb", 40), "a\n\nb\n");
+  EXPECT_EQ(wrapped("a  table", 8), "a  table\n") << "what fits stays as it is";
   EXPECT_EQ(wrapped("/a/long/path b", 6), "/a/long/path\nb\n");
   EXPECT_EQ(wrapped("", 40), "");
 }
@@ -35,6 +36,7 @@ TEST(WrappedText, WidthOfWhatIsNoTerminalIs80OrThatOfTheEnvironment) {
     ::setenv("COLUMNS", columns, 1);
     return output_width(ends[1]);
   };
+  EXPECT_EQ(terminal_width(ends[1]), std::nullopt);
   EXPECT_EQ(width_with(""), 80u);
   EXPECT_EQ(width_with("120"), 120u);
   EXPECT_EQ(width_with("7"), 40u);
