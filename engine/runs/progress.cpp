@@ -2,6 +2,7 @@
 #include "engine/runs/progress.hpp"
 
 #include "engine/runs/monte_carlo.hpp"
+#include "engine/wrapped_text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,31 +10,18 @@
 #include <csignal>
 #include <cstdlib>
 #include <string_view>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace montecarta::engine {
 namespace {
 
-constexpr double kBarInterval = 0.1;    // [s]
-constexpr double kPlainInterval = 5.0;  // [s]
-// A line at least every fiftieth of the time gone by: a night on a cluster gives some hundred
-// lines.
-constexpr double kPlainGrowth = 0.02;
-
-std::size_t terminal_width(std::FILE* out) {
-  winsize size{};
-  if (ioctl(fileno(out), TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 80;
-  return size.ws_col;
-}
+constexpr double kBarInterval = 0.1;     // [s]
+constexpr double kLeastInterval = 60.0;  // [s] between plain lines
+constexpr double kPlainGrowth = 0.02;    // a night on a cluster gives some hundred lines
 
 bool is_smart_terminal(std::FILE* out) {
   const char* kind = std::getenv("TERM");
   return isatty(fileno(out)) == 1 && (kind == nullptr || std::string_view(kind) != "dumb");
-}
-
-std::uint64_t tenths(const RunCounts& counts) {
-  return counts.total == 0 ? 10 : 10 * counts.ended() / counts.total;
 }
 
 constexpr std::size_t kWidestBar = 40;
@@ -69,7 +57,7 @@ Progress::Form Progress::form_of(ProgressStyle style, std::FILE* out) {
 }
 
 Progress::Progress(ProgressStyle style, const RunCounts& at_start, std::FILE* out)
-    : form_(form_of(style, out)), at_start_(at_start), out_(out), last_tenth_(tenths(at_start)) {}
+    : form_(form_of(style, out)), at_start_(at_start), out_(out) {}
 
 void Progress::run_ended(RunStatus status) {
   (status == RunStatus::failed ? failed_ : done_).fetch_add(1, std::memory_order_relaxed);
@@ -94,13 +82,10 @@ double Progress::seconds() const {
 void Progress::show() {
   const double now = seconds();
   if (form_ == Form::bar && now - last_shown_ >= kBarInterval) show_bar(now);
-  if (form_ != Form::plain) return;
-  const double interval = std::max(kPlainInterval, kPlainGrowth * now);
-  if (now - last_shown_ >= interval || tenths(counts()) > last_tenth_) show_plain(now);
+  if (form_ == Form::plain && now - last_shown_ >= plain_interval(now)) show_plain(now);
 }
 
 void Progress::finish() {
-  if (form_ == Form::plain) show_plain(seconds());
   if (form_ != Form::bar) return;
   show_bar(seconds());
   std::fputc('\n', out_);
@@ -110,7 +95,8 @@ void Progress::show_bar(double now) {
   last_shown_ = now;
   // One column stays free: some terminals wrap when the last one is written. ESC [ K clears the
   // rest.
-  const std::string line = progress_bar(counts(), now, terminal_width(out_) - 1);
+  const std::size_t width = terminal_width(fileno(out_)).value_or(80) - 1;
+  const std::string line = progress_bar(counts(), now, width);
   std::fprintf(out_, "\r%s\x1b[K", line.c_str());
   std::fflush(out_);
 }
@@ -118,7 +104,6 @@ void Progress::show_bar(double now) {
 void Progress::show_plain(double now) {
   last_shown_ = now;
   const RunCounts current = counts();
-  last_tenth_ = tenths(current);
   const double percent = current.total == 0 ? 100.0
                                             : 100.0 * static_cast<double>(current.ended()) /
                                                   static_cast<double>(current.total);
@@ -126,6 +111,8 @@ void Progress::show_plain(double now) {
                progress_words(current, now).c_str());
   std::fflush(out_);
 }
+
+double plain_interval(double seconds) { return std::max(kLeastInterval, kPlainGrowth * seconds); }
 
 std::string duration_in_words(double seconds) {
   const double whole = std::ceil(seconds);
@@ -202,8 +189,8 @@ void Watch::keep_watch() {
 /// Closing the file may take seconds, in which a user would wonder whether Ctrl-C was heard.
 void Watch::acknowledge_signal() const {
   if (interruption_.signal() == 0 || stop_.is_set()) return;
-  std::fputs("\nmontecarta: stopping, what is done is kept", stderr);
-  std::fputs(runs_under_scheduler() ? "\n" : " (a second signal ends it at once)\n", stderr);
+  std::fputs("\nmontecarta: stopping; finished runs are kept", stderr);
+  std::fputs(runs_under_scheduler() ? "\n" : " (a second signal stops at once)\n", stderr);
 }
 
 void Watch::look() {

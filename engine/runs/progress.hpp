@@ -39,9 +39,12 @@ std::string progress_bar(const RunCounts& counts, double seconds, std::size_t wi
 
 enum class ProgressStyle { automatic, plain, none };
 
-/// Tells the user how far a study has come: on a terminal one line redrawn at most ten times a
-/// second, elsewhere plain lines, at every tenth of the study and every few seconds, more rarely as
-/// the study grows long. Workers only add to counters; one other thread shows.
+/// [s] from one plain line to the next, `seconds` after the start: a minute, later more.
+double plain_interval(double seconds);
+
+/// Shows how far a study has come: on a terminal by one line that is redrawn at most ten times a
+/// second, elsewhere by a plain line every plain_interval(). Workers only add to counters; one
+/// other thread shows.
 class Progress {
  public:
   /// `out` is standard error but for tests.
@@ -54,7 +57,7 @@ class Progress {
   RunCounts counts() const;
   /// Draws if it is time to.
   void show();
-  /// Draws the last state and ends the line.
+  /// On a terminal draws the last state and ends the line. A log has the outcome from the command.
   void finish();
 
  private:
@@ -70,8 +73,7 @@ class Progress {
   RunCounts at_start_;
   std::FILE* out_;
   Clock::time_point begin_ = Clock::now();
-  double last_shown_ = 0.0;   ///< [s] since begin
-  std::uint64_t last_tenth_;  ///< of the study, at the last plain line
+  double last_shown_ = 0.0;  ///< [s] since begin
   std::atomic<std::uint64_t> done_{0};
   std::atomic<std::uint64_t> failed_{0};
   std::atomic<std::uint64_t> spared_{0};
