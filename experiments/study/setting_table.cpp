@@ -2,6 +2,7 @@
 #include "analysis/data/study_settings.hpp"
 #include "engine/records/columns.hpp"
 #include "experiments/study/settings.hpp"
+#include "experiments/text/words.hpp"
 #include "filters/models/sensor.hpp"
 #include "filters/models/vehicle_settings.hpp"
 
@@ -76,8 +77,10 @@ Setting but_for(const char* kind, const char* fallback, Setting setting) {
 template <class Add>
 void add_growth(const char* section, const Add& add) {
   static constexpr std::array<const char*, 4> kMeanings = {
-      "variance of a speed by its square", "and by the square of steering angle or yaw rate",
-      "variance of steering angle or yaw rate by the square of the speed", "and by its own square"};
+      "variance of the speed per squared speed. Equation (1.10) of EQUATIONS.",
+      "variance of the speed per squared steer or yaw_rate. Equation (1.10) of EQUATIONS.",
+      "variance of steer or yaw_rate per squared speed. Equation (1.10) of EQUATIONS.",
+      "variance of steer or yaw_rate per its own square. Equation (1.10) of EQUATIONS."};
   for (std::size_t i = 0; i < kMeanings.size(); ++i) {
     add(number(section, alpha_key(i).c_str(), "SI", "0", 0, 1e6, kMeanings[i]));
   }
@@ -89,14 +92,43 @@ void add_sensor_kind(const char* section, double least, const Add& add) {
   const auto mount = [&](const char* key, const char* unit, double most, const char* meaning) {
     add(number(section, key, unit, "0", -most, most, meaning), "");
   };
-  add(choice(section, "sensor", sensor_names(), "what detects landmarks (EQUATIONS 2)"), "");
-  mount("mount_forward", "m", 1000, "of the sensor, ahead of the pose");
-  mount("mount_left", "m", 1000, "of the sensor, left of the pose");
-  mount("mount_turn_deg", "deg", 360, "where the sensor looks, left of the heading");
+  add(choice(section, "sensor", sensor_names(),
+             "sensor that detects landmarks. Its equations are in EQUATIONS 2."),
+      "");
+  mount("mount_forward", "m", 1000, "position of the sensor ahead of the pose");
+  mount("mount_left", "m", 1000, "position of the sensor left of the pose");
+  mount("mount_turn_deg", "deg", 360, "direction of the sensor, left of the heading");
   for (const Quantity quantity :
        {Quantity::range, Quantity::bearing, Quantity::forward, Quantity::left}) {
     add(deviation_setting(section, quantity, least), component_of(quantity).sigma.example);
   }
+}
+
+/// Where the vehicle drives, and what differs from run to run, added by `add`.
+template <class Add>
+void add_course(const char* s, const Add& add) {
+  add(required(text(s, "world", "name of a shipped world, or path of a .csv file"), "web_loop"));
+  add(count(s, "loops", "1", 1, 10'000, "times that the vehicle drives round the way-points"));
+  add(choice(
+      s, "noise", {"measured-control", "matched"},
+      "where the noise of the controls acts. With measured-control the vehicle moves as commanded "
+      "and the filter is given noisy measurements of the controls. With matched the noise "
+      "acts on the vehicle, and the filter is given the commanded controls, which is what "
+      "filters assume (EQUATIONS 1)."));
+  Setting pilot =
+      choice(s, "pilot", {"closed_loop", "open_loop"},
+             "what the pilot steers by. In closed_loop it steers by the true pose. In open_loop it "
+             "applies the controls of the noise-free drive, and the vehicle strays from "
+             "the way-points.");
+  pilot.chooser = "noise";
+  pilot.applies_to = {"matched"};
+  add(pilot);
+  add(choice(
+      s, "map", {"fixed", "random"},
+      "whether landmarks are displaced in every run. With fixed they are where the world has them. "
+      "With random every run displaces each of them uniformly within map_shift."));
+  add(number(s, "map_shift", "m", "10", 0, 1e4,
+             "largest displacement of a landmark of a random map"));
 }
 
 void add_drive(std::vector<Setting>& table) {
@@ -104,32 +136,23 @@ void add_drive(std::vector<Setting>& table) {
   const auto add = [&](Setting setting) {
     table.push_back(only_for({"simulated"}, std::move(setting)));
   };
-  add(required(text(s, "world", "a shipped world, or a path to a .csv file"), "web_loop"));
-  add(count(s, "loops", "1", 1, 10'000, "times round the way-points"));
-  add(choice(s, "noise", {"measured-control", "matched"},
-             "noise on the controls the filter is given, or on the truth's motion (EQUATIONS 1)"));
-  Setting pilot = choice(s, "pilot", {"closed_loop", "open_loop"},
-                         "steers by the true pose, or takes the controls of the noise-free drive");
-  pilot.chooser = "noise";
-  pilot.applies_to = {"matched"};
-  add(pilot);
-  add(choice(s, "map", {"fixed", "random"},
-             "landmarks where the world has them, or displaced anew in every run"));
-  add(number(s, "map_shift", "m", "10", 0, 1e4, "farthest that a random map displaces one"));
+  add_course(s, add);
   add(choice(s, "vehicle", vehicle_names(),
-             "what drives, and what its controls are (EQUATIONS 1)"));
+             "kind of vehicle, which decides its controls. The motion models are in EQUATIONS 1."));
   const auto add_all = [&](const std::vector<Parameter>& parameters) {
     for (const Parameter& parameter : parameters) add(of_vehicles(s, parameter));
   };
   add_all(vehicle_parameters(VehicleUse::motion));
-  add(number(s, "speed", "m/s", "3", 1e-3, 1000, "along the path; of rear_wheel: of that wheel"));
-  add(number(s, "control_rate", "Hz", "40", 1e-3, 1e5, "control steps a second"));
-  add(number(s, "scan_rate", "Hz", "5", 1e-4, 1e5, "scans a second; must divide control_rate"));
-  add(number(s, "waypoint_radius", "m", "1", 1e-3, 1e4, "nearer than this a way-point is reached"));
+  add(number(s, "speed", "m/s", "3", 1e-3, 1000,
+             "speed along the path. With vehicle = rear_wheel it is the speed of that wheel."));
+  add(number(s, "control_rate", "Hz", "40", 1e-3, 1e5, "control steps per second"));
+  add(number(s, "scan_rate", "Hz", "5", 1e-4, 1e5, "scans per second; must divide control_rate"));
+  add(number(s, "waypoint_radius", "m", "1", 1e-3, 1e4,
+             "distance at which a way-point counts as reached"));
   add_all(vehicle_parameters(VehicleUse::pilot));
-  add(number(s, "start_x", "m", "0", -1e6, 1e6, "pose before the first step"));
-  add(number(s, "start_y", "m", "0", -1e6, 1e6, "pose before the first step"));
-  add(number(s, "start_heading_deg", "deg", "0", -360, 360, "pose before the first step"));
+  add(number(s, "start_x", "m", "0", -1e6, 1e6, "x before the first step"));
+  add(number(s, "start_y", "m", "0", -1e6, 1e6, "y before the first step"));
+  add(number(s, "start_heading_deg", "deg", "0", -360, 360, "heading before the first step"));
   add_all(control_noise_parameters());
   add_growth(s, add);
   add_sensor_kind(s, 0.0, [&](const Setting& setting, const std::string&) { add(setting); });
@@ -138,24 +161,30 @@ void add_drive(std::vector<Setting>& table) {
 void add_recording(std::vector<Setting>& table) {
   const char* s = "scenario";
   const auto add = [&](Setting setting) { table.push_back(only_for({"log"}, std::move(setting))); };
-  add(required(text(s, "path", "the folder of the recorded drive; several, one a run, with commas"),
-               "my_drive"));
-  add(text(s, "data_sha256", "fingerprint of each drive, filled in"));
-  add(text(s, "reference", "the one to judge by; all of them where empty"));
-  add(number(s, "scan_delay", "s", "0", -10, 10, "how much later than it was a scan is stamped"));
+  add(required(
+      text(s, "path",
+           "folder of the recorded drive. Several folders, separated by commas, are the drives of "
+           "one run each."),
+      "my_drive"));
+  add(text(s, "data_sha256", "fingerprint of each drive, which montecarta fills in"));
+  add(text(s, "reference", "reference that errors refer to; all of them if empty"));
+  add(number(
+      s, "scan_delay", "s", "0", -10, 10,
+      "delay of the time stamps of the scans. A scan was taken earlier than its stamp by this."));
 }
 
 void add_sensor(std::vector<Setting>& table) {
   const char* s = "scenario";
-  table.push_back(number(s, "max_range", "m", "30", 1e-3, 1e6, "farther is not detected"));
-  table.push_back(number(s, "min_range", "m", "0", 0, 1e6, "nearer is not detected"));
+  table.push_back(number(s, "max_range", "m", "30", 1e-3, 1e6, "largest range of a detection"));
+  table.push_back(number(s, "min_range", "m", "0", 0, 1e6, "smallest range of a detection"));
   const auto add = [&](Setting setting) {
     table.push_back(only_for({"simulated"}, std::move(setting)));
   };
   add(number(s, "field_of_view_deg", "deg", "180", 0.1, 360,
-             "of the sensor, centred where it looks"));
-  add(number(s, "clutter_rate", "1", "0", 0, 100, "mean false alarms a scan"));
-  add(number(s, "miss_probability", "1", "0", 0, 1, "that a landmark in view is not detected"));
+             "field of view, centred on the sensor's direction"));
+  add(number(s, "clutter_rate", "1", "0", 0, 100, "mean number of false alarms per scan"));
+  add(number(s, "miss_probability", "1", "0", 0, 1,
+             "probability that a landmark in view is missed"));
 }
 
 /// In a simulation it follows the scenario. With an `example` it must be given for a recorded
@@ -169,7 +198,8 @@ Setting believed(Setting setting, const std::string& example) {
 }
 
 void add_scenario(std::vector<Setting>& table) {
-  table.push_back(choice("scenario", "kind", {"simulated", "log"}, "where drives come from"));
+  table.push_back(choice("scenario", "kind", {"simulated", "log"},
+                         "whether drives are simulated, or recorded in a log"));
   add_drive(table);
   add_recording(table);
   add_sensor(table);
@@ -178,12 +208,13 @@ void add_scenario(std::vector<Setting>& table) {
 /// In a simulation everything follows the scenario unless it says otherwise.
 void add_belief(std::vector<Setting>& table) {
   const char* s = "belief";
-  const char* meaning = "what the filter takes it to be";
   const auto add = [&](Setting setting, const std::string& example = {}) {
-    setting.meaning = meaning;
+    setting.meaning = first_sentence(setting.meaning) +
+                      ". This is the value that the filters assume. The true one is that of "
+                      "[scenario].";
     table.push_back(believed(std::move(setting), example));
   };
-  add(choice(s, "vehicle", vehicle_names(), meaning));
+  add(choice(s, "vehicle", vehicle_names(), "kind of vehicle"));
   for (const Parameter& parameter : vehicle_parameters(VehicleUse::motion)) {
     add(of_vehicles(s, parameter), parameter.example);
   }
@@ -196,49 +227,67 @@ void add_belief(std::vector<Setting>& table) {
 
 void add_study(std::vector<Setting>& table) {
   const char* s = "study";
-  table.push_back(required(text(s, "name", "what the study is called"), "my_study"));
-  table.push_back(text(s, "title", "one line for figures; the name where empty"));
-  table.push_back(count(s, "seed", "1", 0, kMostSeed, "of all random numbers; any will do"));
-  table.push_back(required(count(s, "runs", "", 1, 1e7, "repetitions of every cell"), "100"));
   table.push_back(
-      text(s, "until",
-           "METRIC < HALF-WIDTH, verdict, or verdict, N runs: when a cell stops; else empty"));
-  table.push_back(number(s, "within", "1", kUsualWithin, kLeastMargin, kMostMargin,
-                         "consistent: squared errors so many times too large or small at most"));
+      required(text(s, "name", "name of the study and of its result file"), "my_study"));
+  table.push_back(text(s, "title", "title of the figures; the name if empty"));
+  table.push_back(count(s, "seed", "1", 0, kMostSeed, "seed of all random numbers"));
+  table.push_back(required(count(s, "runs", "", 1, 1e7, "number of runs of every cell"), "100"));
+  table.push_back(text(
+      s, "until",
+      "when a cell stops before its last run; never if empty. With METRIC < HALF-WIDTH it stops "
+      "when the 95 % interval of the mean of that metric is within +- the half-width. With "
+      "verdict it stops when it is shown to be consistent, which needs 300 runs, or shown not "
+      "to be. With verdict, N runs it needs N runs instead of 300."));
+  table.push_back(
+      number(s, "within", "1", kUsualWithin, kLeastMargin, kMostMargin,
+             "factor within which the NEES counts as consistent. A filter is consistent if its "
+             "squared errors are shown to be too large or too small by this factor at "
+             "most."));
 }
 
 /// The fallback gates are chi-square 5.991 (95 %) and 25 with two degrees of freedom.
 void add_association(std::vector<Setting>& table) {
   const char* s = "association";
-  table.push_back(but_for("log", "nearest",
-                          choice(s, "kind", {"known", "nearest"},
-                                 "who says which landmark a detection is (EQUATIONS 17)")));
-  table.push_back(number(s, "gate_sigma", "sigma", "1.959963984540054", 0.01, 30,
-                         "nearer: may be that landmark"));
-  table.push_back(number(s, "new_gate_sigma", "sigma", "4.626072265579014", 0.01, 30,
-                         "farther from all: a new one"));
-  table.push_back(number(s, "log_new_density_offset", "1", "0", -1000, 1000,
-                         "added to log p0 of EQUATIONS (17.2)"));
-  table.push_back(
-      count(s, "most_landmarks", "1000", 1, 100'000, "a larger map has run away: the run fails"));
+  table.push_back(but_for(
+      "log", "nearest",
+      choice(s, "kind", {"known", "nearest"},
+             "whether the filter is given the associations. With known it is given the landmark of "
+             "every detection. With nearest it associates detections with "
+             "landmarks itself (EQUATIONS 17).")));
+  table.push_back(number(
+      s, "gate_sigma", "sigma", "1.959963984540054", 0.01, 30,
+      "gate within which a detection may be of a landmark. It has the probability of this many "
+      "standard deviations of a normal distribution (EQUATIONS 17)."));
+  table.push_back(number(
+      s, "new_gate_sigma", "sigma", "4.626072265579014", 0.01, 30,
+      "gate beyond which a detection is of a new landmark. It has the probability of this many "
+      "standard deviations of a normal distribution (EQUATIONS 17)."));
+  table.push_back(number(
+      s, "log_new_density_offset", "1", "0", -1000, 1000,
+      "added to the log density of a new landmark. The log density is that of EQUATIONS (17.2)."));
+  table.push_back(count(s, "most_landmarks", "1000", 1, 100'000,
+                        "number of landmarks in a map beyond which a run fails"));
 }
 
 void add_record(std::vector<Setting>& table) {
   const char* s = "record";
   std::vector<std::string> groups;
   for (const ColumnGroup& group : column_groups()) groups.emplace_back(group.name);
-  Setting columns = choice(s, "columns", groups, "what is stored");
+  Setting columns =
+      choice(s, "columns", groups,
+             "columns that are stored. They are explained by: montecarta list columns");
   columns.kind = Setting::Kind::choices;
   columns.fallback = "pose, covariance, ancestry";
   table.push_back(but_for("log", "pose, covariance, ancestry, final_map", columns));
   table.push_back(but_for("log", "scan",
                           choice(s, "rate", {"control", "scan"},
-                                 "store poses at every control step or at scans only")));
-  table.push_back(count(s, "map_rows", "0", 0, 100'000,
-                        "rows of map columns with unknown association; 0: as many as the world "
-                        "has, or most_landmarks"));
+                                 "whether poses are stored at control steps or scans")));
   table.push_back(
-      count(s, "joint_scans", "16", 1, 100'000, "scans at which the column joint is stored"));
+      count(s, "map_rows", "0", 0, 100'000,
+            "rows of the map's columns with unknown association. With 0 there are as many as the "
+            "world has landmarks, or else most_landmarks."));
+  table.push_back(count(s, "joint_scans", "16", 1, 100'000,
+                        "number of scans at which the column joint is stored"));
 }
 
 std::vector<Setting> make_table() {

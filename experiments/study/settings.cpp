@@ -256,8 +256,8 @@ void Settings::fill_in(const std::string& name) {
     const std::optional<std::string> fallback = setting.fallback_for(kind);
     if (!fallback) {
       throw StudyError(name + ": " + setting.section + "." + setting.key + " is missing (" +
-                       setting.meaning + "): add " + setting.key + " = " + setting.example +
-                       " under [" + setting.section + "]");
+                       first_sentence(setting.meaning) + "): add " + setting.key + " = " +
+                       setting.example + " under [" + setting.section + "]");
     }
     const std::string value =
         *fallback == kFromScenario ? copied_from_scenario(setting) : *fallback;
