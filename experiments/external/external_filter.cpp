@@ -132,9 +132,10 @@ std::unique_ptr<SlamFilter> make_external(const FilterSetup& setup) {
 }
 
 Parameter command_option() {
-  return {.key = "command",
-          .meaning = "the program and its arguments, in quotes; started by --allow-external alone",
-          .example = "\"python3 my_filter.py\""};
+  return {
+      .key = "command",
+      .meaning = "program and its arguments, in quotes; it is only started with --allow-external",
+      .example = "\"python3 my_filter.py\""};
 }
 
 }  // namespace
@@ -147,11 +148,13 @@ FilterKind external_kind() {
       .has_particles = false,
       .has_mixture = false,
       .has_joint = false,
-      .options = {command_option(),
-                  number_parameter("answer_limit", "30", 1e-3, 86400,
-                                   "[s] to wait for an answer before the run fails"),
-                  choice_parameter("process", kProcesses.front(), kProcesses,
-                                   "one process of a worker for all its runs, or a new one each")},
+      .options =
+          {command_option(),
+           number_parameter("answer_limit", "30", 1e-3, 86400,
+                            "seconds to wait for an answer before the run fails"),
+           choice_parameter(
+               "process", kProcesses.front(), kProcesses,
+               "whether a process is kept for all runs of a worker or started anew for each run")},
       .sensors = {},
       .make = make_external};
 }

@@ -300,9 +300,10 @@ void label_cells(std::vector<CellSpec>& cells) {
 std::span<const Parameter> mismatch_options() {
   static const std::vector<Parameter> options = {
       number_parameter("motion_noise", "1", 1e-3, 1e3,
-                       "factor on the believed deviations of the controls"),
-      number_parameter("sensor_noise", "1", 1e-3, 1e3,
-                       "factor on the believed sigma_range and sigma_bearing")};
+                       "factor on the standard deviations of the controls that the filter assumes"),
+      number_parameter(
+          "sensor_noise", "1", 1e-3, 1e3,
+          "factor on the standard deviations of the detections that the filter assumes")};
   return options;
 }
 

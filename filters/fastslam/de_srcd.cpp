@@ -15,15 +15,16 @@ std::vector<Parameter> options_of_evolution() {
   return {
       choice_parameter("mode", "unbiased", kEvolutionModes,
                        "what is evolved, and whether weights account for it (EQUATIONS 10)"),
-      number_parameter("scale", "0.4", 0, 2, "F, of the difference vectors (EQUATIONS 9)"),
-      number_parameter("crossover", "0.8", 0, 1, "Cr, share of components that cross"),
-      count_parameter("generations", "10", 0, 1000, "at most; the paper does not say"),
-      count_parameter(
-          "population", "10", 7, 1000,
-          "of each particle's own evolution (mode unbiased); the particles themselves otherwise"),
-      number_parameter("bounds", "3", 0, 100, "of the search, in standard deviations"),
+      number_parameter("scale", "0.4", 0, 2, "factor F of the difference vectors (EQUATIONS 9)"),
+      number_parameter("crossover", "0.8", 0, 1, "crossover rate Cr (EQUATIONS 9)"),
+      count_parameter("generations", "10", 0, 1000,
+                      "largest number of generations; the paper does not give it"),
+      count_parameter("population", "10", 7, 1000,
+                      "size of the population that each particle has in mode unbiased; in other "
+                      "modes the particles are the population"),
+      number_parameter("bounds", "3", 0, 100, "bounds of the search in standard deviations"),
       number_parameter("inflation", "1", 1, 10,
-                       "of the covariance that is drawn from (modes unbiased and shared)")};
+                       "factor on the covariance of the proposal, in modes unbiased and shared")};
 }
 
 }  // namespace

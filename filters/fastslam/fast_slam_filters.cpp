@@ -31,9 +31,9 @@ bool weighs_by_ratio(const FilterOptions& options) {
 }
 
 Parameter map_uncertainty_option() {
-  return choice_parameter(
-      "map_uncertainty", "on", {"on", "off"},
-      "whether a landmark's covariance counts when the pose is refined; printed without");
+  return choice_parameter("map_uncertainty", "on", {"on", "off"},
+                          "whether the covariance of a landmark is used when the pose is refined; "
+                          "the papers print it without");
 }
 
 MapUncertainty map_uncertainty(const FilterOptions& options) {
@@ -41,12 +41,12 @@ MapUncertainty map_uncertainty(const FilterOptions& options) {
 }
 
 std::vector<Parameter> central_difference_options() {
-  return {
-      number_parameter("interval", "1.7320508075688772", 1, 10,
-                       "h of the central differences; its square is the kurtosis, 3 for a "
-                       "Gaussian (EQUATIONS 3)"),
-      choice_parameter("weights_of_sigma_points", "corrected", {"corrected", "as_printed"},
-                       "as_printed: the misprints of Ankishan eq. (14), about the central point")};
+  return {number_parameter("interval", "1.7320508075688772", 1, 10,
+                           "step h of the central differences; its square is the kurtosis, 3 for a "
+                           "Gaussian (EQUATIONS 3)"),
+          choice_parameter(
+              "weights_of_sigma_points", "corrected", {"corrected", "as_printed"},
+              "whether the misprints of Ankishan eq. (14) about the central point are corrected")};
 }
 
 SigmaPoints central_difference_points(const FilterSetup& setup, MapUncertainty map_uncertainty) {
@@ -108,8 +108,8 @@ FilterKind ufastslam_kind() {
                 "beta", "2", 0, 10,
                 "weight of the centre in covariances; 2 suits a Gaussian (EQUATIONS 7)"),
             number_parameter("kappa", "0", 0, 10,
-                             "second spread: alpha^2 (n + kappa) is the square of the points' "
-                             "distance"),
+                             "second parameter of the spread: alpha^2 (n + kappa) is the squared "
+                             "distance of the points"),
             map_uncertainty_option()}}),
       .sensors = {},
       .delays_initialisation = true,

@@ -94,7 +94,7 @@ class JointFilter final : public SlamFilter {
 Parameter iterations_option() {
   return count_parameter(
       "iterations", "0", 0, 100,
-      "times a detection is linearised again where it has moved the estimate to");
+      "number of times that a detection is linearised again at the updated estimate");
 }
 
 int iterations(const FilterOptions& options) {

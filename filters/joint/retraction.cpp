@@ -59,8 +59,8 @@ Eigen::Index row_of_point(Eigen::Index i) { return i == 0 ? 0 : 1 + 2 * i; }
 Parameter moments_option(const char* fallback) {
   return choice_parameter(
       "moments", fallback, kMoments,
-      "reported mean and covariance: of the Gaussian in map coordinates, or those "
-      "that follow from it in the right-invariant chart (EQUATIONS 19, 21)");
+      "reported mean and covariance: those of the Gaussian in map coordinates (map), or those that "
+      "follow from it in the right-invariant chart (pushed) (EQUATIONS 19, 21)");
 }
 
 Moments moments_of(const FilterOptions& options) {

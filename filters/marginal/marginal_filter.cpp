@@ -35,32 +35,40 @@ MapSettings map_settings(const FilterOptions& options) {
 std::vector<Parameter> marginal_options(MapSolver solver) {
   return {
       count_parameter("particles", "100", 1, 1e6, "number of particles"),
-      choice_parameter("kernel", "prior", kKernels, "what poses are drawn from (EQUATIONS 12)"),
-      number_parameter("kernel_floor_xy", "0.01", 0, 100,
-                       "[m] sigma of noise added to the motion in x and y per scan (EQUATIONS 12)"),
+      choice_parameter("kernel", "prior", kKernels,
+                       "distribution that poses are drawn from (EQUATIONS 12)"),
       number_parameter(
-          "kernel_floor_heading", "0.001", 0, 3,
-          "[rad] sigma of noise added to the motion in heading at every scan (EQUATIONS 12)"),
+          "kernel_floor_xy", "0.01", 0, 100,
+          "standard deviation [m] of the noise added to x and y at every scan (EQUATIONS 12)"),
+      number_parameter("kernel_floor_heading", "0.001", 0, 3,
+                       "standard deviation [rad] of the noise added to the heading at every scan "
+                       "(EQUATIONS 12)"),
       choice_parameter(
           "kernel_sums", "direct", kSums,
           "how the mixtures are summed: directly, or by the fast Gauss transform (EQUATIONS 13)"),
       number_parameter("kernel_tolerance", "1e-9", 1e-15, 0.1,
-                       "kernel_sums=ifgt: error of a sum, of the sum of all peaks"),
+                       "with kernel_sums=ifgt: error of a sum, relative to the sum of all peaks"),
       choice_parameter("map", "recursive", kModes,
-                       "what a landmark remembers of earlier scans (EQUATIONS 14)"),
+                       "how the estimate of a landmark uses earlier scans (EQUATIONS 14)"),
       choice_parameter("map_solver", kSolvers[static_cast<std::size_t>(solver)], kSolvers,
-                       "how the best place of a landmark is found"),
-      choice_parameter("map_objective", "likelihood", kObjectives,
-                       "what a landmark is judged by (Havangi eq. 27, its bound, eq. 29)"),
-      number_parameter(
-          "map_threshold", "5.991464547107979", 0, 1e6,
-          "map=onestep_threshold: a landmark stays where its objective is below (EQUATIONS 14)"),
-      count_parameter("population", "30", 1, 10000, "map_solver=de: candidates for each landmark"),
-      count_parameter("generations", "10", 0, 1000, "map_solver=de: at most (EQUATIONS 9)"),
-      number_parameter("scale", "0.5", 0, 2, "map_solver=de: F (EQUATIONS 9)"),
-      number_parameter("crossover", "0.8", 0, 1, "map_solver=de: Cr (EQUATIONS 9)"),
-      choice_parameter("base", "random", kBases,
-                       "map_solver=de: base of a trial; Havangi eq. (6) random, eq. (30) target"),
+                       "method that optimises the position of a landmark"),
+      choice_parameter(
+          "map_objective", "likelihood", kObjectives,
+          "objective of the position of a landmark (Havangi eq. 27, its bound, eq. 29)"),
+      number_parameter("map_threshold", "5.991464547107979", 0, 1e6,
+                       "with map=onestep_threshold: objective below which a landmark is not moved "
+                       "(EQUATIONS 14)"),
+      count_parameter("population", "30", 1, 10000,
+                      "with map_solver=de: number of candidates for each landmark"),
+      count_parameter("generations", "10", 0, 1000,
+                      "with map_solver=de: largest number of generations (EQUATIONS 9)"),
+      number_parameter("scale", "0.5", 0, 2,
+                       "with map_solver=de: factor F of the difference vectors (EQUATIONS 9)"),
+      number_parameter("crossover", "0.8", 0, 1,
+                       "with map_solver=de: crossover rate Cr (EQUATIONS 9)"),
+      choice_parameter(
+          "base", "random", kBases,
+          "with map_solver=de: base of a trial; Havangi eq. (6) has random, eq. (30) target"),
   };
 }
 

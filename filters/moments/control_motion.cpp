@@ -239,10 +239,10 @@ MotionIncrement moved_by_rule(const MotionIncrement& before, const Control& cont
 const std::vector<std::string> kMotions{"linearised", "quadrature", "unbiased"};
 
 Parameter motion_option(const char* fallback) {
-  return choice_parameter(
-      "motion", fallback, kMotions,
-      "how noise of the control reaches the pose: by derivatives, averaged, or as the noise "
-      "of a measurement of the true control");
+  return choice_parameter("motion", fallback, kMotions,
+                          "how the noise of the control is propagated to the pose: by derivatives "
+                          "(linearised), by averaging over it (quadrature), or as the noise of a "
+                          "measurement of the true control (unbiased)");
 }
 
 }  // namespace

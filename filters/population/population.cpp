@@ -46,9 +46,10 @@ std::vector<Parameter> population_options() {
   return {
       count_parameter("particles", "100", 1, 1e6, "number of particles"),
       choice_parameter("resampling", "systematic", kResamplings,
-                       "draw of the parents (EQUATIONS 18)"),
-      number_parameter("resample_below", "0.5", 0, 1,
-                       "resample where ESS < this times particles; Bailey's simulator has 0.75")};
+                       "resampling scheme (EQUATIONS 18)"),
+      number_parameter(
+          "resample_below", "0.5", 0, 1,
+          "resample if the ESS is below this share of the particles; Bailey's simulator has 0.75")};
 }
 
 PopulationSettings population_settings(const FilterOptions& options) {

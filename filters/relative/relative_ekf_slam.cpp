@@ -174,22 +174,22 @@ FilterKind relative_ekf_slam_kind() {
       .source = "EQUATIONS 22",
       .has_particles = false,
       .has_joint = true,
-      .options = {count_parameter(
-                      "frames", "40", 1, 10000,
-                      "poses at most whose frames landmarks are held in; with landmarks "
-                      "in all of them it goes on as EKF-SLAM in the last"),
-                  number_parameter(
-                      "bend", "0.3", 0, 1e9,
-                      "standard deviations of a range that uncertain headings may bend "
-                      "the way to a landmark by; beyond it is initialised again "
-                      "(EQUATIONS (22.4))"),
-                  count_parameter("lag", "50", 0, 1000000,
-                                  "scans before landmarks that were initialised again are "
-                                  "joined with what they were"),
-                  count_parameter("iterations", "20", 0, 100,
-                                  "times a scan is linearised again where it has moved the "
-                                  "estimate to"),
-                  fitting_motion_option()},
+      .options =
+          {count_parameter(
+               "frames", "40", 1, 10000,
+               "largest number of poses whose frames landmarks are held in; when all of them have "
+               "landmarks the filter continues as EKF-SLAM in the last one"),
+           number_parameter(
+               "bend", "0.3", 0, 1e9,
+               "standard deviations of a range by which uncertain headings may bend the way to a "
+               "landmark; beyond that the landmark is initialised again (EQUATIONS (22.4))"),
+           count_parameter("lag", "50", 0, 1000000,
+                           "number of scans after which landmarks that were initialised again are "
+                           "joined with their earlier estimates"),
+           count_parameter(
+               "iterations", "20", 0, 100,
+               "number of times that a scan is linearised again at the updated estimate"),
+           fitting_motion_option()},
       .sensors = {RangeBearingSensor::kName},
       .make = [](const FilterSetup& setup) { return std::make_unique<RelativeEkfSlam>(setup); }};
 }

@@ -224,10 +224,11 @@ FilterKind smoother_kind() {
       .has_particles = false,
       .has_joint = true,
       .options = {number_parameter("relinearise", "0.5", 0, 1e9,
-                                   "standard deviations that a landmark may move before all is "
-                                   "linearised again; 0: however little"),
-                  count_parameter("iterations", "5", 0, 100,
-                                  "times a detection is linearised again between two solutions"),
+                                   "standard deviations that a landmark may move before everything "
+                                   "is linearised again"),
+                  count_parameter(
+                      "iterations", "5", 0, 100,
+                      "number of times that a detection is linearised again between two solutions"),
                   fitting_motion_option(), moments_option("pushed")},
       .sensors = {RangeBearingSensor::kName},
       .make = [](const FilterSetup& setup) { return std::make_unique<Smoother>(setup); }};
