@@ -80,21 +80,20 @@ int analyze_files(const Arguments& arguments) {
 }  // namespace
 
 Command analyze_command() {
-  return {
-      {.name = "analyze",
-       .summary = "says how accurate and how consistent each filter was: tables, HDF5 and CSV",
-       .operands = {{"FILE.h5", 1, SIZE_MAX}},
-       .options = {{"output", "o", {"OUT.h5"}, "write every metric over time as HDF5"},
-                   {"csv", "", {"DIR"}, "write tables and series as CSV"},
-                   {"all", "", {}, "print all tables"},
-                   {"table", "", {"NAME"}, "print one table and how to read it"},
-                   {"level", "", {"L"}, "probability inside the NEES bounds; default 0.95"},
-                   {"within", "", {"R"}, kWithinMeaning},
-                   {"force", "", {}, "replace OUT.h5 and the tables in DIR"},
-                   {"threads", "", {"N"}, "default: what this process may use"},
-                   {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},
-       .details = {}},
-      analyze_files};
+  return {{.name = "analyze",
+           .summary = "Print how accurate and how consistent each filter is",
+           .operands = {{"FILE.h5", 1, SIZE_MAX}},
+           .options = {{"output", "o", {"OUT.h5"}, "write every metric over time as HDF5"},
+                       {"csv", "", {"DIR"}, "write tables and series as CSV"},
+                       {"all", "", {}, "print all tables"},
+                       {"table", "", {"NAME"}, "print one table and how to read it"},
+                       {"level", "", {"L"}, kLevelMeaning},
+                       {"within", "", {"R"}, kWithinMeaning},
+                       {"force", "", {}, "replace OUT.h5 and the tables in DIR"},
+                       {"threads", "", {"N"}, kThreadsMeaning},
+                       {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}},
+           .details = "example:\n  montecarta analyze first_study.h5 --table accuracy\n"},
+          analyze_files};
 }
 
 }  // namespace montecarta::experiments

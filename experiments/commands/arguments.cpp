@@ -173,19 +173,16 @@ std::optional<std::filesystem::path> shipped_study(const std::string& name) {
 }  // namespace
 
 std::vector<OptionSpec> plan_options() {
-  return {{"set", "", {"SECTION.KEY=VALUE"}, "override a setting of the study; repeatable", true},
-          {"runs", "", {"A:B"}, "only runs A to B-1"},
-          {"shard", "", {"I/N"}, "only part I (from 0) of N"},
+  return {{"set", "", {"SECTION.KEY=VALUE"}, "override a setting; may be repeated", true},
+          {"runs", "", {"A:B"}, "only runs A to B - 1"},
+          {"shard", "", {"I/N"}, "only part I of N, counted from 0"},
           external_option(),
-          {"threads", "", {"N"}, "default: what this process may use"},
-          {"backend", "", {"tbb|openmp|serial"}, "how runs are spread over threads; same results"}};
+          {"threads", "", {"N"}, kThreadsMeaning},
+          {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}};
 }
 
 OptionSpec external_option() {
-  return {kAllowExternal,
-          "",
-          {},
-          "start the programs that cells of the study name: read them first, if it is not yours"};
+  return {kAllowExternal, "", {}, "start the programs that the study names"};
 }
 
 ExternalPrograms programs_of(const Study& study, const Arguments& arguments) {

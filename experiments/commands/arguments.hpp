@@ -77,9 +77,11 @@ std::string help_text(const CommandSpec& spec);
 /// One word as a POSIX shell reads it back.
 std::string shell_quoted(const std::string& word);
 
-/// Of the option --within of commands that judge.
-inline constexpr const char* kWithinMeaning =
-    "consistent: ANEES so many times too large or small at most; default: as the study says, 1.1";
+/// Of options that several commands have.
+inline constexpr const char* kWithinMeaning = "margin of the verdict; default: the study's";
+inline constexpr const char* kLevelMeaning = "probability of the intervals; default 0.95";
+inline constexpr const char* kThreadsMeaning = "number of threads; default: all available";
+inline constexpr const char* kBackendMeaning = "thread library; results are the same";
 
 /// Options that choose what part of a study runs and on how many threads: --set, --runs, --shard,
 /// --threads, --backend.

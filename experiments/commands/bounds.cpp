@@ -66,18 +66,19 @@ int bounds(const Arguments& arguments) {
 }  // namespace
 
 Command bounds_command() {
-  return {
-      {.name = "bounds",
-       .summary = "prints the exact two-sided interval of the average NEES of a consistent filter",
-       .operands = {},
-       .options =
-           {{"runs", "", {"N"}, "runs that are averaged"},
-            {"dim", "", {"D"}, "components of the error: 3 for a pose, 2 for a position"},
-            {"level", "", {"L"}, "probability inside; default 0.95"},
-            {"match", "", {"LO", "HI"}, "which runs, dim and level a quoted interval belongs to"}},
-       .details = "examples:\n  montecarta bounds --runs 30 --dim 3\n  montecarta bounds --match "
-                  "1.3 2.79\n"},
-      bounds};
+  return {{.name = "bounds",
+           .summary = "Print the interval of the average NEES of a consistent filter",
+           .operands = {},
+           .options = {{"runs", "", {"N"}, "number of runs that are averaged"},
+                       {"dim", "", {"D"}, "dimension of the error: 3 for a pose, 2 for a position"},
+                       {"level", "", {"L"}, "probability of the interval; default 0.95"},
+                       {"match",
+                        "",
+                        {"LO", "HI"},
+                        "find the runs, dimension and level of a printed interval"}},
+           .details = "The interval is exact and two-sided.\n\nexamples:\n  montecarta bounds "
+                      "--runs 30 --dim 3\n  montecarta bounds --match 1.3 2.79\n"},
+          bounds};
 }
 
 }  // namespace montecarta::experiments

@@ -8,6 +8,8 @@
 #include "engine/records/run_record.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/listing.hpp"
+#include "experiments/text/words.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -17,6 +19,7 @@
 #include <malloc.h>
 #include <new>
 #include <set>
+#include <sstream>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -165,38 +168,101 @@ std::string memory_text(double bytes) {
   return "about " + bytes_text(bytes);
 }
 
-struct Estimate {
+/// What a study costs, and a row for each cell below the headings.
+struct Costs {
   double cpu_seconds = 0.0;
   double disk = 0.0;        ///< [byte]
   double per_thread = 0.0;  ///< [byte]
+  std::vector<TableRow> rows{{"run time", "run size", "all runs"}};
 };
 
-/// Prints one row a cell and adds up what they need.
-Estimate print_cells(const StudyPlan& plan) {
+std::string time_of_run(const std::optional<Trial>& trial, double seconds) {
+  if (!trial) return "?";
+  if (seconds >= 1.0) return duration_text(seconds);
+  return std::to_string(std::max(1L, std::lround(seconds * 1e3))) + " ms";
+}
+
+Costs costs_of(const StudyPlan& plan) {
   Drive drive;
   plan.drives->generate(plan.first_run, drive);
   const Itinerary& itinerary = plan.drives->itinerary();
   const double runs = static_cast<double>(plan.runs_here());
   const double alike = runs_like_the_first(plan);
-  Estimate total;
+  Costs costs;
   const auto truth = static_cast<double>(itinerary.steps() * sizeof(Pose));
-  total.disk = itinerary.has_truth ? runs * truth : 0.0;
-  total.per_thread = 2.0 * truth;
-  std::vector<TableRow> rows{{"cell", "filter", "ms a run", "a run", "all runs"}};
+  costs.disk = itinerary.has_truth ? runs * truth : 0.0;
+  costs.per_thread = 2.0 * truth;
   for (const Cell& cell : plan.cells) {
     const std::optional<Trial> first = trial_of(cell, plan, drive);
     const double cpu_seconds = first.value_or(Trial{}).seconds * alike;
     const double bytes = static_cast<double>(RecordLayout(cell, plan.columns, itinerary).bytes());
-    rows.push_back(
-        {cell.label, cell.long_name,
-         first ? std::to_string(std::max(1L, std::lround(cpu_seconds / runs * 1e3))) : "?",
-         bytes_text(bytes), bytes_text(bytes * runs)});
-    total.cpu_seconds += cpu_seconds;
-    total.disk += bytes * runs;
-    total.per_thread += bytes + first.value_or(Trial{}).bytes;
+    costs.rows.push_back(
+        {time_of_run(first, cpu_seconds / runs), bytes_text(bytes), bytes_text(bytes * runs)});
+    costs.cpu_seconds += cpu_seconds;
+    costs.disk += bytes * runs;
+    costs.per_thread += bytes + first.value_or(Trial{}).bytes;
   }
-  std::cout << aligned(rows);
-  return total;
+  return costs;
+}
+
+/// "EKF-SLAM, FastSLAM II (3 cells)", in the order of the study.
+std::string filters_of(const Study& study) {
+  std::vector<std::string> names;
+  for (const CellSpec& cell : study.cells) {
+    const std::string& name = cell.filter->long_name;
+    const auto is_of_it = [&](const CellSpec& other) { return other.filter == cell.filter; };
+    if (&*std::ranges::find_if(study.cells, is_of_it) != &cell) continue;
+    const auto n_cells = std::ranges::count_if(study.cells, is_of_it);
+    names.push_back(n_cells == 1 ? name : name + " (" + std::to_string(n_cells) + " cells)");
+  }
+  return joined(names);
+}
+
+/// What a person wants to know first.
+void print_summary(const Study& study, const StudyPlan& plan, const Costs& costs, int threads) {
+  const std::string part = plan.runs_here() == plan.runs ? "" : " of " + std::to_string(plan.runs);
+  const std::string cells = std::to_string(plan.cells.size());
+  std::cout << wrapped(plan.title, output_width()) << "\n"
+            << listing({{"time", (study.until ? "at most " : "about ") +
+                                     duration_text(costs.cpu_seconds / threads) + " on " +
+                                     std::to_string(threads) + " threads (by a short trial)"},
+                        {"file", (study.until ? "at most " : "") + bytes_text(costs.disk)},
+                        {"filters", filters_of(study)},
+                        {"runs",
+                         std::to_string(plan.runs_here()) + part +
+                             (plan.cells.size() == 1 ? "" : " for each of " + cells + " cells")},
+                        {"memory", memory_text(costs.per_thread * threads + 3e7)}});
+}
+
+void print_details(const Study& study, const StudyPlan& plan) {
+  const Itinerary& itinerary = plan.drives->itinerary();
+  TextPairs details{{plan.drives->own_drives() > 0 ? "longest run" : "a run",
+                     std::to_string(itinerary.steps()) + " steps, " +
+                         std::to_string(itinerary.scans()) + " scans, " +
+                         duration_text(itinerary.step_time.back()) + " of driving, " +
+                         std::to_string(itinerary.landmarks.size()) + " landmarks"}};
+  if (study.log != nullptr) {
+    const std::string kind = study.settings.text("association", "kind");
+    details.emplace_back("association", kind + (kind == "known" ? ", by the identities of the log"
+                                                                : ", by the filters themselves"));
+  }
+  if (study.until) details.emplace_back("until", in_words(*study.until, plan.runs));
+  details.emplace_back("study", plan.name + ", seed " + std::to_string(plan.seed));
+  details.emplace_back("SHA-256", sha256(plan.resolved_text));
+  std::cout << "\ndetails\n" << listing(details);
+}
+
+/// A row for each cell; a label that leaves no room for the numbers has them below it.
+void print_cells(const StudyPlan& plan, const std::vector<TableRow>& rows) {
+  std::istringstream lines(aligned(rows, 0, {Align::right, Align::right, Align::right}));
+  std::string line;
+  std::getline(lines, line);
+  TextPairs items{{"cell", line}};
+  for (const Cell& cell : plan.cells) {
+    std::getline(lines, line);
+    items.emplace_back(cell.label, line);
+  }
+  std::cout << "\n" << listing(items, 2, output_width() - line.size() - 4);
 }
 
 int check(const Arguments& arguments) {
@@ -206,49 +272,25 @@ int check(const Arguments& arguments) {
     std::cout << plan.resolved_text;
     return kDone;
   }
-  const Itinerary& itinerary = plan.drives->itinerary();
-  const int threads = parallel_of(arguments).threads();
-  std::cout << plan.title << "\n"
-            << aligned(
-                   {{"study", plan.name + ", seed " + std::to_string(plan.seed) + ", SHA-256 " +
-                                  sha256(plan.resolved_text)},
-                    {"runs", std::to_string(plan.runs_here()) + " of " + std::to_string(plan.runs) +
-                                 " for each of " + std::to_string(plan.cells.size()) + " cells"},
-                    {plan.drives->own_drives() > 0 ? "the longest run" : "a run",
-                     std::to_string(itinerary.steps()) + " steps, " +
-                         std::to_string(itinerary.scans()) + " scans, " +
-                         duration_text(itinerary.step_time.back()) + " of driving, " +
-                         std::to_string(itinerary.landmarks.size()) + " landmarks"}})
-            << "\n";
-  if (study.log != nullptr) {
-    const std::string kind = study.settings.text("association", "kind");
-    std::cout << "association: " << kind
-              << (kind == "known" ? ", by the identities of the log\n\n"
-                                  : ", by the filters themselves\n\n");
-  }
-  if (study.until) std::cout << "until: " << in_words(*study.until, plan.runs) << "\n\n";
-  const Estimate total = print_cells(plan);
-  std::cout << "\n"
-            << aligned({{"time", (study.until ? "at most " : "about ") +
-                                     duration_text(total.cpu_seconds / threads) + " on " +
-                                     std::to_string(threads) + " threads (by a short trial)"},
-                        {"memory", memory_text(total.per_thread * threads + 3e7)},
-                        {"disk", bytes_text(total.disk)}});
+  const Costs costs = costs_of(plan);
+  print_summary(study, plan, costs, parallel_of(arguments).threads());
+  print_details(study, plan);
+  print_cells(plan, costs.rows);
   return kDone;
 }
 
 }  // namespace
 
 Command check_command() {
-  CommandSpec spec{.name = "check",
-                   .summary =
-                       "checks a study and prints its plan: cells, runs, steps, time, memory, "
-                       "disk; runs nothing",
-                   .operands = {{"STUDY.ini"}},
-                   .options = plan_options(),
-                   .details = {}};
-  spec.options.push_back(
-      {"text", "", {}, "print the study with every setting filled in, nothing else"});
+  CommandSpec spec{
+      .name = "check",
+      .summary = "Check a study and print what it costs, without running it",
+      .operands = {{"STUDY.ini"}},
+      .options = plan_options(),
+      .details =
+          "Mistakes are named with line, reason and remedy. Times are extrapolated from a short "
+          "trial of every filter.\n\nexample:\n  montecarta check first_study\n"};
+  spec.options.push_back({"text", "", {}, "print only the study, every setting filled in"});
   return {spec, check};
 }
 

@@ -1,27 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/commands/commands.hpp"
 
-#include "analysis/output/text_table.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/provenance.hpp"
+#include "experiments/commands/listing.hpp"
 #include "experiments/commands/output_guard.hpp"
 #include "experiments/text/words.hpp"
 
 #include <algorithm>
 #include <iostream>
 #include <new>
+#include <unistd.h>
 
 namespace montecarta::experiments {
 namespace {
 
 std::string general_help(const std::vector<Command>& commands) {
-  std::vector<TableRow> rows;
-  for (const Command& command : commands) rows.push_back({command.spec.name, command.spec.summary});
-  return "montecarta: Monte Carlo consistency studies of SLAM filters\n\nusage: montecarta COMMAND "
-         "...\n\n" +
-         aligned(rows) +
-         "\nmontecarta COMMAND --help says more; montecarta --version names this build.\n"
-         "Begin with: montecarta run first_study\n";
+  TextPairs items;
+  for (const Command& command : commands)
+    items.emplace_back(command.spec.name, command.spec.summary);
+  return wrapped(
+             "montecarta runs Monte Carlo studies of SLAM filters and says whether their "
+             "covariances can be trusted.\n\n"
+             "usage: montecarta COMMAND ...\n\n",
+             output_width()) +
+         listing(items) +
+         wrapped(
+             "\nBegin with: montecarta run first_study\n"
+             "More about a command: montecarta COMMAND --help\n"
+             "Version: montecarta --version\n",
+             output_width());
 }
 
 const Command& find_command(const std::vector<Command>& commands, const std::string& name) {
@@ -64,7 +72,9 @@ int dispatch(const std::vector<std::string>& words) {
 
 int print_error(const std::string& message, int code) {
   std::cout.flush();
-  std::cerr << "montecarta: " << shortened(message) << "\n";
+  // One line in a log, where it is searched for; whole words on a terminal.
+  const std::size_t width = ::isatty(STDERR_FILENO) == 1 ? output_width(STDERR_FILENO) : SIZE_MAX;
+  std::cerr << wrapped("montecarta: " + shortened(message), width, 2);
   return code;
 }
 
@@ -99,19 +109,23 @@ int run_program(const std::vector<std::string>& words) {
 }
 
 std::string help_text(const CommandSpec& spec) {
-  std::string text = "usage: montecarta " + spec.name;
-  for (const OperandSpec& operand : spec.operands)
-    text += " " + operand.name + (operand.most > 1 ? "..." : "");
-  text += (spec.options.empty() ? "" : " [options]") + std::string("\n\n") + spec.summary + "\n\n";
-  std::vector<TableRow> rows;
+  std::string usage = "usage: montecarta " + spec.name;
+  for (const OperandSpec& operand : spec.operands) {
+    const std::string name = operand.name + (operand.most > 1 ? "..." : "");
+    usage += operand.least > 0 ? " " + name : " [" + name + "]";
+  }
+  TextPairs options;
   for (const OptionSpec& option : spec.options) {
     const std::string letter = option.letter.empty() ? "    " : "-" + option.letter + ", ";
     const std::string values = option.values.empty() ? "" : " " + joined(option.values, " ");
-    rows.push_back({letter + "--" + option.name + values, option.meaning});
+    options.emplace_back(letter + "--" + option.name + values, option.meaning);
   }
-  rows.push_back({"    --help", "this text"});
-  text += "options:\n" + aligned(rows);
-  return spec.details.empty() ? text : text + "\n" + spec.details;
+  options.emplace_back("    --help", "print this text");
+  return wrapped(usage + (spec.options.empty() ? "" : " [options]") + "\n\n" + spec.summary +
+                     "\n\noptions:\n",
+                 output_width()) +
+         listing(options) +
+         wrapped(spec.details.empty() ? "" : "\n" + spec.details, output_width());
 }
 
 std::string shell_quoted(const std::string& word) {

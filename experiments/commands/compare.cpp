@@ -89,25 +89,21 @@ int compare(const Arguments& arguments) {
 }  // namespace
 
 Command compare_command() {
-  return {
-      {.name = "compare",
-       .summary = "compares every cell with one of them, run by run in the same worlds",
-       .operands = {{"FILE.h5"}},
-       .options = {{"baseline", "", {"CELL"}, "the cell that the others are compared with"},
-                   {"metric",
-                    "",
-                    {"NAME,..."},
-                    "numbers of a run; default: position_rmse, "
-                    "heading_rmse, nees, cpu_seconds"},
-                   {"level", "", {"L"}, "probability inside the intervals; default 0.95"},
-                   {"within", "", {"R"}, kWithinMeaning},
-                   {"csv", "", {"DIR"}, "write comparison.csv and wins.csv"},
-                   {"force", "", {}, "replace the tables in DIR"},
-                   {"threads", "", {"N"}, "default: what this process may use"},
-                   {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},
-       .details = "example:\n  montecarta compare first_study.h5 --baseline ekf_slam --metric "
-                  "position_rmse,heading_rmse\n"},
-      compare};
+  return {{.name = "compare",
+           .summary = "Compare every cell with a baseline, run by run in the same worlds",
+           .operands = {{"FILE.h5"}},
+           .options = {{"baseline", "", {"CELL"}, "the cell that the others are compared with"},
+                       {"metric", "", {"NAME,..."}, "metrics to compare (montecarta list metrics)"},
+                       {"level", "", {"L"}, kLevelMeaning},
+                       {"within", "", {"R"}, kWithinMeaning},
+                       {"csv", "", {"DIR"}, "also write comparison.csv and wins.csv"},
+                       {"force", "", {}, "replace the tables in DIR"},
+                       {"threads", "", {"N"}, kThreadsMeaning},
+                       {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}},
+           .details = "Without --metric these are compared: position_rmse, heading_rmse, nees and "
+                      "cpu_seconds.\n\nexample:\n  montecarta compare first_study.h5 --baseline "
+                      "ekf_slam --metric nees\n"},
+          compare};
 }
 
 }  // namespace montecarta::experiments

@@ -79,19 +79,19 @@ int export_drives(const Arguments& arguments) {
 Command export_command() {
   return {
       {.name = "export",
-       .summary = "writes the simulated drives of a study as plain CSV, for any estimator",
+       .summary = "Write the simulated drives of a study as CSV, for any estimator",
        .operands = {{"STUDY.ini"}},
-       .options =
-           {{"output", "o", {"DIR"}, "where to; new or empty"},
-            {"set", "", {"SECTION.KEY=VALUE"}, "override a setting of the study; repeatable", true},
-            {"runs", "", {"A:B"}, "only runs A to B-1"},
-            {"shard", "", {"I/N"}, "only part I (from 0) of N"}},
+       .options = {{"output", "o", {"DIR"}, "folder to write to, new or empty"},
+                   {"set", "", {"SECTION.KEY=VALUE"}, "override a setting; may be repeated", true},
+                   {"runs", "", {"A:B"}, "only runs A to B - 1"},
+                   {"shard", "", {"I/N"}, "only part I of N, counted from 0"}},
        .details =
-           "DIR/runs/run_0000 holds what an estimator is told: start.csv, odometry.csv and\n"
-           "detections.csv, described in experiments/RECORDED_DRIVES.md; DIR/belief.ini the\n"
-           "vehicle and noise that it may believe. The true path (reference.csv), the true\n"
-           "landmarks and the study lie apart, in DIR/truth. Drives follow from study and run\n"
-           "alone: the filters of a study meet the same ones in montecarta run.\n"},
+           "DIR/runs/run_0000 and so on hold what an estimator is given: start.csv, odometry.csv "
+           "and detections.csv, described in experiments/RECORDED_DRIVES.md. DIR/belief.ini has "
+           "the vehicle and the noise that it may assume. The true path (reference.csv), the true "
+           "landmarks and the study are in DIR/truth.\nA drive depends on the study and the number "
+           "of the run alone, so the filters of montecarta run are given the same "
+           "drives.\n\nexample:\n  montecarta export first_study -o drives --runs 0:10\n"},
       export_drives};
 }
 

@@ -4,6 +4,7 @@
 #include "analysis/page/html.hpp"
 #include "analysis/verdict/verdict.hpp"
 #include "engine/errors.hpp"
+#include "engine/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"
@@ -128,7 +129,8 @@ int gate_file(const Arguments& arguments) {
     if (arguments.has("json")) {
       std::cout << json_of(stored.label, cell.verdict, allowed, answer).dump(2) << "\n";
     } else {
-      std::cout << sentence(stored.label, cell.verdict) << too_many(cell.verdict, allowed) << "\n";
+      std::cout << wrapped(sentence(stored.label, cell.verdict) + too_many(cell.verdict, allowed),
+                           output_width());
     }
     return code_of(answer);
   } catch (const StudyError& error) {
@@ -141,24 +143,22 @@ int gate_file(const Arguments& arguments) {
 Command gate_command() {
   return {
       {.name = "gate",
-       .summary = "tells a script by its exit code whether a filter is consistent",
+       .summary = "Tell a script by the exit code whether a filter is consistent",
        .operands = {{"FILE.h5"}},
-       .options = {{"cell", "", {"CELL"}, "the cell that is judged"},
+       .options = {{"cell", "", {"CELL"}, "the cell to judge, if there are several"},
                    {"within", "", {"R"}, kWithinMeaning},
-                   {"failed", "", {"N"}, "accept so many failed runs; default 0"},
-                   {"invalid", "", {"N"}, "accept so many unusable samples; default 0"},
-                   {"json", "", {}, "print the tests behind the answer as JSON"},
-                   {"threads", "", {"N"}, "default: what this process may use"},
-                   {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},
-       .details =
-           "Prints one line that says why. Exit codes: 0 shown to be consistent within R, "
-           "4 not (optimistic,\nconservative, inconsistent, or more failed runs or unusable "
-           "samples "
-           "than accepted), 5 too few runs to\nknow, 2 wrong input or nothing to judge, 1 failed. "
-           "A sample is unusable if its error or covariance is not finite\nor the covariance "
-           "is not positive semidefinite. The verdict is that of montecarta analyze at\n95 "
-           "%.\n\n"
-           "example:\n  montecarta gate first_study.h5 --cell ekf_slam --within 1.2\n"},
+                   {"failed", "", {"N"}, "failed runs to accept; default 0"},
+                   {"invalid", "", {"N"}, "unusable samples to accept; default 0"},
+                   {"json", "", {}, "print the tests behind the verdict as JSON"},
+                   {"threads", "", {"N"}, kThreadsMeaning},
+                   {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}},
+       .details = "One sentence says why. The verdict is that of montecarta analyze at 95 %. Exit "
+                  "codes:\n  0 shown to be consistent within the margin R\n  4 not consistent: "
+                  "optimistic, conservative or inconsistent, or more failed runs or unusable "
+                  "samples than accepted\n  5 too few runs to decide\n  2 wrong input, or nothing "
+                  "to judge\n  1 failed\nA sample is unusable if its error or covariance is not "
+                  "finite, or if the covariance is not positive semidefinite.\n\nexample:\n  "
+                  "montecarta gate first_study.h5 --cell ekf_slam --within 1.2\n"},
       gate_file};
 }
 

@@ -3,11 +3,13 @@
 #include "engine/records/posix_file.hpp"
 #include "engine/records/seal.hpp"
 #include "experiments/commands/commands.hpp"
+#include "experiments/commands/listing.hpp"
 #include "experiments/commands/stored_result.hpp"
 
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <sstream>
 
 namespace montecarta::experiments {
 namespace {
@@ -25,58 +27,85 @@ std::size_t runs_done(const ResultFile& file) {
 }
 
 void print_study(const ResultFile& file) {
-  std::vector<TableRow> rows{
-      {"study", file.study_name() + ", seed " + std::to_string(file.seed())},
-      {"SHA-256", file.study_sha256()},
-      {"runs", std::to_string(file.runs().size()) + " of " + std::to_string(file.study_runs()) +
-                   ", of which " + std::to_string(runs_done(file)) + " are done in every cell"},
-      {"a run", std::to_string(file.times().size()) + " rows of time, " +
-                    std::to_string(file.scan_times().size()) + " scans"},
-      {"size", bytes_text(static_cast<double>(std::filesystem::file_size(file.path())))},
-      {"seal",
-       check_seal(file.path()) == Seal::holds
-           ? "holds"
-           : "none (an older montecarta or another program wrote it: damage may go unseen)"}};
-  std::cout << file.title() << "\n" << aligned(rows);
+  std::cout << wrapped(file.title(), output_width()) << "\n"
+            << listing(
+                   {{"runs", std::to_string(file.runs().size()) + " of " +
+                                 std::to_string(file.study_runs()) + ", of which " +
+                                 std::to_string(runs_done(file)) + " are done in every cell"},
+                    {"a run", std::to_string(file.times().size()) + " time steps, " +
+                                  std::to_string(file.scan_times().size()) + " scans"},
+                    {"size",
+                     bytes_text(static_cast<double>(std::filesystem::file_size(file.path())))},
+                    {"seal", check_seal(file.path()) == Seal::holds
+                                 ? "holds"
+                                 : "none: an older montecarta or another program wrote the file, "
+                                   "and damage may go unnoticed"},
+                    {"study", file.study_name() + ", seed " + std::to_string(file.seed())},
+                    {"SHA-256", file.study_sha256()}});
 }
 
 void print_cells(const ResultFile& file) {
-  std::vector<TableRow> rows{{"cell", "filter", "complete", "failed", "missing", "spared"}};
+  std::vector<TableRow> rows{{"cell", "complete", "failed", "missing", "spared"}};
   for (const StoredCell& cell : file.cells()) {
     const StatusCounts counts = count_status(file.status(cell));
-    rows.push_back({cell.label, cell.long_name, std::to_string(counts.complete),
-                    std::to_string(counts.failed), std::to_string(counts.missing),
-                    std::to_string(counts.spared)});
+    rows.push_back({cell.label, std::to_string(counts.complete), std::to_string(counts.failed),
+                    std::to_string(counts.missing), std::to_string(counts.spared)});
   }
   std::cout << "\ncells\n" << aligned(without_idle_spared(std::move(rows)));
 }
 
-void print_datasets(const ResultFile& file) {
-  std::vector<TableRow> rows{{"dataset", "units", "size", "meaning"}};
-  const auto add = [&](const char* group, std::size_t numbers, const char* meaning) {
-    const double bytes = static_cast<double>(numbers * sizeof(double));
-    rows.push_back({group, "", bytes_text(bytes), meaning});
-  };
-  const std::size_t runs = file.runs().size();
-  add("/scenario", 3 + 2 * (file.landmarks().size() + file.waypoints().size()),
-      "start, landmarks and way-points");
-  add("/truth", runs * (3 * file.times().size() + 1), "true poses of every run");
-  add("/timing", runs * file.cells().size() + 1, "seconds that the filters took");
-  for (const StoredCell& cell : file.cells()) {
-    for (const Column& column : cell.columns) {
-      const double bytes = static_cast<double>(column.bytes() * file.runs().size());
-      rows.push_back({"/cells/" + cell.label + "/" + column.name, column.units, bytes_text(bytes),
-                      column.long_name});
-    }
-  }
-  std::cout << "\ndatasets\n" << aligned(rows);
+TextPairs filters_of(const ResultFile& file) {
+  TextPairs filters;
+  for (const StoredCell& cell : file.cells()) filters.emplace_back(cell.label, cell.long_name);
+  return filters;
 }
 
-void print_pairs(const char* heading,
-                 const std::vector<std::pair<std::string, std::string>>& pairs) {
+struct Dataset {
+  std::string name;
+  double bytes = 0.0;
+  std::string meaning;
+};
+
+/// Name, size and meaning of each, the meaning wrapped.
+void print_datasets(const std::vector<Dataset>& datasets, std::size_t indent) {
   std::vector<TableRow> rows;
-  for (const auto& [key, value] : pairs) rows.push_back({key, value});
-  std::cout << "\n" << heading << "\n" << aligned(rows);
+  for (const Dataset& dataset : datasets) rows.push_back({dataset.name, bytes_text(dataset.bytes)});
+  std::istringstream lines(aligned(rows, 0, {Align::left, Align::right}));
+  TextPairs items;
+  for (const Dataset& dataset : datasets) {
+    std::string line;
+    std::getline(lines, line);
+    items.emplace_back(line, dataset.meaning);
+  }
+  std::cout << listing(items, indent, output_width() / 2);
+}
+
+void print_datasets(const ResultFile& file) {
+  const auto bytes_of = [](std::size_t numbers) {
+    return static_cast<double>(numbers * sizeof(double));
+  };
+  const std::size_t runs = file.runs().size();
+  const std::size_t points = file.landmarks().size() + file.waypoints().size();
+  std::cout << "\ndatasets\n";
+  print_datasets(
+      {{"/scenario", bytes_of(3 + 2 * points), "start, landmarks and way-points"},
+       {"/truth", bytes_of(runs * (3 * file.times().size() + 1)), "true poses of every run"},
+       {"/timing", bytes_of(runs * file.cells().size() + 1), "computing time of the filters [s]"}},
+      2);
+  for (const StoredCell& cell : file.cells()) {
+    std::vector<Dataset> datasets;
+    for (const Column& column : cell.columns) {
+      const std::string units = column.units == "1" ? "" : " [" + column.units + "]";
+      datasets.push_back(
+          {column.name, static_cast<double>(column.bytes() * runs), column.long_name + units});
+    }
+    std::cout << "  /cells/" << cell.label << "\n";
+    print_datasets(datasets, 4);
+  }
+}
+
+void print_pairs(const char* heading, const TextPairs& pairs) {
+  std::cout << "\n" << heading << "\n" << listing(pairs, 2, output_width() / 2);
 }
 
 int info(const Arguments& arguments) {
@@ -87,6 +116,7 @@ int info(const Arguments& arguments) {
   }
   print_study(file);
   print_cells(file);
+  print_pairs("filters", filters_of(file));
   print_pairs("scenario", file.scenario());
   print_pairs("provenance", file.provenance());
   print_datasets(file);
@@ -96,13 +126,12 @@ int info(const Arguments& arguments) {
 }  // namespace
 
 Command info_command() {
-  return {
-      {.name = "info",
-       .summary = "says what is in a file: study, cells, runs done, provenance, size by dataset",
-       .operands = {{"FILE.h5"}},
-       .options = {{"text", "", {}, "print the study that made it, nothing else"}},
-       .details = {}},
-      info};
+  return {{.name = "info",
+           .summary = "Print what is in a file: study, cells, runs, provenance, sizes",
+           .operands = {{"FILE.h5"}},
+           .options = {{"text", "", {}, "print only the study that made the file"}},
+           .details = "example:\n  montecarta info first_study.h5\n"},
+          info};
 }
 
 }  // namespace montecarta::experiments

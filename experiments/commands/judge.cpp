@@ -76,33 +76,32 @@ int judge_estimates(const Arguments& arguments) {
 Command judge_command() {
   return {
       {.name = "judge",
-       .summary = "judges estimates that another program computed, from CSV",
+       .summary = "Judge the estimates of another program, read from CSV files",
        .operands = {{"ESTIMATE.csv", 1, SIZE_MAX}},
        .options =
-           {{"truth", "", {"PATH..."}, "truths, or a folder of 'montecarta export'", true, true},
+           {{"truth", "", {"PATH..."}, "true states, or a folder of montecarta export", true, true},
             {"error",
              "",
              {"world|body|right-invariant"},
-             "what the covariance is of; needed for poses"},
-            {"output", "o", {"OUT.h5"}, "the result file"},
-            {"cell", "", {"NAME"}, "all estimates are of one estimator of this name"},
-            {"tolerance", "", {"SECONDS"}, "times so near are the same; default 1e-6"},
-            {"interpolate", "", {}, "take the truth between its rows where it has none"},
+             "error of the covariance; needed for poses"},
+            {"output", "o", {"OUT.h5"}, "result file"},
+            {"cell", "", {"NAME"}, "name of the estimator, if there is only one"},
+            {"tolerance", "", {"SECONDS"}, "tolerance of equal times; default 1e-6"},
+            {"interpolate", "", {}, "interpolate the truth between its rows"},
             {"within", "", {"R"}, kWithinMeaning},
             {"force", "", {}, "replace OUT.h5"},
-            {"threads", "", {"N"}, "default: what this process may use"},
-            {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},
+            {"threads", "", {"N"}, kThreadsMeaning},
+            {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}},
        .details =
-           "Columns: time_s, then x_m,y_m,heading_rad or x_m,y_m,z_m,qx,qy,qz,qw or any others, "
-           "then\ncov_A_B (components or indices from 0), all or one triangle; perhaps nis,nis_dof "
-           "(innovations),\nor innovation.csv beside estimate.csv. Truths have no covariance. "
-           "Nothing is "
-           "aligned. Trajectories in\nthe layouts of TUM and OpenVINS become such files by "
-           "experiments/convert/trajectory.py.\n\n--error says of which error:\n" +
+           "Columns of an estimate: time_s, then x_m,y_m,heading_rad or x_m,y_m,z_m,qx,qy,qz,qw or "
+           "any other state, then cov_A_B, with components or indices from 0, all of them or one "
+           "triangle. Innovations are optional: the columns nis,nis_dof, or innovation.csv beside "
+           "estimate.csv. Truths have no covariance. Nothing is aligned. "
+           "experiments/convert/trajectory.py converts trajectories of TUM and "
+           "OpenVINS.\n\n--error names the error that the covariance describes:\n" +
            explained_conventions() + "\n" + pairing_rule() +
-           "\nexample:\n"
-           "  montecarta judge runs/*/estimate.csv --truth runs/*/truth.csv --error world -o "
-           "mine.h5\n"},
+           "\nexample:\n  montecarta judge runs/*/estimate.csv --truth runs/*/truth.csv \\\n      "
+           "--error world -o mine.h5\n"},
       judge_estimates};
 }
 

@@ -27,11 +27,12 @@ int merge(const Arguments& arguments) {
 
 Command merge_command() {
   return {{.name = "merge",
-           .summary = "makes one self-contained file out of shards of one study",
+           .summary = "Join the shards of a study to one file",
            .operands = {{"OUT.h5"}, {"SHARD.h5", 1, SIZE_MAX}},
            .options = {{"force", "", {}, "replace OUT.h5"}},
-           .details = "Refuses shards of other studies and names runs that are missing; runs held "
-                      "twice must be equal.\n"},
+           .details = "Shards of other studies are refused and missing runs are named. A run that "
+                      "several shards hold must be the same in all of them.\n\nexample:\n  "
+                      "montecarta merge study.h5 shard0.h5 shard1.h5\n"},
           merge};
 }
 

@@ -4,6 +4,7 @@
 #include "analysis/output/text_table.hpp"
 #include "analysis/statistics/nees_power.hpp"
 #include "engine/errors.hpp"
+#include "engine/wrapped_text.hpp"
 #include "experiments/commands/commands.hpp"
 
 #include <cmath>
@@ -34,20 +35,21 @@ std::string meaning_of(const NeesTest& test, const Question& question) {
                               ? readable(off) + " times larger than the filter says"
                               : readable(1.0 / off) + " times smaller than the filter says";
   const std::string power = percent(question.power), margin = readable(question.within);
-  return "NEES is the squared error in units of what the filter expected of it: " + readable(d) +
-         " on the average of a consistent filter, here\n" + readable(d * question.ratio) +
-         ", which means errors " + way + ".\n'find': such a filter is called " +
+  return "NEES is the squared error in units of its covariance. Its mean is " + readable(d) +
+         " for a consistent filter and " + readable(d * question.ratio) +
+         " for the filter in question, whose errors are " + way + ".\nfind: the filter is called " +
          (question.ratio > 1.0 ? "optimistic" : "conservative") + " in at least " + power +
-         " of studies, unless that is within the margin.\n'show': a consistent filter is called "
+         " of studies, unless the ratio is within the margin.\nshow: a consistent filter is called "
          "consistent within " +
          margin + " in at least " + power +
-         " of studies: in every component and every\neighth of the drive, without bias and "
-         "without correlation.\n";
+         " of studies, in every component and every eighth of the drive, without bias and "
+         "correlation.\n";
 }
 
 std::string about_scans(std::uint64_t scans) {
-  return "Neighbouring scans are correlated, so that a run of many scans counts for fewer than " +
-         std::to_string(scans) + " independent\nones: the truth lies between the two rows.\n";
+  return "Neighbouring scans are correlated, so that a run of " + std::to_string(scans) +
+         " scans counts for fewer independent ones. The numbers of runs are between the two "
+         "rows.\n";
 }
 
 int plan(const Arguments& arguments) {
@@ -73,32 +75,27 @@ int plan(const Arguments& arguments) {
   test.scans = scans;
   if (scans > 1)
     rows.push_back(row_of(std::to_string(scans) + " independent scans", test, question));
-  std::cout << aligned(rows, 0) << "\n" << meaning_of(test, question);
-  if (scans > 1) std::cout << about_scans(scans);
+  std::cout << aligned(rows, 0) << "\n" << wrapped(meaning_of(test, question), output_width());
+  if (scans > 1) std::cout << wrapped(about_scans(scans), output_width());
   return kDone;
 }
 
 }  // namespace
 
 Command plan_command() {
-  return {
-      {.name = "plan",
-       .summary = "says how many runs find that a filter's NEES is R times off, or show that it "
-                  "is right",
-       .operands = {},
-       .options =
-           {{"dim", "", {"D"}, "components of the error: 3 for a pose, 2 for a position"},
-            {"ratio", "", {"R"}, "how many times the NEES is too large, or too small below 1"},
-            {"power", "", {"P"}, "probability of finding or showing it; default 0.9"},
-            {"within", "", {"M"}, "what counts as consistent: from 1/M to M; default 1.1"},
-            {"level",
-             "",
-             {"L"},
-             "probability that a consistent filter is not rejected; default 0.95"},
-            {"scans", "", {"K"}, "also: of a run of K independent scans"}},
-       .details = "examples:\n  montecarta plan --dim 3 --ratio 1.5\n  montecarta plan --dim 3 "
-                  "--ratio 1.2 --power 0.8 --scans 100\n"},
-      plan};
+  return {{.name = "plan",
+           .summary = "Print how many runs a test of the NEES needs",
+           .operands = {},
+           .options =
+               {{"dim", "", {"D"}, "dimension of the error: 3 for a pose, 2 for a position"},
+                {"ratio", "", {"R"}, "ratio of the NEES to its expected value that is to be found"},
+                {"power", "", {"P"}, "probability of finding or showing it; default 0.9"},
+                {"within", "", {"M"}, "ratios from 1/M to M are consistent; default 1.1"},
+                {"level", "", {"L"}, "probability that a consistent filter passes; default 0.95"},
+                {"scans", "", {"K"}, "also for runs of K independent scans"}},
+           .details = "examples:\n  montecarta plan --dim 3 --ratio 1.5\n  montecarta plan --dim 3 "
+                      "--ratio 1.2 --power 0.8 --scans 100\n"},
+          plan};
 }
 
 }  // namespace montecarta::experiments

@@ -3,6 +3,7 @@
 #include "engine/records/posix_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
 #include "engine/runs/recompute.hpp"
+#include "engine/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/output_guard.hpp"
@@ -109,28 +110,28 @@ int replay(const Arguments& arguments) {
             << bytes_text(static_cast<double>(std::filesystem::file_size(output))) << ", stored in "
             << output << "\n";
   if (!departs) return exit_code(outcome, runs_under_scheduler());
-  std::cout << *departs << "\n";
+  std::cout << wrapped(*departs, output_width(), 2);
   return kDifferent;
 }
 
 }  // namespace
 
 Command replay_command() {
-  return {
-      {.name = "replay",
-       .summary = "repeats one run of a file with everything recorded: particles, weights, maps",
-       .operands = {{"FILE.h5"}},
-       .options = {{"output", "o", {"ONE.h5"}, "where it goes"},
-                   {"cell", "", {"C"}, "label of the cell"},
-                   {"run", "", {"R"}, "number of the run, from 0"},
-                   data_option(),
-                   external_option(),
-                   {"force", "", {}, "replace ONE.h5"},
-                   {"threads", "", {"N"}, "default: what this process may use"},
-                   {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},
-       .details = "Exit code 4 where the run is not, byte for byte, the one that FILE.h5 holds; "
-                  "ONE.h5 is written all the same.\n"},
-      replay};
+  return {{.name = "replay",
+           .summary = "Repeat one run with everything recorded: particles, weights, maps",
+           .operands = {{"FILE.h5"}},
+           .options = {{"output", "o", {"ONE.h5"}, "file to write"},
+                       {"cell", "", {"CELL"}, "label of the cell"},
+                       {"run", "", {"R"}, "number of the run, from 0"},
+                       data_option(),
+                       external_option(),
+                       {"force", "", {}, "replace ONE.h5"},
+                       {"threads", "", {"N"}, kThreadsMeaning},
+                       {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}},
+           .details = "The exit code is 4 if the repeated run differs in a byte from the one in "
+                      "FILE.h5. ONE.h5 is written all the same.\n\nexample:\n  montecarta replay "
+                      "first_study.h5 --cell ekf_slam --run 3 -o run3.h5\n"},
+          replay};
 }
 
 }  // namespace montecarta::experiments

@@ -47,20 +47,19 @@ int report(const Arguments& arguments) {
 }  // namespace
 
 Command report_command() {
-  return {
-      {.name = "report",
-       .summary =
-           "writes figures (SVG, PDF), tables (CSV, LaTeX) and one self-contained index.html",
-       .operands = {{"FILE.h5"}},
-       .options = {{"output", "o", {"DIR"}, "where it goes"},
-                   {"level", "", {"L"}, "probability inside the NEES bounds; default 0.95"},
-                   {"within", "", {"R"}, kWithinMeaning},
-                   {"run", "", {"R"}, "whose paths are drawn; default the first complete run"},
-                   {"force", "", {}, "replace a report that is there"},
-                   {"threads", "", {"N"}, "default: what this process may use"},
-                   {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},
-       .details = {}},
-      report};
+  return {{.name = "report",
+           .summary = "Write figures, tables and one self-contained index.html",
+           .operands = {{"FILE.h5"}},
+           .options = {{"output", "o", {"DIR"}, "folder to write to"},
+                       {"level", "", {"L"}, kLevelMeaning},
+                       {"within", "", {"R"}, kWithinMeaning},
+                       {"run", "", {"R"}, "run to draw; default: first complete one"},
+                       {"force", "", {}, "replace a report that is there"},
+                       {"threads", "", {"N"}, kThreadsMeaning},
+                       {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}},
+           .details = "Figures are SVG and PDF, tables CSV and LaTeX.\n\nexample:\n  montecarta "
+                      "report first_study.h5 -o first_study_report\n"},
+          report};
 }
 
 }  // namespace montecarta::experiments

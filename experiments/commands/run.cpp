@@ -86,9 +86,9 @@ RunOptions options_of(const Study& study, const Arguments& arguments) {
 
 void tell_how_to_resume(const RunOutcome& outcome, const RunOptions& options,
                         const Arguments& arguments) {
-  std::cerr << "montecarta: stopped, " << outcome.missing()
-            << " runs are missing; what is done is safe in " << part_of(options.output).string()
-            << ". Go on with:\n  " << resuming_command(arguments) << "\n";
+  std::cerr << "montecarta: stopped; " << outcome.missing()
+            << " runs are missing, the finished ones are in " << part_of(options.output).string()
+            << ". Continue with:\n  " << resuming_command(arguments) << "\n";
 }
 
 /// The page, or nothing if it cannot be drawn, e.g. without gnuplot: the results are safe by now,
@@ -148,34 +148,24 @@ int run(const Arguments& arguments) {
 Command run_command() {
   CommandSpec spec{
       .name = "run",
-      .summary = "runs a study and stores every run in one HDF5 file",
+      .summary = "Run a study and store every run in one HDF5 file",
       .operands = {{"STUDY.ini"}},
-      .options = {{"output",
-                   "o",
-                   {"OUT.h5"},
-                   "where results go; OUT.h5.part until complete. Default: by the name of the "
-                   "study, and a report beside"}},
+      .options = {{"output", "o", {"OUT.h5"}, "result file; default: named after the study"}},
       .details =
-          "Results depend on the study file alone, not on threads, backend, shards or "
-          "interruptions.\n"
-          "Ctrl-C closes the file and prints the command that goes on. Exit codes: 0 done, 3 done "
-          "but\n"
-          "some runs failed, 85 stopped at a checkpoint, 130 or 143 interrupted, 2 wrong input, 1 "
-          "failed.\n\n"
-          "examples:\n"
-          "  montecarta run first_study          verdict, first_study.h5, first_study_report/\n"
-          "  montecarta run study.ini -o out.h5 --set study.runs=500 --set scenario.noise=matched\n"
-          "  montecarta run study.ini -o shard0.h5 --shard 0/4\n"};
+          "Without -o a report is written beside the result. The result is called OUT.h5.part "
+          "until it is complete. It depends on the study alone, not on threads, backend, shards or "
+          "interruptions.\nCtrl-C closes the file and prints the command that continues. Exit "
+          "codes: 0 done, 3 done but some runs failed, 85 stopped at a checkpoint, 130 or 143 "
+          "interrupted, 2 wrong input, 1 failed.\n\nexamples:\n  montecarta run first_study\n  "
+          "montecarta run study.ini -o out.h5 --set study.runs=500\n  montecarta run study.ini -o "
+          "shard0.h5 --shard 0/4\n"};
   for (const OptionSpec& option : plan_options()) spec.options.push_back(option);
   const std::vector<OptionSpec> more = {
-      {"resume", "", {}, "go on with OUT.h5.part: compute only what is missing"},
-      {"attempt",
-       "",
-       {},
-       "as --resume, where another attempt may be running: see cluster/README.md"},
+      {"resume", "", {}, "continue OUT.h5.part"},
+      {"attempt", "", {}, "as --resume, for schedulers that restart jobs (see cluster/README.md)"},
       {"force", "", {}, "replace OUT.h5 and OUT.h5.part"},
-      {"time-budget", "", {"SECONDS"}, "stop at a checkpoint (exit code 85) after so long"},
-      {"quiet", "", {}, "neither progress nor verdict"},
+      {"time-budget", "", {"SECONDS"}, "stop after this time, with exit code 85"},
+      {"quiet", "", {}, "print neither progress nor verdict"},
       {"progress", "", {"auto|plain|none"}, "how progress is shown on standard error"}};
   spec.options.insert(spec.options.end(), more.begin(), more.end());
   return {spec, run};

@@ -38,7 +38,7 @@ class StudyStatus {
   }
 
   void print() const {
-    std::vector<TableRow> rows{{"cell", "complete", "failed", "missing", "of", "spared"}};
+    std::vector<TableRow> rows{{"cell", "complete", "failed", "missing", "all", "spared"}};
     for (std::size_t c = 0; c < labels_.size(); ++c) {
       const StatusCounts counts = count_status(status_[c]);
       rows.push_back({labels_[c], std::to_string(counts.complete), std::to_string(counts.failed),
@@ -126,15 +126,15 @@ int status(const Arguments& arguments) {
 Command status_command() {
   return {
       {.name = "status",
-       .summary = "counts done, failed and missing runs of each cell, over one file or many shards",
+       .summary = "Count complete, failed and missing runs, over one file or shards",
        .operands = {{"FILE.h5", 1, SIZE_MAX}},
-       .options = {{"each", "", {}, "one line a file for scripts, instead of one a cell"},
-                   {"whole", "", {}, "with --each: read every byte, not the statuses alone"}},
-       .details =
-           "A line of --each, separated by tabs: file, state (complete, unfinished or damaged), "
-           "SHA-256 of the study,\nruns of cells complete, failed and missing, seconds of wall "
-           "time, "
-           "what is wrong.\n"},
+       .options =
+           {{"each", "", {}, "print one line per file, for scripts"},
+            {"whole", "", {}, "with --each: check every byte, not only the states of the runs"}},
+       .details = "A line of --each has these fields, separated by tabs: file, state (complete, "
+                  "unfinished or damaged), SHA-256 of the study, complete, failed and missing runs "
+                  "of all cells, wall time in seconds, and what is wrong.\n\nexample:\n  "
+                  "montecarta status shard*.h5\n"},
       status};
 }
 

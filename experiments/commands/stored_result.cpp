@@ -47,7 +47,7 @@ std::vector<TableRow> without_idle_spared(std::vector<TableRow> rows) {
 }
 
 OptionSpec data_option() {
-  return {"data", "", {"FOLDER[,...]"}, "where the recorded drives of the study lie, in its order"};
+  return {"data", "", {"FOLDER[,...]"}, "folders of the recorded drives, in order"};
 }
 
 Study study_in(const ResultFile& file, const Arguments& arguments) {

@@ -2,6 +2,7 @@
 #include "engine/errors.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/runs/recompute.hpp"
+#include "engine/wrapped_text.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/stored_result.hpp"
@@ -42,7 +43,7 @@ std::size_t tell_damaged(const ResultFile& file, const std::vector<StoredRun>& s
       try {
         file.expect_whole(cell, i);
       } catch (const StudyError& error) {
-        std::cout << error.what() << "\n";
+        std::cout << wrapped(error.what(), output_width(), 2);
         ++damaged;
       }
     }
@@ -90,12 +91,14 @@ int verify(const Arguments& arguments) {
       chosen.size(), [&](std::size_t i) { differences[i] = again.difference(chosen[i]); });
   const auto equal = std::ranges::count_if(differences, [](const auto& d) { return !d; });
   for (const auto& difference : differences) {
-    if (difference) std::cout << *difference << "\n";
+    if (difference) std::cout << wrapped(*difference, output_width(), 2);
   }
   const std::size_t damaged = tell_damaged(file, chosen);
-  std::cout << equal << " of " << chosen.size()
-            << " runs computed again are the same bytes, out of " << stored.size()
-            << " stored (sample " << seed << ")\n";
+  std::cout << wrapped(std::to_string(equal) + " of " + std::to_string(chosen.size()) +
+                           " runs are reproduced byte for byte, out of " +
+                           std::to_string(stored.size()) + " stored (sample " +
+                           std::to_string(seed) + ")",
+                       output_width());
   return equal == std::ssize(chosen) && damaged == 0 ? kDone : kDifferent;
 }
 
@@ -104,22 +107,21 @@ int verify(const Arguments& arguments) {
 Command verify_command() {
   return {
       {.name = "verify",
-       .summary =
-           "computes stored runs again and compares every byte; exit code 4 where one differs",
+       .summary = "Recompute stored runs and compare every byte",
        .operands = {{"FILE.h5"}},
-       .options = {{"sample", "", {"K"}, "how many runs of cells, chosen at random; default 10"},
-                   {"seed", "", {"S"}, "take the sample that an earlier call named"},
+       .options = {{"sample", "", {"K"}, "number of runs to recompute; default 10"},
+                   {"seed", "", {"S"}, "repeat the sample of an earlier call"},
                    data_option(),
                    external_option(),
-                   {"threads", "", {"N"}, "default: what this process may use"},
-                   {"backend", "", {"tbb|openmp|serial"}, "how the work is spread over threads"}},
-       .details =
-           "Every stored run is held against its fingerprint. The study is taken from the file.\n"
-           "The same bytes are promised to the same version, compiler and C library\n"
-           "on any x86-64-v3 processor or newer; where they differ from the\n"
-           "file's own (montecarta info FILE.h5), that is said first. A program that is a "
-           "cell is\n"
-           "started anew for each run, so that what it keeps from run to run is found.\n"},
+                   {"threads", "", {"N"}, kThreadsMeaning},
+                   {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}},
+       .details = "The exit code is 4 if a run differs. The runs are chosen at random. All stored "
+                  "runs are also compared with their fingerprints. The study is taken from the "
+                  "file.\nThe bytes are promised to be the same with the same version, compiler "
+                  "and C library on any x86-64-v3 processor or newer. If this build differs from "
+                  "that of the file (montecarta info FILE.h5), this is said first. A cell that is "
+                  "a program is started anew for each run, so that state which it keeps between "
+                  "runs is found.\n\nexample:\n  montecarta verify first_study.h5 --sample 20\n"},
       verify};
 }
 

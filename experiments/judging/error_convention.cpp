@@ -105,15 +105,16 @@ std::span<const Convention> conventions_of(StateKind kind) {
 }
 
 std::string explained_conventions() {
-  return "  world            mean - truth, in the frame of the map; the heading's difference is\n"
-         "                   wrapped, a rotation's is Log(R_mean R_truth'), x, y, z in the map\n"
-         "  body             the same seen from the estimated pose: R_mean' (p_mean - p_truth);\n"
-         "                   a rotation's is Log(R_truth' R_mean)\n"
-         "  right-invariant  Log(X_mean X_truth^-1) of SE(2) or SE(3): the error of invariant\n"
-         "                   filters, which turns the whole map about its origin\n"
-         "Components: x, y, heading; in space x, y, z, rx, ry, rz (m, rad), position first. A\n"
-         "state that is no pose has the error world: mean - truth, wrapped where the unit is "
-         "rad.\n";
+  return "  world: mean - truth in the frame of the map. The difference of headings is wrapped. "
+         "That "
+         "of rotations is Log(R_mean R_truth'), with x, y, z of the map.\n"
+         "  body: the same in the frame of the estimated pose, R_mean' (p_mean - p_truth). That of "
+         "rotations is Log(R_truth' R_mean).\n"
+         "  right-invariant: Log(X_mean X_truth^-1) of SE(2) or SE(3), the error of invariant "
+         "filters, which rotates the whole map about its origin.\n"
+         "The components are x, y, heading, or in space x, y, z, rx, ry, rz (m, rad), position "
+         "first. A state that is not a pose has the error world: mean - truth, wrapped if the unit "
+         "is rad.\n";
 }
 
 Eigen::VectorXd error_of(const StateShape& shape, Convention convention,

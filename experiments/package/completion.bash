@@ -7,7 +7,7 @@ _montecarta() {
   elif [[ $word == -* ]]; then
     words=$(montecarta "$command" --help 2>/dev/null | grep -o -- '--[a-z][a-z-]*')
   elif [ "$command" = run ] || [ "$command" = check ]; then
-    words=$(montecarta list studies 2>/dev/null | sed -n 's|^.*/\([a-z0-9_]*\)\.ini .*|\1|p')
+    words=$(montecarta list studies 2>/dev/null | sed -n 's/^\([a-z0-9_]\+\)  .*/\1/p')
   fi
   mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word"; compgen -f -- "$word")
 }

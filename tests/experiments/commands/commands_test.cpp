@@ -155,7 +155,8 @@ TEST_F(Commands, InfoAndStatusReadWhatRunWrote) {
   EXPECT_THAT(info.out, HasSubstr("2 of 3"));
   EXPECT_THAT(info.out, HasSubstr("2 are done in every cell"));
   EXPECT_THAT(info.out, testing::ContainsRegex("seal +holds"));
-  for (const char* dataset : {"/cells/fastslam2_m10/pose_mean", "/truth", "/scenario", "/timing"})
+  EXPECT_THAT(info.out, ContainsRegex("/cells/fastslam2_m10\n    pose_mean +[0-9]"));
+  for (const char* dataset : {"/truth", "/scenario", "/timing"})
     EXPECT_THAT(info.out, HasSubstr(dataset));
   const Called status = call({"status", "out.h5"});
   EXPECT_THAT(status.out, testing::ContainsRegex("ekf_slam +2 +0 +1 +3"));
@@ -169,8 +170,13 @@ TEST_F(Commands, InfoAndStatusReadWhatRunWrote) {
 TEST_F(Commands, CheckRunsNothing) {
   const Called called = call({"check", "blink.ini"});
   EXPECT_EQ(called.code, 0) << called.err;
-  for (const char* words : {"fastslam2_m10", "SHA-256", "3 of 3", "steps", "memory", "disk"})
+  for (const char* words : {"fastslam2_m10", "SHA-256", "steps", "memory", "landmarks"})
     EXPECT_THAT(called.out, HasSubstr(words));
+  EXPECT_THAT(called.out,
+              ContainsRegex("^blink\n\n  time .*\n  file .*\n  filters +EKF-SLAM, FastSLAM II\n"
+                            "  runs +3 for each of 2 cells\n"))
+      << "what a person wants to know first";
+  EXPECT_THAT(call({"check", "blink.ini", "--runs", "1:3"}).out, ContainsRegex("runs +2 of 3 "));
   EXPECT_FALSE(exists("out.h5"));
   EXPECT_THAT(call({"check", "blink.ini", "--text"}).out, testing::StartsWith("[study]\n"))
       << "the text alone, to be put into a file";
@@ -194,10 +200,32 @@ TEST_F(Commands, PlanSaysHowManyRuns) {
 
 TEST_F(Commands, ListsSayWhatThereIs) {
   EXPECT_THAT(call({"list", "filters"}).out, HasSubstr("fastslam2"));
-  EXPECT_THAT(call({"list", "scenarios"}).out, HasSubstr("web_loop"));
-  EXPECT_THAT(call({"list", "studies"}).out, HasSubstr("first_study.ini"));
+  EXPECT_THAT(call({"list", "worlds"}).out, HasSubstr("web_loop"));
+  EXPECT_THAT(call({"list", "studies"}).out, HasSubstr("first_study"));
+  EXPECT_THAT(call({"list", "metrics"}).out, HasSubstr("position_rmse"));
   EXPECT_THAT(call({"list", "columns"}).out, HasSubstr("ancestry"));
-  EXPECT_THAT(call({"list", "settings"}).out, HasSubstr("scenario.field_of_view_deg"));
+  EXPECT_THAT(call({"list", "settings"}).out, HasSubstr("field_of_view_deg"));
+}
+
+TEST_F(Commands, ListsSayAllAboutOne) {
+  const auto lists = [&](const char* what, const char* name, std::vector<std::string> words) {
+    const Called called = call({"list", what, name});
+    EXPECT_EQ(called.code, 0) << called.err;
+    for (const std::string& word : words) EXPECT_THAT(called.out, HasSubstr(word));
+  };
+  lists("settings", "scenario.noise", {"one of measured-control, matched", "EQUATIONS 1"});
+  lists("settings", "wheelbase", {"scenario.wheelbase: ", "belief.wheelbase: ", "m\n"});
+  lists(
+      "settings", "belief.sigma_range",
+      {"must be given if scenario.kind = log", "that of [scenario] if scenario.kind = simulated"});
+  lists("filters", "ukf_slam",
+        {"motion ", "default quadrature, with noise = measured-control unbiased", "position",
+         "motion_noise"});
+  lists("studies", "first_study", {"first_study.ini"});
+  lists("columns", "joint_covariance", {"run, joint, state, state_column"});
+  expect_wrong({"list", "settings", "scenario.nose"}, "did you mean scenario.noise?");
+  expect_wrong({"list", "settings", "wheelbse"}, "did you mean wheelbase?");
+  expect_wrong({"list", "settings", "something.else"}, "choose one of them");
 }
 
 TEST_F(Commands, ShardsMergeIntoTheWhole) {

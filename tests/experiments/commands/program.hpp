@@ -46,7 +46,8 @@ class Program : public testing::Test {
   /// `before`: shell commands that go first.
   Called call(const std::vector<std::string>& words, const std::string& before = "") const {
     std::string line = "cd ";  // append() throughout: g++ 12 sees an overrun in " " + std::string
-    line.append(shell_quoted(folder_.string())).append(" && ").append(before);
+    line.append(shell_quoted(folder_.string()));
+    line.append(" && export COLUMNS=1000 && ").append(before);  // sentences stand on one line
     line.append(shell_quoted(program_under_test()));
     for (const std::string& word : words) line.append(" ").append(shell_quoted(word));
     line.append(" 2>").append(shell_quoted((folder_ / "stderr").string()));

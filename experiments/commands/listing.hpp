@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "engine/records/result_description.hpp"
+#include "engine/wrapped_text.hpp"
+
+#include <cstddef>
+#include <string>
+
+namespace montecarta::experiments {
+
+/// Names, each with its description beside it, wrapped to the width of the output. A name of more
+/// than `widest` characters has its description on the next line.
+std::string listing(const TextPairs& items, std::size_t indent = 2,
+                    std::size_t widest = output_width() * 2 / 5);
+
+}  // namespace montecarta::experiments
