@@ -11,9 +11,9 @@
 
 namespace montecarta::filters {
 
-/// Which landmark of one map a detection is, by identity or the nearest (EQUATIONS 17), for filters
-/// whose map is the same for all particles, or that have a map for each belief. Landmarks are
-/// numbered in the order in which they are added.
+/// Associates the detections of a scan with the landmarks of one map, by identity or by nearest
+/// neighbour (EQUATIONS 17). It serves filters with one map for all particles, or one for each
+/// belief. The slot of a landmark is its number in the order in which landmarks are added.
 class MapAssociation {
  public:
   explicit MapAssociation(const FilterSetup& setup);
@@ -22,21 +22,21 @@ class MapAssociation {
   bool known() const { return settings_.kind == Association::known; }
   const AssociationSettings& settings() const { return settings_; }
 
-  /// Pairs a scan by identity, or by what a search of the map found for each detection.
+  /// Both pair the detections of a scan, by identity or by a search of the map for each detection.
   void pair_by_identity(Scan scan);
   void pair_nearest(Scan scan, std::span<const NearestSearch> searches);
   std::span<const Pairing> pairings() const { return pairings_; }
-  /// Against the simulator's identities.
+  /// Association errors of the last scan, counted with the simulator's identities.
   const AssociationCounts& counts() const { return counts_; }
-  /// log p0: what a detection that matches nothing is worth (EQUATIONS 17); 0 where identities are
-  /// known.
+  /// log p0, the log-density of a detection that matches no landmark (EQUATIONS 17); 0 where
+  /// identities are known.
   double unmatched_log_density() const { return known() ? 0.0 : log_new_density_; }
 
-  /// Remembers that the map's next landmark is made of this detection. Throws RunError where the
-  /// map has run away.
+  /// Records that the next landmark of the map is initialised from this detection. Throws RunError
+  /// if the map has grown beyond its limit.
   void add(const Detection& fresh);
-  /// Where the map holds landmark k of a report: of identity k if they are known, else the k-th
-  /// added. Any number beyond the map's size where it does not.
+  /// Slot of landmark k of a report: the landmark of identity k if identities are known, else the
+  /// k-th that was added. A slot beyond the end of the map means that the map does not hold it.
   std::size_t slot_of(std::size_t k) const;
 
  private:
@@ -46,15 +46,15 @@ class MapAssociation {
 
   AssociationSettings settings_;
   double log_new_density_;
-  std::vector<std::uint32_t> slot_of_identity_;  ///< where they are known
+  std::vector<std::uint32_t> slot_of_identity_;  ///< {identity} if identities are known
   std::vector<std::int32_t> made_of_;  ///< {slot} identity at initialisation, to count errors
-  std::vector<Pairing> pairings_;      ///< of the last scan
+  std::vector<Pairing> pairings_;      ///< result of the last scan
   AssociationCounts counts_;
 };
 
-/// The pose and the first `landmarks` landmarks of a report; NaN of those that the map does not
-/// hold. `row_of_slot(slot)` is the first row in `held` of what the map holds there, negative where
-/// it holds nothing.
+/// The pose and the first `landmarks` landmarks of a report, NaN for landmarks that the map does
+/// not hold. `row_of_slot(slot)` is the first row in `held` of the landmark in that slot, negative
+/// if there is none.
 template <class RowOfSlot>
 JointEstimate joint_report(const JointEstimate& held, const MapAssociation& association,
                            std::size_t landmarks, const RowOfSlot& row_of_slot) {

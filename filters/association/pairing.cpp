@@ -8,8 +8,8 @@
 namespace montecarta::filters {
 namespace {
 
-/// The count that one detection belongs to; nullptr where clutter was rightly left out, or where
-/// nobody knows.
+/// The count to which one detection belongs; nullptr if clutter was correctly ignored, or if the
+/// identity is not known.
 double* count_of(std::int32_t identity, const Pairing& pairing,
                  std::span<const std::int32_t> made_of, AssociationCounts& counts) {
   if (identity == Detection::kUnidentified) return nullptr;
@@ -50,7 +50,7 @@ void exclude_rivals(std::span<Pairing> pairings) {
 
 double log_new_density(const AssociationSettings& settings, const Belief& belief) {
   const auto n = static_cast<double>(components_of(belief.sensor).size());
-  const Eigen::Vector2d sigma = deviations_of(belief.sensor, belief);  // 1 beyond n
+  const Eigen::Vector2d sigma = deviations_of(belief.sensor, belief);  // 1 beyond n components
   const double log_sqrt_det_s = std::log(std::pow(2.0, 0.5 * n) * sigma(0) * sigma(1));
   return -0.5 * settings.gate - 0.5 * n * std::log(kTwoPi) - log_sqrt_det_s +
          settings.log_new_density_offset;

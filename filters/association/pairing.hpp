@@ -15,28 +15,28 @@
 
 namespace montecarta::filters {
 
-/// What becomes of a detection.
+/// The result of associating a detection.
 enum class PairingKind : std::uint8_t {
-  ignored,  ///< too far from every landmark to be one, too near to be new; or it lost to a rival
-  matched,  ///< it is `landmark`
-  fresh,    ///< a landmark not seen before
+  ignored,  ///< neither near enough to a landmark nor far enough to be new, or lost to a rival
+  matched,  ///< it is a detection of `landmark`
+  fresh,    ///< it is the first of a new landmark
 };
 
-/// A detection judged by one map.
+/// A detection and the landmark that one map associates with it.
 struct Pairing {
   PairingKind kind = PairingKind::ignored;
-  std::uint32_t landmark = 0;  ///< where matched
-  double cost = 0.0;           ///< where matched: ND = D^2 + log det S
+  std::uint32_t landmark = 0;  ///< only if matched
+  double cost = 0.0;           ///< only if matched: ND = D^2 + log det S
 };
 
-/// The search for the landmark that explains one detection best (EQUATIONS 17): offer every
-/// landmark of the map, in any order but always the same one, then judge.
+/// The search for the landmark that explains one detection best (EQUATIONS 17): offer() every
+/// landmark of the map, always in the same order, then judge().
 struct NearestSearch {
   double least_distance = std::numeric_limits<double>::infinity();  ///< D^2 over all offered
   double least_cost = std::numeric_limits<double>::infinity();  ///< ND over those inside the gate
-  std::uint32_t landmark = 0;                                   ///< that has the least cost
+  std::uint32_t landmark = 0;                                   ///< the one of least cost
 
-  /// `distance` = D^2 = v' S^-1 v, `cost` = ND = D^2 + log det S; of equals the first offered wins.
+  /// `distance` is D^2 = v' S^-1 v, `cost` is ND = D^2 + log det S. Of equal costs the first wins.
   void offer(std::uint32_t candidate, double distance, double cost, double gate) {
     if (distance < least_distance) least_distance = distance;
     if (distance < gate && cost < least_cost) {
@@ -46,37 +46,37 @@ struct NearestSearch {
   }
 };
 
-/// Matched with the least cost inside the gate; fresh where even the nearest is beyond the outer
-/// gate or there is none; ignored between the gates.
+/// Matches the landmark of least cost inside the gate. Without one, the detection is fresh if the
+/// nearest landmark is beyond the outer gate or the map is empty, else it is ignored.
 Pairing judge(const NearestSearch& search, const AssociationSettings& settings);
 
-/// Of detections that chose one landmark only that with the least cost keeps it; the rest are
-/// ignored. Of equals the first wins.
+/// If several detections matched the same landmark, only the one of least cost keeps it and the
+/// others are ignored. Of equal costs the first wins.
 void exclude_rivals(std::span<Pairing> pairings);
 
-/// log p0 of EQUATIONS (17.2): what a detection that matches nothing contributes to a particle's
-/// log-weight, so that all particles weigh by the same number of factors: log N at the inner gate
-/// with S = diag(2 R), plus the offset.
+/// log p0 of EQUATIONS (17.2): the term that a detection without a match adds to the log-weight of
+/// a particle, so that the weights of all particles have the same number of factors. It is log N at
+/// the inner gate with S = diag(2 R), plus the offset.
 double log_new_density(const AssociationSettings& settings, const Belief& belief);
 
-/// What one map's pairings of a scan are, seen with the simulator's eyes. `made_of` {slot}: the
-/// identity of the detection that each landmark of the map was made of, before this scan's new
-/// ones. Counting only: no estimate may depend on it.
+/// Counts the correct and wrong pairings of one map by the simulator's identities. `made_of` {slot}
+/// is the identity of the detection that initialised each landmark, without the landmarks that this
+/// scan initialises. No estimate may depend on these counts.
 AssociationCounts association_counts(Scan scan, std::span<const Pairing> pairings,
                                      std::span<const std::int32_t> made_of);
 
 /// Adds `share` times the counts of one particle.
 void add(const AssociationCounts& counts, double share, AssociationCounts& sum);
 
-/// For every particle and landmark of its map the simulator's identity of the detection that the
-/// landmark was made of, to count association errors by. Keeps its memory from run to run.
+/// The simulator's identity of the detection that initialised each landmark of each particle, to
+/// count association errors. Its memory is reused from run to run.
 class InitialisationIdentities {
  public:
   explicit InitialisationIdentities(std::size_t particles)
       : counts_(particles), spare_counts_(particles) {}
 
   void clear() { std::ranges::fill(counts_, 0U); }
-  /// By slot.
+  /// {slot} identities of a particle.
   std::span<const std::int32_t> of(std::size_t particle) const {
     return {identities_.data() + particle * room_, counts_[particle]};
   }
@@ -106,9 +106,9 @@ class InitialisationIdentities {
     room_ = wider;
   }
 
-  std::size_t room_ = 0;  ///< landmarks of a particle that fit
+  std::size_t room_ = 0;  ///< landmarks per particle that fit
   std::vector<std::int32_t> identities_, spare_;
-  std::vector<std::uint32_t> counts_, spare_counts_;  ///< {particle} landmarks
+  std::vector<std::uint32_t> counts_, spare_counts_;  ///< {particle} number of landmarks
 };
 
 }  // namespace montecarta::filters

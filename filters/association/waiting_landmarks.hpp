@@ -10,23 +10,23 @@
 
 namespace montecarta::filters {
 
-/// Landmarks that one detection does not fix, until two do (EQUATIONS 15). A detection that only
-/// decides (whether a pair crosses well, on which side of two places) is not used otherwise: what
-/// is chosen by its noise must not be estimated from it. `Kept`: what a filter keeps of the
-/// detections that place a landmark.
+/// Landmarks that one detection does not fix and that wait until two detections do (EQUATIONS 15).
+/// A detection that is only used to decide (whether a pair crosses well, or which of two places is
+/// right) does not enter the estimate: its noise would then be correlated with the decision. `Kept`
+/// is the information that a filter keeps of the detections that place a landmark.
 template <class Kept>
 class WaitingLandmarks {
  public:
   enum class Stage : std::uint8_t {
     unseen,
-    seen,       ///< by a first detection
-    crossing,   ///< and a second one would cross it well: the next is used
-    ambiguous,  ///< two are kept; of ranges that leaves two places
+    seen,       ///< a first detection is kept
+    crossing,   ///< a second one would have crossed it well: the next one is kept
+    ambiguous,  ///< two are kept; of ranges, they leave two places
   };
   struct Waiting {
     std::int32_t identity = 0;
     Stage stage = Stage::unseen;
-    double side = 1.0;  ///< of two places
+    double side = 1.0;  ///< 1 or -1: which of the two places
     Kept kept = {};
   };
 
@@ -38,7 +38,7 @@ class WaitingLandmarks {
     const auto found = std::ranges::find(waiting_, identity, &Waiting::identity);
     return found == waiting_.end() ? nullptr : &*found;
   }
-  /// Unseen where it is new. Valid until the next entry or removal.
+  /// The entry of a landmark, `unseen` if it is new. Valid until the next entry() or remove().
   Waiting& entry(std::int32_t identity) {
     const auto found = std::ranges::find(waiting_, identity, &Waiting::identity);
     return found == waiting_.end() ? waiting_.emplace_back(Waiting{.identity = identity}) : *found;
@@ -48,9 +48,9 @@ class WaitingLandmarks {
     waiting_.pop_back();
   }
 
-  /// Whether a detection can take its landmark a step further. `pair` is the detection beside those
-  /// that are kept: whether they cross_well() or cross() at all, and the squared_distance() of the
-  /// detection from either side.
+  /// Returns whether a detection can advance its landmark by one stage. `pair` compares the
+  /// detection with those that are kept: cross_well(), cross(), and squared_distance() of the
+  /// detection for either side.
   template <class Pair>
   static bool can_advance(Waiting& waiting, const Pair& pair) {
     switch (waiting.stage) {
@@ -68,8 +68,8 @@ class WaitingLandmarks {
     }
     return false;
   }
-  /// Takes it that step. `keep()` keeps the detection, the first or the second that places the
-  /// landmark. Returns whether the landmark is fixed now.
+  /// Advances the landmark by one stage. `keep()` keeps the detection if it is the first or the
+  /// second that places the landmark. Returns whether the landmark is fixed now.
   template <class Keep>
   bool advance(Waiting& waiting, const Keep& keep) const {
     switch (waiting.stage) {
@@ -92,7 +92,7 @@ class WaitingLandmarks {
 
  private:
   bool of_bearings_;
-  std::vector<Waiting> waiting_;  ///< in no order
+  std::vector<Waiting> waiting_;  ///< unordered
 };
 
 }  // namespace montecarta::filters
