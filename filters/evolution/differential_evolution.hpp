@@ -14,8 +14,8 @@
 
 namespace montecarta::filters {
 
-/// Where evolve() takes its random numbers from: lane l uses the stream of index identity.index +
-/// l, from block `first_block` on; whoever asks may have used the blocks before it.
+/// The random numbers of evolve(). Lane l uses the stream with index identity.index + l, from block
+/// `first_block` on. The caller may have used the blocks before it.
 struct EvolutionDraws {
   StreamIdentity identity;
   std::uint32_t first_block = 0;
@@ -23,12 +23,12 @@ struct EvolutionDraws {
 
 namespace evolution {
 
-/// Three members that differ from each other and from the target, as whole numbers, lane by lane.
+/// Indices of three members, whole numbers in every lane, different from each other and the target.
 template <class Real>
 using Members = std::array<Real, 3>;
 
-/// Splits a uniform number in (0, 1): a digit in {0, ..., count - 1}, and another uniform number
-/// out of the bits it did not use.
+/// Splits a uniform number in (0, 1) into a digit in {0, ..., count - 1}, which is returned, and
+/// another uniform number made of the unused bits, which replaces `uniform`.
 template <class Real>
 Real take_digit(Real& uniform, std::size_t count) {
   const Real stretched = uniform * Real(static_cast<double>(count));
@@ -37,11 +37,11 @@ Real take_digit(Real& uniform, std::size_t count) {
   return digit;
 }
 
-/// r1, r2 (from `first`) and r0 (from `second`): all different and none `target`; `size` >= 3. With
-/// three members there is no third one, and r0 is not to be used.
+/// Draws r1 and r2 (from `first`) and r0 (from `second`), all different from each other and from
+/// `target`; `size` >= 3. If `size` is 3 there is no third member, and r0 must not be used.
 template <class Real>
 Members<Real> draw_members(std::size_t size, std::size_t target, Real& first, Real& second) {
-  const auto leave_out = [](const Real& member, const Real& taken) {  // in rising order
+  const auto leave_out = [](const Real& member, const Real& taken) {  // call in order of `taken`
     return select(member >= taken, Real(member + Real(1.0)), member);
   };
   const Real t(static_cast<double>(target));
@@ -54,12 +54,12 @@ Members<Real> draw_members(std::size_t size, std::size_t target, Real& first, Re
   return {r1, r2, leave_out(leave_out(leave_out(r0, least), middle), most)};
 }
 
-/// What one trial needs to know of chance.
+/// The random numbers of one trial.
 template <class Real, std::size_t D>
 struct TrialDraws {
-  static constexpr std::uint32_t kBlocks = (2 + D + 1) / 2;  ///< of the stream
+  static constexpr std::uint32_t kBlocks = (2 + D + 1) / 2;  ///< blocks of the stream that are used
   Members<Real> members;                                     ///< r1, r2, r0
-  std::array<Real, D> crosses;  ///< in (0, 1); -1 for the component that crosses in any case
+  std::array<Real, D> crosses;  ///< in (0, 1); -1 for the component that always crosses
 
   TrialDraws(const EvolutionDraws& draws, std::uint32_t block, std::size_t size,
              std::size_t target) {
@@ -79,19 +79,19 @@ struct TrialDraws {
 
 }  // namespace evolution
 
-/// Where the members of an evolving population may be: centre +- half in every component, and which
-/// components are angles [rad].
+/// The region to which members are confined: centre +- half in every component. `is_angle` marks
+/// the components that are angles [rad].
 template <class Real, std::size_t D>
 struct SearchBox {
   std::array<Real, D> centre;
   std::array<Real, D> half;  ///< >= 0
   std::array<bool, D> is_angle{};
 
-  /// a - b of component j, wrapped if it is an angle.
+  /// a - b in component j, wrapped if it is an angle.
   [[gnu::always_inline]] Real difference(std::size_t j, const Real& a, const Real& b) const {
     return is_angle[j] ? wrap(Real(a - b)) : Real(a - b);
   }
-  /// `value` where it lies inside; otherwise reflected once at the wall it crossed, then clamped.
+  /// Returns `value` if it is inside, else its reflection at the wall that it crossed, clamped.
   [[gnu::always_inline]] Real repaired(std::size_t j, const Real& value) const {
     const Real out = difference(j, value, centre[j]);
     Real in = select(out > half[j], Real(half[j] + half[j] - out), out);
@@ -102,26 +102,26 @@ struct SearchBox {
   }
 };
 
-/// Which member a trial starts from: DE/best/1 (Ankishan), DE/rand/1 (Havangi eq. 6) or
-/// DE/current/1 (Havangi eq. 30: nothing pulls towards the best but selection).
+/// The member from which a trial starts: DE/best/1 (Ankishan), DE/rand/1 (Havangi eq. 6) or
+/// DE/current/1 (Havangi eq. 30, where only selection favours the best member).
 enum class EvolutionBase { best, random, target };
 
 struct EvolutionSettings {
   double scale = 0.5;                          ///< F
   double crossover = 0.8;                      ///< Cr in [0, 1]
-  std::size_t generations = 10;                ///< at most
-  EvolutionBase base = EvolutionBase::random;  ///< of the trial vector
-  double tolerance = 1e-6;  ///< stop where all members are equally good up to this
-  double good_enough = std::numeric_limits<double>::infinity();  ///< stop where the best is as good
+  std::size_t generations = 10;                ///< upper limit
+  EvolutionBase base = EvolutionBase::random;  ///< base of the trial vectors
+  double tolerance = 1e-6;                     ///< stop if best and worst fitness differ by less
+  double good_enough = std::numeric_limits<double>::infinity();  ///< stop at this fitness
 };
 
-/// Memory that evolve() keeps from call to call; one for each thread.
+/// Memory that evolve() keeps between calls; each thread has its own.
 template <class Real, std::size_t D>
 struct EvolutionScratch {
   std::vector<std::array<Real, D>> trials;
-  std::vector<Real> fitness, trial_fitness;  ///< of every member
+  std::vector<Real> fitness, trial_fitness;  ///< {member}
 
-  /// All are equally fit until they are judged.
+  /// Sets the size. The fitness of all members is 0 until they are evaluated.
   void start(std::size_t size) {
     trials.resize(size);
     fitness.assign(size, Real(0.0));
@@ -129,14 +129,14 @@ struct EvolutionScratch {
   }
 };
 
-/// The best member, of equals the first, and how fit it is.
+/// The fittest member, the first of equals, and its fitness.
 template <class Real, std::size_t D>
 struct Evolved {
   std::array<Real, D> best;
   Real fitness;
 };
 
-/// Fewest members with which trials can be made of members that differ (EQUATIONS 9).
+/// Least number of members for which the members of a trial can all differ (EQUATIONS 9).
 constexpr std::size_t least_population(EvolutionBase base) {
   return base == EvolutionBase::random ? 4 : 3;
 }
@@ -146,7 +146,7 @@ namespace evolution {
 template <class Real, std::size_t D>
 using Population = std::span<std::array<Real, D>>;
 
-/// Who leads, and how far behind the last one is.
+/// The best member and the worst fitness.
 template <class Real, std::size_t D>
 struct Ranking {
   Evolved<Real, D> leader;
@@ -162,16 +162,16 @@ struct Ranking {
       worst = select(fitness[i] < worst, fitness[i], worst);
     }
   }
-  /// Where evolution is not over; it stays over, since then nothing is accepted.
+  /// Mask of the lanes that go on. A lane that has stopped stays so, since it accepts no trial.
   auto goes_on(const EvolutionSettings& settings) const {
     return !(leader.fitness - worst < Real(settings.tolerance)) &&
            leader.fitness < Real(settings.good_enough);
   }
 };
 
-// Inlined, for out of line their arrays of registers pass through memory.
+// The next functions are inlined, since otherwise their arrays of registers pass through memory.
 
-/// The k-th of every lane's random members.
+/// The k-th random member of every lane.
 template <class Real, std::size_t D>
 [[gnu::always_inline]] inline std::array<Real, D> gather(Population<Real, D> population,
                                                          const TrialDraws<Real, D>& draws,
@@ -211,7 +211,7 @@ template <class Real, std::size_t D>
   return offspring;
 }
 
-/// One synchronous generation: all trials are built from the old one, then the good ones move in.
+/// One synchronous generation: all trials are made from the old members before any is replaced.
 template <class Real, std::size_t D, class Judge>
 void next_generation(Population<Real, D> population, std::size_t generation,
                      const Ranking<Real, D>& ranking, const SearchBox<Real, D>& box,
@@ -235,7 +235,7 @@ void next_generation(Population<Real, D> population, std::size_t generation,
 
 }  // namespace evolution
 
-/// Judges candidates one after the other: `objective(member, candidate)` is a number.
+/// Evaluates candidates one after the other: `objective(member, candidate)` is the fitness.
 template <class Objective>
 class OneByOne {
  public:
@@ -250,11 +250,11 @@ class OneByOne {
   Objective objective_;
 };
 
-/// Differential evolution (EQUATIONS 9): `population` moves towards where its members are fittest,
-/// and the best is returned. `judge(candidates, fitness)` says how fit a candidate in the place of
-/// each member is; lanes that it never writes to are over before they begin. `Real` = Lanes: every
-/// lane evolves a population of its own with random numbers of its own. Members must lie in `box`.
-/// Below least_population() nothing moves. Allocates only where `scratch` has to grow.
+/// Differential evolution (EQUATIONS 9): moves `population` towards greater fitness and returns the
+/// best member. `judge(candidates, fitness)` writes the fitness of a candidate for each member;
+/// lanes that it never writes stop before the first generation. If `Real` is Lanes, every lane
+/// evolves its own population with its own random numbers. Members must lie in `box`. With fewer
+/// members than least_population() nothing moves. Allocates only when `scratch` has to grow.
 template <class Real, std::size_t D, class Judge>
 Evolved<Real, D> evolve(std::span<std::array<Real, D>> population, const SearchBox<Real, D>& box,
                         const EvolutionSettings& settings, const EvolutionDraws& draws,

@@ -4,14 +4,14 @@
 namespace montecarta::filters {
 namespace {
 
-// In the order of the enumerators.
+// The order is that of the enumerators.
 const std::vector<std::string> kResamplings{"systematic", "stratified", "residual", "multinomial"};
 
 }  // namespace
 
 PoseEstimate CloudMoments::moved_by(const MotionIncrement& increment) const {
   const Pose& step = increment.pose();
-  const Point way = in_world(ahead_, step.x, step.y);  // of a particle at the mean heading
+  const Point way = in_world(ahead_, step.x, step.y);  // displacement at the mean heading
   const Point mean_way = in_world(turn_, way.x, way.y);
   const Pose mean{mean_.x + mean_way.x, mean_.y + mean_way.y, wrap(mean_.heading + step.heading)};
 

@@ -29,7 +29,7 @@ std::array<double, N> weighted_sums(const Weights<Real>& weights, const Terms& t
   const std::vector<Real>& w = weights.linear();
   for (std::size_t b = 0; b < w.size(); ++b) {
     const std::array<Real, N> values = terms(b);
-    const auto counts = w[b] > Real(0.0);  // what a dead lane holds reaches no sum
+    const auto counts = w[b] > Real(0.0);  // values of lanes with weight 0 are ignored
     for (std::size_t k = 0; k < N; ++k) lanes[k] += select(counts, w[b] * values[k], Real(0.0));
   }
   std::array<double, N> sums{};
@@ -39,7 +39,7 @@ std::array<double, N> weighted_sums(const Weights<Real>& weights, const Terms& t
   return sums;
 }
 
-/// The pose of particle i out of a column of structs that hold a pose; `pose_of(block)`.
+/// The pose of particle i. `pose_of(block)` gives the poses of one block.
 template <class Real, class PoseOf>
 Pose pose_of_particle(const PoseOf& pose_of, std::size_t i) {
   const BasicPose<Real> block = pose_of(i / kLanesOf<Real>);
@@ -47,7 +47,7 @@ Pose pose_of_particle(const PoseOf& pose_of, std::size_t i) {
   return {get(block.x, lane), get(block.y, lane), get(block.heading, lane)};
 }
 
-/// Weighted mean of poses: headings as differences from the heaviest particle's (EQUATIONS 19).
+/// Weighted mean of poses, by differences from the heading of the heaviest one (EQUATIONS 19).
 template <class Real, class PoseOf>
 Pose weighted_mean(const Weights<Real>& weights, const PoseOf& pose_of) {
   const Pose reference = pose_of_particle<Real>(pose_of, weights.heaviest());
@@ -83,7 +83,7 @@ PoseMoments spread_of(const Weights<Real>& weights, const std::vector<BasicPose<
   return mixture_of<Real>(weights, [&](std::size_t b) { return PoseGaussian<Real>{poses[b], {}}; });
 }
 
-/// What the particles together believe about one landmark: mean and covariance of the mixture.
+/// Mean and covariance of the mixture of all particles' Gaussians of one landmark.
 template <class Real>
 LandmarkEstimate mixture_of_landmarks(const Weights<Real>& weights,
                                       const std::vector<LandmarkGaussian<Real>>& landmarks) {
@@ -99,9 +99,9 @@ LandmarkEstimate mixture_of_landmarks(const Weights<Real>& weights,
   return {{mean.x, mean.y}, Eigen::Matrix2d{{C[0], C[1]}, {C[1], C[2]}}};
 }
 
-/// Second moments of a cloud of drawn poses from which its estimate after any common motion follows
-/// in closed form: between scans an estimate costs the same for 10 and for 10,000 particles. With v
-/// = (x, y, h, cos h, sin h), h the heading less its mean, the moved cloud is linear in v.
+/// Second moments of a cloud of drawn poses. The estimate after a motion common to all particles
+/// follows from them in closed form, so that between scans it costs the same for 10 and for 10,000
+/// particles. The moved cloud is linear in v = (x, y, h, cos h, sin h), h the heading minus mean.
 class CloudMoments {
  public:
   template <class Real>
@@ -121,8 +121,8 @@ class CloudMoments {
     turn_ = {1.0 + c, s};
     turn_squares_ = {1.0 + 2.0 * c + cc, s + cs, ss};
     pose_ = {xx, xy, yy, xh, yh, hh};
-    // Headings more than half a turn from the mean wrap, so that their mean is not quite zero; they
-    // are deviations from the mean heading all the same.
+    // Headings more than half a turn from the mean wrap, so that their mean is not exactly zero.
+    // They still count as deviations from the mean heading.
     x_ = {xc, xs}, y_ = {yc, ys}, h_ = {hc - h * c, hs - h * s};
     c_ = {cc - c * c, cs - c * s}, s_ = {cs - c * s, ss - s * s};
   }
@@ -132,17 +132,17 @@ class CloudMoments {
 
  private:
   Pose mean_;
-  Direction<double> ahead_;          ///< of the mean heading
+  Direction<double> ahead_;          ///< unit vector of the mean heading
   Direction<double> turn_;           ///< mean of (cos h, sin h)
-  Symmetric2<double> turn_squares_;  ///< mean of their squares and product
+  Symmetric2<double> turn_squares_;  ///< means of the squares and the product of cos h and sin h
   Symmetric3<double> pose_;          ///< covariance of (x, y, h)
-  Point x_, y_, h_, c_, s_;          ///< of each element of v with (cos h, sin h)
+  Point x_, y_, h_, c_, s_;          ///< covariances of each element of v with (cos h, sin h)
 };
 
-/// Moments of the predicted detection over all particles, for the normalised innovation squared of
-/// the whole filter: the mixture's innovation is the weighted mean, its covariance the mean of S
-/// plus the spread of the innovations (weights before the scan). Tasks sum apart and are added in
-/// order.
+/// Moments of the predicted detection over all particles, for the normalised innovation squared
+/// (NIS) of the whole filter. The innovation of the mixture is the weighted mean of the
+/// innovations, and its covariance is the mean of S plus the spread of the innovations, with the
+/// weights before the scan. Each task has its own sums, which are added in order.
 template <class Real>
 class MixtureInnovations {
   struct Sums {
@@ -151,19 +151,19 @@ class MixtureInnovations {
   };
 
  public:
-  /// `matched`: the weight of the particles that match a detection, before the scan.
+  /// `matched` is the total weight, before the scan, of the particles that match a detection.
   void start(std::size_t tasks, std::size_t detections, double matched = 1.0) {
     matched_.assign(detections, matched);
     sums_.assign(tasks * detections, Sums{});
   }
   double& matched_weight(std::size_t detection) { return matched_[detection]; }
 
-  /// Where the particles of one block add their innovations.
+  /// The sums to which the particles of one block add their innovations.
   struct OfBlock {
     Sums* sums;
     Real weight;
 
-    /// `matched`: the lanes that matched detection k.
+    /// `matched` is the mask of the lanes that matched detection k.
     template <class Mask>
     [[gnu::always_inline]] void add(std::size_t k, const Innovation<Real>& v,
                                     const Mask& matched) const {
@@ -178,8 +178,8 @@ class MixtureInnovations {
     return {sums_.data() + task * matched_.size(), weight};
   }
 
-  /// Adds to the NIS every detection, of so many components, that most of the filter takes for the
-  /// same landmark.
+  /// Adds to the NIS every detection, of `components` numbers, that particles with at least half of
+  /// the weight have matched.
   void add_to(ScanReport& report, std::size_t components = 2) const {
     for (std::size_t k = 0; k < matched_.size(); ++k) {
       if (matched_[k] < 0.5) continue;
@@ -210,22 +210,21 @@ class MixtureInnovations {
   std::vector<Sums> sums_;       ///< {task, detection}
 };
 
-/// How many particles there are, and how and when they are resampled (EQUATIONS 18).
+/// The number of particles, and how and when they are resampled (EQUATIONS 18).
 struct PopulationSettings {
   std::size_t particles = 100;
   Resampling resampling = Resampling::systematic;
-  double resample_below = 0.5;  ///< resample where ESS < this times particles
+  double resample_below = 0.5;  ///< resample if ESS < this times particles
 };
 
-/// The options `particles`, `resampling`, `resample_below`, in the order in which they are
-/// documented.
+/// The options `particles`, `resampling` and `resample_below`, in the order of the documentation.
 std::vector<Parameter> population_options();
-/// Reads them.
+/// Reads the options of population_options().
 PopulationSettings population_settings(const FilterOptions& options);
 
-/// What all filters with particles have in common, whatever a particle is: weights, descent,
-/// resampling, and the report of a scan. Between a scan and the next step the particles are weighed
-/// but not yet resampled by that scan's weights: that is the state that is estimated and recorded.
+/// The part that is common to all filters with particles: weights, ancestors, resampling and the
+/// report of a scan. Between a scan and the next step the particles have the weights of that scan
+/// and are not yet resampled. Estimates and records show that state.
 template <class Real>
 class Population {
  public:
@@ -242,7 +241,7 @@ class Population {
   const Weights<Real>& weights() const { return weights_; }
   ScanReport& report() { return report_; }
   const ScanReport& report() const { return report_; }
-  /// Of particle i: one scan ago.
+  /// {particle} index of each particle one scan ago.
   std::span<const std::uint32_t> ancestors() const { return ancestors_; }
 
   void start() {
@@ -261,7 +260,7 @@ class Population {
     weights_.multiply(block, weighing.log_weight);
     faults_[block] = weighing.faults;
   }
-  /// After every block was weighed.
+  /// Normalises the weights; to be called after weigh() of every block.
   void normalise() {
     report_.log_likelihood = weights_.normalise();
     report_.ess = weights_.effective();
@@ -269,7 +268,7 @@ class Population {
       report_.numerical_faults += static_cast<std::uint32_t>(faults);
   }
 
-  /// Draws the parents of the particles to come, where the weights have degenerated.
+  /// Draws the parents for the pending resampling if the weights have degenerated.
   void decide_on_resampling(const StepContext& context) {
     report_.resampled =
         weights_.effective() < settings_.resample_below * static_cast<double>(settings_.particles);
@@ -279,7 +278,7 @@ class Population {
     std::fill(parents_.begin() + static_cast<std::ptrdiff_t>(settings_.particles), parents_.end(),
               0U);
   }
-  /// Resampling takes effect before the next step: true where it gave ancestors().
+  /// Applies the pending resampling before the next step; returns whether it resampled.
   bool resample() {
     if (!std::exchange(is_after_scan_, false)) return false;
     if (!report_.resampled) {
@@ -291,17 +290,17 @@ class Population {
     return true;
   }
 
-  /// Draws the ancestors at once, by weights of the caller's (EQUATIONS 12): of marginal filters,
-  /// which resample before they weigh.
+  /// Draws the ancestors at once, by the given weights (EQUATIONS 12). Marginal filters use this,
+  /// since they resample before they weigh.
   void draw_ancestors(const StepContext& context, std::span<const double> weights) {
     report_.resampled = true;
     draw_parents(settings_.resampling, weights, context,
                  std::span(ancestors_).first(settings_.particles));
   }
-  /// Every particle is its own ancestor.
+  /// Makes every particle its own ancestor.
   void forget_ancestors() { std::iota(ancestors_.begin(), ancestors_.end(), 0U); }
 
-  /// Writes what was asked for of the particles, the pose of each as `pose_of(i)`.
+  /// Writes the requested columns of the particles. `pose_of(i)` is the pose of particle i.
   template <class PoseOf>
   void tell(const ParticleColumns& columns, const PoseOf& pose_of) const {
     for (std::size_t i = 0; i < columns.pose.size() / 3; ++i) {
@@ -318,9 +317,9 @@ class Population {
  private:
   PopulationSettings settings_;
   Weights<Real> weights_;
-  std::vector<std::uint32_t> parents_;  ///< of the resampling that is decided but not yet in effect
+  std::vector<std::uint32_t> parents_;  ///< parents of the pending resampling
   std::vector<std::uint32_t> ancestors_;
-  std::vector<Real> faults_;  ///< of each block's particles in this scan
+  std::vector<Real> faults_;  ///< {block} numerical faults of its particles in this scan
   ScanReport report_;
   bool is_after_scan_ = false;
 };
