@@ -9,11 +9,11 @@
 
 namespace montecarta::models {
 
-/// Derivatives of one step (EQUATIONS 1): only the elements that are not 0 or 1.
-/// Fx = [1 0 x_heading; 0 1 y_heading; 0 0 1]; the columns of Fu are by_control.
+/// Derivatives of one step (EQUATIONS 1), without the elements that are 0 or 1. Fx = [1 0
+/// x_heading; 0 1 y_heading; 0 0 1]; the columns of Fu are in by_control.
 template <class Real>
 struct MotionJacobians {
-  /// Of the pose by one component of the control, per its unit.
+  /// Derivatives of the pose by one component of the control, per its unit.
   struct Column {
     Real x;        ///< [m]
     Real y;        ///< [m]
@@ -21,25 +21,25 @@ struct MotionJacobians {
   };
   Real x_heading;                                 ///< [m/rad]
   Real y_heading;                                 ///< [m/rad]
-  std::array<Column, Control::kMost> by_control;  ///< as many as the vehicle has controls; then 0
-  std::size_t controls;                           ///< of the vehicle
+  std::array<Column, Control::kMost> by_control;  ///< the first `controls` columns; others are 0
+  std::size_t controls;                           ///< number of controls of the vehicle
 };
 
-/// Where one step leads and how it depends on where it began.
+/// The pose after one step, and its derivatives by the pose before it and by the control.
 template <class Real>
 struct LinearisedMove {
   BasicPose<Real> pose;
   MotionJacobians<Real> jacobians;
 };
 
-/// A displacement (forward, left) of a vehicle that heads along `heading`, in the world [m].
+/// Turns a displacement (forward, left) [m] of a vehicle with direction `heading` into the world.
 template <class Real>
 BasicPoint<Real> in_world(const Direction<Real>& heading, const Real& forward, const Real& left) {
   return {heading.cosine * forward - heading.sine * left,
           heading.sine * forward + heading.cosine * left};
 }
 
-/// A pose moved by a step, which is common to all lanes (double) or one a lane (Real).
+/// A pose moved by a step, which is the same for all lanes (double) or differs between them (Real).
 template <class Real, class Input>
 BasicPose<Real> moved_by(const BasicPose<Real>& pose, const BodyStep<Input>& step) {
   const BasicPoint<Real> way =
@@ -48,22 +48,22 @@ BasicPose<Real> moved_by(const BasicPose<Real>& pose, const BodyStep<Input>& ste
 }
 
 /// One step of a vehicle (EQUATIONS 1; Ankishan eq. (38) prints cos in both rows). Each component
-/// of `control` is common to all lanes (double) or one a lane (Real); `duration` [s].
+/// of `control` is the same for all lanes (double) or differs between them (Real); `duration` [s].
 template <class Real, class Input>
 BasicPose<Real> move(const BasicPose<Real>& pose, const ControlOf<Input>& control, double duration,
                      const Vehicle& vehicle) {
   return moved_by(pose, body_step(vehicle, control, duration));
 }
 
-/// As above, with the control a filter is given.
+/// The same for the control that a filter is given.
 template <class Real>
 BasicPose<Real> move(const BasicPose<Real>& pose, const Control& control, double duration,
                      const Vehicle& vehicle) {
   return move(pose, control.values, duration, vehicle);
 }
 
-/// move() with its derivatives at (pose, control), where `heading` is the direction of the pose and
-/// `bend` that of the control; the control is common to all lanes.
+/// move() with its derivatives at (pose, control). `heading` is the direction of the pose, and
+/// `bend` belongs to the control, which is the same for all lanes.
 template <class Real, class V>
 [[gnu::always_inline]] inline LinearisedMove<Real> linearised_move(
     const BasicPose<Real>& pose, const Direction<Real>& heading, const Control& control,
@@ -72,7 +72,7 @@ template <class Real, class V>
       differentiated_step(vehicle, control, bend, duration);
   const BasicPoint<Real> way = in_world(heading, Real(body.step.forward), Real(body.step.left));
   using Column = typename MotionJacobians<Real>::Column;
-  // No loop: g++ 12 fuses the products of in_world() where it vectorises one.
+  // This is not a loop, since g++ 12 fuses the products of in_world() if it vectorises one.
   const auto column = [&](auto i) -> Column {
     if constexpr (i < kControlsOf<V>) {
       const BodyStep<double>& by = body.by_control[i];
@@ -92,7 +92,7 @@ template <class Real, class V>
            .controls = kControlsOf<V>}};
 }
 
-/// The same at (pose, control).
+/// The same without given directions.
 template <class Real>
 LinearisedMove<Real> linearised_move(const BasicPose<Real>& pose, const Control& control,
                                      double duration, const Vehicle& vehicle) {
@@ -104,7 +104,7 @@ LinearisedMove<Real> linearised_move(const BasicPose<Real>& pose, const Control&
       vehicle);
 }
 
-/// `pose` in the frame of `origin`.
+/// `pose` in the frame of `origin`, the inverse of composed().
 inline Pose relative_to(const Pose& origin, const Pose& pose) {
   const Direction<double> d = direction_of(origin.heading);
   const double dx = pose.x - origin.x, dy = pose.y - origin.y;
@@ -112,7 +112,7 @@ inline Pose relative_to(const Pose& origin, const Pose& pose) {
           wrap(pose.heading - origin.heading)};
 }
 
-/// The pose whose displacement in the frame of `origin` is `displacement`.
+/// The pose with the given `displacement` in the frame of `origin`.
 inline Pose composed(const Pose& origin, const Pose& displacement) {
   const Point way = in_world(direction_of(origin.heading), displacement.x, displacement.y);
   return {origin.x + way.x, origin.y + way.y, wrap(origin.heading + displacement.heading)};

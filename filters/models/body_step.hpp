@@ -9,11 +9,11 @@
 #include <array>
 #include <cmath>
 
-/// What the files of vehicles share (EQUATIONS 1). A vehicle is a struct that says how a control
-/// moves it; vehicle.hpp lists them and says what a vehicle must offer.
+/// The parts that all vehicles share (EQUATIONS 1). A vehicle is a struct that defines how a
+/// control moves it; vehicle.hpp lists the vehicles and the members that a vehicle must have.
 namespace montecarta::models {
 
-/// A step as the vehicle sees it from where it was; where that is in the world does not matter.
+/// Displacement of one step in the frame of the vehicle before the step.
 template <class Real>
 struct BodyStep {
   Real forward;  ///< [m]
@@ -21,36 +21,35 @@ struct BodyStep {
   Real turn;     ///< [rad] counter-clockwise
 };
 
-/// The angle in which a step is not linear, and its unit vector: the steering angle of a car, the
-/// turn in this step of a vehicle whose yaw rate is controlled.
+/// The angle in which a step is not linear, and its unit vector: the steering angle of a car, or
+/// the turn during this step if the yaw rate is controlled.
 template <class Real>
 struct Bend {
   Real angle;  ///< [rad]
   Direction<Real> direction;
 };
 
-/// The bend of that angle [rad].
 template <class Real>
 Bend<Real> bend_of(const Real& angle) {
   return {angle, direction_of(angle)};
 }
 
-/// What steers a simulated vehicle to a way-point.
+/// The input of the pilot that steers a simulated vehicle to a way-point.
 struct Aim {
-  Control before;       ///< of the step before; zero before the first
-  double off;           ///< [rad] direction of the way-point less the heading, not wrapped
-  double speed;         ///< [m/s] wanted
+  Control before;       ///< control of the previous step; zero at the first one
+  double off;           ///< [rad] direction of the way-point minus the heading, not wrapped
+  double speed;         ///< [m/s] desired
   double control_rate;  ///< [Hz]
 };
 
-/// Where a number of a vehicle is asked for.
+/// The place in which a number of a vehicle is set.
 enum class VehicleUse {
-  motion,  ///< wherever the vehicle moves: in [scenario] and in [belief]
-  pilot    ///< where a simulated vehicle is steered: in [scenario] alone
+  motion,  ///< it is part of the motion model: set in [scenario] and in [belief]
+  pilot    ///< it limits the simulated pilot: set only in [scenario]
 };
 
-/// A number of a vehicle of type V. Where `parameter` has an example, it must be given for a log of
-/// the user's own.
+/// A number of a vehicle of type V. If `parameter` has an example, users must set it for their own
+/// logs.
 template <class V>
 struct VehicleNumber {
   Parameter parameter;
@@ -58,37 +57,37 @@ struct VehicleNumber {
   VehicleUse use = VehicleUse::motion;
 };
 
-// A body that moves with constant velocity in its own frame and turns with a constant yaw rate:
-// what vehicles whose yaw rate is controlled have in common (EQUATIONS 1).
+// A body that moves with constant velocity in its own frame and turns at a constant yaw rate: the
+// motion of all vehicles with a controlled yaw rate (EQUATIONS 1).
 
-/// How such a motion is followed through a step.
+/// How such a motion is integrated over a step.
 enum class Integration {
   arc,   ///< exactly: the velocity turns with the body
-  euler  ///< the velocity keeps the direction that it had at the beginning of the step
+  euler  ///< the velocity keeps the direction from the beginning of the step
 };
 inline constexpr std::array<const char*, 2> kIntegrationNames = {"arc", "euler"};
 
-/// The mean over the step of the turning unit vector: (1, 0) where nothing turns.
-/// (sin t / t, (1 - cos t) / t), t the turn.
+/// Mean of the turning unit vector over the step, (sin t / t, (1 - cos t) / t) for the turn t; (1,
+/// 0) for t = 0.
 template <class Real>
 struct MeanDirection {
   Real along, across;
 };
 
-/// `turn`: less than 1e5 rad.
+/// `turn` must be less than 1e5 rad.
 template <class Real>
 MeanDirection<Real> mean_direction(const Bend<Real>& turn) {
   const auto& [cosine, sine] = turn.direction;
   const auto still = turn.angle == Real(0.0);
   const Real angle = select(still, Real(1.0), turn.angle);
   const Real along = select(still, Real(1.0), sine / angle);
-  // 1 - cos t = sin^2 t / (1 + cos t), which keeps its digits where t is small
+  // 1 - cos t = sin^2 t / (1 + cos t), which has no cancellation for small t
   const auto ahead = cosine > Real(0.0);
   const Real small = along * sine / (Real(1.0) + select(ahead, cosine, Real(0.0)));
   return {along, select(ahead, small, (Real(1.0) - cosine) / angle)};
 }
 
-/// Derivative of mean_direction() by the turn, per rad.
+/// Derivative of mean_direction() by the turn [1/rad].
 inline MeanDirection<double> mean_direction_by_turn(const Bend<double>& turn) {
   const auto& [cosine, sine] = turn.direction;
   const double t = turn.angle;
@@ -97,7 +96,7 @@ inline MeanDirection<double> mean_direction_by_turn(const Bend<double>& turn) {
   return {(cosine - along) / t, (sine - across) / t};
 }
 
-/// Where the velocity (forward, left) [m/s] leads in `duration` [s].
+/// Displacement by the velocity (forward, left) [m/s] in `duration` [s]; its turn is 0.
 template <class Real>
 BodyStep<Real> twist_travel(Integration integration, const Real& forward, const Real& left,
                             const Bend<Real>& turn, double duration) {
@@ -116,24 +115,24 @@ inline BodyStep<double> twist_travel_by_turn(Integration integration, double for
   return {fma(ahead, along, -aside * across), fma(ahead, across, aside * along), 0.0};
 }
 
-/// twist_travel() turned round: the velocity (forward, left) [m/s] and yaw rate [rad/s] of a step.
+/// Inverse of twist_travel(): the velocity (forward, left) [m/s] and yaw rate [rad/s] of a step.
 inline Control twist_of(Integration integration, const BodyStep<double>& step, double duration) {
   const double yaw_rate = step.turn / duration;
   const double ahead = step.forward / duration, aside = step.left / duration;
   if (integration == Integration::euler) return {ahead, aside, yaw_rate};
   const auto [along, across] = mean_direction(bend_of(step.turn));
-  const double square = along * along + across * across;  // 0 after whole turns only
+  const double square = along * along + across * across;  // 0 only after whole turns
   if (square == 0.0) return {0.0, 0.0, yaw_rate};
   return {fma(ahead, along, aside * across) / square, fma(aside, along, -ahead * across) / square,
           yaw_rate};
 }
 
-/// The yaw rate [rad/s] that turns by `off` [rad] within one step, at most `limit`.
+/// The yaw rate [rad/s] that turns by `off` [rad] in one control step, limited to `limit`.
 inline double yaw_rate_towards(const Aim& aim, double off, double limit) {
   return std::clamp(off * aim.control_rate, -limit, limit);
 }
 
-/// The setting of the fastest turn that a pilot asks for.
+/// The setting that limits the yaw rate of the pilot.
 template <class V>
 VehicleNumber<V> yaw_rate_limit_of(double V::*member) {
   return {number_parameter("yaw_rate_limit_deg", "90", 0.1, 5700, "fastest turn of the vehicle",

@@ -9,26 +9,26 @@
 
 namespace montecarta::models {
 
-/// The least share of the rear axle's speed that the measured wheel may have (EQUATIONS 1: a
-/// guard). Nearer to the point about which the vehicle turns, that wheel says nothing of the
-/// vehicle.
+/// Least ratio of the speed of the measured wheel to that of the middle of the rear axle, a guard
+/// (EQUATIONS 1). Nearer to the centre of rotation, the speed of the wheel does not determine the
+/// speed of the vehicle.
 inline constexpr double kLeastWheelShare = 0.1;
 
-/// A car steered at the front: which of its points the pose is of, and what its controls mean. The
-/// control is (speed [m/s], steering angle [rad]); a step is linear in the speed and bends with the
-/// steering angle.
+/// A car that is steered at the front wheels. Its control is (speed [m/s], steering angle [rad]); a
+/// step is linear in the speed and bends with the steering angle. `Kind` defines the reference
+/// point of the pose and of the speed.
 struct Car {
   enum class Kind {
-    front_axle,  ///< pose and speed are of the middle of the front axle (EQUATIONS 1)
-    rear_wheel   ///< pose is of the sensor, speed of a rear wheel (EQUATIONS 1)
+    front_axle,  ///< pose and speed of the middle of the front axle (EQUATIONS 1)
+    rear_wheel   ///< pose of the sensor, speed of a rear wheel (EQUATIONS 1)
   };
   Kind kind = Kind::front_axle;
   double wheelbase = 4.0;                        ///< L [m]
-  double wheel_left = 0.0;                       ///< H [m] of the rear wheel, left of the middle
-  double sensor_ahead = 0.0;                     ///< a [m] of the sensor, from the rear axle
-  double sensor_left = 0.0;                      ///< b [m] likewise, from its middle
-  double steer_limit = 30.0 * kPi / 180.0;       ///< [rad] of the pilot
-  double steer_rate_limit = 20.0 * kPi / 180.0;  ///< [rad/s] of the pilot
+  double wheel_left = 0.0;                       ///< H [m]: rear wheel left of the axle's middle
+  double sensor_ahead = 0.0;                     ///< a [m]: the sensor, ahead of the rear axle
+  double sensor_left = 0.0;                      ///< b [m]: sensor left of the middle
+  double steer_limit = 30.0 * kPi / 180.0;       ///< [rad] for the pilot
+  double steer_rate_limit = 20.0 * kPi / 180.0;  ///< [rad/s] for the pilot
 
   static constexpr std::array<const char*, 2> kNames = {"front_axle", "rear_wheel"};
   const char* name() const { return kNames[kind == Kind::front_axle ? 0 : 1]; }
@@ -41,7 +41,7 @@ struct Car {
   static constexpr bool kTurnsByBend = false;
   static double bend_scale(double /*duration*/) { return 1.0; }
 
-  /// EQUATIONS 1, in the frame of the vehicle; linear in the speed.
+  /// Displacement in the frame of the vehicle (EQUATIONS 1), linear in the speed.
   template <class Real>
   BodyStep<Real> travel(const std::array<Real, 1>& speed, const Bend<Real>& steer,
                         double duration) const {
@@ -69,14 +69,14 @@ struct Car {
       return {-way * wheel.sine, way * wheel.cosine, way * wheel.cosine / L};
     }
     const double tangent = wheel.sine / wheel.cosine;
-    const double by_steer = 1.0 + tangent * tangent;  // of the tangent
+    const double by_steer = 1.0 + tangent * tangent;  // derivative of the tangent
     const double slower = std::max(1.0 - wheel_left / L * tangent, kLeastWheelShare);
     const double of_axle = way * wheel_left / L * by_steer / (slower * slower);
-    const double turn = way * by_steer / (slower * slower * L);  // of v tan G, in one term
+    const double turn = way * by_steer / (slower * slower * L);  // derivative of v tan G
     return {of_axle - sensor_left * turn, sensor_ahead * turn, turn};
   }
 
-  /// travel() turned round. A car that did not move has an unknown steering angle: 0.
+  /// Inverse of travel(). If the car did not move, the steering angle is not known and taken as 0.
   Control control_of(const BodyStep<double>& step, double duration) const {
     if (kind == Kind::front_axle) {
       return {length(step.forward, step.left) / duration, std::atan2(step.left, step.forward)};
@@ -95,14 +95,14 @@ struct Car {
     const double change = std::clamp(wrap(aim.off - steer), -most, most);
     return {aim.speed, std::clamp(steer + change, -steer_limit, steer_limit)};
   }
-  /// [m] that it drives at most before it heads anywhere: a circle, and the way to full lock.
+  /// Longest distance [m] to any heading: a full circle, and the way until full lock.
   double way_to_turn(double speed) const {
     const double turning_circle = kTwoPi * wheelbase / std::sin(steer_limit);
     return turning_circle + speed * (steer_limit / steer_rate_limit);
   }
   static constexpr const char* kTurnLimit = "steer_rate_limit_deg";
 
-  /// Whether at this control the measured wheel is too near to the point about which the car turns.
+  /// Returns whether the control brings the measured wheel too near to the centre of rotation.
   bool is_beyond_model(const Control& control) const {
     return kind == Kind::rear_wheel &&
            1.0 - wheel_left / wheelbase * std::tan(control[1]) < kLeastWheelShare;

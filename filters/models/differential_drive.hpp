@@ -7,12 +7,12 @@
 
 namespace montecarta::models {
 
-/// Two wheels on one axle, each with a motor of its own: it turns on the spot. The control is
+/// Two wheels on one axle, each with its own motor, so that it can turn on the spot. The control is
 /// (speed [m/s], yaw rate [rad/s]), the pose that of the middle of the axle (EQUATIONS 1).
 struct DifferentialDrive {
   Integration integration = Integration::arc;
-  double yaw_rate_limit = 90.0 * kPi / 180.0;  ///< [rad/s] of the pilot
-  double turn_on_spot = 45.0 * kPi / 180.0;    ///< [rad] of the pilot: farther off it stops to turn
+  double yaw_rate_limit = 90.0 * kPi / 180.0;  ///< [rad/s] for the pilot
+  double turn_on_spot = 45.0 * kPi / 180.0;    ///< [rad] for the pilot: it stops to turn beyond
 
   static constexpr std::array<const char*, 1> kNames = {"differential_drive"};
   const char* name() const { return kNames[0]; }
@@ -32,7 +32,7 @@ struct DifferentialDrive {
                                   double duration) const {
     return twist_travel_by_turn(integration, speed[0], 0.0, turn, duration);
   }
-  /// It cannot move sideways: the control that comes nearest.
+  /// The nearest possible control, since the vehicle cannot move sideways.
   Control control_of(const BodyStep<double>& step, double duration) const {
     const Control twist = twist_of(integration, step, duration);
     return {twist[0], twist[2]};
@@ -43,7 +43,7 @@ struct DifferentialDrive {
     const double speed = std::abs(off) > turn_on_spot ? 0.0 : aim.speed;
     return {speed, yaw_rate_towards(aim, off, yaw_rate_limit)};
   }
-  /// [m] that it would drive in the time of a whole turn.
+  /// Distance [m] driven at `speed` [m/s] in the time of a full turn.
   double way_to_turn(double speed) const { return speed * kTwoPi / yaw_rate_limit; }
   static constexpr const char* kTurnLimit = "yaw_rate_limit_deg";
 };

@@ -8,27 +8,27 @@
 
 namespace montecarta::models {
 
-/// The models' derivatives as the matrices of EQUATIONS 1 and 2, for code that is not per particle.
+/// The derivatives of the models as matrices (EQUATIONS 1, 2), for code outside the particle loop.
 using Matrix32 = Eigen::Matrix<double, 3, 2>;
 using Matrix23 = Eigen::Matrix<double, 2, 3>;
 
-/// Fx: pose after by pose before.
+/// Fx: derivative of the pose after a step by the pose before it.
 Eigen::Matrix3d pose_jacobian(const MotionJacobians<double>& j);
 
-/// Fu: pose after by the controls of the vehicle, of which each has a column.
+/// Fu: derivative of the pose after a step by the controls, one column for each.
 using ControlJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, Control::kMost>;
 ControlJacobian control_jacobian(const MotionJacobians<double>& j);
 
-/// Hx: (range, bearing) by pose.
+/// Hx: derivative of (range, bearing) by the pose.
 Matrix23 pose_jacobian(const LinearisedObservation<double>& s);
 
-/// Hf: (range, bearing) by landmark.
+/// Hf: derivative of (range, bearing) by the landmark.
 Eigen::Matrix2d landmark_jacobian(const LinearisedObservation<double>& s);
 
-/// Gx: landmark by pose.
+/// Gx: derivative of the landmark by the pose.
 Matrix23 pose_jacobian(const LinearisedPlace<double>& p);
 
-/// Gz: landmark by (range, bearing).
+/// Gz: derivative of the landmark by (range, bearing).
 Eigen::Matrix2d observation_jacobian(const LinearisedPlace<double>& p);
 
 inline Eigen::Vector2d to_vector(const RangeBearing<double>& observation) {

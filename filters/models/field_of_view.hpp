@@ -13,28 +13,28 @@
 
 namespace montecarta::models {
 
-/// A landmark in view and where it stands from the sensor.
+/// A landmark in view, relative to the sensor.
 struct InView {
   std::size_t landmark = 0;  ///< index
-  double dx = 0.0;           ///< [m] in the map's axes
+  double dx = 0.0;           ///< [m] from the sensor, along the axes of the map
   double dy = 0.0;           ///< [m]
   double range = 0.0;        ///< [m]
-  double heading = 0.0;      ///< [rad] of the sensor
+  double heading = 0.0;      ///< [rad] heading of the sensor
 };
 
-/// What a sensor can see: nearer than a range and ahead of it, both strictly, and not nearer than
-/// another range (EQUATIONS 2).
+/// The region in which a sensor detects landmarks: min_range <= range < max_range and strictly
+/// within the angle of view (EQUATIONS 2).
 class FieldOfView {
  public:
-  /// `max_range` [m]; `angle` [rad] in full, centred where the sensor looks; `min_range` [m].
+  /// `max_range` and `min_range` [m]; `angle` [rad] is the full angle, centred on the heading.
   FieldOfView(double max_range, double angle, const Mounting& mounting = {}, double min_range = 0.0)
       : max_range_(max_range),
         cos_half_(cosine_of_half(angle)),
         mounting_(mounting),
         min_range_(min_range) {}
 
-  /// Calls visit(InView) for every landmark [m] in view from a vehicle at `vehicle`, in their
-  /// order.
+  /// Calls visit(InView) for every landmark [m] in view from a vehicle at `vehicle`, in the order
+  /// of `landmarks`.
   template <class Visit>
   void look(const Pose& vehicle, std::span<const Eigen::Vector2d> landmarks,
             const Visit& visit) const {
@@ -53,7 +53,7 @@ class FieldOfView {
   }
 
  private:
-  /// Exactly 0 for half a turn, below -1 (never a limit) for a full one.
+  /// Exactly 0 for an angle of pi, and below -1, which excludes nothing, for a full circle.
   static double cosine_of_half(double angle) {
     if (angle == kPi) return 0.0;
     return angle >= kTwoPi ? -2.0 : std::cos(angle / 2.0);

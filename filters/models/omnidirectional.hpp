@@ -8,11 +8,11 @@
 namespace montecarta::models {
 
 /// A vehicle on Mecanum or Swedish wheels, which moves in any direction while it turns. The control
-/// is (forward [m/s], left [m/s], yaw rate [rad/s]), the pose that of the point these are measured
-/// at (EQUATIONS 1).
+/// is (forward [m/s], left [m/s], yaw rate [rad/s]), and the pose is that of the point where these
+/// are measured (EQUATIONS 1).
 struct Omnidirectional {
   Integration integration = Integration::arc;
-  double yaw_rate_limit = 90.0 * kPi / 180.0;  ///< [rad/s] of the pilot
+  double yaw_rate_limit = 90.0 * kPi / 180.0;  ///< [rad/s] for the pilot
 
   static constexpr std::array<const char*, 1> kNames = {"omnidirectional"};
   const char* name() const { return kNames[0]; }
@@ -37,13 +37,13 @@ struct Omnidirectional {
     return twist_of(integration, step, duration);
   }
 
-  /// Straight to the way-point, while it turns there.
+  /// Drives straight to the way-point while it turns towards it.
   Control steered(const Aim& aim) const {
     const double off = wrap(aim.off);
     return {aim.speed * std::cos(off), aim.speed * std::sin(off),
             yaw_rate_towards(aim, off, yaw_rate_limit)};
   }
-  /// [m] that it would drive in the time of a whole turn.
+  /// Distance [m] driven at `speed` [m/s] in the time of a full turn.
   double way_to_turn(double speed) const { return speed * kTwoPi / yaw_rate_limit; }
   static constexpr const char* kTurnLimit = "yaw_rate_limit_deg";
 };

@@ -16,7 +16,7 @@ Component component(const char* name, const char* column, double most, const cha
   return {name, column, most, limit, std::move(sigma)};
 }
 
-/// In the order of the enumerators.
+/// The order is that of the enumerators.
 std::array<Component, 9> all_components() {
   constexpr const char* kMetres = "metres, a finite number";
   constexpr const char* kSpeed = "metres per second, at most 1000";

@@ -8,30 +8,29 @@
 
 namespace montecarta::models {
 
-/// One thing that a user may set: of a filter behind its name in a cell line (an option of that
-/// filter), of a study in a section of its file (a setting). Keys that end in _deg are in degrees,
-/// all others in SI units.
+/// A value that a user may set: an option of a filter, after its name in a cell line, or a setting
+/// in a section of a study file. Keys that end in _deg are in degrees, all others in SI units.
 struct Parameter {
   enum class Kind : std::uint8_t {
-    text,     ///< anything
+    text,     ///< any text
     number,   ///< finite, from `least` to `most`
-    count,    ///< whole, from `least` to `most`
+    count,    ///< a whole number, from `least` to `most`
     choice,   ///< one of `choices`
-    choices,  ///< a list out of `choices`
+    choices,  ///< a list of some of `choices`
   };
   std::string key = {};
   Kind kind = Kind::text;
-  std::string unit = {};                     ///< "" where there is none
-  std::optional<std::string> fallback = {};  ///< default value, as text; nullopt: must be given
-  double least = 0.0;                        ///< inclusive, as `most`
+  std::string unit = {};                     ///< "" for none
+  std::optional<std::string> fallback = {};  ///< default value as text; nullopt: must be set
+  double least = 0.0;                        ///< inclusive, like `most`
   double most = 0.0;
   std::vector<std::string> choices = {};
-  std::string meaning = {};  ///< one line, with unit and equation
-  std::string example = {};  ///< offered as remedy where there is no fallback
-  /// The default of a filter's option where its controls are noisy measurements of the true ones
-  /// (scenario.noise = measured-control), if that differs.
+  std::string meaning = {};  ///< one line, with equation
+  std::string example = {};  ///< suggested by the error if the user must set it
+  /// The default of a filter's option if the controls are noisy measurements of the true ones
+  /// (scenario.noise = measured-control), where it differs.
   std::optional<std::string> fallback_if_measured = {};
-  /// Vehicles or sensors that have it; empty: all.
+  /// Names of the vehicles or sensors that have the parameter; empty means all.
   std::vector<std::string> applies_to = {};
 };
 
@@ -42,11 +41,11 @@ Parameter count_parameter(const char* key, const std::string& fallback, double l
 Parameter choice_parameter(const char* key, const std::string& fallback,
                            std::vector<std::string> choices, const char* meaning);
 
-/// What a component of a detection or of a control is.
+/// The quantity that one component of a detection or of a control measures.
 enum class Quantity : std::uint8_t {
   range,
   bearing,
-  forward,  ///< of a landmark
+  forward,  ///< position of a landmark
   left,
   speed,
   steer,
@@ -55,16 +54,16 @@ enum class Quantity : std::uint8_t {
   left_speed
 };
 
-/// Whether a detection of it is an angle, which wraps.
+/// Returns whether the quantity, as part of a detection, is an angle that wraps.
 constexpr bool wraps(Quantity quantity) { return quantity == Quantity::bearing; }
 
-/// A component as messages, logs and study files name it.
+/// Names and limits of a component in messages, logs and study files.
 struct Component {
-  const char* name;    ///< "range": in messages and errors
-  const char* column;  ///< "range_m": in detections.csv or odometry.csv
-  double most;         ///< greatest size that a log may hold
-  const char* limit;   ///< "metres, a finite number": why a log with more is refused
-  Parameter sigma;     ///< the standard deviation of its noise
+  const char* name;    ///< for instance "range", in messages
+  const char* column;  ///< for instance "range_m", in detections.csv or odometry.csv
+  double most;         ///< greatest magnitude allowed in a log
+  const char* limit;   ///< for instance "metres, a finite number": the limit in words
+  Parameter sigma;     ///< standard deviation of its noise
 };
 const Component& component_of(Quantity quantity);
 

@@ -10,7 +10,7 @@
 
 namespace montecarta::models {
 
-/// A place in the map frame; `Real` is double or Lanes.
+/// A point in the map frame; `Real` is double or Lanes.
 template <class Real>
 struct BasicPoint {
   Real x{};  ///< [m]
@@ -25,14 +25,14 @@ struct BasicPoint {
 };
 using Point = BasicPoint<double>;
 
-/// A landmark seen from a pose, or the difference of two such observations.
+/// Range and bearing of a landmark from a pose, or the difference of two such observations.
 template <class Real>
 struct RangeBearing {
   Real range{};    ///< [m]
   Real bearing{};  ///< [rad] relative to the heading, in (-pi, pi]
 };
 
-/// What the sensor should see, with derivatives (EQUATIONS 2). Hf = [range_x range_y; bearing_x
+/// The predicted observation with its derivatives (EQUATIONS 2). Hf = [range_x range_y; bearing_x
 /// bearing_y] by the landmark; Hx = [-Hf, (0, -1)'] by the pose.
 template <class Real>
 struct LinearisedObservation {
@@ -43,8 +43,8 @@ struct LinearisedObservation {
   Real bearing_y;  ///< [rad/m]
 };
 
-/// Where a detection places a landmark, with derivatives (EQUATIONS 2). Gz = [x_range x_bearing;
-/// y_range y_bearing] by the detection; Gx = [1 0 x_bearing; 0 1 y_bearing] by the pose.
+/// The position of a landmark by one detection, with derivatives (EQUATIONS 2). Gz = [x_range
+/// x_bearing; y_range y_bearing] by the detection; Gx = [1 0 x_bearing; 0 1 y_bearing] by the pose.
 template <class Real>
 struct LinearisedPlace {
   BasicPoint<Real> point;
@@ -54,11 +54,11 @@ struct LinearisedPlace {
   Real y_bearing;  ///< [m/rad]
 };
 
-/// Nearer than this [m] a bearing has no derivative: the caller must leave the detection out
+/// Distance [m] below which the bearing has no derivative; the caller must leave out the detection
 /// (EQUATIONS 2).
 inline constexpr double kLeastDistance = 1e-6;
 
-/// h(x, f): the observation of `landmark` from `pose`.
+/// h(x, f): the predicted observation of `landmark` from `pose`.
 template <class Real>
 RangeBearing<Real> predicted_observation(const BasicPose<Real>& pose,
                                          const BasicPoint<Real>& landmark) {
@@ -69,7 +69,7 @@ RangeBearing<Real> predicted_observation(const BasicPose<Real>& pose,
   return {sqrt(Real(dx * dx + dy * dy)), wrap(Real(Real(atan2(dy, dx)) - pose.heading))};
 }
 
-/// h(x, f) with its derivatives; they mean nothing where too_near().
+/// h(x, f) with its derivatives, which are not valid if too_near().
 template <class Real>
 LinearisedObservation<Real> linearised_observation(const BasicPose<Real>& pose,
                                                    const BasicPoint<Real>& landmark) {
@@ -80,26 +80,26 @@ LinearisedObservation<Real> linearised_observation(const BasicPose<Real>& pose,
   return {observation, ux, uy, -(uy * per_range), ux * per_range};
 }
 
-/// Whether (per lane) a landmark is too near for the derivatives.
+/// Returns, for every lane, whether the landmark is too near for the derivatives.
 template <class Real>
 auto too_near(const RangeBearing<Real>& predicted) {
   return predicted.range < Real(kLeastDistance);
 }
 
-/// detected boxminus predicted: the innovation, bearing wrapped.
+/// Innovation, detected minus predicted, with the bearing wrapped.
 template <class Real>
 RangeBearing<Real> residual(const RangeBearing<Real>& detected,
                             const RangeBearing<Real>& predicted) {
   return {detected.range - predicted.range, wrap(Real(detected.bearing - predicted.bearing))};
 }
 
-/// The measured part of a detection of range and bearing, the same in all lanes.
+/// The measured values of a range-bearing detection, the same in all lanes.
 template <class Real = double>
 RangeBearing<Real> observation_of(const Detection& detection) {
   return {Real(detection[0]), Real(detection[1])};
 }
 
-/// g(x, z): where a landmark stands that is seen so from `pose`, with derivatives.
+/// g(x, z): the position of a landmark that is observed so from `pose`, with derivatives.
 template <class Real>
 LinearisedPlace<Real> linearised_place(const BasicPose<Real>& pose,
                                        const RangeBearing<Real>& observation) {

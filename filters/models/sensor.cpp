@@ -65,7 +65,7 @@ Eigen::Vector2d detection_of(const Sensor& sensor, const RangeBearing<double>& f
   return std::visit([&](const auto& one) { return one.detection_of(from); }, sensor.kind);
 }
 
-/// Called for every landmark near a detection: in a unity build what it calls is inlined.
+/// Flattened, since it is called for every landmark near a detection.
 [[gnu::flatten]] std::optional<LinearisedDetection> linearised_detection(const Sensor& sensor,
                                                                          const Pose& pose,
                                                                          const Point& landmark) {

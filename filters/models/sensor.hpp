@@ -18,17 +18,17 @@
 
 namespace montecarta::models {
 
-/// Where a sensor sits on the vehicle and where it looks (EQUATIONS 2).
+/// Pose of a sensor in the frame of the vehicle (EQUATIONS 2).
 struct Mounting {
-  double forward = 0.0;  ///< [m] of the pose
+  double forward = 0.0;  ///< [m] from the vehicle's reference point
   double left = 0.0;     ///< [m]
   double turn = 0.0;     ///< [rad] counter-clockwise from the heading
 
   bool is_none() const { return forward == 0.0 && left == 0.0 && turn == 0.0; }
-  /// [m] from the pose.
+  /// Distance [m] of the sensor from the vehicle's reference point.
   double distance() const { return length(forward, left); }
 
-  /// Of the sensor, on a vehicle at `pose`.
+  /// Pose of the sensor on a vehicle at `pose`.
   Pose pose_of(const Pose& pose) const;
   /// Derivative of pose_of() by the pose.
   Eigen::Matrix3d jacobian(const Pose& pose) const;
@@ -37,21 +37,21 @@ struct Mounting {
   Eigen::Vector2d arm_of(const Pose& pose) const;
 };
 
-/// All sensors there are; the first is the default. One more is a struct like these and its name
-/// here. It says
-/// - kName: what study files call it; kComponents: one or two quantities that it measures;
-/// - detection_of(): what it sees of a landmark at a range and bearing of the sensor;
-/// - linearised(): that for a pose of the sensor, with derivatives; nullopt where there are none;
-/// - placed(): where one detection places a landmark; only where it does.
+/// All sensors; the first is the default. To add one, write a struct like these and list it here.
+/// Its members are
+/// - kName: its name in study files; kComponents: the one or two quantities that it measures;
+/// - detection_of(): its detection of a landmark at a given range and bearing from the sensor;
+/// - linearised(): the same for a pose of the sensor, with derivatives; nullopt if there are none;
+/// - placed(): the landmark that one detection fixes; absent if one detection fixes none.
 using SensorKind = std::variant<RangeBearingSensor, BearingSensor, RangeSensor, PositionSensor>;
 
-/// A sensor on its vehicle.
+/// A sensor and its mounting on the vehicle.
 struct Sensor {
   SensorKind kind = {};
   Mounting mounting = {};
 };
 
-/// The components of its detections, in their order.
+/// The components of its detections, in order.
 std::span<const Quantity> components_of(const Sensor& sensor);
 std::string name_of(const Sensor& sensor);
 
@@ -65,40 +65,40 @@ void for_each_sensor(const Visit& visit) {
 }
 /// Names of all sensors, the default first.
 std::vector<std::string> sensor_names();
-/// Names of those that measure this.
+/// Names of the sensors that measure this quantity.
 std::vector<std::string> sensors_with(Quantity quantity);
-/// The sensor of that name; nullopt where there is none.
+/// The sensor of that name; nullopt if there is none.
 std::optional<Sensor> sensor_named(std::string_view name, const Mounting& mounting = {});
 
-/// Whether one detection fixes a landmark: it then is a Gaussian.
+/// True for sensors of which one detection fixes a landmark, with a Gaussian as its estimate.
 template <class Kind>
 concept FixesLandmark = requires {
   Kind::placed(Pose(), Eigen::Vector2d());
 };
 bool fixes_landmark(const Sensor& sensor);
 
-/// What it sees of a landmark at that range and bearing of the sensor.
+/// The detection, without noise, of a landmark at this range and bearing from the sensor.
 Eigen::Vector2d detection_of(const Sensor& sensor, const RangeBearing<double>& from);
 
-/// What it should see of a landmark from a vehicle at `pose`, with derivatives by that pose;
-/// nullopt where the landmark is too near for them.
+/// The predicted detection of a landmark from a vehicle at `pose`, with derivatives by that pose;
+/// nullopt if the landmark is too near for them.
 std::optional<LinearisedDetection> linearised_detection(const Sensor& sensor, const Pose& pose,
                                                         const Point& landmark);
 
-/// Where one detection from a vehicle at `pose` places a landmark, with derivatives by that pose;
-/// nullopt where it does not fix one.
+/// The landmark that one detection from a vehicle at `pose` fixes, with derivatives by that pose;
+/// nullopt if one detection fixes none.
 std::optional<PlacedLandmark> placed_landmark(const Sensor& sensor, const Pose& pose,
                                               const Eigen::Vector2d& detection);
 
-/// The measured part of a detection.
+/// The measured values of a detection.
 inline Eigen::Vector2d vector_of(const Detection& detection) {
   return {detection[0], detection[1]};
 }
 
-/// Which components are angles.
+/// Flags of the components that are angles.
 using Wraps = std::array<bool, Detection::kMost>;
 Wraps wraps_of(const Sensor& sensor);
-/// detected less predicted, angles by the shorter way.
+/// Innovation, detected minus predicted, with angles wrapped.
 inline Eigen::Vector2d residual(const Eigen::Vector2d& detected, const Eigen::Vector2d& predicted,
                                 const Wraps& wraps) {
   Eigen::Vector2d difference = detected - predicted;
@@ -107,12 +107,12 @@ inline Eigen::Vector2d residual(const Eigen::Vector2d& detected, const Eigen::Ve
   return difference;
 }
 
-/// [m] from the sensor to what it detected; nullopt where detections of these components do not
-/// say.
+/// Distance [m] from the sensor to the detected landmark; nullopt if these components do not
+/// determine it.
 std::optional<double> distance_in(std::span<const Quantity> components, const Detection& detection);
 
-/// Standard deviations that `owner` (a belief, a scenario) has of the components. A component that
-/// the sensor does not have has derivatives of 0 and, here, a deviation of 1: it changes nothing.
+/// Standard deviations of the components in `owner` (a belief or a scenario). A component that the
+/// sensor does not have gets the deviation 1; its derivatives are 0, so that it changes nothing.
 template <class Owner>
 Eigen::Vector2d deviations_of(const Sensor& sensor, const Owner& owner) {
   Eigen::Vector2d sigma = Eigen::Vector2d::Ones();
@@ -121,7 +121,7 @@ Eigen::Vector2d deviations_of(const Sensor& sensor, const Owner& owner) {
   return sigma;
 }
 
-/// [m] that noise shifts a landmark by at that distance [m]; of range and bearing along the range.
+/// Standard deviation [m] by which noise shifts a landmark at `distance` [m], along the range.
 template <class Owner>
 double length_deviation(const Sensor& sensor, const Owner& owner, double distance) {
   const auto components = components_of(sensor);

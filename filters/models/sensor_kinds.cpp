@@ -8,7 +8,7 @@
 namespace montecarta::models {
 namespace {
 
-/// One row of a range-bearing detection, as the first component; the second does not exist.
+/// One row of a range-bearing detection as the first component; there is no second component.
 std::optional<LinearisedDetection> one_row(Eigen::Index row, const Pose& sensor,
                                            const Point& landmark) {
   const auto both = RangeBearingSensor::linearised(sensor, landmark);
@@ -20,7 +20,7 @@ std::optional<LinearisedDetection> one_row(Eigen::Index row, const Pose& sensor,
   return one;
 }
 
-/// Columns: forward and left in the map.
+/// The columns are the axes forward and left of the sensor, in the map.
 Eigen::Matrix2d axes_of(const Pose& sensor) {
   const Direction<double> heading = direction_of(sensor.heading);
   return Eigen::Matrix2d{{heading.cosine, -heading.sine}, {heading.sine, heading.cosine}};

@@ -12,10 +12,10 @@
 #include <array>
 #include <optional>
 
-/// The sensors that there are (EQUATIONS 2). sensor.hpp lists them and says what one must offer.
+/// The sensors (EQUATIONS 2). sensor.hpp lists them and the members that a sensor must have.
 namespace montecarta::models {
 
-/// The standard deviation that `owner` (a belief, a scenario) has of a quantity.
+/// The standard deviation of a quantity in `owner` (a belief or a scenario).
 template <class Owner>
 auto& deviation_of(Quantity quantity, Owner& owner) {
   switch (quantity) {
@@ -30,18 +30,18 @@ auto& deviation_of(Quantity quantity, Owner& owner) {
   }
 }
 
-/// What a sensor should see of a landmark, with derivatives. Rows of components that the sensor
-/// does not have are 0.
+/// A predicted detection with its derivatives. Rows of components that the sensor does not have are
+/// 0.
 struct LinearisedDetection {
   Eigen::Vector2d value;
-  Matrix23 by_pose;  ///< of the sensor
+  Matrix23 by_pose;  ///< derivative by the pose of the sensor
   Eigen::Matrix2d by_landmark;
 };
 
-/// Where one detection places a landmark, with derivatives.
+/// The landmark that one detection fixes, with derivatives.
 struct PlacedLandmark {
   Eigen::Vector2d point;  ///< [m]
-  Matrix23 by_pose;       ///< of the sensor
+  Matrix23 by_pose;       ///< derivative by the pose of the sensor
   Eigen::Matrix2d by_detection;
 };
 
@@ -70,7 +70,7 @@ struct RangeSensor {
   static std::optional<LinearisedDetection> linearised(const Pose& sensor, const Point& landmark);
 };
 
-/// The landmark's place in the frame of the sensor: forward, left.
+/// Measures the position of the landmark in the frame of the sensor (forward, left).
 struct PositionSensor {
   static constexpr const char* kName = "position";
   static constexpr std::array kComponents = {Quantity::forward, Quantity::left};

@@ -58,14 +58,13 @@ std::optional<TriangulatedLandmark> crossing_of_circles(const Eigen::Vector2d& f
 
 bool crosses_well(const Eigen::Matrix2d& covariance, double nearest, bool of_bearings,
                   double variance) {
-  // Standard deviation by the distance: what the second order adds then is small against it.
+  // Greatest ratio of standard deviation to distance, for which terms of second order are small.
   constexpr double kMostRelative = 0.1;
-  // Of ranges an error across them changes a range by no more than this share of its standard
-  // deviation: in the first order it does not.
+  // For ranges, an error across the line of sight changes the range by at most this share of its
+  // standard deviation; in first order it does not change it.
   constexpr double kMostCurvature = 0.25;
   const double half_sum = 0.5 * covariance.trace();
   const double half_difference = 0.5 * (covariance(0, 0) - covariance(1, 1));
-  // The larger eigenvalue.
   const double largest = half_sum + length(half_difference, covariance(0, 1));
   if (!(std::sqrt(largest) <= kMostRelative * nearest)) return false;
   return of_bearings || largest / (2.0 * nearest) <= kMostCurvature * std::sqrt(variance);

@@ -15,38 +15,38 @@
 
 namespace montecarta::models {
 
-/// All vehicles there are; the first is the default. One more is a struct like these, in a file of
-/// its own, and its name here. A vehicle of n controls says
-/// - kNames, name(), named(): what study files call it; kControls: its n controls; numbers(): its
-///   other settings; `integration`, where it has a choice of that;
-/// - travel(): its step, linear in the first n - 1 controls, at a given bend. The bend is the angle
-///   that the last control times bend_scale() makes; where kTurnsByBend the vehicle turns by it,
-///   and travel() turns by nothing;
+/// All vehicles; the first is the default. To add one, write a struct like these in a file of its
+/// own and list it here. The members of a vehicle with n controls are
+/// - kNames, name(), named(): its names in study files; kControls: its n controls; numbers(): its
+///   other settings; `integration`: only if the user may choose it;
+/// - travel(): its displacement at a given bend, linear in the first n - 1 controls. The bend is an
+///   angle: the last control times bend_scale(). If kTurnsByBend, the vehicle turns by that angle
+///   and the turn of travel() is 0;
 /// - travel_by_bend(): the derivative of travel(); control_of(): the control of a step;
 /// - steered(), way_to_turn(), kTurnLimit: how a pilot turns it to a way-point.
 using Vehicle = std::variant<Car, DifferentialDrive, Omnidirectional>;
 
-/// How many controls a vehicle of type V has, and how many of them it is linear in.
+/// The number of controls of a vehicle of type V, and the number of those in which it is linear.
 template <class V>
 inline constexpr std::size_t kControlsOf = std::tuple_size_v<decltype(V::kControls)>;
 template <class V>
 inline constexpr std::size_t kLinearOf = kControlsOf<V> - 1;
 
-/// The controls of a vehicle, in their order.
+/// The controls of a vehicle, in order.
 inline std::span<const Quantity> controls_of(const Vehicle& vehicle) {
   return std::visit([](const auto& one) { return std::span<const Quantity>(one.kControls); },
                     vehicle);
 }
 
-/// How many of the first controls are all 0 where the vehicle stands: a steering angle moves
-/// nothing by itself.
+/// The number of leading controls that are all 0 if the vehicle stands still. A steering angle
+/// alone moves nothing.
 inline std::size_t moving_controls(std::span<const Quantity> controls) {
   std::size_t moving = 0;
   while (moving < controls.size() && controls[moving] != Quantity::steer) ++moving;
   return moving;
 }
 
-/// A control of which each lane (Real) has its own.
+/// A control that may differ between the lanes (Real).
 template <class Real>
 using ControlOf = std::array<Real, Control::kMost>;
 
@@ -58,14 +58,14 @@ std::array<Real, N> first_of(const ControlOf<Real>& control) {
   return first;
 }
 
-/// The angle [rad] in which a step of `duration` [s] is not linear (struct Bend).
+/// The angle [rad] in which a step of `duration` [s] is not linear (see Bend).
 template <class V>
 double bend_angle(const V& vehicle, const Control& control, double duration) {
   return control[kLinearOf<V>] * vehicle.bend_scale(duration);
 }
 
-/// One control step of `duration` [s] of one vehicle (double) or one a lane, in the frame of the
-/// vehicle; `bend` is that of the control. EQUATIONS 1.
+/// One control step of `duration` [s] in the frame of the vehicle (EQUATIONS 1), for one vehicle
+/// (double) or one per lane; `bend` belongs to the control.
 template <class V, class Real>
 BodyStep<Real> body_step_at(const V& vehicle, const ControlOf<Real>& control,
                             const Bend<Real>& bend, double duration) {
@@ -73,7 +73,7 @@ BodyStep<Real> body_step_at(const V& vehicle, const ControlOf<Real>& control,
   if constexpr (V::kTurnsByBend) step.turn = bend.angle;
   return step;
 }
-/// The same at the bend of the control.
+/// The same with the bend computed from the control.
 template <class V, class Real>
 BodyStep<Real> body_step_of(const V& vehicle, const ControlOf<Real>& control, double duration) {
   const Real angle = control[kLinearOf<V>] * Real(vehicle.bend_scale(duration));
@@ -94,7 +94,7 @@ struct DifferentiatedStep {
   std::array<BodyStep<double>, N> by_control;
 };
 
-/// travel() of component i alone, of that size: its image, for the motion is linear in it.
+/// travel() with component i equal to `size` and all others 0, the share of that component.
 template <class V>
 BodyStep<double> unit_travel(const V& vehicle, std::size_t i, double size, const Bend<double>& bend,
                              double duration) {
@@ -103,7 +103,7 @@ BodyStep<double> unit_travel(const V& vehicle, std::size_t i, double size, const
   return vehicle.travel(linear, bend, duration);
 }
 
-/// body_step_at() with its derivatives; `bend` is that of the control.
+/// body_step_at() with its derivatives; `bend` belongs to the control.
 template <class V>
 [[gnu::always_inline]] inline DifferentiatedStep<kControlsOf<V>> differentiated_step(
     const V& vehicle, const Control& control, const Bend<double>& bend, double duration) {
@@ -127,16 +127,16 @@ inline Control steered(const Vehicle& vehicle, const Aim& aim) {
   return std::visit([&](const auto& one) { return one.steered(aim); }, vehicle);
 }
 
-/// [m] that it may drive before it heads anywhere (steered()), at `speed` [m/s].
+/// Longest distance [m] driven at `speed` [m/s] until steered() has reached any given heading.
 inline double way_to_turn(const Vehicle& vehicle, double speed) {
   return std::visit([&](const auto& one) { return one.way_to_turn(speed); }, vehicle);
 }
-/// The setting that says how fast it turns.
+/// The setting that limits how fast the vehicle turns.
 inline const char* turn_limit_key(const Vehicle& vehicle) {
   return std::visit([](const auto& one) { return one.kTurnLimit; }, vehicle);
 }
 
-/// Whether its model has no answer to this control, which a log may hold.
+/// Returns whether the motion model is not defined for this control, which may occur in a log.
 inline bool is_beyond_model(const Vehicle& vehicle, const Control& control) {
   return std::visit(
       [&](const auto& one) {
@@ -149,18 +149,18 @@ inline bool is_beyond_model(const Vehicle& vehicle, const Control& control) {
       vehicle);
 }
 
-/// The control that takes a vehicle through `step` in `duration` [s]: body_step() turned round, or
-/// what comes nearest where the vehicle cannot move like that.
+/// The control that moves a vehicle by `step` in `duration` [s], the inverse of body_step(). If the
+/// vehicle cannot move like that, it is the nearest possible control.
 inline Control control_of(const BodyStep<double>& step, double duration, const Vehicle& vehicle) {
   return std::visit([&](const auto& one) { return one.control_of(step, duration); }, vehicle);
 }
 
-/// The noise of the controls of a vehicle: independent, of the deviations `sigma`, and of `alpha`,
-/// what they grow by with the control (EQUATIONS 1; Thrun 2005, table 5.3).
+/// Independent noise of the controls of a vehicle, with constant deviations `sigma` and a part that
+/// grows with the control by `alpha` (EQUATIONS (1.10); Thrun 2005, table 5.3).
 struct ControlNoise {
-  std::array<double, Control::kMost> sigma{};  ///< of each component, in its unit
-  /// Variance of each but the last component (speeds) by the square of those, and by the square of
-  /// the last one (steering angle or yaw rate); variance of the last one likewise.
+  std::array<double, Control::kMost> sigma{};  ///< deviation of each component, in its unit
+  /// Factors of the squares of the speeds (all components but the last) and of the last component
+  /// (steering angle or yaw rate): two in the variances of the speeds, two in that of the last.
   std::array<double, 4> alpha{};
 
   bool grows() const {

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-/// Vehicles as study files, result files and messages name them: all of it follows from the list of
-/// vehicles (vehicle.hpp).
+/// Names and settings of vehicles in study files, result files and messages. All of them follow
+/// from the list of vehicles in vehicle.hpp.
 namespace montecarta::models {
 
 /// Calls `visit` with one vehicle of each type, in the order of the list.
@@ -38,17 +38,17 @@ inline std::vector<std::string> vehicle_names() {
 }
 
 inline bool is_in_degrees(std::string_view key) { return key.ends_with("_deg"); }
-/// A setting as it is computed with.
+/// Converts the value of a setting to SI units.
 inline double in_si(std::string_view key, double value) {
   return is_in_degrees(key) ? value / 180.0 * kPi : value;
 }
-/// A key without its _deg: the name of a number in SI units.
+/// A key without its _deg, the name of the same number in SI units.
 inline std::string si_name(std::string_view key) {
   if (is_in_degrees(key)) key.remove_suffix(std::string_view("_deg").size());
   return std::string(key);
 }
 
-/// Adds a parameter of a vehicle, each key once, with the names of the vehicles that have it.
+/// Adds a parameter of a vehicle; if its key was added before, adds only the vehicle's names to it.
 template <class V>
 void add_parameter(Parameter parameter, const V& vehicle, std::vector<Parameter>& all) {
   auto found = std::ranges::find(all, parameter.key, &Parameter::key);
@@ -56,13 +56,13 @@ void add_parameter(Parameter parameter, const V& vehicle, std::vector<Parameter>
   for (const char* name : vehicle.kNames) found->applies_to.emplace_back(name);
 }
 
-/// Calls `use(key, member)` for the choice of integration of a vehicle that has it.
+/// Calls `use(key, member)` for the choice of integration if the vehicle has one.
 template <class V, class Use>
 void for_each_choice(V& vehicle, const Use& use) {
   if constexpr (requires { vehicle.integration; }) use("integration", vehicle.integration);
 }
 
-/// What vehicles are described by, as far as it is asked for where `use` says.
+/// The parameters of all vehicles that are set for the given use.
 inline std::vector<Parameter> vehicle_parameters(VehicleUse use) {
   std::vector<Parameter> all;
   for_each_vehicle([&](auto one) {
@@ -80,7 +80,7 @@ inline std::vector<Parameter> vehicle_parameters(VehicleUse use) {
   return all;
 }
 
-/// Deviations of the controls of all vehicles.
+/// Standard deviations of the controls of all vehicles.
 inline std::vector<Parameter> control_noise_parameters() {
   std::vector<Parameter> all;
   for_each_vehicle([&](const auto& one) {
@@ -91,16 +91,16 @@ inline std::vector<Parameter> control_noise_parameters() {
   return all;
 }
 
-/// Key of alpha i, from 0.
+/// Key of alpha[i]; keys count from 1.
 inline std::string alpha_key(std::size_t i) { return "alpha_" + std::to_string(i + 1); }
 
-/// The value of a key as it is written; nullopt where it is not.
+/// The text of a setting; nullopt if it is not set.
 using SettingText = std::function<std::optional<std::string>(const std::string& key)>;
-/// The same as a number.
+/// The value of a setting as a number; nullopt if it is not set.
 using SettingNumber = std::function<std::optional<double>(const std::string& key)>;
 
-/// The vehicle of that name, with what is said of it and the rest as usual; nullopt where there is
-/// none of that name.
+/// The vehicle of that name with the given settings and defaults for all others; nullopt if there
+/// is no vehicle of that name.
 inline std::optional<Vehicle> vehicle_named(std::string_view name, const SettingText& text,
                                             const SettingNumber& number) {
   std::optional<Vehicle> found;
@@ -121,8 +121,8 @@ inline std::optional<Vehicle> vehicle_named(std::string_view name, const Setting
   return found;
 }
 
-/// The choices and numbers of a vehicle, as messages tell them: `tell(name, number)` in SI units,
-/// `tell(name, word)`.
+/// Calls `tell(name, number)`, in SI units, or `tell(name, word)` for every number and choice of a
+/// vehicle, for messages.
 template <class Tell>
 void tell_vehicle(const Vehicle& vehicle, const Tell& tell) {
   std::visit(
@@ -137,7 +137,7 @@ void tell_vehicle(const Vehicle& vehicle, const Tell& tell) {
       vehicle);
 }
 
-/// The noise of the controls of that vehicle; nullopt where a deviation is missing.
+/// The noise of the controls of a vehicle; nullopt if a deviation is not set.
 inline std::optional<ControlNoise> control_noise_of(const Vehicle& vehicle,
                                                     const SettingNumber& number) {
   ControlNoise noise;
