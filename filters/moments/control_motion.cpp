@@ -9,19 +9,19 @@
 namespace montecarta::filters {
 namespace {
 
-/// Half the difference of two points' images, and how far their middle lies from the centre's.
+/// Images of two opposite points: half their difference, and their mean minus the centre's image.
 struct PointPair {
   Column3<double> odd, even;
 };
 
-/// A step as the vehicle sees it, in the world: its displacement and its turn.
+/// A step in the frame of the vehicle, rotated into the world.
 Column3<double> turned(const Column3<double>& step, const Direction<double>& course) {
   const Point way = in_world(course, step.x, step.y);
   return {way.x, way.y, step.h};
 }
 
-/// Points that differ in heading, by `turn`, and in place: `column` is the spread column of the
-/// square root.
+/// The pair of points that differ in heading by `turn` and in position; `column` is the column of
+/// the square root times the spread.
 PointPair heading_pair(const Column3<double>& step, const Column3<double>& column,
                        const Direction<double>& turn) {
   const double bend = turn.cosine - 1.0;
@@ -29,16 +29,16 @@ PointPair heading_pair(const Column3<double>& step, const Column3<double>& colum
           {bend * step.x, bend * step.y, 0.0}};
 }
 
-/// Points that differ in the angle of the bend; their images are combined before they are turned.
+/// Points that differ in the angle of the bend; their images are combined before they are rotated.
 PointPair bend_pair(const Column3<double>& centre, const Column3<double>& leftward,
                     const Column3<double>& rightward, const Direction<double>& course) {
   return {turned(0.5 * (leftward - rightward), course),
           turned(0.5 * (leftward + rightward) - centre, course)};
 }
 
-/// The column of the square root that carries the heading; zero where the heading is certain.
+/// The column of the square root that has the heading; zero if the heading is certain.
 Column3<double> heading_column(const Symmetric3<double>& P) {
-  if (P.hh <= 1e-18) return {0.0, 0.0, 0.0};  // certain but for rounding
+  if (P.hh <= 1e-18) return {0.0, 0.0, 0.0};  // certain up to rounding
   const double root = std::sqrt(P.hh), inverse = 1.0 / root;
   return {P.xh * inverse, P.yh * inverse, root};
 }
@@ -54,8 +54,8 @@ Column3<double> column_of(const BodyStep<double>& step) {
   return {step.forward, step.left, step.turn};
 }
 
-/// The motion of a vehicle of type V. What it calls is inlined: out of line it passes through
-/// memory.
+/// The motion of a vehicle of type V. It is flattened, since calls out of line pass their arguments
+/// through memory.
 template <class V>
 [[gnu::flatten]] MotionIncrement moved(const V& vehicle, const MotionIncrement& before,
                                        const Control& control, double duration,
@@ -75,11 +75,11 @@ template <class V>
   const Column3<double> step = turned(centre, course);
   Symmetric3<double> P = before.covariance();
   add_outer(P, -1.0, column);
-  const auto add_linear = [&, course = course](std::size_t i) {  // linear: no points
+  const auto add_linear = [&, course = course](std::size_t i) {  // linear, so no points are needed
     const auto travel = unit_travel(vehicle, i, sigma[i], bend, duration);
     add_outer(P, 1.0, turned(column_of(travel), course));
   };
-  add_linear(0);  // no loop: g++ 12 fuses the products of in_world() where it vectorises one
+  add_linear(0);  // not a loop: g++ 12 fuses the products of in_world() if it vectorises one
   if constexpr (kLinear > 1) add_linear(1);
   const auto add = [&](const PointPair& pair) {
     add_outer(P, rule.antisymmetric, pair.odd);
@@ -95,24 +95,24 @@ template <class V>
   return {{from.x + step.x + e.x, from.y + step.y + e.y, wrap(from.heading + step.h + e.h)}, P};
 }
 
-/// A rule for functions of a control with normal noise; both are exact for polynomials of degree 5.
+/// A quadrature rule for functions of a control with normal noise, exact up to degree 5.
 template <std::size_t N>
 struct ControlRule {
   std::array<double, N> nodes;  ///< in standard deviations
   std::array<double, N> weights;
-  double sign;  ///< of a variance in the square of a coefficient, and of the covariance
+  double sign;  ///< sign of the variance of a coefficient, and of the covariance (moments_of())
 };
 
 constexpr double kRoot3 = 1.7320508075688773, kRoot6 = 2.449489742783178;
 
-/// f averaged over the noise: of the true control by the measured one, where noise follows it.
+/// Averages a function f over noise that is added to the control.
 constexpr ControlRule<3> kAverage{{0.0, kRoot3, -kRoot3}, {2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0}, 1.0};
 
-/// The inverse: what has the average f at the true control, 3 f - 3 D f + D D f with D the average.
+/// The inverse average: 3 f - 3 D f + D D f, with D the average, averages to f at the true control.
 constexpr ControlRule<5> kUnbiased{
     {0.0, kRoot3, -kRoot3, kRoot6, -kRoot6}, {5.0 / 3.0, -0.5, -0.5, 1.0 / 6.0, 1.0 / 6.0}, -1.0};
 
-/// Displacement (forward, left, turn) in the frame of the vehicle before the step.
+/// Moments of a displacement (forward, left, turn) in the frame of the vehicle before the step.
 struct BodyMoments {
   Column3<double> mean;
   Symmetric3<double> covariance;
@@ -125,8 +125,8 @@ void add_cross(Symmetric3<double>& P, double weight, const Column3<double>& a,
   add_outer(P, -0.5 * weight, a - b);
 }
 
-/// A part of the displacement: a coefficient of known mean and variance times a column that depends
-/// on the bend alone.
+/// A summand of the displacement: a coefficient of known mean and variance times a column that
+/// depends only on the bend.
 template <std::size_t N>
 struct BodyPart {
   double mean, variance;
@@ -139,15 +139,15 @@ struct BodyPart {
   }
 };
 
-/// Moments of the sum of parts whose coefficients are independent: E d d' - E d E d', or d d' less
-/// the unbiased estimate of that of the true control.
+/// Moments of the sum of parts with independent coefficients. For kAverage the covariance is E d d'
+/// - E d E d'. For kUnbiased it is d d' minus the unbiased estimate of d d' at the true control.
 template <std::size_t N, std::size_t Parts>
 BodyMoments moments_of(const std::array<BodyPart<N>, Parts>& parts, const ControlRule<N>& rule) {
   BodyMoments result{{0.0, 0.0, 0.0}, {}};
   for (std::size_t i = 0; i < Parts; ++i) {
     const auto& [mean, variance, columns] = parts[i];
     const Column3<double> average = parts[i].average(rule);
-    Symmetric3<double> second;  // about the origin, of a coefficient 1
+    Symmetric3<double> second;  // about the origin, for the coefficient 1
     for (std::size_t k = 0; k < N; ++k) add_outer(second, rule.weights[k], columns[k]);
     const double square = mean * mean;
     Symmetric3<double> covariance = (square + rule.sign * variance) * second;
@@ -165,9 +165,9 @@ BodyMoments moments_of(const std::array<BodyPart<N>, Parts>& parts, const Contro
   return result;
 }
 
-/// The displacement of a vehicle of type V, part by part: one for each control that it is linear
-/// in, at 1 per unit, and the turn by the bend itself, less that of the central node. `bends` are
-/// those of the nodes.
+/// Moments of the displacement of a vehicle of type V. It has one part for each control in which it
+/// is linear, per unit of that control, and one for the turn by the bend, relative to that of the
+/// central node. `bends` are those of the nodes.
 template <class V, std::size_t N>
 BodyMoments body_moments(const V& vehicle, const std::array<Bend<double>, N>& bends,
                          const Control& control, double duration, const ControlOf<double>& sigma,
@@ -192,7 +192,7 @@ BodyMoments body_moments(const V& vehicle, const std::array<Bend<double>, N>& be
   return moments;
 }
 
-/// P, but pivots of its Cholesky factor that are negative taken for zero.
+/// P, with negative pivots of its Cholesky factor replaced by zero.
 Symmetric3<double> nearest_covariance(const Symmetric3<double>& P) {
   const Cholesky3<double> L(P);
   return {.xx = L.xx * L.xx,
@@ -203,7 +203,6 @@ Symmetric3<double> nearest_covariance(const Symmetric3<double>& P) {
           .hh = L.hx * L.hx + L.hy * L.hy + L.hh * L.hh};
 }
 
-/// The motion of a vehicle of type V.
 template <class V, std::size_t N>
 MotionIncrement moved_by_rule(const V& vehicle, const MotionIncrement& before,
                               const Control& control, double duration,
@@ -235,7 +234,7 @@ MotionIncrement moved_by_rule(const MotionIncrement& before, const Control& cont
       belief.vehicle);
 }
 
-// In the order of the enumerators.
+// The order is that of the enumerators.
 const std::vector<std::string> kMotions{"linearised", "quadrature", "unbiased"};
 
 Parameter motion_option(const char* fallback) {

@@ -6,28 +6,28 @@
 
 namespace montecarta::filters {
 
-/// How the noise of a control reaches the pose (option `motion`).
+/// How the noise of a control is propagated to the pose (option `motion`).
 enum class Motion {
   linearised,  ///< EQUATIONS 1
   quadrature,  ///< moved_by_quadrature()
   unbiased     ///< moved_by_unbiased_controls()
 };
 
-/// The option `motion` of a filter, whose default is textbook linearisation whatever the noise is,
-/// or what fits the noise: quadrature, or unbiased where controls were measured.
+/// The option `motion` of a filter. The default is linearised in the first, and fits the noise in
+/// the second: quadrature, or unbiased if controls are measurements.
 Parameter linearised_motion_option();
 Parameter fitting_motion_option();
-/// What a user chose.
+/// The value of the option `motion`.
 Motion motion_of(const FilterOptions& options);
 
-/// One control step of `duration` [s] whose control is a measurement of the true one, rather than
-/// what noise is added to: mean and covariance have no bias, given the true control (EQUATIONS 3).
-/// Where that is no covariance, as of a vehicle that is slower than the noise of its speed, pivots
-/// of its Cholesky factor that are negative count as zero.
+/// One control step of `duration` [s] with a control that is a measurement of the true one, not a
+/// command to which noise is added. Mean and covariance are unbiased, given the true control
+/// (EQUATIONS 3). If the resulting matrix is not a covariance, for instance if the speed is smaller
+/// than its noise, negative pivots of its Cholesky factor count as zero.
 MotionIncrement moved_by_unbiased_controls(const MotionIncrement& before, const Control& control,
                                            double duration, const Belief& belief);
 
-/// Adds one control step of `duration` [s], as `motion` says.
+/// Adds one control step of `duration` [s] by the method `motion`.
 void advance(MotionIncrement& increment, const Control& control, double duration,
              const Belief& belief, Motion motion);
 

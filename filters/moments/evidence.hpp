@@ -6,8 +6,8 @@
 
 namespace montecarta::filters {
 
-/// What a sensor's noise is believed to be: variances of the components of its detections, named
-/// after those of range [m^2] and bearing [rad^2]; 1 of a component that it does not have.
+/// The believed variances of the components of a detection, under the names of those of range [m^2]
+/// and bearing [rad^2]. The variance of a component that the sensor does not have is 1.
 struct SensorNoise {
   double range;
   double bearing;
@@ -18,21 +18,21 @@ struct SensorNoise {
   }
 };
 
-/// What a scan does to the weights of one block.
+/// The effect of a scan on the weights of one block.
 template <class Real>
 struct Weighing {
-  Real log_weight;  ///< log of the factor
-  Real faults;      ///< numerical faults met on the way
+  Real log_weight;  ///< log of the factor of the weight
+  Real faults;      ///< numerical faults of this scan
 };
 
-/// The product of densities N(innovation; S) of one particle's detections, with one logarithm for
-/// many.
+/// The product of the densities N(innovation; S) of one particle's detections. Up to 16
+/// determinants share one logarithm.
 template <class Real>
 class Evidence {
  public:
-  /// One detection: `squared` = innovation' S^-1 innovation, `determinant` = det S; (0, 1) =
-  /// nothing seen.
-  /// `used` of the `matched` lanes (1 or 0) could be used.
+  /// Adds one detection: `squared` is innovation' S^-1 innovation, `determinant` is det S; (0, 1)
+  /// adds nothing. `matched` is 1 in the lanes that matched the detection and `used` is 1 in those
+  /// of them that could use it, else 0.
   [[gnu::always_inline]] void add(const Real& squared, const Real& determinant, const Real& used,
                                   const Real& matched) {
     squared_ += squared;
@@ -41,15 +41,15 @@ class Evidence {
     left_out_ += matched - used;
     if (++since_logarithm_ == kBetweenLogarithms) take_logarithm();
   }
-  /// Detections that matched a landmark too near to be used.
+  /// Number of detections that matched a landmark too near to be used.
   const Real& left_out() const { return left_out_; }
-  /// Log of the product.
+  /// Logarithm of the product.
   Real log_density() const {
     return -0.5 * (squared_ + log_determinant_ + log(determinant_)) - kLogTwoPi * count_;
   }
 
  private:
-  static constexpr int kBetweenLogarithms = 16;  // determinants down to 1e-19 stay in range
+  static constexpr int kBetweenLogarithms = 16;  // determinants down to 1e-19 do not underflow
   static constexpr double kLogTwoPi = 1.8378770664093454836;
 
   void take_logarithm() {
@@ -62,7 +62,7 @@ class Evidence {
   int since_logarithm_ = 0;
 };
 
-/// In place of an Evidence where nobody weighs by it.
+/// Takes the place of an Evidence that is not needed.
 template <class Real>
 struct Unweighed {
   [[gnu::always_inline]] void add(const Real&, const Real&, const Real&, const Real&) const {}

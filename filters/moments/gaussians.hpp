@@ -10,7 +10,7 @@
 
 namespace montecarta::filters {
 
-/// Column over (x, y, heading).
+/// A column over (x, y, heading).
 template <class Real>
 struct Column3 {
   Real x, y, h;
@@ -26,7 +26,7 @@ struct Column3 {
   }
 };
 
-/// Symmetric matrix over (x, y, heading).
+/// A symmetric matrix over (x, y, heading).
 template <class Real>
 struct Symmetric3 {
   Real xx{}, xy{}, yy{};  ///< [m^2]
@@ -45,23 +45,23 @@ struct Symmetric3 {
   }
 };
 
-/// As a matrix.
+/// Converts to a matrix.
 inline Eigen::Matrix3d symmetric(const Symmetric3<double>& P) {
   Eigen::Matrix3d matrix;
   matrix << P.xx, P.xy, P.xh, P.xy, P.yy, P.yh, P.xh, P.yh, P.hh;
   return matrix;
 }
-/// Of a matrix, whose upper triangle is read.
+/// Converts from a matrix; only its upper triangle is read.
 inline Symmetric3<double> symmetric_of(const Eigen::Matrix3d& P) {
   return {P(0, 0), P(0, 1), P(1, 1), P(0, 2), P(1, 2), P(2, 2)};
 }
-/// The same for every particle.
+/// Copies one matrix to every lane.
 template <class Real>
 Symmetric3<Real> in_every_lane(const Symmetric3<double>& P) {
   return {P.xx, P.xy, P.yy, P.xh, P.yh, P.hh};
 }
 
-/// R P R' for the turn R of (x, y) by the angle of `d`; the heading stays.
+/// R P R', where R rotates (x, y) by the angle of `d` and leaves the heading.
 template <class Real>
 [[gnu::always_inline]] inline Symmetric3<Real> turned(const Symmetric3<Real>& P,
                                                       const Direction<Real>& d) {
@@ -76,7 +76,7 @@ template <class Real>
           .hh = P.hh};
 }
 
-/// F P F' for F = [1 0 x; 0 1 y; 0 0 1]: a heading that errs bends the way (EQUATIONS 1).
+/// F P F' for F = [1 0 x; 0 1 y; 0 0 1], the Fx of a step (EQUATIONS 1).
 template <class Real>
 [[gnu::always_inline]] inline Symmetric3<Real> sheared(const Symmetric3<Real>& P, const Real& x,
                                                        const Real& y) {
@@ -85,7 +85,7 @@ template <class Real>
       P.xx + x * P.xh + x * xh, P.xy + y * P.xh + x * yh, P.yy + y * P.yh + y * yh, xh, yh, P.hh};
 }
 
-/// Symmetric matrix over (x, y) [m^2] or over (range, bearing).
+/// A symmetric matrix over (x, y) [m^2] or over (range, bearing).
 template <class Real>
 struct Symmetric2 {
   Real xx{}, xy{}, yy{};
@@ -100,20 +100,20 @@ struct Symmetric2 {
     return {factor * P.xx, factor * P.xy, factor * P.yy};
   }
   [[gnu::always_inline]] Real determinant() const { return xx * yy - xy * xy; }
-  /// v' A^-1 v times the determinant, of v = (x, y).
+  /// v' A^-1 v times the determinant, for v = (x, y).
   [[gnu::always_inline]] Real adjugate_form(const Real& x, const Real& y) const {
     return yy * x * x - 2.0 * xy * x * y + xx * y * y;
   }
 };
 
-/// weight v v'; weighted lane by lane or alike in all.
+/// weight v v'; `weight` is the same for all lanes or differs between them.
 template <class Weight, class Real>
 [[gnu::always_inline]] inline Symmetric2<Real> outer(const Weight& weight,
                                                      const RangeBearing<Real>& v) {
   const Real range = weight * v.range, bearing = weight * v.bearing;
   return {range * v.range, range * v.bearing, bearing * v.bearing};
 }
-/// a b' of two columns in one direction, so that it is symmetric.
+/// a b' for two parallel columns, which is symmetric.
 template <class Real>
 [[gnu::always_inline]] inline Symmetric3<Real> outer(const Column3<Real>& a,
                                                      const Column3<Real>& b) {
@@ -129,14 +129,14 @@ template <class Real, class Mask>
   return {select(use, A.xx, B.xx), select(use, A.xy, B.xy), select(use, A.yy, B.yy)};
 }
 
-/// What one particle believes about its own pose since it was last drawn.
+/// The estimate of one particle of its own pose since the last draw.
 template <class Real>
 struct PoseGaussian {
   BasicPose<Real> mean{};
   Symmetric3<Real> covariance{};
 };
 
-/// What the particle of one lane believes.
+/// The Gaussian of the particle in one lane.
 template <class Real>
 PoseGaussian<double> of_lane(const PoseGaussian<Real>& block, std::size_t lane) {
   const auto& [m, P] = block;
@@ -145,21 +145,21 @@ PoseGaussian<double> of_lane(const PoseGaussian<Real>& block, std::size_t lane) 
            get(P.hh, lane)}};
 }
 
-/// What one particle believes about one landmark.
+/// The estimate of one landmark by one particle.
 template <class Real>
 struct LandmarkGaussian {
   BasicPoint<Real> mean{};
   Symmetric2<Real> covariance{};
 };
 
-/// A landmark in the map, whatever a filter keeps of it: here that itself.
+/// The Gaussian of a landmark, to be overloaded for filters that keep landmarks in another form.
 template <class Real>
 [[gnu::always_inline]] inline const LandmarkGaussian<Real>& gaussian_of(
     const LandmarkGaussian<Real>& landmark) {
   return landmark;
 }
 
-/// P plus `weight` times column column'.
+/// Adds `weight` times column column' to P.
 [[gnu::always_inline]] inline void add_outer(Symmetric3<double>& P, double weight,
                                              const Column3<double>& column) {
   const double x = weight * column.x, y = weight * column.y;
@@ -171,11 +171,11 @@ template <class Real>
   P.hh = fma(weight * column.h, column.h, P.hh);
 }
 
-/// Lower triangular factor; a pivot that is zero but for rounding gives a zero column.
+/// Lower triangular Cholesky factor. A pivot that is zero up to rounding gives a zero column.
 template <class Real>
 struct Cholesky3 {
   Real xx, yx, yy, hx, hy, hh;
-  Real faults{0.0};  ///< pivots too negative to be rounding: the matrix was not a covariance
+  Real faults{0.0};  ///< pivots too negative for rounding: not a covariance
 
   [[gnu::always_inline]] explicit Cholesky3(const Symmetric3<Real>& P) {
     Real inverse = pivot(P.xx, P.xx, xx);
@@ -187,7 +187,7 @@ struct Cholesky3 {
   }
 
  private:
-  /// Returns 1 / root, or 0 for a pivot that is zero.
+  /// Returns 1 / root, or 0 if the pivot is zero.
   [[gnu::always_inline]] Real pivot(const Real& square, const Real& diagonal, Real& root) {
     faults += select(square < -1e-12 * diagonal, Real(1.0), Real(0.0));
     const auto positive = square > 1e-18 * (Real(1.0) + diagonal);
@@ -196,8 +196,8 @@ struct Cholesky3 {
   }
 };
 
-/// A pose Gaussian as the image of a standard normal. The factor is that in the frame of the
-/// vehicle, so that a turned world gives a turned draw.
+/// A pose Gaussian as the image of a standard normal variable. The factor is taken in the frame of
+/// the vehicle, so that a rotated world gives the rotated draw.
 template <class Real>
 struct PoseFactor {
   BasicPose<Real> mean;
@@ -217,7 +217,7 @@ struct PoseFactor {
   }
 };
 
-/// `scale` times the standard normals 0, 1, 2 of a stream, through the factor.
+/// Draws a pose: the factor times `scale` times the standard normals 0, 1, 2 of a stream.
 template <class Real>
 BasicPose<Real> draw_from(const PoseFactor<Real>& factor, const StreamIdentity& identity,
                           const Real& scale = Real(1.0)) {
@@ -226,8 +226,8 @@ BasicPose<Real> draw_from(const PoseFactor<Real>& factor, const StreamIdentity& 
   return factor.at(scale * e0, scale * e1, scale * e2);
 }
 
-/// log N(pose; gaussian) without 2 pi, which cancels in a ratio; the covariance is made invertible
-/// by 1e-12 m^2 and 1e-14 rad^2 (EQUATIONS (6.3)).
+/// log N(pose; gaussian) without the factor 2 pi, which cancels in a ratio. The covariance is made
+/// invertible by adding 1e-12 m^2 and 1e-14 rad^2 (EQUATIONS (6.3)).
 template <class Real>
 class PoseDensity {
  public:

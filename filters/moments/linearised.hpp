@@ -7,7 +7,7 @@
 
 namespace montecarta::filters {
 
-/// A landmark seen from a pose, in the frame of the line of sight: along it and across it.
+/// A landmark observed from a pose, in the frame with the axes along and across the line of sight.
 template <class Real>
 struct LineOfSight {
   RangeBearing<Real> predicted;  ///< bearing not wrapped: for residual() only
@@ -25,7 +25,7 @@ template <class Real>
   return {{range, atan2(dy, dx) - pose.heading}, dx * per_range, dy * per_range, per_range};
 }
 
-/// detected boxminus predicted: the innovation, bearing by the shorter way.
+/// Innovation, detected minus predicted, with the bearing wrapped.
 template <class Real>
 [[gnu::always_inline]] inline RangeBearing<Real> residual(const RangeBearing<Real>& detected,
                                                           const LineOfSight<Real>& s) {
@@ -33,7 +33,7 @@ template <class Real>
           shorter_way(Real(detected.bearing - s.predicted.bearing))};
 }
 
-/// The landmark's covariance turned into the line of sight [m^2].
+/// The covariance of a landmark [m^2], rotated into the frame of the line of sight.
 template <class Real>
 struct Turned {
   Real along, cross, across;
@@ -50,7 +50,7 @@ template <class Real>
           across_y * s.ux - across_x * s.uy};
 }
 
-/// Every lane: the mask of a landmark that all particles agree on.
+/// The mask of all lanes, for a landmark that all particles match.
 struct Everywhere {};
 template <class Mask>
 [[gnu::always_inline]] inline Mask operator&&(Everywhere, const Mask& mask) {
@@ -66,21 +66,21 @@ Real as_number(const Mask& mask) {
   return select(mask, Real(1.0), Real(0.0));
 }
 
-/// Nearer than kLeastDistance a bearing has no derivative: the detection is left out (EQUATIONS 2).
+/// Returns whether the bearing has a derivative; otherwise the detection is left out (EQUATIONS 2).
 template <class Real>
 [[gnu::always_inline]] inline auto is_usable(const LineOfSight<Real>& s) {
   return s.predicted.range > Real(kLeastDistance);
 }
 
-/// What a detection says of a pose Gaussian (EQUATIONS 6): innovation, its covariance S, and P Hx'
-/// with Hx = [-ux -uy 0; uy/d -ux/d -1].
+/// The innovation of a detection for a pose Gaussian (EQUATIONS 6): its value, its covariance S,
+/// and the columns of P Hx' with Hx = [-ux -uy 0; uy/d -ux/d -1].
 template <class Real>
 struct Innovation {
   RangeBearing<Real> value;
   Symmetric2<Real> S;  ///< over (range, bearing)
   Column3<Real> range{}, bearing{};
 
-  /// value' S^-1 value
+  /// value' S^-1 value.
   Real squared() const { return squared(value); }
   /// The same for another innovation with this covariance.
   Real squared(const RangeBearing<Real>& other) const {
@@ -109,20 +109,19 @@ template <class Real>
           bearing};
 }
 
-/// What N(innovation; S) needs; (0, 1) in the lanes that have no update.
+/// The terms of N(innovation; S); (0, 1) in lanes without an update.
 template <class Real>
 struct Density {
   Real squared, determinant;
 };
 
-/// The two components of an innovation made independent of each other, so that both are scalar
-/// updates: the range, and what of the bearing it does not tell. Nothing in the lanes without
-/// `use`.
+/// The two components of an innovation made uncorrelated, so that both are scalar updates: the
+/// range, and the bearing minus its regression on the range. Lanes outside `use` get zero gains.
 template <class Real>
 struct Decorrelated {
   Real per_rr, per_bb;  ///< 1 / variance of each
-  Real slope;           ///< of the bearing by the range
-  Real first, second;   ///< values
+  Real slope;           ///< regression of the bearing on the range
+  Real first, second;   ///< values of the two
   Density<Real> density;
 
   template <class Mask>
@@ -152,8 +151,8 @@ template <class Real, class Mask>
   return d.density;
 }
 
-/// Updates with one detection a pose Gaussian by the extended Kalman filter (EQUATIONS 6), with the
-/// model linearised on the line_of_sight `s`. `matched`: which lanes saw it.
+/// Updates a pose Gaussian with one detection by the extended Kalman filter (EQUATIONS 6), with the
+/// model linearised on the line_of_sight `s`. `matched` is the mask of the lanes that matched it.
 template <class Real, class Mask>
 [[gnu::always_inline]] inline Innovation<Real> update_with(
     PoseGaussian<Real>& pose, const LineOfSight<Real>& s, const RangeBearing<Real>& value,
@@ -167,14 +166,14 @@ template <class Real, class Mask>
   return v;
 }
 
-/// A way along and across the line of sight, in the map.
+/// A displacement along and across the line of sight, rotated into the map.
 template <class Real>
 [[gnu::always_inline]] inline BasicPoint<Real> in_map(const Real& along, const Real& across,
                                                       const LineOfSight<Real>& s) {
   return {s.ux * along - s.uy * across, s.uy * along + s.ux * across};
 }
 
-/// turned() back into the frame of the map.
+/// Inverse of turned(): rotates a covariance back into the map.
 template <class Real>
 [[gnu::always_inline]] inline Symmetric2<Real> turned_back(const Turned<Real>& P,
                                                            const LineOfSight<Real>& s) {
@@ -185,15 +184,14 @@ template <class Real>
           along_y * s.uy + across_y * s.ux};
 }
 
-/// The extended Kalman filter (EQUATIONS 3).
+/// Moments by the extended Kalman filter (EQUATIONS 3).
 struct Linearised {
   static constexpr bool kRefinesInBatch = true;
   void advance(MotionIncrement& motion, const Control& control, double duration,
                const Belief& belief) const {
     motion.advance(control, duration, belief);
   }
-  /// update_with() with the model linearised at the refined pose: sequential refinement (EQUATIONS
-  /// 6).
+  /// update_with(), linearised at the refined pose: sequential refinement (EQUATIONS 6).
   template <class Real, class Mask>
   [[gnu::always_inline]] Innovation<Real> refine(PoseGaussian<Real>& pose,
                                                  const LandmarkGaussian<Real>& landmark,
@@ -203,8 +201,8 @@ struct Linearised {
     const LineOfSight<Real> s = line_of_sight(pose.mean, landmark.mean);
     return update_with(pose, s, residual(seen, s), landmark.covariance, noise, matched, evidence);
   }
-  /// update_with() with the model linearised at the predicted pose for all detections alike: the
-  /// sequence then is the batch update with the stacked innovation, and its evidence N(nu; S)
+  /// update_with(), linearised at the predicted pose for all detections. The sequence of updates
+  /// then equals the batch update with the stacked innovation, and its evidence is N(nu; S)
   /// (EQUATIONS (6.4)).
   template <class Real, class Mask>
   void refine_in_batch(PoseGaussian<Real>& pose, const BasicPose<Real>& predicted,
@@ -219,9 +217,9 @@ struct Linearised {
     innovation.bearing += (s.ux * moved.y - s.uy * moved.x) * s.per_range + moved.h;
     update_with(pose, s, innovation, landmark.covariance, noise, matched, evidence);
   }
-  /// Updates with one detection a landmark seen from an exactly known pose (EQUATIONS 4). In the
-  /// frame of the line of sight the noise R is diagonal, and the new covariance P (P + R)^-1 R has
-  /// no difference that could turn negative; the gain is that times R^-1.
+  /// Updates a landmark with one detection from an exactly known pose (EQUATIONS 4). In the frame
+  /// of the line of sight the noise R is diagonal, and the new covariance P (P + R)^-1 R has no
+  /// difference that could become negative; the gain is that times R^-1.
   template <class Real, class Mask, class Weighed>
   [[gnu::always_inline]] Innovation<Real> update(LandmarkGaussian<Real>& landmark,
                                                  const BasicPose<Real>& pose,
@@ -253,8 +251,7 @@ struct Linearised {
                  as_number<Real>(use), as_number<Real>(matched));
     return {innovation, {S.xx, S.xy * s.per_range, S.yy * s.per_range * s.per_range}};
   }
-  /// A landmark seen for the first time from an exactly known pose: g(x, z) and Gz R Gz' (EQUATIONS
-  /// 4).
+  /// Initialises a landmark from an exactly known pose: g(x, z) and Gz R Gz' (EQUATIONS 4).
   template <class Real>
   LandmarkGaussian<Real> initialise(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
                                     const SensorNoise& noise) const {

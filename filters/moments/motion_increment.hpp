@@ -10,11 +10,11 @@
 
 namespace montecarta::filters {
 
-/// The motion since poses were last drawn, in the frame of the drawn pose. The vehicle does not
-/// know where in the world it is, so this Gaussian is the same for every particle: it is predicted
-/// once for all of them and turned to each particle's heading only when it is needed. Exact: equal
-/// to one prediction per particle and step, by the extended Kalman filter (EQUATIONS 1: advance())
-/// or by sigma points.
+/// The motion since the poses were last drawn, in the frame of the drawn pose. It does not depend
+/// on where in the world the vehicle is, so this Gaussian is the same for every particle: it is
+/// predicted once for all of them and rotated to the heading of a particle only when needed. This
+/// is exact: it equals one prediction per particle and step by the extended Kalman filter
+/// (advance(), EQUATIONS 1) or by sigma points.
 class MotionIncrement {
  public:
   MotionIncrement() = default;
@@ -23,7 +23,7 @@ class MotionIncrement {
 
   void restart() { *this = MotionIncrement(); }
 
-  /// One control step of `duration` [s], linearised.
+  /// Adds one control step of `duration` [s], linearised.
   void advance(const Control& control, double duration, const Belief& belief) {
     const auto sigma = deviations_of(belief.control, control, belief.vehicle);
     std::visit([&](const auto& one) { advance(one, control, duration, sigma); }, belief.vehicle);
@@ -32,8 +32,7 @@ class MotionIncrement {
   const Pose& pose() const { return pose_; }
   const Symmetric3<double>& covariance() const { return covariance_; }
 
-  /// What a particle that was at `origin` exactly believes now (EQUATIONS (1.6): P_i accumulates
-  /// from zero).
+  /// The predicted Gaussian of a particle that was drawn at `origin` (EQUATIONS (1.6)).
   template <class Real>
   [[gnu::always_inline]] PoseGaussian<Real> from(const BasicPose<Real>& origin) const {
     const Direction<Real> d = direction_of(origin.heading);
@@ -64,17 +63,17 @@ class MotionIncrement {
 };
 
 /// One control step of `duration` [s] by sigma points of (pose, control noise) (EQUATIONS 3). The
-/// square root has the heading first: its column alone bends, those of x and y are carried along
-/// unchanged; of the controls the last one alone bends. Equal to sending all eleven points (of two
-/// controls) through the vehicle.
+/// square root has the heading first: in the pose only its column is nonlinear, while those of x
+/// and y are carried along unchanged; in the controls only the last one is. The result equals that
+/// of sending all points through the vehicle, which are eleven for two controls.
 MotionIncrement moved_by_sigma_points(const MotionIncrement& before, const Control& control,
                                       double duration, const Belief& belief, const SigmaRule& rule);
 
-/// One control step of `duration` [s] whose noise is averaged instead of linearised: mean and
-/// covariance of the vehicle's own displacement are exact in the controls that it is linear in, and
-/// by Gauss-Hermite quadrature with three nodes in the last one. What a linearised step leaves out
-/// is that a vehicle whose steering trembles gets less far, and that noise on the speed multiplies
-/// noise on the steering. The heading it began with is carried along linearised.
+/// One control step of `duration` [s] with its noise averaged instead of linearised. Mean and
+/// covariance of the displacement in the frame of the vehicle are exact in the controls in which it
+/// is linear, and by three Gauss-Hermite nodes in the last one. Linearisation neglects that noise
+/// of the steering shortens the distance, and that noise of the speed multiplies noise of the
+/// steering. The uncertainty of the initial heading is propagated linearised.
 MotionIncrement moved_by_quadrature(const MotionIncrement& before, const Control& control,
                                     double duration, const Belief& belief);
 

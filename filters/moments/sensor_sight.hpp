@@ -6,24 +6,24 @@
 #include "filters/moments/linearised.hpp"
 #include "filters/moments/sigma_points.hpp"
 
-/// What a sensor of any kind sees of a landmark, linearised at its own pose (EQUATIONS 2). The
-/// components of a detection, in their order, are what RangeBearing, SensorNoise and Innovation
-/// name range and bearing; one that the sensor does not have has derivatives and innovation of 0
-/// and variance 1.
+/// Predicted detections of a sensor of any kind, linearised at the pose of the sensor (EQUATIONS
+/// 2). The components of a detection, in order, have the names range and bearing in RangeBearing,
+/// SensorNoise and Innovation. A component that the sensor does not have has derivatives and
+/// innovation 0 and variance 1.
 namespace montecarta::filters {
 
 template <class Kind>
 inline constexpr bool kHasTwoComponents = Kind::kComponents.size() == 2;
 
-/// A landmark seen from the pose of the sensor.
+/// A landmark observed from the pose of the sensor.
 template <class Kind, class Real>
 struct SensorSight {
-  RangeBearing<Real> predicted;  ///< angles not wrapped: for residual() only
-  Column3<Real> first, second;   ///< rows by the pose; by the landmark the negatives of (x, y)
+  RangeBearing<Real> predicted;  ///< angles not wrapped: only for residual()
+  Column3<Real> first, second;   ///< rows of Hx; those by the landmark are the negatives of (x, y)
   Real distance;                 ///< [m]
 };
 
-/// The components that a sensor sees of a place in its own frame.
+/// The components that a sensor measures of a point in its own frame.
 template <class Real>
 [[gnu::always_inline]] inline RangeBearing<Real> observed(PositionSensor, const Real& forward,
                                                           const Real& left) {
@@ -55,7 +55,7 @@ template <class Real>
   return {{forward, left},
           {-d.cosine, -d.sine, left},
           {d.sine, -d.cosine, -forward},
-          Real(1.0)};  // near or far, there are derivatives
+          Real(1.0)};  // the derivatives exist at any distance
 }
 template <class Real>
 [[gnu::always_inline]] inline SensorSight<BearingSensor, Real> sight(
@@ -78,7 +78,7 @@ template <class Kind, class Real>
   return s.distance > Real(kLeastDistance);
 }
 
-/// a - b, an angle by the shorter way.
+/// a - b, with an angle wrapped.
 template <class Kind, class Real>
 [[gnu::always_inline]] inline RangeBearing<Real> difference(Kind, const RangeBearing<Real>& a,
                                                             const RangeBearing<Real>& b) {
@@ -91,7 +91,7 @@ template <class Kind, class Real>
     return {first, Real(0.0)};
   }
 }
-/// detected boxminus predicted.
+/// Innovation, detected minus predicted.
 template <class Kind, class Real>
 [[gnu::always_inline]] inline RangeBearing<Real> residual(const RangeBearing<Real>& detected,
                                                           const SensorSight<Kind, Real>& s) {
@@ -116,7 +116,7 @@ template <class Real>
   return a.x * b.x + a.y * b.y + a.h * b.h;
 }
 
-/// What a detection says of a Gaussian of the sensor's pose (EQUATIONS 6).
+/// The innovation of a detection for a Gaussian of the sensor's pose (EQUATIONS 6).
 template <class Kind, class Real>
 [[gnu::always_inline]] inline Innovation<Real> innovation_of(const Symmetric3<Real>& P,
                                                              const SensorSight<Kind, Real>& s,
@@ -132,8 +132,8 @@ template <class Kind, class Real>
           second};
 }
 
-/// Adds what a detection weighs by. The density of a component that does not exist is 1: that of
-/// 0 with variance 1 / 2 pi.
+/// Adds a detection to the evidence. The density of a component that the sensor does not have must
+/// be 1, which is that of 0 with the variance 1 / 2 pi.
 template <class Kind, class Real, class Use, class Mask, class Weighed>
 [[gnu::always_inline]] inline void weigh(Kind, const Density<Real>& density, const Use& use,
                                          const Mask& matched, Weighed& evidence) {
@@ -145,8 +145,8 @@ template <class Kind, class Real, class Use, class Mask, class Weighed>
   evidence.add(density.squared, determinant, used, as_number<Real>(matched));
 }
 
-/// A landmark that one detection from an exactly known pose of the sensor places: g(x, z) and Gz R
-/// Gz' (EQUATIONS 2, 4).
+/// Initialises a landmark from one detection at an exactly known pose of the sensor: g(x, z) and Gz
+/// R Gz' (EQUATIONS 2, 4).
 template <class Kind, class Real>
 LandmarkGaussian<Real> placed_landmark(Kind, const BasicPose<Real>& sensor,
                                        const RangeBearing<Real>& seen, const SensorNoise& noise) {
@@ -158,8 +158,8 @@ LandmarkGaussian<Real> placed_landmark(Kind, const BasicPose<Real>& sensor,
           turned_back(R, axes)};
 }
 
-/// Kalman update of a landmark seen from an exactly known pose, by the innovation `v` whose columns
-/// are those of the landmark.
+/// Kalman update of a landmark observed from an exactly known pose; the columns of the innovation
+/// `v` are those of the landmark.
 template <class Real, class Mask>
 [[gnu::always_inline]] inline Density<Real> condition(LandmarkGaussian<Real>& landmark,
                                                       const Innovation<Real>& v, const Mask& use) {
@@ -172,7 +172,7 @@ template <class Real, class Mask>
   return density;
 }
 
-/// As `Linearised`, of a sensor of another kind; poses are those of the sensor.
+/// `Linearised` for a sensor of another kind; poses are those of the sensor.
 template <class Kind>
 struct LinearisedSensor : Linearised {
   template <class Real, class Mask>
@@ -236,8 +236,8 @@ struct LinearisedSensor : Linearised {
 template <>
 struct LinearisedSensor<RangeBearingSensor> : Linearised {};
 
-/// A sensor's observations of a landmark by sigma points (EQUATIONS 3, 7), in the frame of the
-/// sensor, so that a turned world gives the turned estimate.
+/// Predicts the detection of a landmark by sigma points (EQUATIONS 3, 7) in the frame of the
+/// sensor, so that a rotated world gives the rotated estimate.
 template <class Kind, class Real>
 class SigmaSight {
  public:
@@ -248,8 +248,8 @@ class SigmaSight {
     centre_ = observed(Kind(), way_.x, way_.y);
   }
 
-  /// A column (forward, left, turn) of the pose's square root: its images are added to `moments`;
-  /// D is returned.
+  /// Adds to `moments` the images of the points along a column (forward, left, turn) of the square
+  /// root of the pose; returns D.
   [[gnu::always_inline]] RangeBearing<Real> add(const Column3<Real>& column,
                                                 ObservationMoments<Real>& moments) const {
     const double spread = rule_.spread;
@@ -262,29 +262,29 @@ class SigmaSight {
     moments.add(pair, rule_);
     return pair.odd;
   }
-  /// Columns of a covariance in the map.
+  /// Columns, in the frame of the sensor, of the square root of a covariance given in the map.
   std::array<Column3<Real>, 3> columns(const Symmetric3<Real>& P) const {
     const Cholesky3<Real> L(turned(P, Direction<Real>{axes_.cosine, -axes_.sine}));
     return {{{L.xx, L.yx, L.hx}, {Real(0.0), L.yy, L.hy}, {Real(0.0), Real(0.0), L.hh}}};
   }
-  /// A column in the frame of the sensor, in the map.
+  /// Rotates a column from the frame of the sensor into the map.
   Column3<Real> in_map(const Column3<Real>& c) const {
     return {axes_.cosine * c.x - axes_.sine * c.y, axes_.sine * c.x + axes_.cosine * c.y, c.h};
   }
-  /// Of `seen`, without cross-covariances.
+  /// Innovation of `seen`, without cross-covariances.
   Innovation<Real> innovation(const RangeBearing<Real>& seen,
                               const ObservationMoments<Real>& moments) const {
     const RangeBearing<Real> mean{centre_.range + moments.shift.range,
                                   centre_.bearing + moments.shift.bearing};
     return {difference(Kind(), seen, mean), moments.covariance + outer(rule_.shift, moments.shift)};
   }
-  /// Where the landmark is not too near.
+  /// Mask of the lanes in which the landmark is not too near.
   auto usable() const {
     return way_.x * way_.x + way_.y * way_.y > Real(kLeastDistance * kLeastDistance);
   }
 
  private:
-  /// Observation less that of the centre, from a pose that is moved so in its own frame.
+  /// The observation from a pose displaced in its own frame, minus that of the centre.
   RangeBearing<Real> from(const Real& forward, const Real& left, const Real& turn) const {
     const Direction<Real> d = direction_of(turn);
     const Real x = way_.x - forward, y = way_.y - left;
@@ -294,11 +294,11 @@ class SigmaSight {
 
   Direction<Real> axes_;
   SigmaRule rule_;
-  BasicPoint<Real> way_;  ///< to the landmark, forward and left
+  BasicPoint<Real> way_;  ///< vector to the landmark (forward, left)
   RangeBearing<Real> centre_;
 };
 
-/// As `SigmaPoints`, of a sensor of another kind; poses are those of the sensor.
+/// `SigmaPoints` for a sensor of another kind; poses are those of the sensor.
 template <class Kind>
 struct SigmaPointsOf : SigmaPoints {
   static_assert(!std::is_same_v<Kind, RangeBearingSensor>);
@@ -339,7 +339,7 @@ struct SigmaPointsOf : SigmaPoints {
         .covariance = {Real(noise.range), Real(0.0), Real(noise.bearing)}};
     Column3<Real> first{}, second{};
     for (const Column3<Real>& column : s.columns(in_plane(landmark.covariance))) {
-      const RangeBearing<Real> D = s.add(column, moments);  // moves the other way than the pose
+      const RangeBearing<Real> D = s.add(column, moments);  // a landmark moves opposite to the pose
       first = first - Real(rule.antisymmetric * rule.spread * D.range) * column;
       second = second - Real(rule.antisymmetric * rule.spread * D.bearing) * column;
     }
@@ -366,7 +366,7 @@ struct SigmaPointsOf : SigmaPoints {
   }
 };
 
-/// The transform of a sensor, given that of range and bearing.
+/// Converts a transform for range and bearing to that for a sensor of another kind.
 template <class Kind>
 LinearisedSensor<Kind> of_kind(Kind, const Linearised& /*transform*/) {
   return {};

@@ -4,20 +4,20 @@
 #include "filters/moments/linearised.hpp"
 #include "filters/moments/sigma_rule.hpp"
 
-/// Sigma points of an observation (EQUATIONS 3), in the frame of the line of sight. The square
-/// roots there have the component across the line first, because range and bearing are curved in
-/// that one alone: every other column leaves the relative position on the line, where the range is
-/// minus `along` and the bearing minus `heading` exactly, so that its two points need not be looked
-/// at. What is left of a covariance without its first column enters as it stands.
+/// Sigma points of an observation (EQUATIONS 3) in the frame of the line of sight. The square roots
+/// in this frame have the component across the line first, since range and bearing are nonlinear in
+/// that one only. Every other column keeps the relative position on the line, where the range is
+/// exactly minus `along` and the bearing minus `heading`, so that its two points need not be
+/// computed. The rest of a covariance without its first column is used as it is.
 namespace montecarta::filters {
 
-/// The column of a lower triangular square root that carries the component across.
+/// The column of a lower triangular square root that has the component across.
 template <class Real>
 struct AcrossColumn {
   Real along, across, heading;
 };
 
-/// 1 / sqrt(square), or 0 where the square is zero but for rounding.
+/// 1 / sqrt(square), or 0 if the square is zero up to rounding.
 template <class Real>
 [[gnu::always_inline]] inline Real inverse_root(const Real& square) {
   return select(square > 1e-18 * (Real(1.0) + square), Real(1.0) / sqrt(square), Real(0.0));
@@ -33,15 +33,15 @@ template <class Real>
   return {P.cross * inverse, P.across * inverse, Real(0.0)};
 }
 
-/// Of two points' observations: D, half their difference, and E, how far their middle lies from the
-/// centre's.
+/// The observations of two opposite points: D, half their difference, and E, the deviation of their
+/// mean from the observation of the centre.
 template <class Real>
 struct ObservationPair {
   RangeBearing<Real> odd, even;
 };
 
-/// Observations of (range + along, across) and (range - along, -across), bearings from the line of
-/// sight: small, so nothing wraps.
+/// The pair of observations of (range + along, across) and (range - along, -across), with bearings
+/// relative to the line of sight, which are small and do not wrap.
 template <class Real>
 [[gnu::always_inline]] inline ObservationPair<Real> observation_pair(const Real& range,
                                                                      const Real& along,
@@ -54,8 +54,8 @@ template <class Real>
           {0.5 * (far_range + near_range) - range, 0.5 * (far_bearing - near_bearing)}};
 }
 
-/// detected boxminus predicted, where the mean of the predicted observations lies `shift` from the
-/// centre's.
+/// Innovation, detected minus predicted, if the mean of the predicted observations deviates by
+/// `shift` from that of the centre.
 template <class Real>
 [[gnu::always_inline]] inline RangeBearing<Real> residual(const RangeBearing<Real>& detected,
                                                           const LineOfSight<Real>& s,
@@ -64,11 +64,11 @@ template <class Real>
           shorter_way(Real(detected.bearing - s.predicted.bearing - shift.bearing))};
 }
 
-/// Moments of a predicted observation (EQUATIONS (3.8)), gathered column by column.
+/// Moments of a predicted observation (EQUATIONS (3.8)), summed column by column.
 template <class Real>
 struct ObservationMoments {
-  Symmetric2<Real> covariance;                     ///< as yet without the term in e e'
-  RangeBearing<Real> shift{Real(0.0), Real(0.0)};  ///< e: of the mean from the centre's observation
+  Symmetric2<Real> covariance;                     ///< without the term in e e'
+  RangeBearing<Real> shift{Real(0.0), Real(0.0)};  ///< e: mean minus observation of the centre
 
   [[gnu::always_inline]] void add(const ObservationPair<Real>& pair, const SigmaRule& rule) {
     shift.range += rule.mean_weight * pair.even.range;
@@ -84,11 +84,11 @@ struct ObservationMoments {
   }
 };
 
-/// Whether a landmark's own covariance is part of the innovation that moves the pose. Kim 2008 and
-/// Ankishan eq. (16)-(18) print it without; it always is part of the weight (EQUATIONS 7).
+/// The use of the landmark's covariance in the innovation that moves the pose. Kim 2008 and
+/// Ankishan eq. (16)-(18) print it without; the weight always includes it (EQUATIONS 7).
 enum class MapUncertainty { on, off };
 
-/// Column of three given along and across the line of sight, turned into the map.
+/// A column given along and across the line of sight, rotated into the map.
 template <class Real>
 [[gnu::always_inline]] inline Column3<Real> in_map(const Real& along, const Real& across,
                                                    const Real& heading,
@@ -100,8 +100,8 @@ template <class Real>
 /// An observation predicted by the sigma points of (pose, landmark).
 template <class Real>
 struct SigmaObservation {
-  Innovation<Real> whole;     ///< with the landmark's covariance: what weighs
-  Innovation<Real> proposal;  ///< what moves the pose, with the cross-covariances
+  Innovation<Real> whole;     ///< gives the weight, with the landmark's covariance
+  Innovation<Real> proposal;  ///< moves the pose; has the cross-covariances
 };
 
 template <class Real>
@@ -114,12 +114,12 @@ template <class Real>
   const AcrossColumn<Real> q = across_column(P), m = across_column(map);
   const Real& range = s.predicted.range;
 
-  // P_zz(x) + R of EQUATIONS (7.1) by (3.8), then P_zz(mu) beside it. The pose moves against the
-  // landmark, and its heading against the bearing.
+  // P_zz(x) + R of EQUATIONS (7.1) by (3.8), then P_zz(mu). A displacement of the pose acts
+  // opposite to one of the landmark, and a turn of the heading opposite to one of the bearing.
   ObservationPair<Real> pair =
       observation_pair(range, rule.spread * q.along, rule.spread * q.across);
   pair.odd = {-pair.odd.range, -pair.odd.bearing - rule.spread * q.heading};
-  const Real aa = P.xx - q.along * q.along;  // of the columns after the first
+  const Real aa = P.xx - q.along * q.along;  // covariance of the columns after the first
   const Real ah = P.xh - q.along * q.heading, hh = P.hh - q.heading * q.heading;
   ObservationMoments<Real> own{.covariance = {noise.range + aa, ah, noise.bearing + hh}};
   own.add(pair, rule);
@@ -138,8 +138,7 @@ template <class Real>
   return observation;
 }
 
-/// What one pair of points contributes to the covariance by its bend: E E' times this, e e' of the
-/// single pair included.
+/// Weight of E E' of one pair of points in the covariance, including e e' if this is the only pair.
 inline double bend_weight(const SigmaRule& rule) {
   return rule.symmetric + rule.shift * rule.mean_weight * rule.mean_weight;
 }
@@ -150,14 +149,14 @@ struct LandmarkGain {
   Real along_range, along_bearing, across_range, across_bearing;
 };
 
-/// A landmark seen from an exactly known pose, by the sigma points of its Gaussian, in the frame of
-/// the line of sight.
+/// A landmark observed from an exactly known pose, by the sigma points of its Gaussian, in the
+/// frame of the line of sight.
 template <class Real>
 struct LandmarkObservation {
   AcrossColumn<Real> column;  ///< first column of the square root
   RangeBearing<Real> slope;   ///< its image
   Real rest;                  ///< square of the second column, which lies along the line
-  Symmetric2<Real> N;         ///< covariance of what no column of the landmark explains
+  Symmetric2<Real> N;         ///< covariance not explained by any column of the landmark
   Innovation<Real> innovation;
 
   [[gnu::always_inline]] LandmarkObservation(const Symmetric2<Real>& covariance,
@@ -178,7 +177,7 @@ struct LandmarkObservation {
         Symmetric2<Real>{N.xx + rest, N.xy, N.yy} + outer(1.0, slope)};
   }
 
-  /// K = P_xz S^-1; `inverse` = 1 / det S, or 0 where there is no update.
+  /// K = P_xz S^-1; `inverse` is 1 / det S, or 0 in lanes without an update.
   [[gnu::always_inline]] LandmarkGain<Real> gain(const Real& inverse) const {
     const Real a_r = column.along * slope.range + rest, a_b = column.along * slope.bearing;
     const Real c_r = column.across * slope.range, c_b = column.across * slope.bearing;
@@ -187,7 +186,7 @@ struct LandmarkObservation {
             (c_r * S.yy - c_b * S.xy) * inverse, (c_b * S.xx - c_r * S.xy) * inverse};
   }
 
-  /// [S - K A, K sqrt(N)] times its transpose: a sum of squares, nothing to turn negative
+  /// [S - K A, K sqrt(N)] times its transpose, a sum of squares that cannot become negative
   /// (EQUATIONS 3).
   [[gnu::always_inline]] Turned<Real> after(const LandmarkGain<Real>& K) const {
     const Real a = column.along - K.along_range * slope.range - K.along_bearing * slope.bearing;
@@ -203,14 +202,14 @@ struct LandmarkObservation {
   }
 };
 
-/// Sigma points: unscented or central differences (EQUATIONS 3), by their rules.
+/// Moments by sigma points: unscented transform or central differences (EQUATIONS 3).
 class SigmaPoints {
  public:
   static constexpr bool kRefinesInBatch = false;
   struct Rules {
-    SigmaRule motion;    ///< of (pose, control noise): 5 dimensions of two controls
-    SigmaRule pose;      ///< of (pose, landmark): 5
-    SigmaRule landmark;  ///< of a landmark, or of (range, bearing): 2
+    SigmaRule motion;    ///< (pose, control noise): 5 dimensions if there are two controls
+    SigmaRule pose;      ///< (pose, landmark): 5 dimensions
+    SigmaRule landmark;  ///< a landmark, or (range, bearing): 2 dimensions
   };
   SigmaPoints(const Rules& rules, const Belief& belief, MapUncertainty map_uncertainty)
       : rules_(rules),
@@ -221,9 +220,9 @@ class SigmaPoints {
                const Belief& belief) const {
     motion = moved_by_sigma_points(motion, control, duration, belief, rules_.motion);
   }
-  /// Updates with one detection a pose Gaussian by (3.2) with the moments of (7.1) (EQUATIONS 7,
-  /// 8), sigma points drawn anew from what the detection before left. `matched`: which lanes saw
-  /// it.
+  /// Updates a pose Gaussian with one detection by (3.2) with the moments of (7.1) (EQUATIONS 7,
+  /// 8). The sigma points are those of the Gaussian after the previous detection. `matched` is the
+  /// mask of the lanes that matched it.
   template <class Real, class Mask>
   [[gnu::always_inline]] Innovation<Real> refine(PoseGaussian<Real>& pose,
                                                  const LandmarkGaussian<Real>& landmark,
@@ -243,7 +242,7 @@ class SigmaPoints {
                  as_number<Real>(matched));
     return observation.whole;
   }
-  /// Updates with one detection a landmark seen from an exactly known pose (EQUATIONS 7, 8).
+  /// Updates a landmark with one detection from an exactly known pose (EQUATIONS 7, 8).
   template <class Real, class Mask, class Weighed>
   [[gnu::always_inline]] Innovation<Real> update(LandmarkGaussian<Real>& landmark,
                                                  const BasicPose<Real>& pose,
@@ -267,9 +266,9 @@ class SigmaPoints {
                  as_number<Real>(matched));
     return v;
   }
-  /// A landmark seen for the first time from an exactly known pose: the points z +- spread sqrt(R)
-  /// e_i sent through g(x, .) (EQUATIONS 8). The range's points lie on the ray; those of the
-  /// bearing stand at `ray_` to both sides of it.
+  /// Initialises a landmark from an exactly known pose: the points z +- spread sqrt(R) e_i are sent
+  /// through g(x, .) (EQUATIONS 8). The points of the range lie on the ray, those of the bearing at
+  /// `ray_` to both sides of it.
   template <class Real>
   LandmarkGaussian<Real> initialise(const BasicPose<Real>& pose, const RangeBearing<Real>& seen,
                                     const SensorNoise& noise) const {
