@@ -6,7 +6,7 @@
 
 namespace montecarta::filters {
 
-/// Adds up the controls and looks at no landmark: what every SLAM filter must beat.
+/// Integrates the controls and ignores detections: the baseline that every SLAM filter must beat.
 class DeadReckoning final : public SlamFilter {
  public:
   explicit DeadReckoning(const FilterSetup& setup) : belief_(setup.belief) {}

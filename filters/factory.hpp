@@ -7,15 +7,15 @@
 
 namespace montecarta::filters {
 
-/// All filters, in the order in which they are listed. Throws StudyError where two that were added
-/// have one name.
+/// All filters, in the order of the documentation. Throws StudyError if two added filters have the
+/// same name.
 std::span<const FilterKind> filter_kinds();
 
-/// Those of them that add_filter() added.
+/// The filters that add_filter() added.
 std::span<const FilterKind> added_filter_kinds();
 
-/// Adds a filter of another source tree; before main(), by a static variable that its answer, true,
-/// is put into. `make` is called later, when all static variables have their values.
+/// Adds a filter from another source tree. It must be called before main(), as the initialiser of a
+/// static variable, and returns true. `make` is called when all static variables are initialised.
 bool add_filter(FilterKind (*make)());
 
 }  // namespace montecarta::filters

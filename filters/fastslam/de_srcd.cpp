@@ -8,7 +8,7 @@
 namespace montecarta::filters {
 namespace {
 
-/// In the order of the enumerators.
+/// The order is that of the enumerators.
 const std::vector<std::string> kEvolutionModes{"unbiased", "as_printed", "prior", "shared"};
 
 std::vector<Parameter> options_of_evolution() {

@@ -11,12 +11,12 @@
 
 namespace montecarta::filters {
 
-/// What differential evolution is used for in DE-SRCD-FastSLAM (EQUATIONS 10).
+/// The use of differential evolution in DE-SRCD-FastSLAM (EQUATIONS 10).
 enum class EvolutionMode {
-  unbiased,    ///< each particle seeks its most probable pose, draws about it and pays for the draw
-  as_printed,  ///< the cloud climbs the likelihood and is then refined by the same scan once more
-  prior,       ///< the same with the motion and the map's covariance in the fitness
-  shared,      ///< the cloud seeks the centres, and every particle pays for its draw
+  unbiased,    ///< each particle searches its best pose; draws about it are weighted by (6.3)
+  as_printed,  ///< the cloud climbs the likelihood and is then refined by the same scan again
+  prior,       ///< the same, but the fitness includes the motion and the map's covariance
+  shared,      ///< the cloud searches the centres, and the draws about them are weighted by (6.3)
 };
 
 inline WeightTime weight_time(EvolutionMode mode) {
@@ -27,14 +27,14 @@ inline WeightTime weight_time(EvolutionMode mode) {
 struct EvolvedSettings {
   EvolutionMode mode = EvolutionMode::unbiased;
   EvolutionSettings evolution = {.scale = 0.4, .base = EvolutionBase::best};
-  std::size_t population = 10;  ///< of each particle in mode unbiased, at least 7
-  double bounds = 3.0;          ///< of the search, in standard deviations
-  double inflation = 1.0;       ///< of the covariance that is drawn from where the draw is paid for
+  std::size_t population = 10;  ///< members per particle in mode unbiased, at least 7
+  double bounds = 3.0;          ///< bounds of the search, in standard deviations
+  double inflation = 1.0;       ///< factor of the covariance of draws that are weighted by (6.3)
 };
 
-/// The proposal of SRCD-FastSLAM moved by differential evolution. Where the draw is paid for by the
-/// ratio (6.3) of EQUATIONS, the weights are right whatever centre evolution found, since it knows
-/// nothing but the past and the scan.
+/// The proposal of SRCD-FastSLAM moved by differential evolution. In modes weighted by the ratio
+/// (6.3) of EQUATIONS, the weights are correct for any centre that evolution finds, since the
+/// centre depends only on the past and the scan.
 template <class Real>
 class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
  public:
@@ -49,15 +49,15 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
       own_.emplace_back(std::min(particles - i, kLanesOf<Real>), settings.population);
   }
 
-  /// A pose on its way from the prediction to the draw.
+  /// A pose between prediction and draw.
   struct Refined {
     PoseGaussian<Real> predicted, posterior;
-    BasicPose<Real> centre;   ///< of the draw
-    Evidence<Real> evidence;  ///< of the scan, before the draw
+    BasicPose<Real> centre;   ///< mean of the draw
+    Evidence<Real> evidence;  ///< evidence of the scan before the draw
     PoseFactor<Real> factor;
   };
 
-  /// Moves the cloud, in the modes in which it is one population.
+  /// Evolves the cloud, in the modes in which it is one population.
   template <class Associating>
   void prepare(const StepContext& context, const Associating& association,
                const Weights<Real>& weights, const std::vector<PoseGaussian<Real>>& predicted) {
@@ -72,7 +72,7 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
                   centres_);
   }
 
-  /// Refines the pose, and in mode unbiased seeks the most probable one about it.
+  /// Refines the pose, and in mode unbiased searches the most probable pose near it.
   template <class Associating, class Innovations>
   Refined refine(const StepContext& context, std::size_t b, const PoseGaussian<Real>& predicted,
                  const Associating& association, const Innovations& innovations) {
@@ -99,7 +99,7 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
     return draw_from(about, Cloud::identity(context, Draw::pose_proposal, b), Real(spread));
   }
 
-  /// Updates the landmarks, and returns the log of the weight's factor.
+  /// Updates the landmarks and returns the log of the weight's factor.
   template <class Associating, class Innovations>
   Weighing<Real> update_map(std::size_t b, const BasicPose<Real>& pose,
                             const Associating& association, const Refined& refined,
@@ -121,16 +121,16 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
   }
 
   EvolvedSettings settings_;
-  std::vector<BasicPose<Real>> centres_;  ///< where the cloud moved to
-  std::vector<OwnEvolution<Real>> own_;   ///< of every block, where each particle evolves alone
+  std::vector<BasicPose<Real>> centres_;  ///< {block} poses to which the cloud moved
+  std::vector<OwnEvolution<Real>> own_;   ///< {block} in mode unbiased
   CloudEvolution<Real> cloud_;
 };
 
-/// What evolution was told to be.
+/// Reads the options of the evolution.
 EvolvedSettings evolved_settings(const FilterOptions& options);
 
-/// DE-SRCD-FastSLAM (Ankishan 2016; EQUATIONS 10): SRCD-FastSLAM with its poses moved by
-/// differential evolution.
+/// DE-SRCD-FastSLAM (Ankishan 2016; EQUATIONS 10): SRCD-FastSLAM with poses moved by differential
+/// evolution.
 template <class Real>
 std::unique_ptr<SlamFilter> make_de_srcd(const FilterSetup& setup) {
   const PopulationSettings settings = population_settings(setup.options);

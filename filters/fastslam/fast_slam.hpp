@@ -11,14 +11,14 @@
 
 namespace montecarta::filters {
 
-/// Rao-Blackwellised particle filter with one map per particle (EQUATIONS 4). `Real`: double or
-/// Lanes. Between update() and the next predict() the particles are weighed and drawn but not yet
-/// resampled: that is the state that is estimated and recorded.
+/// Rao-Blackwellised particle filter with one map per particle (EQUATIONS 4). `Real` is double or
+/// Lanes. Between update() and the next predict() the particles are weighted and drawn but not yet
+/// resampled. Estimates and records show that state.
 template <class Real, class Proposal, class Associating>
 requires Associator<Associating, Real> && PoseProposal<Proposal, Real, Associating>
 class FastSlam final : public SlamFilter {
  public:
-  /// Detections have so many `components`.
+  /// `components` is the number of components of a detection.
   FastSlam(const PopulationSettings& settings, std::size_t components, Proposal proposal,
            Associating association)
       : components_(components),
@@ -125,7 +125,7 @@ class FastSlam final : public SlamFilter {
   Associating association_;
   Population<Real> population_;
   std::vector<BasicPose<Real>> poses_, resampled_poses_;
-  std::vector<PoseGaussian<Real>> predicted_;  ///< by the motion, of the scan's poses
+  std::vector<PoseGaussian<Real>> predicted_;  ///< {block} poses predicted by the motion, at a scan
   typename Associating::Maps maps_;
   MixtureInnovations<Real> innovations_;
 };

@@ -8,7 +8,7 @@ namespace {
 
 const std::vector<std::string> kWeightForms{"closed", "ratio", "batch"};
 
-/// In the order in which they are documented.
+/// Joins lists of options in the order of the documentation.
 std::vector<Parameter> joined(std::initializer_list<std::vector<Parameter>> parts) {
   std::vector<Parameter> options;
   for (const auto& part : parts) options.insert(options.end(), part.begin(), part.end());

@@ -13,8 +13,8 @@
 
 namespace montecarta::filters {
 
-/// FastSLAM with a proposal of the caller's making; the association is the setup's. `SeenBy`:
-/// AtPose or OnMounting, as the setup's sensor is.
+/// Makes FastSLAM with the given proposal and the association of the setup. `SeenBy` is AtPose or
+/// OnMounting, according to the sensor of the setup.
 template <class Real, class SeenBy = AtPose, class Proposal>
 std::unique_ptr<SlamFilter> make_fast_slam(const FilterSetup& setup,
                                            const PopulationSettings& settings, Proposal proposal) {
@@ -37,10 +37,10 @@ std::unique_ptr<SlamFilter> make_fast_slam(const FilterSetup& setup,
 
 /// Reads the option `weights`.
 WeightForm weight_form(const FilterOptions& options);
-/// Whether the option `weights` is `ratio`, which leaves no mixture (FilterKind::drops_mixture).
+/// Returns whether `weights` is `ratio`, which leaves no mixture (FilterKind::drops_mixture).
 bool weighs_by_ratio(const FilterOptions& options);
 
-/// FastSLAM whose poses are refined by the scan, each Gaussian carried by a transform of its own,
+/// Makes FastSLAM with poses that are refined by the scan. Each Gaussian has its own transform,
 /// given as that of range and bearing.
 template <class Real, class SeenBy = AtPose, class PoseTransform, class MapTransform>
 std::unique_ptr<SlamFilter> make_refined(const FilterSetup& setup,
@@ -57,19 +57,19 @@ std::unique_ptr<SlamFilter> make_refined(const FilterSetup& setup,
       Proposal(settings.particles, setup.belief, weight_form(setup.options), for_pose, for_map));
 }
 
-/// Whether the landmark's covariance is part of the pose's innovation (EQUATIONS 7).
+/// The option that includes the landmark's covariance in the innovation of the pose (EQUATIONS 7).
 Parameter map_uncertainty_option();
 MapUncertainty map_uncertainty(const FilterOptions& options);
 
-/// Interval and weights of central differences (EQUATIONS 3), for every stage; `map_uncertainty`
-/// matters to the pose alone.
+/// Interval and weights of central differences (EQUATIONS 3) for every stage; `map_uncertainty`
+/// only affects the pose.
 std::vector<Parameter> central_difference_options();
 SigmaPoints central_difference_points(const FilterSetup& setup, MapUncertainty map_uncertainty);
-/// The scaled unscented transform of every stage (EQUATIONS 7): dimension 5 for motion (pose,
-/// control) and for an observation (pose, landmark), 2 for a landmark.
+/// The scaled unscented transform of every stage (EQUATIONS 7), with 5 dimensions for a motion with
+/// two controls (pose, control) and for an observation (pose, landmark), and 2 for a landmark.
 SigmaPoints unscented_points(const FilterSetup& setup);
 
-/// `Real` = double is the same filter one particle at a time, for tests.
+/// With `Real` = double this is the same filter, one particle at a time, for tests.
 template <class Real, class SeenBy = AtPose>
 std::unique_ptr<SlamFilter> make_fastslam1(const FilterSetup& setup) {
   const auto transform = SeenBy(setup.belief.sensor).transform(Linearised());
@@ -81,36 +81,35 @@ template <class Real, class SeenBy = AtPose>
 std::unique_ptr<SlamFilter> make_fastslam2(const FilterSetup& setup) {
   return make_refined<Real, SeenBy>(setup, Linearised(), Linearised());
 }
-/// Unscented FastSLAM (Kim 2008): FastSLAM II with every Gaussian carried by the unscented
-/// transform.
+/// Unscented FastSLAM (Kim 2008): FastSLAM II with the unscented transform at every stage.
 template <class Real, class SeenBy = AtPose>
 std::unique_ptr<SlamFilter> make_ufastslam(const FilterSetup& setup) {
   const SigmaPoints unscented = unscented_points(setup);
   return make_refined<Real, SeenBy>(setup, unscented, unscented);
 }
-/// SRCD-FastSLAM (Ankishan 2016; EQUATIONS 8): FastSLAM II with every Gaussian carried by central
-/// differences. Covariances are kept, and the factor is taken where points are drawn: the same
-/// numbers as the square-root recursion, to rounding.
+/// SRCD-FastSLAM (Ankishan 2016; EQUATIONS 8): FastSLAM II with central differences at every stage.
+/// It keeps covariances and factors them when points are drawn, which equals the square-root
+/// recursion up to rounding.
 template <class Real, class SeenBy = AtPose>
 std::unique_ptr<SlamFilter> make_srcd(const FilterSetup& setup) {
   const SigmaPoints points = central_difference_points(setup, map_uncertainty(setup.options));
   return make_refined<Real, SeenBy>(setup, points, points);
 }
-/// SRCD-aided FastSLAM (EQUATIONS 8): the poses of FastSLAM II, landmarks by central differences.
+/// SRCD-aided FastSLAM (EQUATIONS 8): poses like FastSLAM II, landmarks by central differences.
 template <class Real>
 std::unique_ptr<SlamFilter> make_srcd_aided(const FilterSetup& setup) {
   return make_refined<Real>(setup, Linearised(),
                             central_difference_points(setup, MapUncertainty::on));
 }
-/// SRCD-particle-filter based FastSLAM (EQUATIONS 8): poses by central differences, the landmarks
-/// of FastSLAM II.
+/// SRCD-particle-filter based FastSLAM (EQUATIONS 8): poses by central differences, landmarks like
+/// FastSLAM II.
 template <class Real>
 std::unique_ptr<SlamFilter> make_srcd_pf(const FilterSetup& setup) {
   return make_refined<Real>(setup, central_difference_points(setup, map_uncertainty(setup.options)),
                             Linearised());
 }
 
-// Compiled apart: the templates are large, and both SRCD-FastSLAM and U-FastSLAM are the last.
+// These large templates are compiled apart. The last one serves SRCD-FastSLAM and U-FastSLAM.
 extern template std::unique_ptr<SlamFilter> make_fastslam1<Lanes>(const FilterSetup&);
 extern template std::unique_ptr<SlamFilter> make_fastslam2<Lanes>(const FilterSetup&);
 extern template std::unique_ptr<SlamFilter> make_srcd_aided<Lanes>(const FilterSetup&);
@@ -119,7 +118,7 @@ extern template std::unique_ptr<SlamFilter> make_refined<Lanes>(const FilterSetu
                                                                 const SigmaPoints&,
                                                                 const SigmaPoints&);
 
-/// Of the setup's sensor, whichever it is.
+/// Make the filter for the sensor of the setup.
 std::unique_ptr<SlamFilter> make_fastslam1_of_sensor(const FilterSetup& setup);
 std::unique_ptr<SlamFilter> make_fastslam2_of_sensor(const FilterSetup& setup);
 std::unique_ptr<SlamFilter> make_refined_of_sensor(const FilterSetup& setup,

@@ -11,14 +11,14 @@
 
 namespace montecarta::filters {
 
-/// When the weights of a scan are found: by what a particle believed before the draw, or by the
-/// pose that was drawn. In the second case they do not belong to the Gaussians before the draw,
-/// whose mixture is then no estimate (EQUATIONS 19).
+/// The time at which the weights of a scan are computed: from the Gaussian of a particle before the
+/// draw, or from the drawn pose. In the second case they do not belong to the Gaussians before the
+/// draw, and the mixture of these is not an estimate (EQUATIONS 19).
 enum class WeightTime { before_draw, after_draw };
 
-/// What filters have in common whose poses are drawn from Gaussians that the scan refined
-/// (EQUATIONS 4): prediction, refinement, maps, and the estimate between scans. The transforms
-/// carry the Gaussians: `PoseTransform` those of the pose, `MapTransform` those of the landmarks.
+/// The part that is common to filters that draw poses from Gaussians refined by the scan (EQUATIONS
+/// 4): prediction, refinement, maps, and the estimate between scans. `PoseTransform` propagates the
+/// Gaussians of the poses, `MapTransform` those of the landmarks.
 template <class Real, CarriesPoses<Real> PoseTransform, KeepsLandmarks<Real> MapTransform>
 class RefinedCloud {
  public:
@@ -44,7 +44,7 @@ class RefinedCloud {
     return motion_.from(drawn);
   }
 
-  /// All poses were drawn: nothing is uncertain within a particle.
+  /// Records that all poses have been drawn, so that no uncertainty is left within a particle.
   void end_scan() {
     motion_.restart();
     is_drawn_ = true;
@@ -75,7 +75,7 @@ class RefinedCloud {
   const SensorNoise& noise() const { return noise_; }
 
  protected:
-  // Flattened, for out of line their arrays of registers pass through memory.
+  // The next functions are flattened, since else their arrays of registers pass through memory.
 
   /// Updates `pose` with the scan of block b, one detection after the other.
   template <class Associating, class Innovations>
@@ -89,7 +89,7 @@ class RefinedCloud {
           mask);
     }
   }
-  /// Updates the landmarks of block b with the scan, seen from `pose`.
+  /// Updates the landmarks of block b with the scan from `pose`.
   template <class Associating, class Weighed>
   [[gnu::flatten]] void update_landmarks(const Associating& association, std::size_t b,
                                          const BasicPose<Real>& pose, Weighed& evidence) const {
@@ -99,7 +99,7 @@ class RefinedCloud {
       association.store(b, k, match);
     }
   }
-  /// What the particles of block b believed of their poses before they were drawn.
+  /// Keeps the Gaussians of the poses of block b before they are drawn.
   void keep(std::size_t b, const PoseGaussian<Real>& posterior) { posterior_[b] = posterior; }
   const PoseTransform& pose_transform() const { return pose_transform_; }
 
@@ -114,29 +114,29 @@ class RefinedCloud {
   MapTransform map_transform_;
   WeightTime weighed_;
   MotionIncrement motion_;
-  std::vector<PoseGaussian<Real>> posterior_;  ///< of the last scan, before drawing
+  std::vector<PoseGaussian<Real>> posterior_;  ///< Gaussians of the last scan before the draw
   mutable std::optional<CloudMoments>
-      moments_;  ///< of the poses since the last scan, once asked for
+      moments_;  ///< moments of the poses since the last scan; computed on demand
   bool is_drawn_ = false;
 };
 
-/// The three ways to weigh a particle of FastSLAM II (EQUATIONS 6).
+/// The three forms of the weight of FastSLAM II (EQUATIONS 6).
 enum class WeightForm {
-  closed,  ///< product of N(innovation; S), each before the update with the detection
+  closed,  ///< product of N(innovation; S), each before the update with its detection
   ratio,   ///< likelihood times prior over proposal at the drawn pose
-  batch,   ///< N of the stacked innovation, linearised at the predicted pose: `Linearised` only
+  batch,   ///< N of the stacked innovation, linearised at the predicted pose; only for `Linearised`
 };
 
-/// The predicted pose is refined by the scan before it is drawn (EQUATIONS 6, 7, 8).
+/// Refines the predicted pose by the scan before it is drawn (EQUATIONS 6, 7, 8).
 template <class Real, class PoseTransform, class MapTransform>
 class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> {
  public:
   using Cloud = RefinedCloud<Real, PoseTransform, MapTransform>;
 
-  /// A pose on its way from the prediction to the draw.
+  /// A pose between prediction and draw.
   struct Refined {
     PoseGaussian<Real> predicted, posterior;
-    Evidence<Real> evidence;  ///< of the scan, before the draw
+    Evidence<Real> evidence;  ///< evidence of the scan before the draw
     Real faults;
   };
 
@@ -144,7 +144,7 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
                    const PoseTransform& pose_transform, const MapTransform& map_transform)
       : Cloud(particles, belief, time_of(form), pose_transform, map_transform), form_(form) {}
 
-  /// Nothing is to be decided for all particles together.
+  /// There is nothing to prepare for all particles together.
   template <class Associating>
   void prepare(const StepContext& /*context*/, const Associating& /*association*/,
                const Weights<Real>& /*weights*/,
@@ -161,7 +161,7 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
     return {predicted, posterior, evidence, faults};
   }
 
-  /// One function: its factor and its normals do not wait for each other.
+  /// This is one function, so that the factor and the normals can be computed in parallel.
   [[gnu::flatten]] BasicPose<Real> draw(const StepContext& context, std::size_t b,
                                         Refined& refined) {
     const PoseFactor<Real> factor(refined.posterior);
@@ -170,7 +170,7 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
     return draw_from(factor, Cloud::identity(context, Draw::pose_proposal, b));
   }
 
-  /// Updates the landmarks, and returns the log of the weight's factor.
+  /// Updates the landmarks and returns the log of the weight's factor.
   template <class Associating, class Innovations>
   Weighing<Real> update_map(std::size_t b, const BasicPose<Real>& pose,
                             const Associating& association, Refined& refined,
@@ -191,7 +191,7 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
   static WeightTime time_of(WeightForm form) {
     return form == WeightForm::ratio ? WeightTime::after_draw : WeightTime::before_draw;
   }
-  /// Only of a transform that offers it.
+  /// The evidence of form batch, empty for a transform that does not support it.
   template <class Associating>
   Evidence<Real> batch_evidence(const Associating& association, std::size_t b,
                                 const PoseGaussian<Real>& predicted) const {

@@ -16,9 +16,8 @@
 
 namespace montecarta::filters {
 
-/// Detections carry the identity of their landmark, the same for all particles (EQUATIONS 17);
-/// clutter is known to be clutter. Slots are given out in the order in which landmarks are first
-/// seen.
+/// Associates by the identity of each detection, the same for all particles (EQUATIONS 17). Clutter
+/// is known to be clutter. Slots are numbered in the order in which landmarks are first observed.
 template <class Real, class Held = LandmarkGaussian<Real>>
 class KnownAssociation {
  public:
@@ -27,7 +26,7 @@ class KnownAssociation {
 
   void start() { std::fill(slot_of_.begin(), slot_of_.end(), kUnseen); }
 
-  /// Sorts the scan into known and new landmarks.
+  /// Divides the scan into known and new landmarks.
   void associate(const StepContext& /*context*/, Scan scan, Maps& maps,
                  const std::vector<PoseGaussian<Real>>& /*predicted*/) {
     slots_.clear(), seen_.clear(), new_.clear();
@@ -46,7 +45,7 @@ class KnownAssociation {
 
   bool matched_nothing() const { return slots_.empty() && new_.empty(); }
   std::size_t matches() const { return slots_.size(); }
-  /// The weight of the particles that matched detection k: all.
+  /// The weight of the particles that matched detection k, which is that of all particles.
   double matched_weight(std::size_t /*k*/, const Weights<Real>& /*weights*/) const { return 1.0; }
 
   void fetch(std::size_t b) const {
@@ -55,18 +54,18 @@ class KnownAssociation {
   [[gnu::always_inline]] Match<Real, Held&, Everywhere> match(std::size_t b, std::size_t k) const {
     return {opened_[k].at(b), seen_[k], {}};
   }
-  /// match() refers to the map itself.
+  /// Nothing is to be stored, since match() refers to the map itself.
   template <class Changed>
   void store(std::size_t /*b*/, std::size_t /*k*/, const Changed& /*match*/) const {}
-  /// Nobody errs: clutter is left out, all else goes where it belongs.
+  /// There are no association errors: clutter is ignored, and all other detections are correct.
   AssociationCounts counts(const Weights<Real>& /*weights*/) const {
     return {.correct = static_cast<double>(slots_.size() + new_.size())};
   }
-  /// Landmarks of a map; every particle has as many.
+  /// Number of landmarks of a map, which is the same for every particle.
   double map_size(const Maps& maps, const Weights<Real>& /*weights*/) const {
     return static_cast<double>(maps.slots());
   }
-  /// All particles explain the same detections, so there is nothing to make equal.
+  /// All particles explain the same detections, so that no constant is needed.
   Real unmatched_log_weight(std::size_t /*b*/) const { return Real(0.0); }
 
   /// Gives every new landmark a slot.
@@ -81,7 +80,7 @@ class KnownAssociation {
   }
   void resample(std::span<const std::uint32_t> /*parents*/) {}
 
-  /// Of identity j: the mixture of all particles, for which a slot is the same landmark.
+  /// The landmark of identity j, as the mixture of all particles, which have it in the same slot.
   std::optional<LandmarkEstimate> landmark(std::size_t j, const Maps& maps,
                                            const Weights<Real>& weights) const {
     if (j >= slot_of_.size() || slot_of_[j] == kUnseen) return std::nullopt;
@@ -90,7 +89,7 @@ class KnownAssociation {
   }
 
  protected:
-  /// Detections of the scan whose landmarks are not in the maps.
+  /// Detections of this scan of landmarks that are not in the maps.
   const std::vector<Detection>& new_detections() const { return new_; }
   std::uint32_t add_slot(const Detection& detection, Maps& maps) {
     const std::uint32_t slot = maps.add();
@@ -108,13 +107,13 @@ class KnownAssociation {
   std::vector<typename Maps::OpenSlot> opened_;
   std::vector<FreshLandmark<Real>> fresh_;
   mutable std::vector<std::uint32_t> source_;           ///< scratch of landmark()
-  mutable std::vector<LandmarkGaussian<Real>> copied_;  ///< likewise
+  mutable std::vector<LandmarkGaussian<Real>> copied_;  ///< scratch of landmark()
 };
 
-/// Places landmarks from two detections, for every particle given its path (EQUATIONS 15).
-/// Detections are kept with the pose of the sensor that each particle has drawn for their scan, and
-/// go with its descendants. Steps are decided for all particles together, so that all have the same
-/// landmarks.
+/// Initialises landmarks from two detections for every particle, given its path (EQUATIONS 15). A
+/// detection is kept with the pose of the sensor that each particle drew at its scan, and is
+/// inherited by the descendants of the particle. All particles advance together, so that they have
+/// the same landmarks.
 template <class Real>
 class InitialisationOnPaths {
  public:
@@ -131,7 +130,7 @@ class InitialisationOnPaths {
   }
   void resample(std::span<const std::uint32_t> parents) { sensors_.resample(parents); }
 
-  /// One more detection, from vehicles at `poses` {block}. Returns whether its landmark is fixed
+  /// Adds one detection from vehicles at `poses` {block}. Returns whether its landmark is fixed
   /// now.
   bool advance(const Detection& detection, const std::vector<BasicPose<Real>>& poses) {
     Waiting& waiting = waiting_.entry(detection.identity);
@@ -140,7 +139,7 @@ class InitialisationOnPaths {
     return waiting_.advance(waiting, [&] { keep(waiting.kept, detection, poses); });
   }
 
-  /// Where every particle has the landmark that advance() has found fixed; it waits no longer.
+  /// Writes the landmark that advance() has fixed, for every particle; it waits no longer.
   void place(std::int32_t identity, std::span<LandmarkGaussian<Real>> blocks) {
     Waiting& waiting = waiting_.entry(identity);
     open(waiting.kept);
@@ -161,13 +160,13 @@ class InitialisationOnPaths {
   static constexpr std::size_t kLanes = kLanesOf<Real>;
 
   struct Kept {
-    std::size_t count = 0;                 ///< detections
-    std::array<std::uint32_t, 2> slots{};  ///< of the poses that they were made from
+    std::size_t count = 0;                 ///< number of detections
+    std::array<std::uint32_t, 2> slots{};  ///< slots of the poses of the sensor
     std::array<double, 2> values{};        ///< [m] or [rad]
   };
   using Waiting = typename WaitingLandmarks<Kept>::Waiting;
 
-  /// A detection beside those kept, for all particles.
+  /// A new detection together with the kept ones, for all particles.
   struct Pairs {
     const InitialisationOnPaths& on;
     const Kept& kept;
@@ -191,7 +190,7 @@ class InitialisationOnPaths {
         return on.sightings_.crossing(first, second, 1.0).has_value();
       });
     }
-    /// D^2 of the particle that it fits best.
+    /// D^2 of the particle for which it is least.
     double squared_distance(double side) const {
       double least = std::numeric_limits<double>::infinity();
       for (std::size_t i = 0; i < on.particles_; ++i) {
@@ -232,12 +231,12 @@ class InitialisationOnPaths {
   MountedPose mounting_;
   TwoSightings sightings_;
   WaitingLandmarks<Kept> waiting_;
-  ParticleMaps<Real, BasicPose<Real>> sensors_;  ///< poses of the sensor
+  ParticleMaps<Real, BasicPose<Real>> sensors_;  ///< poses of the sensor at kept detections
   std::vector<typename ParticleMaps<Real, BasicPose<Real>>::OpenSlot> opened_;
 };
 
-/// KnownAssociation of a sensor whose detections do not fix a landmark: it initialises landmarks
-/// itself, from several detections. Those that wait weigh no particle.
+/// KnownAssociation for a sensor with detections that do not fix a landmark. It initialises
+/// landmarks itself, from several detections. Detections of waiting landmarks change no weights.
 template <class Real>
 class DelayedKnownAssociation : public KnownAssociation<Real> {
  public:
@@ -248,7 +247,7 @@ class DelayedKnownAssociation : public KnownAssociation<Real> {
     KnownAssociation<Real>::start();
     waiting_.start();
   }
-  /// From vehicles at `poses` {block}, drawn for this scan.
+  /// Initialises landmarks from vehicles at `poses` {block}, drawn for this scan.
   void initialise(ParticleMaps<Real>& maps, const std::vector<BasicPose<Real>>& poses) {
     for (const Detection& detection : this->new_detections()) {
       if (!waiting_.advance(detection, poses)) continue;

@@ -12,8 +12,8 @@
 
 namespace montecarta::filters {
 
-/// FastSLAM I (EQUATIONS 5): every particle moves with control noise of its own at every step; the
-/// scan only weighs it, by the likelihood at its pose.
+/// FastSLAM I (EQUATIONS 5): every particle moves with its own noise of the control at every step.
+/// The scan only changes its weight, by the likelihood at its pose.
 template <class Real, KeepsLandmarks<Real> MapTransform>
 class MotionSampling {
  public:
@@ -37,7 +37,7 @@ class MotionSampling {
     };
     std::visit(move_all, belief_.vehicle);
   }
-  /// The pose is certain within a particle.
+  /// The pose of a particle is certain.
   PoseGaussian<Real> predicted(std::size_t /*b*/, const BasicPose<Real>& pose) const {
     return {pose, {}};
   }
@@ -87,7 +87,7 @@ class MotionSampling {
  private:
   static constexpr std::size_t kTogether = 1024 / kLanesOf<Real>;
 
-  /// One control step of `poses`, with noise of its own in each lane.
+  /// Moves `poses` by one control step, with different noise in each lane.
   template <class V>
   [[gnu::flatten]] static void sample_motion(const V& vehicle, std::span<BasicPose<Real>> poses,
                                              const Control& control,

@@ -13,9 +13,8 @@
 
 namespace montecarta::filters {
 
-/// Every particle decides for itself which landmark of its own map a detection is (EQUATIONS 17),
-/// with the covariance of its predicted pose in the innovation. Particle i owns slots 0 to count(i)
-/// - 1.
+/// Every particle associates detections with the landmarks of its own map (EQUATIONS 17), with the
+/// covariance of its predicted pose in the innovation. Particle i owns the slots 0 to count(i) - 1.
 template <class Real, class SeenBy = AtPose, class Held = LandmarkGaussian<Real>>
 class NearestAssociation {
  public:
@@ -36,7 +35,7 @@ class NearestAssociation {
     made_of_.clear();
   }
 
-  /// Judges every detection by every particle's map.
+  /// Associates every detection by the map of every particle.
   void associate(const StepContext& context, Scan scan, Maps& maps,
                  const std::vector<PoseGaussian<Real>>& predicted) {
     scan_ = scan;
@@ -69,7 +68,7 @@ class NearestAssociation {
     return sum;
   }
 
-  /// Was done to judge.
+  /// associate() has fetched all blocks.
   void fetch(std::size_t /*b*/) const {}
   using Matched = Match<Real, Held, decltype(Real() > Real())>;
   Matched match(std::size_t b, std::size_t k) const {
@@ -82,15 +81,15 @@ class NearestAssociation {
         copy_lane<Real>(changed.landmark, opened_[pairing.landmark].at(b), lane);
     }
   }
-  /// log p0 for every detection that a particle cannot explain, so that all weigh by as many
-  /// factors.
+  /// log p0 for every detection that a particle has not matched, so that all weights have the same
+  /// number of factors.
   Real unmatched_log_weight(std::size_t b) const {
     Real sum(0.0);
     for (std::size_t k = 0; k < seen_.size(); ++k) sum += log_new_density_ * (1.0 - matched(b, k));
     return sum;
   }
 
-  /// Against the simulator's identities; before new_landmarks().
+  /// Association errors by the simulator's identities; to be called before new_landmarks().
   AssociationCounts counts(const Weights<Real>& weights) const {
     AssociationCounts mean;
     for (std::size_t i = 0; i < particles_; ++i) {
@@ -100,7 +99,7 @@ class NearestAssociation {
     return mean;
   }
 
-  /// Landmarks of a map, mean over the weighted particles.
+  /// Number of landmarks of a map, averaged over the weighted particles.
   double map_size(const Maps& /*maps*/, const Weights<Real>& weights) const {
     double mean = 0.0;
     for (std::size_t i = 0; i < particles_; ++i) {
@@ -109,7 +108,7 @@ class NearestAssociation {
     return mean;
   }
 
-  /// Gives every particle a slot of its own for each detection that is new to it.
+  /// Gives every particle its own slot for each detection that is new to it.
   const std::vector<FreshLandmark<Real>>& new_landmarks(Maps& maps) {
     fresh_.clear();
     for (std::size_t k = 0; k < seen_.size(); ++k) {
@@ -124,7 +123,7 @@ class NearestAssociation {
     std::swap(counts_, resampled_counts_);
     made_of_.resample(parents);
   }
-  /// In order of initialisation, of the heaviest particle: particles do not share slots.
+  /// The j-th landmark of the heaviest particle. There is no mixture: particles do not share slots.
   std::optional<LandmarkEstimate> landmark(std::size_t j, const Maps& maps,
                                            const Weights<Real>& weights) const {
     const std::size_t heaviest = weights.heaviest();
@@ -164,7 +163,7 @@ class NearestAssociation {
     const auto s = sight(typename SeenBy::Kind(), pose.mean, landmark.mean);
     const auto owned = Real(static_cast<double>(j)) < counts_[b];
     const Real never(std::numeric_limits<double>::infinity());
-    // Only the innovation itself differs from detection to detection; most lie far away.
+    // Only the innovation itself differs between detections, and most detections are far away.
     const Symmetric2<Real> S = innovation_of(pose.covariance, s, {}, landmark.covariance, noise_).S;
     const Real determinant = S.determinant();
     for (std::size_t k = 0; k < seen_.size(); ++k) {
@@ -187,7 +186,7 @@ class NearestAssociation {
     return flags;
   }
 
-  /// The landmark each lane matched with detection k; a lane without a match gets a harmless one.
+  /// The landmark that each lane matched with detection k; a default one in lanes without a match.
   Held collect(std::size_t b, std::size_t k) const {
     Held landmark{};
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -198,7 +197,7 @@ class NearestAssociation {
     return landmark;
   }
 
-  /// How many landmarks a particle has.
+  /// Number of landmarks of a particle.
   std::size_t count_of(std::size_t particle) const {
     return static_cast<std::size_t>(get(counts_[particle / kLanes], particle % kLanes));
   }
@@ -221,7 +220,7 @@ class NearestAssociation {
   double log_new_density_;
   std::vector<Real> counts_, resampled_counts_;
   InitialisationIdentities made_of_;
-  Scan scan_;  ///< the caller's, for the time of an update
+  Scan scan_;  ///< valid during update() only
   std::vector<RangeBearing<Real>> seen_;
   std::vector<std::uint32_t> slots_;
   std::vector<Pairing> pairings_;        ///< {particle, detection}

@@ -15,9 +15,9 @@
 
 namespace montecarta::filters {
 
-/// Every particle's own map. Landmarks are kept in slots: slot j of all particles lies together, in
-/// blocks. After a resampling a slot is rearranged only when it is next opened. `Held`: what is
-/// kept of a landmark, a struct of Reals.
+/// The maps of all particles. Landmarks are kept in slots; slot j of all particles is stored
+/// together, in blocks. After resampling, a slot is rearranged only when it is next opened. `Held`
+/// is the form in which a landmark is kept, a struct of Reals.
 template <class Real, class Held = LandmarkGaussian<Real>>
 class ParticleMaps {
  public:
@@ -33,16 +33,15 @@ class ParticleMaps {
   std::size_t slots() const { return n_slots_; }
   std::size_t blocks() const { return blocks_; }
 
-  /// A slot that is being read and written block by block; blocks may be visited in any order or at
-  /// once.
+  /// A slot that is read and written block by block, in any order or in parallel.
   class OpenSlot {
    public:
-    /// Block b, rearranged to today's particles on the first visit of the scan.
+    /// Block b, rearranged to the present particles at the first visit of the scan.
     Landmark& fetch(std::size_t b) const {
       if (!source_.empty()) to_[b] = gather_block<Real, Landmark>(from_, source_, b);
       return to_[b];
     }
-    /// Block b, once fetched.
+    /// Block b, after fetch().
     Landmark& at(std::size_t b) const { return to_[b]; }
 
    private:
@@ -52,8 +51,7 @@ class ParticleMaps {
     std::span<Landmark> to_;
   };
 
-  /// Opens slots for one scan; every block of each must be fetched. Slots must
-  /// differ.
+  /// Opens different slots for one scan. Every block of each must be fetched.
   void open(std::span<const std::uint32_t> slots, std::vector<OpenSlot>& opened) {
     opened.resize(slots.size());
     while (spares_.size() < slots.size()) spares_.emplace_back(blocks_);
@@ -72,7 +70,7 @@ class ParticleMaps {
     }
   }
 
-  /// Adds an empty slot, current, for the caller to fill; returns its number.
+  /// Adds an empty slot for the caller to fill; returns its number.
   std::uint32_t add() {
     if (n_slots_ == slots_.size()) slots_.push_back({std::vector<Landmark>(blocks_), 0});
     slots_[n_slots_].generation = genealogy_.generation();
@@ -81,7 +79,7 @@ class ParticleMaps {
   }
   std::span<Landmark> blocks_of(std::uint32_t slot) { return slots_[slot].blocks; }
 
-  /// Particle i becomes a copy of particle parents[i] (dead lanes included).
+  /// Makes particle i a copy of particle parents[i], including lanes without a particle.
   void resample(std::span<const std::uint32_t> parents) {
     genealogy_.add(parents);
     if (!genealogy_.is_long()) return;
@@ -89,7 +87,7 @@ class ParticleMaps {
     genealogy_.forget();
   }
 
-  /// What one particle believes about the landmark of slot j.
+  /// The estimate of one particle of the landmark in slot j.
   LandmarkEstimate landmark_of(std::uint32_t j, std::uint32_t particle) const {
     const std::uint32_t then = genealogy_.trace(slots_[j].generation, particle);
     const auto& [mean, P] = gaussian_of(slots_[j].blocks[then / kLanesOf<Real>]);
@@ -99,7 +97,7 @@ class ParticleMaps {
         Eigen::Matrix2d{{get(P.xx, lane), get(P.xy, lane)}, {get(P.xy, lane), get(P.yy, lane)}}};
   }
 
-  /// Slot j with today's particles in order, brought into `blocks` without a trace.
+  /// Copies slot j, in the order of the present particles, to `blocks`; the map is not changed.
   void copy_slot(std::uint32_t j, std::vector<std::uint32_t>& source,
                  std::vector<LandmarkGaussian<Real>>& blocks) const {
     source.resize(blocks_ * kLanesOf<Real>);
@@ -114,7 +112,7 @@ class ParticleMaps {
  private:
   struct Slot {
     std::vector<Landmark> blocks;
-    std::uint32_t generation = 0;  ///< the resampling after which the blocks are in order
+    std::uint32_t generation = 0;  ///< number of resamplings before the order of the blocks
   };
 
   void bring_up_to_date(Slot& slot) {

@@ -17,15 +17,15 @@
 
 namespace montecarta::filters {
 
-/// A detection and the landmark that a particle takes it for.
+/// A detection and the landmark with which a particle associates it.
 template <class Real>
 struct MatchedDetection {
   LandmarkGaussian<Real> landmark;
   RangeBearing<Real> seen;
-  Real matched;  ///< 1, or 0 where the particle takes it for nothing it knows
+  Real matched;  ///< 1, or 0 if the particle matches no landmark
 };
 
-/// Appends what the particles of block b, once fetched, take every match of a scan for.
+/// Appends the matches of a scan for the particles of block b, which must have been fetched.
 template <class Real, class Associating>
 void append_matched(const Associating& association, std::size_t b,
                     std::vector<MatchedDetection<Real>>& scan) {
@@ -35,15 +35,15 @@ void append_matched(const Associating& association, std::size_t b,
   }
 }
 
-/// How well a pose explains a scan.
+/// The fitness of a pose, given a scan.
 template <class Real>
 class PoseFitness {
  public:
   PoseFitness(const PoseGaussian<Real>& predicted, const SensorNoise& noise)
       : predicted_(predicted), noise_(noise) {}
 
-  /// Log of Ankishan eq. (32) read for range and bearing: sum of -1/2 nu' R^-1 nu (EQUATIONS 10).
-  /// Neither the motion nor the map's covariance counts.
+  /// Log of Ankishan eq. (32) read for range and bearing, the sum of -1/2 nu' R^-1 nu (EQUATIONS
+  /// (10.1)). It includes neither the motion nor the covariance of the map.
   Real likelihood(const BasicPose<Real>& pose, std::span<const MatchedDetection<Real>> scan) const {
     Real sum(0.0);
     for (const MatchedDetection<Real>& one : scan) {
@@ -54,8 +54,8 @@ class PoseFitness {
     return -0.5 * sum;
   }
 
-  /// Log of the pose's posterior density up to a constant: the map's covariance in the innovation,
-  /// and the prediction as prior (EQUATIONS 10).
+  /// Log of the posterior density of the pose up to a constant, with the covariance of the map in
+  /// the innovation and the prediction as prior (EQUATIONS (10.2)).
   Real posterior(const BasicPose<Real>& pose, std::span<const MatchedDetection<Real>> scan) const {
     Evidence<Real> evidence;
     for (const MatchedDetection<Real>& one : scan) {
@@ -77,13 +77,13 @@ class PoseFitness {
   SensorNoise noise_;
 };
 
-/// How the candidates of the particles of one block share registers, so that none is spent on lanes
-/// without a particle: candidate `member` of the particle in `lane` is number member * particles
-/// + lane. With all lanes alive nothing changes place.
+/// Packs the candidates of the particles of one block into full registers, so that none is spent on
+/// lanes without a particle: candidate `member` of the particle in `lane` has the number member *
+/// particles + lane. If all lanes have particles, nothing is moved.
 template <class Real>
 class PackedCandidates {
  public:
-  /// `particles` <= kLanesOf<Real> particles of `members` candidates each.
+  /// `particles` <= kLanesOf<Real> particles have `members` candidates each.
   PackedCandidates(std::size_t particles, std::size_t members)
       : particles_(particles),
         numbers_(particles * members),
@@ -92,29 +92,29 @@ class PackedCandidates {
     for (std::size_t i = 0; i < lanes_of_.size(); ++i)
       lanes_of_[i] = static_cast<std::uint32_t>(i % particles);
     for (std::size_t i = 0; i < place_of_.size(); ++i) {
-      const std::size_t member = i < numbers_ ? i / particles : 0;  // what fills up is nobody's
+      const std::size_t member = i < numbers_ ? i / particles : 0;  // the filler belongs to none
       place_of_[i] = static_cast<std::uint32_t>(member * kLanes + i % particles);
     }
   }
 
   std::size_t blocks() const { return place_of_.size() / kLanes; }
-  /// After how many packed blocks lanes belong to the same particles again.
+  /// Number of packed blocks after which lanes belong to the same particles again.
   std::size_t patterns() const { return lanes_of_.size() / kLanes; }
 
-  /// What is said of the particles of a block, as the lanes of packed block `pattern`, `pattern` +
-  /// patterns(), ... need it. `Block`: a struct of Reals.
+  /// Rearranges values of the particles of a block to the lanes of packed block `pattern`,
+  /// `pattern` + patterns(), ... `Block` is a struct of Reals.
   template <class Block>
   Block pattern_of(const Block& particles, std::size_t pattern) const {
     if (particles_ == kLanes) return particles;
     return gather_block<Real, Block>(std::span(&particles, 1), lanes_of_, pattern);
   }
-  /// Packed block q of candidates of which each holds one of every lane.
+  /// Packed block q of the candidates, each of which holds one candidate per lane.
   template <class Candidate>
   Candidate pack(std::span<const Candidate> candidates, std::size_t q) const {
     if (particles_ == kLanes) return candidates[q];
     return gather_block<Real, Candidate>(candidates, place_of_, q);
   }
-  /// Puts the numbers of packed block q where their candidates came from.
+  /// Writes the numbers of packed block q to the positions of their candidates.
   void unpack(const Real& packed, std::size_t q, std::span<Real> numbers) const {
     if (particles_ == kLanes) {
       numbers[q] = packed;
@@ -127,24 +127,24 @@ class PackedCandidates {
  private:
   static constexpr std::size_t kLanes = kLanesOf<Real>;
 
-  std::size_t particles_;                ///< lanes that hold a particle
-  std::size_t numbers_;                  ///< of candidates
+  std::size_t particles_;                ///< number of lanes that hold a particle
+  std::size_t numbers_;                  ///< number of candidates
   std::vector<std::uint32_t> lanes_of_;  ///< the particle of every packed lane, until they repeat
   std::vector<std::uint32_t> place_of_;  ///< member and lane of every packed candidate
 };
 
-/// Evolves a population for every particle of one block apart from all others, in standard
-/// deviations of the particle's refined Gaussian (EQUATIONS 10).
+/// Evolves a separate population for every particle of one block, in units of standard deviations
+/// of the particle's refined Gaussian (EQUATIONS 10).
 template <class Real>
 class OwnEvolution {
  public:
-  /// `population` members, at least seven, for each of the block's `particles`.
+  /// `population` members, at least seven, for each of the `particles` of the block.
   OwnEvolution(std::size_t particles, std::size_t population)
       : population_(population), packed_(particles, population) {}
 
-  /// The most probable pose that is found within `bounds` standard deviations, in standard
-  /// deviations of `refined`: where the particles of block b, who expected `predicted`, take the
-  /// detections for what `association` says.
+  /// The most probable pose that is found within `bounds` standard deviations, in units of the
+  /// standard deviations of `refined`, for each particle of block b. `predicted` is the prior, and
+  /// `association` has the matches of the scan.
   template <class Associating>
   std::array<Real, 3> most_probable(const Associating& association, std::size_t b,
                                     const PoseGaussian<Real>& predicted,
@@ -165,7 +165,7 @@ class OwnEvolution {
  private:
   using Candidates = std::span<const std::array<Real, 3>>;
 
-  /// What the particles of block b believe, in the order of packed candidates.
+  /// Collects Gaussians and matches of the particles of block b in the order of packed candidates.
   template <class Associating>
   void look(const Associating& association, std::size_t b, const PoseGaussian<Real>& predicted,
             const PoseGaussian<Real>& refined, const SensorNoise& noise) {
@@ -191,10 +191,10 @@ class OwnEvolution {
     }
   }
 
-  /// Of the stream, behind those that the first generation is drawn from.
+  /// First block of the stream after those used by begin().
   std::uint32_t first_block() const { return 2 * static_cast<std::uint32_t>(population_.size()); }
 
-  /// The centre, the sigma points, and draws, kept within bounds.
+  /// Fills the first generation with the centre, the sigma points and draws, clamped to the bounds.
   void begin(double bounds, const StreamIdentity& identity) {
     const Real bound(bounds);
     const auto inside = [&](const Real& e) {
@@ -214,23 +214,23 @@ class OwnEvolution {
 
   std::vector<std::array<Real, 3>> population_;
   PackedCandidates<Real> packed_;
-  std::vector<PoseFitness<Real>> fitness_;           ///< of every pattern of packed lanes
-  std::vector<PoseFactor<Real>> factors_;            ///< the same
-  std::vector<MatchedDetection<Real>> scan_;         ///< of every detection
+  std::vector<PoseFitness<Real>> fitness_;           ///< {pattern of packed lanes}
+  std::vector<PoseFactor<Real>> factors_;            ///< {pattern of packed lanes}
+  std::vector<MatchedDetection<Real>> scan_;         ///< {detection}
   std::vector<MatchedDetection<Real>> packed_scan_;  ///< {pattern, detection}
   EvolutionScratch<Real, 3> scratch_;
 };
 
 /// Evolves the cloud of predicted poses as one population (Ankishan 3.2, Fig. 1): member i is
-/// particle i, and what moves there is judged by particle i's own map. Components are those along,
-/// across and about the cloud's mean heading, so that a turned world evolves alike.
+/// particle i, and its fitness is evaluated with the map of particle i. Components are those along,
+/// across and about the mean heading of the cloud, so that a rotated world evolves alike.
 template <class Real>
 class CloudEvolution {
  public:
-  /// What fitness asks for.
+  /// The fitness: (10.1) or (10.2).
   enum class Aim { likelihood, posterior };
 
-  /// Looks at where the particles are and what each takes the detections for.
+  /// Collects the poses of the particles and their matches.
   template <class Associating>
   void gather(const Associating& association, const Weights<Real>& weights,
               const std::vector<PoseGaussian<Real>>& predicted, const SensorNoise& noise) {
@@ -248,7 +248,7 @@ class CloudEvolution {
     }
   }
 
-  /// Evolves within `bounds` standard deviations of the cloud; `poses` are where the particles end.
+  /// Evolves within `bounds` standard deviations of the cloud; writes the resulting poses.
   void evolve(Aim aim, double bounds, const EvolutionSettings& settings,
               const StreamIdentity& identity, std::vector<BasicPose<Real>>& poses) {
     const auto judge = [&](Members members, std::span<double> fitness) {
@@ -266,7 +266,7 @@ class CloudEvolution {
   static constexpr std::size_t kLanes = kLanesOf<Real>;
   using Members = std::span<const std::array<double, 3>>;
 
-  /// Behind the last particle of block b.
+  /// Index after the last particle of block b.
   std::size_t end_of(std::size_t b) const { return std::min((b + 1) * kLanes, population_.size()); }
 
   Real fitness_of_block(Aim aim, std::size_t b, const BasicPose<Real>& pose) const {
@@ -281,7 +281,7 @@ class CloudEvolution {
     return {frame_.cosine * x + frame_.sine * y, frame_.cosine * y - frame_.sine * x,
             wrap(Real(pose.heading - moments_.mean.heading))};
   }
-  /// Of the particles of block b; lanes without one stand on the mean.
+  /// Poses of the particles of block b; lanes without a particle get the mean.
   BasicPose<Real> block_of_poses(Members members, std::size_t b) const {
     std::array<Real, 3> m{Real(0.0), Real(0.0), Real(0.0)};
     for (std::size_t i = b * kLanes; i < end_of(b); ++i)
@@ -291,7 +291,7 @@ class CloudEvolution {
             wrap(Real(moments_.mean.heading + m[2]))};
   }
 
-  /// mean +- bounds standard deviations, and no member outside.
+  /// mean +- bounds standard deviations, enlarged to contain all members.
   SearchBox<double, 3> box(double bounds) const {
     const Symmetric3<double> P =
         turned(symmetric_of(moments_.covariance), Direction<double>{frame_.cosine, -frame_.sine});
@@ -310,7 +310,7 @@ class CloudEvolution {
   PoseMoments moments_;
   Direction<double> frame_{1.0, 0.0};
   std::vector<MatchedDetection<Real>> matched_;  ///< {block, detection}
-  std::vector<PoseFitness<Real>> fitness_;       ///< of each block's particles
+  std::vector<PoseFitness<Real>> fitness_;       ///< {block} of its particles
   std::vector<std::array<double, 3>> population_;
   EvolutionScratch<double, 3> scratch_;
 };

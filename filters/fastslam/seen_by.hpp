@@ -11,11 +11,11 @@
 
 #include <variant>
 
-/// How the templates of FastSLAM are told their sensor, which is chosen once a filter: the loops
-/// over particles know it when they are compiled.
+/// The sensor as an argument of the templates of FastSLAM. It is chosen once per filter, so that
+/// loops over particles are compiled for it.
 namespace montecarta::filters {
 
-/// From the pose of the vehicle to that of its sensor and back, lane by lane (EQUATIONS (2.5)).
+/// Converts the pose of the vehicle to that of its sensor and back, lane by lane (EQUATIONS (2.5)).
 class MountedPose {
  public:
   explicit MountedPose(const Mounting& mounting) : mounting_(mounting) {}
@@ -49,7 +49,7 @@ class MountedPose {
   Mounting mounting_;
 };
 
-/// `Transform` of a sensor that is mounted on the vehicle: a pose is refined as that of the sensor.
+/// `Transform` for a sensor that is mounted on the vehicle: refines the pose of the sensor.
 template <class Transform>
 class Mounted {
  public:
@@ -101,7 +101,7 @@ class Mounted {
   Transform transform_;
 };
 
-/// Range and bearing from the pose of the vehicle.
+/// Range and bearing, measured at the pose of the vehicle.
 struct AtPose {
   using Kind = RangeBearingSensor;
   explicit AtPose(const Sensor& sensor) {
@@ -119,7 +119,7 @@ struct AtPose {
   }
 };
 
-/// A sensor of any kind, anywhere on the vehicle.
+/// A sensor of any kind, mounted anywhere on the vehicle.
 template <class KindOfSensor>
 class OnMounting {
  public:
@@ -140,7 +140,7 @@ class OnMounting {
   Mounting mounting_;
 };
 
-/// Calls `make` with one of these.
+/// Calls `make` with AtPose or OnMounting for the given sensor.
 template <class Make>
 auto with_sensor(const Sensor& sensor, const Make& make) {
   if (std::holds_alternative<RangeBearingSensor>(sensor.kind) && sensor.mounting.is_none())

@@ -18,7 +18,7 @@
 
 namespace montecarta::filters {
 
-/// Values of a filter's options, checked against their Parameter beforehand.
+/// Values of a filter's options, which have been checked against their Parameter.
 class FilterOptions {
  public:
   explicit FilterOptions(std::map<std::string, std::string, std::less<>> values)
@@ -31,61 +31,61 @@ class FilterOptions {
   std::map<std::string, std::string, std::less<>> values_;
 };
 
-/// The enumerator at the place of `choice` among `choices`, which stand in the enumerators' order
-/// and hold it: an option's value was checked before.
+/// The enumerator at the position of `choice` in `choices`, which must contain it and be in the
+/// order of the enumerators.
 template <class Enumerator>
 Enumerator chosen(const std::string& choice, const std::vector<std::string>& choices) {
   return static_cast<Enumerator>(std::find(choices.begin(), choices.end(), choice) -
                                  choices.begin());
 }
 
-/// What the filter believes about vehicle and sensor (study file: [belief], default [scenario]).
+/// The model that a filter has of vehicle and sensor (study file: [belief], default [scenario]).
 struct Belief {
   Vehicle vehicle = {};
-  ControlNoise control{.sigma = {0.3, 0.05}};  ///< e.g. [m/s], [rad]
+  ControlNoise control{.sigma = {0.3, 0.05}};  ///< for instance [m/s], [rad]
   double sigma_range = 0.1;                    ///< [m]
   double sigma_bearing = 0.02;                 ///< [rad]
   double sigma_forward = 0.1;                  ///< [m] of a position in the frame of the sensor
-  double sigma_left = 0.1;                     ///< [m] likewise
-  Sensor sensor = {};                          ///< whose components say which of these four count
+  double sigma_left = 0.1;                     ///< [m] of the same
+  Sensor sensor = {};                          ///< its components select among the four above
 };
 
 enum class Association { known, nearest };
 
-/// Who decides which landmark a detection belongs to (study file: [association]; EQUATIONS 17).
+/// How detections are associated with landmarks (study file: [association]; EQUATIONS 17).
 struct AssociationSettings {
   Association kind = Association::known;
-  double gate = 5.991464547107979;  ///< chi-square of the detection: nearer than this it may match
-  double new_gate = 25.0;           ///< farther than this from every landmark: a new one
+  double gate = 5.991464547107979;      ///< D^2 below which a detection may match
+  double new_gate = 25.0;               ///< D^2 beyond which from all landmarks it is new
   double log_new_density_offset = 0.0;  ///< added to log p0 of EQUATIONS 17
-  std::size_t most_landmarks = 1000;  ///< a map that grows beyond this has run away: the run fails
+  std::size_t most_landmarks = 1000;    ///< the run fails if a map grows beyond
 };
 
-/// Everything a filter is made of.
+/// All inputs of which a filter is made.
 struct FilterSetup {
   Belief belief;
   AssociationSettings association;
   FilterOptions options;
-  std::size_t landmarks = 0;  ///< of the world; an upper bound of identities with known association
+  std::size_t landmarks = 0;  ///< in the world; an upper bound of identities with known association
 };
 
-/// A filter by name: one line in the table of factory.cpp.
+/// A filter by name, one line in the table of factory.cpp.
 struct FilterKind {
-  std::string name;           ///< as users type it
-  std::string long_name;      ///< for legends
+  std::string name;           ///< name in study files
+  std::string long_name;      ///< name in legends
   std::string source;         ///< paper and equation
-  bool has_particles = true;  ///< whether it takes the option `particles` (always listed first)
-  bool has_mixture = false;   ///< whether estimate() carries a mixture ...
-  bool has_joint = false;     ///< whether joint() gives anything
-  bool tells_rotation_information = false;  ///< where a detection fixes a landmark (ScanReport)
-  bool has_map = true;                      ///< whether it initialises landmarks
-  std::vector<Parameter> options;           ///< in the order in which they are documented
-  /// Sensors that it takes, mounted at the pose; empty: all of them, wherever they are mounted.
+  bool has_particles = true;  ///< true if it has the option `particles` (always the first)
+  bool has_mixture = false;   ///< true if estimate() reports a mixture, unless drops_mixture
+  bool has_joint = false;     ///< true if joint() reports an estimate
+  bool tells_rotation_information = false;  ///< true if it reports rotation_information
+  bool has_map = true;                      ///< true if it initialises landmarks
+  std::vector<Parameter> options;           ///< in the order of the documentation
+  /// Sensors that it supports, mounted at the pose; empty means all sensors, mounted anywhere.
   std::vector<std::string> sensors = {RangeBearingSensor::kName};
-  /// Whether it initialises landmarks itself that one detection does not fix. It then needs to know
-  /// which landmark a detection is of.
+  /// True if it initialises landmarks that one detection does not fix. It then needs known
+  /// association.
   bool delays_initialisation = false;
-  std::function<bool(const FilterOptions&)> drops_mixture = {};  ///< ... but with these options
+  std::function<bool(const FilterOptions&)> drops_mixture = {};  ///< true: these options remove it
   std::function<std::unique_ptr<SlamFilter>(const FilterSetup&)> make;
 };
 
