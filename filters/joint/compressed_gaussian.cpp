@@ -10,7 +10,7 @@
 namespace montecarta::filters {
 namespace {
 
-/// What no vector stands for, as a share of the longest column: rounding, not approximation.
+/// Length, relative to the longest column, below which a residual is dropped: it is rounding.
 constexpr double kLeftOut = 1e-14;
 
 /// Index and squared norm of the longest column.
@@ -23,7 +23,7 @@ std::pair<Eigen::Index, double> longest_of(const Eigen::MatrixXd& columns) {
   return longest;
 }
 
-/// Makes the next `Width` vectors of column `longest`, and takes their share out of all columns.
+/// Makes the next `Width` vectors from column `longest`, and subtracts their share from every one.
 template <int Width>
 void take_out(Eigen::Index longest, double squared, Eigen::MatrixXd& columns,
               Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, Width>> vectors,
@@ -41,23 +41,24 @@ void take_out(Eigen::Index longest, double squared, Eigen::MatrixXd& columns,
   }
 }
 
-/// Up to so many landmarks a map has no far ones: below, expanding costs more than is saved.
+/// Largest map without far landmarks. In smaller ones, expanding costs more than is saved.
 constexpr std::size_t kSmallMap = 100;
 
 double distance_squared(const Pose& pose, const Eigen::Vector2d& place) {
   return (place - place_of(pose)).squaredNorm();
 }
 
-/// So many landmarks around the vehicle are near: a detection costs their square, and with more of
-/// them the time is longer until another one is seen.
+/// Number of landmarks around the vehicle that are near. The cost of a detection grows with its
+/// square, but with more of them a far landmark is observed less often.
 constexpr std::size_t kNear = 30;
-/// [detections of a whole map] so much may compressing cost before the map rests, and so long.
+/// Loss by compression [detections of the whole map] after which all landmarks become near, and the
+/// number of detections for which they stay so.
 constexpr double kPatience = 150.0;
 constexpr std::size_t kRest = 5000;
 
 }  // namespace
 
-/// Gram and Schmidt, the longest of what is left first.
+/// Gram-Schmidt; the longest residual is taken first.
 void Basis::span(Eigen::MatrixXd& columns, Retraction retraction) {
   const Eigen::Index width = retraction == Retraction::invariant ? 2 : 1;
   const Eigen::Index most = std::min(width * columns.cols(), columns.rows());
@@ -174,8 +175,8 @@ CompressedGaussian::Drift CompressedGaussian::drift() const {
   return {coefficients_of_mean().norm(), std::sqrt(dot(Y.reshaped(), Y.reshaped()))};
 }
 
-/// The range alone decides: v^2 / S of it is no more than D^2, and the standard deviation of a
-/// difference no more than the sum of both.
+/// It only considers the range: v^2 / S of the range is at most D^2, and the standard deviation of
+/// a difference is at most the sum of both.
 bool CompressedGaussian::is_out_of_reach(std::size_t slot, const Drift& drift, double range,
                                          double sigmas) const {
   if (is_near(slot)) return false;
@@ -229,7 +230,7 @@ void CompressedGaussian::make_near(std::span<const std::uint32_t> slots) {
   if (!all_near || is_time_to_choose()) choose(slots);
 }
 
-// How it is expanded, and compressed around other landmarks.
+// The following functions expand the map and compress it around other landmarks.
 
 void CompressedGaussian::expand_into(MapMoments& map) const {
   if (basis_.size() > 0) write_far(map);
@@ -251,7 +252,7 @@ void CompressedGaussian::write_far(MapMoments& map) const {
   }
 }
 
-/// The near landmarks' rows and columns.
+/// Writes the rows and columns of the near landmarks.
 void CompressedGaussian::write_near(MapMoments& map) const {
   const MapMoments& local = near_.map();
   Columns2 column(rows(), 2);
@@ -271,7 +272,7 @@ void CompressedGaussian::write_near(MapMoments& map) const {
   }
 }
 
-/// W X of one near point.
+/// Writes W X for one near point.
 void CompressedGaussian::write_cross_with_far(Eigen::Index at, Columns2& column) const {
   const Eigen::MatrixXd& local = near_.map().covariance;
   const Eigen::Index k = basis_.size();
@@ -286,12 +287,12 @@ void CompressedGaussian::write_cross_with_far(Eigen::Index at, Columns2& column)
   }
 }
 
-/// Whether the near landmarks have become too many, or have rested for long enough.
+/// Returns whether there are too many near points, or all have been near for long enough.
 bool CompressedGaussian::is_time_to_choose() const {
   return rests_ ? updates_ > kRest : near_.landmarks() > most_near_;
 }
 
-/// Brings the map up to date and parts it anew.
+/// Expands the map and chooses near landmarks again.
 void CompressedGaussian::choose(std::span<const std::uint32_t> wanted) {
   if (whole_.room() < rows()) whole_.make_room(std::max(2 * whole_.room(), rows()));
   expand_into(whole_);
@@ -311,7 +312,7 @@ void CompressedGaussian::choose(std::span<const std::uint32_t> wanted) {
   updates_ = 0;
 }
 
-/// Books what compressing saved since the near ones were chosen, and that to expand a map takes
+/// Updates the balance of compression since the near landmarks were chosen. Expanding a map takes
 /// about as long as one detection for every row of stand-ins.
 void CompressedGaussian::book() {
   const double share = static_cast<double>(near_.landmarks()) / static_cast<double>(landmarks());
@@ -320,7 +321,7 @@ void CompressedGaussian::book() {
   balance_ = std::min(balance_, kPatience);
 }
 
-/// Near are from now on those that are wanted and those around the vehicle.
+/// Chooses the wanted landmarks and the nearest ones to the vehicle.
 void CompressedGaussian::choose_around(std::span<const std::uint32_t> wanted) {
   by_distance_.clear();
   for (std::uint32_t slot = 0; slot < landmarks(); ++slot) {
@@ -337,7 +338,7 @@ void CompressedGaussian::choose_around(std::span<const std::uint32_t> wanted) {
   chosen_.erase(std::unique(chosen_.begin(), chosen_.end()), chosen_.end());
 }
 
-/// Takes the near landmarks' columns out of whole_, and what near landmarks have of them.
+/// Takes the columns of the near landmarks out of whole_, and gathers their own moments.
 void CompressedGaussian::gather_near() {
   const Eigen::Index n = row_of(chosen_.size());
   columns_.resize(rows(), 3 + n);
@@ -356,7 +357,7 @@ void CompressedGaussian::gather_near() {
   }
 }
 
-/// In units of standard deviations, lest what is left out be small beside another column only.
+/// Columns are scaled by standard deviations, so that dropped residuals are small in each of them.
 void CompressedGaussian::span_far() {
   const Eigen::Index n = row_of(chosen_.size());
   sigma_.resize(3 + n);
@@ -369,7 +370,7 @@ void CompressedGaussian::span_far() {
   basis_.span(columns_, retraction_);
 }
 
-/// Puts the near landmarks and the stand-ins in the place of the map.
+/// Replaces the map of near_ by the near landmarks and the stand-ins.
 void CompressedGaussian::use_landmark_stand_ins() {
   const Eigen::Index n = row_of(chosen_.size()), k = basis_.size();
   const Eigen::MatrixXd X = basis_.coefficients() * sigma_.asDiagonal();

@@ -16,17 +16,17 @@
 
 namespace montecarta::filters {
 
-/// Columns over the points of a map as combinations of a few orthonormal vectors: columns = vectors
-/// coefficients, to rounding.
+/// Represents columns over the points of a map by a few orthonormal vectors: columns = vectors
+/// coefficients, up to rounding.
 class Basis {
  public:
-  /// Spans `columns`, which are used up. With the invariant error the basis is closed under a
-  /// quarter turn of every point: it has vectors q and J q side by side, and the pair of
-  /// coefficients of a column turns as the column's points do.
+  /// Computes the basis of `columns`, which are overwritten. For the invariant error the basis is
+  /// closed under a quarter turn of every point: vectors come in pairs q and J q, and the pair of
+  /// coefficients of a column turns like the points of the column.
   void span(Eigen::MatrixXd& columns, Retraction retraction);
   void clear() { size_ = 0; }
 
-  /// How many vectors: an even number, in the worst case two for every column.
+  /// Number of vectors, which is even and at most two for every column.
   Eigen::Index size() const { return size_; }
   auto vectors() const { return vectors_.leftCols(size_); }
   auto coefficients() const { return coefficients_.topRows(size_); }
@@ -38,16 +38,17 @@ class Basis {
   Eigen::Index size_ = 0;
 };
 
-/// A JointGaussian whose detections cost what the vehicle's neighbourhood costs, however large the
-/// map: the compressed filter of Guivant and Nebot, exact for both errors. A small map is one
-/// neighbourhood, and so is for a while one where compressing has not paid.
+/// A JointGaussian with detections that cost as much as the landmarks near the vehicle require,
+/// however large the map: the compressed filter of Guivant and Nebot (EQUATIONS (15.7)), exact for
+/// both errors. All landmarks are near in a small map, and for a while if compression has not paid
+/// off.
 ///
-/// Far landmarks change only through their covariances C with the pose and the near landmarks, so
-/// all that happens to them while the same ones are near lies in the span W of C: their mean is m +
-/// W z, their covariance P + W Y W', that with pose and near landmarks W X. And z, X and Y obey the
-/// rules that a JointGaussian has for a point that is not seen. So they are points of one,
-/// stand-ins for the far landmarks, which begin with z = 0, Y = 0 and W X = C. The invariant error
-/// turns points: there W is closed under a quarter turn, and coefficients turn in pairs.
+/// Far landmarks change only through their covariances C with the pose and the near landmarks. As
+/// long as the same landmarks are near, every change of the far ones lies in the span W of C: their
+/// mean is m + W z, their covariance P + W Y W', and that with pose and near landmarks W X. The
+/// updates of z, X and Y are those of an unobserved point in a JointGaussian. So they are stored in
+/// it as additional points, stand-ins for the far landmarks, which begin with z = 0, Y = 0, W X =
+/// C. For the invariant error, W is closed under a quarter turn, and coefficients turn in pairs.
 class CompressedGaussian {
  public:
   using Trouble = JointGaussian::Trouble;
@@ -56,8 +57,7 @@ class CompressedGaussian {
 
   void start(const Pose& start);
 
-  /// Takes these moments of the pose and of all its landmarks, in the order of their slots, for
-  /// its own.
+  /// Replaces the moments of the pose and of all landmarks, in the order of their slots.
   void replace(const PoseMoments& pose, const MapMoments& map);
 
   const PoseMoments& pose() const { return near_.pose(); }
@@ -75,20 +75,20 @@ class CompressedGaussian {
   LandmarkEstimate landmark(std::size_t slot) const;
   Eigen::Vector2d mean_of(std::size_t slot) const;
   PointMoments point(std::size_t slot) const;
-  /// The whole map, landmarks in the order of their slots.
+  /// Moments of the whole map, landmarks in the order of their slots.
   MapMoments map() const;
-  /// Pose and landmarks together, likewise.
+  /// Moments of the pose and all landmarks, in the same order.
   JointEstimate joint() const;
   bool is_near(std::size_t slot) const { return point_of_[slot] != kFar; }
 
-  /// Bounds on what has become of a far landmark, for a unit of its `Far::share`.
+  /// Bounds on the change of a far landmark since it became far, per unit of its `Far::share`.
   struct Drift {
     double mean;      ///< [m]
     double variance;  ///< [m^2]
   };
   Drift drift() const;
-  /// Whether no detection up to `range` [m] from the pose can come within so many standard
-  /// deviations of a landmark, of which it is far. Quicker than looking at it.
+  /// Returns whether no detection up to `range` [m] from the pose can lie within `sigmas` standard
+  /// deviations of a far landmark. This is cheaper than look_at().
   bool is_out_of_reach(std::size_t slot, const Drift& drift, double range, double sigmas) const;
   [[nodiscard]] Trouble look_at(std::size_t slot, ExpectedObservation& expected,
                                 const std::optional<ObservationPoint>& at = {}) const;
@@ -97,9 +97,9 @@ class CompressedGaussian {
     return near_.look_by_sigma_points(point(slot), expected);
   }
 
-  /// Makes landmarks near, and others around the vehicle with them; does nothing where they are.
+  /// Makes the given landmarks near, with others around the vehicle, unless they are near already.
   void make_near(std::span<const std::uint32_t> slots);
-  /// JointGaussian::update_with() of a landmark that is near.
+  /// JointGaussian::update_with() for a landmark that is near.
   Trouble update_with(std::size_t slot, const Eigen::Vector2d& detected, int iterations,
                       ExpectedObservation& expected) {
     assert(is_near(slot));
@@ -110,7 +110,7 @@ class CompressedGaussian {
   void centre_on_pose();
   void append(const Eigen::Vector2d& detection,
               const Eigen::Vector2d& behind = Eigen::Vector2d::Zero());
-  /// JointGaussian::append(), replace() and covariance_with() of points that are near.
+  /// JointGaussian::append(), replace() and covariance_with() for points that are near.
   void append(NewPoint point);
   void replace(std::size_t slot, NewPoint point);
   Matrix7 covariance_with(std::size_t first, std::size_t second) const;
@@ -120,7 +120,7 @@ class CompressedGaussian {
 
   static constexpr std::uint32_t kFar = std::numeric_limits<std::uint32_t>::max();
 
-  /// Of a landmark, when the near ones were chosen.
+  /// A landmark at the time when the near ones were chosen.
   struct Far {
     double share = 0.0;     ///< norm of its rows of the basis
     double variance = 0.0;  ///< [m^2] trace of its covariance
@@ -151,18 +151,18 @@ class CompressedGaussian {
   void use_landmark_stand_ins();
   void note_far();
 
-  JointGaussian near_;  ///< pose; near landmarks, stand-ins, landmarks initialised since
+  JointGaussian near_;  ///< pose, near landmarks, stand-ins, and landmarks initialised later
   Retraction retraction_;
-  std::vector<std::uint32_t> point_of_;  ///< {slot} in near_, or kFar
-  std::size_t most_near_;                ///< beyond so many points it is time to choose anew
-  std::size_t updates_ = 0;              ///< detections used since the near ones were chosen
-  double balance_ = 0.0;        ///< [detections of the whole map] what compressing has saved
-  bool rests_ = false;          ///< it saves nothing here: all landmarks are near for a while
+  std::vector<std::uint32_t> point_of_;  ///< {slot} its point in near_, or kFar
+  std::size_t most_near_;                ///< number of points beyond which to choose again
+  std::size_t updates_ = 0;              ///< number of detections since the near ones were chosen
+  double balance_ = 0.0;        ///< saved by compression, in units of detections of the whole map
+  bool rests_ = false;          ///< all landmarks are near, since compression does not pay off
   Eigen::Index stand_ins_ = 0;  ///< their first row in near_
   Basis basis_;                 ///< W, over the rows of whole_
-  MapMoments whole_;         ///< of far landmarks, when the near ones were chosen; else not in use
-  std::vector<Far> far_;     ///< {slot}
-  Eigen::MatrixXd columns_;  ///< scratch: C, each column over its standard deviation sigma_
+  MapMoments whole_;            ///< moments of far landmarks when the near ones were chosen
+  std::vector<Far> far_;        ///< {slot}
+  Eigen::MatrixXd columns_;  ///< scratch: C, each column divided by its standard deviation sigma_
   Eigen::VectorXd sigma_;    ///< scratch
   MapMoments gathered_;      ///< scratch: the near landmarks
   std::vector<std::pair<double, std::uint32_t>> by_distance_;  ///< scratch: [m^2], slot

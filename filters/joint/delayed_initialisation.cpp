@@ -11,10 +11,10 @@
 namespace montecarta::filters {
 namespace {
 
-/// [m] of the point on a ray from the sensor; no result depends on it but by rounding.
+/// Distance [m] from the sensor to the point on a ray; it only affects rounding.
 constexpr double kRayLength = 1.0;
 
-/// Derivatives by (pose, first, second) side by side.
+/// Derivatives by (pose, first, second), side by side.
 Eigen::Matrix<double, 2, 7> stacked(const TriangulatedLandmark& landmark) {
   Eigen::Matrix<double, 2, 7> J;
   J << landmark.by_pose, landmark.by_first, landmark.by_second;
@@ -41,7 +41,7 @@ void DelayedInitialisation::add_points_of(std::int32_t identity,
   if (waiting->kept.points > 1) slots.push_back(waiting->kept.second);
 }
 
-/// The place of the sensor.
+/// The position of the sensor.
 NewPoint DelayedInitialisation::sensor_point(const Pose& pose) const {
   const Mounting& mounting = belief_.sensor.mounting;
   return {.mean = place_of(mounting.pose_of(pose)),
@@ -49,7 +49,7 @@ NewPoint DelayedInitialisation::sensor_point(const Pose& pose) const {
           .noise = Eigen::Matrix2d::Zero()};
 }
 
-/// A point on the ray that the sensor sees.
+/// A point on the ray of a bearing.
 NewPoint DelayedInitialisation::ray_point(const Pose& pose, double bearing) const {
   const Direction<double> ray =
       direction_of(belief_.sensor.mounting.pose_of(pose).heading + bearing);
@@ -62,7 +62,7 @@ NewPoint DelayedInitialisation::ray_point(const Pose& pose, double bearing) cons
   return point;
 }
 
-/// The landmark as the kept points and, of bearings, this detection place it.
+/// The landmark that the kept points and, for bearings, this detection fix.
 std::optional<TriangulatedLandmark> DelayedInitialisation::Pair::landmark(double side) const {
   const Pose& pose = gaussian.pose().mean;
   const Mounting& mounting = by.belief_.sensor.mounting;
@@ -74,7 +74,7 @@ std::optional<TriangulatedLandmark> DelayedInitialisation::Pair::landmark(double
   } else if (kept.points > 1) {
     landmark = crossing_of_circles(first, gaussian.landmark(kept.second).mean, kept.ranges, side,
                                    by.variance_);
-  } else {  // as if the sensor were the second point
+  } else {  // the sensor takes the place of the second point
     landmark = crossing_of_circles(first, place_of(mounting.pose_of(pose)),
                                    {kept.ranges(0), detection[0]}, side, by.variance_);
     if (!landmark) return landmark;
@@ -89,7 +89,7 @@ bool DelayedInitialisation::Pair::cross_well() const {
   const auto at = landmark(1.0);
   if (!at) return false;
   Eigen::Matrix<double, 2, 7> J = stacked(*at);
-  J.middleCols<2>(3) -= Eigen::Matrix2d::Identity();  // from the first point
+  J.middleCols<2>(3) -= Eigen::Matrix2d::Identity();  // relative to the first point
   const std::uint32_t second = kept.points > 1 ? kept.second : kept.first;
   const Eigen::Matrix2d spread =
       J * gaussian.covariance_with(kept.first, second) * J.transpose() + at->noise;
@@ -99,7 +99,7 @@ bool DelayedInitialisation::Pair::cross_well() const {
   return crosses_well(spread, nearest, by.waiting_.of_bearings(), by.variance_);
 }
 
-/// D^2 of a range, were the landmark on that side.
+/// D^2 of a range for a landmark on that side.
 double DelayedInitialisation::Pair::squared_distance(double side) const {
   const double never = std::numeric_limits<double>::infinity();
   const auto at = landmark(side);
@@ -122,7 +122,7 @@ bool DelayedInitialisation::can_advance(const CompressedGaussian& gaussian,
   return waiting_.can_advance(waiting, Pair{*this, gaussian, waiting.kept, detection});
 }
 
-/// In the place of a point that nothing is kept in, if there is one.
+/// Adds a point, or reuses a free one.
 std::uint32_t DelayedInitialisation::add(CompressedGaussian& gaussian, const NewPoint& point) {
   if (free_.empty()) {
     gaussian.append(point);
@@ -135,7 +135,7 @@ std::uint32_t DelayedInitialisation::add(CompressedGaussian& gaussian, const New
   return slot;
 }
 
-/// Two points are kept at most: one bearing gives both, and the second is used as it is.
+/// At most two points are kept: one bearing gives both, and finish() uses the second directly.
 void DelayedInitialisation::keep(CompressedGaussian& gaussian, Kept& kept,
                                  const Detection& detection) {
   if (kept.points > 1) return;

@@ -11,32 +11,32 @@
 
 namespace montecarta::filters {
 
-/// Initialises landmarks that one detection does not fix from two (EQUATIONS 15). What a waiting
-/// landmark was seen by is kept in the Gaussian as points of the map: the place of the sensor and,
-/// of a bearing, a point on the ray; so it stays correlated with pose and map, and every detection
-/// is used once.
+/// Initialises landmarks that one detection does not fix from two detections (EQUATIONS 15). The
+/// first detections of a waiting landmark are kept in the Gaussian as points of the map: the
+/// position of the sensor and, for a bearing, a point on the ray. They remain correlated with pose
+/// and map, and every detection is used only once.
 class DelayedInitialisation {
  public:
   explicit DelayedInitialisation(const Belief& belief);
   void clear();
 
-  /// Points of the Gaussian that are kept for a landmark, to make near.
+  /// Adds the points of the Gaussian that are kept for a landmark, for the caller to make near.
   void add_points_of(std::int32_t identity, std::vector<std::uint32_t>& slots) const;
-  /// Whether this detection can take its landmark a step further. The points are near.
+  /// Returns whether this detection advances its landmark by one stage. Kept points must be near.
   bool can_advance(const CompressedGaussian& gaussian, const Detection& detection);
-  /// Takes it that step, where can_advance(). Returns the point that now is the landmark, if any.
-  /// The points of other landmarks may be far then.
+  /// Advances the landmark by one stage, if can_advance(). Returns the point that is now the
+  /// landmark, if any. Afterwards the points of other landmarks may be far.
   std::optional<std::uint32_t> advance(CompressedGaussian& gaussian, const Detection& detection);
 
  private:
   struct Kept {
-    std::size_t points = 0;                            ///< of two
+    std::size_t points = 0;                            ///< number of kept points, at most two
     std::uint32_t first = 0, second = 0;               ///< points of the Gaussian
     Eigen::Vector2d ranges = Eigen::Vector2d::Zero();  ///< [m] of the first two detections
   };
   using Waiting = WaitingLandmarks<Kept>::Waiting;
 
-  /// A detection beside what is kept of its landmark.
+  /// A detection together with the kept points of its landmark.
   struct Pair {
     const DelayedInitialisation& by;
     const CompressedGaussian& gaussian;
@@ -56,9 +56,9 @@ class DelayedInitialisation {
   std::uint32_t finish(CompressedGaussian& gaussian, Waiting& waiting, const Detection& detection);
 
   Belief belief_;
-  double variance_;  ///< of the one component
+  double variance_;  ///< variance of the one component
   WaitingLandmarks<Kept> waiting_;
-  std::vector<std::uint32_t> free_;  ///< points of the Gaussian that nothing is kept in any more
+  std::vector<std::uint32_t> free_;  ///< points of the Gaussian that can be reused
 };
 
 }  // namespace montecarta::filters

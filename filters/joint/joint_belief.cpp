@@ -7,7 +7,7 @@
 namespace montecarta::filters {
 namespace {
 
-/// Landmarks that are reserved before any is seen; identities may be sparse.
+/// Number of landmarks for which memory is reserved at first; identities may be sparse.
 constexpr std::size_t kRoomAtFirst = 300;
 
 bool stands_still(const MotionIncrement& motion) {
@@ -86,13 +86,13 @@ void JointBelief::update_with(const MotionIncrement& motion, Scan scan) {
     if (association_.pairings()[k].kind == PairingKind::matched) {
       update_with(k, scan[k]);
     } else {
-      outcome_.log_likelihood += association_.unmatched_log_density();  // as every belief does
+      outcome_.log_likelihood += association_.unmatched_log_density();  // the same for every belief
     }
   }
   if (is_robocentric()) frame_.centre(gaussian_);
 }
 
-/// Readies the Gaussian for the landmarks that the scan shows.
+/// Makes the landmarks that the scan matches near.
 void JointBelief::select_matched() {
   matched_.clear();
   for (const Pairing& pairing : association_.pairings()) {
@@ -101,7 +101,7 @@ void JointBelief::select_matched() {
   gaussian_.make_near(matched_);
 }
 
-/// Finds out which detections of this scan can take the initialisation of a landmark further.
+/// Determines which detections of this scan can advance the initialisation of a landmark.
 void JointBelief::find_advancing(Scan scan) {
   advancing_.assign(scan.size(), false);
   matched_.clear();
@@ -146,7 +146,7 @@ void JointBelief::initialise_landmarks(Scan scan) {
 
 PoseMoments JointBelief::pose_after(const MotionIncrement& motion) const {
   if (linearisation_ == Linearisation::estimate && moments_ == Moments::map)
-    return gaussian_.pose_after(motion);  // asked at every control
+    return gaussian_.pose_after(motion);  // called at every control step
   const PoseMoments pose = gaussian_.pose_after(linearised(motion));
   if (is_robocentric()) return frame_.in_map(pose);
   return moments_ == Moments::map ? pose : pushed(pose);
@@ -171,7 +171,7 @@ JointEstimate JointBelief::joint(std::size_t landmarks) const {
   return joint;
 }
 
-/// [m] from the pose to the farthest place that the scan may be of; 0 where it saw nothing.
+/// Greatest distance [m] from the pose of any position that the scan may show; 0 for an empty scan.
 double JointBelief::reach_of(Scan scan) const {
   double range = 0.0;
   for (const Detection& detection : scan) {
@@ -181,8 +181,8 @@ double JointBelief::reach_of(Scan scan) const {
   return range + sensor_.mounting.distance();
 }
 
-/// Landmark by landmark, since what is expected of one serves all detections. What is beyond both
-/// gates of all of them need not be looked at.
+/// Loops over landmarks first, since the prediction of one serves all detections. Landmarks beyond
+/// both gates of all detections are skipped.
 void JointBelief::pair_nearest(Scan scan) {
   searches_.assign(scan.size(), {});
   const double range = reach_of(scan);
@@ -204,7 +204,7 @@ void JointBelief::pair_nearest(Scan scan) {
   association_.pair_nearest(scan, searches_);
 }
 
-/// False where the landmark gives nothing to weigh by; a fault is counted.
+/// Predicts the detection of a landmark; returns false if it cannot be used. A fault is counted.
 bool JointBelief::look_at(std::size_t slot, ExpectedObservation& expected) {
   const auto trouble = regresses() ? gaussian_.look_by_sigma_points(slot, expected)
                                    : gaussian_.look_at(slot, expected, observation_point(slot));
@@ -212,8 +212,8 @@ bool JointBelief::look_at(std::size_t slot, ExpectedObservation& expected) {
   return trouble == CompressedGaussian::Trouble::none;
 }
 
-/// Counted is the innovation against the belief before the detection; weighed by is that of the
-/// last linearisation, with which the density of the detection is that of Laplace.
+/// Reports the innovation before the detection, while the log-likelihood is that of the last
+/// linearisation, which is Laplace's approximation.
 void JointBelief::update_with(std::size_t k, const Detection& detection) {
   const std::size_t slot = point_of_[association_.pairings()[k].landmark];
   const Eigen::Vector2d detected = vector_of(detection);
@@ -235,7 +235,7 @@ void JointBelief::update_with(std::size_t k, const Detection& detection) {
       log_normal_density(distance, L, static_cast<double>(components_of(sensor_).size()));
 }
 
-// Where it linearises, and what its linearised system tells of what none can observe.
+// The following functions choose the points of linearisation.
 
 Eigen::Vector2d JointBelief::shift_of_points() const {
   if (linearisation_ != Linearisation::constrained) return Eigen::Vector2d::Zero();
@@ -265,8 +265,8 @@ std::optional<ObservationPoint> JointBelief::observation_point(std::size_t slot)
   return ObservationPoint{points_.pose(), points_.landmark(slot)};
 }
 
-/// The invariant error's turn is about the estimate, to which it is carried after every detection;
-/// of errors relative to the vehicle a turn of the whole turns the frame of the map alone.
+/// The rotation of the invariant error is about the estimate, since its covariance is transformed
+/// after every detection. With errors relative to the vehicle, it turns only the frame of the map.
 ObservationPoint JointBelief::rotation_point(std::size_t slot) const {
   if (retraction_ == Retraction::invariant || is_robocentric() || !fixes_landmark(sensor_))
     return {gaussian_.pose().mean, gaussian_.mean_of(slot)};

@@ -11,16 +11,16 @@
 namespace montecarta::filters {
 namespace {
 
-/// In which respects the filters of one joint Gaussian differ.
+/// The settings in which the filters with one joint Gaussian differ.
 struct JointFilterSettings {
   Retraction retraction = Retraction::additive;
-  int iterations = 0;  ///< of the linearisation, after the first
+  int iterations = 0;  ///< number of linearisations after the first
   Motion motion = Motion::linearised;
-  Moments moments = Moments::map;  ///< of what it reports
+  Moments moments = Moments::map;  ///< those that it reports
   Linearisation linearisation = Linearisation::estimate;
 };
 
-/// A filter of one Gaussian over the pose and the map: EKF-SLAM and its kind (EQUATIONS 15).
+/// A filter with one Gaussian over pose and map: EKF-SLAM and its variants (EQUATIONS 15).
 class JointFilter final : public SlamFilter {
  public:
   JointFilter(const FilterSetup& setup, const JointFilterSettings& settings)
@@ -88,7 +88,7 @@ class JointFilter final : public SlamFilter {
   bool is_at_scan_ = false;
   PoseMoments pose_at_scan_;  ///< before new landmarks were initialised
   ScanReport report_;
-  MixtureInnovations<double> innovations_;  ///< of a mixture of one
+  MixtureInnovations<double> innovations_;  ///< innovations of a mixture of one
 };
 
 Parameter iterations_option() {
@@ -109,7 +109,7 @@ std::unique_ptr<SlamFilter> one_gaussian(const FilterSetup& setup, Retraction re
                                                            .moments = moments_of(setup.options)});
 }
 
-/// EKF-SLAM that linearises elsewhere than at the estimate.
+/// EKF-SLAM that linearises at other points than the estimate.
 template <Linearisation kLinearisation>
 std::unique_ptr<SlamFilter> linearised_elsewhere(const FilterSetup& setup) {
   return std::make_unique<JointFilter>(setup,
@@ -138,7 +138,7 @@ FilterKind joint_kind(const char* name, const char* long_name, const char* sourc
           .make = make};
 }
 
-/// Of all sensors.
+/// A kind that supports all sensors.
 FilterKind one_gaussian_kind(const char* name, const char* long_name, const char* source,
                              std::unique_ptr<SlamFilter> make(const FilterSetup&)) {
   FilterKind kind =

@@ -8,18 +8,18 @@
 
 namespace montecarta::filters {
 
-/// EKF-SLAM: one Gaussian over the pose and all landmarks (EQUATIONS 15), detections
-/// used one by one in the order of the scan.
+/// EKF-SLAM: one Gaussian over the pose and all landmarks (EQUATIONS 15). Detections are used one
+/// by one in the order of the scan.
 std::unique_ptr<SlamFilter> make_ekf_slam(const FilterSetup& setup);
 
-/// The same with the error of Barrau, which pose and map share as one rigid motion: what nobody
-/// can observe, where the map lies in the world, no detection is taken to tell.
+/// EKF-SLAM with the invariant error of Barrau, in which pose and map move as one rigid body, so
+/// that detections give no information about the unobservable pose of the whole in the world.
 std::unique_ptr<SlamFilter> make_riekf_slam(const FilterSetup& setup);
 
-/// Their lines in the table of filters.
+/// Lines for the table of filters.
 FilterKind ekf_slam_kind();
 FilterKind riekf_slam_kind();
-/// EKF-SLAM whose linearised system has the right unobservable directions (EQUATIONS 15).
+/// EKF-SLAM with the right unobservable directions of the linearised system (EQUATIONS 15).
 FilterKind fej_ekf_slam_kind();
 FilterKind oc_ekf_slam_kind();
 /// EKF-SLAM in the frame of the vehicle.

@@ -16,16 +16,15 @@ Eigen::Matrix2d observation_noise(const Belief& belief) {
   return deviations_of(belief.sensor, belief).cwiseAbs2().asDiagonal();
 }
 
-/// How a motion moves a vehicle that heads along `heading`, in the map frame.
+/// Displacement by a motion of a vehicle with direction `heading`, in the map frame.
 Point way_of(const MotionIncrement& motion, const Direction<double>& heading) {
   return in_world(heading, motion.pose().x, motion.pose().y);
 }
 
-/// An iterated detection is settled when the innovation changes by less than this, in its own
-/// standard deviations.
+/// Iterations stop if the innovation changes by less than this, in units of its standard deviation.
 constexpr double kConverged = 1e-4;
 
-/// L^-T; of the triangular factor, two divisions: S itself is never inverted.
+/// L^-T. For the triangular factor it takes two divisions; S itself is never inverted.
 Eigen::Matrix2d inverse_transposed(const InnovationFactor& L) {
   Eigen::Matrix2d inverse;
   inverse << 1.0 / L.l00, -L.l10 / (L.l00 * L.l11), 0.0, 1.0 / L.l11;
@@ -35,14 +34,14 @@ Eigen::Matrix2d inverse_transposed(const InnovationFactor& L) {
 using Matrix3 = Eigen::Matrix3d;
 using Matrix35 = Eigen::Matrix<double, 3, 5>;
 
-/// What observations and motions depend on nonlinearly has three dimensions at most.
+/// The nonlinear arguments of observations and motions have at most three dimensions.
 SigmaRule rule() { return unscented_rule(3.0, 1.0, 0.0, 0.0); }
 
-/// [m^2, rad^2] added to variances, so that what is known exactly has a slope.
+/// [m^2, rad^2] added to variances, so that slopes exist for quantities that are known exactly.
 constexpr double kSmallest = 1e-14;
 
-/// By (x, y, heading, landmark's x, y): landmark less place, along and across the line of sight,
-/// and heading. With these axes a turned world gives the turned estimate.
+/// Derivative, by (x, y, heading, landmark's x, y), of the vector to the landmark along and across
+/// the line of sight, and of the heading. Its axes make the estimate rotate with the world.
 Matrix35 line_of_sight(const Eigen::Vector2d& away) {
   const double range = away.norm();
   Eigen::Vector2d ray = Eigen::Vector2d::UnitX();
@@ -56,17 +55,17 @@ Matrix35 line_of_sight(const Eigen::Vector2d& away) {
   return T;
 }
 
-/// Pairs of sigma points, less the centre: half their difference, and their mean.
+/// Images of pairs of sigma points minus that of the centre: half their difference, and their mean.
 struct Differences {
   Matrix23 odd, even;
 };
 
-/// Covariance of the mean's shift and of what is not linear.
+/// Covariance of the nonlinear part, including that of the shift of the mean.
 Eigen::Matrix2d curvature(const Matrix23& even, const Eigen::Vector2d& shift) {
   return rule().symmetric * even * even.transpose() + rule().shift * shift * shift.transpose();
 }
 
-/// `observe` of the centre moved by the columns of `root`; nullopt where a landmark is too near.
+/// Calls `observe` for the steps along the columns of `root`; nullopt if a landmark is too near.
 template <class Observe>
 std::optional<Differences> differences(const Observe& observe, const Eigen::Vector2d& centre,
                                        const Matrix3& root, const Wraps& wraps) {
@@ -140,7 +139,7 @@ PoseMoments JointGaussian::pose_after(const LinearisedMotion& motion) const {
   return moved;
 }
 
-/// Asked at every control: in one piece.
+/// Flattened, since it is called at every control step.
 [[gnu::flatten]] PoseMoments JointGaussian::pose_after(const MotionIncrement& motion) const {
   return pose_after(linearised(motion));
 }
@@ -213,8 +212,8 @@ void JointGaussian::replace(std::size_t slot, const NewPoint& point) {
   mirror_packs(map_.covariance, rows());
 }
 
-/// Linear in what it is made of, so its covariances are sums of theirs. Rows of `seen_`: with the
-/// points that there are.
+/// The point is linear in its arguments, so its covariances are sums of theirs. The rows of `seen_`
+/// are its covariances with the existing points.
 void JointGaussian::put(Eigen::Index row, const NewPoint& point) {
   const Matrix23& Gx = point.by_pose;
   auto columns = seen_.topRows(rows());
@@ -255,10 +254,9 @@ Matrix7 JointGaussian::covariance_with(std::size_t first, std::size_t second) co
   return P;
 }
 
-// How a detection changes it.
+// The following functions update by a detection.
 
-/// The step that the detection makes the pose and its landmark take, before any retraction: P H'
-/// S^-1 v.
+/// The step of the pose and of the landmark, before any retraction: P H' S^-1 v.
 JointGaussian::Step JointGaussian::step_of(std::size_t slot, const ExpectedObservation& expected,
                                            const Eigen::Vector2d& innovation) const {
   const Eigen::Index row = row_of(slot);
@@ -271,7 +269,7 @@ JointGaussian::Step JointGaussian::step_of(std::size_t slot, const ExpectedObser
           mixed * pose + map_.covariance.block<2, 2>(row, row) * landmark};
 }
 
-/// Linearises anew where `step` leads; the Gaussian still belongs to the present estimate.
+/// Linearises again after `step`; the Gaussian still belongs to the estimate before it.
 JointGaussian::Trouble JointGaussian::linearise_after(const Step& step, std::size_t slot,
                                                       ExpectedObservation& expected) const {
   const Eigen::Index row = row_of(slot);
@@ -292,7 +290,7 @@ JointGaussian::Trouble JointGaussian::linearise_after(const Step& step, std::siz
                            .factor = {},
                            .ahead = {},
                            .wraps = wraps_};
-  if (retraction_ == Retraction::invariant) {  // the error at the estimate before
+  if (retraction_ == Retraction::invariant) {  // the error is that at the estimate before
     next.pose_jacobian.col(2) += next.pose_jacobian.leftCols<2>() * quarter_turned(pose_way) +
                                  next.landmark_jacobian * quarter_turned(landmark_way);
   }
@@ -333,7 +331,7 @@ void JointGaussian::whiten_gain(std::size_t slot, const ExpectedObservation& exp
   gain.noalias() += seen_.topRows(rows()).lazyProduct(landmark_white);
 }
 
-/// m <- m + W white, P <- P - W W', and the error carried along.
+/// m <- m + W white, P <- P - W W', and the transformation of the error.
 void JointGaussian::condition(const Eigen::Vector2d& white) {
   pose_.covariance -= gain_pose_ * gain_pose_.transpose();
   mirror_lower(pose_.covariance);
@@ -346,7 +344,7 @@ void JointGaussian::condition(const Eigen::Vector2d& white) {
   change_map(retraction_ == Retraction::invariant && carry_error(pose_step));
 }
 
-/// Moves the estimate; returns how far the vehicle's place moved.
+/// Moves the estimate; returns the displacement of the vehicle.
 Eigen::Vector2d JointGaussian::step(const Eigen::Vector2d& white) {
   const Eigen::Vector3d pose_step = gain_pose_ * white;
   Eigen::Vector2d moved = pose_step.head<2>();
@@ -363,12 +361,12 @@ Eigen::Vector2d JointGaussian::step(const Eigen::Vector2d& white) {
   return moved;
 }
 
-/// P <- T P T', T = I + d e_heading' with d = J step: the covariance, in the map frame, of an
-/// invariant error that stayed while the estimate moved by `pose_step` and map_step_. Of the
-/// landmarks' share, P + d c' + c d' + d h d' with c and h the covariances with the heading, it
-/// leaves two squares for change_map(), which are exactly symmetric: P - b b' + a a' with b = c /
-/// sqrt(h), a = b + sqrt(h) d. Neither is larger than P, so nothing cancels. False where the
-/// heading is certain and nothing is to be done.
+/// P <- T P T', T = I + d e_heading' with d = J step (EQUATIONS (15.5)): the covariance, in the map
+/// frame, of an invariant error after the estimate moved by `pose_step` and map_step_. The block of
+/// the landmarks is P + d c' + c d' + d h d', where c and h are the covariances with the heading.
+/// It is left to change_map() as two squares, which are exactly symmetric: P - b b' + a a' with b =
+/// c / sqrt(h) and a = b + sqrt(h) d. Neither is larger than P, so that nothing cancels. Returns
+/// false if the heading is certain and nothing changes.
 bool JointGaussian::carry_error(const Eigen::Vector2d& pose_step) {
   const double variance = pose_.covariance(2, 2);
   if (!(variance > 0.0)) return false;
@@ -412,8 +410,8 @@ void JointGaussian::centre_on_pose() {
   map_.cross.topRows(rows()).setZero();
 }
 
-/// The landmarks' covariance, in one pass: P <- P - W W' and, where the error was carried, - b b' +
-/// a a'. Whole packs in one order: exactly symmetric.
+/// Updates the covariance of the landmarks in one pass: P <- P - W W' and, if carry_error() changed
+/// it, - b b' + a a'. Whole packs in one order keep it exactly symmetric.
 void JointGaussian::change_map(bool carries_error) {
   for (Eigen::Index j = 0; j < row_of(n_landmarks_); ++j) {
     const Eigen::Index first = pack_of(j), count = rows() - first;

@@ -7,12 +7,12 @@
 
 namespace montecarta::filters {
 
-// Rows of a map's covariance are stored in packs of eight, and those behind the last landmark are
-// zero. Of the symmetric matrix are kept, column by column, the pack on the diagonal and all below.
+// Rows of the covariance of a map are stored in packs of eight, and those after the last landmark
+// are zero. Each column of the symmetric matrix is stored from the pack on the diagonal downwards.
 
 inline constexpr Eigen::Index kPack = 8;
 
-/// Rows that so many landmarks take.
+/// Number of rows for `n_landmarks` landmarks.
 inline Eigen::Index packed(std::size_t n_landmarks) {
   return (2 * static_cast<Eigen::Index>(n_landmarks) + kPack - 1) / kPack * kPack;
 }
@@ -20,7 +20,7 @@ inline Eigen::Index packed(std::size_t n_landmarks) {
 /// First row of a landmark.
 inline Eigen::Index row_of(std::size_t slot) { return 2 * static_cast<Eigen::Index>(slot); }
 
-/// First row of the pack that `row` is in: the first that is kept of this column.
+/// First row of the pack that contains `row`, the first that is stored of this column.
 inline Eigen::Index pack_of(Eigen::Index row) { return row / kPack * kPack; }
 
 /// Makes the upper triangle equal to the lower one.
@@ -28,14 +28,14 @@ inline void mirror_lower(Eigen::Matrix3d& P) {
   P.triangularView<Eigen::StrictlyUpper>() = P.transpose();
 }
 
-/// Likewise in the diagonal's pack, after the two rows from `row` on were written up to the
+/// Mirrors the pack on the diagonal after the two rows from `row` on were written up to the
 /// diagonal.
 inline void mirror_pack(Eigen::MatrixXd& map, Eigen::Index row) {
   const Eigen::Index first = pack_of(row);
   map.block(first, row, row - first, 2) = map.block(row, first, 2, row - first).transpose();
 }
 
-/// Likewise in all packs of so many rows.
+/// Mirrors all packs of the first `rows` rows.
 inline void mirror_packs(Eigen::MatrixXd& map, Eigen::Index rows) {
   for (Eigen::Index first = 0; first < rows; first += kPack) {
     auto pack = map.block<kPack, kPack>(first, first);
@@ -43,14 +43,14 @@ inline void mirror_packs(Eigen::MatrixXd& map, Eigen::Index rows) {
   }
 }
 
-/// Covariance of two points, by their first rows.
+/// Covariance of two points, given by their first rows.
 inline Eigen::Matrix2d covariance_of(const Eigen::MatrixXd& map, Eigen::Index row,
                                      Eigen::Index column) {
   if (row >= column) return map.block<2, 2>(row, column);
   return map.block<2, 2>(column, row).transpose();
 }
 
-/// The two columns of a landmark in full.
+/// Copies the two full columns of a landmark.
 template <class Columns>
 void copy_columns(const Eigen::MatrixXd& map, Eigen::Index row, Eigen::Index rows,
                   Columns& columns) {
@@ -59,7 +59,7 @@ void copy_columns(const Eigen::MatrixXd& map, Eigen::Index row, Eigen::Index row
   columns.middleRows(first, rows - first) = map.block(first, row, rows - first, 2);
 }
 
-/// Writes them below the diagonal.
+/// Writes the two columns of a landmark, on and below the diagonal.
 template <class Columns>
 void write_columns(Eigen::MatrixXd& map, Eigen::Index row, Eigen::Index rows,
                    const Columns& columns) {
@@ -67,15 +67,15 @@ void write_columns(Eigen::MatrixXd& map, Eigen::Index row, Eigen::Index rows,
   map.block(row, row, rows - row, 2) = columns.middleRows(row, rows - row);
 }
 
-/// The moments of a map's points, in packs; rows behind the last point are zero.
+/// The moments of the points of a map, in packs; rows after the last point are zero.
 struct MapMoments {
   Eigen::VectorXd mean;                            ///< [m]
   Eigen::Matrix<double, Eigen::Dynamic, 3> cross;  ///< covariance with (x, y, heading)
-  Eigen::MatrixXd covariance;                      ///< lower triangle and the diagonal's packs
+  Eigen::MatrixXd covariance;                      ///< lower triangle and the packs on the diagonal
 
   Eigen::Index room() const { return mean.size(); }
 
-  /// At least `rows` fit; the new ones are zero.
+  /// Makes room for at least `rows` rows; new ones are zero.
   void make_room(Eigen::Index rows) {
     const Eigen::Index held = room(), more = rows - held;
     if (more <= 0) return;
@@ -94,7 +94,7 @@ struct MapMoments {
     covariance.topLeftCorner(rows, rows).setZero();
   }
 
-  /// Copies so many rows of `other`, for which there is room.
+  /// Copies the first `rows` rows of `other`, for which there must be room.
   void take(const MapMoments& other, Eigen::Index rows) {
     mean.head(rows) = other.mean.head(rows);
     cross.topRows(rows) = other.cross.topRows(rows);
@@ -102,7 +102,7 @@ struct MapMoments {
   }
 };
 
-/// One point of a map.
+/// The moments of one point of a map.
 struct PointMoments {
   Eigen::Vector2d mean;
   Eigen::Matrix<double, 2, 3> cross;

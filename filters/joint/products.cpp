@@ -6,7 +6,7 @@
 namespace montecarta::filters {
 namespace {
 
-constexpr Eigen::Index kGrain = 8;  // of add_product()
+constexpr Eigen::Index kGrain = 8;  // rows of a block in add_product()
 constexpr Eigen::Index kBlock = 32;
 
 }  // namespace

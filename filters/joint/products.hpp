@@ -11,9 +11,9 @@
 #include <cmath>
 #include <cstddef>
 
-/// Products of matrices with many rows. Eigen is built without its own vectorisation, since the
-/// order of its sums and what it fuses depend on the width of a register; these have one order on
-/// every processor and use all of it.
+/// Products of matrices with many rows. Eigen is built without its own vectorisation, since there
+/// the order of sums and the use of fused products depend on the width of a register. These
+/// functions have the same order on every processor and use whole registers.
 namespace montecarta::filters {
 
 using ConstMatrix = Eigen::Ref<const Eigen::MatrixXd>;
@@ -35,7 +35,7 @@ inline double dot(const ConstVector& a, const ConstVector& b) {
   return sum;
 }
 
-/// c += A b, in the order of A's columns.
+/// c += A b, in the order of the columns of A.
 inline void add_combination(const ConstMatrix& A, const ConstVector& b,
                             Eigen::Ref<Eigen::VectorXd> c) {
   const Eigen::Index n = A.rows();
@@ -57,13 +57,13 @@ inline void add_combination(const ConstMatrix& A, const ConstVector& b,
   }
 }
 
-/// Which part of a product is computed.
+/// The part of a product that is computed.
 enum class Part {
   whole,
   lower  ///< the lower triangle, and all of the 8 x 8 blocks on the diagonal
 };
 
-/// Eight rows of N columns, from `c` on: C += A B', A packed.
+/// C += A B' for eight rows of N columns that begin at `c`, with A packed.
 template <std::size_t N>
 [[gnu::always_inline]] inline void add_block(const double* a, const Eigen::MatrixXd& factors,
                                              Eigen::Index j, double* c, Eigen::Index stride) {
@@ -71,7 +71,7 @@ template <std::size_t N>
   for (std::size_t q = 0; q < N; ++q) {
     sum[q] = Lanes::load_unaligned(c + static_cast<Eigen::Index>(q) * stride);
   }
-  const double* factor = factors.data() + j * factors.rows();  // there may be none
+  const double* factor = factors.data() + j * factors.rows();  // there may be no row
   for (Eigen::Index k = 0; k < factors.rows(); ++k) {
     const Lanes row = Lanes::load_unaligned(a + static_cast<Eigen::Index>(Lanes::kSize) * k);
     for (std::size_t q = 0; q < N; ++q) {
@@ -83,14 +83,14 @@ template <std::size_t N>
   }
 }
 
-/// C += A B', rows of C a multiple of eight, columns of two. What is summed together in registers
-/// changes no sum: each runs in the order of A's columns.
+/// C += A B'. The number of rows of C must be a multiple of eight, that of columns a multiple of
+/// two. Blocking does not change any sum: each is summed in the order of the columns of A.
 inline void add_product(const ConstMatrix& A, const ConstMatrix& B, Part part,
                         Eigen::Ref<Eigen::MatrixXd> C) {
   constexpr Eigen::Index size = Lanes::kSize, blocks_together = 8;
   expect(C.rows() % size == 0 && C.cols() % 2 == 0, "rows are multiples of 8, columns of 2");
   const Eigen::MatrixXd factors = B.transpose();
-  Eigen::MatrixXd panel(size, blocks_together * A.cols());  // rows of A, eight by eight
+  Eigen::MatrixXd panel(size, blocks_together * A.cols());  // rows of A, packed by eight
   for (Eigen::Index first = 0; first < C.rows(); first += blocks_together * size) {
     const Eigen::Index blocks = std::min(blocks_together, (C.rows() - first) / size);
     for (Eigen::Index b = 0; b < blocks; ++b) {
@@ -112,14 +112,14 @@ inline void add_product(const ConstMatrix& A, const ConstMatrix& B, Part part,
   }
 }
 
-/// A = L L' of a large symmetric matrix, block by block: nearly all of it is add_product(), which
-/// uses whole registers and has the same bits on every processor.
+/// A = L L' for a large symmetric matrix, block by block. Nearly all work is in add_product(),
+/// which uses whole registers and gives the same bits on every processor.
 class BlockedCholesky {
  public:
-  /// Of the lower triangle of A; false where it is not positive definite.
+  /// Factorises A, given its lower triangle; returns false if A is not positive definite.
   [[nodiscard]] bool factorise(const ConstMatrix& A);
 
-  /// Rows of A.
+  /// Number of rows of A.
   Eigen::Index rows() const { return n_; }
 
   /// b <- A^-1 b.
@@ -130,7 +130,7 @@ class BlockedCholesky {
 
  private:
   Eigen::Index n_ = 0;
-  Eigen::MatrixXd L_;  ///< and, above its blocks on the diagonal, what A had there
+  Eigen::MatrixXd L_;  ///< above the blocks on the diagonal it still contains A
 };
 
 }  // namespace montecarta::filters

@@ -9,11 +9,11 @@
 namespace montecarta::filters {
 namespace {
 
-// In the order of the enumerators.
+// The order is that of the enumerators.
 const std::vector<std::string> kMoments{"map", "pushed"};
 
-/// Gauss-Hermite with nine nodes, of a standard normal; those that are not negative. The weights
-/// are of both signs together.
+/// The nonnegative nodes of Gauss-Hermite quadrature with nine nodes for a standard normal
+/// variable. Each weight is the sum of those of both signs.
 constexpr std::array<std::pair<double, double>, 5> kTurnNodes{
     {{0.0, 0.40634920634920635},
      {1.0232556637891326, 0.4881950057898787},
@@ -21,11 +21,11 @@ constexpr std::array<std::pair<double, double>, 5> kTurnNodes{
      {3.2054290028564703, 0.005578282642463529},
      {4.512745863399783, 4.469168801549348e-05}}};
 
-/// Averages over a turn a ~ N(0, variance); V = along I + across J is exponential_jacobian(a).
+/// Averages over a rotation by a ~ N(0, variance); exponential_jacobian(a) is along I + across J.
 struct TurnAverages {
-  double cosine;           ///< E cos a; E (a sin a) is the variance times that
-  double cosine_variance;  ///< of cos a
-  double sine_variance;    ///< of sin a
+  double cosine;           ///< E cos a; E (a sin a) is this times the variance
+  double cosine_variance;  ///< variance of cos a
+  double sine_variance;    ///< variance of sin a
   double along_squared = 0.0;
   double across_squared = 0.0;
 
@@ -40,7 +40,7 @@ struct TurnAverages {
     }
   }
 
-  /// Covariance of two points, of which k and l are the regressions on the turn.
+  /// Covariance of two points; k and l are their regressions on the rotation.
   Eigen::Matrix2d covariance(const Eigen::Matrix2d& P, const Eigen::Vector2d& k,
                              const Eigen::Vector2d& l, double variance) const {
     const Eigen::Matrix2d J = quarter_turn();
@@ -51,7 +51,7 @@ struct TurnAverages {
   }
 };
 
-/// Of point i: the vehicle, then the landmarks.
+/// First row of point i: the vehicle, then the landmarks.
 Eigen::Index row_of_point(Eigen::Index i) { return i == 0 ? 0 : 1 + 2 * i; }
 
 }  // namespace

@@ -11,18 +11,18 @@
 
 namespace montecarta::filters {
 
-/// How a Kalman step moves the estimate, and so what its covariance is the covariance of.
+/// How a Kalman step moves the estimate, which defines the error that has the covariance.
 enum class Retraction {
   additive,  ///< EKF-SLAM: truth = estimate + error
-  invariant  ///< RI-EKF-SLAM: truth = exp(error) estimate, one turn of pose and map together
+  invariant  ///< RI-EKF-SLAM: truth = exp(error) estimate, which moves pose and map together
 };
 
-/// V of the exponential of SE(2), Barrau sec. III: exp(turn, rho) = (R(turn), V(turn) rho). Where
-/// the additive step moves a point by e, the invariant one moves it by V e, since V J = R - I.
+/// V of the exponential of SE(2), Barrau sec. III: exp(turn, rho) = (R(turn), V(turn) rho). For a
+/// step e, additive errors move a point by e and invariant errors by V e, since V J = R - I.
 inline Eigen::Matrix2d exponential_jacobian(double turn) {
   const double half = 0.5 * turn;
   const double half_sine = std::sin(half);
-  const bool small = std::abs(half) < 1e-4;  // there sin(half) / half is 1 - half^2 / 6 to 1e-17
+  const bool small = std::abs(half) < 1e-4;  // there sin(half) / half = 1 - half^2 / 6 to 1e-17
   const double chord = small ? 1.0 - half * half / 6.0 : half_sine / half;
   const double along = chord * std::cos(half);  // sin(turn) / turn
   const double across = chord * half_sine;      // (1 - cos(turn)) / turn
@@ -31,7 +31,7 @@ inline Eigen::Matrix2d exponential_jacobian(double turn) {
   return V;
 }
 
-/// J: a turn to the left by 90 degrees; J p is how far p moves when the plane turns by 1 rad.
+/// J, the rotation by 90 degrees; J p is the displacement of p per rad of a rotation of the plane.
 inline Eigen::Matrix2d quarter_turn() { return Eigen::Matrix2d{{0.0, -1.0}, {1.0, 0.0}}; }
 
 /// J p.
@@ -42,23 +42,23 @@ inline void apply(const Eigen::Matrix2d& A, Eigen::Ref<Eigen::Matrix2Xd> vectors
   for (auto vector : vectors.colwise()) vector = (A * vector).eval();
 }
 
-/// Which mean and covariance a joint Gaussian reports (option `moments`).
+/// The mean and covariance that a joint Gaussian reports (option `moments`).
 enum class Moments {
-  map,    ///< its own, in map coordinates
-  pushed  ///< those in map coordinates of a Gaussian in the right-invariant chart (EQUATIONS 19)
+  map,    ///< those of the Gaussian in map coordinates
+  pushed  ///< those that follow if it is Gaussian in the right-invariant chart (EQUATIONS 19)
 };
 
-/// The option `moments` of a filter, `map` by default, and what a user chose.
+/// The option `moments` of a filter.
 Parameter moments_option(const char* fallback);
 Moments moments_of(const FilterOptions& options);
 
-/// Rows x, y, heading [m, m, rad], then x and y of any number of landmarks [m]: takes `mean` and
-/// `covariance` for those of the right-invariant error about the estimate, truth = exp(error)
-/// estimate, and replaces them by the mean and covariance that follow for the rows themselves. All
-/// points turn with the heading, which alone is not linear. NaN of landmarks never seen stays NaN.
+/// Takes `mean` and `covariance` for those of the right-invariant error about the estimate, truth =
+/// exp(error) estimate, and replaces them by those in map coordinates (EQUATIONS (19.3), (19.4)).
+/// Rows are x, y, heading [m, m, rad], then x and y of any number of landmarks [m]. Points rotate
+/// with the heading, the only nonlinear component. NaN of landmarks never observed stays NaN.
 void push_moments(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance);
 
-/// The same of a pose, and of a point of a map whose heading has that variance [rad^2].
+/// The same for a pose, and for one point of a map with the given variance [rad^2] of the heading.
 PoseMoments pushed(const PoseMoments& pose);
 LandmarkEstimate pushed(const PointMoments& point, double heading_variance);
 

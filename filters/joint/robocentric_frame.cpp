@@ -39,7 +39,7 @@ void RobocentricFrame::centre(CompressedGaussian& gaussian) {
   mirror_lower(covariance_);
 }
 
-/// From the axes of the Gaussian to those of the map.
+/// Rotation from the axes of the Gaussian to those of the map.
 Eigen::Matrix2d RobocentricFrame::to_map() const {
   Eigen::Matrix2d R;
   R << axis_.transpose(), (quarter_turn() * axis_).transpose();
@@ -86,7 +86,7 @@ LandmarkEstimate RobocentricFrame::in_map(const CompressedGaussian& gaussian,
 
 void RobocentricFrame::put_in_map(JointEstimate& joint) const {
   const Eigen::Index n = joint.mean.size();
-  Eigen::RowVector4d heading;  // of the frame, by its two points
+  Eigen::RowVector4d heading;  // derivative of the frame's heading by its points
   heading << -(quarter_turn() * axis_).transpose(), (quarter_turn() * axis_).transpose();
   Eigen::MatrixXd T = Eigen::MatrixXd::Identity(n, n);
   const auto put = [&](Eigen::Index row) {

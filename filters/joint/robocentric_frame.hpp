@@ -9,23 +9,23 @@
 
 namespace montecarta::filters {
 
-/// The frame of the map as a part of the state, for a Gaussian whose errors are relative to the
-/// vehicle (EQUATIONS (15.16); Castellanos, Martinez-Cantin, Tardos, Neira, RAS 2007). Two points
-/// of the Gaussian, slots 0 and 1, are the place where the vehicle started and one 1 m beside it;
-/// the second differs from the first by the frame's heading alone.
+/// The frame of the map as a part of the state, for a Gaussian with errors relative to the vehicle
+/// (EQUATIONS (15.16); Castellanos, Martinez-Cantin, Tardos, Neira, RAS 2007). Two points, in slots
+/// 0 and 1, represent it: the start of the vehicle and a point 1 m beside it. The error of the
+/// second differs from that of the first only by the heading of the frame.
 class RobocentricFrame {
  public:
-  /// Adds those two points to `gaussian`, which is empty and stands at `start`.
+  /// Adds the two points to `gaussian`, which must be empty and at `start`.
   void start(const Pose& start, CompressedGaussian& gaussian);
-  /// The detections of a scan are used: from now on errors are relative to this pose, which has
-  /// none. All landmarks are near then.
+  /// Makes errors relative to the present pose, after the detections of a scan have been used. All
+  /// landmarks become near.
   void centre(CompressedGaussian& gaussian);
 
-  /// Moments in the map, in the first order, of a pose whose errors are independent of the frame's.
+  /// Moments in the map, to first order, of a pose with errors independent of those of the frame.
   PoseMoments in_map(const PoseMoments& pose) const;
-  /// Of a landmark; the Gaussian was just centred.
+  /// Moments in the map of a landmark; `gaussian` must just have been centred.
   LandmarkEstimate in_map(const CompressedGaussian& gaussian, std::size_t slot) const;
-  /// Of pose and all points; the rows of slots 0 and 1 lose their meaning.
+  /// Transforms the pose and all points to the map; the rows of slots 0 and 1 are no longer valid.
   void put_in_map(JointEstimate& joint) const;
 
  private:
@@ -34,10 +34,10 @@ class RobocentricFrame {
   Eigen::Matrix<double, 2, 3> by_frame(const Eigen::Vector2d& place) const;
 
   Eigen::Vector2d start_;       ///< [m] in the map
-  Eigen::Vector2d origin_;      ///< [m] the first point
-  Eigen::Vector2d axis_;        ///< from it to the second
+  Eigen::Vector2d origin_;      ///< [m] the point in slot 0
+  Eigen::Vector2d axis_;        ///< unit vector from it to the other point
   double heading_ = 0.0;        ///< [rad] of the axis
-  Eigen::Matrix3d covariance_;  ///< of origin and heading
+  Eigen::Matrix3d covariance_;  ///< covariance of origin and heading
 };
 
 }  // namespace montecarta::filters
