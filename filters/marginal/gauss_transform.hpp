@@ -15,8 +15,8 @@
 
 namespace montecarta::filters {
 
-/// Clusters by farthest points (Gonzalez 1985), at most twice as wide as the narrowest there are:
-/// every new centre is the point farthest from those before it.
+/// Clusters by farthest points (Gonzalez 1985): every new centre is the point farthest from those
+/// before it. The radius is at most twice the least possible one.
 template <std::size_t D>
 class FarthestPoints {
  public:
@@ -27,14 +27,14 @@ class FarthestPoints {
         owners_(points.size(), 0),
         distances_(points.size(), std::numeric_limits<double>::infinity()) {}
 
-  /// Adds a centre; false where all points are centres already.
+  /// Adds a centre; returns false if all points are centres already.
   bool grow() {
     if (centres_.size() == points_.size()) return false;
     const auto farthest = std::max_element(distances_.begin(), distances_.end());
     add(static_cast<std::uint32_t>(farthest - distances_.begin()));
     return true;
   }
-  /// Back to the first `count` centres.
+  /// Keeps only the first `count` centres.
   void shrink(std::size_t count) {
     const std::vector<std::uint32_t> kept(centres_.begin(),
                                           centres_.begin() + static_cast<std::ptrdiff_t>(count));
@@ -44,9 +44,9 @@ class FarthestPoints {
   }
 
   std::span<const std::uint32_t> centres() const { return centres_; }
-  /// {point} the number of its centre.
+  /// {point} index of its centre.
   std::span<const std::uint32_t> owners() const { return owners_; }
-  /// No point is farther from its centre.
+  /// Greatest distance of a point from its centre.
   double radius() const {
     return std::sqrt(*std::max_element(distances_.begin(), distances_.end()));
   }
@@ -72,9 +72,9 @@ class FarthestPoints {
   std::vector<double> distances_;  ///< squared, to the nearest centre
 };
 
-/// Calls visit(dimension, parent) for every monomial of degree 1 to `order` - 1 in D variables:
-/// monomial number t (from 1, in the order of the calls) is monomial `parent` times one of the
-/// variables. `same` calls in a row tell how often that variable is in it.
+/// Calls visit(dimension, parent, same) for every monomial of degree 1 to `order` - 1 in D
+/// variables: monomial t (from 1, in the order of the calls) is monomial `parent` times variable
+/// `dimension`. The power of that variable in it is that in `parent` plus one if `same`, else one.
 template <std::size_t D, class Visit>
 void for_each_monomial(int order, const Visit& visit) {
   std::array<std::size_t, D + 1> heads{};
@@ -99,8 +99,8 @@ std::size_t monomials_below(int order) {
   return static_cast<std::size_t>(std::lround(count));
 }
 
-/// Fewest degrees with which the series of a source at distance `radius` from its centre is exact
-/// to `tolerance` at every target up to `reach` from the centre, if at most `most` (EQUATIONS 13).
+/// Least degree for which the series of a source at distance `radius` from its centre errs by at
+/// most `tolerance` at every target up to `reach` from it; nullopt beyond `most` (EQUATIONS 13).
 inline std::optional<int> series_order(double radius, double reach, double tolerance, int most) {
   double factor = 1.0;  // (2 a b)^p / p!
   for (int p = 1; p <= most; ++p) {
@@ -121,8 +121,8 @@ class GaussTransform {
   using Charges = std::array<double, N>;
   static constexpr int kMostOrder = 30;
 
-  /// False where the sources are too scattered for series to pay: sum directly then. `clusters`:
-  /// how many, or 0 for as many as are cheapest.
+  /// Returns false if the sources are too scattered for series to be faster than direct sums.
+  /// `clusters` is their number, or 0 for the cheapest number.
   [[nodiscard]] bool build(std::span<const Place> sources, std::span<const Charges> charges,
                            double tolerance, std::size_t clusters = 0) {
     reach_ = std::sqrt(std::log(1.0 / tolerance));
@@ -135,7 +135,7 @@ class GaussTransform {
   std::size_t clusters() const { return centres_.size(); }
   int order() const { return order_; }
 
-  /// The N sums at one target, or at one for each lane.
+  /// The N sums at one target, or at one target per lane.
   template <class Real>
   std::array<Real, N> operator()(const std::array<Real, D>& target,
                                  std::vector<Real>& monomials) const {
@@ -161,7 +161,7 @@ class GaussTransform {
   }
 
  private:
-  /// Takes more and more clusters while the work, as estimated, falls.
+  /// Increases the number of clusters as long as the estimated work decreases.
   bool choose(std::span<const Place> sources, double tolerance, std::size_t most, bool is_free) {
     FarthestPoints<D> points(sources);
     double least_work = std::numeric_limits<double>::infinity();
@@ -195,7 +195,7 @@ class GaussTransform {
     std::size_t t = 1;
     for_each_monomial<D>(order_, [&](std::size_t, std::size_t parent, bool again) {
       powers[t] = again ? powers[parent] + 1.0 : 1.0;
-      constants[t] = 2.0 * constants[parent] / powers[t];  // 2^|a| / a!, never overflowing
+      constants[t] = 2.0 * constants[parent] / powers[t];  // 2^|a| / a!, without overflow
       ++t;
     });
     for (std::size_t j = 0; j < sources.size(); ++j) {
@@ -223,13 +223,13 @@ class GaussTransform {
     });
   }
 
-  double reach_ = 0.0;   ///< r: a source farther than this from a target is nothing
-  double radius_ = 0.0;  ///< r_x: no source is farther from its centre
+  double reach_ = 0.0;   ///< r: a source farther than this from a target is neglected
+  double radius_ = 0.0;  ///< r_x: greatest distance of a source from its centre
   int order_ = 1;        ///< p
   std::size_t terms_ = 1;
-  std::vector<std::uint32_t> centres_;  ///< sources that are centres
-  std::vector<std::uint32_t> owners_;   ///< {source} its centre's number
-  std::vector<Place> sites_;            ///< of the centres
+  std::vector<std::uint32_t> centres_;  ///< indices of sources that are centres
+  std::vector<std::uint32_t> owners_;   ///< {source} index of its centre
+  std::vector<Place> sites_;            ///< positions of the centres
   std::vector<Charges> coefficients_;   ///< {centre, monomial}
 };
 

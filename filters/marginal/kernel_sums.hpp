@@ -19,23 +19,23 @@
 
 namespace montecarta::filters {
 
-/// One Gaussian of a mixture over poses, ready to be evaluated anywhere: its mean, and the factor W
-/// with W' W = C^-1 / 2, so that N(s; m, C) is proportional to exp(-|W (s - m)|^2). Every kernel
-/// has a factor of its own: C turns with the heading.
+/// One Gaussian of a mixture over poses in a form that is quickly evaluated: its mean, and the
+/// factor W with W' W = C^-1 / 2, so that N(s; m, C) is proportional to exp(-|W (s - m)|^2). Every
+/// kernel has its own factor, since C rotates with the heading.
 template <std::size_t N>
 struct PoseKernel {
-  double x, y, heading;           ///< mean; heading relative to the mixture's reference
+  double x, y, heading;           ///< mean; heading relative to the reference of the mixture
   double xx, yx, yy, hx, hy, hh;  ///< W, lower triangular
-  std::array<double, N> height;   ///< weights times the peak of the density, of the N sums
+  std::array<double, N> height;   ///< weight times peak density, for each of the N sums
 };
 
-/// N mixtures with common kernels and weights of their own: Sum_j weights_n[j] N(s; m_j, C_j). The
-/// sums share the exponential, which is what they cost.
+/// N mixtures with common kernels and different weights: Sum_j weights_n[j] N(s; m_j, C_j). The
+/// sums share the exponential, which dominates the cost.
 template <std::size_t N>
 class PoseKernels {
  public:
-  /// Kernels from the first `weights[0].size()` particles' Gaussians, which must be positive
-  /// definite. Throws where one has no density.
+  /// Makes kernels from the Gaussians of the first `weights[0].size()` particles, which must be
+  /// positive definite. Throws std::runtime_error if one has no density.
   template <class Real>
   void assign(std::span<const PoseGaussian<Real>> gaussians,
               const std::array<std::span<const double>, N>& weights) {
@@ -53,11 +53,11 @@ class PoseKernels {
   }
 
   std::span<const PoseKernel<N>> kernels() const { return kernels_; }
-  /// log of what a height of one stands for.
+  /// Log of the density that a height of one represents.
   double log_peak() const { return log_peak_; }
-  /// Headings are kept relative to this one [rad].
+  /// Reference [rad] of the headings of the kernels.
   double reference() const { return reference_; }
-  /// No kernel's heading is farther from the reference [rad].
+  /// Greatest distance [rad] of the heading of a kernel from the reference.
   double half_range() const { return half_range_; }
 
  private:
@@ -99,10 +99,10 @@ class PoseKernels {
   double half_range_ = 0.0;
 };
 
-/// Whether headings are so near each other that their differences cannot wrap.
+/// `near` means that headings are so close to each other that their differences cannot wrap.
 enum class Headings { near, anywhere };
 
-/// |W (s - m)|^2 for one kernel; the target's heading is relative to the kernels' reference.
+/// Squared length of W (s - m), with the heading of `target` relative to the kernels' reference.
 template <Headings headings, class Real, std::size_t N>
 [[gnu::always_inline]] inline Real half_squared_distance(const BasicPose<Real>& target,
                                                          const PoseKernel<N>& kernel) {
@@ -115,7 +115,7 @@ template <Headings headings, class Real, std::size_t N>
   return fma(a, a, fma(b, b, c * c));
 }
 
-/// Adds to each sum what `kernels` contribute at the target, in units of the peak.
+/// Adds the contribution of `kernels` at the target to each sum, in units of the peak.
 template <Headings headings, class Real, std::size_t N>
 void add_kernels(const BasicPose<Real>& target, std::span<const PoseKernel<N>> kernels,
                  std::array<Real, N>& sums) {
@@ -127,8 +127,7 @@ void add_kernels(const BasicPose<Real>& target, std::span<const PoseKernel<N>> k
   sums = total;
 }
 
-/// Logs of the sums where they are too small for linear numbers: each with a peak of its own taken
-/// out.
+/// Logs of sums that underflow: the largest exponent of each is factored out.
 template <class Real, std::size_t N>
 std::array<Real, N> log_sums_of_far_kernels(const BasicPose<Real>& target,
                                             std::span<const PoseKernel<N>> kernels) {
@@ -146,7 +145,7 @@ std::array<Real, N> log_sums_of_far_kernels(const BasicPose<Real>& target,
   return logs;
 }
 
-/// Logs of linear sums; where one is so small that terms were lost, they are summed again.
+/// Logs of linear sums. Sums too small for that are computed by log_sums_of_far_kernels().
 template <class Real, std::size_t N>
 std::array<Real, N> logs_of(const std::array<Real, N>& sums, const BasicPose<Real>& target,
                             const PoseKernels<N>& mixture) {
@@ -165,13 +164,13 @@ std::array<Real, N> logs_of(const std::array<Real, N>& sums, const BasicPose<Rea
   return logs;
 }
 
-/// The target in the kernels' terms.
+/// The target with its heading relative to the reference of the kernels.
 template <class Real, std::size_t N>
 BasicPose<Real> relative_to(const PoseKernels<N>& mixture, const BasicPose<Real>& target) {
   return {target.x, target.y, wrap(Real(target.heading - Real(mixture.reference())))};
 }
 
-/// Calls with Headings::near where neither kernels nor targets can wrap, else Headings::anywhere.
+/// Calls `call` with Headings::near if no heading can wrap, else with Headings::anywhere.
 template <class Real, std::size_t N, class Call>
 auto by_headings(const PoseKernels<N>& mixture, const BasicPose<Real>& relative, const Call& call) {
   const Real& h = relative.heading;
@@ -181,7 +180,7 @@ auto by_headings(const PoseKernels<N>& mixture, const BasicPose<Real>& relative,
   return call.template operator()<Headings::near>();
 }
 
-/// log Sum_j weights_n[j] N(target; m_j, C_j) for every n, kernel by kernel in index order.
+/// log Sum_j weights_n[j] N(target; m_j, C_j) for every n, summed in the order of the kernels.
 template <class Real, std::size_t N>
 std::array<Real, N> direct_log_sums(const BasicPose<Real>& target, const PoseKernels<N>& mixture) {
   const BasicPose<Real> relative = relative_to(mixture, target);
@@ -193,14 +192,14 @@ std::array<Real, N> direct_log_sums(const BasicPose<Real>& target, const PoseKer
   return logs_of(sums, relative, mixture);
 }
 
-/// Mixtures summed by the improved fast Gauss transform (Havangi, appendix; EQUATIONS 13). It takes
-/// one covariance for all kernels, that of the kernel at the mean heading: exact only if all
-/// headings agree. Where a sum is not far above the error it is summed directly.
+/// Mixtures summed by the improved fast Gauss transform (Havangi, appendix; EQUATIONS 13). It uses
+/// one covariance for all kernels, that of the kernel at the mean heading, so it is only exact if
+/// all headings agree. A sum that is not far above the error is summed directly.
 template <std::size_t N>
 class IfgtSums {
  public:
-  /// `first` is the first particle's kernel, of which all others are turned copies. False where a
-  /// transform does not pay.
+  /// `first` is the kernel of the first particle; all others must be rotated copies of it. Returns
+  /// false if a transform is not faster.
   [[nodiscard]] bool build(const PoseKernels<N>& mixture, const PoseGaussian<double>& first,
                            double tolerance) {
     if (mixture.half_range() >= 0.5 * kPi) return false;
@@ -248,7 +247,7 @@ class IfgtSums {
     return common.kernels()[0];
   }
 
-  /// W (pose - the common kernel's place), headings relative to the mixture's reference.
+  /// W (pose - mean of the common kernel), with headings relative to the reference of the mixture.
   template <class Real>
   std::array<Real, 3> whitened(const BasicPose<Real>& pose) const {
     const Real dx = pose.x - Real(common_.x), dy = pose.y - Real(common_.y);
@@ -260,20 +259,19 @@ class IfgtSums {
   PoseKernel<1> common_{};
   std::vector<std::array<double, 3>> sites_;
   std::vector<std::array<double, N>> charges_;
-  std::array<double, N> least_{};  ///< sums below this are not to be trusted
+  std::array<double, N> least_{};  ///< {sum} least sum that is accurate enough
   GaussTransform<3, N> transform_;
 };
 
 /// log Sum_j weights_n[j] N(target; gaussian_j) for blocks of targets and every n (EQUATIONS 13),
-/// by the method asked for. The transform is there because the paper has it: direct sums are
-/// faster, and its error is of the wrong kind for weights
-/// (tests/filters/marginal/marginal_benchmark.cpp).
+/// by the given method. The transform is offered because the paper has it. Direct sums are faster,
+/// and an absolute error is unsuitable for weights (tests/filters/marginal/marginal_benchmark.cpp).
 template <class Real, std::size_t N>
 class KernelSummation {
  public:
   KernelSummation(KernelSums method, double tolerance) : asked_(method), tolerance_(tolerance) {}
 
-  /// Prepares the method; where the transform does not pay the direct one is used.
+  /// Prepares the method; direct sums are used if the transform is not faster.
   void assign(std::span<const PoseGaussian<Real>> gaussians,
               const std::array<std::span<const double>, N>& weights) {
     kernels_.assign(gaussians, weights);
@@ -284,7 +282,7 @@ class KernelSummation {
   }
   KernelSums used() const { return used_; }
 
-  /// logs[b] of targets[b]. Blocks are independent of each other.
+  /// Writes logs[b] for targets[b]. Blocks are independent of each other.
   void sum(const StepContext& context, std::span<const BasicPose<Real>> targets,
            std::span<std::array<Real, N>> logs) {
     over_blocks(context, targets.size(),
@@ -301,7 +299,7 @@ class KernelSummation {
 
   template <class Body>
   void over_blocks(const StepContext& context, std::size_t blocks, const Body& body) {
-    constexpr std::size_t kPairsPerTask = 1U << 14;  // some 20 us
+    constexpr std::size_t kPairsPerTask = 1U << 14;  // about 20 us
     const std::size_t pairs_per_block = kLanes * kernels_.kernels().size();
     const std::size_t per_task = std::max<std::size_t>(1, kPairsPerTask / pairs_per_block);
     const BlockTasks<Real> tasks(blocks, per_task);
@@ -313,18 +311,18 @@ class KernelSummation {
   double tolerance_;
   PoseKernels<N> kernels_;
   IfgtSums<N> ifgt_;
-  std::vector<std::vector<Real>> scratch_;  ///< of each task, for the transform
+  std::vector<std::vector<Real>> scratch_;  ///< {task} for the transform
 };
 
-/// The factor by which the weights of a marginal filter differ from the likelihood: Sum_j w_j
-/// N(s_i; prior_j) / Sum_j lambda_j N(s_i; proposal_j) (EQUATIONS (12.4)).
+/// The ratio of the weights of a marginal filter to the likelihood: Sum_j w_j N(s_i; prior_j) /
+/// Sum_j lambda_j N(s_i; proposal_j) (EQUATIONS (12.4)).
 template <class Real>
 class KernelRatios {
  public:
   using Gaussians = std::vector<PoseGaussian<Real>>;
 
-  /// With prior kernels the sums share everything but the weights; if those are equal, too, the
-  /// ratio is one wherever the targets are, and nothing is summed.
+  /// With prior kernels both sums differ only in the weights. If the weights are equal, too, the
+  /// ratio is one for any target, and nothing is summed.
   explicit KernelRatios(const MarginalSettings& settings)
       : is_shared_(settings.kernel == Kernel::prior),
         is_one_(is_shared_ && settings.choice == Choice::by_weight),
@@ -335,7 +333,7 @@ class KernelRatios {
         log_numerators_(logs_.size()),
         log_denominators_(logs_.size()) {}
 
-  /// `proposal` is `priors` itself with prior kernels.
+  /// With prior kernels, `proposal` must be `priors`.
   void assign(const Gaussians& priors, const Gaussians& proposal, const Weights<Real>& w,
               const Weights<Real>& lambda) {
     if (is_one_) return;
@@ -363,7 +361,7 @@ class KernelRatios {
   }
 
  private:
-  /// Kernels refined by a scan have covariances of their own, which the transform cannot take.
+  /// Kernels refined by a scan have different covariances, for which the transform cannot be used.
   static KernelSums without_transform(KernelSums method) {
     return method == KernelSums::ifgt ? KernelSums::direct : method;
   }

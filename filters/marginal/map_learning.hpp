@@ -18,18 +18,18 @@
 
 namespace montecarta::filters {
 
-/// Gauss-Newton's equations for the place of a landmark: information times step = gradient.
+/// The normal equations for the position of a landmark: information times step = gradient.
 struct NormalEquations {
   Symmetric2<double> information;  ///< Sum of H' R^-1 H [1/m^2]
   Point gradient;                  ///< Sum of H' R^-1 nu [1/m]
 };
 
-/// What one detection, made from all weighted poses, says about where its landmark is. Candidate
-/// places are the same for all particles; the sums run over particles in lanes.
+/// The objective of a landmark's position, given one detection from all weighted poses (EQUATIONS
+/// 14). Candidate positions are the same for all particles; sums over particles run in lanes.
 template <class Real>
 class LandmarkEvidence {
  public:
-  /// Looks along the detection from every pose. The weights must outlive this.
+  /// Prepares the rays of the detection from every pose. `weights` must outlive this object.
   void look(const std::vector<BasicPose<Real>>& poses, const Weights<Real>& weights,
             const RangeBearing<double>& seen, const SensorNoise& noise, MapObjective objective) {
     weights_ = &weights;
@@ -45,13 +45,13 @@ class LandmarkEvidence {
     }
   }
 
-  /// The objective at `place`, in units of a chi-square (EQUATIONS 14): the less the better.
+  /// The objective at `place`, on the scale of a chi-square (EQUATIONS 14); less is better.
   double cost(const Point& place) {
     return objective_ == MapObjective::likelihood ? minus_two_log_likelihood(place)
                                                   : mean_square(place);
   }
 
-  /// At `place`, after its cost(): every particle counts as much as it explains.
+  /// The normal equations at `place`, after its cost(); each particle counts by its own fit.
   NormalEquations normal_equations(const Point& place) const {
     return sums(place, [&](std::size_t b) {
       return objective_ == MapObjective::likelihood ? exp(terms_[b] - Real(log_sum_)) : share(b);
@@ -65,9 +65,9 @@ class LandmarkEvidence {
  private:
   struct Ray {
     BasicPoint<Real> from;
-    Direction<Real> along;  ///< where the detection points
+    Direction<Real> along;  ///< direction of the detection
   };
-  /// A place seen from a pose: the innovation, and the way to the place.
+  /// The innovation for a position observed from a pose, and the vector to the position.
   struct VisibleLandmark {
     Real dx, dy, squared_range, range;
     Real range_error, bearing_error;  ///< detected minus predicted
@@ -81,7 +81,7 @@ class LandmarkEvidence {
     s.squared_range = fma(s.dx, s.dx, s.dy * s.dy);
     s.range = sqrt(s.squared_range);
     s.range_error = Real(range_) - s.range;
-    // in the detection's frame the predicted bearing is the innovation, and needs no wrapping
+    // In the frame of the detection the predicted bearing is the innovation and needs no wrapping.
     const Real along = fma(s.dx, ray.along.cosine, s.dy * ray.along.sine);
     const Real across = fma(s.dx, ray.along.sine, -(s.dy * ray.along.cosine));
     s.bearing_error = atan2(across, along);
@@ -92,7 +92,7 @@ class LandmarkEvidence {
                s.bearing_error * s.bearing_error * Real(per_bearing_noise_));
   }
 
-  /// What a block counts in a mean of squares; dead lanes count nothing.
+  /// Weights of a block in the sum of squares; lanes without a particle have the weight 0.
   Real share(std::size_t b) const {
     const Real& weight = weights_->linear()[b];
     if (objective_ == MapObjective::squares) return weight;
@@ -108,7 +108,7 @@ class LandmarkEvidence {
     return sum_of_lanes(sum);
   }
 
-  /// -2 log Sum w exp(-squared / 2), with the greatest term taken out first.
+  /// -2 log Sum w exp(-squared / 2), with the largest term factored out.
   double minus_two_log_likelihood(const Point& place) {
     Real peaks(-std::numeric_limits<double>::max());
     for (std::size_t b = 0; b < rays_.size(); ++b) {
@@ -130,11 +130,11 @@ class LandmarkEvidence {
     S.fill(Real(0.0));
     for (std::size_t b = 0; b < rays_.size(); ++b) {
       const VisibleLandmark s = observation(b, place);
-      const auto near = s.range < Real(kLeastDistance);  // no bearing has a derivative there
+      const auto near = s.range < Real(kLeastDistance);  // the bearing has no derivative there
       const Real per_square = select(near, Real(0.0), Real(1.0) / s.squared_range);
       const Real per_range = s.range * per_square;
-      const Real ux = s.dx * per_range, uy = s.dy * per_range;       // range by place
-      const Real vx = -(s.dy * per_square), vy = s.dx * per_square;  // bearing by place
+      const Real ux = s.dx * per_range, uy = s.dy * per_range;       // d range / d position
+      const Real vx = -(s.dy * per_square), vy = s.dx * per_square;  // d bearing / d position
       const Real r = count(b) * Real(per_range_noise_), a = count(b) * Real(per_bearing_noise_);
       const Real re = r * s.range_error, ae = a * s.bearing_error;
       S[0] += r * ux * ux + a * vx * vx;
@@ -152,19 +152,19 @@ class LandmarkEvidence {
   double range_ = 0.0;
   double per_range_noise_ = 0.0, per_bearing_noise_ = 0.0;
   std::vector<Ray> rays_;
-  std::vector<Real> terms_;  ///< of the last likelihood: log of weight times density
-  double log_sum_ = 0.0;     ///< of the terms
+  std::vector<Real> terms_;  ///< at the last likelihood: log of weight times density
+  double log_sum_ = 0.0;     ///< log of their sum
 };
 
-/// How landmarks of the shared map are initialised, and how they learn from a scan (EQUATIONS 14).
+/// Initialises landmarks of the shared map and updates them with a scan (EQUATIONS 14).
 template <class Real>
 class MapLearning {
  public:
   MapLearning(const MapSettings& settings, const SensorNoise& noise)
       : settings_(settings), noise_(noise) {}
 
-  /// A landmark seen for the first time: the mean of where the particles place it, as sure as one
-  /// detection is.
+  /// A landmark observed for the first time: the mean of the positions given by the particles, with
+  /// the information of one detection.
   SharedLandmark initialised(const std::vector<BasicPose<Real>>& poses,
                              const Weights<Real>& weights, const RangeBearing<double>& seen) const {
     const auto mean = weighted_sums<Real, 2>(weights, [&](std::size_t b) {
@@ -178,8 +178,8 @@ class MapLearning {
     return {{mean[0], mean[1]}, {x.x, x.y, y.y}};
   }
 
-  /// A landmark seen again. `index` names its random numbers; `heading` [rad] is the frame of
-  /// candidates, so that a turned world is searched alike.
+  /// Updates a landmark that is observed again. `index` selects its random numbers; candidates are
+  /// placed along and across `heading` [rad], so that a rotated world is searched alike.
   void learn(const StepContext& context, std::uint32_t index, double heading,
              const std::vector<BasicPose<Real>>& poses, const Weights<Real>& weights,
              const RangeBearing<double>& seen, SharedLandmark& landmark) {
@@ -187,13 +187,13 @@ class MapLearning {
     prior_ = settings_.mode == MapMode::recursive ? landmark : SharedLandmark{landmark.mean, {}};
     if (settings_.mode == MapMode::onestep_threshold &&
         cost(landmark.mean) <= settings_.threshold) {
-      return;  // the dead zone of EQUATIONS 14
+      return;  // dead zone of EQUATIONS 14
     }
     landmark.mean = settings_.solver == MapSolver::de
                         ? evolved_place(context.identity(Draw::evolution, index), heading, seen)
                         : gauss_newton_place();
     const Symmetric2<double> more = evidence_.information(landmark.mean);
-    if (!(more.xx > 0.0)) return;  // all poses stand on the landmark
+    if (!(more.xx > 0.0)) return;  // all poses coincide with the landmark
     landmark.information = {prior_.information.xx + more.xx, prior_.information.xy + more.xy,
                             prior_.information.yy + more.yy};
   }
@@ -203,15 +203,15 @@ class MapLearning {
   static constexpr double kSurelyGood = 1e-6;  // [m]
   static constexpr double kShortStep = 1e-12;  // [m]
 
-  /// J of EQUATIONS 14: what the detection says plus what is known already.
+  /// J of EQUATIONS (14.2): the objective of the detection plus the prior.
   double cost(const Point& place) {
     const Point d{place.x - prior_.mean.x, place.y - prior_.mean.y};
     const Symmetric2<double>& L = prior_.information;
     return evidence_.cost(place) + L.xx * d.x * d.x + 2.0 * L.xy * d.x * d.y + L.yy * d.y * d.y;
   }
 
-  /// From the old place downhill as long as it helps; the last steps are too short for the cost to
-  /// show.
+  /// Descends from the old position as long as the cost falls. The last steps are too short to
+  /// change the cost.
   Point gauss_newton_place() {
     Point place = prior_.mean;
     double here = cost(place);
@@ -234,8 +234,8 @@ class MapLearning {
                   equations.gradient.y - L.xy * d.x - L.yy * d.y});
   }
 
-  /// DE over offsets from the old place, which is the first member; the others are scattered evenly
-  /// over three sigmas of the sensor (EQUATIONS 14).
+  /// Differential evolution over offsets from the old position, which is the first member. The
+  /// others are uniform within three standard deviations of the sensor (EQUATIONS 14).
   Point evolved_place(const StreamIdentity& identity, double heading,
                       const RangeBearing<double>& seen) {
     const Direction<double> ahead = direction_of(heading);
@@ -268,7 +268,7 @@ class MapLearning {
   MapSettings settings_;
   SensorNoise noise_;
   LandmarkEvidence<Real> evidence_;
-  SharedLandmark prior_;  ///< of the landmark that learns
+  SharedLandmark prior_;  ///< prior of the landmark that is updated
   std::vector<Offset> population_;
   EvolutionScratch<double, 2> scratch_;
 };

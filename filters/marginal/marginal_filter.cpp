@@ -10,7 +10,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-// In the order of the enumerators.
+// The order is that of the enumerators.
 const Names kKernels{"prior", "posterior"};
 const Names kModes{"onestep_converged", "onestep_threshold", "recursive"};
 const Names kSolvers{"gauss_newton", "de"};

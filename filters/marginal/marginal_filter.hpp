@@ -18,7 +18,7 @@
 namespace montecarta::filters {
 
 /// Marginal and auxiliary marginal particle filter with one map for all particles (EQUATIONS 12,
-/// 14; Havangi). `Real`: double or Lanes.
+/// 14; Havangi). `Real` is double or Lanes.
 template <class Real>
 class MarginalFilter final : public SlamFilter {
  public:
@@ -55,7 +55,7 @@ class MarginalFilter final : public SlamFilter {
     associate(scan);
     population_.begin_scan();
     population_.report().association = association_.counts();
-    if (!association_.matched_nothing()) learn(context);  // else the kernels go on growing
+    if (!association_.matched_nothing()) learn(context);  // otherwise the kernels keep growing
     population_.report().map_size = static_cast<double>(map_.size());
   }
 
@@ -76,7 +76,7 @@ class MarginalFilter final : public SlamFilter {
     motion_.restart();
     is_drawn_ = true;
   }
-  /// p(s | s_j) for every particle: the motion since the last draw, and the floor (EQUATIONS 12).
+  /// Computes p(s | s_j) from the motion since the last draw and the floor (EQUATIONS (12.1)).
   void propagate_kernels() {
     for (std::size_t b = 0; b < poses_.size(); ++b) {
       priors_[b] = motion_.from(poses_[b]);
@@ -94,7 +94,7 @@ class MarginalFilter final : public SlamFilter {
     association_.associate(scan, map_, likelihood_.map_is_exact(), mixture_of(weights(), priors_));
   }
 
-  /// Step 1: lambda_j, from the weights and, if auxiliary, from how kernel j explains the scan.
+  /// Step 1 computes lambda_j (EQUATIONS (12.2)); the auxiliary filter includes the likelihood.
   void choose_kernels(const StepContext& context) {
     innovations_.start(kernels_.size(), likelihood_.matches());
     lambda_ = weights();
@@ -113,7 +113,7 @@ class MarginalFilter final : public SlamFilter {
     return settings_.kernel == Kernel::prior ? priors_ : kernels_;
   }
 
-  /// Step 2: one pose per particle, from the very Gaussians that step 3 evaluates.
+  /// Step 2 draws one pose per particle, from the same Gaussians that step 3 evaluates.
   void draw_poses(const StepContext& context) {
     population_.draw_ancestors(context, lambda_.linear_scalars());
     over_blocks(context, [&](std::size_t b) {
@@ -124,7 +124,7 @@ class MarginalFilter final : public SlamFilter {
     });
   }
 
-  /// Step 3 and 4: w' = p(z | s) Sum w N(s; prior) / Sum lambda N(s; proposal).
+  /// Steps 3 and 4 weight: w' = p(z | s) Sum w N(s; prior) / Sum lambda N(s; proposal).
   void weigh(const StepContext& context) {
     ratios_.assign(priors_, proposal(), weights(), lambda_);
     population_.weights().make_equal();
@@ -134,7 +134,7 @@ class MarginalFilter final : public SlamFilter {
     population_.report().log_likelihood += association_.unmatched_log_density();
   }
 
-  /// One map, learnt with the weighed poses (EQUATIONS 14).
+  /// Updates the shared map with the weighted poses (EQUATIONS 14).
   void learn_map(const StepContext& context) {
     const double heading = drawn_mean().heading;
     for (const SharedMatch& match : association_.matches())
@@ -158,7 +158,7 @@ class MarginalFilter final : public SlamFilter {
   Pose drawn_mean() const {
     return weighted_mean<Real>(weights(), [&](std::size_t b) { return poses_[b]; });
   }
-  /// The particles of the last scan can no longer be asked for.
+  /// Discards the particles of the last scan, which are not available afterwards.
   void forget_scan() {
     population_.forget_ancestors();
     moments_.reset();
@@ -172,19 +172,18 @@ class MarginalFilter final : public SlamFilter {
   MapLearning<Real> learning_;
   KernelRatios<Real> ratios_;
   MotionIncrement motion_;
-  Population<Real> population_;  ///< its weights: w
+  Population<Real> population_;  ///< its weights are w
   Weights<Real> lambda_;
-  std::vector<BasicPose<Real>> poses_;       ///< drawn at the last scan that was of use
+  std::vector<BasicPose<Real>> poses_;       ///< drawn at the last scan that was used
   std::vector<PoseGaussian<Real>> priors_;   ///< p(s | s_j)
-  std::vector<PoseGaussian<Real>> kernels_;  ///< p(s | s_j, z), if asked for
+  std::vector<PoseGaussian<Real>> kernels_;  ///< p(s | s_j, z), if the proposal is the posterior
   MixtureInnovations<Real> innovations_;
   SharedMap map_;
-  mutable std::optional<CloudMoments> moments_;  ///< of the poses, once asked for
-  bool is_drawn_ = false;  ///< whether the poses were drawn by the last update()
+  mutable std::optional<CloudMoments> moments_;  ///< moments of the poses, computed on demand
+  bool is_drawn_ = false;                        ///< true if the last update() drew the poses
 };
 
-/// The drawn poses; between scans with the motion since then, as the kernels have it (EQUATIONS
-/// 19).
+/// The drawn poses, moved between scans by the motion since then like the kernels (EQUATIONS 19).
 template <class Real>
 PoseEstimate MarginalFilter<Real>::estimate() const {
   if (is_drawn_) return {spread_of(weights(), poses_), std::nullopt};
@@ -208,7 +207,7 @@ void MarginalFilter<Real>::map(std::span<std::optional<LandmarkEstimate>> landma
   }
 }
 
-/// `Real` = double is the same filter one particle at a time, for tests.
+/// With `Real` = double this is the same filter, one particle at a time, for tests.
 template <class Real, Choice choice>
 std::unique_ptr<SlamFilter> make_marginal(const FilterSetup& setup) {
   return std::make_unique<MarginalFilter<Real>>(setup, marginal_settings(setup.options, choice));

@@ -22,8 +22,8 @@ inline Point solve(const Symmetric2<double>& A, const Point& b) {
   return {(b.x - A.xy * y) / A.xx, y};
 }
 
-/// A landmark of the one map that all particles share (EQUATIONS 14): where it is, and how well
-/// that is known if the pose were.
+/// A landmark of the map that all particles share (EQUATIONS 14): its position, and the information
+/// about it given the pose.
 struct SharedLandmark {
   Point mean;
   Symmetric2<double> information;  ///< Lambda [1/m^2]
@@ -38,20 +38,20 @@ struct SharedLandmark {
 /// All landmarks, in the order of initialisation.
 using SharedMap = std::vector<SharedLandmark>;
 
-/// As the engine stores it.
+/// Converts to the type in which filters report landmarks.
 inline LandmarkEstimate estimate_of(const SharedLandmark& landmark) {
   const Symmetric2<double> P = landmark.covariance();
   return {{landmark.mean.x, landmark.mean.y}, Eigen::Matrix2d{{P.xx, P.xy}, {P.xy, P.yy}}};
 }
 
-/// A detection and the landmark that it is.
+/// A detection and the landmark that it matched.
 struct SharedMatch {
   std::uint32_t landmark;
   RangeBearing<double> seen;
 };
 
-/// A scan sorted by what it shows of the shared map, once for all particles: by identity, or by the
-/// nearest to a Gaussian pose (EQUATIONS 17).
+/// Associates a scan with the shared map, once for all particles: by identity, or by nearest
+/// neighbour for a Gaussian pose (EQUATIONS 17).
 class SharedAssociation {
  public:
   explicit SharedAssociation(const FilterSetup& setup)
@@ -59,23 +59,23 @@ class SharedAssociation {
 
   void clear() { association_.clear(); }
   bool known() const { return association_.known(); }
-  /// By identity.
+  /// Associates by identity.
   void associate(Scan scan);
-  /// By nearness. `map_is_exact`: the innovation knows no covariance of the map.
+  /// Associates by nearest neighbour. If `map_is_exact`, the covariance of the map is left out.
   void associate(Scan scan, const SharedMap& map, bool map_is_exact, const PoseMoments& predicted);
 
   bool matched_nothing() const { return matches_.empty() && fresh_.empty(); }
   const std::vector<SharedMatch>& matches() const { return matches_; }
-  /// Detections of landmarks not seen before.
+  /// Detections of new landmarks.
   const std::vector<Detection>& fresh() const { return fresh_; }
   const AssociationCounts& counts() const { return association_.counts(); }
-  /// Of all detections that match nothing.
+  /// Sum over all detections that match no landmark.
   double unmatched_log_density() const {
     return association_.unmatched_log_density() * static_cast<double>(unmatched_);
   }
-  /// Remembers that a fresh detection became the map's next landmark.
+  /// Records that a fresh detection became the next landmark of the map.
   void add(const Detection& fresh) { association_.add(fresh); }
-  /// Where row k of the reported map is, or a slot that does not exist.
+  /// Slot of row k of the reported map, or a slot that does not exist.
   std::size_t slot_of_row(std::size_t k) const { return association_.slot_of(k); }
 
  private:
@@ -89,14 +89,14 @@ class SharedAssociation {
   std::vector<NearestSearch> searches_;  ///< scratch
 };
 
-/// How well poses explain the matched detections of a scan, the map being the same for all.
+/// The likelihood of poses for the matched detections of a scan, with the same map for all.
 template <class Real>
 class SharedLikelihood {
  public:
   SharedLikelihood(const SensorNoise& noise, MapMode mode) : noise_(noise), mode_(mode) {}
 
-  /// One-step maps are parameters, known exactly as far as the likelihood goes (Havangi eq. 28);
-  /// recursive ones add Hf Lambda^-1 Hf' to R (EQUATIONS 14).
+  /// One-step maps are parameters that the likelihood treats as exact (Havangi eq. 28). Recursive
+  /// maps add Hf Lambda^-1 Hf' to R (EQUATIONS 14).
   bool map_is_exact() const { return mode_ != MapMode::recursive; }
 
   void see(const std::vector<SharedMatch>& matches, const SharedMap& map) {
@@ -134,7 +134,7 @@ class SharedLikelihood {
     return at(kernel.mean);
   }
 
-  /// The kernel becomes p(s | s_j, z); returns log p(z | s_j) (EQUATIONS 12).
+  /// Replaces the kernel by p(s | s_j, z); returns log p(z | s_j) (EQUATIONS 12).
   Weighing<Real> refine(PoseGaussian<Real>& kernel, const Innovations& innovations) const {
     Evidence<Real> evidence;
     for (std::size_t k = 0; k < seen_.size(); ++k) {
