@@ -18,18 +18,18 @@ Eigen::Matrix<double, 2, N> whitened(const InnovationFactor& L, Eigen::Matrix<do
   return A;
 }
 
-/// Row of the first landmark: row 0 is that of the constant, row 1 is empty.
+/// Row of the first landmark: row 0 is that of the constant, and row 1 is empty.
 constexpr Eigen::Index kConstantRows = 2;
-/// Poses of a segment.
+/// Number of poses of a segment.
 constexpr std::size_t kSegment = 24;
-/// Columns that a pose between two segments adds to the information's factors, and how many are
-/// multiplied at once.
+/// Number of columns that a pose between two segments adds to the factors of the information, and
+/// number of columns that are multiplied together.
 constexpr Eigen::Index kColumns = 9;
 constexpr Eigen::Index kPanel = 14 * kColumns;
 
 Eigen::Index row_in_form(std::size_t landmark) { return kConstantRows + row_of(landmark); }
 
-/// Constant and landmarks of a segment's rows, added to those of all landmarks.
+/// Adds the rows of the constant and of the landmarks of a segment to those of all landmarks.
 void add_rows(const Segment& segment, const Segment::Rows& own, Segment::Rows& all) {
   all.row(0) += own.row(0);
   for (std::size_t k = 0; k < segment.landmarks().size(); ++k) {
@@ -85,7 +85,7 @@ void Segment::start(const FactorGraph& graph, SegmentScratch& scratch) {
   covariance_.setZero();
 }
 
-/// x <- A x + offset + noise.
+/// x <- A x + offset + noise (EQUATIONS (21.2)).
 void Segment::carry(const MotionIncrement& motion, const Pose& before, const Pose& after,
                     const Direction<double>& heading) {
   const Eigen::Vector2d moved = place_of(after) - place_of(before);
@@ -104,7 +104,7 @@ void Segment::carry(const MotionIncrement& motion, const Pose& before, const Pos
   motions_.push_back(linear);
 }
 
-/// An observation whose landmark is too near for a bearing is left out of this linearisation.
+/// An observation of a landmark too near for a bearing is left out of this linearisation.
 void Segment::condition(const FactorGraph::Observation& observation, const Pose& pose,
                         const Point& landmark, const SensorNoise& noise, SegmentScratch& scratch) {
   const auto at = linearised_observation(pose, landmark);
@@ -124,7 +124,7 @@ void Segment::condition(const FactorGraph::Observation& observation, const Pose&
   add_rows(seen, scratch.row_of_landmark[observation.landmark], scratch);
 }
 
-/// Two rows of the sum of squares, and what they say of the pose.
+/// Adds two rows to the sum of squares, and conditions the pose on them (EQUATIONS (21.4)).
 void Segment::add_rows(const LinearObservation& seen, Eigen::Index row, SegmentScratch& scratch) {
   const auto first = 2 * static_cast<Eigen::Index>(observations_.size());
   auto used = scratch.panel.block(0, first, given_.rows(), 2);
@@ -147,7 +147,7 @@ double Segment::minimise(const FactorGraph& graph, const GraphEstimate& estimate
   return squares + adjoint.dot(covariance_ * adjoint);
 }
 
-/// Innovations of the poses' Kalman filter, given the landmarks.
+/// Computes the innovations of a Kalman filter of the poses, given the landmarks.
 double Segment::filter_poses(const FactorGraph& graph, const Eigen::VectorXd& landmark_steps,
                              Eigen::Vector3d x) {
   double squares = 0.0;
@@ -171,7 +171,7 @@ void Segment::advance(std::size_t pose, const Eigen::Vector3d& noise, Eigen::Vec
   x += motion.offset + noise;
 }
 
-/// Backwards by Bryson and Frazier: a multiplier a pose, no covariance is inverted.
+/// Smooths backwards by Bryson and Frazier (EQUATIONS (21.7)), without the inverse of a covariance.
 void Segment::smooth_poses(const FactorGraph& graph, const GraphEstimate& estimate,
                            Eigen::Vector3d adjoint, GraphMinimum& minimum) const {
   const std::size_t first = graph.begin_of(begin_);
@@ -224,8 +224,8 @@ bool Elimination::linearise(const FactorGraph& graph, const GraphEstimate& estim
   return factor_.factorise(information_.block(kConstantRows, kConstantRows, n, n));
 }
 
-/// The pose before a segment, in the form of all landmarks, is conditioned on what the segment says
-/// of it and eliminated; the last pose of the segment has that form then.
+/// Conditions the pose before a segment, in terms of all landmarks, on the information of the
+/// segment, and eliminates it. Afterwards the last pose of the segment is known in these terms.
 void Elimination::join(Link& link) {
   const Segment& segment = link.segment;
   const Eigen::Matrix3d on_itself = segment.on_pose().middleRows<3>(Segment::kPoseRow);
@@ -243,9 +243,9 @@ void Elimination::join(Link& link) {
   mirror_lower(covariance_);
 }
 
-/// The sum of squares of all segments so far, the pose before the last eliminated: with its form A,
-/// its gradient H, K = H - A I / 2 and C, A K' + K A' - H C H' more, besides what the segment says
-/// of the landmarks alone.
+/// Adds a segment, without the pose before it, to the sum of squares. With A the form of that pose
+/// (given_), H the gradient, I the information of the segment about the pose and K = H - A I / 2,
+/// this adds A K' + K A' - H C H' and the information of the segment about the landmarks alone.
 void Elimination::add_information(const Link& link) {
   if (filled_ == kPanel) flush();
   const Eigen::Matrix3d on_itself = link.segment.on_pose().middleRows<3>(Segment::kPoseRow);
@@ -302,7 +302,7 @@ void Elimination::minimise(const FactorGraph& graph, const GraphEstimate& estima
   place_landmarks(graph, estimate, minimum);
 }
 
-/// Constant and landmarks' part of {row, 3}, the landmarks where the sum is least.
+/// Value of the form {row, 3} at the minimum: its constant plus the share of the landmarks.
 Eigen::Vector3d Elimination::at_minimum(const Segment& segment, const Segment::Rows& rows) const {
   Eigen::Vector3d sum = rows.row(0);
   for (std::size_t k = 0; k < segment.landmarks().size(); ++k) {
@@ -312,7 +312,7 @@ Eigen::Vector3d Elimination::at_minimum(const Segment& segment, const Segment::R
   return sum;
 }
 
-/// Half the gradient of a segment's sum of squares by the pose before it.
+/// Half the gradient of the sum of squares of a segment by the pose before it.
 Eigen::Vector3d Elimination::gradient(const Segment& segment, const Eigen::Vector3d& x) const {
   return at_minimum(segment, segment.on_pose()) +
          segment.on_pose().middleRows<3>(Segment::kPoseRow) * x;
@@ -339,7 +339,7 @@ void Elimination::smooth_links() {
   }
 }
 
-/// The landmarks' steps in the frames of their first poses, which step as well.
+/// Computes the steps of the landmarks in the frames of their first poses, which move as well.
 void Elimination::place_landmarks(const FactorGraph& graph, const GraphEstimate& estimate,
                                   GraphMinimum& minimum) {
   minimum.in_frame.resize(graph.landmarks());

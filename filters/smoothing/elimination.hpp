@@ -14,68 +14,67 @@
 
 namespace montecarta::filters {
 
-/// Where a linearisation of the graph has its least sum of squares, in the coordinates of a
-/// GraphEstimate.
+/// The minimum of the linearised sum of squares of a graph, in the coordinates of a GraphEstimate.
 struct GraphMinimum {
   std::vector<Pose> displacements;           ///< {pose}
   std::vector<Eigen::Vector3d> multipliers;  ///< {pose}
   std::vector<Point> in_frame;               ///< {landmark} [m]
-  double squares = 0.0;                      ///< the sum there, as linearised
+  double squares = 0.0;                      ///< value of the linearised sum
 };
 
-/// What all segments use, one after the other.
+/// Memory that all segments share, one after the other.
 struct SegmentScratch {
-  std::vector<Eigen::Index> row_of_landmark;  ///< {landmark} in the segment; 0: not yet seen there
+  std::vector<Eigen::Index> row_of_landmark;  ///< {landmark} in the segment; 0: not yet observed
   Eigen::MatrixXd panel;                      ///< rows of the linearised observations, transposed
-  Eigen::MatrixXd information;  ///< of (1, pose before, landmarks): the sum of squares as a form
+  Eigen::MatrixXd information;                ///< quadratic form of (1, pose before, landmarks)
 };
 
-/// Some poses in a row, linearised and eliminated one after the other (EQUATIONS 21). A pose is
-/// kept in the form x = g + G (x_before, l) + N(0, C), given the pose before the segment and the
-/// landmarks l that it sees: a motion adds to C, an observation adds two rows to the information of
-/// x_before and l. So a motion may be certain in some direction or all, and a pose known exactly.
+/// Some consecutive poses, linearised and eliminated one after the other (EQUATIONS 21). A pose has
+/// the form x = g + G (x_before, l) + N(0, C), given the pose before the segment and the landmarks
+/// l that it observes. A motion adds to C, and an observation adds two rows to the information of
+/// x_before and l. So a motion may be certain in some or all directions, and a pose known exactly.
 class Segment {
  public:
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3>;
-  static constexpr Eigen::Index kPoseRow = 1;      ///< of x_before; row 0 is the constant's
-  static constexpr Eigen::Index kLandmarkRow = 8;  ///< of the first landmark
+  static constexpr Eigen::Index kPoseRow = 1;      ///< row of x_before; row 0: the constant
+  static constexpr Eigen::Index kLandmarkRow = 8;  ///< row of the first landmark
 
-  /// Of the poses from `begin` on, before `end`; scratch.information is of this segment then, its
-  /// lower triangle.
+  /// Linearises the poses from `begin` to before `end`. Afterwards scratch.information is that of
+  /// this segment, in its lower triangle.
   void linearise(const FactorGraph& graph, const GraphEstimate& estimate, std::size_t begin,
                  std::size_t end, const SensorNoise& noise, SegmentScratch& scratch);
   std::size_t last_pose() const { return end_ - 1; }
-  /// That it sees, in the order of their rows.
+  /// The landmarks that it observes, in the order of their rows.
   std::span<const std::uint32_t> landmarks() const { return landmarks_; }
-  /// {row, 3} of the last pose: row 0 g, then G'.
+  /// {row, 3} form of the last pose: row 0 is g, the others are G'.
   const Rows& given() const { return given_; }
-  /// Of the last pose, given the pose before and the landmarks.
+  /// Covariance of the last pose, given the pose before and the landmarks.
   const Eigen::Matrix3d& covariance() const { return covariance_; }
-  /// {row, 3} of the information, the columns of x_before.
+  /// {row, 3} columns of x_before in the information.
   const Rows& on_pose() const { return on_pose_; }
 
-  /// The steps of the landmarks, x_before and the adjoint of the last pose known: returns the sum
-  /// of squares of the segment, and writes its displacements.
+  /// Computes the displacements of the poses, given the steps of the landmarks, x_before and the
+  /// adjoint of the last pose. Returns the sum of squares of the segment.
   double minimise(const FactorGraph& graph, const GraphEstimate& estimate,
                   const Eigen::VectorXd& landmark_steps, const Eigen::Vector3d& before,
                   const Eigen::Vector3d& adjoint, GraphMinimum& minimum);
-  /// Of pose `pose`, which is one of the segment: its step, that of the pose before it being `x`
-  /// and `noise` what its displacement has more than its mean, in the map frame.
+  /// Computes the step `x` of pose `pose`, which must be one of the segment, from that of the pose
+  /// before it. `noise` is the deviation of its displacement from the mean, in the map frame.
   void advance(std::size_t pose, const Eigen::Vector3d& noise, Eigen::Vector3d& x) const;
 
  private:
-  /// A motion: x = x_before + way e_heading of x_before + offset + noise, in the map frame.
+  /// A motion in the map frame: x = x_before + way e_heading of x_before + offset + noise.
   struct LinearMotion {
     Eigen::Vector2d way;     ///< [m/rad]
-    Eigen::Vector3d offset;  ///< of the mean from the estimate
+    Eigen::Vector3d offset;  ///< mean minus estimate
   };
-  /// An observation in units of its innovation's standard deviations, given the landmarks.
+  /// An observation in units of the standard deviations of its innovation, given the landmarks.
   struct LinearObservation {
     Matrix23 pose;
     Eigen::Matrix2d landmark;
     Eigen::Vector2d residual;
     Matrix32 gain;
-    Eigen::Vector2d innovation;  ///< with the landmarks where the sum is least
+    Eigen::Vector2d innovation;  ///< that with the landmarks at the minimum
   };
 
   void start(const FactorGraph& graph, SegmentScratch& scratch);
@@ -90,7 +89,7 @@ class Segment {
                     Eigen::Vector3d adjoint, GraphMinimum& minimum) const;
 
   std::size_t begin_ = 0;  ///< first pose
-  std::size_t end_ = 0;    ///< behind the last
+  std::size_t end_ = 0;    ///< after the last pose
   std::vector<std::uint32_t> landmarks_;
   std::vector<LinearMotion> motions_;
   std::vector<LinearObservation> observations_;
@@ -100,32 +99,32 @@ class Segment {
 };
 
 /// One linearisation of a factor graph (EQUATIONS 21). Poses are eliminated in segments, each of
-/// which knows few landmarks; then the poses between segments, of which all landmarks are given.
-/// The newest pose comes last: with the landmarks it is what remains.
+/// which involves few landmarks, then the poses between segments, given all landmarks. The newest
+/// pose is last and remains together with the landmarks.
 class Elimination {
  public:
   explicit Elimination(const SensorNoise& noise) : noise_(noise) {}
 
-  /// Linearises at `estimate`; false where that leaves landmarks undetermined.
+  /// Linearises at `estimate`; returns false if landmarks are not determined.
   [[nodiscard]] bool linearise(const FactorGraph& graph, const GraphEstimate& estimate);
-  /// The least of the last linearisation, which was at `estimate`.
+  /// Computes the minimum of the last linearisation, which was at `estimate`.
   void minimise(const FactorGraph& graph, const GraphEstimate& estimate, GraphMinimum& minimum);
-  /// Its covariance of the newest pose and the map, in the map frame; writes no means.
+  /// Computes the covariance of the newest pose and the map in the map frame; writes no means.
   void covariance(Eigen::Matrix3d& pose, MapMoments& map) const;
-  /// Rows of the landmarks there.
+  /// Number of rows of the landmarks in that covariance.
   Eigen::Index map_rows() const { return factor_.rows(); }
-  /// The segments of the last linearisation, in order; the newest pose ends the last one.
+  /// The segments of the last linearisation, in order. The last one ends with the newest pose.
   std::size_t segments() const { return n_links_; }
   const Segment& segment(std::size_t i) const { return links_[i].segment; }
 
  private:
-  /// A segment, and the pose before it.
+  /// A segment and the pose before it.
   struct Link {
     Segment segment;
-    Eigen::Matrix3d covariance;  ///< given the landmarks and what was measured until its end
-    Eigen::Vector3d filtered;    ///< the mean likewise, the landmarks where the sum is least
-    Eigen::Vector3d smoothed;    ///< by all that was measured
-    Eigen::Vector3d adjoint;     ///< of the last pose of the segment
+    Eigen::Matrix3d covariance;  ///< given the landmarks and all measurements until its end
+    Eigen::Vector3d filtered;    ///< mean by the same, with the landmarks at the minimum
+    Eigen::Vector3d smoothed;    ///< mean by all measurements
+    Eigen::Vector3d adjoint;     ///< adjoint of the last pose of the segment
   };
 
   std::span<Link> links();
@@ -141,19 +140,19 @@ class Elimination {
                        GraphMinimum& minimum);
 
   SensorNoise noise_;
-  std::vector<Link> links_;  ///< of this linearisation and, behind them, earlier ones
-  std::size_t n_links_ = 0;  ///< of this one
+  std::vector<Link> links_;  ///< those of this linearisation, then unused ones
+  std::size_t n_links_ = 0;  ///< number of those of this linearisation
   SegmentScratch scratch_;
-  Eigen::Index rows_ = 0;         ///< of the landmarks seen so far, in packs
-  Eigen::Index height_ = 0;       ///< rows of all landmarks, in packs
-  Segment::Rows given_;           ///< of the last pose so far: row 0 g; from 2 on G'
-  Eigen::Matrix3d covariance_;    ///< likewise C
-  Segment::Rows gradient_;        ///< half of that by the last pose, as given_
-  Eigen::MatrixXd information_;   ///< of (1, 0, l): the sum of squares as a form; lower triangle
-  Eigen::MatrixXd left_, right_;  ///< columns whose products are not in information_ yet
-  Eigen::Index filled_ = 0;       ///< of them
-  BlockedCholesky factor_;        ///< of the information of l
-  Eigen::VectorXd step_;          ///< of l, where the sum is least
+  Eigen::Index rows_ = 0;         ///< number of rows of the landmarks so far, in packs
+  Eigen::Index height_ = 0;       ///< number of rows of all landmarks, in packs
+  Segment::Rows given_;           ///< form of the last pose so far: row 0 is g, from row 2 on G'
+  Eigen::Matrix3d covariance_;    ///< C of the same
+  Segment::Rows gradient_;        ///< half the gradient by the last pose, with rows like given_
+  Eigen::MatrixXd information_;   ///< quadratic form of (1, 0, l); lower triangle
+  Eigen::MatrixXd left_, right_;  ///< columns; their products are not yet in information_
+  Eigen::Index filled_ = 0;       ///< number of those columns
+  BlockedCholesky factor_;        ///< factor of the information of l
+  Eigen::VectorXd step_;          ///< step of l to the minimum
 };
 
 }  // namespace montecarta::filters

@@ -11,7 +11,7 @@
 namespace montecarta::filters {
 namespace {
 
-/// A segment's rows of landmarks, as rows of all landmarks.
+/// Rearranges the rows of the landmarks of a segment to rows of all landmarks.
 Segment::Rows of_all_landmarks(const Segment& segment, const Segment::Rows& own,
                                Eigen::Index rows) {
   Segment::Rows all = Segment::Rows::Zero(rows, 3);
@@ -22,14 +22,14 @@ Segment::Rows of_all_landmarks(const Segment& segment, const Segment::Rows& own,
   return all;
 }
 
-/// Poses whose frames landmarks are held in, at most.
+/// Greatest number of poses that serve as frames of landmarks.
 constexpr std::size_t kMostFrames = 40;
 
-/// A place is nearly a Gaussian in range and bearing where it is so many standard deviations away.
+/// Distance, in standard deviations of the position, beyond which range and bearing are Gaussian.
 constexpr double kPolarBeyond = 5.0;
 
-/// Trace of the covariance of a landmark's place in that frame [m^2]; P: of poses and landmarks,
-/// its rows from `in_map`.
+/// Trace [m^2] of the covariance of the position of a landmark in a frame. P is the covariance of
+/// poses and landmarks; `in_map` is the first row of the landmark in it.
 double spread_in_frame(const Eigen::MatrixXd& P, std::size_t frame, Eigen::Index in_map,
                        const LinearisedDetection& place) {
   const auto& [value, by_pose, by_landmark] = place;
@@ -44,7 +44,7 @@ double spread_in_frame(const Eigen::MatrixXd& P, std::size_t frame, Eigen::Index
 
 }  // namespace
 
-/// What comes after a pose x, its own observations left out, tells of it x' N x / 2 + x' h' l.
+/// Measurements after a pose x add x' N x / 2 + x' h' l to the negative log-density (EQUATIONS 21).
 void PosesGivenMap::step_backwards(const Elimination& elimination, Eigen::Index rows) {
   steps_.resize(elimination.segments());
   Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
@@ -74,7 +74,7 @@ Eigen::MatrixXd PosesGivenMap::covariance(const Elimination& elimination,
   Eigen::MatrixXd G(n, poses);  // derivatives by the landmarks, transposed
   Rows by_landmarks = Rows::Zero(n, 3);
   Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
-  Eigen::Matrix<double, 3, Eigen::Dynamic> with_chosen(3, poses);  // of those so far
+  Eigen::Matrix<double, 3, Eigen::Dynamic> with_chosen(3, poses);  // covariance with those so far
   Eigen::Index row = 0;
   for (std::size_t i = 0, next = 0; next < chosen.size(); ++i) {
     const Step& step = steps_[i];
@@ -111,8 +111,8 @@ JointEstimate RelativeLaplace::of(const FactorGraph& graph, const GraphEstimate&
   return moments_.of(chain_, mean_, T * TP.transpose(), points_);
 }
 
-/// Of the segments before the last one in which landmarks were seen first, all or every other,
-/// every third, ...
+/// Frames are the last poses of the segments, without the last segment, in which landmarks were
+/// observed first: all of them, or every second, third, ... one.
 void RelativeLaplace::choose_frames(const FactorGraph& graph, const Elimination& elimination) {
   std::vector<std::size_t> first;
   for (std::size_t i = 0, l = 0; i + 1 < elimination.segments(); ++i) {
@@ -140,7 +140,7 @@ void RelativeLaplace::add_derivative(Eigen::Index row, Eigen::Index column,
   }
 }
 
-/// To that frame, from the one before it; behind the last frame, to the newest pose.
+/// Adds the displacement from the frame before to this one or, after the last, to the newest pose.
 void RelativeLaplace::add_displacement(const FactorGraph& graph, const GraphEstimate& estimate,
                                        std::size_t frame) {
   const Eigen::Index row = row_of_pose(frame);
@@ -157,8 +157,8 @@ void RelativeLaplace::add_displacement(const FactorGraph& graph, const GraphEsti
   by_map_.emplace_back(row + 2, row_of_pose(frame) + 2, 1.0);
 }
 
-/// In the first frame behind the pose that saw it first, or the last frame there is; that of the
-/// start has the number 0.
+/// Adds a landmark in the first frame after the pose that observed it first, or in the last frame.
+/// Frame 0 is the start.
 void RelativeLaplace::add_landmark(const FactorGraph& graph, const GraphEstimate& estimate,
                                    const Eigen::MatrixXd& P, std::size_t landmark) {
   const auto behind = static_cast<std::size_t>(

@@ -14,14 +14,14 @@ namespace {
 
 constexpr int kMostSteps = 20;
 constexpr int kMostStepHalvings = 10;
-/// Rises of the sum by less than this share are rounding.
+/// An increase of the sum by less than this share is due to rounding.
 constexpr double kCostRounding = 1e-12;
 
-/// A solution is settled by a step of less than a tenth of a standard deviation; what is left
-/// behind it is of second order.
+/// A solution has converged if a step is less than a tenth of a standard deviation; the remaining
+/// error is of second order.
 constexpr double kTolerance = 1e-2;
-/// Solutions for the sake of landmarks in view are this share of all scans apart, or more: so the
-/// cost of all of them together is linear in the scans.
+/// Least number of scans between solutions caused by landmarks in view, as a share of all scans.
+/// The total cost of these solutions is then linear in the number of scans.
 constexpr double kSpacing = 0.02;
 
 }  // namespace
@@ -42,7 +42,7 @@ bool GaussNewton::solve(const FactorGraph& graph, double tolerance, GraphEstimat
   return true;
 }
 
-/// Infinite where the newest poses lie as no motion can have led to them.
+/// The sum (21.1), infinite if newest poses have no multipliers and may be impossible to reach.
 double GaussNewton::squares(const FactorGraph& graph, const GraphEstimate& estimate) const {
   if (estimate.multipliers.size() < graph.poses()) return std::numeric_limits<double>::infinity();
   double sum = 0.0;
@@ -59,7 +59,7 @@ double GaussNewton::squares(const FactorGraph& graph, const GraphEstimate& estim
   return sum;
 }
 
-/// By that share of the way to the minimum.
+/// Moves the estimate by `share` of the way to the minimum.
 void GaussNewton::move(double share, GraphEstimate& estimate) const {
   for (std::size_t t = 0; t < estimate.displacements.size(); ++t) {
     Pose& d = estimate.displacements[t];
@@ -75,8 +75,8 @@ void GaussNewton::move(double share, GraphEstimate& estimate) const {
   }
 }
 
-/// Returns the sum of squares behind it. The first step of a new pose is taken in full: it makes
-/// its displacement one that its motion can have.
+/// Returns the sum of squares after the step. The first step of a new pose is taken in full, since
+/// only then is its displacement possible for its motion.
 double GaussNewton::take_step(const FactorGraph& graph, double before, GraphEstimate& estimate) {
   estimate.multipliers.resize(graph.poses(), Eigen::Vector3d::Zero());
   double share = 1.0;
@@ -154,8 +154,8 @@ void Smoother::add_factors(Scan scan) {
   }
 }
 
-/// Landmarks in view settle by themselves and may wait; those that move unseen do so where a loop
-/// closes. Far ones (CompressedGaussian) move with those around the vehicle.
+/// Landmarks in view converge by themselves and may wait; others move when a loop closes. Far ones
+/// (CompressedGaussian) move with those near the vehicle and are not tested.
 bool Smoother::is_due() const {
   const bool may_wait = static_cast<double>(graph_.poses() - solved_poses_) <
                         kSpacing * static_cast<double>(graph_.poses());
@@ -208,7 +208,7 @@ std::optional<JointEstimate> Smoother::joint(std::size_t landmarks) const {
   return carried;
 }
 
-/// Of the newest pose and the landmarks in the order of the graph.
+/// Moments of the newest pose and the landmarks, in the order of the graph.
 std::optional<JointEstimate> Smoother::solved_joint() const {
   GraphEstimate solved = estimate_;
   GaussNewton solver(SensorNoise::of(model_));

@@ -10,18 +10,18 @@
 
 namespace montecarta::filters {
 
-/// The maximum a posteriori estimate of all poses and landmarks (EQUATIONS 21), by Gauss and Newton
-/// in relative coordinates. A step is halved while the sum of squares rises.
+/// The maximum a posteriori estimate of all poses and landmarks (EQUATIONS 21), by Gauss-Newton in
+/// relative coordinates. A step is halved as long as the sum of squares rises.
 class GaussNewton {
  public:
   explicit GaussNewton(const SensorNoise& noise) : noise_(noise), elimination_(noise) {}
 
-  /// Moves `estimate` to the least sum of squares: the last step, from where the elimination was
-  /// linearised, is one expected to lower it by less than `tolerance`, the square of a step in
-  /// standard deviations, or the 20th. False where the landmarks are not determined or a number is
-  /// none; then the estimate is what it was.
+  /// Moves `estimate` to the least sum of squares, in at most 20 steps. It ends after a step that
+  /// was predicted to lower the sum by less than `tolerance`, the square of a step in standard
+  /// deviations; the elimination is linearised before that step. Returns false if landmarks are not
+  /// determined or the sum is NaN; the estimate is then unchanged.
   [[nodiscard]] bool solve(const FactorGraph& graph, double tolerance, GraphEstimate& estimate);
-  /// Of the last linearisation; see Elimination.
+  /// The last linearisation.
   const Elimination& elimination() const { return elimination_; }
 
  private:
@@ -35,10 +35,10 @@ class GaussNewton {
   GraphEstimate given_, tried_;  ///< scratch
 };
 
-/// Full smoothing (EQUATIONS 21): keeps all poses at scans and all landmarks, and linearises what
-/// was measured again where the estimate has moved. While a linearisation stands, the newest pose
-/// and the map, all else integrated out, are a Gaussian that the joint filter carries from scan to
-/// scan; so a scan between two solutions costs what EKF-SLAM costs.
+/// Full smoothing (EQUATIONS 21): keeps all poses at scans and all landmarks, and linearises all
+/// measurements again when the estimate has moved. Until then, the newest pose and the map, with
+/// all other poses integrated out, are a Gaussian that the joint filter updates from scan to scan.
+/// A scan between two solutions therefore costs as much as in EKF-SLAM.
 class Smoother final : public SlamFilter {
  public:
   explicit Smoother(const FilterSetup& setup);
@@ -49,9 +49,9 @@ class Smoother final : public SlamFilter {
   PoseEstimate estimate() const override;
   const ScanReport& report() const override { return report_; }
   void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override;
-  /// With `moments = pushed` of a solution of its own, by Laplace in relative coordinates; else,
-  /// and (a numerical fault) where there is none, of the Gaussian that the next scan is conditioned
-  /// on.
+  /// With `moments = pushed` the estimate is that of a separate solution, by Laplace's
+  /// approximation in relative coordinates. Otherwise it is that of the Gaussian of the joint
+  /// filter, and also if the solution fails, which counts as a numerical fault.
   std::optional<JointEstimate> joint(std::size_t landmarks) const override;
 
  private:
@@ -65,19 +65,19 @@ class Smoother final : public SlamFilter {
   Belief model_;
   Motion motion_kind_;
   Moments moments_;
-  double share_;  ///< of a standard deviation that an estimate may move
+  double share_;  ///< standard deviations that a landmark may move before a new solution
   JointBelief belief_;
   MotionIncrement motion_;  ///< since the last scan
   FactorGraph graph_;
   GraphEstimate estimate_;
   GaussNewton solver_;
   std::vector<Eigen::Vector2d> linearised_at_;  ///< {landmark} [m]
-  std::size_t solved_poses_ = 0;                ///< at the last solution
+  std::size_t solved_poses_ = 0;                ///< number of poses at the last solution
   MapMoments map_;                              ///< scratch
   ScanReport report_;
 };
 
-/// Its line in the table of filters.
+/// Line for the table of filters.
 FilterKind smoother_kind();
 
 }  // namespace montecarta::filters
