@@ -9,7 +9,7 @@ namespace {
 using Complex = std::complex<double>;
 constexpr Complex kI(0.0, 1.0);
 
-/// Of finite numbers; operator* would also look for infinities and NaN.
+/// Product of finite numbers; operator* would also test for infinities and NaN.
 Complex product(const Complex& a, const Complex& b) {
   return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
@@ -55,7 +55,7 @@ JointEstimate ChainMoments::of(const RelativeChain& chain, const Eigen::VectorXd
   return estimate();
 }
 
-/// From sums of columns to sums of rows as well.
+/// Completes the sums: covariance_ has sums over columns, and this sums over rows as well.
 JointEstimate ChainMoments::estimate() const {
   const Eigen::Index n = 1 + 2 * (size() - vehicle_);
   const auto row_of = [&](Eigen::Index i) {
@@ -78,14 +78,14 @@ JointEstimate ChainMoments::estimate() const {
   return joint;
 }
 
-/// Cov(a of term i, psi of term j), and that of the vehicle's heading for j = size().
+/// Cov(a of term i, psi of term j); for j = size(), psi is the heading of the vehicle.
 Complex ChainMoments::with_heading(Eigen::Index i, Eigen::Index j) const {
   const Term& t = term(i);
   return {by_heading_(t.row, j), t.is_polar ? 0.0 : by_heading_(t.row + 1, j)};
 }
 
-/// psi of each term is a sum of components of the Gaussian: covariances with all components, and
-/// with each other.
+/// Computes the covariances of psi of each term, which is a sum of components of the Gaussian, with
+/// all components and with the other psi.
 void ChainMoments::gather_headings(double start, const Eigen::VectorXd& mean,
                                    const Eigen::MatrixXd& P) {
   const Eigen::Index n = size();
@@ -116,8 +116,8 @@ void ChainMoments::gather_headings(double start, const Eigen::VectorXd& mean,
   heading_ = psi(n);
 }
 
-/// Cov(T_i, T_j), both as vectors. With C_ij = Cov(a_i, psi_j), of the product and of that with
-/// the conjugate.
+/// Cov(T_i, T_j), both as vectors, from the covariances of T_i with T_j and with its conjugate
+/// (EQUATIONS (22.5), (22.6)); C_ij = Cov(a_i, psi_j).
 Eigen::Matrix2d ChainMoments::covariance(Eigen::Index i, Eigen::Index j,
                                          const Eigen::MatrixXd& P) const {
   const Term &s = term(i), &t = term(j);
@@ -140,7 +140,7 @@ Eigen::Matrix2d ChainMoments::covariance(Eigen::Index i, Eigen::Index j,
   return 0.5 * B;
 }
 
-/// Of the terms, and in the last row and column with the vehicle's heading.
+/// Covariances of the terms; the last row and column are those with the heading of the vehicle.
 void ChainMoments::gather_covariances(const Eigen::MatrixXd& P) {
   const Eigen::Index n = size();
   covariance_.resize(2 * n + 1, 2 * n + 1);
@@ -157,7 +157,7 @@ void ChainMoments::gather_covariances(const Eigen::MatrixXd& P) {
   covariance_(2 * n, 2 * n) = headings_(n, n);
 }
 
-/// From terms to places, which are sums of them: means, and columns of covariances.
+/// Sums terms to positions: their means, and the columns of their covariances.
 void ChainMoments::gather_places(const Pose& start) {
   const Eigen::Index n = size();
   places_.resize(2 * n + 1);

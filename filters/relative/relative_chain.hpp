@@ -14,29 +14,29 @@
 
 namespace montecarta::filters {
 
-/// The layout of the state of a joint Gaussian that knows places relative to each other only
-/// (EQUATIONS 22). Frame 0 is the start; displacement k leads from frame k to frame k + 1, the last
-/// one from the newest frame to the vehicle.
+/// The layout of the state of a joint Gaussian in relative coordinates (EQUATIONS 22). Frame 0 is
+/// the start. Displacement k leads from frame k to frame k + 1, and the last one from the newest
+/// frame to the vehicle.
 struct RelativeChain {
   /// A landmark in a frame.
   struct Point {
-    Eigen::Index row;   ///< of its two coordinates
-    std::size_t frame;  ///< that they are in
+    Eigen::Index row;   ///< first of its two rows
+    std::size_t frame;  ///< frame of its coordinates
     bool is_polar;      ///< range and bearing [m, rad]; else x and y [m]
   };
   struct Landmark {
-    Point first;                 ///< where it was initialised
-    std::optional<Point> again;  ///< initialised a second time, not joined with the first yet
+    Point first;                 ///< its coordinates at initialisation
+    std::optional<Point> again;  ///< those of a second initialisation, until it is joined
   };
 
-  Pose start;                               ///< in the map frame, known
+  Pose start;                               ///< known pose in the map frame
   std::vector<Eigen::Index> displacements;  ///< {frame} first of the rows x, y, heading [m, m, rad]
   std::vector<Landmark> landmarks;          ///< in the order of initialisation
 
   std::size_t newest_frame() const { return displacements.size() - 1; }
 };
 
-/// A displacement followed by another, with derivatives.
+/// The composition of two displacements, with derivatives.
 struct LinearisedComposition {
   Pose pose;
   Eigen::Matrix3d by_first, by_second;
@@ -54,25 +54,25 @@ LinearisedPoint linearised_point(const RelativeChain::Point& point, const Eigen:
 Pose displacement(const RelativeChain& chain, std::size_t k, const Eigen::VectorXd& mean);
 
 /// Mean and covariance in the map frame of a Gaussian over a relative chain (EQUATIONS (22.5),
-/// (22.6)). Exact, the heading unwrapped: a place is a sum of displacements, each turned by a sum
-/// of headings, and all of these are Gaussian together. Covariances of headings are below 700
-/// rad^2.
+/// (22.6)). They are exact up to the wrapping of the heading: a position is a sum of displacements,
+/// each rotated by a sum of headings, and all of these are jointly Gaussian. Covariances of
+/// headings must be below 700 rad^2.
 class ChainMoments {
  public:
-  /// Of the vehicle's pose and then of `points`, of the Gaussian (`mean`, `P`).
+  /// Moments of the pose of the vehicle and then of `points`, for the Gaussian (`mean`, `P`).
   JointEstimate of(const RelativeChain& chain, const Eigen::VectorXd& mean,
                    const Eigen::MatrixXd& P, std::span<const RelativeChain::Point> points);
 
  private:
   using Complex = std::complex<double>;
 
-  /// One turned displacement T = exp(i psi) a of a place, psi and a Gaussian. Terms 0, 1, ... are
-  /// the displacements from frame to frame, that to the vehicle last, then the points in their
-  /// frames.
+  /// One rotated displacement T = exp(i psi) a, where psi and a are Gaussian. The first terms are
+  /// the displacements from frame to frame, followed by that to the vehicle and by the points in
+  /// their frames.
   struct Term {
-    Eigen::Index row;          ///< of a
+    Eigen::Index row;          ///< first row of a
     bool is_polar;             ///< a is real, and the next row adds to psi
-    Eigen::Index before = -1;  ///< the term whose place this one begins at; -1: the start
+    Eigen::Index before = -1;  ///< the term at the end of which this one begins; -1: the start
     Complex turn = {};         ///< E exp(i psi)
     Complex way = {};          ///< E T / turn = E a + i Cov(a, psi)
   };
@@ -88,12 +88,12 @@ class ChainMoments {
   JointEstimate estimate() const;
 
   std::vector<Term> terms_;
-  Eigen::Index vehicle_ = 0;    ///< its term
-  double heading_ = 0.0;        ///< mean of the vehicle's [rad]
-  Eigen::MatrixXd by_heading_;  ///< {row, term} Cov(component, psi); behind the terms: heading
-  Eigen::MatrixXd headings_;    ///< {term, term} Cov(psi, psi), likewise
-  Eigen::VectorXd places_;      ///< {2 term} means, then the heading
-  Eigen::MatrixXd covariance_;  ///< of the terms with the places, likewise
+  Eigen::Index vehicle_ = 0;    ///< index of its term
+  double heading_ = 0.0;        ///< mean heading of the vehicle [rad]
+  Eigen::MatrixXd by_heading_;  ///< {row, term} Cov(component, psi); last: heading
+  Eigen::MatrixXd headings_;    ///< {term, term} Cov(psi, psi), with the same last row and column
+  Eigen::VectorXd places_;      ///< {2 term} means of positions, then the heading
+  Eigen::MatrixXd covariance_;  ///< terms with positions and heading
 };
 
 }  // namespace montecarta::filters

@@ -12,20 +12,20 @@ namespace {
 
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
-/// The step is settled where it changes what is expected by less than this, in standard deviations
-/// of what is measured or, where that is exact, of what stays.
+/// The iteration ends if a step changes the predictions by less than this, in standard deviations
+/// of the measurement or, if that is exact, of the remaining variance.
 constexpr double kSettled = 1e-2;
 constexpr double kSettledExactly = 1.0;
 constexpr int kMostHalvings = 8;
-/// Rises of the sum by less than this share are rounding.
+/// An increase of the sum by less than this share is due to rounding.
 constexpr double kRounding = 1e-12;
-/// What is exact is so up to this share of the variance that it had.
+/// The share of a variance that remains after an exact measurement.
 constexpr double kExact = 1e-6;
 
 using Lower = Eigen::LLT<Eigen::MatrixXd>;
 
-/// The iteration. Where it is, is known by the step from the mean, P y, and y' P y, the square of
-/// that step in standard deviations; y itself is not needed.
+/// The iteration (22.3). Its current point is given by the step from the mean, P y, and by y' P y,
+/// the squared length of that step in standard deviations; y itself is not needed.
 class Iteration {
  public:
   Iteration(const RelativeChain& chain, const RelativeMeasurement& measurement,
@@ -39,7 +39,7 @@ class Iteration {
         pairs_(scratch.pairs),
         tried_pairs_(scratch.tried_pairs) {}
 
-  /// False where a matrix is not positive definite or there are no derivatives.
+  /// Returns false if a matrix is not positive definite or a derivative does not exist.
   bool run(int iterations, RelativeOutcome& outcome) {
     step_ = Eigen::VectorXd::Zero(mean_.size());
     if (!linearise(step_, vehicle_, pairs_)) return false;
@@ -61,7 +61,7 @@ class Iteration {
   }
 
   const Eigen::VectorXd& step() const { return step_; }
-  /// P H' L^-T, S = L L'.
+  /// P H' L^-T, with S = L L'.
   Eigen::MatrixXd gain() const {
     const Eigen::MatrixXd L = S_.matrixL();
     Eigen::MatrixXd W = PH_;
@@ -109,7 +109,7 @@ class Iteration {
     return R_.matrixL().solve(pairs.residual).squaredNorm() + prior;
   }
 
-  /// Towards `full_step`, whose square is `full`; `crossed`: its product with the step so far.
+  /// Steps towards `full_step` of square `full`; `crossed` is its product with the step so far.
   bool take_step(const Eigen::VectorXd& full_step, double crossed, double full) {
     const double now = squares(pairs_, prior_);
     double share = 1.0;
@@ -167,7 +167,7 @@ void VehicleInFrames::columns(const RelativeChain& chain, const Eigen::MatrixXd&
       const auto by_displacement = P.middleCols<3>(chain.displacements[k]);
       newer.swap(of_pose);
       of_pose.resize(P.rows(), 3);
-      for (const Eigen::Index i : {0, 1}) {  // without the zeros of A and B
+      for (const Eigen::Index i : {0, 1}) {  // skips the zeros of A and B
         of_pose.col(i) = by_displacement.col(i) + A(i, 2) * by_displacement.col(2) +
                          B(i, 0) * newer.col(0) + B(i, 1) * newer.col(1);
       }

@@ -12,26 +12,26 @@
 
 namespace montecarta::filters {
 
-/// Pairs of quantities, linearised in a relative chain: each depends on points and on the pose of
-/// the vehicle in their frames.
+/// Pairs of measured quantities, linearised in a relative chain: each depends on points and on the
+/// pose of the vehicle in their frames.
 struct LinearisedPairs {
   struct Part {
-    Eigen::Index pair;  ///< that it adds to
+    Eigen::Index pair;  ///< pair to which it adds
     std::size_t frame;
-    Eigen::Index row;  ///< of the point
+    Eigen::Index row;  ///< first row of the point
     Matrix23 by_pose;
-    Eigen::Matrix2d by_point;  ///< by its coordinates
+    Eigen::Matrix2d by_point;  ///< derivative by its coordinates
   };
-  Eigen::VectorXd residual;  ///< {2 pairs} measured less expected
+  Eigen::VectorXd residual;  ///< {2 pairs} measured minus predicted
   std::vector<Part> parts;   ///< newest frame first
 };
 
-/// The vehicle's pose in each frame from some frame on (EQUATIONS (22.2)), and products with the
-/// derivatives of LinearisedPairs, H. One walk from the newest frame back to the oldest gives each:
-/// H itself has three columns for each frame on the way.
+/// The pose of the vehicle in each frame (EQUATIONS (22.2)), and products with H, the derivatives
+/// of LinearisedPairs. Each product takes one pass from the newest frame back to the oldest,
+/// whereas H itself would have three columns for each frame on the way.
 class VehicleInFrames {
  public:
-  /// At `mean`, back to frame `oldest`.
+  /// Linearises at `mean`, back to frame `oldest`.
   void linearise(const RelativeChain& chain, const Eigen::VectorXd& mean, std::size_t oldest);
   const Pose& in(std::size_t frame) const { return steps_[frame].pose; }
 
@@ -43,50 +43,49 @@ class VehicleInFrames {
                        const Eigen::Ref<const Eigen::MatrixXd>& M) const;
 
  private:
-  std::vector<LinearisedComposition> steps_;  ///< {frame} pose: of the vehicle
+  std::vector<LinearisedComposition> steps_;  ///< {frame} with the pose of the vehicle in it
 };
 
-/// The vehicle's pose in one frame after the other, newest first, as a Gaussian: for what is asked
-/// of all frames.
+/// The pose of the vehicle in one frame after the other, newest first, as a Gaussian.
 struct VehicleGaussian {
   Pose pose = {};
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   Eigen::Matrix<double, Eigen::Dynamic, 3> with_all;  ///< covariance of all rows with the pose
 
-  /// From that in frame k + 1, or the vehicle's own, for which all is zero.
+  /// Changes from frame k + 1 to frame k. Initially, all zero, it is the vehicle in its own frame.
   void become_that_in_frame(std::size_t k, const RelativeChain& chain, const Eigen::VectorXd& mean,
                             const Eigen::MatrixXd& P);
 };
 
-/// What a relative Gaussian is conditioned on, all at once.
+/// Measurements that a relative Gaussian is conditioned on together.
 struct RelativeMeasurement {
-  /// Of all frames that it tells of.
+  /// The oldest frame that they involve.
   std::size_t oldest_frame;
-  /// Linearises at a mean, where the vehicle is as told; false where there are no derivatives.
+  /// Linearises at a mean with the given poses of the vehicle; false if there is no derivative.
   std::function<bool(const Eigen::VectorXd& mean, const VehicleInFrames& vehicle,
                      LinearisedPairs& pairs)>
       linearise;
-  /// Of the measured quantities; empty where they are exact.
+  /// Variances of the measured quantities; empty if they are exact.
   Eigen::VectorXd variances;
 };
 
-/// What became of it.
+/// The result of conditioning.
 struct RelativeOutcome {
   bool is_faulty = false;  ///< nothing was changed
-  double nis = 0.0;        ///< against the Gaussian before
+  double nis = 0.0;        ///< NIS for the Gaussian before
   std::uint32_t dof = 0;
-  double log_likelihood = 0.0;  ///< Laplace's, at the last linearisation
+  double log_likelihood = 0.0;  ///< Laplace's approximation, at the last linearisation
 };
 
-/// What one conditioning leaves to the next, so that none allocates.
+/// Memory that is reused from one conditioning to the next.
 struct ConditioningScratch {
   VehicleInFrames vehicle, tried_vehicle;
   LinearisedPairs pairs, tried_pairs;
 };
 
-/// Conditions (`mean`, `P`) on `measurement` by the Gauss-Newton method, at most `iterations` more
-/// linearisations than one; a step is halved while the sum of squares rises, eight times at most
-/// (EQUATIONS (22.3)). Rows of P are a multiple of eight, those that are not used zero.
+/// Conditions (`mean`, `P`) on `measurement` by the Gauss-Newton method, with at most `iterations`
+/// linearisations after the first. A step is halved while the sum of squares rises, at most eight
+/// times (EQUATIONS (22.3)). Rows of P must be a multiple of eight, with zeros in unused ones.
 RelativeOutcome condition(const RelativeChain& chain, const RelativeMeasurement& measurement,
                           int iterations, ConditioningScratch& scratch, Eigen::VectorXd& mean,
                           Eigen::MatrixXd& P);

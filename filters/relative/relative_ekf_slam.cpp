@@ -49,14 +49,14 @@ void RelativeEkfSlam::update(const StepContext& /*context*/, Scan scan) {
   report_.map_size = static_cast<double>(gaussian_.chain().landmarks.size());
 }
 
-/// Whether the way to a landmark is so uncertain that a detection of it is far from linear.
+/// Returns whether a detection of the landmark would be strongly nonlinear (EQUATIONS (22.4)).
 bool RelativeEkfSlam::is_bent(std::size_t landmark) const {
   const auto& [first, again] = gaussian_.chain().landmarks[landmark];
   return !again && bends_[first.frame] > most_bend_;
 }
 
-/// Conditions on what is seen of landmarks whose way is straight enough; the others are to be
-/// initialised again.
+/// Conditions on the detections of landmarks with a path that is straight enough. The other
+/// landmarks will be initialised again.
 void RelativeEkfSlam::condition(Scan scan) {
   seen_.clear();
   again_.clear();
@@ -104,7 +104,7 @@ void RelativeEkfSlam::join() {
   if (!is_joined) ++report_.numerical_faults;
 }
 
-/// By what the reports know.
+/// Associates by the estimates that are reported.
 void RelativeEkfSlam::pair_nearest(Scan scan) {
   searches_.assign(scan.size(), {});
   reported().expect_all([&](std::size_t landmark, const RangeBearing<double>& expected,
@@ -124,7 +124,7 @@ void RelativeEkfSlam::pair_nearest(Scan scan) {
   association_.pair_nearest(scan, searches_);
 }
 
-/// Of the pose and of `points_`.
+/// Moments of the pose and of `points_`.
 JointEstimate RelativeEkfSlam::moments_of(const RelativeGaussian& gaussian) const {
   return moments_.of(gaussian.chain(), gaussian.mean(), gaussian.covariance(), points_);
 }
@@ -159,7 +159,7 @@ std::optional<JointEstimate> RelativeEkfSlam::joint(std::size_t landmarks) const
   });
 }
 
-/// Of the pose and all landmarks in the order of initialisation, which `points_` are then.
+/// Moments of the pose and all landmarks in order of initialisation; `points_` become the latter.
 JointEstimate RelativeEkfSlam::held_joint() const {
   points_.clear();
   for (std::size_t slot = 0; slot < reported().chain().landmarks.size(); ++slot)

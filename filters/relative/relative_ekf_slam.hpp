@@ -13,9 +13,9 @@
 namespace montecarta::filters {
 
 /// EKF-SLAM in relative coordinates (EQUATIONS 22): a joint Gaussian of the displacements between
-/// the poses that initialised landmarks, and of the landmarks in the frames of these poses, where
-/// all of them are nearly Gaussian however uncertain the heading in the map is. All other poses are
-/// integrated out, and a scan is linearised when it is conditioned on, never afterwards.
+/// the poses that initialised landmarks, and of the landmarks in the frames of these poses. In
+/// these coordinates the posterior is nearly Gaussian even if the heading in the map is uncertain.
+/// All other poses are integrated out, and a scan is linearised only when it is conditioned on.
 class RelativeEkfSlam final : public SlamFilter {
  public:
   explicit RelativeEkfSlam(const FilterSetup& setup);
@@ -46,21 +46,21 @@ class RelativeEkfSlam final : public SlamFilter {
   std::size_t lag_;   ///< [scans]
   MapAssociation association_;
   MotionIncrement motion_;  ///< since the last scan
-  bool is_at_scan_ = true;  ///< nothing came after it
+  bool is_at_scan_ = true;  ///< true if no motion followed
   RelativeGaussian gaussian_;
-  RelativeGaussian joined_;  ///< where landmarks were initialised again: with them joined
+  RelativeGaussian joined_;  ///< a copy with the landmarks joined that were initialised again
   std::size_t waited_ = 0;   ///< [scans] since the first of them
-  std::vector<RelativeGaussian::Seen> again_;  ///< of this scan, to be initialised again
+  std::vector<RelativeGaussian::Seen> again_;  ///< detections of landmarks to be initialised again
   std::vector<double> bends_;                  ///< {frame} RelativeGaussian::bends()
-  std::vector<RelativeGaussian::Seen> seen_;   ///< likewise, to be used
-  std::vector<NearestSearch> searches_;        ///< scratch, as what follows
+  std::vector<RelativeGaussian::Seen> seen_;   ///< detections to be used
+  std::vector<NearestSearch> searches_;        ///< scratch, like the next three
   mutable RelativeGaussian moved_;
   mutable ChainMoments moments_;
   mutable std::vector<RelativeChain::Point> points_;
   ScanReport report_;
 };
 
-/// Its line in the table of filters.
+/// Line for the table of filters.
 FilterKind relative_ekf_slam_kind();
 
 }  // namespace montecarta::filters

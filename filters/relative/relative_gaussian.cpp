@@ -14,7 +14,7 @@ namespace {
 using ChainPoint = RelativeChain::Point;
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
-/// Newest frame first; within a frame in one order, so that sums have one.
+/// Sorts newest frames first and, within a frame, in a fixed order, so that sums are reproducible.
 void sort_parts(LinearisedPairs& pairs) {
   using Part = LinearisedPairs::Part;
   std::ranges::sort(pairs.parts, [](const Part& a, const Part& b) {
@@ -22,7 +22,7 @@ void sort_parts(LinearisedPairs& pairs) {
   });
 }
 
-/// A landmark in the frame of the vehicle; `sign` of its derivatives.
+/// Position of a landmark in the frame of the vehicle; adds its derivatives, times `sign`.
 Eigen::Vector2d add_place(const ChainPoint& point, const Eigen::VectorXd& mean,
                           const VehicleInFrames& vehicle, Eigen::Index pair, double sign,
                           LinearisedPairs& pairs) {
@@ -58,8 +58,8 @@ void RelativeGaussian::move(const MotionIncrement& motion) {
   P_(0, 1) = P_(1, 0);
 }
 
-/// A displacement that leads over a frame bends by half the variance of the heading before it times
-/// the length behind it.
+/// Dropping a frame costs half the variance of the heading before it times the length of the
+/// displacement after it.
 bool RelativeGaussian::drop_empty_frame() {
   std::vector<char>& is_empty = scratch_.is_empty;
   is_empty.assign(chain_.displacements.size(), true);
@@ -81,7 +81,7 @@ bool RelativeGaussian::drop_empty_frame() {
   return straightest > 0;
 }
 
-/// The displacements to and from it become one, which takes the rows of the second.
+/// The displacements to and from the frame become one, in the rows of the second.
 void RelativeGaussian::drop_frame(std::size_t frame) {
   const Eigen::Index from = chain_.displacements[frame - 1], to = chain_.displacements[frame];
   const auto both = linearised_composition(displacement(chain_, frame - 1, mean_),
@@ -129,7 +129,7 @@ void RelativeGaussian::add_again(const Seen& seen) {
   chain_.landmarks[seen.landmark].again = add_point(seen.observed);
 }
 
-/// Where the vehicle is the frame, range and bearing are the coordinates and so exactly Gaussian.
+/// At the newest frame, range and bearing are the coordinates and therefore exactly Gaussian.
 ChainPoint RelativeGaussian::add_point(const RangeBearing<double>& observed) {
   const bool is_polar = is_at_newest_frame();
   const Eigen::Index row = add_rows(2);
@@ -190,7 +190,7 @@ Eigen::Index RelativeGaussian::add_rows(Eigen::Index count) {
   return first;
 }
 
-/// Those of scratch_.is_kept.
+/// Keeps the rows that are marked in scratch_.is_kept.
 void RelativeGaussian::keep_rows() {
   std::vector<Eigen::Index>&kept = scratch_.kept, &now = scratch_.now;
   kept.clear();

@@ -14,8 +14,8 @@
 
 namespace montecarta::filters {
 
-/// One Gaussian over displacements along a chain of frames and landmarks in these frames (EQUATIONS
-/// 22). Nothing in it depends on where the start is in the map.
+/// One Gaussian over the displacements along a chain of frames and the landmarks in these frames
+/// (EQUATIONS 22). It does not depend on the pose of the start in the map.
 class RelativeGaussian {
  public:
   /// A detection of a landmark.
@@ -28,40 +28,40 @@ class RelativeGaussian {
 
   void start(const Pose& start);
   void move(const MotionIncrement& motion);
-  /// Conditions on detections, together; those too near for a derivative are left out.
+  /// Conditions on all detections together; landmarks too near for a derivative are left out.
   RelativeOutcome see(std::span<const Seen> scan, int iterations);
-  /// Whether the vehicle is for certain where the newest frame is.
+  /// Returns whether the vehicle is exactly at the newest frame.
   bool is_at_newest_frame() const;
-  /// The pose of the vehicle becomes the newest frame.
+  /// Makes the pose of the vehicle the newest frame.
   void add_frame();
-  /// Drops the frame without landmarks that costs least; false where all have some.
+  /// Drops the frame without landmarks that costs least; false if all frames have landmarks.
   bool drop_empty_frame();
-  /// The next landmark, in the newest frame.
+  /// Adds a landmark, in the newest frame.
   void add_landmark(const RangeBearing<double>& observed);
-  /// Initialises a landmark a second time, by itself.
+  /// Initialises a landmark a second time, in the newest frame and independently of the first.
   void add_again(const Seen& seen);
-  /// Conditions on that all landmarks that were initialised again are what they were; false where
-  /// that fails and nothing was changed.
+  /// Conditions on the equality of both positions of all landmarks that were initialised again.
+  /// Returns false if that fails; nothing is changed then.
   [[nodiscard]] bool equate(int iterations);
-  /// Likewise, and forgets the second coordinates; where it fails, the first ones.
+  /// The same, after which the second coordinates are dropped or, if it failed, the first ones.
   [[nodiscard]] bool join(int iterations);
 
   const RelativeChain& chain() const { return chain_; }
   const Eigen::VectorXd& mean() const { return mean_; }
   const Eigen::MatrixXd& covariance() const { return P_; }
-  /// The point of a landmark that detections are of.
+  /// The point of a landmark to which detections belong.
   const RelativeChain::Point& point(std::size_t landmark) const;
   bool has_again() const;
-  /// Writes {frame} [m] how far uncertain headings bend the way to each frame (EQUATIONS (22.4)).
+  /// Writes {frame} [m] how far uncertain headings bend the path to each frame (EQUATIONS (22.4)).
   void bends(std::vector<double>& bends) const;
   using Expect =
       std::function<void(std::size_t landmark, const RangeBearing<double>& expected,
-                         const Eigen::Matrix2d& covariance)>;  ///< that of the innovation
-  /// Calls `expect` for all landmarks but those too near for a derivative.
+                         const Eigen::Matrix2d& covariance)>;  ///< covariance of the innovation
+  /// Calls `expect` for all landmarks except those too near for a derivative.
   void expect_all(const Expect& expect) const;
 
  private:
-  /// So that a second run allocates nothing; a copy begins with its own.
+  /// Memory that is reused between calls. A copy begins with its own.
   struct Scratch {
     Scratch() = default;
     Scratch(const Scratch& /*other*/) {}
@@ -84,7 +84,7 @@ class RelativeGaussian {
 
   SensorNoise noise_;
   RelativeChain chain_;
-  Eigen::Index rows_ = 0;  ///< used; those behind are zero
+  Eigen::Index rows_ = 0;  ///< number of used rows; the others are zero
   Eigen::VectorXd mean_;
   Eigen::MatrixXd P_;
   Scratch scratch_;
