@@ -8,21 +8,21 @@
 
 namespace montecarta::engine {
 
-/// The user's input is wrong (exit code 2). Worded "place: problem (why): remedy", e.g.
-/// "sim3.ini:12: particles = 0 (a filter needs at least one): give particles = 1 or more".
+/// The user's input is wrong (exit code 2). The wording is "place: problem (why): remedy", for
+/// instance "sim3.ini:12: particles = 0 (a filter needs at least one): give particles = 1 or more".
 class StudyError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Something failed while running that is not the user's input: a full disk, a file that vanished
-/// (exit code 1).
+/// A failure that is not due to the user's input, such as a full disk or a missing file (exit code
+/// 1).
 class RunError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Our own mistake: on in every build outside the particle loop.
+/// Checks for our own mistakes, in every build. It is not used inside the particle loop.
 inline void expect(bool condition, const char* what) {
   if (!condition) throw std::logic_error(std::string("internal error, please report: ") + what);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A namespace a folder. Each sees the names of the folders that it may include, and no others.
+/// One namespace per folder. Each sees only the names of the folders that it may include.
 namespace montecarta {
 
 namespace engine {}

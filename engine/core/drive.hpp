@@ -15,64 +15,63 @@
 
 namespace montecarta::engine {
 
-/// What the filter is told about the motion of one step. How many components it has and what they
-/// mean the vehicle says (EQUATIONS 1); those it does not have are 0.
+/// The control that a filter is given for one step. The vehicle defines the number of its
+/// components and their meaning (EQUATIONS 1); components that it does not have are 0.
 struct Control {
   static constexpr std::size_t kMost = 3;  ///< components
   std::array<double, kMost> values{};
 
   double operator[](std::size_t i) const { return values[i]; }
   double& operator[](std::size_t i) { return values[i]; }
-  /// A vehicle that stands does not move, whatever noise its motion has (EQUATIONS 1): no
-  /// prediction. `moving`: how many of the first components are all 0 then.
+  /// Returns whether the vehicle stands still, that is, whether its first `moving` components are
+  /// all 0. It is then not predicted, whatever noise its motion has (EQUATIONS 1).
   bool stands(std::size_t moving) const {
     return std::all_of(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(moving),
                        [](double value) { return value == 0.0; });
   }
 };
 
-/// One measurement of a landmark. How many components it has and what they mean the sensor says
-/// (EQUATIONS 2); those it does not have are 0.
+/// One measurement of a landmark. The sensor defines the number of its components and their meaning
+/// (EQUATIONS 2); components that it does not have are 0.
 struct Detection {
   static constexpr std::size_t kMost = 2;            ///< components
   static constexpr std::int32_t kClutter = -1;       ///< identity of a false alarm
-  static constexpr std::int32_t kUnidentified = -2;  ///< identity that nobody knows
-  std::array<double, kMost> values{};                ///< e.g. range [m], bearing [rad]
+  static constexpr std::int32_t kUnidentified = -2;  ///< identity if it is not known
+  std::array<double, kMost> values{};                ///< for instance range [m], bearing [rad]
   std::int32_t identity =
-      kClutter;  ///< landmark of the world; a filter may estimate by it only with known association
+      kClutter;  ///< landmark of the world; filters may only use it with known association
 
   double operator[](std::size_t i) const { return values[i]; }
   double& operator[](std::size_t i) { return values[i]; }
 };
 
-/// All detections of one instant, no identity twice but clutter and the unidentified; may be empty.
+/// All detections of one instant; may be empty. Identities differ, except clutter and unidentified.
 using Scan = std::span<const Detection>;
 
-/// An independent measurement of the vehicle's path, by which a recorded drive is judged.
+/// An independent measurement of the vehicle's path, against which a recorded drive is evaluated.
 struct ReferencePath {
-  std::string name;                       ///< e.g. "gps"
+  std::string name;                       ///< for instance "gps"
   std::vector<double> time;               ///< [s] of each fix, increasing
   std::vector<Eigen::Vector2d> position;  ///< [m] of each fix
-  std::vector<double> heading;            ///< [rad] of each fix; empty where it is not measured
-  /// (m, m, rad)^2 of the error of each fix; without headings only the block of the position
-  /// counts. Empty where nobody knows it.
+  std::vector<double> heading;            ///< [rad] of each fix; empty if it is not measured
+  /// Covariance [m, m, rad]^2 of the error of each fix; empty if it is not known. Without headings,
+  /// only the block of the position counts.
   std::vector<Eigen::Matrix3d> covariance = {};
 
-  /// Components that a fix measures: x, y and, where there are headings, the heading.
+  /// Number of components of a fix: x, y and, if there are headings, the heading.
   int dimension() const { return heading.empty() ? 2 : 3; }
 };
 
-/// What all runs of a study share: when steps and scans happen and what there is to map.
+/// The part that all runs of a study share: the times of steps and scans, and the landmarks.
 struct Itinerary {
-  std::vector<double> step_time;  ///< [s] at the end of each control step, one per step
-  std::vector<std::uint32_t>
-      scan_step;  ///< for each scan the index of the step after which it is taken
-  std::vector<Eigen::Vector2d> landmarks;  ///< [m] true positions, by identity; empty where unknown
+  std::vector<double> step_time;           ///< [s] at the end of each control step, one per step
+  std::vector<std::uint32_t> scan_step;    ///< {scan} index of the step after which it is taken
+  std::vector<Eigen::Vector2d> landmarks;  ///< [m] true positions, by identity; empty if unknown
   std::vector<Eigen::Vector2d> waypoints;  ///< [m] for figures only; may be empty
-  Pose start;  ///< pose before the first step, known to the filter exactly
-  std::vector<ReferencePath> references;  ///< of a recorded drive
-  std::size_t moving_controls = 1;        ///< a vehicle stands where so many first components are 0
-  bool has_truth = true;  ///< whether drives carry the true poses; a recorded one does not
+  Pose start;  ///< pose before the first step, which the filter knows exactly
+  std::vector<ReferencePath> references;  ///< only for a recorded drive
+  std::size_t moving_controls = 1;        ///< number of first components for Control::stands()
+  bool has_truth = true;                  ///< true if drives have true poses, unlike recorded ones
 
   std::size_t steps() const { return step_time.size(); }
   std::size_t scans() const { return scan_step.size(); }
@@ -82,11 +81,11 @@ struct Itinerary {
   }
 };
 
-/// One run's input and the truth it is judged by. Buffers keep their memory from run to run.
+/// The input and the truth of one run. Buffers keep their memory from run to run.
 struct Drive {
   std::vector<Control> controls;          ///< one per step, as given to the filter
-  std::vector<Pose> truth;                ///< one per step, after the step; empty where unknown
-  std::vector<Detection> detections;      ///< of all scans, one after the other
+  std::vector<Pose> truth;                ///< one per step, after the step; empty if unknown
+  std::vector<Detection> detections;      ///< those of all scans, in order
   std::vector<std::uint32_t> scan_begin;  ///< scans() + 1 offsets into `detections`
 
   Scan scan(std::size_t s) const {
@@ -94,18 +93,18 @@ struct Drive {
   }
 };
 
-/// Supplies drives: simulated or recorded. Implemented in experiments; called from many threads.
+/// Supplies simulated or recorded drives. Implemented in experiments; called from many threads.
 class DriveSource {
  public:
   virtual ~DriveSource() = default;
-  /// Common to all runs; where every run is a drive of its own, that of the one with most scans,
-  /// without references.
+  /// The itinerary of all runs. If every run has its own drive, it is that of the drive with the
+  /// most scans, without references.
   virtual const Itinerary& itinerary() const = 0;
-  /// How many runs there are, where every run is a recorded drive of its own; else 0.
+  /// Number of runs if every run is a different recorded drive, else 0.
   virtual std::size_t own_drives() const { return 0; }
-  /// Of one run: it has at most as many scans as itinerary(), and the same landmarks.
+  /// The itinerary of one run, with at most as many scans as itinerary() and the same landmarks.
   virtual const Itinerary& itinerary_of(std::uint64_t /*run*/) const { return itinerary(); }
-  /// Fills `drive` for one run: a pure function of (study, run), whatever `drive` held before.
+  /// Writes the drive of one run, a pure function of (study, run), to `drive`.
   virtual void generate(std::uint64_t run, Drive& drive) const = 0;
 };
 

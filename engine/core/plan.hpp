@@ -17,67 +17,65 @@
 
 namespace montecarta::engine {
 
-/// What a study may ask to be stored (study file: record.columns) besides the columns of the group
+/// The columns that a study stores (study file: record.columns) in addition to those of the group
 /// `pose` (records/columns.cpp), which are always stored.
 struct ColumnSelection {
   bool covariance =
-      true;  ///< pose_covariance; pose_mean_mixture, pose_covariance_mixture where there is one
-  bool ancestry = true;      ///< ancestor
-  bool particles = false;    ///< particle_pose, log_weight
-  bool association = false;  ///< association_correct, _wrong, _new_again, _missed, _clutter
-  bool map = false;          ///< map_mean, map_covariance, map_seen, at every scan
-  bool final_map = false;    ///< final_map_mean, final_map_covariance, final_map_seen, at the last
-  bool joint = false;        ///< joint_mean, joint_covariance of filters that have a joint estimate
-  bool observability = false;    ///< rotation_information of filters that tell it
-  std::size_t joint_scans = 16;  ///< record.joint_scans: at so many scans (joint_scans_of())
-  bool scans_only = false;       ///< record.rate = scan: rows of `time` only where a scan was taken
+      true;  ///< pose_covariance and, with a mixture, pose_mean_mixture, pose_covariance_mixture
+  bool ancestry = true;        ///< ancestor
+  bool particles = false;      ///< particle_pose, log_weight
+  bool association = false;    ///< association_correct, _wrong, _new_again, _missed, _clutter
+  bool map = false;            ///< map_mean, map_covariance, map_seen, at every scan
+  bool final_map = false;      ///< final_map_mean, final_map_covariance, final_map_seen, at the end
+  bool joint = false;          ///< joint_mean, joint_covariance of filters with a joint estimate
+  bool observability = false;  ///< rotation_information of filters that report it
+  std::size_t joint_scans = 16;  ///< record.joint_scans: number of scans (joint_scans_of())
+  bool scans_only = false;       ///< record.rate = scan: rows of `time` only at scans
 };
 
-/// One filter in one setting, repeated in runs: one curve of a figure.
+/// One filter in one setting, repeated in runs; one curve of a figure.
 struct Cell {
-  std::string label;  ///< unique in the study, made of what distinguishes it, e.g. "fastslam2_m100"
-  std::string filter;                 ///< name as users type it, e.g. "fastslam2"
-  std::string long_name;              ///< e.g. "FastSLAM II, 100 particles"
-  std::size_t particles = 0;          ///< 0: not a particle filter
-  bool mixture = false;               ///< whether estimate() has a mixture between sampling
-  bool joint = false;                 ///< whether joint() gives anything
-  bool rotation_information = false;  ///< whether ScanReport has it
-  std::size_t landmarks = 0;          ///< how many rows the map columns have
-  /// Components of the error that is stored of an estimate of another program; 0: a filter of ours.
+  std::string label;      ///< unique in the study, from the settings that differ: "fastslam2_m100"
+  std::string filter;     ///< name in study files, for instance "fastslam2"
+  std::string long_name;  ///< for instance "FastSLAM II, 100 particles"
+  std::size_t particles = 0;          ///< 0 if it is not a particle filter
+  bool mixture = false;               ///< true if estimate() has a mixture before sampling
+  bool joint = false;                 ///< true if joint() has an estimate
+  bool rotation_information = false;  ///< true if ScanReport has it
+  std::size_t landmarks = 0;          ///< number of rows of the map columns
+  /// Number of components of the stored error of another program's estimate; 0 for our own filters.
   std::size_t error_components = 0;
-  bool innovations = true;  ///< of such an estimate: whether its NIS is stored too
-  /// Of such an estimate: whether its error may be by several conventions (kErrorConventions).
+  bool innovations = true;  ///< true if the NIS of such an estimate is stored too
+  /// True if the error of such an estimate may follow several conventions (kErrorConventions).
   bool several_conventions = false;
-  bool poses = true;  ///< whether it estimates a pose in the plane; else only its error is stored
-  std::vector<std::pair<std::string, std::string>> settings;  ///< resolved, every one, for the file
+  bool poses = true;  ///< true if it estimates a pose in the plane; else only its error is stored
+  std::vector<std::pair<std::string, std::string>> settings;  ///< all, resolved, for the file
   std::function<std::unique_ptr<SlamFilter>()> make_filter;   ///< callable from any thread
 };
 
-/// Asked between rounds (monte_carlo.hpp), when the first `runs` runs of a cell have ended, whether
-/// they are enough. Must follow from those runs, as they are stored in `unfinished`, and nothing
-/// else.
+/// Called between two rounds (monte_carlo.hpp), when the first `runs` runs of a cell have ended.
+/// Returns whether they are enough, which may depend on those runs alone, as stored in
+/// `unfinished`.
 using EnoughRuns = std::function<bool(const std::filesystem::path& unfinished, std::size_t cell,
                                       std::uint64_t runs, const Parallel& parallel)>;
 
-/// A study made ready to run: what experiments hand to the engine. Results are a pure function of
-/// it.
+/// A study that is ready to run, the input of the engine. Results are a pure function of it.
 struct StudyPlan {
   std::string name;
   std::string title;  ///< one line for figures and the file's title attribute
   std::uint64_t seed = 0;
-  std::uint64_t runs = 0;       ///< of the whole study
+  std::uint64_t runs = 0;       ///< number in the whole study
   std::uint64_t first_run = 0;  ///< this file holds runs [first_run, last_run)
   std::uint64_t last_run = 0;
   std::vector<Cell> cells;
   ColumnSelection columns;
   std::shared_ptr<const DriveSource> drives;
-  EnoughRuns is_enough;  ///< when a cell stops early; empty: never. For files that hold all runs
-  /// [m] True landmarks of a run, as many as the itinerary's, where every run has its own; empty
-  /// where all have the itinerary's. Callable from any thread.
+  EnoughRuns is_enough;  ///< when a cell stops early; empty: never. Only for files with all runs
+  /// Returns the true landmarks [m] of a run, as many as in the itinerary, if every run has its
+  /// own; empty if all runs have those of the itinerary. It may be called from any thread.
   std::function<std::vector<Eigen::Vector2d>(std::uint64_t run)> own_landmarks;
   std::vector<std::pair<std::string, std::string>> scenario;  ///< resolved settings, for the file
-  std::string
-      resolved_text;  ///< the study file with everything filled in; its SHA-256 names the study
+  std::string resolved_text;  ///< study file with all defaults; its SHA-256 identifies the study
 
   std::uint64_t runs_here() const { return last_run - first_run; }
 };

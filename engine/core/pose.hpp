@@ -16,10 +16,10 @@ struct BasicPose {
 };
 using Pose = BasicPose<double>;
 
-/// Its position [m].
+/// Position of a pose [m].
 inline Eigen::Vector2d place_of(const Pose& pose) { return {pose.x, pose.y}; }
 
-/// a boxminus b: the error (x [m], y [m], heading [rad], wrapped) that moves b onto a.
+/// The error of a relative to b: (x [m], y [m], heading [rad], wrapped) that moves b onto a.
 inline Eigen::Vector3d boxminus(const Pose& a, const Pose& b) {
   return {a.x - b.x, a.y - b.y, wrap(a.heading - b.heading)};
 }
