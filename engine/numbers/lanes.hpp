@@ -11,12 +11,12 @@
 
 namespace montecarta::engine {
 
-/// Which lanes a condition holds for.
+/// The lanes for which a condition holds.
 struct LaneMask;
 
 /// Eight doubles that are computed together, one for each of eight particles: the `Real` of
-/// production. A value type with the arithmetic of double; comparisons give a LaneMask and branches
-/// become select().
+/// production. It is a value type with the arithmetic of double. Comparisons give a LaneMask, and
+/// branches become select().
 struct alignas(64) Lanes {
   using Register = register_math::Register;
   static constexpr std::size_t kSize = 8;
@@ -26,8 +26,8 @@ struct alignas(64) Lanes {
   std::array<Register, kRegisters> part;
 
   Lanes() = default;
-  // Register by register: as plain memory the compiler would copy halves of registers, and reading
-  // a register back from two halves waits for memory (GCC 12: a fifth of FastSLAM II).
+  // Copies register by register. The compiler would copy plain memory by halves of registers, and
+  // reading a register back from two halves waits for memory (GCC 12: a fifth of FastSLAM II).
   [[gnu::always_inline]] Lanes(const Lanes& other) { *this = other; }
   [[gnu::always_inline]] Lanes& operator=(const Lanes& other) {
     for (std::size_t k = 0; k < kRegisters; ++k) part[k] = other.part[k];
@@ -36,7 +36,7 @@ struct alignas(64) Lanes {
   ~Lanes() = default;
   Lanes(double value) { part.fill(Register(value)); }  // NOLINT: a number is the same in every lane
 
-  /// Eight doubles from anywhere.
+  /// Loads eight doubles from any address.
   [[gnu::always_inline]] static Lanes load_unaligned(const double* memory) {
     Lanes lanes;
     for (std::size_t k = 0; k < kRegisters; ++k) {
@@ -44,8 +44,8 @@ struct alignas(64) Lanes {
     }
     return lanes;
   }
-  /// {number(0), ..., number(7)}, composed in registers: numbers that are stored one by one cannot
-  /// be loaded together before they have reached the cache.
+  /// {number(0), ..., number(7)}, composed in registers. If stored one by one, numbers could not be
+  /// loaded together before they reach the cache.
   template <class Function>
   [[gnu::always_inline]] static Lanes composed(const Function& number) {
     const auto compose = [&]<std::size_t... l>(std::size_t first, std::index_sequence<l...>) {
@@ -126,7 +126,7 @@ inline LaneMask operator&&(const LaneMask& a, const LaneMask& b) {
 inline LaneMask operator!(const LaneMask& a) {
   return by_register([](const auto& x) { return !x; }, a);
 }
-/// a where the mask holds, else b.
+/// a in the lanes of the mask, else b.
 [[gnu::always_inline]] inline Lanes select(const LaneMask& mask, const Lanes& a, const Lanes& b) {
   return by_register(
       [](const auto& m, const auto& x, const auto& y) { return xsimd::select(m, x, y); }, mask, a,

@@ -10,9 +10,9 @@
 #include <cstddef>
 #include <type_traits>
 
-/// The functions that per-particle arithmetic is written in, for `Real` = double and `Real` = Lanes
-/// alike. Every lane is a function of that lane alone, so a result never depends on which particles
-/// share a register.
+/// The functions of per-particle arithmetic, for both `Real` = double and `Real` = Lanes. Every
+/// lane is computed from that lane alone, so a result never depends on which particles share a
+/// register.
 
 namespace montecarta::engine {
 
@@ -52,13 +52,13 @@ inline void set(Lanes& value, std::size_t lane, double number) {
   reinterpret_cast<double*>(value.part.data())[lane] = number;
 }
 
-/// sqrt(x^2 + y^2). The hypot() of a C library rounds otherwise on other processors.
+/// sqrt(x^2 + y^2). The hypot() of C libraries rounds differently on different processors.
 template <class Real>
 Real length(const Real& x, const Real& y) {
   return sqrt(Real(x * x + y * y));
 }
 
-/// The sum over all lanes, in their order.
+/// The sum over all lanes, in order.
 template <class Real>
 double sum_of_lanes(const Real& a) {
   double sum = get(a, 0);
@@ -93,7 +93,7 @@ inline Lanes log(const Lanes& a) {
 inline Lanes sqrt(const Lanes& a) {
   return by_register([](const auto& x) { return xsimd::sqrt(x); }, a);
 }
-/// For a <= 709.
+/// exp(a) for a <= 709.
 inline Lanes exp(const Lanes& a) {
   return by_register([](const auto& x) { return register_math::exp(x); }, a);
 }
@@ -117,8 +117,8 @@ inline Lanes floor(const Lanes& a) {
   return by_register([](const auto& x) { return register_math::rounded_down(x); }, a);
 }
 
-/// The same turn by the shorter way: `angle` [rad] less the nearest whole number of turns, in [-pi,
-/// pi] to rounding. For differences that are used at once; what is kept is wrapped by wrap().
+/// `angle` [rad] minus the nearest whole number of turns, in [-pi, pi] up to rounding. It is for
+/// differences that are used at once; angles that are kept must be wrapped by wrap().
 inline double shorter_way(double angle) {
   return angle - kTwoPi * std::nearbyint(angle * (1.0 / kTwoPi));
 }
@@ -132,7 +132,7 @@ inline double shorter_way(double angle) {
       angle);
 }
 
-/// Like wrap(double): in (-pi, pi], exact where the angle is in range already.
+/// Like wrap(double): in (-pi, pi], and exact if the angle is in range already.
 inline Lanes wrap(const Lanes& angle) {
   return by_register(
       [](const auto& x) {
@@ -145,7 +145,7 @@ inline Lanes wrap(const Lanes& angle) {
       angle);
 }
 
-/// The unit vectors at a few angles [rad], computed together: not much dearer than one.
+/// The unit vectors at a few angles [rad], computed together at little more than the cost of one.
 template <std::size_t N>
 [[gnu::always_inline]] inline std::array<Direction<double>, N> directions_of(
     const std::array<double, N>& angles) {

@@ -10,11 +10,11 @@
 #include <cstdint>
 #include <limits>
 
-/// Arithmetic of one register of doubles of any width: what xsimd has, and where it differs from
-/// one instruction set to another, in a form that does not.
+/// Arithmetic of one register of doubles of any width. It replaces functions of xsimd that differ
+/// between instruction sets.
 namespace montecarta::engine::register_math {
 
-// The tests also build for registers of two doubles, whose bits must be those of wider ones.
+// The tests also build for registers of two doubles, which must give the same bits as wider ones.
 #ifdef MONTECARTA_NARROW_REGISTERS
 using Register = xsimd::batch<double, xsimd::sse4_2>;
 #else
@@ -25,7 +25,7 @@ using Register = xsimd::batch<double>;
 template <class R>
 using BitsOf = xsimd::batch<std::uint64_t, typename R::arch_type>;
 
-// xsimd 8 rounds fma() twice on AVX-512 and on plain SSE, fnma() on ARM. The names differ from
+// xsimd 8 rounds fma() twice on AVX-512 and on plain SSE, and fnma() on ARM. The names differ from
 // those of xsimd, which argument-dependent look-up would prefer.
 
 /// a b + c, rounded once.
@@ -55,14 +55,14 @@ template <class R>
   return xsimd::fnma(a, b, c);
 }
 
-/// -x, of zeros too: that of xsimd 8 is 0 - x on AVX-512.
+/// -x, also for zeros: xsimd 8 computes 0 - x on AVX-512.
 template <class R>
 [[gnu::always_inline]] inline R negative(const R& x) {
   return x ^ R(-0.0);
 }
 
-/// The lesser and the greater; b where one is not a number, or both are zero. ARM's own give what
-/// is not a number.
+/// The lesser and the greater; b if one is NaN or both are zero. The instructions of ARM return
+/// NaN.
 template <class R>
 [[gnu::always_inline]] inline R lesser(const R& a, const R& b) {
 #ifdef __aarch64__
@@ -80,7 +80,7 @@ template <class R>
 #endif
 }
 
-/// The greatest whole number that is not above x; -0 of -0, of which xsimd makes 0 on ARM.
+/// The greatest whole number that is not above x; -0 for -0, for which xsimd returns 0 on ARM.
 template <class R>
 [[gnu::always_inline]] inline R rounded_down(const R& x) {
 #ifdef __aarch64__
@@ -89,8 +89,8 @@ template <class R>
   return xsimd::floor(x);
 }
 
-/// The product of the low halves of all lanes with `b`, exactly. xsimd multiplies 64-bit lanes in
-/// full, which takes three times as long.
+/// The exact product of the low half of every lane with `b`. xsimd multiplies whole 64-bit lanes,
+/// which takes three times as long.
 template <class B>
 [[gnu::always_inline]] inline B multiply_low_halves(const B& a, std::uint32_t b) {
 #ifdef __AVX512F__
@@ -108,14 +108,14 @@ template <class B>
   return (a & B(std::uint64_t{0xffffffffU})) * B(std::uint64_t{b});
 }
 
-/// Adding it to |x| < 2^51 rounds x to the nearest whole number, which then stands in the low bits.
+/// Adding this to |x| < 2^51 rounds x to the nearest whole number, which is then in the low bits.
 template <class R>
 [[gnu::always_inline]] inline R rounding_shift() {
   return R(0x1.8p52);
 }
 
-/// Polynomial with the highest coefficient first, as one in z^2 whose coefficients are pairs
-/// (Estrin): half as many steps wait for each other.
+/// Polynomial with the highest coefficient first, evaluated as one in z^2 with pairs of
+/// coefficients (Estrin), which halves the number of dependent steps.
 template <class R, std::size_t N>
 [[gnu::always_inline]] inline R polynomial(const R& z, const std::array<R, N>& coefficients) {
   if constexpr (N == 1) {
@@ -135,8 +135,8 @@ template <class R, class... Coefficients>
 }
 
 // Branch-free sine, cosine and arc tangent of one register. Those of xsimd choose their polynomial
-// by what the neighbouring lanes hold, so that a particle's bits would depend on who shares its
-// register, and its arc tangent divides four times where once is enough.
+// by the values in all lanes, so that the bits of a particle would depend on its neighbours, and
+// its arc tangent divides four times instead of once.
 
 /// Sine and cosine for |angle| < 1e5, to one unit in the last place (polynomials of FreeBSD's
 /// msun).
@@ -169,9 +169,9 @@ template <class R>
   cosine = c ^ swap ^ cosine_sign;
 }
 
-/// Angle of the vector (x, y) in [-pi, pi]; 0 where both are zero. One division: the octant is
-/// chosen before it. Polynomial: Chebyshev fit of (atan(s)/s - 1)/s^2 in s^2 on [0, tan(pi/8)^2],
-/// error 6e-18.
+/// Angle of the vector (x, y) in [-pi, pi]; 0 if both are zero. The octant is chosen first, so that
+/// one division is enough. Polynomial: Chebyshev fit of (atan(s)/s - 1)/s^2 in s^2 on [0,
+/// tan(pi/8)^2], error 6e-18.
 template <class R>
 [[gnu::always_inline]] inline R atan2(const R& y, const R& x) {
   const R ax = xsimd::abs(x), ay = xsimd::abs(y);
@@ -195,7 +195,7 @@ template <class R>
 }
 
 // Exponential and logarithm of one register. Those of xsimd 8 convert whole numbers through memory
-// on AVX2, which has no instruction for it, and look at all lanes to choose their way.
+// on AVX2, which has no instruction for it, and branch by the values in all lanes.
 
 /// ln 2 in two parts: a whole number below 2^20 times the first is exact.
 inline constexpr double kLn2High = 6.93147180369123816490e-01;
@@ -217,8 +217,8 @@ template <class R>
   return xsimd::select(x < R(-708.0), R(0.0), xsimd::bitwise_cast<R>(scaled));
 }
 
-/// Natural logarithm, to one unit in the last place (polynomials of FreeBSD's msun); -infinity of
-/// zero and of less than 2^-1022, not a number of negative numbers.
+/// Natural logarithm, to one unit in the last place (polynomials of FreeBSD's msun); -infinity for
+/// zero and for less than 2^-1022, NaN for negative numbers.
 template <class R>
 [[gnu::always_inline]] inline R log(const R& x) {
   using Bits = BitsOf<R>;
@@ -227,7 +227,7 @@ template <class R>
   const Bits above = xsimd::bitwise_cast<Bits>(x) + Bits(kOne - kRootOfHalf);
   const Bits exponent = above >> 52;
   const Bits m_bits = (above & Bits(std::uint64_t{0x000fffffffffffff})) + Bits(kRootOfHalf);
-  // A whole number in the low bits of 2^52 is that number, with 2^52 added.
+  // A whole number in the low bits of 2^52 represents 2^52 plus that number.
   const R k = xsimd::bitwise_cast<R>(exponent | Bits(std::uint64_t{0x4330000000000000})) -
               R(0x1p52 + 1023.0);
   const R f = xsimd::bitwise_cast<R>(m_bits) - R(1.0);
@@ -241,7 +241,7 @@ template <class R>
   const R low = multiply_add(s, half_square + tail, k * R(kLn2Low));
   const R finite = multiply_add(k, R(kLn2High), f - (half_square - low));
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const R positive = xsimd::select(x < R(kInfinity), finite, x);  // infinity, and not a number
+  const R positive = xsimd::select(x < R(kInfinity), finite, x);  // infinity and NaN
   const R signless =
       xsimd::select(x < R(std::numeric_limits<double>::min()), R(-kInfinity), positive);
   return xsimd::select(x < R(0.0), R(std::numeric_limits<double>::quiet_NaN()), signless);
