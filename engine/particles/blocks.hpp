@@ -12,13 +12,13 @@
 
 namespace montecarta::engine {
 
-/// How many blocks of kLanesOf<Real> hold `particles`; the last block may have dead lanes.
+/// Number of blocks of kLanesOf<Real> for `particles`; lanes without a particle are called dead.
 template <class Real>
 constexpr std::size_t blocks_for(std::size_t particles) {
   return (particles + kLanesOf<Real> - 1) / kLanesOf<Real>;
 }
 
-/// A column of one Real per block seen as one double per particle (dead lanes at the end).
+/// A column of one Real per block as one double per particle, with the dead lanes at the end.
 template <class Real>
 std::span<double> scalars(std::vector<Real>& column) {
   return {reinterpret_cast<double*>(column.data()), column.size() * kLanesOf<Real>};
@@ -28,7 +28,7 @@ std::span<const double> scalars(const std::vector<Real>& column) {
   return {reinterpret_cast<const double*>(column.data()), column.size() * kLanesOf<Real>};
 }
 
-/// A struct of Reals seen as its numbers: field f of particle i lies at offset(i) + f *
+/// A struct of Reals as an array of numbers: field f of particle i is at offset(i) + f *
 /// kLanesOf<Real>.
 template <class Real, class Block>
 struct BlockLayout {
@@ -57,7 +57,7 @@ Block gather_block(std::span<const Block> from, std::span<const std::uint32_t> s
   return block;
 }
 
-/// One particle's numbers out of a block into the same lane of another.
+/// Copies the numbers of one particle from one block to the same lane of another.
 template <class Real, class Block>
 void copy_lane(const Block& from, Block& to, std::size_t lane) {
   constexpr std::size_t fields = BlockLayout<Real, Block>::kFields;
@@ -68,24 +68,24 @@ void copy_lane(const Block& from, Block& to, std::size_t lane) {
   }
 }
 
-/// `to` becomes the population in which particle i is a copy of particle source[i] of `from`.
+/// Makes `to` the population in which particle i is a copy of particle source[i] of `from`.
 template <class Real, class Block>
 void gather(const std::vector<Block>& from, std::span<const std::uint32_t> source,
             std::vector<Block>& to) {
   for (std::size_t b = 0; b < to.size(); ++b) to[b] = gather_block<Real, Block>(from, source, b);
 }
 
-/// The blocks of a population shared out to tasks that may run at once.
+/// Distributes the blocks of a population over tasks that may run in parallel.
 template <class Real>
 class BlockTasks {
  public:
-  /// `per_task` blocks: fewer than 256 particles of usual work do not pay for a thread.
+  /// `per_task` is in blocks. A thread does not pay off for fewer than 256 particles of usual work.
   explicit BlockTasks(std::size_t blocks, std::size_t per_task = 256 / kLanesOf<Real>)
       : blocks_(blocks), per_task_(per_task) {}
 
   std::size_t count() const { return (blocks_ + per_task_ - 1) / per_task_; }
 
-  /// Calls body(task, block) for every block, those of a task in order.
+  /// Calls body(task, block) for every block, in order within a task.
   template <class Body>
   void run(const StepContext& context, const Body& body) const {
     context.parallel_for(count(), [&](std::size_t task) {

@@ -11,11 +11,11 @@
 
 namespace montecarta::engine {
 
-/// Who descends from whom since an earlier resampling, so that what a particle owns need not be
-/// copied at every resampling but only when it is looked at again ("lazy" copying).
+/// The ancestors of particles since earlier resamplings. Data of particles need not be copied at
+/// every resampling but only when they are used again ("lazy" copying).
 class Genealogy {
  public:
-  /// `source.size()` particles; dead lanes included, each its own parent.
+  /// Takes the number of particles including dead lanes, each of which is its own parent.
   explicit Genealogy(std::size_t particles) : identity_(particles) {
     std::iota(identity_.begin(), identity_.end(), 0U);
   }
@@ -31,7 +31,7 @@ class Genealogy {
   void add(std::span<const std::uint32_t> parents) {
     parents_.insert(parents_.end(), parents.begin(), parents.end());
   }
-  /// Whether so much is remembered that all owners should catch up and forget() be called.
+  /// Returns whether so much is stored that all data should be copied and forget() called.
   bool is_long() const {
     return parents_.size() >= kMostNumbers || parents_.size() / identity_.size() >= kLongest;
   }
@@ -40,7 +40,7 @@ class Genealogy {
     parents_.clear();
   }
 
-  /// The index at `since` of the ancestor of today's particle.
+  /// The index in generation `since` of the ancestor of a present particle.
   std::uint32_t trace(std::uint32_t since, std::uint32_t particle) const {
     for (std::size_t g = generation() - forgotten_; g-- > since - forgotten_;) {
       particle = parents_[g * identity_.size() + particle];
@@ -48,8 +48,8 @@ class Genealogy {
     return particle;
   }
 
-  /// source[i] = the index at `since` of the ancestor of today's particle i; since >= the last
-  /// forget().
+  /// Writes source[i], the index in generation `since` of the ancestor of present particle i;
+  /// `since` must not be before the last forget().
   void trace(std::uint32_t since, std::span<std::uint32_t> source) const {
     std::copy(identity_.begin(), identity_.end(), source.begin());
     for (std::size_t g = generation() - forgotten_; g-- > since - forgotten_;) {
@@ -62,7 +62,7 @@ class Genealogy {
   static constexpr std::size_t kLongest = 256;           // generations
   static constexpr std::size_t kMostNumbers = 1U << 22;  // 16 MiB
   std::vector<std::uint32_t> identity_;
-  std::vector<std::uint32_t> parents_;  // one generation behind the other
+  std::vector<std::uint32_t> parents_;  // one generation after the other
   std::uint32_t forgotten_ = 0;
 };
 

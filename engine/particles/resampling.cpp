@@ -10,15 +10,15 @@ namespace {
 using Parents = std::span<std::uint32_t>;
 using Weights = std::span<const double>;
 
-/// The last particle of any weight: it takes what rounding leaves over.
+/// The last particle with a positive weight, which gets the remainder due to rounding.
 std::size_t last_alive(Weights weights) {
   std::size_t last = weights.size() - 1;
   while (last > 0 && !(weights[last] > 0.0)) --last;
   return last;
 }
 
-/// Parent i is the first particle up to which the shares sum to more than place(i); the places come
-/// in increasing order.
+/// Parent i is the first particle up to which the shares sum to more than place(i). The places must
+/// be in increasing order.
 template <class Share, class Place>
 void sweep(const Share& share, std::size_t last, const Place& place, Parents parents) {
   std::size_t parent = 0;
@@ -47,7 +47,7 @@ void stratified(Weights weights, const StepContext& context, Parents parents) {
         [&](std::size_t i) { return (static_cast<double>(i) + uniform(context, i)) / n; }, parents);
 }
 
-/// Independent uniform places, in order: the arrival times of a Poisson process over the last one.
+/// The ordered uniform numbers are arrival times of a Poisson process divided by the last one.
 void multinomial(Weights weights, const StepContext& context, Parents parents) {
   const auto waiting = [&](std::size_t i) { return -std::log(uniform(context, i)); };
   double total = 0.0;
@@ -57,8 +57,8 @@ void multinomial(Weights weights, const StepContext& context, Parents parents) {
         [&](std::size_t i) { return (arrival += waiting(i)) / total; }, parents);
 }
 
-/// floor(N w) copies of each; the rest by stratified places over what the floors left (Liu and Chen
-/// 1998).
+/// Gives floor(N w) copies to each particle, and the rest by stratified resampling of the
+/// remainders (Liu and Chen 1998).
 void residual(Weights weights, const StepContext& context, Parents parents) {
   const double n = static_cast<double>(parents.size());
   std::size_t filled = 0;

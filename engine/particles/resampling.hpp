@@ -12,8 +12,8 @@ namespace montecarta::engine {
 /// average.
 enum class Resampling { systematic, stratified, residual, multinomial };
 
-/// Draws the parent of every new particle: parents[i] in [0, weights.size()), non-decreasing but
-/// for residual. `weights` sum to one; as many parents as weights.
+/// Draws the parent of every new particle: parents[i] in [0, weights.size()), non-decreasing except
+/// for residual resampling. `weights` must sum to one, and there are as many parents as weights.
 void draw_parents(Resampling scheme, std::span<const double> weights, const StepContext& context,
                   std::span<std::uint32_t> parents);
 

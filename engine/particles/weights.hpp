@@ -11,7 +11,7 @@
 
 namespace montecarta::engine {
 
-/// Weights of a particle population, kept as logarithms; dead lanes weigh nothing and reach no sum.
+/// Weights of a particle population, kept as logarithms. Dead lanes have weight zero.
 template <class Real>
 class Weights {
  public:
@@ -26,7 +26,7 @@ class Weights {
   std::span<const double> log_scalars() const { return scalars(log_).first(particles_); }
   const Real& log(std::size_t block) const { return log_[block]; }
 
-  /// A particle of the greatest weight.
+  /// A particle with the greatest weight.
   std::size_t heaviest() const { return heaviest_; }
 
   void make_equal() {
@@ -41,9 +41,8 @@ class Weights {
   /// Multiplies a block of weights by exp(increment); normalise() must follow.
   void multiply(std::size_t block, const Real& log_increment) { log_[block] += log_increment; }
 
-  /// Makes the weights sum to one again and returns the log of what they summed to: the
-  /// log-likelihood of the scan. Throws where no particle has any weight left, or one has no
-  /// number.
+  /// Makes the weights sum to one and returns the log of their previous sum, which is the
+  /// log-likelihood of the scan. Throws std::runtime_error if all weights are zero or one is NaN.
   double normalise() {
     double peak = -std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < particles_; ++i) {
