@@ -37,7 +37,7 @@ double RngStream::uniform() {
 }
 
 std::uint32_t RngStream::below(std::uint32_t count) {
-  // Lemire's method: the biased tail of the product is drawn again.
+  // Lemire's method: the number is drawn again in the biased tail of the product.
   const std::uint32_t tail = (0U - count) % count;
   for (;;) {
     const std::uint64_t product = (bits() >> 32) * count;
@@ -59,7 +59,7 @@ double RngStream::normal() {
 }
 
 double normal_quantile(double probability) {
-  constexpr double kMost = 1.0 - 0x1p-53;  // the number before 1, to which shares may round
+  constexpr double kMost = 1.0 - 0x1p-53;  // the number before 1; probabilities may round to 1
   return -std::numbers::sqrt2 * boost::math::erfc_inv(2.0 * std::min(probability, kMost));
 }
 

@@ -18,15 +18,15 @@ struct Halves {
   Word high, low;
 };
 
-/// a times b for one word held in 64 bits.
+/// a times b, for a word in 64 bits.
 inline Halves<std::uint64_t> multiply_words(std::uint64_t a, std::uint32_t b) {
   const std::uint64_t product = a * b;
   return {product >> 32, product & 0xffffffffU};
 }
 
 /// Philox4x32-10 (Salmon, Moraes, Dror and Shaw, SC 2011): ten rounds turn a counter and a key into
-/// four random words. `Word` holds one 32-bit number in 64 bits: std::uint64_t, or one such for
-/// each lane.
+/// four random words. `Word` holds one 32-bit number in 64 bits; it is std::uint64_t, or has one
+/// such number for each lane.
 template <class Word>
 std::array<Word, 4> philox(std::array<Word, 4> counter, std::array<std::uint32_t, 2> key) {
   for (int round = 0; round < 10; ++round) {
@@ -39,39 +39,38 @@ std::array<Word, 4> philox(std::array<Word, 4> counter, std::array<std::uint32_t
   return counter;
 }
 
-/// Who owns which counter: index, step, run, and purpose with the number of the block within it.
+/// A counter consists of index, step, run, and purpose together with the number of the block.
 inline constexpr int kPurposeShift = 24;
 inline constexpr std::uint32_t kBlockMask = 0xffffffU;
 
-/// What a draw is for. Two places never share a purpose; the world's purposes never depend on the
-/// filter. The numbers are part of every result: append, never renumber. 25 and 26 are spent.
+/// The purpose of a draw. Two places never share one, and those of the world never depend on the
+/// filter. The numbers are part of every result: append, never renumber. 25 and 26 are taken.
 enum class Draw : std::uint8_t {
   world_control = 0,     ///< noise on the control (measured-control) or on the motion (matched)
   world_detection = 1,   ///< noise on range and bearing, index = landmark
-  world_miss = 2,        ///< whether a landmark is missed, index = landmark
-  world_clutter = 3,     ///< number and place of false alarms
+  world_miss = 2,        ///< misses of detections, index = landmark
+  world_clutter = 3,     ///< number and position of false alarms
   world_landmark = 4,    ///< random maps
-  motion_sample = 16,    ///< FastSLAM 1 motion noise, index = particle
-  pose_proposal = 17,    ///< FastSLAM 2 draw from the proposal, index = particle
+  motion_sample = 16,    ///< motion noise of FastSLAM I, index = particle
+  pose_proposal = 17,    ///< draw from the proposal, index = particle
   resampling = 18,       ///< index = 0 (systematic) or particle
   evolution = 19,        ///< differential evolution
-  kernel_sample = 23,    ///< marginal filters: pose drawn from the chosen kernel, index = particle
-  external_filter = 28,  ///< what a program outside of the process may seed its generator with
+  kernel_sample = 23,    ///< marginal filters: draw from the chosen kernel, index = particle
+  external_filter = 28,  ///< seed of the generator of a program outside the process
   analysis_bootstrap = 32,
   test = 255,
 };
 
-/// Who a stream of numbers belongs to.
+/// The identity of a stream of random numbers.
 struct StreamIdentity {
-  std::uint64_t seed = 0;  ///< of the study
+  std::uint64_t seed = 0;  ///< seed of the study
   std::uint64_t run = 0;   ///< < 2^32
   std::uint32_t step = 0;
   std::uint32_t index = 0;  ///< particle, landmark, ...
   Draw purpose = Draw::test;
 };
 
-/// A stream of random numbers that is a pure function of its identity (Philox4x32-10). Copyable, 48
-/// bytes.
+/// A stream of random numbers that is a pure function of its identity (Philox4x32-10).
 class RngStream {
  public:
   /// Starts at number 2 `block` of the stream; block < 2^24.
@@ -83,7 +82,7 @@ class RngStream {
   double uniform();
   /// Uniform in {0, ..., count - 1}, without bias; count >= 1.
   std::uint32_t below(std::uint32_t count);
-  /// Standard normal (Box-Muller, both of a pair are used, in order).
+  /// Standard normal (Box-Muller; both numbers of a pair are used, in order).
   double normal();
 
  private:
@@ -95,14 +94,14 @@ class RngStream {
   bool has_spare_ = false;
 };
 
-/// One 32-bit word in the low half of each 64-bit lane of a register; what the high halves hold
-/// means nothing.
+/// One 32-bit word in the low half of each 64-bit lane of a register; the high halves are
+/// undefined.
 struct WordRegister {
   using Batch = register_math::BitsOf<register_math::Register>;
   Batch lanes;
 };
 
-/// The exact product lane by lane.
+/// The exact product, lane by lane.
 inline Halves<WordRegister> multiply_words(const WordRegister& a, std::uint32_t b) {
   const WordRegister::Batch product = register_math::multiply_low_halves(a.lanes, b);
   return {{product >> 32}, {product}};
@@ -120,7 +119,7 @@ struct Pair {
   Real first, second;
 };
 
-/// Two standard normals out of two uniforms in (0, 1) (Box and Muller 1958).
+/// Two standard normals from two uniform numbers in (0, 1) (Box and Muller 1958).
 template <class Real>
 Pair<Real> box_muller(const Pair<Real>& uniform) {
   const Real radius = sqrt(-2.0 * log(uniform.first));
@@ -128,8 +127,8 @@ Pair<Real> box_muller(const Pair<Real>& uniform) {
   return {radius * angle.cosine, radius * angle.sine};
 }
 
-/// Uniforms 2 block and 2 block + 1 of the streams of indices identity.index, identity.index + 1,
-/// ..., one for each lane: the same bits as RngStream(identity).uniform().
+/// Uniforms 2 block and 2 block + 1 of the streams with indices identity.index, identity.index + 1,
+/// ..., one for each lane, with the same bits as RngStream(identity).uniform().
 inline Pair<Lanes> uniform_pairs(const StreamIdentity& identity, std::uint32_t block,
                                  const Lanes& /*like*/) {
   using Batch = WordRegister::Batch;
@@ -165,13 +164,13 @@ inline Pair<double> uniform_pairs(const StreamIdentity& identity, std::uint32_t 
   return {first, draw.uniform()};
 }
 
-/// Normals 2 block and 2 block + 1 of the streams of `kLanesOf<Real>` consecutive indices.
+/// Normals 2 block and 2 block + 1 of the streams with `kLanesOf<Real>` consecutive indices.
 template <class Real>
 Pair<Real> normal_pairs(const StreamIdentity& identity, std::uint32_t block) {
   return box_muller(uniform_pairs(identity, block, Real()));
 }
-/// The same of consecutive streams, `kLanesOf<Real>` for each pair. In short loops the processor
-/// computes several pairs at once, which else wait for their own bits most of the time.
+/// The same for consecutive streams, `kLanesOf<Real>` for each pair. In short loops the processor
+/// computes several pairs at once, which would otherwise wait for each other's bits.
 template <class Real>
 [[gnu::flatten]] inline void fill_normal_pairs(std::span<Pair<Real>> pairs, StreamIdentity identity,
                                                std::uint32_t block) {
@@ -182,11 +181,11 @@ template <class Real>
   for (Pair<Real>& pair : pairs) pair = box_muller(pair);
 }
 
-/// The number that a standard normal variable stays below with `probability` in (0, 1).
+/// The quantile of a standard normal variable at `probability` in (0, 1).
 double normal_quantile(double probability);
 
-/// Share of a normal variable that lies farther than `deviations` standard deviations from its
-/// mean, on either side.
+/// Probability that a normal variable deviates from its mean by more than `deviations` standard
+/// deviations, on either side.
 double normal_tails(double deviations);
 
 }  // namespace montecarta::engine
