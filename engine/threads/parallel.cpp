@@ -23,7 +23,7 @@ void spread_in_arena(std::size_t count, Call call, const void* body) {
 
 bool inside_a_task() { return tbb::task::current_context() != nullptr; }
 
-/// Keeps what a body threw, because no exception may leave an OpenMP region.
+/// Keeps the first exception of a body, since no exception may leave an OpenMP region.
 class FirstException {
  public:
   bool caught() const { return taken_.load(std::memory_order_relaxed); }
@@ -40,8 +40,8 @@ class FirstException {
 };
 
 void spread_openmp(int threads, std::size_t count, Call call, const void* body) {
-  // A loop inside a body of another stays on its thread: nested teams would oversubscribe the
-  // machine.
+  // A loop inside the body of another stays on its thread, since nested teams would oversubscribe
+  // the machine.
   if (omp_in_parallel() != 0) threads = 1;
   const auto team = static_cast<std::size_t>(threads);
   const std::size_t chunk = std::max<std::size_t>(1, count / (8 * team));
@@ -60,7 +60,7 @@ void spread_openmp(int threads, std::size_t count, Call call, const void* body) 
 
 }  // namespace
 
-/// The limit lets TBB start as many threads as asked for, even beyond the number of processors.
+/// The limit lets TBB start as many threads as requested, even more than there are processors.
 struct Parallel::Pool {
   explicit Pool(int threads)
       : limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)),
@@ -84,7 +84,7 @@ void Parallel::spread(std::size_t count, void (*call)(const void*, std::size_t),
   if (backend_ == Backend::openmp) return spread_openmp(threads_, count, call, body);
   pool_->arena.execute([=] {
     if (!inside_a_task()) return spread_in_arena(count, call, body);
-    // While it waits for an inner loop, a thread must not pick up another body of the outer one.
+    // While a thread waits for an inner loop, it must not take another body of the outer one.
     tbb::this_task_arena::isolate([=] { spread_in_arena(count, call, body); });
   });
 }

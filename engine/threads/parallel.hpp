@@ -12,10 +12,10 @@
 #endif
 namespace montecarta::engine {
 
-/// Tells the thread sanitizer what libtbb and libgomp, which are built without it, keep from it: a
-/// loop's bodies begin after the loop does and end before it ends. Bodies stay unordered among each
-/// other, so races between them are found. Without the sanitizer all this is nothing.
-/// `body` is the loop's body, whose address tells one loop from another.
+/// Declares to the thread sanitizer the order that it cannot see in libtbb and libgomp, which are
+/// built without it: the bodies of a loop begin after the loop does and end before it ends. Bodies
+/// stay unordered among each other, so races between them are found. Without the sanitizer this
+/// does nothing. The address of `body` identifies a loop.
 #ifdef MONTECARTA_THREAD_SANITIZER
 
 class LoopOrder {
@@ -25,7 +25,7 @@ class LoopOrder {
   LoopOrder(const LoopOrder&) = delete;
   LoopOrder& operator=(const LoopOrder&) = delete;
 
-  /// Around one call of the body.
+  /// Encloses one call of the body.
   class Call {
    public:
     explicit Call(const void* body) : body_(body) { __tsan_acquire(LoopOrder::begin(body_)); }
@@ -59,15 +59,15 @@ struct LoopOrder {
 
 enum class Backend { tbb, openmp, serial };
 
-/// How a loop over independent bodies is spread over threads. Bodies write disjoint memory and are
-/// not ordered, so results do not depend on the backend or the number of threads. Copies share one
-/// pool, and a loop inside a body of another uses the same threads: never more than `threads()` are
-/// at work.
+/// Distributes the bodies of a loop over threads. Bodies write disjoint memory and are not ordered,
+/// so results do not depend on the backend or the number of threads. Copies share one pool, and a
+/// loop inside the body of another uses the same threads, so never more than `threads()` are
+/// active.
 class Parallel {
  public:
-  /// `threads` >= 1; serial ignores it.
+  /// `threads` >= 1; the serial backend ignores it.
   Parallel(Backend backend, int threads);
-  /// For loops that stay on the calling thread.
+  /// Runs loops on the calling thread.
   static const Parallel& serial();
 
   Backend backend() const { return backend_; }
@@ -90,7 +90,7 @@ class Parallel {
   }
 
  private:
-  /// The one compiled copy of a body: bodies are large, and two would cost the compiler twice.
+  /// The only compiled copy of a body: bodies are large, and two would take twice the compile time.
   template <class Body>
   [[gnu::noinline, gnu::noclone]] static void call_body(const void* body, std::size_t i) {
     (*static_cast<const Body*>(body))(i);
@@ -101,26 +101,26 @@ class Parallel {
 
   Backend backend_;
   int threads_;
-  std::shared_ptr<Pool> pool_;  ///< of TBB; null where the calling thread or OpenMP does the work
+  std::shared_ptr<Pool> pool_;  ///< threads of TBB; nullptr without TBB or with one thread
 };
 
-/// Gives the threads that have no run of their own to the loops inside the runs still at work:
-/// where runs are fewer than threads, and at the end of every study.
+/// Lends threads that have no run of their own to the loops inside runs that are still active: if
+/// there are fewer runs than threads, and at the end of every study.
 class SpareThreads {
  public:
-  /// Below this many particles a loop over them costs more to spread than it saves.
+  /// Number of particles below which it costs more to distribute a loop than it saves.
   static constexpr std::size_t kLeastParticles = 256;
 
   SpareThreads(const Parallel& parallel, std::size_t workers)
       : parallel_(&parallel), at_work_(workers) {}
 
-  /// How the next loop over `particles` is to be spread: changes from step to step, results do not.
+  /// The threads for the next loop over `particles`. They may change with the step, results do not.
   const Parallel& lend(std::size_t particles) const {
     const auto threads = static_cast<std::size_t>(parallel_->threads());
     const bool spare = at_work_.load(std::memory_order_relaxed) < threads;
     return spare && particles >= kLeastParticles ? *parallel_ : Parallel::serial();
   }
-  /// A worker has found nothing more to do.
+  /// Records that a worker has no more runs.
   void gain_one() { at_work_.fetch_sub(1, std::memory_order_relaxed); }
 
  private:

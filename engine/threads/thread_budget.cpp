@@ -28,7 +28,7 @@ Quota ratio(double microseconds, double period) {
   return microseconds / period;
 }
 
-/// Version 2: one file "max 100000" or "150000 100000".
+/// Version 2 has one file, "max 100000" or "150000 100000".
 Quota quota_v2(const fs::path& group) {
   std::ifstream file(group / "cpu.max");
   double quota = 0.0;
@@ -37,7 +37,7 @@ Quota quota_v2(const fs::path& group) {
   return ratio(quota, period);
 }
 
-/// Version 1: two files, the quota -1 where there is none.
+/// Version 1 has two files; the quota is -1 if there is none.
 Quota quota_v1(const fs::path& group) {
   std::ifstream quota_file(group / "cpu.cfs_quota_us");
   std::ifstream period_file(group / "cpu.cfs_period_us");
@@ -47,9 +47,9 @@ Quota quota_v1(const fs::path& group) {
   return ratio(quota, period);
 }
 
-/// Of `group` (as /proc/self/cgroup writes it, "/a/b") and every parent up to the mount point. In a
-/// container the named group may be out of sight: then only the mount point, which is the
-/// container's own group, counts.
+/// The tightest quota of `group` (as in /proc/self/cgroup, "/a/b") and all its parents up to the
+/// mount point. In a container the group may not be visible; then only the mount point counts,
+/// which is the container's own group.
 Quota tightest_upwards(const fs::path& mount, const std::string& group,
                        Quota (*read)(const fs::path&)) {
   Quota tightest = read(mount);
@@ -85,7 +85,7 @@ std::string first_of_list(const std::string& text) { return text.substr(0, text.
 
 ThreadBudget tightest(const CpuLimits& limits) {
   if (!limits.quota || *limits.quota >= limits.affinity) return {limits.affinity, "CPU affinity"};
-  // Rounded up: a throttled second thread still finishes sooner than an idle half of a processor.
+  // This rounds up: a throttled second thread still ends sooner than an idle half of a processor.
   const int threads = std::max(1, static_cast<int>(std::ceil(*limits.quota)));
   return {std::min(threads, limits.affinity), "cgroup CPU quota"};
 }
@@ -116,7 +116,7 @@ CpuLimits cpu_limits() {
   CpuLimits limits;
   cpu_set_t allowed;
   CPU_ZERO(&allowed);
-  // Fails on machines with more processors than the set has room for.
+  // This fails on machines with more processors than fit into the set.
   limits.affinity = sched_getaffinity(0, sizeof allowed, &allowed) == 0
                         ? CPU_COUNT(&allowed)
                         : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));

@@ -10,33 +10,32 @@
 
 namespace montecarta::engine {
 
-/// What the operating system lets this process use.
+/// The limits that the operating system sets for this process.
 struct CpuLimits {
   int affinity = 1;  ///< processors the process may run on
   std::optional<double>
-      quota;  ///< processors' worth of time of the tightest control group, if any limits it
+      quota;  ///< processors, by the tightest control group; nullopt if none limits it
 };
 
 CpuLimits cpu_limits();
 
-/// The tightest CPU quota of the process's control group and its parents, version 1 or 2, in
-/// processors. `root` is "/" but for tests. Groups that cannot be read do not limit.
+/// The tightest CPU quota, in processors, of the control group of this process and its parents,
+/// version 1 or 2. `root` is "/" except in tests. Groups that cannot be read do not limit.
 std::optional<double> cgroup_quota(const std::filesystem::path& root);
 
-/// How many threads a program may use, and who says so.
+/// The number of threads that a program may use, and the origin of that number.
 struct ThreadBudget {
   int threads = 1;
-  std::string source;  ///< e.g. "--threads", "SLURM_CPUS_PER_TASK", "CPU affinity"
+  std::string source;  ///< for instance "--threads", "SLURM_CPUS_PER_TASK", "CPU affinity"
 };
 
-/// Value of an environment variable, nullopt where it is unset.
+/// Value of an environment variable; nullopt if it is not set.
 using Environment = std::function<std::optional<std::string>(const char* name)>;
 std::optional<std::string> environment_variable(const char* name);
 
-/// The first that is set of: `threads_option` (the text behind --threads), MONTECARTA_THREADS,
-/// SLURM_CPUS_PER_TASK, OMP_NUM_THREADS; else the tightest of the CPU limits. Throws StudyError
-/// where the one that counts is not a whole number from 1 to 4096. A variable set to nothing counts
-/// as unset.
+/// The first one that is set of `threads_option` (the text after --threads), MONTECARTA_THREADS,
+/// SLURM_CPUS_PER_TASK and OMP_NUM_THREADS, else the tightest CPU limit. Throws StudyError if it is
+/// not a whole number from 1 to 4096. An empty variable counts as not set.
 ThreadBudget thread_budget(const std::optional<std::string>& threads_option,
                            const Environment& environment = environment_variable,
                            const CpuLimits& limits = cpu_limits());
