@@ -8,7 +8,7 @@
 namespace montecarta::engine {
 namespace {
 
-/// Bytes of the UTF-8 character that begins with `first`; 0 if none does.
+/// Number of bytes of the UTF-8 character that begins with `first`; 0 if none does.
 std::size_t length_by(unsigned char first) {
   if (first < 0x80) return 1;
   if (first < 0xc2 || first > 0xf4) return 0;
@@ -17,7 +17,7 @@ std::size_t length_by(unsigned char first) {
 
 bool continues(char c) { return (static_cast<unsigned char>(c) & 0xc0U) == 0x80U; }
 
-/// Bytes of the character at the beginning of `text`; 0 if its bytes are none.
+/// Number of bytes of the character at the beginning of `text`; 0 if it is not valid UTF-8.
 std::size_t whole_character(std::string_view text) {
   const std::size_t length = length_by(static_cast<unsigned char>(text.front()));
   if (length == 0 || length > text.size()) return 0;
@@ -31,7 +31,7 @@ std::string hexadecimal(char c) {
   return std::string("\\x") + kHexadecimalDigits[byte >> 4U] + kHexadecimalDigits[byte & 15U];
 }
 
-/// Control characters of ASCII, and those that two bytes spell (U+0080 to U+009F).
+/// Returns whether it is an ASCII control character or one of two bytes (U+0080 to U+009F).
 bool is_control(std::string_view character) {
   const auto first = static_cast<unsigned char>(character.front());
   if (character.size() == 1) return first < 0x20 || first == 0x7f;

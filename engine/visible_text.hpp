@@ -6,11 +6,11 @@
 
 namespace montecarta::engine {
 
-/// `text` with every control character and every byte that is no UTF-8 written out, \n, \t or \x1b:
-/// on one line, and harmless to a terminal and to LaTeX. Characters in `kept` stay as they are.
+/// Escapes every control character and every byte that is not valid UTF-8 as \n, \t or \x1b, so
+/// that `text` is one line, harmless to terminals and LaTeX. Characters in `kept` stay as they are.
 std::string visible(std::string_view text, std::string_view kept = "");
 
-/// How many bytes at the end of `text` begin a character that is not whole: 0 to 3.
+/// Number of bytes at the end of `text` that begin an incomplete character: 0 to 3.
 std::size_t unfinished_bytes(std::string_view text);
 
 }  // namespace montecarta::engine
