@@ -9,6 +9,7 @@
 #include "analysis/output/csv_file.hpp"
 #include "analysis/output/figure.hpp"
 #include "analysis/output/number_text.hpp"
+#include "analysis/output/strips.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/numbers/angle.hpp"
 
@@ -259,10 +260,36 @@ void add_band(const CellAnalysis& cell, double level, bool is_first, Panel& pane
   panel.curves.push_back({"", kReferenceStyle, std::move(upper)});
 }
 
+StripPanel joint_strips(const StudyAnalysis& study) {
+  StripPanel panel{"joint_nees",
+                   "joint NEES per component",
+                   "inside the " + level_text(study.level) + " band",
+                   "mean",
+                   {}};
+  for (const CellAnalysis& cell : study.cells) {
+    if (!is_judged(cell)) continue;
+    const JointConsistency& joint = cell.get<JointConsistency>();
+    panel.rows.push_back(
+        {cell.label, joint.average, joint.bounds, compact(mean_of_finite(joint.average))});
+  }
+  return panel;
+}
+
 /// NEES of pose and map together at the scans at which joint estimates are stored, with the band of
 /// a consistent filter. Without data where no cell was judged by them.
 Figure joint_figure(const StudyAnalysis& study) {
   Figure figure{"joint_nees", "Is the filter right about pose and map together?", ""};
+  const StripPanel strips = joint_strips(study);
+  if (strips.rows.size() > kMostRatioCurves) {
+    figure.sentence =
+        "Normalised error squared of the vehicle and all landmarks at once, for each component, "
+        "around the scans at which it is stored: a row for each filter, its mean at the right. A "
+        "strip that is grey all along belongs to a filter whose covariance, with all its "
+        "correlations, fits its errors; red errors are too large for it, blue ones too small. It "
+        "finds fault with a filter sooner than the pose alone, since every landmark is a witness.";
+    add_strips({strips}, study.joint_times, figure);
+    return figure;
+  }
   figure.sentence =
       "Normalised error squared of the vehicle and all landmarks at once, for each component: 1 is "
       "right, and a curve between the dashed lines at every stored scan belongs to a filter whose "

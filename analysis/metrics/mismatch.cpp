@@ -9,7 +9,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <regex>
 #include <string_view>
@@ -56,8 +55,6 @@ MismatchGrid grid_of(const std::vector<const CellAnalysis*>& cells) {
   return grid;
 }
 
-using Colour = std::array<int, 3>;  ///< red, green, blue
-
 constexpr std::size_t kMostColumns = 3;
 
 /// Blue, white and red (ColorBrewer's RdBu, safe for the colour-blind), light enough for dark
@@ -66,23 +63,8 @@ constexpr std::array kPalette = {Colour{0x43, 0x93, 0xc3}, Colour{0xa6, 0xcf, 0x
                                  Colour{0xf7, 0xf7, 0xf7}, Colour{0xf6, 0xb7, 0x99},
                                  Colour{0xd6, 0x60, 0x4d}};
 
-std::string hexadecimal(const Colour& colour) {
-  char text[8];
-  std::snprintf(text, sizeof text, "#%02x%02x%02x", colour[0], colour[1], colour[2]);
-  return text;
-}
-
 /// Of the palette at `at`, from -1 to 1.
-std::string colour_at(double at) {
-  const double place = 0.5 * (at + 1.0) * (kPalette.size() - 1);
-  const auto low = std::min(static_cast<std::size_t>(place), kPalette.size() - 2);
-  Colour colour{};
-  for (std::size_t c = 0; c < colour.size(); ++c) {
-    colour[c] = static_cast<int>(std::lround(
-        std::lerp(kPalette[low][c], kPalette[low + 1][c], place - static_cast<double>(low))));
-  }
-  return hexadecimal(colour);
-}
+std::string colour_at(double at) { return colour_within(kPalette, 0.5 * (at + 1.0)); }
 
 FigureData data_of(const MismatchGrid& grid) {
   FigureData data{"mismatch_" + grid.family + ".csv",

@@ -10,6 +10,7 @@
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/number_text.hpp"
+#include "analysis/output/strips.hpp"
 #include "analysis/statistics/spread.hpp"
 
 #include <algorithm>
@@ -209,8 +210,49 @@ Panel anees_panel(const StudyAnalysis& study, ErrorBlock block, const std::strin
   return panel;
 }
 
+/// The NEES by what it should be, of a cell over time.
+StripRow strip_of(const CellAnalysis& cell, const NeesResult& nees) {
+  const auto dimension = static_cast<double>(nees.series.dimension);
+  StripRow row{
+      cell.label, scaled(nees.series.average, 1.0 / dimension), {}, compact(nees.mean / dimension)};
+  for (const Interval& band : nees.series.bounds)
+    row.band.push_back({band.lower / dimension, band.upper / dimension});
+  return row;
+}
+
+StripPanel nees_strips(const StudyAnalysis& study, ErrorBlock block) {
+  StripPanel panel{"nees_ratio_" + name_of(block),
+                   "NEES ratio of the " + name_of(block),
+                   "inside the " + level_text(study.level) + " band",
+                   "mean",
+                   {}};
+  for (const CellAnalysis& cell : study.cells) {
+    const NeesResult* nees = cell.find_nees(block, cell.leading);
+    if (nees != nullptr) panel.rows.push_back(strip_of(cell, *nees));
+  }
+  return panel;
+}
+
+std::string how_strips_are_read(double level) {
+  return "A row for each filter, its mean at the right. Grey: inside the band, where chance leaves "
+         "a filter whose stated uncertainty fits its real errors at " +
+         level_text(level) +
+         " of the scans. Red: squared errors are so many times too large, the filter is "
+         "overconfident. Blue: they are too small. Neighbouring scans share a column, which shows "
+         "the one that is farthest from 1. A row is empty where there is no value.";
+}
+
 Figure anees_figure(const StudyAnalysis& study) {
   Figure figure{"anees", "Is the filter right about its own errors?", ""};
+  const StripPanel strips = nees_strips(study, ErrorBlock::pose);
+  if (strips.rows.size() > kMostRatioCurves) {
+    figure.sentence =
+        "How many times larger the squared errors of the pose are than the filter says, over "
+        "time. " +
+        how_strips_are_read(study.level);
+    add_strips({strips}, study.times, figure);
+    return figure;
+  }
   figure.sentence =
       "Average normalised error squared (ANEES) of the pose over time. The grey band is where "
       "chance leaves a filter whose stated uncertainty fits its real errors; a curve that climbs "
@@ -223,6 +265,15 @@ Figure anees_figure(const StudyAnalysis& study) {
 
 Figure anees_parts_figure(const StudyAnalysis& study) {
   Figure figure{"anees_parts", "Position or heading: which one goes wrong?", ""};
+  const StripPanel position = nees_strips(study, ErrorBlock::position);
+  if (position.rows.size() > kMostRatioCurves) {
+    figure.sentence =
+        "The same for position alone and heading alone: the strip that turns red first shows where "
+        "trouble begins. " +
+        how_strips_are_read(study.level);
+    add_strips({position, nees_strips(study, ErrorBlock::heading)}, study.times, figure);
+    return figure;
+  }
   figure.sentence =
       "The same test for position alone (two components, right around 2) and heading alone (one "
       "component, right around 1): the curve that leaves its band first shows where trouble "

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <tuple>
 #include <utility>
 
@@ -25,6 +26,19 @@ std::string line_colour(std::size_t i) {
 std::size_t line_dashes(std::size_t i) {
   if (i == kTruthStyle) return 1;
   return i == kReferenceStyle ? 2 : 1 + i / kColours.size();
+}
+
+std::string colour_within(std::span<const Colour> palette, double share) {
+  const double place = share * static_cast<double>(palette.size() - 1);
+  const auto low = std::min(static_cast<std::size_t>(place), palette.size() - 2);
+  Colour colour{};
+  for (std::size_t c = 0; c < colour.size(); ++c) {
+    colour[c] = static_cast<int>(std::lround(
+        std::lerp(palette[low][c], palette[low + 1][c], place - static_cast<double>(low))));
+  }
+  char text[8];
+  std::snprintf(text, sizeof text, "#%02x%02x%02x", colour[0], colour[1], colour[2]);
+  return text;
 }
 
 namespace {

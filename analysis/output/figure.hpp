@@ -3,6 +3,7 @@
 
 #include "analysis/output/csv_file.hpp"
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <limits>
@@ -23,6 +24,13 @@ std::string line_colour(std::size_t i);
 /// How curve `i` is dashed, from 1, a full line: from the seventh on curves differ by that.
 std::size_t line_dashes(std::size_t i);
 
+/// Red, green and blue, from 0 to 255.
+using Colour = std::array<int, 3>;
+
+/// The colour of a palette at `share` of its length, from 0 to 1, as "#0072b2"; linear between its
+/// colours, of which there are two at least.
+std::string colour_within(std::span<const Colour> palette, double share);
+
 /// A horizontal band, e.g. where a consistent filter stays. It keeps the vertical axis near: from
 /// 0.3 times its lower end to 1000 times its upper one at most, so that it is seen beside a filter
 /// that is off by many powers of ten.
@@ -35,8 +43,8 @@ struct Band {
 /// A vertical axis.
 struct ChartAxis {
   bool logarithmic = false;
-  double low = 0.0;
-  double high = 0.0;  ///< NaN: as far as the curves reach
+  double low = 0.0;   ///< at the bottom
+  double high = 0.0;  ///< at the top; NaN: as far as the curves reach
 };
 
 /// What is drawn at places of its own rather than over the panel's common x. The pointer is told
@@ -61,6 +69,21 @@ struct ChartMarks {
   std::vector<Fact> facts;            ///< none: the pointer passes over them
 };
 
+/// Rows of colours that say how many times too large or too small something is, from top to bottom
+/// (strips.hpp).
+struct ChartStrips {
+  static constexpr int kNoLevel = -1;
+  struct Row {
+    std::string name;            ///< of the cell
+    std::vector<double> ratios;  ///< one for each column; NaN: none
+    std::vector<int> levels;     ///< index in strip_colours(); kNoLevel: none
+    std::string note;            ///< at the right end
+  };
+  std::vector<Row> rows;
+  std::string inside;  ///< what the grey of a ratio inside its band means
+  std::string notes;   ///< heading of the notes
+};
+
 /// Axes with curves, ready to draw.
 struct ChartPanel {
   struct Curve {
@@ -78,6 +101,9 @@ struct ChartPanel {
   std::string cell = {};  ///< a panel of one cell: hidden with it
   std::vector<ChartMarks> marks = {};
   std::vector<std::string> x_names = {}, y_names = {};  ///< at 0, 1, 2, ..., in place of numbers
+  /// In place of curves. Column k begins at x[k] and ends where the next one begins, the last one
+  /// at Chart::x_to.
+  ChartStrips strips = {};
 };
 
 /// What a figure shows: gnuplot draws it for print, the page to be zoomed into and asked. All

@@ -2,6 +2,7 @@
 #include "analysis/output/gnuplot.hpp"
 
 #include "analysis/output/number_text.hpp"
+#include "analysis/output/strips.hpp"
 #include "engine/errors.hpp"
 #include "engine/visible_text.hpp"
 
@@ -23,9 +24,28 @@ namespace {
 constexpr double kAxisRoom = 76.0, kNarrowAxisRoom = 48.0;  // beside a panel: numbers and label
 constexpr double kRightRoom = 14.0, kHeading = 26.0, kTicks = 54.0, kGap = 18.0;
 constexpr std::size_t kMostColumns = 3;
-constexpr double kSingleHeight = 250.0, kUsualHeight = 160.0;
+constexpr double kSingleHeight = 250.0, kUsualHeight = 160.0, kStripPitch = 22.0;
+
+bool has_strips(const Chart& chart) { return !chart.panels.front().strips.rows.empty(); }
+
+/// Left and right of a panel: names and notes of strips have the room that they need.
+std::array<double, 2> side_rooms(const Chart& chart, bool headings) {
+  if (!has_strips(chart)) return {headings ? kNarrowAxisRoom : kAxisRoom, kRightRoom};
+  std::size_t name = 0, note = 0;
+  for (const ChartPanel& panel : chart.panels) {
+    note = std::max(note, panel.strips.notes.size());
+    for (const ChartStrips::Row& row : panel.strips.rows) {
+      name = std::max(name, row.name.size());
+      note = std::max(note, row.note.size());
+    }
+  }
+  return {kRightRoom + kCharacter * static_cast<double>(name),
+          kRightRoom + kCharacter * static_cast<double>(note)};
+}
 
 double panel_height(const Chart& chart, double panel_width) {
+  const std::size_t strips = chart.panels.front().strips.rows.size();
+  if (strips > 0) return kStripPitch * static_cast<double>(strips);
   if (chart.aspect > 0.0) return chart.aspect * panel_width;
   if (chart.height > 0.0) return chart.height;
   return chart.panels.size() == 1 ? kSingleHeight : kUsualHeight;
@@ -41,13 +61,13 @@ PrintLayout print_layout(const Chart& chart, double width, double legend_height)
   const std::size_t columns =
       std::min(is_zoomed ? 2 : std::min(chart.columns, kMostColumns), count);
   const std::size_t rows = (count + columns - 1) / columns;
-  const bool headings = columns > 1 || !chart.panels.front().cell.empty();
-  const double room = headings ? kNarrowAxisRoom : kAxisRoom;
+  const bool headings = columns > 1 || !chart.panels.front().cell.empty() || has_strips(chart);
+  const auto [room, right_room] = side_rooms(chart, headings);
   // One map alone needs no more than half of the width.
   const double each =
       chart.is_map && columns == 1 ? 0.5 * width : width / static_cast<double>(columns);
   const double start = 0.5 * (width - each * static_cast<double>(columns));
-  const double panel_width = each - room - kRightRoom;
+  const double panel_width = each - room - right_room;
   const double height = panel_height(chart, panel_width);
   const double pitch = height + kGap + (headings ? kHeading : 0.0);
   const double first_top = legend_height + (headings ? kHeading : 8.0);
@@ -283,6 +303,7 @@ PanelPlots panel_plots(const Chart& chart, std::size_t panel) {
   for (const Band& band : drawn.bands) writer.add(band);
   for (std::size_t i = 0; i < drawn.curves.size(); ++i) writer.add_curve(i);
   for (const ChartMarks& marks : drawn.marks) writer.add(marks);
+  if (!drawn.strips.rows.empty()) writer.add(strip_boxes(drawn, chart.x_to));
   return writer.result();
 }
 
@@ -382,7 +403,25 @@ std::string linear_ticks(double from, double to, double pixels) {
   return "set ytics nomirror " + command_number(step) + "\n";
 }
 
+/// Names to the left and notes to the right of the rows.
+std::string strip_axis(const ChartPanel& panel) {
+  std::vector<std::string> names;
+  std::string notes;
+  const auto note = [&](const std::string& text, const std::string& at) {
+    notes += "set label " + gnuplot_quoted(text) + " noenhanced at graph 1," + at + "\n";
+  };
+  note(panel.strips.notes, "graph 1 left offset 0.8,0.8");
+  for (const ChartStrips::Row& row : panel.strips.rows) {
+    note(row.note, "first " + std::to_string(names.size()) + " left offset 0.8,0");
+    names.push_back(row.name);
+  }
+  return ticks("y", names) + "set ytics scale 0 noenhanced\nset border 1\nunset grid\n" +
+         range("y", panel.axis.low, panel.axis.high) + "unset label\nset label " +
+         gnuplot_quoted(panel.label) + " noenhanced at graph 0,1 left offset 0,0.8\n" + notes;
+}
+
 std::string vertical_axis(const ChartPanel& panel, const PanelBox& box) {
+  if (!panel.strips.rows.empty()) return strip_axis(panel);
   const ChartAxis& axis = panel.axis;
   const bool is_plain = !axis.logarithmic || (axis.low >= 0.01 && axis.high <= 1e4);
   const bool is_free = axis.logarithmic || !panel.y_names.empty();
@@ -487,7 +526,9 @@ GnuplotChart gnuplot_chart(const Chart& chart, std::size_t width) {
   const std::vector<LegendEntry> legend = legend_of(chart);
   const std::size_t columns = legend.empty() ? 1 : legend_columns(legend, width);
   const std::size_t legend_height =
-      (legend.size() + columns - 1) / columns * kLegendRow + (legend.empty() ? 0 : 8);
+      has_strips(chart)
+          ? kStripKeyHeight
+          : (legend.size() + columns - 1) / columns * kLegendRow + (legend.empty() ? 0 : 8);
   const auto w = static_cast<double>(width);
   const PrintLayout layout = print_layout(chart, w, static_cast<double>(legend_height));
   GnuplotChart drawn{"", "set style ellipse units xx\nset multiplot\n",
@@ -496,6 +537,9 @@ GnuplotChart gnuplot_chart(const Chart& chart, std::size_t width) {
     const PanelBox top{40.0, w - 10.0, 4.0, static_cast<double>(legend_height)};
     drawn.commands += legend_plot(legend, columns, top, w, layout.height);
   }
+  const std::string key = has_strips(chart) ? strip_key(chart.panels.front().strips,
+                                                        layout.boxes.front(), w, layout.height)
+                                            : "";
   drawn.commands += kPanelStyle;
   for (std::size_t k = 0; k < layout.boxes.size(); ++k) {
     const ChartPanel& panel = chart.panels[k / layout.views];
@@ -504,7 +548,8 @@ GnuplotChart gnuplot_chart(const Chart& chart, std::size_t width) {
     drawn.commands += place(layout.boxes[k], w, layout.height) +
                       horizontal_axis(chart, panel, layout.boxes[k]) +
                       vertical_axis(panel, layout.boxes[k]) + texts(chart, panel) +
-                      (k == 0 ? common_label(chart, layout) : "") + "plot " + plots.commands + "\n";
+                      (k == 0 ? common_label(chart, layout) + key : "unset object\n") + "plot " +
+                      plots.commands + "\n";
   }
   drawn.commands += "unset multiplot\n";
   return drawn;

@@ -10,6 +10,9 @@
 
 namespace montecarta::analysis {
 
+/// [px] the width of most characters, in either font.
+inline constexpr double kCharacter = 7.8;
+
 /// Where a panel lies in a printed chart [px], from the upper left corner.
 struct PanelBox {
   double left = 0.0, right = 0.0, top = 0.0, bottom = 0.0;
@@ -50,6 +53,13 @@ PanelPlots panel_plots(const Chart& chart, std::size_t panel);
 std::string band_style();
 std::string curve_style(std::size_t style);
 std::string mark_style(const ChartMarks& marks);
+
+/// [px] of strip_key().
+inline constexpr std::size_t kStripKeyHeight = 42;
+
+/// Commands that draw what the colours of strips mean, above them in place of a legend. It begins
+/// where the strips in `box` do if there is room for it in a drawing of this size [px].
+std::string strip_key(const ChartStrips& strips, const PanelBox& box, double width, double height);
 
 /// A chart as gnuplot draws it.
 struct GnuplotChart {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/page/html.hpp"
 
+#include "analysis/output/strips.hpp"
+
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -66,6 +68,22 @@ Json array_of(const std::vector<Element>& elements) {
   return array;
 }
 
+Json json_of(const ChartStrips& strips) {
+  Json json = {{"inside", strips.inside},
+               {"notes", strips.notes},
+               {"scale", kStripScale},
+               {"colours", strip_colours()}};
+  for (const StripTick& tick : strip_ticks())
+    json["ticks"].push_back({{"level", tick.level}, {"text", tick.text}});
+  for (const ChartStrips::Row& row : strips.rows) {
+    json["rows"].push_back({{"name", row.name},
+                            {"note", row.note},
+                            {"ratios", rounded(row.ratios, 3)},
+                            {"levels", row.levels}});
+  }
+  return json;
+}
+
 /// A panel without x has that of the panel above.
 Json json_of(const ChartPanel& panel, const std::vector<double>* x_above) {
   Json json = {{"label", panel.label}};
@@ -77,6 +95,7 @@ Json json_of(const ChartPanel& panel, const std::vector<double>* x_above) {
   if (x_above == nullptr || *x_above != panel.x) json["x"] = rounded(panel.x);
   json["curves"] = array_of(panel.curves);
   if (!panel.marks.empty()) json["marks"] = array_of(panel.marks);
+  if (!panel.strips.rows.empty()) json["strips"] = json_of(panel.strips);
   add_if_any("x_names", panel.x_names, json);
   add_if_any("y_names", panel.y_names, json);
   return json;

@@ -13,11 +13,14 @@ class ChartFigure {
     figure.prepend(live);
     figure.classList.add("has-live");
     this.legend = new Legend(cellsOf(data), bandsOf(data), live, () => this.arrange());
+    const {strips} = data.panels[0];
+    if (strips) addStripKey(strips, this.legend.element);
     this.stage = htmlElement("div", {class: "stage"}, live);
     this.svg = svgElement("svg", {class: "chart", tabindex: 0, role: "img",
       "aria-label": figure.querySelector("svg.drawing")?.getAttribute("aria-label") ?? "chart"},
     this.stage);
-    this.plots = data.panels.map((panel) => new Plot(panel, this.svg));
+    this.plots = data.panels.map((panel) => panel.strips
+      ? new Strips(panel, this.svg, data.x_to) : new Plot(panel, this.svg));
     this.x_name = svgElement("text", {class: "x name", text: data.x_label}, this.svg);
     this.cursor = svgElement("path", {class: "cursor"}, this.svg);
     this.drawn_box = svgElement("rect", {class: "selection"}, this.svg);
@@ -55,16 +58,17 @@ class ChartFigure {
     const fit = Math.floor(this.width / least);
     const columns = clamp(fit, 1, Math.min(most, this.shown.length || 1));
     const each = Math.min(this.width / columns, aspect ? CHART.widest : Infinity);
-    const room = this.width < CHART.narrow ? 44 : 58;
-    const width = each - room - CHART.right;
-    const height = aspect ? Math.max(aspect * width, CHART.lowest) : this.usualHeight();
+    const {left: room, right} = this.plots[0].margins(this.width);
+    const width = each - room - right;
+    const height = this.plots[0].wantedHeight()
+      ?? (aspect ? Math.max(aspect * width, CHART.lowest) : this.usualHeight());
     this.shown.forEach((plot, p) => plot.place({left: room + (p % columns) * each, room: room - 4,
       top: CHART.top + Math.floor(p / columns) * (height + CHART.top), width, height,
       lowest: p + columns >= this.shown.length}));
     const rows = Math.ceil(this.shown.length / columns);
     this.height = rows * (height + CHART.top) + CHART.bottom;
     fill(this.svg, {width: this.width, height: this.height});
-    fill(this.x_name, {x: room + (columns * each - room - CHART.right) / 2, y: this.height - 8});
+    fill(this.x_name, {x: room + (columns * each - room - right) / 2, y: this.height - 8});
     this.draw();
   }
 
@@ -96,8 +100,9 @@ class ChartFigure {
   point(at) {
     const plot = at && this.plotAt(at);
     const isHidden = (curve) => this.legend.isHidden(curve);
-    const found = plot && (plot.panel.marks ? markAt(plot, at, isHidden, this.data)
-                                            : valuesAt(plot, at, isHidden, this.data.x_label));
+    const found = plot && (plot.panel.strips ? stripAt(plot, at, this.data.x_label)
+      : plot.panel.marks ? markAt(plot, at, isHidden, this.data)
+        : valuesAt(plot, at, isHidden, this.data.x_label));
     this.cursor.toggleAttribute("hidden", !found);
     if (!found) {
       this.readout.hide();
@@ -159,7 +164,9 @@ class ChartFigure {
     }
     const order = (s, t) => [Math.min(s, t), Math.max(s, t)];
     const flat = Math.abs(to.y - from.y) < 24, narrow = Math.abs(to.x - from.x) < 24;
-    if (!flat) plot.zoomed = stretch(plot.vertical, ...order(clamp(a.y, 0, 1), clamp(b.y, 0, 1)));
+    if (!flat && !plot.panel.strips) {
+      plot.zoomed = stretch(plot.vertical, ...order(clamp(a.y, 0, 1), clamp(b.y, 0, 1)));
+    }
     this.show(narrow && !flat ? this.horizontal : stretch(this.horizontal, ...order(a.x, b.x)));
   }
 

@@ -37,6 +37,16 @@ class Plot {
     this.zoomed = null;  // the vertical axis, where it does not show everything
   }
 
+  /** Beside it, in a chart of this width [px]. */
+  margins(width) {
+    return {left: width < CHART.narrow ? 44 : 58, right: CHART.right};
+  }
+
+  /** [px]; null: the usual one. */
+  wantedHeight() {
+    return null;
+  }
+
   place(box) {
     this.box = box;
   }
@@ -63,9 +73,7 @@ class Plot {
     this.vertical = this.zoomed ?? this.whole;
     this.group.replaceChildren();
     this.drawGrid();
-    const inside = svgElement("svg", {x: this.box.left, y: this.box.top, width: this.box.width,
-      height: this.box.height, viewBox: [this.box.left, this.box.top, this.box.width,
-        this.box.height].join(" ")}, this.group);
+    const inside = this.addInside();
     for (const band of this.panel.bands) this.drawBand(band, inside);
     for (const curve of this.panel.curves) {
       if (!isHidden(curve)) this.drawCurve(curve, inside);
@@ -74,6 +82,13 @@ class Plot {
       if (!isHidden(marks)) drawMarks(marks, this, inside);
     }
     this.drawLabel();
+  }
+
+  /** What lies outside the box is not seen in this. */
+  addInside() {
+    const {left, top, width, height} = this.box;
+    return svgElement("svg", {x: left, y: top, width, height,
+      viewBox: [left, top, width, height].join(" ")}, this.group);
   }
 
   /** As much as there is room for. */
@@ -87,19 +102,26 @@ class Plot {
 
   drawGrid() {
     const {left, top, width, height} = this.box;
-    const {x_names, y_names} = this.panel;
+    const {y_names} = this.panel;
     for (const tick of namedTicks(this.vertical, y_names, Math.max(2, height / 36))) {
       svgElement("path", {class: "grid", d: `M${left} ${this.y(tick)}h${width}`}, this.group);
       svgElement("text", {class: "y tick", x: left - 6, y: this.y(tick) + 4,
         text: y_names?.[tick] ?? readable(tick)}, this.group);
     }
+    this.drawTimes();
+    svgElement("path", {class: "frame", d: `M${left} ${top}v${height}h${width}`}, this.group);
+  }
+
+  /** Ticks of the horizontal axis. */
+  drawTimes() {
+    const {left, top, width, height} = this.box;
+    const {x_names} = this.panel;
     for (const tick of namedTicks(this.horizontal, x_names, Math.max(2, width / 90))) {
       svgElement("path", {class: "grid", d: `M${this.x(tick)} ${top}v${height}`}, this.group);
       if (!this.box.lowest) continue;
       svgElement("text", {class: "x tick", x: this.x(tick), y: top + height + 17,
         text: x_names?.[tick] ?? readable(tick)}, this.group);
     }
-    svgElement("path", {class: "frame", d: `M${left} ${top}v${height}h${width}`}, this.group);
   }
 
   drawBand(band, parent) {

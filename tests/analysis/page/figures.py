@@ -131,3 +131,65 @@ class Touch(Hover):
         self.page.touch("touchMove", [(left[0] - 50, left[1]), (right[0] + 50, right[1])])
         self.page.touch("touchEnd", [])
         self.wait_for(f"Number(document.querySelector('{CHART}').dataset.from) > 5")
+
+
+class Strips(OnPage):
+
+    study = "strips"
+    names_stand_above = False
+
+    def place_of_strip(self, row, share):
+        """A place in a strip, at a share of its length."""
+        self.page.middle(CHART)
+        return self.page.evaluate(f"""(() => {{
+            const box = document.querySelectorAll("{CHART} g.strips")[{row}]
+                .getBoundingClientRect();
+            return [box.left + {share} * box.width, (box.top + box.bottom) / 2];
+        }})()""")
+
+    def test_say_filter_time_and_ratio(self):
+        chart = self.chart("anees")
+        panel = chart["panels"][0]
+        rows = panel["strips"]["rows"]
+        self.assertEqual(len(rows), 9)
+        for r, share in ((0, 0.2), (4, 0.5), (8, 0.9)):
+            self.page.hover(self.place_of_strip(r, share))
+            title, facts = self.said("anees")
+            self.assertEqual(title, rows[r]["name"])
+            time = float(facts["time"].removesuffix(" s"))
+            self.assertAlmostEqual(time / chart["x_to"], share, delta=0.01)
+            column = max(k for k, begin in enumerate(panel["x"]) if begin <= time)
+            self.assertIn(float(facts[panel["label"]]), rows[r]["ratios"][column - 1:column + 2])
+        self.page.hover(self.page.middle("h1"))
+        self.assertIsNone(self.said("anees"))
+
+    def test_cut_no_name_and_cover_none(self):
+        chart = self.page.evaluate(f"""(() => {{
+            const box = element => {{
+                const {{left, right, top, bottom}} = element.getBoundingClientRect();
+                return [left, right, top, bottom];
+            }};
+            const all = what => [...document.querySelectorAll("{CHART} " + what)].map(box);
+            return [box(document.querySelector("{CHART}")), all("text"), all("g.strips"),
+                    all("text.row")];
+        }})()""")
+        (left, right, *_), texts, strips, names = chart
+        self.assertEqual(len(strips), 9)
+        for a, b, top, bottom in texts:
+            self.assertGreaterEqual(a, left)
+            self.assertLessEqual(b, right)
+            for begin, end, high, low in strips:
+                is_beside = b <= begin or a >= end or bottom <= high + 3 or top >= low - 3
+                self.assertTrue(is_beside, "a text covers a strip")
+        self.assertEqual(names[0][3] <= strips[0][2] + 3, self.names_stand_above)
+
+    def test_zoom_in_time_alone(self):
+        self.page.drag(self.place_of_strip(1, 0.4), self.place_of_strip(6, 0.6))
+        self.assertGreater(float(self.ask(CHART, "dataset.from")), 0)
+        self.assertEqual(self.count(f"{CHART} g.strips"), 9)
+
+
+class StripsOnAPhone(Strips):
+
+    screen = {"width": 390, "height": 740}
+    names_stand_above = True

@@ -2,6 +2,7 @@
 #include "analysis/page/html.hpp"
 
 #include "analysis/output/figure.hpp"
+#include "analysis/output/strips.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -97,6 +98,22 @@ TEST(ChartJson, HoldsMarksWithTheirFacts) {
   EXPECT_THAT(json, testing::Not(HasSubstr("x_first")));
   chart.x_first = 0.5;
   EXPECT_THAT(chart_json(chart), HasSubstr(R"("x_first":0.5)"));
+}
+
+TEST(ChartJson, HoldsStripsWithTheirColours) {
+  Figure figure{"name", "title", "sentence"};
+  add_strips({{"ratio",
+               "ratio",
+               "grey",
+               "mean",
+               {{"a", {1.0, 12.3456}, {{0.9, 1.1}, {0.9, 1.1}}, "7.0"}}}},
+             {1, 2}, figure);
+  const std::string json = chart_json(figure.chart);
+  EXPECT_THAT(json, HasSubstr(R"("strips":{"inside":"grey","notes":"mean","scale":)"));
+  EXPECT_THAT(json, HasSubstr(R"("colours":["#053061",)"));
+  EXPECT_THAT(json, HasSubstr(R"({"level":16,"text":"10"})"));
+  EXPECT_THAT(
+      json, HasSubstr(R"("rows":[{"name":"a","note":"7.0","ratios":[1,12.3],"levels":[32,16]}])"));
 }
 
 TEST(ChartJson, KeepsTheAxisNearABand) {

@@ -52,6 +52,8 @@ landmark = 13, 5
 landmark = 6, 13
 landmark = -3, 6
 """
+# Nine of them: more than a figure over time draws as curves.
+STRIPS = TILES.replace("motion_noise=1,2 sensor_noise=1,2", "motion_noise=1,2,4 sensor_noise=1,2,4")
 CTRL, SHIFT = 2, 8  # modifiers of a key or click
 
 

@@ -13,8 +13,9 @@ import unittest
 
 import chromium
 from figures import Hover, Legend, Touch, Zoom  # noqa: F401: found by unittest
+from figures import Strips, StripsOnAPhone  # noqa: F401
 from marks import Maps, Tiles, Tree  # noqa: F401
-from on_page import STUDY, TILES, OnPage, make_report
+from on_page import STRIPS, STUDY, TILES, OnPage, make_report
 from opening import Opening  # noqa: F401
 from player import Player  # noqa: F401
 
@@ -24,6 +25,6 @@ if __name__ == "__main__":
         sys.exit(77)
     with tempfile.TemporaryDirectory(prefix="montecarta_page_") as folder:
         montecarta = sys.argv.pop(1)
-        for name, text in (("page", STUDY), ("tiles", TILES)):
+        for name, text in (("page", STUDY), ("tiles", TILES), ("strips", STRIPS)):
             OnPage.reports[name] = make_report(montecarta, pathlib.Path(folder) / name, text)
         unittest.main(verbosity=2)
