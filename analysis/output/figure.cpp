@@ -61,7 +61,7 @@ std::array<double, 2> extremes(std::span<const double> values) {
 constexpr const char* kStyle = R"(set encoding utf8
 set datafile separator comma
 set datafile columnheaders
-set key noenhanced samplen 1.6 spacing 1.15 width 1
+set key noenhanced samplen 1.6 width 1
 )";
 
 void write_data(const FigureData& data, const std::filesystem::path& directory) {
@@ -71,20 +71,21 @@ void write_data(const FigureData& data, const std::filesystem::path& directory) 
   file.close();
 }
 
-/// The whole script: the same figure for the page and for print.
+/// The whole script: the same figure for the page and for print, with as much room for a row of the
+/// legend in both.
 std::string script_of(const Figure& figure) {
   const GnuplotChart drawn = gnuplot_chart(figure.chart, figure.width);
   const std::string size = std::to_string(figure.width) + "," + std::to_string(drawn.height);
   const auto centimetres = [](std::size_t pixels) {
     return readable(static_cast<double>(pixels) * 0.02, 3) + "cm";
   };
-  return "# Drawn again by: gnuplot " + figure.name + ".gp\n" + kStyle + drawn.numbers +
-         "set terminal svg size " + size +
+  return "# Drawn again by: gnuplot " + figure.name + ".gp\n" + kStyle + "set key spacing 1.15\n" +
+         drawn.numbers + "set terminal svg size " + size +
          " dynamic background rgb '#ffffff' font 'sans-serif,13' linewidth 1.3\nset output '" +
          figure.name + ".svg'\n" + drawn.commands +
          "unset output\nreset\nset terminal pdfcairo size " + centimetres(figure.width) + "," +
          centimetres(drawn.height) + " font 'sans,8' linewidth 1.3\nset output '" + figure.name +
-         ".pdf'\n" + kStyle + drawn.commands + "unset output\n";
+         ".pdf'\n" + kStyle + "set key spacing 1.9\n" + drawn.commands + "unset output\n";
 }
 
 }  // namespace

@@ -51,6 +51,14 @@ double panel_height(const Chart& chart, double panel_width) {
   return chart.panels.size() == 1 ? kSingleHeight : kUsualHeight;
 }
 
+/// Whether labels stand above their panels: also where one is too long to stand beside its axis.
+bool has_headings(const Chart& chart, std::size_t columns) {
+  if (columns > 1 || !chart.panels.front().cell.empty() || has_strips(chart)) return true;
+  return chart.aspect == 0.0 && std::ranges::any_of(chart.panels, [&](const ChartPanel& panel) {
+           return kCharacter * static_cast<double>(panel.label.size()) > panel_height(chart, 0.0);
+         });
+}
+
 }  // namespace
 
 PrintLayout print_layout(const Chart& chart, double width, double legend_height) {
@@ -61,7 +69,7 @@ PrintLayout print_layout(const Chart& chart, double width, double legend_height)
   const std::size_t columns =
       std::min(is_zoomed ? 2 : std::min(chart.columns, kMostColumns), count);
   const std::size_t rows = (count + columns - 1) / columns;
-  const bool headings = columns > 1 || !chart.panels.front().cell.empty() || has_strips(chart);
+  const bool headings = has_headings(chart, columns);
   const auto [room, right_room] = side_rooms(chart, headings);
   // One map alone needs no more than half of the width.
   const double each =
@@ -522,7 +530,7 @@ std::string legend_plot(const std::vector<LegendEntry>& entries, std::size_t col
 }  // namespace
 
 GnuplotChart gnuplot_chart(const Chart& chart, std::size_t width) {
-  constexpr std::size_t kLegendRow = 20;  // [px]
+  constexpr std::size_t kLegendRow = 23;  // [px]
   const std::vector<LegendEntry> legend = legend_of(chart);
   const std::size_t columns = legend.empty() ? 1 : legend_columns(legend, width);
   const std::size_t legend_height =

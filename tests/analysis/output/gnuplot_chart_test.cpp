@@ -130,6 +130,25 @@ TEST(PrintLayout, PutsPanelsInRowsBelowTheLegend) {
   EXPECT_DOUBLE_EQ(box.bottom - box.top, 0.5 * (box.right - box.left));
 }
 
+TEST(PrintLayout, PutsALabelAboveThatIsTooLongBesideItsAxis) {
+  Chart chart = two_panels();
+  EXPECT_FALSE(print_layout(chart, 900.0, 0.0).boxes[0].has_heading);
+  chart.panels[1].label = "runs not lost [%], M = 100";
+  const PrintLayout layout = print_layout(chart, 900.0, 0.0);
+  EXPECT_TRUE(layout.boxes[0].has_heading);
+  EXPECT_GT(layout.boxes[0].top, 13.0);
+}
+
+TEST(GnuplotChart, HasRoomForEveryRowOfTheLegend) {
+  constexpr double kRow = 22.4;  // [px] that gnuplot leaves for 13 points
+  Chart chart = two_panels();
+  for (std::size_t i = 0; i < 12; ++i)
+    chart.panels[0].curves.push_back({"a_filter_of_a_long_name_" + std::to_string(i), i, {1, 2}});
+  const std::size_t few = gnuplot_chart(two_panels(), 900).height;
+  const std::size_t many = gnuplot_chart(chart, 900).height;
+  EXPECT_GE(static_cast<double>(many - few), 7.0 * kRow);  // 15 entries in two columns
+}
+
 TEST(PrintLayout, ShowsAChartThatBeginsZoomedWholeAndZoomed) {
   Chart chart = two_panels();
   chart.x_first = 1.5;
