@@ -323,7 +323,8 @@ std::vector<std::string> calibration_notes(const StudyAnalysis& study) {
       "calibrated filter stays within the bands of all tests of its cell with a probability of at "
       "least " +
       level_text(study.level) + ". Fewer than " + std::to_string(kLeastValues) +
-      " runs are not judged.");
+      " runs are not judged. That these tests find no fault does not make a filter consistent: they "
+      "look at four moments, the verdict at all scans together.");
   for (const CellAnalysis& cell : study.cells) {
     std::size_t undefined = 0;
     for (const JudgedPits& one : cell.get<Calibrations>()) undefined += one.undefined;

@@ -167,7 +167,7 @@ double p_value(const Uniformity& test) {
 std::string in_words(Calibration verdict) {
   switch (verdict) {
     case Calibration::calibrated:
-      return "calibrated";
+      return "no fault found";
     case Calibration::too_narrow:
       return "too narrow";
     case Calibration::too_wide:
