@@ -264,7 +264,7 @@ std::string sentence_of(const std::string& label, const Verdict& verdict) {
     case Answer::consistent:
       return consistent_sentence(label, verdict);
     case Answer::optimistic:
-      return label + " is overconfident: " + squared_errors(verdict, Direction::above);
+      return label + " is optimistic: " + squared_errors(verdict, Direction::above);
     case Answer::conservative:
       return label + " is conservative: " + squared_errors(verdict, Direction::below);
     case Answer::inconsistent:

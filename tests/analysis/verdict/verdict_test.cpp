@@ -137,7 +137,7 @@ TEST(Words, SayHowMuchWhenAndWhere) {
       judged({size({1.28, 2.25}), components, stretches({kRight, kRight, off, off})});
   EXPECT_EQ(in_words(late), "optimistic: NEES 1.28 to 2.25 times too large, from 20.0 s on");
   EXPECT_EQ(sentence("ekf_slam", late),
-            "ekf_slam is overconfident: its squared errors are 1.28 to 2.25 times what it claims, "
+            "ekf_slam is optimistic: its squared errors are 1.28 to 2.25 times what it claims, "
             "from 20.0 s on, mainly forward.");
   EXPECT_EQ(
       sentence("ukf", judged({size({0.125, 0.25})})),

@@ -50,8 +50,7 @@ TEST_F(GateOfAFile, TellsByItsExitCode) {
   EXPECT_THAT(right.out, ContainsRegex("^right is consistent within 2 in every component"));
   const Called too_sure = gate("too_sure", {"--within", "1.5"});
   EXPECT_EQ(too_sure.code, 4);
-  EXPECT_THAT(too_sure.out,
-              ContainsRegex("^too_sure is overconfident: its squared errors are [3-5]"));
+  EXPECT_THAT(too_sure.out, ContainsRegex("^too_sure is optimistic: its squared errors are [3-5]"));
   const Called open = gate("right", {"--within", "1.01"});
   EXPECT_EQ(open.code, 5);
   EXPECT_THAT(open.out,
@@ -141,7 +140,7 @@ TEST_F(GateOfEstimates, StopsDivergenceBeyondTheRangeOfDoubles) {
       },
       {"--invalid", "9"});
   EXPECT_EQ(called.code, 4) << called.out << called.err;
-  EXPECT_THAT(called.out, HasSubstr("overconfident"));
+  EXPECT_THAT(called.out, HasSubstr("optimistic"));
 }
 
 TEST_F(GateOfEstimates, StopsNegativeVariances) {
