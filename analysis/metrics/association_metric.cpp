@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What became of detections in a run, in sums over its scans (AssociationCounts).
+#include "analysis/metrics/cell_range.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
@@ -41,6 +42,16 @@ std::vector<std::string> association_row(const CellAnalysis& cell) {
           readable(mean("association_clutter"))};
 }
 
+/// Share of the detections that went to a wrong landmark.
+double wrong_share(const CellAnalysis& cell) {
+  double all = 0.0;
+  for (const char* one : {"association_correct", "association_wrong", "association_new_again",
+                          "association_missed"}) {
+    all += cell.over_runs(one).mean;
+  }
+  return cell.over_runs("association_wrong").mean / all;
+}
+
 TextTable association_table(const StudyAnalysis& study) {
   TextTable table;
   table.headings = {{"cell", Align::left}, {"detections"}, {"correct"},       {"wrong"},
@@ -66,6 +77,8 @@ std::vector<Section> association_sections(const StudyAnalysis& study) {
   const TextTable table = association_table(study);
   if (table.rows.empty()) return {};
   Section section{"association", "Association"};
+  section.summary = "given to a wrong landmark: " + range_over_cells(study, wrong_share, percent) +
+                    " of detections";
   section.add("association", table);
   section.add(association_notes());
   return {section};

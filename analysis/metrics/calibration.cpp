@@ -3,6 +3,7 @@
 #include "analysis/metrics/calibration.hpp"
 
 #include "analysis/metrics/cell_panels.hpp"
+#include "analysis/metrics/cell_range.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/nees.hpp"
@@ -323,7 +324,8 @@ std::vector<std::string> calibration_notes(const StudyAnalysis& study) {
       "calibrated filter stays within the bands of all tests of its cell with a probability of at "
       "least " +
       level_text(study.level) + ". Fewer than " + std::to_string(kLeastValues) +
-      " runs are not judged. That these tests find no fault does not make a filter consistent: they "
+      " runs are not judged. That these tests find no fault does not make a filter consistent: "
+      "they "
       "look at four moments, the verdict at all scans together.");
   for (const CellAnalysis& cell : study.cells) {
     std::size_t undefined = 0;
@@ -452,7 +454,13 @@ std::vector<Figure> calibration_figures(const StudyAnalysis& study) {
 
 std::vector<Section> calibration_sections(const StudyAnalysis& study) {
   if (!has_calibration(study)) return {};
-  Section section{"calibration", "Calibration"};
+  std::vector<const JudgedPits*> all;
+  for (const CellAnalysis& cell : study.cells) {
+    std::ranges::move(tests_of(cell, [](const JudgedPits&) { return true; }),
+                      std::back_inserter(all));
+  }
+  Section section{"calibration", "Are errors distributed as the filters say?"};
+  section.summary = faults_text(all) + " tests find a fault";
   section.is_for_terminal = false;
   section.add("calibration", calibration_table(study));
   section.add(calibration_notes(study));

@@ -3,6 +3,7 @@
 #include "analysis/metrics/error_anatomy.hpp"
 
 #include "analysis/metrics/cell_panels.hpp"
+#include "analysis/metrics/cell_range.hpp"
 #include "analysis/metrics/lineages.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
@@ -206,7 +207,13 @@ Figure bias_figure(const StudyAnalysis& study) {
 std::vector<Section> error_anatomy_sections(const StudyAnalysis& study) {
   const TextTable table = why_table(study);
   if (table.rows.empty()) return {};
-  Section section{"error_anatomy", "Why?"};
+  Section section{"error_anatomy", "Where does the NEES come from?"};
+  const CellNumber bias = [](const CellAnalysis& cell) {
+    const ErrorAnatomy* anatomy = cell.find<ErrorAnatomy>();
+    return anatomy == nullptr ? kNaN : anatomy->mean_bias_share;
+  };
+  section.summary = "bias, which all runs share, makes " + range_over_cells(study, bias, percent) +
+                    " of the NEES";
   section.add("why", table);
   section.add(why_notes());
   return {section};

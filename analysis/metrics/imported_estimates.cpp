@@ -2,6 +2,7 @@
 // Estimates of another program: errors and deviations of each component, in the stated convention.
 #include "analysis/metrics/imported_estimates.hpp"
 
+#include "analysis/metrics/cell_range.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/verdict_table.hpp"
@@ -77,6 +78,17 @@ TextTable component_table(const StudyAnalysis& study) {
 std::vector<Section> imported_sections(const StudyAnalysis& study) {
   if (!study.imported.is_imported()) return {};
   Section section{"components", "Which component is off?"};
+  const CellNumber largest = [](const CellAnalysis& cell) {
+    const ComponentErrors& found = cell.get<ComponentErrors>();
+    double ratio = kNaN;
+    for (std::size_t c = 0; c < found.error.size(); ++c) {
+      ratio = std::fmax(ratio, found.error[c] / found.deviation[c]);
+    }
+    return ratio;
+  };
+  section.summary =
+      "largest ratio of an error to what is claimed of it: " + range_over_cells(study, largest) +
+      ", near 1 is right";
   section.add("components", component_table(study));
   section.add(std::vector<std::string>{
       "The error in the stated convention (" + study.imported.convention +

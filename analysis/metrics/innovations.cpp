@@ -3,6 +3,7 @@
 #include "analysis/metrics/innovations.hpp"
 
 #include "analysis/metrics/cell_panels.hpp"
+#include "analysis/metrics/cell_range.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
@@ -172,6 +173,11 @@ std::vector<Section> innovations_sections(const StudyAnalysis& study) {
   const TextTable table = innovation_table(study);
   if (table.rows.empty()) return {};
   Section section{"innovations", "Do measurements surprise the filter?"};
+  const CellNumber nis = [](const CellAnalysis& cell) {
+    const Innovations* found = cell.find<Innovations>();
+    return found == nullptr ? kNaN : found->verdict.ratio_estimate();
+  };
+  section.summary = "NIS per component " + range_over_cells(study, nis) + ", 1 is expected";
   section.add("innovation", table);
   section.add(innovation_notes());
   return {section};

@@ -2,6 +2,7 @@
 // Pose and map together.
 #include "analysis/metrics/joint_nees.hpp"
 
+#include "analysis/metrics/cell_range.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/score.hpp"
@@ -310,6 +311,10 @@ Figure joint_figure(const StudyAnalysis& study) {
 
 std::vector<Section> joint_nees_sections(const StudyAnalysis& study) {
   Section section{"joint_nees", "Pose and map together"};
+  const CellNumber ratio = [](const CellAnalysis& cell) {
+    return is_judged(cell) ? cell.get<JointConsistency>().verdict.ratio_estimate() : kNaN;
+  };
+  section.summary = "joint NEES per component " + range_over_cells(study, ratio) + ", 1 is right";
   section.add("joint_nees", joint_table(study));
   section.add(joint_notes(study));
   return {section};

@@ -2,6 +2,7 @@
 // How far final maps are from the true landmarks.
 #include "analysis/metrics/map_errors.hpp"
 
+#include "analysis/metrics/cell_range.hpp"
 #include "analysis/metrics/cramer_rao.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
@@ -222,6 +223,11 @@ std::vector<Section> map_sections(const StudyAnalysis& study) {
   const std::vector<std::string> notes = map_error_notes(study);
   if (notes.empty()) return {};
   Section section{"map_errors", "Map"};
+  const CellNumber rms = [](const CellAnalysis& cell) {
+    return cell.known_over_runs("landmark_rms").summary.mean;
+  };
+  const NumberText metres = [](double value) { return readable(value) + " m"; };
+  section.summary = "landmark RMSE " + range_over_cells(study, rms, metres);
   section.add("map_errors", map_error_table(study));
   section.add(notes);
   return {section};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/metrics/mismatch.hpp"
 
+#include "analysis/metrics/cell_range.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/output/number_text.hpp"
@@ -169,10 +170,22 @@ std::vector<MismatchGrid> mismatch_grids(const StudyAnalysis& study) {
   return grids;
 }
 
-Metric mismatch_metric() {
-  return {.figures = [](const StudyAnalysis& study) -> std::vector<Figure> {
-    return {mismatch_figure(study)};
-  }};
+namespace {
+
+/// The heading of the figure.
+std::vector<Section> mismatch_sections(const StudyAnalysis& study) {
+  const CellNumber ratio = [](const CellAnalysis& cell) { return cell.verdict.ratio_estimate(); };
+  Section section{"mismatch", "What if the filter is given wrong noise?"};
+  section.summary = "NEES ratio " + range_over_cells(study, ratio) + ", 1 is right";
+  return {section};
 }
+
+std::vector<Figure> mismatch_figures(const StudyAnalysis& study) {
+  return {mismatch_figure(study)};
+}
+
+}  // namespace
+
+Metric mismatch_metric() { return {.sections = mismatch_sections, .figures = mismatch_figures}; }
 
 }  // namespace montecarta::analysis

@@ -3,6 +3,7 @@
 #include "analysis/metrics/nees_accumulator.hpp"
 
 #include "analysis/metrics/cell_panels.hpp"
+#include "analysis/metrics/cell_range.hpp"
 #include "analysis/metrics/cramer_rao.hpp"
 #include "analysis/metrics/imported_estimates.hpp"
 #include "analysis/metrics/metric.hpp"
@@ -284,8 +285,24 @@ Figure anees_parts_figure(const StudyAnalysis& study) {
   return figure;
 }
 
+/// "2 of 3 cells are optimistic, 1 is undecided", in the order of the cells.
+std::string answers_text(const StudyAnalysis& study) {
+  std::vector<std::string> names;
+  for (const CellAnalysis& cell : study.cells) names.push_back(name_of(cell.verdict.answer));
+  std::string text;
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    if (std::find(names.begin(), name, *name) != name) continue;
+    const auto n = std::count(name, names.end(), *name);
+    text += text.empty() ? std::to_string(n) + " of " + std::to_string(names.size()) + " cells "
+                         : ", " + std::to_string(n) + " ";
+    text += (n == 1 ? "is " : "are ") + *name;
+  }
+  return text;
+}
+
 Section verdict_section(const StudyAnalysis& study) {
-  Section section{"verdict", "Verdict"};
+  Section section{"verdict", "Verdict and accuracy"};
+  section.summary = answers_text(study);
   for (const CellAnalysis& cell : study.cells) {
     section.blocks.emplace_back(Section::Lead{sentence(cell.label, cell.verdict)});
   }
@@ -300,7 +317,13 @@ Section verdict_section(const StudyAnalysis& study) {
 }
 
 Section consistency_section(const StudyAnalysis& study) {
-  Section section{"consistency", "The whole test"};
+  Section section{"consistency", "NEES of pose, position and heading"};
+  const CellNumber inside = [](const CellAnalysis& cell) {
+    const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
+    return pose == nullptr || !pose->is_tested() ? kNaN : pose->share_inside();
+  };
+  section.summary = "scans inside the " + level_text(study.level) +
+                    " band: " + range_over_cells(study, inside, percent);
   section.is_for_terminal = false;
   section.add("consistency", consistency_table(study));
   section.add(consistency_notes());

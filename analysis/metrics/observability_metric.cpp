@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Information about the heading of the whole, which no detection can give (STATISTICS 22).
 #include "analysis/metrics/cell_panels.hpp"
+#include "analysis/metrics/cell_range.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
@@ -48,6 +49,10 @@ std::vector<Section> observability_sections(const StudyAnalysis& study) {
   const TextTable table = observability_table(study);
   if (table.rows.empty()) return {};
   Section section{"observability", "Information about what nobody can observe"};
+  const CellNumber information = [](const CellAnalysis& cell) {
+    return cell.over_runs("rotation_information").mean;
+  };
+  section.summary = range_over_cells(study, information) + " per rad^2, 0 is right";
   section.add("observability", table);
   section.add(std::vector<std::string>{
       "Detections tell where landmarks are relative to the vehicle, never how the whole, path and "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Effective number of particles, and how many distinct ancestors they have (Diversity).
 #include "analysis/metrics/cell_panels.hpp"
+#include "analysis/metrics/cell_range.hpp"
 #include "analysis/metrics/lineages.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
@@ -124,10 +125,23 @@ Figure ess_figure(const StudyAnalysis& study) {
   return figure;
 }
 
+/// How far back the common ancestor lies, or, without ancestry, how many particles count.
+std::string diversity_summary(const StudyAnalysis& study) {
+  const CellNumber back = [](const CellAnalysis& cell) {
+    const LineageSummary* lineages = cell.find<LineageSummary>();
+    return lineages == nullptr ? kNaN : lineages->coalescence;
+  };
+  const std::string range = range_over_cells(study, back, fixed_seconds);
+  if (range != "-") return "the common ancestor of all particles lies " + range + " back";
+  const CellNumber ess = [](const CellAnalysis& cell) { return cell.over_runs("ess").mean; };
+  return "effective particles (ESS) " + range_over_cells(study, ess);
+}
+
 std::vector<Section> particles_sections(const StudyAnalysis& study) {
   Section section{"diversity", "How many histories survive?"};
   const TextTable table = diversity_table(study);
   section.add("diversity", table);
+  section.summary = diversity_summary(study);
   if (!table.rows.empty()) section.add(diversity_notes());
   return {section};
 }

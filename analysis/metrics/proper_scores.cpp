@@ -2,6 +2,7 @@
 // Proper scoring rules, which rank distributions: log score and energy score (STATISTICS 23).
 #include "analysis/metrics/proper_scores.hpp"
 
+#include "analysis/metrics/cell_range.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/nees.hpp"
@@ -107,6 +108,10 @@ std::vector<Section> proper_scores_sections(const StudyAnalysis& study) {
   const TextTable table = proper_scores_table(study);
   if (table.rows.empty()) return {};
   Section section{"proper_scores", "Which filter describes its errors best?"};
+  const CellNumber log_score = [](const CellAnalysis& cell) {
+    return cell.known_over_runs("log_score").summary.mean;
+  };
+  section.summary = "log score " + range_over_cells(study, log_score) + ", lower is better";
   section.add("proper_scores", table);
   section.add(std::vector<std::string>{
       "Lower is better. Both scores rate error and covariance together: a filter that reports more "

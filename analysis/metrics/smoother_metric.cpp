@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Each cell beside the study's cell of full smoothing: what it loses by linearising once.
+#include "analysis/metrics/cell_range.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/paired_runs.hpp"
 #include "analysis/metrics/study_analysis.hpp"
@@ -23,14 +24,25 @@ const CellAnalysis* smoother_of(const StudyAnalysis& study) {
   return found == study.cells.end() || study.cells.size() < 2 ? nullptr : &*found;
 }
 
-/// Root of the ratio of two mean squares, the smoother's by the cell's, of the runs that both
-/// completed, with its interval (STATISTICS 21).
+/// The smoother's mean squares on the left, the cell's on the right.
+PairedRuns runs_beside(const CellAnalysis& cell, const CellAnalysis& smoother,
+                       const char* mean_square) {
+  return paired_runs(smoother, cell, *find_score(mean_square));
+}
+
+/// Root of the ratio of two mean squares, the smoother's by the cell's; NaN where there is none.
+double paired_efficiency(const PairedRuns& runs) {
+  const double above = mean_of(runs.left), below = mean_of(runs.right);
+  return below > 0.0 && above > 0.0 ? std::sqrt(above / below) : kNaN;
+}
+
+/// Of the runs that both completed, with its interval (STATISTICS 21).
 std::string efficiency_text(const CellAnalysis& cell, const CellAnalysis& smoother,
                             const char* mean_square, double level) {
-  const PairedRuns runs = paired_runs(smoother, cell, *find_score(mean_square));
+  const PairedRuns runs = runs_beside(cell, smoother, mean_square);
+  const double efficiency = paired_efficiency(runs);
+  if (std::isnan(efficiency)) return "-";
   const double above = mean_of(runs.left), below = mean_of(runs.right);
-  if (!(below > 0.0) || !(above > 0.0)) return "-";
-  const double efficiency = std::sqrt(above / below);
   if (runs.left.size() < 2) return readable(efficiency);
   SummaryOf differences;  // of the half logarithm, to first order
   for (std::size_t k = 0; k < runs.left.size(); ++k) {
@@ -70,6 +82,13 @@ std::vector<Section> smoother_sections(const StudyAnalysis& study) {
     if (&cell != smoother) table.rows.push_back(row_beside(cell, *smoother, study.level));
   }
   Section section{"smoother", "Against full smoothing"};
+  const CellNumber efficiency = [&](const CellAnalysis& cell) {
+    return &cell == smoother ? kNaN
+                             : paired_efficiency(runs_beside(cell, *smoother, "position_mse"));
+  };
+  section.summary = "position RMSE of " + smoother->label +
+                    " / that of the cell: " + range_over_cells(study, efficiency) +
+                    ", 1 is as good";
   section.add("smoother", table);
   section.add(
       {"Efficiency against " + smoother->label +

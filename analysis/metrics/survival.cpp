@@ -3,6 +3,7 @@
 #include "analysis/metrics/survival.hpp"
 
 #include "analysis/metrics/cell_panels.hpp"
+#include "analysis/metrics/cell_range.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
@@ -119,6 +120,21 @@ Figure survival_figure(const StudyAnalysis& study) {
   return figure;
 }
 
+/// The heading of the figure.
+std::vector<Section> survival_sections(const StudyAnalysis& study) {
+  const CellNumber median = [](const CellAnalysis& cell) {
+    const Survival* survival = cell.find<Survival>();
+    return survival == nullptr ? kNaN : survival->median;
+  };
+  const NumberText time = [](double seconds) {
+    return std::isinf(seconds) ? "never" : fixed_seconds(seconds);
+  };
+  Section section{"survival", "How long does a run stay right?"};
+  section.summary =
+      "time until half of the runs are lost: " + range_over_cells(study, median, time);
+  return {section};
+}
+
 std::vector<Figure> survival_figures(const StudyAnalysis& study) {
   return {survival_figure(study)};
 }
@@ -129,6 +145,7 @@ Metric survival_metric() {
   return {.sums = make_sums<SurvivalOverRuns>,
           .add_numbers = survival_numbers,
           .add_series = survival_series,
+          .sections = survival_sections,
           .figures = survival_figures};
 }
 

@@ -94,7 +94,15 @@ TextTable family_table(const StudyAnalysis& study) {
 
 std::vector<Section> verdict_sections(const StudyAnalysis& study) {
   if (!study.has_truth) return {};
+  std::size_t tests = 0;
+  std::ptrdiff_t rejected = 0;
+  for (const CellAnalysis& cell : study.cells) {
+    tests += cell.verdict.families.size();
+    rejected += std::ranges::count_if(cell.verdict.families, &FamilyTest::is_rejected);
+  }
   Section section{"families", "All tests of the verdict"};
+  section.summary = std::to_string(rejected) + " of " + std::to_string(tests) +
+                    " families of tests show a deviation";
   section.is_for_terminal = false;
   section.add("families", family_table(study));
   section.add(std::vector<std::string>{

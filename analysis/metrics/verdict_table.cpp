@@ -29,19 +29,13 @@ std::string median_exit_text(const CellAnalysis& cell) {
   return time_with_interval(survival.median, survival.median_interval);
 }
 
-std::string score_text(const CellAnalysis& cell, std::string_view score, double level,
-                       double factor = 1.0) {
-  return text_of_mean(cell.scores.column(score), cell.over_runs(score).mean,
-                      cell.interval_of(score), factor, level);
-}
-
 std::vector<std::string> verdict_row(const CellAnalysis& cell) {
   const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
   const bool is_tested = pose != nullptr && pose->is_tested();
   return {cell.label,
           runs_in_words(cell),
           in_words(cell.verdict),
-          is_tested ? with_interval(cell.verdict.ratio_estimate(), cell.verdict.ratio()) : "-",
+          ratio_text(cell),
           is_tested ? percent(pose->share_inside()) : "-",
           median_exit_text(cell)};
 }
@@ -116,6 +110,18 @@ std::vector<NamedNumber> numbers_of(const CellAnalysis& cell, const NeesResult& 
           {"unusable", "1", static_cast<double>(nees.series.unusable)},
           {"too_few_draws", "1", static_cast<double>(nees.series.too_few)},
           {"unjudged_runs", "1", static_cast<double>(nees.series.unjudged_runs)}};
+}
+
+std::string ratio_text(const CellAnalysis& cell) {
+  const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
+  if (pose == nullptr || !pose->is_tested()) return "-";
+  return with_interval(cell.verdict.ratio_estimate(), cell.verdict.ratio());
+}
+
+std::string score_text(const CellAnalysis& cell, std::string_view score, double level,
+                       double factor) {
+  return text_of_mean(cell.scores.column(score), cell.over_runs(score).mean,
+                      cell.interval_of(score), factor, level);
 }
 
 std::string runs_in_words(const CellAnalysis& cell) {
@@ -231,12 +237,10 @@ std::string text_of_mean(const std::vector<double>& values, double mean, const I
          with_interval(factor * median_of(values), {factor * middle.lower, factor * middle.upper});
 }
 
-namespace {
-
 std::string ratio_note(const StudyAnalysis& study) {
   return "The NEES ratio compares squared errors with what the filter's covariance says of them (" +
          components_text(study) +
-         "), averaged over runs and scans: 1 is right, more is overconfident, less is "
+         "), averaged over runs and scans: 1 is right, more is optimistic (overconfident), less is "
          "conservative. The brackets hold the ratio of infinitely many runs in at least " +
          level_text(study.level) + " of studies.";
 }
@@ -255,6 +259,8 @@ std::string answers_note(const StudyAnalysis& study) {
          " of studies, for any number of scans and any memory of its errors. If nothing is shown "
          "the verdict is undecided, and says about how many more runs would decide.";
 }
+
+namespace {
 
 std::string looks_note(const StudyAnalysis& study) {
   return "A cell of this study stops when its verdict is known, which is looked at after up to " +
@@ -337,6 +343,27 @@ std::vector<std::string> cautions(const StudyAnalysis& study) {
         "Singular covariances, judged by the components that they leave: " + singular + ".");
   }
   return sentences;
+}
+
+std::vector<std::string> too_few_notes(const CellAnalysis& cell) {
+  const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
+  if (pose == nullptr) return {};
+  std::vector<std::string> notes;
+  if (pose->series.unjudged_runs > 0) {
+    notes.push_back(cell.label + ": " + std::to_string(pose->series.unjudged_runs) + " of " +
+                    std::to_string(cell.complete) +
+                    " complete runs have no scan that can be judged; ANEES and verdict are of "
+                    "the other runs.");
+  }
+  if (pose->series.too_few == 0) return notes;
+  const double share =
+      static_cast<double>(pose->series.too_few) / static_cast<double>(pose->series.samples);
+  notes.push_back(cell.label + ": in " + std::to_string(pose->series.too_few) + " of " +
+                  std::to_string(pose->series.samples) + " scans (" + percent(share) +
+                  ") the weights leave no more than 5 effective draws (ESS), of which a "
+                  "covariance of three components cannot be judged; ANEES and verdict are of "
+                  "the other scans.");
+  return notes;
 }
 
 }  // namespace montecarta::analysis

@@ -6,6 +6,7 @@
 #include "analysis/statistics/nees_bounds.hpp"
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace montecarta::analysis {
@@ -29,18 +30,30 @@ std::vector<NamedSeries> family_columns(const FamilyTest& test);
 /// One row for each failed run: cell, run, step, reason.
 TextTable failure_table(const StudyAnalysis& study);
 
+/// What the NEES ratio of a cell is.
+std::string ratio_note(const StudyAnalysis& study);
+/// Which answers a verdict has, and when each is given.
+std::string answers_note(const StudyAnalysis& study);
 /// How to read the verdict table, a sentence each, for someone who never heard of chi-square.
 std::vector<std::string> verdict_notes(const StudyAnalysis& study);
 
 /// At most a sentence each on runs, scans and covariances that the verdict judges in part or not at
 /// all. Cells with less than one in a hundred are not named; consistency_table() has all counts.
 std::vector<std::string> cautions(const StudyAnalysis& study);
+/// How many scans of a cell have too few effective draws to be judged; nothing where none has.
+std::vector<std::string> too_few_notes(const CellAnalysis& cell);
 
 /// "40 complete", "2 FAILED, 38 complete", ...
 std::string runs_in_words(const CellAnalysis& cell);
 
 std::string name_of(ErrorBlock block);
 std::string name_of(Moments moments);
+
+/// The NEES ratio with its interval; "-" where it is not tested.
+std::string ratio_text(const CellAnalysis& cell);
+/// text_of_mean() of a score of a cell.
+std::string score_text(const CellAnalysis& cell, std::string_view score, double level,
+                       double factor = 1.0);
 
 /// The mean of `values`, one a run, with its `interval`. Where they have a heavy tail, of which no
 /// interval of the mean holds, the mean says so and the median over runs follows with its interval

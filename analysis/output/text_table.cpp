@@ -162,6 +162,11 @@ void print_table(std::ostream& out, const TextTable& table, std::size_t width) {
   }
 }
 
+bool Section::has_content() const {
+  const auto is_note = [](const Block& block) { return std::holds_alternative<Note>(block); };
+  return !figures.empty() || !std::ranges::all_of(blocks, is_note);
+}
+
 void Section::add(const std::string& table_name, const TextTable& table) {
   if (!table.rows.empty()) blocks.emplace_back(Table{table_name, table});
 }

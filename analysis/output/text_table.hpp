@@ -34,8 +34,10 @@ std::string aligned(const std::vector<TableRow>& rows, std::size_t indent = 2,
 /// broken between words; if that is not enough, columns continue below, beside the keys again.
 void print_table(std::ostream& out, const TextTable& table, std::size_t width);
 
-/// A part of a report: tables and sentences, then figures. One that has none of them is left out.
+/// A part of a report: tables and sentences, then figures. A page leaves out what has no content.
 struct Section {
+  enum class Shown { folded, open };
+
   /// Also written as tables/<name>.tex.
   struct Table {
     std::string name;
@@ -45,7 +47,7 @@ struct Section {
   struct Note {
     std::string text;
   };
-  /// A sentence that says the result, before all tables.
+  /// A sentence that says the result, before all tables; a page has it on the cards of cells.
   struct Lead {
     std::string text;
   };
@@ -61,6 +63,11 @@ struct Section {
   std::vector<Block> blocks = {};
   bool is_for_terminal = true;       ///< else of the page alone
   std::vector<Figure> figures = {};  ///< each with a heading of its own
+  std::string summary = {};          ///< one line beside the heading: the result in short
+  Shown shown = Shown::folded;       ///< on a page, before the reader opens it
+
+  /// Whether there is more than notes on what is not there.
+  bool has_content() const;
 
   /// Nothing where it has no rows.
   void add(const std::string& table_name, const TextTable& table);

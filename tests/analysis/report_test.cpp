@@ -40,7 +40,7 @@ TEST(Report, HoldsEverySectionAndNeedsNothingElse) {
   EXPECT_THAT(text_in(folder / "report/tables/verdict.tex"), HasSubstr("\\bottomrule"));
   EXPECT_TRUE(std::filesystem::exists(folder / "report/data/anees_pose.csv"));
   const std::string summary = text_in(folder / "report/summary.md");
-  for (const char* part : {"## Verdict\n\n| cell |", "\n|---|", "](figures/anees.svg)",
+  for (const char* part : {"## Verdict and accuracy\n\n| cell |", "\n|---|", "](figures/anees.svg)",
                            "gain is \\<not\\> a number"}) {
     EXPECT_THAT(summary, HasSubstr(part));
   }
