@@ -219,15 +219,23 @@ void write_landmarks(const StudyAnalysis& study, const std::filesystem::path& pa
   file.close();
 }
 
+/// How far off landmarks are; where nobody knows which is which, the map as a whole.
+std::string map_summary(const StudyAnalysis& study) {
+  const NumberText metres = [](double value) { return readable(value) + " m"; };
+  const auto range_of = [&](const char* score) {
+    return range_over_cells(
+        study, [&](const CellAnalysis& cell) { return cell.known_over_runs(score).summary.mean; },
+        metres);
+  };
+  const std::string rms = range_of("landmark_rms");
+  return rms == "-" ? "GOSPA " + range_of("gospa") : "landmark RMSE " + rms;
+}
+
 std::vector<Section> map_sections(const StudyAnalysis& study) {
   const std::vector<std::string> notes = map_error_notes(study);
   if (notes.empty()) return {};
   Section section{"map_errors", "Map"};
-  const CellNumber rms = [](const CellAnalysis& cell) {
-    return cell.known_over_runs("landmark_rms").summary.mean;
-  };
-  const NumberText metres = [](double value) { return readable(value) + " m"; };
-  section.summary = "landmark RMSE " + range_over_cells(study, rms, metres);
+  section.summary = map_summary(study);
   section.add("map_errors", map_error_table(study));
   section.add(notes);
   return {section};

@@ -310,9 +310,9 @@ Section verdict_section(const StudyAnalysis& study) {
   const bool has_poses = !study.imported.is_imported() || study.imported.state == "pose";
   if (has_poses) section.add("accuracy", accuracy_table(study));
   section.add(imported_notes(study));
-  section.add(cautions(study));
   section.add(verdict_notes(study));
   section.add(bound_notes(study.bound));
+  section.add(cautions(study));
   return section;
 }
 
@@ -325,8 +325,9 @@ Section consistency_section(const StudyAnalysis& study) {
   section.summary = "scans inside the " + level_text(study.level) +
                     " band: " + range_over_cells(study, inside, percent);
   section.is_for_terminal = false;
-  section.add("consistency", consistency_table(study));
-  section.add(consistency_notes());
+  const TextTable table = consistency_table(study);
+  section.add("consistency", table);
+  if (!table.rows.empty()) section.add(consistency_notes());
   return section;
 }
 

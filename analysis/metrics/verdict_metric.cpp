@@ -73,6 +73,11 @@ void verdict_series(const CellAnalysis& cell, std::vector<NamedSeries>& all) {
   all.push_back(std::move(upper));
 }
 
+bool has_families(const StudyAnalysis& study) {
+  return std::ranges::any_of(
+      study.cells, [](const CellAnalysis& cell) { return !cell.verdict.families.empty(); });
+}
+
 TextTable family_table(const StudyAnalysis& study) {
   TextTable table;
   table.headings = {{"cell", Align::left},
@@ -93,7 +98,7 @@ TextTable family_table(const StudyAnalysis& study) {
 }
 
 std::vector<Section> verdict_sections(const StudyAnalysis& study) {
-  if (!study.has_truth) return {};
+  if (!study.has_truth || !has_families(study)) return {};
   std::size_t tests = 0;
   std::ptrdiff_t rejected = 0;
   for (const CellAnalysis& cell : study.cells) {
@@ -134,11 +139,6 @@ void write_families(const StudyAnalysis& study, const std::filesystem::path& pat
     }
   }
   file.close();
-}
-
-bool has_families(const StudyAnalysis& study) {
-  return std::ranges::any_of(
-      study.cells, [](const CellAnalysis& cell) { return !cell.verdict.families.empty(); });
 }
 
 }  // namespace

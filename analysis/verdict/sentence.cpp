@@ -274,7 +274,7 @@ std::string sentence_of(const std::string& label, const Verdict& verdict) {
     case Answer::untested:
       break;
   }
-  return label + " is not tested";
+  return label + " is not tested: no complete run has a covariance that can be judged";
 }
 
 }  // namespace
