@@ -12,7 +12,11 @@
 #include "engine/errors.hpp"
 
 #include <algorithm>
-#include <array>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace montecarta::analysis {
 namespace {
@@ -29,72 +33,103 @@ void refuse_existing(const fs::path& directory, ExistingReport existing) {
   }
 }
 
-/// The page from top to bottom, by the names of sections and figures; others come before the last
-/// two.
-constexpr std::array kReadingOrder = {"title",
-                                      "verdict",
-                                      "map_errors",
-                                      "joint_nees",
-                                      "observability",
-                                      "smoother",
-                                      "drive",
-                                      "references",
-                                      "failures",
-                                      "replay",
-                                      "figure_paths",
-                                      "figure_reference_error",
-                                      "figure_map_size",
-                                      "figure_anees",
-                                      "figure_anees_parts",
-                                      "figure_nees_quantiles",
-                                      "figure_observability",
-                                      "figure_rmse",
-                                      "figure_error_envelopes",
-                                      "proper_scores",
-                                      "figure_diversity",
-                                      "figure_ess",
-                                      "figure_joint_nees",
-                                      "figure_ancestry",
-                                      "figure_survival",
-                                      "figure_bias",
-                                      "figure_nis",
-                                      "figure_whiteness",
-                                      "figure_mismatch",
-                                      "calibration",
-                                      "figure_calibration",
-                                      "figure_ranks",
-                                      "comparison",
-                                      "association",
-                                      "error_anatomy",
-                                      "diversity",
-                                      "innovations",
-                                      "consistency",
-                                      "",
-                                      "origin"};
+using Shown = Section::Shown;
 
-std::size_t place_of(const Section& section) {
-  const auto found = std::ranges::find(kReadingOrder, section.name);
-  return static_cast<std::size_t>(
-      (found == kReadingOrder.end() ? std::ranges::find(kReadingOrder, std::string()) : found) -
-      kReadingOrder.begin());
+/// Where a section stands on the page, with the figures of its subject.
+struct Place {
+  std::string section;
+  std::vector<std::string> figures = {};
+  Shown shown = Shown::folded;
+};
+
+/// The page from top to bottom. What is named nowhere here comes before the last two.
+const std::vector<Place>& reading_order() {
+  static const std::vector<Place> order = {
+      {"title", {}, Shown::open},
+      {"cards", {}, Shown::open},
+      {"drive", {}, Shown::open},
+      {"references", {"reference_error"}, Shown::open},
+      {"nees", {"anees"}, Shown::open},
+      {"replay", {}, Shown::open},
+      {"errors", {"rmse", "error_envelopes"}, Shown::open},
+      {"verdict"},
+      {"failures"},
+      {"components"},
+      {"paths", {"paths"}},
+      {"survival", {"survival"}},
+      {"map_errors"},
+      {"map_size", {"map_size"}},
+      {"joint_nees", {"joint_nees"}},
+      {"observability", {"observability"}},
+      {"smoother"},
+      {"mismatch", {"mismatch"}},
+      {"error_anatomy", {"bias"}},
+      {"innovations", {"nis", "whiteness"}},
+      {"calibration", {"nees_quantiles", "calibration", "ranks"}},
+      {"diversity", {"diversity", "ess", "ancestry"}},
+      {"association"},
+      {"proper_scores"},
+      {"comparison"},
+      {"families"},
+      {"consistency", {"anees_parts"}},
+  };
+  return order;
 }
 
-/// All parts of the page. What a study has nothing of leaves its section empty.
+/// Takes the element of this name out of `all`; nullopt where there is none.
+template <class Named>
+std::optional<Named> take(const std::string& name, std::vector<Named>& all) {
+  const auto found = std::ranges::find(all, name, &Named::name);
+  if (found == all.end()) return std::nullopt;
+  std::optional<Named> taken(std::move(*found));
+  all.erase(found);
+  return taken;
+}
+
+/// A folded section without a heading has that of its first figure.
+Section titled(Section section) {
+  const bool is_open = section.shown == Shown::open;
+  if (is_open || !section.title.empty() || section.figures.empty()) return section;
+  const Figure& first = section.figures.front();
+  section.title = first.title;
+  section.summary = first.sentence.substr(0, first.sentence.find(". "));
+  return section;
+}
+
+/// Sections in the order of reading, each with its figures.
+std::vector<Section> arranged(std::vector<Section> sections, std::vector<Figure> figures) {
+  std::vector<Section> page;
+  for (const Place& place : reading_order()) {
+    Section section = take(place.section, sections).value_or(Section{place.section, ""});
+    section.shown = place.shown;
+    for (const std::string& name : place.figures) {
+      if (auto figure = take(name, figures)) section.figures.push_back(std::move(*figure));
+    }
+    page.push_back(titled(std::move(section)));
+  }
+  std::ranges::move(sections, std::back_inserter(page));
+  for (const Figure& figure : figures) {
+    page.push_back(titled({.name = figure.name, .title = "", .figures = {figure}}));
+  }
+  return page;
+}
+
+/// All parts of the page.
 std::vector<Section> all_sections(const ResultFile& file, const StudyAnalysis& study,
                                   const StudyComparison& comparison, const ReportOptions& options) {
   std::vector<Section> sections = sections_of(study);
   sections.insert(sections.end(),
-                  {title_section(study), failure_section(study), replay_section(file, options.run),
-                   comparison_section(study, comparison), origin_section(file, study)});
+                  {title_section(study), verdict_cards(study), failure_section(study),
+                   replay_section(file, options.run), comparison_section(study, comparison)});
   std::vector<Figure> figures = figures_of(study);
   figures.insert(figures.end(),
                  {path_figure(file, options.run), ancestry_figure(file, options.run)});
-  for (const Figure& figure : figures) {
-    if (!figure.data.empty())
-      sections.push_back({"figure_" + figure.name, "", {}, false, {figure}});
-  }
-  std::ranges::stable_sort(sections, {}, place_of);
-  return sections;
+  std::erase_if(figures, [](const Figure& figure) { return figure.data.empty(); });
+  std::vector<Section> page = arranged(std::move(sections), std::move(figures));
+  Section missing = missing_section(page);
+  page.push_back(std::move(missing));
+  page.push_back(origin_section(file, study));
+  return page;
 }
 
 }  // namespace

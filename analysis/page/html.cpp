@@ -248,6 +248,18 @@ std::string inline_svg(const std::string& svg, const std::string& name,
       "<svg class=\"drawing\" role=\"img\" aria-label=\"" + html_escape(description) + "\"");
 }
 
+std::string html_paragraphs(const std::vector<std::string>& texts) {
+  std::string html;
+  for (const std::string& text : texts) html += "<p>" + html_escape(text) + "</p>\n";
+  return html;
+}
+
+std::string html_explained(const std::string& html, const std::string& explanation) {
+  if (explanation.empty()) return html;
+  return "<details class=\"why\"><summary>" + (html.empty() ? "How to read this" : html) +
+         " <span class=\"ask\">?</span></summary>\n" + explanation + "</details>\n";
+}
+
 std::string html_data(const std::string& name, const std::string& json) {
   return "<script type=\"application/json\" class=\"" + name + "\">" + json + "</script>\n";
 }

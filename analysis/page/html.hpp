@@ -47,6 +47,13 @@ std::string html_pairs(const std::vector<std::pair<std::string, std::string>>& p
 std::string inline_svg(const std::string& svg, const std::string& name,
                        const std::string& description);
 
+/// Paragraphs of plain text.
+std::string html_paragraphs(const std::vector<std::string>& texts);
+
+/// HTML with a "?" behind it that opens an explanation, which is HTML too; without an explanation
+/// the HTML alone, without HTML before it "How to read this".
+std::string html_explained(const std::string& html, const std::string& explanation);
+
 /// JSON for the page's script, which looks for this class.
 std::string html_data(const std::string& name, const std::string& json);
 

@@ -12,6 +12,7 @@
 #include <fstream>
 #include <iterator>
 #include <string_view>
+#include <utility>
 #include <variant>
 
 namespace montecarta::analysis {
@@ -25,9 +26,16 @@ std::string read_text(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-std::string html_section(const std::string& title, const std::string& body) {
-  const std::string heading = title.empty() ? "" : "<h2>" + html_escape(title) + "</h2>\n";
-  return "<section>\n" + heading + body + "</section>\n";
+std::string html_heading(int level, const std::string& title) {
+  const std::string name = "h" + std::to_string(level);
+  return title.empty() ? "" : "<" + name + ">" + html_escape(title) + "</" + name + ">\n";
+}
+
+/// A text's first sentence, and the others.
+std::pair<std::string, std::string> first_sentence(const std::string& text) {
+  const std::size_t end = text.find(". ");
+  if (end == text.npos) return {text, ""};
+  return {text.substr(0, end + 1), text.substr(end + 2)};
 }
 
 /// A figure's numbers; where there are many files, folded away.
@@ -54,38 +62,66 @@ std::string links_of(const Figure& figure) {
 }
 
 /// The drawing, and the numbers from which the script makes a drawing that can be asked.
-std::string html_figure(const Figure& figure, const fs::path& directory) {
+std::string html_drawing(const Figure& figure, const fs::path& directory) {
+  draw(figure, directory);
   const std::string svg = read_text(directory / "figures" / (figure.name + ".svg"));
-  const std::string drawing =
-      "<div class=\"scroll\">" + inline_svg(svg, figure.name, figure.title) + "</div>\n";
   const std::string chart =
       figure.chart.panels.empty() ? "" : html_data("chart-data", chart_json(figure.chart));
-  return html_section(figure.title, "<figure id=\"figure_" + figure.name + "\">\n" + drawing +
-                                        chart + "<figcaption>" + html_escape(figure.sentence) +
-                                        "<br>" + links_of(figure) + "</figcaption>\n</figure>\n");
+  return "<figure id=\"figure_" + figure.name + "\">\n<div class=\"scroll\">" +
+         inline_svg(svg, figure.name, figure.title) + "</div>\n" + chart + "<figcaption>" +
+         links_of(figure) + "</figcaption>\n</figure>\n";
 }
 
-/// Of a table, a note or HTML.
-struct HtmlOf {
-  std::string operator()(const Section::Table& table) const { return html_table(table.table); }
-  std::string operator()(const Section::Note& note) const {
-    return "<p class=\"soft\">" + html_escape(note.text) + "</p>\n";
-  }
-  std::string operator()(const Section::Lead& lead) const {
-    return "<p class=\"lead\">" + html_escape(lead.text) + "</p>\n";
-  }
-  std::string operator()(const Section::Html& html) const { return html.text; }
-};
-
-std::string html_of(const Section& section, const fs::path& directory) {
-  std::string body;
-  for (const auto& block : section.blocks) body += std::visit(HtmlOf{}, block);
-  std::string html = body.empty() ? "" : html_section(section.title, body);
+/// Each figure with a heading, and a sentence whose "?" opens the others; without what the heading
+/// of the section has said.
+std::string html_figures(const Section& section, const fs::path& directory) {
+  const int level = section.title.empty() ? 2 : 3;
+  std::string html;
   for (const Figure& figure : section.figures) {
-    draw(figure, directory);
-    html += html_figure(figure, directory);
+    const auto [first, others] = first_sentence(figure.sentence);
+    const bool is_said = first == section.summary + ".";
+    if (figure.title != section.title) html += html_heading(level, figure.title);
+    html += html_explained(is_said ? "" : "<span class=\"soft\">" + html_escape(first) + "</span>",
+                           others.empty() ? "" : html_paragraphs({others}));
+    html += html_drawing(figure, directory);
   }
   return html;
+}
+
+/// Of a table or HTML; notes are opened by a "?", and cards say what leads say.
+struct HtmlOf {
+  std::string operator()(const Section::Table& table) const { return html_table(table.table); }
+  std::string operator()(const Section::Html& html) const { return html.text; }
+  std::string operator()(const Section::Note&) const { return ""; }
+  std::string operator()(const Section::Lead&) const { return ""; }
+};
+
+std::vector<std::string> notes_of(const Section& section) {
+  std::vector<std::string> notes;
+  for (const Section::Block& block : section.blocks) {
+    if (const auto* note = std::get_if<Section::Note>(&block)) notes.push_back(note->text);
+  }
+  return notes;
+}
+
+/// "Is it so? Hardly.", "Map: landmark RMSE 0.1 m"
+std::string folded_heading(const Section& section) {
+  const std::string colon = section.title.ends_with('?') || section.summary.empty() ? "" : ":";
+  return "<h2>" + html_escape(section.title) + colon + "</h2> <span class=\"says\">" +
+         html_escape(section.summary) + "</span>";
+}
+
+std::string html_of(const Section& section, const fs::path& directory) {
+  if (!section.has_content()) return "";
+  const bool is_open = section.shown == Section::Shown::open;
+  const std::string notes = html_paragraphs(notes_of(section));
+  std::string body = html_explained(is_open ? html_heading(2, section.title) : "", notes);
+  for (const auto& block : section.blocks) body += std::visit(HtmlOf{}, block);
+  body += html_figures(section, directory);
+  const std::string begin = "<section id=\"" + section.name + "\">\n";
+  if (is_open) return begin + body + "</section>\n";
+  return begin + "<details class=\"folded\"><summary>" + folded_heading(section) + "</summary>\n" +
+         body + "</details>\n</section>\n";
 }
 
 /// Its tables, for a LaTeX document.
@@ -148,9 +184,15 @@ std::string markdown_section(const Section& section) {
   return tables.empty() ? "" : heading + tables;
 }
 
-bool is_leading_figure(const Section& section) {
-  constexpr std::array kLeading = {"figure_anees", "figure_reference_error"};
-  return std::ranges::find(kLeading, section.name) != kLeading.end();
+/// The first one over time; empty where there is none.
+std::string markdown_leading_figure(const std::vector<Section>& sections) {
+  for (const Section& section : sections) {
+    for (const Figure& figure : section.figures) {
+      if (figure.name == "anees" || figure.name == "reference_error")
+        return markdown_figure(figure);
+    }
+  }
+  return "";
 }
 
 }  // namespace
@@ -183,14 +225,13 @@ std::string markdown_table(const TextTable& table) {
 std::string markdown_page(const StudyAnalysis& study, const std::vector<Section>& sections,
                           const TextPairs& provenance) {
   std::string page = study_lines(study, provenance);
-  bool has_figure = false;
+  std::string figure = markdown_leading_figure(sections);
   for (const Section& section : sections) {
-    if (section.is_for_terminal) page += markdown_section(section);
-    if (has_figure || !is_leading_figure(section)) continue;
-    page += markdown_figure(section.figures.front());
-    has_figure = true;
+    const std::string tables = section.is_for_terminal ? markdown_section(section) : "";
+    page += tables;
+    if (!tables.empty()) page += std::exchange(figure, "");
   }
-  return page;
+  return page + figure;
 }
 
 namespace {
@@ -199,21 +240,61 @@ std::string details(const std::string& summary, const std::string& content) {
   return "<details><summary>" + summary + "</summary>" + content + "</details>\n";
 }
 
+/// How many of its rows are better, and how many worse.
+std::string comparison_summary(const Comparisons& all) {
+  std::size_t better = 0, worse = 0;
+  for (const CellComparison& row : all.rows) {
+    const std::string verdict = row.verdict(all.level);
+    better += verdict.starts_with("better") ? 1 : 0;
+    worse += verdict.starts_with("worse") ? 1 : 0;
+  }
+  return std::to_string(all.rows.size()) + " comparisons, better in " + std::to_string(better) +
+         ", worse in " + std::to_string(worse);
+}
+
+std::string title_line(const StudyAnalysis& study) {
+  return html_escape(study.study_name) + " &middot; " + std::to_string(study.runs_here) + " of " +
+         std::to_string(study.study_runs) + " runs &middot; " + study.scans_text() +
+         " &middot; seed " + std::to_string(study.seed) + " &middot; " + html_escape(study.file);
+}
+
 }  // namespace
+
+std::string studied_sentence(const StudyAnalysis& study) {
+  const std::string n = std::to_string(study.cells.size());
+  const std::string runs = std::to_string(study.runs_here);
+  const std::string time = fixed_seconds(study.duration);
+  const std::string judged = "; its errors are compared with the covariance that it reports.";
+  if (study.imported.is_imported()) {
+    return "Another program estimated " + runs + " runs of " + time +
+           (study.cells.size() == 1 ? "" : " in each of " + n + " cells") + judged;
+  }
+  const std::string cells = (study.cells.size() == 1 ? "One cell" : "Each of " + n + " cells") +
+                            " (a cell is a filter in one setting) estimates ";
+  if (study.has_truth) {
+    return cells + "the same " + runs + " simulated drives of " + time + " among " +
+           std::to_string(study.beacons) + " landmarks" + judged;
+  }
+  if (study.own_drives > 0) return cells + runs + " recorded drives of up to " + time + ".";
+  return cells + "one recorded drive of " + time + ", " + runs + " times.";
+}
 
 Section title_section(const StudyAnalysis& study) {
   Section section{"title", ""};
-  section.add_html("<h1>" + html_escape(study.title.empty() ? study.study_name : study.title) +
-                   "</h1>\n<p class=\"soft\">" + html_escape(study.study_name) + " &middot; " +
-                   std::to_string(study.runs_here) + " of " + std::to_string(study.study_runs) +
-                   " runs &middot; " + study.scans_text() + " &middot; seed " +
-                   std::to_string(study.seed) + " &middot; " + html_escape(study.file) + "</p>\n");
+  section.add_html(html_heading(1, study.title.empty() ? study.study_name : study.title) +
+                   html_paragraphs({studied_sentence(study)}) + "<p class=\"soft\">" +
+                   title_line(study) + "</p>\n");
   return section;
 }
 
 Section failure_section(const StudyAnalysis& study) {
   if (!study.has_failures()) return {};
+  std::size_t failed = 0;
+  for (const CellAnalysis& cell : study.cells) failed += cell.failures.size();
   Section section{"failures", "Failed runs"};
+  section.summary = std::to_string(failed) + " of " +
+                    std::to_string(study.runs_here * study.cells.size()) +
+                    " runs ended early, with step and reason";
   section.add("failures", failure_table(study));
   section.add(std::vector<std::string>{
       "These runs ended early and are left out of everything else; the step counts from 0. "
@@ -226,6 +307,7 @@ Section comparison_section(const StudyAnalysis& study, const StudyComparison& co
   const Comparisons& all = comparison.comparisons;
   if (!study.has_truth || all.rows.empty()) return {};
   Section section{"comparison", "Compared with " + all.baseline};
+  section.summary = comparison_summary(all);
   section.is_for_terminal = false;
   section.add("comparison", comparison_table(all));
   section.add(comparison_notes(study, all));
@@ -236,12 +318,26 @@ Section comparison_section(const StudyAnalysis& study, const StudyComparison& co
   return section;
 }
 
+Section missing_section(const std::vector<Section>& sections) {
+  Section missing{"missing", "What this page cannot show"};
+  for (const Section& section : sections) {
+    if (section.has_content() || section.blocks.empty()) continue;
+    missing.summary += (missing.summary.empty() ? "" : ", ") + section.title;
+    missing.add_html(html_paragraphs(notes_of(section)));
+  }
+  return missing;
+}
+
 Section origin_section(const ResultFile& file, const StudyAnalysis& study) {
+  const TextPairs provenance = file.provenance();
   Section section{"origin", "Where this comes from"};
-  section.add(std::vector{"Same study, same build, same numbers: study " + study.study_sha256 +
-                          ". Tables are in tables/ as CSV and LaTeX."});
+  section.summary =
+      "montecarta " + value_of(provenance, "version") + ", " + value_of(provenance, "date");
+  section.add_html(
+      html_paragraphs({"Same study, same build, same numbers: study " + study.study_sha256 +
+                       ". Tables are in tables/ as CSV and LaTeX."}));
   section.add_html(details("Scenario", html_pairs(file.scenario())) +
-                   details("Provenance", html_pairs(file.provenance())) +
+                   details("Provenance", html_pairs(provenance)) +
                    details("Study file, with everything filled in",
                            "<pre>" + html_escape(file.study_text()) + "</pre>"));
   return section;

@@ -17,19 +17,26 @@ namespace montecarta::analysis {
 
 // The parts of a report that belong to no metric.
 
+/// What was studied, for someone who knows nothing of it.
+std::string studied_sentence(const StudyAnalysis& study);
 /// The page's heading: which study, how much of it.
 Section title_section(const StudyAnalysis& study);
+/// The verdict on each cell in short, with three numbers and the NEES over time; empty without
+/// truth.
+Section verdict_cards(const StudyAnalysis& study);
 /// Which runs failed, and why.
 Section failure_section(const StudyAnalysis& study);
 /// A player that replays one run, chosen as chosen_run() does, as far as the file holds it.
 Section replay_section(const ResultFile& file, std::optional<std::uint64_t> run);
 /// Every cell beside the first one, and what each is worth; where two cells have truth.
 Section comparison_section(const StudyAnalysis& study, const StudyComparison& comparison);
+/// The notes of sections that have nothing else: what is not there, and what to record for it.
+Section missing_section(const std::vector<Section>& sections);
 /// Study, scenario and provenance.
 Section origin_section(const ResultFile& file, const StudyAnalysis& study);
 
-/// Writes index.html with these sections in their order, their figures below figures/ and data/ and
-/// their tables below tables/ into `directory`.
+/// Writes index.html with these sections in their order, folded or open, their figures below
+/// figures/ and data/ and their tables below tables/ into `directory`.
 void write_page(const StudyAnalysis& study, const std::vector<Section>& sections,
                 const std::filesystem::path& directory);
 

@@ -52,8 +52,9 @@ class Legend {
   }
 
   addButton(curve) {
-    const button = htmlElement("button", {type: "button", "aria-pressed": "true",
-      "data-cell": curve.legend, title: "Hide or show; with Shift: this one alone"}, this.element);
+    const button = htmlElement("button", {type: "button",
+      "aria-pressed": String(!this.isHidden(curve)), "data-cell": curve.legend,
+      title: "Hide or show; with Shift: this one alone"}, this.element);
     const sample = svgElement("svg", {width: 26, height: 10, "aria-hidden": "true"}, button);
     svgElement("path", {class: "curve", d: "M1 5H25", ...lineStyle(curve)}, sample);
     button.append(curve.legend);

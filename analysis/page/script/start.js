@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Brings every figure that has data to life; without scripts its drawing stays.
+// Brings every figure that has data to life, when it is seen; without scripts its drawing stays.
 
 /** The data in a script element; JSON has no infinite numbers, which are these texts there. */
 function parsed(element) {
@@ -8,8 +8,17 @@ function parsed(element) {
 }
 
 for (const element of document.querySelectorAll("figure > script.chart-data")) {
-  new ChartFigure(element.parentElement, parsed(element));
+  onceUnfolded(element, () => new ChartFigure(element.parentElement, parsed(element)));
 }
 for (const element of document.querySelectorAll(".player > script.replay-data")) {
   new Player(element.parentElement, parsed(element));
 }
+for (const table of document.querySelectorAll(".scroll > table")) {
+  new ResizeObserver(() => markScrolling(table.parentElement)).observe(table.parentElement);
+}
+document.addEventListener("click", ({target}) => {
+  if (target.closest("a")?.hash && target.closest("a").hash === location.hash) showTarget();
+});
+addEventListener("hashchange", showTarget);
+new OpenedForPrint();
+showTarget();

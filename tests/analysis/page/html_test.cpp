@@ -38,6 +38,13 @@ TEST(Html, GivesEveryDrawingItsOwnIdentifiersAndTheColourOfTheText) {
             "href='#rmse_a'/></svg>");
 }
 
+TEST(Html, ExplainsBehindAQuestionMark) {
+  EXPECT_EQ(html_explained("<b>1.2</b>", ""), "<b>1.2</b>");
+  EXPECT_EQ(html_explained("<b>1.2</b>", html_paragraphs({"1 < 2"})),
+            "<details class=\"why\"><summary><b>1.2</b> <span class=\"ask\">?</span></summary>\n"
+            "<p>1 &lt; 2</p>\n</details>\n");
+}
+
 TEST(Html, ForbidsTheBrowserToAskTheNetwork) {
   EXPECT_THAT(html_page("title", "body"), testing::HasSubstr("content=\"default-src 'none';"));
 }

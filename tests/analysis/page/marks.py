@@ -8,6 +8,10 @@ MAP = "#figure_paths svg.chart"
 
 class Maps(OnPage):
 
+    def setUp(self):
+        super().setUp()
+        self.unfold("paths", "paths")
+
     def scales(self):
         """Pixels a metre of the first panel, across and upwards."""
         a, b = self.place_of("paths", 0, 0, 0), self.place_of("paths", 0, 1, 1)
@@ -66,6 +70,10 @@ class Maps(OnPage):
 
 class Tree(OnPage):
 
+    def setUp(self):
+        super().setUp()
+        self.unfold("diversity", "ancestry")
+
     def ends(self):
         return [float(self.ask("#figure_ancestry svg.chart", f"dataset.{end}"))
                 for end in ("from", "to")]
@@ -94,6 +102,10 @@ class Tree(OnPage):
 class Tiles(OnPage):
 
     study = "tiles"
+
+    def setUp(self):
+        super().setUp()
+        self.unfold("mismatch", "mismatch")
 
     def test_say_what_the_filter_believed(self):
         chart = self.chart("mismatch")

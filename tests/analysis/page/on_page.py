@@ -54,6 +54,7 @@ landmark = -3, 6
 """
 # Nine of them: more than a figure over time draws as curves.
 STRIPS = TILES.replace("motion_noise=1,2 sensor_noise=1,2", "motion_noise=1,2,4 sensor_noise=1,2,4")
+OPEN_ALL = "for (const one of document.querySelectorAll('details')) one.open = true"
 CTRL, SHIFT = 2, 8  # modifiers of a key or click
 
 
@@ -98,6 +99,11 @@ class OnPage(unittest.TestCase):
 
     def count(self, selector):
         return self.page.evaluate(f"document.querySelectorAll({json.dumps(selector)}).length")
+
+    def unfold(self, section, figure):
+        """Opens a section as a reader does, and waits for its figure."""
+        self.page.click(self.page.middle(f"#{section} > .folded > summary h2"))
+        self.wait_for(f"document.querySelector('#figure_{figure} svg.chart') !== null")
 
     def place_of(self, figure, panel, x, y):
         """Where a panel of a chart has its values (x, y), in pixels of the window."""

@@ -2,7 +2,7 @@
 """The page as a whole: what opens, on which screen, and what it leaves alone."""
 
 import chromium
-from on_page import OnPage
+from on_page import OPEN_ALL, OnPage
 
 
 class Opening(OnPage):
@@ -18,6 +18,9 @@ class Opening(OnPage):
                 with self.subTest(width=width, dark=dark):
                     self.page = self.open(width=width, dark=dark)
                     self.assertLessEqual(self.ask("html", "scrollWidth"), width)
+                    self.page.evaluate(OPEN_ALL)
+                    self.later(100)
+                    self.assertLessEqual(self.ask("html", "scrollWidth"), width)
                     colour = self.page.evaluate("getComputedStyle(document.body).backgroundColor")
                     self.assertEqual(colour == "rgb(255, 255, 255)", not dark)
                     self.tearDown()
@@ -31,6 +34,7 @@ class Opening(OnPage):
         shown = "[...document.querySelectorAll('svg.drawing')].map(e => e.clientHeight > 50)"
         self.assertIn(False, self.page.evaluate(shown))
         self.page = self.open(scripts=False)
+        self.page.evaluate(OPEN_ALL)
         self.assertGreater(self.count("svg.drawing"), 3)
         self.assertNotIn(False, self.page.evaluate(shown))
         self.assertEqual(self.count("svg.chart"), 0)

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The verdict on each cell as a card: word, sentence, three numbers and the NEES over time.
+#include "analysis/metrics/imported_estimates.hpp"
+#include "analysis/metrics/verdict_table.hpp"
+#include "analysis/output/figure.hpp"
+#include "analysis/output/number_text.hpp"
+#include "analysis/page/html.hpp"
+#include "analysis/page/page.hpp"
+#include "engine/numbers/angle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace montecarta::analysis {
+namespace {
+
+/// The box of a curve [px]; left of it stand the numbers of the axis.
+constexpr double kSparkLeft = 32.0, kSparkWidth = 240.0, kSparkHeight = 64.0;
+/// Powers of ten: the axis reaches at least from the first to the second, at most to the third.
+constexpr int kLeastDecade = -1, kUsualDecade = 1, kMostDecade = 3;
+
+const NeesSeries* judged_series(const CellAnalysis& cell) {
+  const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
+  return pose == nullptr || !pose->is_tested() ? nullptr : &pose->series;
+}
+
+/// The upper end of the axis, one for all cards, as a power of ten.
+int highest_decade(const StudyAnalysis& study) {
+  int highest = kUsualDecade;
+  for (const CellAnalysis& cell : study.cells) {
+    const NeesSeries* series = judged_series(cell);
+    if (series == nullptr) continue;
+    for (const double value : series->average) {
+      const double decade = std::ceil(std::log10(value / static_cast<double>(series->dimension)));
+      if (decade > highest) highest = static_cast<int>(std::min(decade, double{kMostDecade}));
+    }
+  }
+  return highest;
+}
+
+std::string pixels(double value) { return exact_text(std::round(10.0 * value) / 10.0); }
+
+/// NEES by its dimension over time, on a logarithmic axis.
+struct Sparkline {
+  int highest;      ///< power of ten at the upper end
+  double duration;  ///< [s] at the right end
+
+  double y(double ratio) const {
+    const double share = (highest - std::log10(ratio)) / (highest - kLeastDecade);
+    return 4.0 + kSparkHeight * std::clamp(share, 0.0, 1.0);
+  }
+  double x(double time) const { return kSparkLeft + kSparkWidth * time / duration; }
+
+  std::string path(const ThinnedSeries& thinned, double dimension) const {
+    std::string path;
+    bool is_drawn = false;
+    for (std::size_t i = 0; i < thinned.times.size(); ++i) {
+      const double ratio = thinned.series.front().values[i] / dimension;
+      const bool is_known = ratio > 0.0;
+      if (is_known) {
+        path += (is_drawn ? "L" : "M") + pixels(x(thinned.times[i])) + " " + pixels(y(ratio));
+      }
+      is_drawn = is_known;
+    }
+    return path;
+  }
+
+  std::string grid() const {
+    std::string html;
+    for (int decade = kLeastDecade; decade <= highest; ++decade) {
+      const double ratio = std::pow(10.0, decade);
+      html += "<path class=\"grid\" d=\"M" + pixels(kSparkLeft) + " " + pixels(y(ratio)) + "h" +
+              pixels(kSparkWidth) + "\"/>";
+      if (decade != 0 && decade != highest) continue;
+      html += "<text x=\"" + pixels(kSparkLeft - 5.0) + "\" y=\"" + pixels(y(ratio) + 4.0) + "\">" +
+              exact_text(ratio) + "</text>";
+    }
+    return html;
+  }
+
+  std::string band(const Interval& bounds, double dimension) const {
+    const double top = y(bounds.upper / dimension);
+    return "<rect class=\"band\" x=\"" + pixels(kSparkLeft) + "\" y=\"" + pixels(top) +
+           "\" width=\"" + pixels(kSparkWidth) + "\" height=\"" +
+           pixels(y(bounds.lower / dimension) - top) + "\"/>";
+  }
+};
+
+std::string spark_note(const StudyAnalysis& study) {
+  return "The NEES ratio of each scan, averaged over runs, on a logarithmic axis that is the same "
+         "on all cards. 1 is right; the grey band is where chance leaves a consistent filter in " +
+         level_text(study.level) +
+         " of scans. Above the band the filter is optimistic, below it conservative. What is "
+         "beyond "
+         "the top is drawn there.";
+}
+
+std::string spark_html(const StudyAnalysis& study, const CellAnalysis& cell, std::size_t style,
+                       int highest) {
+  const NeesSeries* series = judged_series(cell);
+  if (series == nullptr || study.times.empty()) return "";
+  constexpr std::size_t kSparkColumns = 80;
+  const Sparkline line{highest, study.times.back()};
+  const auto dimension = static_cast<double>(series->dimension);
+  const ThinnedSeries thinned = thin(study.times, {{"anees", "1", series->average}}, kSparkColumns);
+  const Interval bounds = nees_bounds(cell.complete, series->dimension, study.level);
+  return html_explained("NEES ratio from 0 to " + readable(study.times.back()) + " s",
+                        html_paragraphs({spark_note(study)})) +
+         "<svg class=\"spark\" role=\"img\" viewBox=\"0 0 " +
+         pixels(kSparkLeft + kSparkWidth + 2.0) + " " + pixels(kSparkHeight + 8.0) +
+         "\" aria-label=\"NEES ratio over time, at the end " +
+         compact(series->average.back() / dimension) + "\">" + line.band(bounds, dimension) +
+         line.grid() + "<path class=\"curve\" stroke=\"" + line_colour(style) + "\" d=\"" +
+         line.path(thinned, dimension) + "\"/></svg>\n";
+}
+
+std::string rmse_note(const StudyAnalysis& study) {
+  return "Root mean square error over the scans of a run, mean over the complete runs. The "
+         "brackets "
+         "hold the mean of infinitely many runs in " +
+         level_text(study.level) + " of studies.";
+}
+
+/// A number with its name; nothing where it is not known.
+std::string number_html(const std::string& name, const std::string& value,
+                        const std::vector<std::string>& notes) {
+  if (value == "-") return "";
+  return html_explained(
+      "<span class=\"name\">" + html_escape(name) + "</span> <b>" + html_escape(value) + "</b>",
+      html_paragraphs(notes));
+}
+
+/// Of a score with a heavy tail the median, since no interval holds for the mean.
+std::string rmse_html(const StudyAnalysis& study, const std::string& name,
+                      const std::string& value) {
+  const std::size_t tail = value.find(" (heavy tail), ");
+  if (tail == value.npos) return number_html(name, value, {rmse_note(study)});
+  return number_html(
+      name, value.substr(value.find("median")),
+      {rmse_note(study), "This is the median over runs in its place: the mean, " +
+                             value.substr(0, tail) + ", has a heavy tail, a few runs decide it."});
+}
+
+std::string numbers_html(const StudyAnalysis& study, const CellAnalysis& cell) {
+  std::vector<std::string> ratio_notes = too_few_notes(cell);
+  ratio_notes.insert(ratio_notes.begin(), ratio_note(study));
+  const std::string html = number_html("NEES ratio", ratio_text(cell), ratio_notes);
+  if (study.imported.is_imported() && study.imported.state != "pose") return html;
+  return html +
+         rmse_html(study, "position RMSE [m]", score_text(cell, "position_rmse", study.level)) +
+         rmse_html(study, "heading RMSE [deg]",
+                   score_text(cell, "heading_rmse", study.level, 180.0 / kPi));
+}
+
+std::string runs_html(const CellAnalysis& cell) {
+  const std::string runs = "Runs: " + html_escape(runs_in_words(cell));
+  return cell.failures.empty() ? "<p class=\"soft\">" + runs + "</p>\n"
+                               : "<p class=\"bad\"><a href=\"#failures\">" + runs + "</a></p>\n";
+}
+
+std::string card_html(const StudyAnalysis& study, std::size_t i, int highest) {
+  const CellAnalysis& cell = study.cells[i];
+  const std::string answer = name_of(cell.verdict.answer);
+  const std::string word = cell.verdict.answer == Answer::untested ? "not tested" : answer;
+  return "<article class=\"card " + answer + "\">\n<h3>" + html_escape(cell.label) +
+         "</h3>\n<p class=\"word\">" + word + "</p>\n" + runs_html(cell) +
+         "<p class=\"sentence\">" + html_escape(sentence(cell.label, cell.verdict)) + "</p>\n" +
+         numbers_html(study, cell) + spark_html(study, cell, i, highest) + "</article>\n";
+}
+
+}  // namespace
+
+Section verdict_cards(const StudyAnalysis& study) {
+  Section section{"cards", "Verdict"};
+  if (!study.has_truth) return section;
+  section.add(std::vector{ratio_note(study), answers_note(study)});
+  section.add_html(html_paragraphs(imported_notes(study)));
+  constexpr std::size_t kMany = 6;
+  const int highest = highest_decade(study);
+  std::string cards;
+  for (std::size_t i = 0; i < study.cells.size(); ++i) cards += card_html(study, i, highest);
+  section.add_html("<div class=\"cards" + std::string(study.cells.size() > kMany ? " many" : "") +
+                   "\">\n" + cards + "</div>\n");
+  return section;
+}
+
+}  // namespace montecarta::analysis
