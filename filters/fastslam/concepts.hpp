@@ -64,7 +64,7 @@ template <class Real>
 struct FreshLandmark {
   Detection detection;
   std::size_t block;
-  std::uint32_t slot;               ///< added to their maps
+  std::uint32_t slot;               ///< slot that was added to their maps
   std::optional<std::size_t> lane;  ///< lane of the particle; nullopt means the whole block
 
   template <class Block>

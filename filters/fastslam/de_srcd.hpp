@@ -13,10 +13,10 @@ namespace montecarta::filters {
 
 /// The use of differential evolution in DE-SRCD-FastSLAM (EQUATIONS 10).
 enum class EvolutionMode {
-  unbiased,    ///< each particle searches its best pose; draws about it are weighted by (6.3)
+  unbiased,    ///< each particle searches for its best pose; draws are weighted by (6.3)
   as_printed,  ///< the cloud climbs the likelihood and is then refined by the same scan again
   prior,       ///< the same, but the fitness includes the motion and the map's covariance
-  shared,      ///< the cloud searches the centres, and the draws about them are weighted by (6.3)
+  shared,      ///< the cloud searches for the centres; draws about them are weighted by (6.3)
 };
 
 inline WeightTime weight_time(EvolutionMode mode) {
@@ -72,7 +72,7 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
                   centres_);
   }
 
-  /// Refines the pose, and in mode unbiased searches the most probable pose near it.
+  /// Refines the pose, and in mode unbiased searches for the most probable one near it.
   template <class Associating, class Innovations>
   Refined refine(const StepContext& context, std::size_t b, const PoseGaussian<Real>& predicted,
                  const Associating& association, const Innovations& innovations) {
@@ -122,7 +122,7 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
 
   EvolvedSettings settings_;
   std::vector<BasicPose<Real>> centres_;  ///< {block} poses to which the cloud moved
-  std::vector<OwnEvolution<Real>> own_;   ///< {block} in mode unbiased
+  std::vector<OwnEvolution<Real>> own_;   ///< {block} evolution of its particles in mode unbiased
   CloudEvolution<Real> cloud_;
 };
 

@@ -75,7 +75,7 @@ class RefinedCloud {
   const SensorNoise& noise() const { return noise_; }
 
  protected:
-  // The next functions are flattened, since else their arrays of registers pass through memory.
+  // The next functions are flattened; otherwise their arrays of registers pass through memory.
 
   /// Updates `pose` with the scan of block b, one detection after the other.
   template <class Associating, class Innovations>

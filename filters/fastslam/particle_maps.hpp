@@ -112,7 +112,7 @@ class ParticleMaps {
  private:
   struct Slot {
     std::vector<Landmark> blocks;
-    std::uint32_t generation = 0;  ///< number of resamplings before the order of the blocks
+    std::uint32_t generation = 0;  ///< number of resamplings that the blocks have followed
   };
 
   void bring_up_to_date(Slot& slot) {

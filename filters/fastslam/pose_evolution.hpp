@@ -310,7 +310,7 @@ class CloudEvolution {
   PoseMoments moments_;
   Direction<double> frame_{1.0, 0.0};
   std::vector<MatchedDetection<Real>> matched_;  ///< {block, detection}
-  std::vector<PoseFitness<Real>> fitness_;       ///< {block} of its particles
+  std::vector<PoseFitness<Real>> fitness_;       ///< {block} fitness of its particles
   std::vector<std::array<double, 3>> population_;
   EvolutionScratch<double, 3> scratch_;
 };

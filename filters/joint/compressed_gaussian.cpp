@@ -48,8 +48,8 @@ double distance_squared(const Pose& pose, const Eigen::Vector2d& place) {
   return (place - place_of(pose)).squaredNorm();
 }
 
-/// Number of landmarks around the vehicle that are near. The cost of a detection grows with its
-/// square, but with more of them a far landmark is observed less often.
+/// Number of landmarks around the vehicle that are near. A detection costs the square of this
+/// number, but with more near landmarks it takes longer until a far one is observed.
 constexpr std::size_t kNear = 30;
 /// Loss by compression [detections of the whole map] after which all landmarks become near, and the
 /// number of detections for which they stay so.

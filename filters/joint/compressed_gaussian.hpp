@@ -38,9 +38,9 @@ class Basis {
   Eigen::Index size_ = 0;
 };
 
-/// A JointGaussian with detections that cost as much as the landmarks near the vehicle require,
+/// A JointGaussian in which a detection costs as much as the landmarks near the vehicle require,
 /// however large the map: the compressed filter of Guivant and Nebot (EQUATIONS (15.7)), exact for
-/// both errors. All landmarks are near in a small map, and for a while if compression has not paid
+/// both errors. All landmarks are near in a small map, and for a while if compression does not pay
 /// off.
 ///
 /// Far landmarks change only through their covariances C with the pose and the near landmarks. As

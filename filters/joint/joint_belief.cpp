@@ -86,7 +86,7 @@ void JointBelief::update_with(const MotionIncrement& motion, Scan scan) {
     if (association_.pairings()[k].kind == PairingKind::matched) {
       update_with(k, scan[k]);
     } else {
-      outcome_.log_likelihood += association_.unmatched_log_density();  // the same for every belief
+      outcome_.log_likelihood += association_.unmatched_log_density();  // every belief adds it
     }
   }
   if (is_robocentric()) frame_.centre(gaussian_);
@@ -266,7 +266,7 @@ std::optional<ObservationPoint> JointBelief::observation_point(std::size_t slot)
 }
 
 /// The rotation of the invariant error is about the estimate, since its covariance is transformed
-/// after every detection. With errors relative to the vehicle, it turns only the frame of the map.
+/// after every detection. With errors relative to the vehicle, only the frame of the map rotates.
 ObservationPoint JointBelief::rotation_point(std::size_t slot) const {
   if (retraction_ == Retraction::invariant || is_robocentric() || !fixes_landmark(sensor_))
     return {gaussian_.pose().mean, gaussian_.mean_of(slot)};

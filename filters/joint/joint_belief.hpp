@@ -102,7 +102,7 @@ class JointBelief {
     return fixes_landmark(sensor_) ? rotation_information_
                                    : std::numeric_limits<double>::quiet_NaN();
   }
-  /// A detection that updated it.
+  /// A detection that updated the belief.
   struct UsedDetection {
     std::size_t detection;  ///< its index in the scan
     Eigen::Vector2d innovation;

@@ -13,7 +13,7 @@ namespace montecarta::filters {
 std::unique_ptr<SlamFilter> make_ekf_slam(const FilterSetup& setup);
 
 /// EKF-SLAM with the invariant error of Barrau, in which pose and map move as one rigid body, so
-/// that detections give no information about the unobservable pose of the whole in the world.
+/// that detections give no information about the unobservable pose of the map in the world.
 std::unique_ptr<SlamFilter> make_riekf_slam(const FilterSetup& setup);
 
 /// Lines for the table of filters.

@@ -104,7 +104,7 @@ struct NewPoint {
 /// so that the covariance of e must be transformed.
 class JointGaussian {
  public:
-  /// Reserves memory for `room` landmarks; it grows beyond.
+  /// Reserves memory for `room` landmarks, which grows if needed.
   JointGaussian(const Belief& belief, Retraction retraction, std::size_t room);
 
   /// Starts with the vehicle exactly at `start` and an empty map.

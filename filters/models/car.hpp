@@ -95,7 +95,7 @@ struct Car {
     const double change = std::clamp(wrap(aim.off - steer), -most, most);
     return {aim.speed, std::clamp(steer + change, -steer_limit, steer_limit)};
   }
-  /// Longest distance [m] to any heading: a full circle, and the way until full lock.
+  /// Longest distance [m] needed to reach any heading: a full circle, and the way to full lock.
   double way_to_turn(double speed) const {
     const double turning_circle = kTwoPi * wheelbase / std::sin(steer_limit);
     return turning_circle + speed * (steer_limit / steer_rate_limit);

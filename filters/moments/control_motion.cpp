@@ -139,8 +139,8 @@ struct BodyPart {
   }
 };
 
-/// Moments of the sum of parts with independent coefficients. For kAverage the covariance is E d d'
-/// - E d E d'. For kUnbiased it is d d' minus the unbiased estimate of d d' at the true control.
+/// Moments of the sum of parts with independent coefficients. The covariance is E d d' minus E d E
+/// d' for kAverage; for kUnbiased, d d' minus its unbiased estimate at the true control.
 template <std::size_t N, std::size_t Parts>
 BodyMoments moments_of(const std::array<BodyPart<N>, Parts>& parts, const ControlRule<N>& rule) {
   BodyMoments result{{0.0, 0.0, 0.0}, {}};

@@ -13,8 +13,8 @@ enum class Motion {
   unbiased     ///< moved_by_unbiased_controls()
 };
 
-/// The option `motion` of a filter. The default is linearised in the first, and fits the noise in
-/// the second: quadrature, or unbiased if controls are measurements.
+/// The option `motion` of a filter, with the default linearised or with one that fits the noise:
+/// quadrature, or unbiased if controls are measurements.
 Parameter linearised_motion_option();
 Parameter fitting_motion_option();
 /// The value of the option `motion`.

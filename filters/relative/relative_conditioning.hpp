@@ -71,7 +71,7 @@ struct RelativeMeasurement {
 
 /// The result of conditioning.
 struct RelativeOutcome {
-  bool is_faulty = false;  ///< nothing was changed
+  bool is_faulty = false;  ///< if true, nothing was changed
   double nis = 0.0;        ///< NIS for the Gaussian before
   std::uint32_t dof = 0;
   double log_likelihood = 0.0;  ///< Laplace's approximation, at the last linearisation

@@ -38,7 +38,7 @@ class RelativeGaussian {
   bool drop_empty_frame();
   /// Adds a landmark, in the newest frame.
   void add_landmark(const RangeBearing<double>& observed);
-  /// Initialises a landmark a second time, in the newest frame and independently of the first.
+  /// Initialises a landmark a second time, without use of its first coordinates.
   void add_again(const Seen& seen);
   /// Conditions on the equality of both positions of all landmarks that were initialised again.
   /// Returns false if that fails; nothing is changed then.

@@ -56,9 +56,9 @@ enum class Association { known, nearest };
 struct AssociationSettings {
   Association kind = Association::known;
   double gate = 5.991464547107979;      ///< D^2 below which a detection may match
-  double new_gate = 25.0;               ///< D^2 beyond which from all landmarks it is new
+  double new_gate = 25.0;               ///< D^2 to all landmarks beyond which it is new
   double log_new_density_offset = 0.0;  ///< added to log p0 of EQUATIONS 17
-  std::size_t most_landmarks = 1000;    ///< the run fails if a map grows beyond
+  std::size_t most_landmarks = 1000;    ///< the run fails if a map has more
 };
 
 /// All inputs of which a filter is made.
