@@ -72,8 +72,9 @@ struct PoseEstimate {
 };
 
 /// Results of associating the detections of a scan, counted by the simulator's identities. A
-/// landmark of a map has the identity of the detection that initialised it. For a particle filter
-/// the counts are means over its weighted particles. Ignored clutter is in none of the five.
+/// landmark of a map has the identity of the detection that initialised it. Counts of a particle
+/// filter are means over its weighted particles. Ignored clutter and unidentified detections are in
+/// none of the five.
 struct AssociationCounts {
   double correct = 0.0;    ///< matched with its landmark, or initialised a new one
   double wrong = 0.0;      ///< matched with another landmark
