@@ -60,8 +60,9 @@ class ComponentsOverRuns final : public MetricSums {
 
 TextTable component_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {{"cell", Align::left}, {"component", Align::left}, {"unit", Align::left},
-                    {"RMS error"},         {"RMS of its deviation"},   {"ratio"}};
+  table.headings = {{"cell", Align::left}, {"component", Align::left},
+                    {"unit", Align::left}, {"RMS error"},
+                    {"RMS sigma"},         {"ratio"}};
   for (const CellAnalysis& cell : study.cells) {
     const ComponentErrors& found = cell.get<ComponentErrors>();
     const std::size_t named =

@@ -83,24 +83,23 @@ void innovations_series(const CellAnalysis& cell, std::vector<NamedSeries>& all)
 std::vector<std::string> innovation_row(const CellAnalysis& cell) {
   const Innovations& found = *cell.find<Innovations>();
   const std::size_t lag = found.worst_lag;
-  return {cell.label,
-          with_interval(found.verdict.ratio_estimate(), found.verdict.ratio()),
-          percent(found.share_inside),
-          readable(found.autocorrelation.front()),
-          lag == 0 ? "-" : readable(found.autocorrelation[lag - 1]) + " at " + std::to_string(lag),
-          lag == 0 ? "-" : readable(found.white_bound[lag - 1]),
-          whiteness_in_words(found)};
+  return {
+      cell.label,
+      with_interval(found.verdict.ratio_estimate(), found.verdict.ratio()),
+      percent(found.share_inside),
+      readable(found.autocorrelation.front()),
+      lag == 0 ? "-" : readable(found.autocorrelation[lag - 1]) + " at lag " + std::to_string(lag),
+      lag == 0 ? "-" : readable(found.white_bound[lag - 1]),
+      whiteness_in_words(found)};
 }
 
 TextTable innovation_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {{"cell", Align::left},
-                    {"NIS per component [" + level_text(study.level) + "]"},
-                    {"scans inside"},
-                    {"correlation, 1 scan"},
-                    {"largest, scans apart"},
-                    {"white below"},
-                    {"innovations", Align::left}};
+  table.headings = {
+      {"cell", Align::left},       {"NIS per component [" + level_text(study.level) + "]"},
+      {"scans in band"},           {"correlation at lag 1"},
+      {"largest correlation"},     {"its bound"},
+      {"innovations", Align::left}};
   for (const CellAnalysis& cell : study.cells) {
     if (cell.find<Innovations>()) table.rows.push_back(innovation_row(cell));
   }
@@ -109,14 +108,12 @@ TextTable innovation_table(const StudyAnalysis& study) {
 
 std::vector<std::string> innovation_notes() {
   return {
-      "The NIS compares what the filter measured with what it expected to measure, and needs no "
-      "truth: 1 per component means it expects its measurements rightly, more that they surprise "
-      "it. "
-      "Surprises of a consistent filter are 'white': one says nothing of the next. The correlation "
-      "over "
-      "scans that lie up to " +
+      "The NIS compares innovations (measurements minus predicted measurements) with their "
+      "predicted covariance and needs no truth. 1 per component is right; more means that the "
+      "filter predicts its measurements less well than it claims. Innovations of a consistent "
+      "filter are white: the correlation between scans up to " +
       std::to_string(kInnovationLags) +
-      " apart stays below the bound then. A filter can pass this test and still not know its "
+      " apart stays below its bound. A filter can pass this test and still be wrong about its "
       "pose."};
 }
 
@@ -137,11 +134,11 @@ std::vector<Band> white_bands(const StudyAnalysis& study) {
 }
 
 Figure innovation_figure(const StudyAnalysis& study) {
-  Figure figure{"nis", "Do measurements surprise the filter?", ""};
+  Figure figure{"nis", "Does the filter predict its measurements?", ""};
   figure.sentence =
-      "Normalised innovation squared per component, mean over runs: near 1 the filter expects its "
-      "measurements as well as it says; above, they surprise it. This test needs no truth, and a "
-      "filter that has lost its way may still pass it.";
+      "Normalised innovation squared (NIS) per component, mean over runs. Near 1 the filter "
+      "predicts its measurements as well as it claims, above 1 less well. This test needs no "
+      "truth, and a filter that is lost may still pass it.";
   const CellValues nis = [](const CellAnalysis& cell) { return cell.get<Innovations>().average; };
   add_panels(
       cell_panels(study, {"nis_per_component", "NIS per component", {}, {}, Scale::automatic}, nis),
@@ -150,12 +147,11 @@ Figure innovation_figure(const StudyAnalysis& study) {
 }
 
 Figure whiteness_figure(const StudyAnalysis& study) {
-  Figure figure{"whiteness", "Does one surprise foretell the next?", ""};
+  Figure figure{"whiteness", "Are the innovations white?", ""};
   figure.sentence =
-      "Correlation of the normalised innovations squared of scans that lie so many scans apart, "
-      "mean over runs: inside of the grey band at every distance the innovations are white, one "
-      "tells nothing of the next; a curve above it belongs to a filter that makes the same mistake "
-      "scan after scan.";
+      "Correlation of the NIS between scans that lie so many scans apart, mean over runs. "
+      "Innovations are white if it is in the grey band at every lag. A curve above the band "
+      "belongs to a filter that makes the same mistake scan after scan.";
   const CellValues correlation = [](const CellAnalysis& cell) {
     return cell.get<Innovations>().autocorrelation;
   };
@@ -172,7 +168,7 @@ Figure whiteness_figure(const StudyAnalysis& study) {
 std::vector<Section> innovations_sections(const StudyAnalysis& study) {
   const TextTable table = innovation_table(study);
   if (table.rows.empty()) return {};
-  Section section{"innovations", "Do measurements surprise the filter?"};
+  Section section{"innovations", "Does the filter predict its measurements?"};
   const CellNumber nis = [](const CellAnalysis& cell) {
     const Innovations* found = cell.find<Innovations>();
     return found == nullptr ? kNaN : found->verdict.ratio_estimate();

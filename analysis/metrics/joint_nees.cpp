@@ -196,8 +196,9 @@ bool has_joint_nees(const StudyAnalysis& study) {
 TextTable joint_table(const StudyAnalysis& study) {
   TextTable table;
   if (!has_joint_nees(study)) return table;
-  table.headings = {{"cell", Align::left}, {"components at the end"}, {"NEES / component"},
-                    {"expected within"},   {"farthest from 1"},       {"pose and map"}};
+  table.headings = {{"cell", Align::left}, {"components at the end"},
+                    {"NEES / component"},  {"band"},
+                    {"farthest from 1"},   {"verdict"}};
   for (const CellAnalysis& cell : study.cells) {
     if (is_judged(cell)) table.rows.push_back(row_of(cell, study.joint_times));
   }

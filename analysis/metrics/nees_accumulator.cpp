@@ -188,24 +188,28 @@ std::vector<Band> bands(const StudyAnalysis& study, std::size_t dimension) {
   for (const CellAnalysis& cell : study.cells) {
     if (!cell.nees.empty()) runs.insert(cell.complete);
   }
+  const auto d = static_cast<double>(dimension);
   std::vector<Band> found;
   for (const std::size_t n : runs) {
     const Interval band = nees_bounds(n, dimension, study.level);
     found.push_back(
-        {found.empty() ? level_text(study.level) + " band" : "", band.lower, band.upper});
+        {found.empty() ? level_text(study.level) + " band" : "", band.lower / d, band.upper / d});
   }
   return found;
 }
 
-Panel anees_panel(const StudyAnalysis& study, ErrorBlock block, const std::string& name,
-                  const std::string& label) {
-  Panel panel{name, label, {}, {}, Scale::automatic};
+Panel nees_panel(const StudyAnalysis& study, ErrorBlock block) {
+  Panel panel{"nees_ratio_" + name_of(block),
+              "NEES ratio of the " + name_of(block),
+              {},
+              {},
+              Scale::automatic};
   std::size_t dimension = 0;
   panel.curves = cell_curves(study, [&](const CellAnalysis& cell) {
     const NeesResult* nees = cell.find_nees(block, cell.leading);
     if (nees == nullptr) return std::vector<double>{};
     dimension = nees->series.dimension;
-    return nees->series.average;
+    return scaled(nees->series.average, 1.0 / static_cast<double>(dimension));
   });
   if (!panel.curves.empty()) panel.bands = bands(study, dimension);
   return panel;
@@ -255,12 +259,13 @@ Figure anees_figure(const StudyAnalysis& study) {
     return figure;
   }
   figure.sentence =
-      "Average normalised error squared (ANEES) of the pose over time. The grey band is where "
-      "chance leaves a filter whose stated uncertainty fits its real errors; a curve that climbs "
-      "above the band and stays there belongs to a filter that is sure of a wrong answer. The axis "
-      "ends at 1000 times the band; the numbers hold every value, also of curves beyond the top.";
-  add_panels({anees_panel(study, ErrorBlock::pose, "anees_pose", "ANEES of the pose")}, study.times,
-             figure);
+      "Average NEES of the pose over time, divided by its expectation: 1 is right. A consistent "
+      "filter is in the grey band at " +
+      level_text(study.level) +
+      " of the scans. A curve that climbs above the band and stays there belongs to a filter that "
+      "is sure of a wrong answer. The axis ends at 1000 times the band; the numbers below the "
+      "figure hold every value.";
+  add_panels({nees_panel(study, ErrorBlock::pose)}, study.times, figure);
   return figure;
 }
 
@@ -276,11 +281,9 @@ Figure anees_parts_figure(const StudyAnalysis& study) {
     return figure;
   }
   figure.sentence =
-      "The same test for position alone (two components, right around 2) and heading alone (one "
-      "component, right around 1): the curve that leaves its band first shows where trouble "
-      "begins.";
-  add_panels({anees_panel(study, ErrorBlock::position, "anees_position", "ANEES of position"),
-              anees_panel(study, ErrorBlock::heading, "anees_heading", "ANEES of heading")},
+      "The same for position alone and heading alone. The curve that leaves its band first shows "
+      "where trouble begins.";
+  add_panels({nees_panel(study, ErrorBlock::position), nees_panel(study, ErrorBlock::heading)},
              study.times, figure);
   return figure;
 }

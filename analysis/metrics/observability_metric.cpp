@@ -36,7 +36,7 @@ std::string heading_of(double information) {
 TextTable observability_table(const StudyAnalysis& study) {
   TextTable table;
   table.headings = {
-      {"cell", Align::left}, {"information [1/rad^2]"}, {"heading that it alone would tell [deg]"}};
+      {"cell", Align::left}, {"information [1/rad^2]"}, {"equivalent heading sigma [deg]"}};
   for (const CellAnalysis& cell : study.cells) {
     const double information = cell.over_runs("rotation_information").mean;
     if (std::isnan(information)) continue;
@@ -48,26 +48,28 @@ TextTable observability_table(const StudyAnalysis& study) {
 std::vector<Section> observability_sections(const StudyAnalysis& study) {
   const TextTable table = observability_table(study);
   if (table.rows.empty()) return {};
-  Section section{"observability", "Information about what nobody can observe"};
+  Section section{"observability", "Information about an unobservable heading"};
   const CellNumber information = [](const CellAnalysis& cell) {
     return cell.over_runs("rotation_information").mean;
   };
   section.summary = range_over_cells(study, information) + " per rad^2, 0 is right";
   section.add("observability", table);
   section.add(std::vector<std::string>{
-      "Detections tell where landmarks are relative to the vehicle, never how the whole, path and "
-      "map, is turned. A filter whose linearised system is taken to tell it becomes overconfident: "
-      "the information about that turn which all detections of a run add up to (mean over runs; 0 "
-      "is right), and the standard deviation of a heading known by it alone."});
+      "Detections measure where landmarks are relative to the vehicle. They contain no information "
+      "about a rotation of path and map as a whole. Linearisation can add such information by "
+      "mistake, and the filter becomes overconfident. The table has the information about that "
+      "rotation from all detections of a run (mean over runs; 0 is right), and the standard "
+      "deviation of a heading that is known from it alone."});
   return {section};
 }
 
 std::vector<Figure> observability_figures(const StudyAnalysis& study) {
-  Figure figure{"observability", "Does the filter learn what nobody can observe?", ""};
+  Figure figure{"observability", "Does the filter gain information about an unobservable heading?",
+                ""};
   figure.sentence =
-      "Information about how path and map are turned as a whole, which the filter's linearised "
-      "detections add up to, mean over runs: 0 is right. Where a curve rises, the filter becomes "
-      "sure of a heading that no detection has told.";
+      "Information about a rotation of path and map as a whole in the filter's linearised "
+      "detections, mean over runs. 0 is right: where a curve rises, the filter becomes sure of a "
+      "heading that no detection has measured.";
   const CellValues values = [](const CellAnalysis& cell) {
     return cell.over_time("rotation_information");
   };

@@ -72,9 +72,9 @@ std::vector<std::string> diversity_row(const CellAnalysis& cell) {
 
 TextTable diversity_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {{"cell", Align::left},  {"ESS"},      {"resampled"},
-                    {"ancestors, 1 s ago"}, {"10 s ago"}, {"100 s ago"},
-                    {"common ancestor"},    {"in scans"}};
+  table.headings = {{"cell", Align::left},  {"ESS"},           {"resampled"},
+                    {"ancestors, 1 s ago"}, {"10 s ago"},      {"100 s ago"},
+                    {"common ancestor"},    {"scans with one"}};
   for (const CellAnalysis& cell : study.cells) {
     const bool has_ess = study.own_drives > 0 ? cell.complete > 0 : !cell.over_time("ess").empty();
     if (has_ess) table.rows.push_back(diversity_row(cell));
@@ -84,11 +84,11 @@ TextTable diversity_table(const StudyAnalysis& study) {
 
 std::vector<std::string> diversity_notes() {
   return {
-      "How many different histories the particles tell: the effective number of particles, the "
-      "share of scans that end with a resampling, and how many different ancestors all particles "
-      "have so long ago. Behind the common ancestor there is only one history left: the filter can "
-      "no longer change its mind about what lies before it, nor know how wrong it is there. It was "
-      "found in the share of scans in the last column."};
+      "The table has the effective number of particles, the share of scans that end with a "
+      "resampling, and the number of distinct ancestors that all particles have some time ago. "
+      "'common ancestor' is the time back to a single ancestor of all particles, and the last "
+      "column the share of scans that have one. All particles share their history before it, so "
+      "the filter can neither correct that part of the path nor know how wrong it is."};
 }
 
 /// A panel of distinct ancestors.
@@ -102,8 +102,8 @@ Figure diversity_figure(const StudyAnalysis& study) {
   Figure figure{"diversity", "How many different histories survive?", ""};
   figure.sentence =
       "Distinct ancestors of the particles, mean over runs: parents in the last resampling, "
-      "ancestors 10 s ago, and ancestors at the start. When few are left, the particles tell one "
-      "story in many copies, and the filter cannot know how wrong that story is.";
+      "ancestors 10 s ago, and ancestors at the start. When few are left, the particles are "
+      "copies of one history, and the filter cannot know how wrong that history is.";
   add_panels({ancestor_panel(study, "ancestors_last_resampling", "parents, last resampling"),
               ancestor_panel(study, "ancestors_10_s_ago", "ancestors, 10 s ago"),
               ancestor_panel(study, "ancestors_at_start", "ancestors at the start")},

@@ -149,7 +149,7 @@ TextTable map_table(const StudyAnalysis& study) {
     table.headings.insert(table.headings.end(),
                           {{"beacons found"}, {"beacon error [m]"}, {"beacon error, aligned [m]"}});
   }
-  table.headings.insert(table.headings.end(), {{"ESS"}, {"roots"}, {"CPU [s]"}});
+  table.headings.insert(table.headings.end(), {{"ESS"}, {"ancestors"}, {"CPU [s]"}});
   for (const CellAnalysis& cell : study.cells) table.rows.push_back(map_row(study, cell));
   return table;
 }
@@ -262,7 +262,7 @@ std::vector<std::string> reference_notes(const StudyAnalysis& study) {
   }
   notes.emplace_back(
       "Landmarks are those in the map after the last scan; ESS is the effective number of "
-      "particles, roots how many of the first particles still have descendants at the end, CPU the "
+      "particles, ancestors how many first particles still have descendants at the end, CPU the "
       "filter's own time in a run; all of complete runs only.");
   return notes;
 }

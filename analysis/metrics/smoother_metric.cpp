@@ -74,8 +74,8 @@ std::vector<Section> smoother_sections(const StudyAnalysis& study) {
   if (smoother == nullptr || !study.has_truth) return {};
   TextTable table;
   table.headings = {{"cell", Align::left},
-                    {"position RMSE, smoother's / own"},
-                    {"heading RMSE, smoother's / own"},
+                    {"position efficiency"},
+                    {"heading efficiency"},
                     {"ANEES / smoother's"},
                     {"CPU / smoother's"}};
   for (const CellAnalysis& cell : study.cells) {

@@ -143,7 +143,7 @@ TextTable verdict_table(const StudyAnalysis& study) {
   TextTable table;
   table.headings = {{"cell", Align::left},    {"runs", Align::left},
                     {"verdict", Align::left}, {"NEES ratio [" + level_text(study.level) + "]"},
-                    {"scans inside"},         {"half the runs lost at"}};
+                    {"scans in band"},        {"median time of loss"}};
   for (const CellAnalysis& cell : study.cells) table.rows.push_back(verdict_row(cell));
   return table;
 }
@@ -155,7 +155,7 @@ TextTable accuracy_table(const StudyAnalysis& study) {
                     {"heading RMSE [deg]"},
                     {"efficiency"},
                     {"ESS"},
-                    {"roots"},
+                    {"ancestors"},
                     {"CPU [s]"}};
   for (const CellAnalysis& cell : study.cells)
     table.rows.push_back(accuracy_row(cell, study.level));
@@ -168,13 +168,13 @@ TextTable consistency_table(const StudyAnalysis& study) {
                     {"error", Align::left},
                     {"covariance", Align::left},
                     {"ANEES"},
-                    {"/ expected [" + level_text(study.level) + "]"},
+                    {"NEES ratio [" + level_text(study.level) + "]"},
                     {"ideal"},
                     {level_text(study.level) + " band"},
                     {"inside"},
                     {"above"},
                     {"below"},
-                    {"lower rank"},
+                    {"singular"},
                     {"unusable"},
                     {"too few draws"},
                     {"unjudged runs"}};
@@ -279,35 +279,34 @@ std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
       ratio_note(study), answers_note(study),
       "Particle filters are judged by the spread of the poses that a scan drew, corrected for the "
       "number of effective draws, so that all rows are on one scale.",
-      "'scans inside' counts the scans whose average lies in the " + level_text(study.level) +
-          " band of a single scan: as many are expected of a consistent filter. A single run is "
-          "lost when its own NEES is above its band for " +
+      "'scans in band' is the share of scans whose average NEES lies in the " +
+          level_text(study.level) +
+          " band of a single scan; a consistent filter has that share. A run is lost when its own "
+          "NEES stays above its band for " +
           std::to_string(kLastingScans) + " scans in a row, or when it fails.",
-      "RMSE is the mean over runs, with the interval that holds it for infinitely many; ESS is the "
-      "effective number of particles, roots how many of the first particles still have descendants "
-      "at the end, CPU the filter's own time in a run; all of complete runs only."};
+      "RMSE is the mean over runs, with a confidence interval. ESS is the effective number of "
+      "particles. 'ancestors' is the number of first particles that still have descendants at the "
+      "end. CPU is the time of the filter alone in a run. All are of complete runs only."};
   if (study.looks.size() > 1) notes.push_back(looks_note(study));
   return notes;
 }
 
 std::vector<std::string> consistency_notes() {
   return {
-      "Each row is the average NEES of the pose or of a part of it, by one covariance. The verdict "
-      "is by the first covariance of a cell: the only one of a Kalman filter, 'corrected' of a "
-      "particle filter. Only these are on one scale.",
-      "The spread of few particles is too small by construction, and so is the mixture: 'ideal' is "
-      "the ANEES of a perfect filter, the number of components or, by the spread of M particles "
-      "that are independent draws from the truth's distribution, more. 'corrected' puts the NEES "
-      "by the spread of the poses that a scan drew on a scale on which such a perfect filter has "
-      "the number of components again (Hotelling's distribution of the effective number of draws "
-      "to the chi-square), so that few draws alone make no filter optimistic. Where a scan drew "
-      "none it is that of the mixture.",
-      "'lower rank' counts singular "
-      "covariances: they are judged by the components that they leave. 'unusable' counts samples "
-      "that are left out because error or covariance is not finite or the covariance is not "
-      "positive semidefinite. 'too few draws' counts covariances of no more effective draws than "
-      "components and two, of which no spread says anything, 'unjudged runs' complete runs in "
-      "which no scan is left."};
+      "Each row is the average NEES of the pose, of the position or of the heading, by one "
+      "covariance. The verdict uses the first covariance of a cell, which is the only one of a "
+      "Kalman filter and the corrected one of a particle filter. Only these are on one scale.",
+      "The spread of few particles is too small by construction, and so is the mixture. 'ideal' is "
+      "the ANEES of a perfect filter with as many particles. The corrected NEES is mapped to a "
+      "scale on which a perfect filter has the number of components again (from Hotelling's "
+      "distribution with the effective number of draws to the chi-square distribution), so that a "
+      "small number of draws makes no filter optimistic. If a scan drew no poses, it is the NEES "
+      "by the mixture.",
+      "'singular' counts singular covariances, which are judged by the components that they leave. "
+      "'unusable' counts samples that are left out because the error or the covariance is not "
+      "finite, or because the covariance is not positive semidefinite. 'too few draws' counts "
+      "covariances of at most two effective draws more than components. 'unjudged runs' counts "
+      "complete runs in which no scan is left."};
 }
 
 std::vector<std::string> cautions(const StudyAnalysis& study) {

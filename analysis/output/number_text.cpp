@@ -71,9 +71,9 @@ std::string with_interval(double mean, const Interval& interval) {
 std::string fixed_seconds(double time) { return printed("%.*f", 1, time) + " s"; }
 
 std::string time_with_interval(double time, const Interval& interval) {
+  if (std::isinf(time)) return "-";
   const auto each = [](double t) { return std::isinf(t) ? "never" : printed("%.*f", 1, t); };
-  const std::string seconds = std::isinf(time) ? "" : " s";
-  return each(time) + seconds + " [" + each(interval.lower) + ", " + each(interval.upper) + "]";
+  return each(time) + " s [" + each(interval.lower) + ", " + each(interval.upper) + "]";
 }
 
 std::string exact_text(double value) {

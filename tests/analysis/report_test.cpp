@@ -41,7 +41,7 @@ TEST(Report, HoldsEverySectionAndNeedsNothingElse) {
     EXPECT_THAT(page, HasSubstr("figures/" + name + ".pdf"));
   }
   EXPECT_THAT(text_in(folder / "report/tables/verdict.tex"), HasSubstr("\\bottomrule"));
-  EXPECT_TRUE(std::filesystem::exists(folder / "report/data/anees_pose.csv"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "report/data/nees_ratio_pose.csv"));
   const std::string summary = text_in(folder / "report/summary.md");
   for (const char* part : {"## Verdict and accuracy\n\n| cell |", "\n|---|", "](figures/anees.svg)",
                            "gain is \\<not\\> a number"}) {
