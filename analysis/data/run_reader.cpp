@@ -13,8 +13,12 @@ constexpr double kRoundingOfCounts = 1e-6;  // [landmarks]
 
 }  // namespace
 
-RunReader::RunReader(const ResultFile& file, const StoredCell& cell)
-    : file_(&file), cell_(&cell), cpu_seconds_(file.cpu_seconds(cell)) {}
+RunReader::RunReader(const ResultFile& file, const StoredCell& cell, Reach reach)
+    : file_(&file), cell_(&cell), reach_(reach), cpu_seconds_(file.cpu_seconds(cell)) {}
+
+bool RunReader::has(std::string_view column, std::size_t i) const {
+  return cell_->has(column) || (reach_ == Reach::full_run && file_->holds(*cell_, column, i));
+}
 
 std::size_t RunReader::scans_of(std::size_t i) const {
   return drive_met_by(*file_, file_->runs()[i]).scan_times.size();
@@ -43,7 +47,7 @@ void RunReader::read_truth(std::size_t i, std::vector<double>& out, Scratch& scr
 void RunReader::read_at_scans(std::string_view column, std::size_t width, std::size_t i,
                               std::vector<double>& out, Scratch& scratch) const {
   out.clear();
-  if (!cell_->has(column)) return;
+  if (!has(column, i)) return;
   scratch.resize(file_->times().size() * width);
   {
     const std::lock_guard lock(reading_);
@@ -56,7 +60,7 @@ void RunReader::read_path(std::size_t i, std::vector<double>& out) const {
   out.clear();
   if (drive_met_by(*file_, file_->runs()[i]).references.empty()) return;
   out.resize(file_->times().size() * 3);
-  const bool mixture = cell_->has("pose_mean_mixture");
+  const bool mixture = has("pose_mean_mixture", i);
   {
     const std::lock_guard lock(reading_);
     file_->read(*cell_, mixture ? "pose_mean_mixture" : "pose_mean", i, std::span(out));
@@ -102,7 +106,7 @@ void RunReader::read_whole(std::string_view column, std::size_t i, std::vector<d
 void RunReader::read_cloud(std::size_t i, CloudRows& out, Scratch& scratch) const {
   out.pose.clear();
   out.log_weight.clear();
-  if (!file_->has_truth() || !cell_->has("log_weight")) return;
+  if (!file_->has_truth() || !has("log_weight", i)) return;
   const std::size_t scans = file_->scan_times().size();
   const auto keep = [&](const char* column, std::size_t width, std::vector<double>& kept) {
     scratch.resize(scans * width);
@@ -123,7 +127,7 @@ template <class Number>
 void RunReader::read_scans(std::string_view column, std::size_t width, std::size_t i,
                            std::vector<Number>& out) const {
   out.clear();
-  if (!cell_->has(column)) return;
+  if (!has(column, i)) return;
   out.resize(file_->scan_times().size() * width);
   {
     const std::lock_guard lock(reading_);
@@ -195,7 +199,7 @@ void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
 RunRows read_run(const ResultFile& file, const StoredCell& cell, std::size_t i) {
   RunRows rows;
   RunReader::Scratch scratch;
-  RunReader(file, cell).read(i, rows, scratch);
+  RunReader(file, cell, Reach::full_run).read(i, rows, scratch);
   return rows;
 }
 

@@ -5,6 +5,7 @@
 #include "engine/records/result_file.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <mutex>
 #include <span>
 #include <string_view>
@@ -28,11 +29,14 @@ inline MetDrive drive_met_by(const ResultFile& file, std::uint64_t run) {
   return {own.scan_times, own.scan_steps, own.start, own.references};
 }
 
+/// Which columns are read: those that every run has, or all that a run has.
+enum class Reach : std::uint8_t { every_run, full_run };
+
 /// Reads the runs of one cell at its scans. Any number of threads may call read(), each with its
 /// own rows and scratch. The file and the cell must outlive it.
 class RunReader {
  public:
-  RunReader(const ResultFile& file, const StoredCell& cell);
+  RunReader(const ResultFile& file, const StoredCell& cell, Reach reach = Reach::every_run);
 
   /// Memory for the rows between scans.
   using Scratch = std::vector<double>;
@@ -42,6 +46,8 @@ class RunReader {
   void read(std::size_t i, RunRows& rows, Scratch& scratch) const;
 
  private:
+  /// Whether run index `i` has the column, and is to give it.
+  bool has(std::string_view column, std::size_t i) const;
   void read_truth(std::size_t i, std::vector<double>& out, Scratch& scratch) const;
   void read_path(std::size_t i, std::vector<double>& out) const;
   /// The map after the last scan, also of columns that hold every one.
@@ -66,11 +72,12 @@ class RunReader {
 
   const ResultFile* file_;
   const StoredCell* cell_;
+  Reach reach_;
   std::vector<double> cpu_seconds_;
   static inline std::mutex reading_;  ///< an HDF5 library may be built for one thread
 };
 
-/// One run alone, index `i`.
+/// One run alone, index `i`, with what is stored only of runs in full.
 RunRows read_run(const ResultFile& file, const StoredCell& cell, std::size_t i);
 
 }  // namespace montecarta::analysis

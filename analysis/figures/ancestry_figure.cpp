@@ -144,7 +144,7 @@ std::vector<DrawnTree> drawn_trees(const ResultFile& file, std::size_t run) {
   std::vector<DrawnTree> drawn;
   for (std::size_t c = 0; c < file.cells().size() && drawn.size() < kMostTrees; ++c) {
     const StoredCell& cell = file.cells()[c];
-    if (cell.particles < 2 || !cell.has("ancestor")) continue;
+    if (cell.particles < 2 || !file.holds(cell, "ancestor", run)) continue;
     if (file.status(cell)[run] != RunStatus::complete) continue;
     const RunRows rows = read_run(file, cell, run);
     const auto times = drive_met_by(file, file.runs()[run]).scan_times;

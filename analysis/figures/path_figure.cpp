@@ -22,10 +22,10 @@ Ellipse two_sigma_ellipse(double x, double y, double xx, double xy, double yy) {
 }
 
 StoredMap::StoredMap(const ResultFile& file, const StoredCell& cell, std::size_t run)
-    : final_only_(!cell.has("map_seen")) {
+    : final_only_(!file.holds(cell, "map_seen", run)) {
   const std::string prefix = final_only_ ? "final_map_" : "map_";
-  const auto column = std::ranges::find(cell.columns, prefix + "seen", &Column::name);
-  if (column == cell.columns.end()) return;
+  if (!file.holds(cell, prefix + "seen", run)) return;
+  const Column* column = cell.find(prefix + "seen");
   seen_.resize(column->elements());
   mean_.resize(2 * seen_.size());
   covariance_.resize(4 * seen_.size());

@@ -31,6 +31,8 @@ struct ColumnSelection {
   bool observability = false;  ///< rotation_information of filters that report it
   std::size_t joint_scans = 16;  ///< record.joint_scans: number of scans (joint_scans_of())
   bool scans_only = false;       ///< record.rate = scan: rows of `time` only at scans
+  /// record.full_runs: in_full() is stored of this number of runs, the first ones of the study.
+  std::uint64_t full_runs = 0;
 };
 
 /// One filter in one setting, repeated in runs; one curve of a figure.

@@ -215,6 +215,11 @@ bool is_selected(const ColumnKind& kind, const ColumnSelection& selection) {
   return group->is_chosen == nullptr || selection.*(group->is_chosen);
 }
 
+ColumnSelection in_full(ColumnSelection selection) {
+  selection.covariance = selection.ancestry = selection.particles = selection.map = true;
+  return selection;
+}
+
 std::optional<std::size_t> length_of(Axis axis, const AxisLengths& lengths) {
   switch (axis) {
     case Axis::time:

@@ -99,6 +99,9 @@ std::span<const ColumnKind> column_table();
 /// Whether a study that chooses `selection` stores it.
 bool is_selected(const ColumnKind& kind, const ColumnSelection& selection);
 
+/// `selection` and all that a replay needs: covariance, ancestry, particles and the map.
+ColumnSelection in_full(ColumnSelection selection);
+
 /// How long the axes of a cell's columns are.
 struct AxisLengths {
   std::size_t time = 0, scan = 0, joint = 0, particle = 0;

@@ -26,8 +26,8 @@ std::vector<Slab> slabs_of_truth(const ResultSlabs& slabs) {
 /// What is stored of a run of a cell, and what it cost, but its status.
 void add_slabs(const CellSlabs& cell, std::vector<Slab>& all) {
   all.insert(all.end(), cell.columns.begin(), cell.columns.end());
-  all.insert(all.end(),
-             {cell.failure_reason, cell.failure_step, cell.fingerprint, cell.cpu_seconds});
+  all.insert(all.end(), {cell.full_fingerprint, cell.failure_reason, cell.failure_step,
+                         cell.fingerprint, cell.cpu_seconds});
 }
 
 /// Everything stored of one run under /cells and /truth, and what it cost; statuses last.
@@ -41,7 +41,10 @@ std::vector<Slab> slabs_of_run(const ResultSlabs& slabs) {
 std::vector<Slab> fingerprints(const ResultSlabs& slabs) {
   std::vector<Slab> all;
   if (slabs.truth) all.push_back(slabs.truth->fingerprint);
-  for (const CellSlabs& cell : slabs.cells) all.push_back(cell.fingerprint);
+  for (const CellSlabs& cell : slabs.cells) {
+    all.push_back(cell.fingerprint);
+    all.push_back(cell.full_fingerprint);
+  }
   return all;
 }
 
@@ -59,11 +62,15 @@ struct Stretch {
   std::size_t first;  ///< run index
 };
 
-/// Copies slab by slab: runs that follow each other lie in one piece.
+/// Copies slab by slab: runs that follow each other lie in one piece. A run that one of the files
+/// holds in full is full in the other.
 void copy_slabs(const Stretch& from, const Stretch& to, std::size_t runs) {
-  for (std::size_t i = 0; i < from.slabs.size(); ++i)
-    to.file.copy_at(to.slabs[i].at(to.first), from.file, from.slabs[i].at(from.first),
-                    runs * from.slabs[i].run_bytes);
+  for (std::size_t i = 0; i < from.slabs.size(); ++i) {
+    const Slab& slab = from.slabs[i];
+    const std::size_t held = slab.runs - std::min(slab.runs, from.first);
+    to.file.copy_at(to.slabs[i].at(to.first), from.file, slab.at(from.first),
+                    std::min(runs, held) * slab.run_bytes);
+  }
 }
 
 template <class T>
@@ -109,6 +116,7 @@ void expect_equal(const Shard& a, const Shard& b, std::uint64_t run) {
   const auto slabs_a = fingerprints(a.slabs);
   const auto slabs_b = fingerprints(b.slabs);
   for (std::size_t i = 0; i < slabs_a.size(); ++i) {
+    if (!slabs_a[i].holds(a.index(run))) continue;
     if (read_value<std::uint64_t>(file_a, slabs_a[i].at(a.index(run))) ==
         read_value<std::uint64_t>(file_b, slabs_b[i].at(b.index(run))))
       continue;
@@ -159,11 +167,13 @@ void copy_truth(const PosixFile& from, const ResultSlabs& source, const PosixFil
 
 namespace {
 
+bool same_column(const Column& a, const Column& b) {
+  return a.name == b.name && a.element == b.element && a.shape == b.shape;
+}
+
 bool same_columns(const StoredCell& a, const StoredCell& b) {
-  return a.label == b.label &&
-         std::ranges::equal(a.columns, b.columns, [](const Column& x, const Column& y) {
-           return x.name == y.name && x.element == y.element && x.shape == y.shape;
-         });
+  return a.label == b.label && std::ranges::equal(a.columns, b.columns, same_column) &&
+         std::ranges::equal(a.full_columns, b.full_columns, same_column);
 }
 
 /// Of a build; flags without the instruction set, on which no bit depends.
@@ -189,8 +199,8 @@ std::optional<std::string> difference(const ResultDescription& a, const ResultDe
            a.study_sha256.substr(0, 12) +
            "): give the files of one study, made with the same --set";
   }
-  if (std::ranges::equal(a.cells, b.cells, same_columns) && a.times == b.times &&
-      a.scan_steps == b.scan_steps && a.joint_scans == b.joint_scans)
+  if (std::ranges::equal(a.cells, b.cells, same_columns) && a.full_runs == b.full_runs &&
+      a.times == b.times && a.scan_steps == b.scan_steps && a.joint_scans == b.joint_scans)
     return std::nullopt;
   return path.string() +
          ": is laid out differently (another version of montecarta, or of a world file, made it): "

@@ -48,9 +48,9 @@ PosixFile lay_out_new(const fs::path& path, const ResultDescription& description
   PosixFile file(path, PosixFile::Mode::create);
   file.lock();
   try {
-    expect_room(path, description.bytes_per_run() * static_cast<double>(description.runs.size()));
+    expect_room(path, description.bytes());
     lay_out(path, description);
-    put_seal(file, written_later(find_slabs(path, description), description.runs.size()));
+    put_seal(file, written_later(find_slabs(path, description)));
     file.reserve();
     file.sync();
   } catch (...) {

@@ -36,8 +36,12 @@ std::vector<std::pair<double, double>> pairs(const std::vector<Eigen::Vector2d>&
 }
 
 StoredCell describe(const Cell& cell, const StudyPlan& plan) {
-  const RecordLayout layout(cell, plan.columns, plan.drives->itinerary());
-  return {cell.label, cell.filter, cell.long_name, cell.particles, cell.settings, layout.columns()};
+  const RecordLayout layout(cell, plan.columns, plan.drives->itinerary(),
+                            plan.columns.full_runs > 0 ? Detail::full : Detail::usual);
+  const auto first = layout.columns().begin(), last = layout.columns().end();
+  const auto full = first + static_cast<std::ptrdiff_t>(layout.usual_columns());
+  return {cell.label,    cell.filter,   cell.long_name, cell.particles,
+          cell.settings, {first, full}, {full, last}};
 }
 
 void describe_time(const Itinerary& itinerary, bool scans_only, ResultDescription& result) {
@@ -56,20 +60,37 @@ OwnDrive own_drive(const Itinerary& itinerary) {
   return drive;
 }
 
-}  // namespace
-
-bool StoredCell::has(std::string_view column) const {
-  return std::any_of(columns.begin(), columns.end(),
-                     [&](const Column& candidate) { return candidate.name == column; });
+bool has(const std::vector<Column>& columns, std::string_view name) {
+  return std::ranges::find(columns, name, &Column::name) != columns.end();
 }
 
-double ResultDescription::bytes_per_run() const {
-  double bytes = has_truth ? static_cast<double>(times.size() * sizeof(Pose)) : 0.0;
-  if (own_landmarks) bytes += static_cast<double>(landmarks.size() * sizeof(Eigen::Vector2d));
-  for (const StoredCell& cell : cells) {
-    for (const Column& column : cell.columns) bytes += static_cast<double>(column.bytes());
+}  // namespace
+
+bool StoredCell::has(std::string_view column) const { return engine::has(columns, column); }
+
+const Column* StoredCell::find(std::string_view column) const {
+  for (const auto* some : {&columns, &full_columns}) {
+    const auto found = std::ranges::find(*some, column, &Column::name);
+    if (found != some->end()) return &*found;
   }
-  return bytes;
+  return nullptr;
+}
+
+std::size_t ResultDescription::full_runs_here() const {
+  return static_cast<std::size_t>(std::ranges::lower_bound(runs, full_runs) - runs.begin());
+}
+
+double ResultDescription::bytes() const {
+  double of_run = has_truth ? static_cast<double>(times.size() * sizeof(Pose)) : 0.0;
+  if (own_landmarks) of_run += static_cast<double>(landmarks.size() * sizeof(Eigen::Vector2d));
+  double of_full_run = 0.0;
+  for (const StoredCell& cell : cells) {
+    for (const Column& column : cell.columns) of_run += static_cast<double>(column.bytes());
+    for (const Column& column : cell.full_columns)
+      of_full_run += static_cast<double>(column.bytes());
+  }
+  return of_run * static_cast<double>(runs.size()) +
+         of_full_run * static_cast<double>(full_runs_here());
 }
 
 ResultDescription describe(const StudyPlan& plan, const TextPairs& provenance) {
@@ -82,6 +103,7 @@ ResultDescription describe(const StudyPlan& plan, const TextPairs& provenance) {
   result.study_sha256 = sha256(plan.resolved_text);
   result.seed = plan.seed;
   result.study_runs = plan.runs;
+  result.full_runs = std::min(plan.columns.full_runs, plan.runs);
   number_runs(plan, result);
   describe_time(itinerary, plan.columns.scans_only, result);
   if (plan.columns.joint) {
@@ -121,11 +143,12 @@ void expect_result_file(const h5::Handle& file, const std::filesystem::path& pat
   }
 }
 
-/// The axes behind `run` out of "run, time, component"; nullopt where it is not of that kind.
-std::optional<std::vector<Axis>> axes_of(const std::string& dimension_order) {
+/// The axes behind `run_axis` out of "run, time, component"; nullopt where it is not of that kind.
+std::optional<std::vector<Axis>> axes_of(const std::string& dimension_order,
+                                         std::string_view run_axis) {
   std::vector<Axis> axes;
   std::size_t begin = dimension_order.find(", ");
-  if (dimension_order.substr(0, begin) != "run") return std::nullopt;
+  if (dimension_order.substr(0, begin) != run_axis) return std::nullopt;
   while (begin != std::string::npos) {
     const std::size_t end = dimension_order.find(", ", begin + 2);
     const auto axis =
@@ -140,10 +163,10 @@ std::optional<std::vector<Axis>> axes_of(const std::string& dimension_order) {
 /// A dataset as a column; nullopt where it is not one (a later version may have added other
 /// things).
 std::optional<Column> column_of(const h5::Handle& group, const std::string& name,
-                                std::size_t runs) {
+                                std::string_view run_axis, std::size_t runs) {
   if (std::ranges::find(kBookkeeping, name) != kBookkeeping.end()) return std::nullopt;
   const h5::Handle dataset = h5::open_dataset(group, name);
-  const auto axes = axes_of(h5::find_text(dataset, "dimension_order").value_or(""));
+  const auto axes = axes_of(h5::find_text(dataset, "dimension_order").value_or(""), run_axis);
   const auto element = h5::element(dataset);
   const h5::Shape shape = h5::shape(dataset);
   if (!axes || !element || shape.size() != axes->size() + 1 || shape[0] != runs)
@@ -156,7 +179,19 @@ std::optional<Column> column_of(const h5::Handle& group, const std::string& name
                 h5::find_text(dataset, "long_name").value_or(name)};
 }
 
-StoredCell read_cell(const h5::Handle& cells, const std::string& label, std::size_t runs) {
+/// All of the group that are columns of `runs` runs.
+std::vector<Column> read_columns(const h5::Handle& group, std::string_view run_axis,
+                                 std::size_t runs) {
+  std::vector<Column> columns;
+  for (const std::string& name : h5::members(group)) {
+    if (h5::is_group(group, name)) continue;
+    if (auto column = column_of(group, name, run_axis, runs)) columns.push_back(*std::move(column));
+  }
+  return columns;
+}
+
+StoredCell read_cell(const h5::Handle& cells, const std::string& label,
+                     const ResultDescription& result) {
   const h5::Handle group = h5::open_group(cells, label);
   StoredCell cell;
   cell.label = label;
@@ -164,9 +199,10 @@ StoredCell read_cell(const h5::Handle& cells, const std::string& label, std::siz
   cell.long_name = h5::text(group, "long_name");
   cell.particles = h5::number(group, "particles");
   cell.settings = h5::texts(h5::open_group(group, "settings"));
-  for (const std::string& name : h5::members(group)) {
-    if (h5::is_group(group, name)) continue;
-    if (auto column = column_of(group, name, runs)) cell.columns.push_back(*std::move(column));
+  cell.columns = read_columns(group, "run", result.runs.size());
+  if (h5::has(group, format::kFull)) {
+    cell.full_columns = read_columns(h5::open_group(group, format::kFull), format::kFullRun,
+                                     result.full_runs_here());
   }
   return cell;
 }
@@ -181,7 +217,7 @@ ResultDescription read_description(const h5::Handle& file, const std::filesystem
   result.own_landmarks = result.has_truth && h5::has(h5::open_group(file, "truth"), "landmarks");
   const h5::Handle cells = h5::open_group(file, "cells");
   for (const std::string& label : h5::members(cells))
-    result.cells.push_back(read_cell(cells, label, result.runs.size()));
+    result.cells.push_back(read_cell(cells, label, result));
   check_description(result, path);
   return result;
 }
@@ -205,6 +241,12 @@ bool are_finite(const std::vector<std::pair<double, double>>& points) {
 template <class T>
 bool increases(const std::vector<T>& values) {
   return std::ranges::adjacent_find(values, std::ranges::greater_equal()) == values.end();
+}
+
+std::vector<Column> all_columns(const StoredCell& cell) {
+  std::vector<Column> all = cell.columns;
+  all.insert(all.end(), cell.full_columns.begin(), cell.full_columns.end());
+  return all;
 }
 
 class Check {
@@ -232,7 +274,7 @@ void check_texts(const ResultDescription& d, const Check& check) {
   for (const StoredCell& cell : d.cells) {
     for (const std::string& text : {cell.label, cell.filter, cell.long_name}) expect_line(text);
     for (const auto& [key, value] : cell.settings) expect_line(key), expect_line(value);
-    for (const Column& column : cell.columns) {
+    for (const Column& column : all_columns(cell)) {
       for (const std::string& text : {column.name, column.units, column.long_name}) {
         expect_line(text);
       }
@@ -243,6 +285,7 @@ void check_texts(const ResultDescription& d, const Check& check) {
 void check_runs(const ResultDescription& d, const Check& check) {
   check.expect(!d.runs.empty() && increases(d.runs), "its run numbers do not increase");
   check.expect(d.runs.back() < d.study_runs, "a run number is beyond the study's runs");
+  check.expect(d.full_runs <= d.study_runs, "more runs are full than the study has");
 }
 
 void check_times(const ResultDescription& d, const Check& check) {
@@ -330,21 +373,23 @@ const std::vector<std::vector<std::string_view>> kTogether = {
     nees_columns()};
 
 void check_columns(const StoredCell& cell, const Check& check) {
-  for (const Column& column : cell.columns) {
+  for (const Column& column : all_columns(cell)) {
     const auto known = std::ranges::find(column_table(), column.name, &ColumnKind::name);
     check.expect(known == column_table().end() || known->axes == column.axes,
                  "cells/" + cell.label + "/" + column.name + " has other axes than it should");
   }
-  for (const auto& together : kTogether) {
-    const auto there =
-        std::ranges::count_if(together, [&](std::string_view name) { return cell.has(name); });
-    check.expect(there == 0 || there == std::ssize(together),
-                 "cells/" + cell.label + " has only a part of " + std::string(together.front()) +
-                     " and what belongs to it");
+  for (const auto* columns : {&cell.columns, &cell.full_columns}) {
+    for (const auto& together : kTogether) {
+      const auto there = std::ranges::count_if(
+          together, [&](std::string_view name) { return has(*columns, name); });
+      check.expect(there == 0 || there == std::ssize(together),
+                   "cells/" + cell.label + " has only a part of " + std::string(together.front()) +
+                       " and what belongs to it");
+    }
+    check.expect(has(*columns, "pose_covariance") || cell.has("error") ||
+                     !has(*columns, "pose_covariance_mixture"),
+                 "cells/" + cell.label + " has pose_covariance_mixture and no pose_covariance");
   }
-  check.expect(
-      cell.has("pose_covariance") || cell.has("error") || !cell.has("pose_covariance_mixture"),
-      "cells/" + cell.label + " has pose_covariance_mixture and no pose_covariance");
   check.expect(cell.has("pose_mean") || cell.has("error"),
                "cells/" + cell.label + " has no pose_mean");
   check.expect(cell.label.size() <= kLongestLabel, "the label of a cell is too long");
@@ -364,7 +409,7 @@ void check_lengths(const ResultDescription& d, const StoredCell& cell, const Che
                             .landmark = std::nullopt,
                             .error_component = std::nullopt};
   std::map<Axis, std::size_t> own;
-  for (const Column& column : cell.columns) {
+  for (const Column& column : all_columns(cell)) {
     for (std::size_t a = 0; a < column.axes.size(); ++a) {
       const Axis axis = row_axis(column.axes[a]);
       const auto known =

@@ -24,8 +24,12 @@ struct StoredCell {
   std::string long_name;
   std::size_t particles = 0;
   TextPairs settings;
-  std::vector<Column> columns;  ///< what was stored
+  std::vector<Column> columns;       ///< what was stored of every run
+  std::vector<Column> full_columns;  ///< what was stored besides of the first runs
+  /// Whether it was stored of every run.
   bool has(std::string_view column) const;
+  /// As it was stored, of every run or of the first ones; nullptr where it was not.
+  const Column* find(std::string_view column) const;
 };
 
 /// A recorded drive that is a run by itself.
@@ -45,6 +49,7 @@ struct ResultDescription {
   std::string study_sha256;  ///< of study_text, hexadecimal: two files of one study agree in it
   std::uint64_t seed = 0;
   std::uint64_t study_runs = 0;                      ///< of the whole study
+  std::uint64_t full_runs = 0;                       ///< of them so many, the first, in full
   std::vector<std::uint64_t> runs;                   ///< numbers of the runs held here, increasing
   std::vector<double> times;                         ///< [s] of the rows of `time`
   std::vector<double> scan_times;                    ///< [s]
@@ -63,8 +68,10 @@ struct ResultDescription {
   TextPairs provenance;
   std::vector<StoredCell> cells;
 
-  /// Bytes of the numbers of one run, over all cells and the truth.
-  double bytes_per_run() const;
+  /// How many runs of this file are stored in full: its first ones.
+  std::size_t full_runs_here() const;
+  /// Bytes of the numbers of all runs, over all cells and the truth.
+  double bytes() const;
 };
 
 /// What the file of a plan will say.

@@ -38,14 +38,19 @@ struct ResultFile::Contents {
     if (description.has_truth) truth = h5::open_dataset(file, "truth/pose");
     if (description.own_landmarks) own_landmarks = h5::open_dataset(file, "truth/landmarks");
     for (const StoredCell& cell : description.cells) {
-      for (const Column& column : cell.columns) {
-        columns[cell.label].emplace(
-            column.name, h5::open_dataset(file, "cells/" + cell.label + "/" + column.name));
-      }
+      open_columns(cell, "", cell.columns);
+      open_columns(cell, std::string(format::kFull) + "/", cell.full_columns);
     }
     if (seal == Seal::holds) {
       bytes.emplace(Bytes{PosixFile(path, PosixFile::Mode::read), find_slabs(path, description)});
     }
+  }
+
+  void open_columns(const StoredCell& cell, const std::string& group,
+                    const std::vector<Column>& all) {
+    const std::string place = "cells/" + cell.label + "/" + group;
+    for (const Column& column : all)
+      columns[cell.label].emplace(column.name, h5::open_dataset(file, place + column.name));
   }
 
   const h5::Handle& column(const StoredCell& cell, std::string_view name) const {
@@ -162,6 +167,10 @@ double ResultFile::wall_seconds() const {
   h5::read(h5::open_dataset(contents_->file, "timing/wall_seconds"), Element::f64,
            std::as_writable_bytes(std::span(&seconds, 1)));
   return seconds;
+}
+
+bool ResultFile::holds(const StoredCell& cell, std::string_view column, std::size_t i) const {
+  return cell.has(column) || (i < description().full_runs_here() && cell.find(column) != nullptr);
 }
 
 void ResultFile::read(const StoredCell& cell, std::string_view column, std::size_t i,

@@ -63,6 +63,8 @@ class ResultFile {
       const;                    ///< [s] of the run's own thread over its steps; NaN where missing
   double wall_seconds() const;  ///< [s] of all sittings
 
+  /// Whether run index `i` has this column, as every run or as one of those stored in full.
+  bool holds(const StoredCell& cell, std::string_view column, std::size_t i) const;
   /// Copies {axes of the column} of run index `i` (0-based in this file), converted to double.
   /// `out` must fit.
   void read(const StoredCell& cell, std::string_view column, std::size_t i,

@@ -15,8 +15,11 @@ namespace {
 
 class SlabFinder {
  public:
-  SlabFinder(const std::filesystem::path& path, std::size_t runs)
-      : path_(path), file_(h5::open_file(path)), runs_(runs) {}
+  SlabFinder(const std::filesystem::path& path, const ResultDescription& description)
+      : path_(path),
+        file_(h5::open_file(path)),
+        runs_(description.runs.size()),
+        full_runs_(description.full_runs_here()) {}
 
   /// A dataset of `run_bytes` for each run.
   Slab find(const std::string& name, std::uint64_t run_bytes) const {
@@ -34,7 +37,7 @@ class SlabFinder {
                        "' is not in one piece (another program rewrote the file): "
                        "use the file as montecarta wrote it");
     }
-    return {*place, run_bytes};
+    return {*place, run_bytes, runs};
   }
 
   CellSlabs find(const StoredCell& cell) const {
@@ -42,6 +45,8 @@ class SlabFinder {
     CellSlabs slabs;
     for (const Column& column : cell.columns)
       slabs.columns.push_back(find(group + column.name, column.bytes()));
+    slabs.usual_columns = slabs.columns.size();
+    add_full(cell, group + format::kFull + "/", slabs);
     slabs.failure_reason = find(group + "failure_reason", kFailureReasonBytes);
     slabs.failure_step = find(group + "failure_step", sizeof(std::uint32_t));
     slabs.fingerprint = find(group + "fingerprint", sizeof(std::uint64_t));
@@ -51,9 +56,17 @@ class SlabFinder {
   }
 
  private:
+  void add_full(const StoredCell& cell, const std::string& group, CellSlabs& slabs) const {
+    if (cell.full_columns.empty()) return;
+    for (const Column& column : cell.full_columns)
+      slabs.columns.push_back(find(group + column.name, column.bytes(), full_runs_));
+    slabs.full_fingerprint = find(group + "fingerprint", sizeof(std::uint64_t), full_runs_);
+  }
+
   const std::filesystem::path& path_;
   h5::Handle file_;
   std::size_t runs_;
+  std::size_t full_runs_;
 };
 
 void add_run(const PosixFile& file, const Slab& slab, std::size_t run_index,
@@ -72,7 +85,7 @@ std::uint64_t stored_fingerprint(const PosixFile& file, const Slab& slab, std::s
 }  // namespace
 
 ResultSlabs find_slabs(const std::filesystem::path& path, const ResultDescription& description) {
-  const SlabFinder finder(path, description.runs.size());
+  const SlabFinder finder(path, description);
   ResultSlabs slabs;
   if (description.has_truth) {
     slabs.truth = {finder.find("truth/pose", description.times.size() * sizeof(Pose)),
@@ -104,14 +117,20 @@ RunStatus status_of(const PosixFile& file, const CellSlabs& cell, std::size_t ru
 
 bool run_is_whole(const PosixFile& file, const CellSlabs& cell, std::size_t run_index,
                   std::vector<std::byte>& buffer) {
+  const auto has = [&](const Slab& slab, std::uint64_t fingerprint) {
+    return !slab.holds(run_index) || stored_fingerprint(file, slab, run_index) == fingerprint;
+  };
   if (!is_stored(status_of(file, cell, run_index))) {
-    return stored_fingerprint(file, cell.fingerprint, run_index) == 0;
+    return has(cell.fingerprint, 0) && has(cell.full_fingerprint, 0);
   }
-  Fingerprint fingerprint;
-  for (const Slab& column : cell.columns) add_run(file, column, run_index, buffer, fingerprint);
+  Fingerprint fingerprint, full;
+  for (std::size_t c = 0; c < cell.columns.size(); ++c) {
+    if (!cell.columns[c].holds(run_index)) continue;
+    add_run(file, cell.columns[c], run_index, buffer, c < cell.usual_columns ? fingerprint : full);
+  }
   for (const Slab& slab : {cell.status, cell.failure_step, cell.failure_reason})
     add_run(file, slab, run_index, buffer, fingerprint);
-  return fingerprint.value() == stored_fingerprint(file, cell.fingerprint, run_index);
+  return has(cell.fingerprint, fingerprint.value()) && has(cell.full_fingerprint, full.value());
 }
 
 bool truth_is_whole(const PosixFile& file, const ResultSlabs& slabs, std::size_t run_index,
@@ -217,11 +236,13 @@ void add_truth(const h5::Handle& file, const ResultDescription& result, const Sc
 /// Scales whose length differs from cell to cell live with the cell.
 void add_own_scale(const h5::Handle& group, const StoredCell& cell, Axis axis,
                    const std::string& long_name, Scales& scales) {
-  for (const Column& column : cell.columns) {
-    const auto found = std::find(column.axes.begin(), column.axes.end(), axis);
-    if (found == column.axes.end()) continue;
-    const auto length = column.shape[static_cast<std::size_t>(found - column.axes.begin())];
-    return add_index_scale(group, std::string(name_of(axis)), length, {"1", long_name}, scales);
+  for (const auto* columns : {&cell.columns, &cell.full_columns}) {
+    for (const Column& column : *columns) {
+      const auto found = std::find(column.axes.begin(), column.axes.end(), axis);
+      if (found == column.axes.end()) continue;
+      const auto length = column.shape[static_cast<std::size_t>(found - column.axes.begin())];
+      return add_index_scale(group, std::string(name_of(axis)), length, {"1", long_name}, scales);
+    }
   }
 }
 
@@ -239,17 +260,34 @@ void add_bookkeeping(const h5::Handle& group, std::size_t runs, const Scales& sc
   write_zeros(fingerprint, Element::u64, runs);
 }
 
-void add_column(const h5::Handle& group, const Column& column, std::size_t runs,
-                const Scales& scales) {
+/// `run_axis`: the axis of its `runs` runs.
+void add_column(const h5::Handle& group, const Column& column, const char* run_axis,
+                std::size_t runs, const Scales& scales) {
   h5::Shape shape = {runs};
   shape.insert(shape.end(), column.shape.begin(), column.shape.end());
-  std::vector<std::string> dimensions = {"run"};
+  std::vector<std::string> dimensions = {run_axis};
   for (Axis axis : column.axes) dimensions.emplace_back(name_of(axis));
   add_dataset(group, column.name, column.element, shape, dimensions,
               {column.units, column.long_name}, scales);
 }
 
-void add_cell(const h5::Handle& cells, const StoredCell& cell, std::size_t runs, Scales& scales) {
+/// What only the first runs have.
+void add_full(const h5::Handle& group, const StoredCell& cell, std::size_t runs,
+              const Scales& scales) {
+  if (cell.full_columns.empty()) return;
+  const h5::Handle full = h5::create_group(group, format::kFull);
+  const auto fingerprint =
+      add_dataset(full, "fingerprint", Element::u64, {runs}, {format::kFullRun},
+                  {"1", "XXH3 of what is stored of the run here"}, scales);
+  write_zeros(fingerprint, Element::u64, runs);
+  for (const Column& column : cell.full_columns) {
+    add_column(full, column, format::kFullRun, runs, scales);
+  }
+}
+
+void add_cell(const h5::Handle& cells, const StoredCell& cell, const ResultDescription& result,
+              Scales& scales) {
+  const std::size_t runs = result.runs.size();
   const h5::Handle group = h5::create_group(cells, cell.label);
   h5::put_text(group, "filter", cell.filter);
   h5::put_text(group, "long_name", cell.long_name);
@@ -266,7 +304,8 @@ void add_cell(const h5::Handle& cells, const StoredCell& cell, std::size_t runs,
     add_own_scale(group, cell, axis, "component, in the order of the setting components", scales);
   }
   add_bookkeeping(group, runs, scales);
-  for (const Column& column : cell.columns) add_column(group, column, runs, scales);
+  for (const Column& column : cell.columns) add_column(group, column, "run", runs, scales);
+  add_full(group, cell, result.full_runs_here(), scales);
 }
 
 void add_timing(const h5::Handle& file, const ResultDescription& result, const Scales& scales) {
@@ -295,7 +334,7 @@ void lay_out(const std::filesystem::path& path, const ResultDescription& result)
   write_schema(file, result, scales, [&] {
     if (result.has_truth) add_truth(file, result, scales);
     const h5::Handle cells = h5::create_group(file, "cells");
-    for (const StoredCell& cell : result.cells) add_cell(cells, cell, result.runs.size(), scales);
+    for (const StoredCell& cell : result.cells) add_cell(cells, cell, result, scales);
     add_timing(file, result, scales);
   });
   add_text(

@@ -18,17 +18,21 @@
 
 namespace montecarta::engine {
 
-/// Where the runs of one dataset lie in a file: one behind the other.
+/// Where the runs of one dataset lie in a file: one behind the other, the first ones or all.
 struct Slab {
   std::uint64_t offset = 0;     ///< [byte] of run index 0
   std::uint64_t run_bytes = 0;  ///< [byte] of one run
+  std::size_t runs = 0;         ///< how many there are
+  bool holds(std::size_t run_index) const { return run_index < runs; }
   std::uint64_t at(std::size_t run_index) const { return offset + run_index * run_bytes; }
 };
 
 /// Slabs of one cell.
 struct CellSlabs {
-  std::vector<Slab> columns;  ///< in the order of StoredCell::columns
+  std::vector<Slab> columns;      ///< StoredCell::columns, behind them those of full runs only
+  std::size_t usual_columns = 0;  ///< how many of them every run has
   Slab failure_reason, failure_step, fingerprint, cpu_seconds, status;
+  Slab full_fingerprint;  ///< of no run where full runs have no more columns than others
 };
 
 /// Slabs of the true paths.
@@ -92,8 +96,11 @@ void add_index_scale(const h5::Handle& parent, const std::string& name, std::siz
 namespace format {
 inline constexpr std::string_view kFiletype = "montecarta-results";
 inline constexpr std::uint64_t kMajor = 1;           ///< grows when a meaning changes
-inline constexpr std::uint64_t kMinor = 8;           ///< grows when something is added
+inline constexpr std::uint64_t kMinor = 9;           ///< grows when something is added
 inline constexpr std::size_t kSittingsBytes = 4096;  ///< room for the log of resumptions
+inline constexpr const char* kFull = "full";         ///< group of a cell: columns of full runs only
+inline constexpr const char* kFullRun = "full_run";  ///< their first axis
+inline constexpr const char* kFullRuns = "full_runs";  ///< attribute: how many the study has
 /// Fact of /provenance: --force allowed finishing to replace what had the final name.
 inline constexpr std::string_view kReplaces = "replaces";
 }  // namespace format

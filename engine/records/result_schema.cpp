@@ -44,6 +44,14 @@ class FieldWriter {
   void number(const char* name, std::uint64_t value) {
     h5::put_numbers(object_, name, std::array{value});
   }
+  /// Nothing where no run is stored in full.
+  void full_runs(const ResultDescription& d) {
+    if (d.full_runs == 0) return;
+    number(format::kFullRuns, d.full_runs);
+    const auto end = d.runs.begin() + static_cast<std::ptrdiff_t>(d.full_runs_here());
+    scale(format::kFullRun, std::vector(d.runs.begin(), end),
+          {"1", "number of the run that is stored in full"});
+  }
   void texts(const TextPairs& pairs) {
     for (const auto& [name, value] : pairs) h5::put_text(object_, name, value);
   }
@@ -139,6 +147,9 @@ class FieldReader {
 
   void text(const char* name, std::string& value) { value = h5::text(object_, name); }
   void number(const char* name, std::uint64_t& value) { value = h5::number(object_, name); }
+  void full_runs(ResultDescription& d) {
+    if (h5::has(object_, format::kFullRun)) number(format::kFullRuns, d.full_runs);
+  }
   void texts(TextPairs& pairs) { pairs = h5::texts(object_); }
   void document(const char* name, std::string& content, const char* /*meaning*/) {
     content = h5::read_text(h5::open_dataset(object_, name));
@@ -277,6 +288,7 @@ void visit(Fields& file, Description& d, const std::function<void()>& between) {
   file.number("seed", d.seed);
   file.number("runs", d.study_runs);
   visit_axes(file, d);
+  file.full_runs(d);
   file.group("scenario", [&](auto& scenario) { visit_scenario(scenario, d); });
   between();
   file.group("provenance", [&](auto& provenance) {

@@ -120,8 +120,16 @@ void ResultWriter::write(std::size_t cell, std::size_t run_index, const RunRecor
   expect(status(cell, run_index) == RunStatus::missing, "a run was stored twice");
   const PosixFile& file = work_->result.file;
   const CellSlabs& slabs = work_->result.slabs.cells[cell];
-  for (std::size_t c = 0; c < slabs.columns.size(); ++c)
-    file.write_at(slabs.columns[c].at(run_index), record.bytes(c));
+  const bool is_full = slabs.full_fingerprint.holds(run_index);
+  expect(record.layout().columns().size() >= (is_full ? slabs.columns.size() : slabs.usual_columns),
+         "a run that is stored in full was recorded like any other");
+  for (std::size_t c = 0; c < slabs.columns.size(); ++c) {
+    if (slabs.columns[c].holds(run_index))
+      file.write_at(slabs.columns[c].at(run_index), record.bytes(c));
+  }
+  if (is_full) {
+    file.write_at(slabs.full_fingerprint.at(run_index), bytes_of(record.full_fingerprint()));
+  }
   file.write_at(slabs.failure_reason.at(run_index), std::as_bytes(record.failure_text()));
   file.write_at(slabs.failure_step.at(run_index), bytes_of(record.failure_step()));
   file.write_at(slabs.fingerprint.at(run_index), bytes_of(record.fingerprint()));

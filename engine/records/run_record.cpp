@@ -24,7 +24,7 @@ Column column_of(const ColumnKind& kind, const Cell& cell) {
 }  // namespace
 
 RecordLayout::RecordLayout(const Cell& cell, const ColumnSelection& selection,
-                           const Itinerary& itinerary)
+                           const Itinerary& itinerary, Detail detail)
     : scans_only_(selection.scans_only),
       scans_(itinerary.scans()),
       particles_(cell.particles),
@@ -36,9 +36,18 @@ RecordLayout::RecordLayout(const Cell& cell, const ColumnSelection& selection,
                             .particle = cell.particles,
                             .landmark = cell.landmarks,
                             .error_component = cell.error_components};
+  add_columns(cell, selection, lengths);
+  usual_columns_ = columns_.size();
+  if (detail == Detail::full) add_columns(cell, in_full(selection), lengths);
+}
+
+/// Those that are not there yet.
+void RecordLayout::add_columns(const Cell& cell, const ColumnSelection& selection,
+                               const AxisLengths& lengths) {
   for (const ColumnKind& kind : column_table()) {
     if (!is_selected(kind, selection) || (kind.applies != nullptr && !kind.applies(cell))) continue;
     if (kind.axes.front() == Axis::joint && joint_scans_.empty()) continue;
+    if (find(kind.name)) continue;
     Column column = column_of(kind, cell);
     for (const Axis axis : column.axes) column.shape.push_back(*length_of(axis, lengths));
     offsets_.push_back(bytes_);
@@ -52,6 +61,13 @@ std::optional<std::size_t> RecordLayout::find(std::string_view name) const {
                                   [&](const Column& column) { return column.name == name; });
   if (found == columns_.end()) return std::nullopt;
   return static_cast<std::size_t>(found - columns_.begin());
+}
+
+std::vector<RecordLayout> layouts_of(const StudyPlan& plan, Detail detail) {
+  std::vector<RecordLayout> layouts;
+  for (const Cell& cell : plan.cells)
+    layouts.emplace_back(cell, plan.columns, plan.drives->itinerary(), detail);
+  return layouts;
 }
 
 RunRecord::RunRecord(const RecordLayout& layout)
@@ -109,10 +125,18 @@ std::span<const std::byte> RunRecord::bytes(std::size_t c) const {
 
 std::uint64_t RunRecord::fingerprint() const {
   Fingerprint fingerprint;
-  for (std::size_t c = 0; c < layout_->columns().size(); ++c) fingerprint.add(bytes(c));
+  for (std::size_t c = 0; c < layout_->usual_columns(); ++c) fingerprint.add(bytes(c));
   fingerprint.add(std::as_bytes(std::span(&status_, 1)));
   fingerprint.add(std::as_bytes(std::span(&outcome_.step, 1)));
   fingerprint.add(std::as_bytes(std::span(outcome_.reason)));
+  return fingerprint.value();
+}
+
+std::uint64_t RunRecord::full_fingerprint() const {
+  Fingerprint fingerprint;
+  for (std::size_t c = layout_->usual_columns(); c < layout_->columns().size(); ++c) {
+    fingerprint.add(bytes(c));
+  }
   return fingerprint.value();
 }
 

@@ -18,14 +18,21 @@
 
 namespace montecarta::engine {
 
+/// What is stored of a run: the columns of every run, or behind them also those that only the first
+/// ColumnSelection::full_runs have.
+enum class Detail : std::uint8_t { usual, full };
+
 /// The columns a cell stores and where they lie in the memory of one run. Columns nobody asked for
 /// are absent.
 class RecordLayout {
  public:
-  RecordLayout(const Cell& cell, const ColumnSelection& selection, const Itinerary& itinerary);
+  RecordLayout(const Cell& cell, const ColumnSelection& selection, const Itinerary& itinerary,
+               Detail detail = Detail::usual);
 
   /// In the order of the file.
   const std::vector<Column>& columns() const { return columns_; }
+  /// How many of them every run has; the others come behind.
+  std::size_t usual_columns() const { return usual_columns_; }
   /// Where column `c` begins [byte]; a multiple of 64.
   std::size_t offset(std::size_t c) const { return offsets_[c]; }
   /// Memory of one run [byte].
@@ -41,7 +48,10 @@ class RecordLayout {
   const std::vector<std::uint32_t>& joint_scans() const { return joint_scans_; }
 
  private:
+  void add_columns(const Cell& cell, const ColumnSelection& selection, const AxisLengths& lengths);
+
   std::vector<Column> columns_;
+  std::size_t usual_columns_ = 0;
   std::vector<std::size_t> offsets_;
   std::size_t bytes_ = 0;
   bool scans_only_;
@@ -50,6 +60,9 @@ class RecordLayout {
   std::size_t landmarks_;
   std::vector<std::uint32_t> joint_scans_;
 };
+
+/// One for each cell of the plan.
+std::vector<RecordLayout> layouts_of(const StudyPlan& plan, Detail detail);
 
 /// State of one run of one cell; the numbers are those of the file's `status`. Spared: not made,
 /// since the runs before it were enough.
@@ -104,9 +117,11 @@ class RunRecord {
     expect_element(described, sizeof(T));
     return {reinterpret_cast<T*>(memory_.data() + layout_->offset(c)), described.elements()};
   }
-  /// XXH3 of all that goes to /cells: columns, status, failure step and reason. Tells torn data
-  /// from whole.
+  /// XXH3 of what every run has in /cells: columns, status, failure step and reason. Tells torn
+  /// data from whole.
   std::uint64_t fingerprint() const;
+  /// XXH3 of the columns that only the first runs have.
+  std::uint64_t full_fingerprint() const;
 
  private:
   static void expect_element(const Column& column, std::size_t size);

@@ -128,25 +128,26 @@ Words read_seal(const PosixFile& file, std::uint64_t begin, std::uint64_t end) {
   return seal;
 }
 
-void add_range(const Slab& slab, std::size_t runs, std::vector<ByteRange>& ranges) {
-  if (slab.run_bytes > 0 && runs > 0) ranges.push_back({slab.offset, runs * slab.run_bytes});
+void add_range(const Slab& slab, std::vector<ByteRange>& ranges) {
+  const std::uint64_t bytes = slab.runs * slab.run_bytes;
+  if (bytes > 0) ranges.push_back({slab.offset, bytes});
 }
 
 }  // namespace
 
-std::vector<ByteRange> written_later(const ResultSlabs& slabs, std::size_t runs) {
+std::vector<ByteRange> written_later(const ResultSlabs& slabs) {
   std::vector<ByteRange> all;
-  for (const Slab& slab : {slabs.wall_seconds, slabs.sittings}) add_range(slab, 1, all);
+  for (const Slab& slab : {slabs.wall_seconds, slabs.sittings}) add_range(slab, all);
   if (slabs.truth) {
-    add_range(slabs.truth->pose, runs, all);
-    add_range(slabs.truth->fingerprint, runs, all);
-    if (slabs.truth->landmarks) add_range(*slabs.truth->landmarks, runs, all);
+    add_range(slabs.truth->pose, all);
+    add_range(slabs.truth->fingerprint, all);
+    if (slabs.truth->landmarks) add_range(*slabs.truth->landmarks, all);
   }
   for (const CellSlabs& cell : slabs.cells) {
-    for (const Slab& slab : cell.columns) add_range(slab, runs, all);
+    for (const Slab& slab : cell.columns) add_range(slab, all);
     for (const Slab& slab : {cell.failure_reason, cell.failure_step, cell.fingerprint,
-                             cell.cpu_seconds, cell.status}) {
-      add_range(slab, runs, all);
+                             cell.full_fingerprint, cell.cpu_seconds, cell.status}) {
+      add_range(slab, all);
     }
   }
   std::ranges::sort(all, {}, &ByteRange::offset);

@@ -21,8 +21,8 @@ struct ByteRange {
   std::uint64_t length = 0;
 };
 
-/// What is written after a file of `runs` runs is laid out: increasing, none touches another.
-std::vector<ByteRange> written_later(const ResultSlabs& slabs, std::size_t runs);
+/// What is written after a file is laid out: increasing, none touches another.
+std::vector<ByteRange> written_later(const ResultSlabs& slabs);
 
 /// Appends the seal to a file just laid out; `open` are the ranges that it leaves open.
 void put_seal(const PosixFile& file, const std::vector<ByteRange>& open);

@@ -73,13 +73,6 @@ ResultWriter open_output(const StudyPlan& plan, const RunOptions& options) {
                               options.force ? Existing::replace : Existing::refuse);
 }
 
-std::vector<RecordLayout> layouts_of(const StudyPlan& plan) {
-  std::vector<RecordLayout> layouts;
-  for (const Cell& cell : plan.cells)
-    layouts.emplace_back(cell, plan.columns, plan.drives->itinerary());
-  return layouts;
-}
-
 CellOutcome outcome_of(const StudyPlan& plan, std::size_t cell, const ResultWriter& writer) {
   CellOutcome outcome{.label = plan.cells[cell].label};
   for (std::size_t i = 0; i < plan.runs_here(); ++i) {
@@ -144,14 +137,15 @@ class Stopwatch {
 /// Works until nothing is missing or somebody asks to stop.
 void run_missing(const StudyPlan& plan, const RunOptions& options, const RunOutcome& before,
                  ResultWriter& writer, StopRequest& stop, const Watch::Orders& orders) {
-  const std::vector<RecordLayout> layouts = layouts_of(plan);
+  const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
+  const std::vector<RecordLayout> full_layouts = layouts_of(plan, Detail::full);
   const std::size_t n_workers = workers_for(plan, options.parallel, before.missing());
   Progress progress(options.quiet ? ProgressStyle::none : options.progress, counts_of(before));
   const Watch watch(orders, stop, progress);
   for (const std::uint64_t runs : rounds_of(plan)) {
     TaskList tasks(plan, runs, writer);
     SpareThreads spare(options.parallel, n_workers);
-    Session session{plan, layouts, writer, tasks, spare, stop, progress};
+    Session session{plan, layouts, full_layouts, writer, tasks, spare, stop, progress};
     options.parallel.for_each(n_workers, [&](std::size_t) { run_worker(session); });
     if (stop.is_set()) return;
     if (runs == plan.runs_here()) return;

@@ -102,8 +102,8 @@ Recomputation::Recomputation(const std::filesystem::path& path, const ResultDesc
   if (const auto differs = engine::difference(comparable(plan, stored), stored, path))
     throw StudyError(*differs);
   slabs_ = find_slabs(path, stored);
-  for (const Cell& cell : plan.cells)
-    layouts_.emplace_back(cell, plan.columns, plan.drives->itinerary());
+  layouts_ = layouts_of(plan, Detail::usual);
+  full_layouts_ = layouts_of(plan, Detail::full);
 }
 
 std::optional<std::string> Recomputation::difference(StoredRun which) const {
@@ -114,7 +114,7 @@ std::optional<std::string> Recomputation::difference(StoredRun which) const {
   auto differs = difference(drive, which.run_index);
   if (!differs) {
     const std::unique_ptr<SlamFilter> filter = cell.make_filter();
-    RunRecord record(layouts_[which.cell]);
+    RunRecord record((run < plan_.columns.full_runs ? full_layouts_ : layouts_)[which.cell]);
     Recorder recorder(record);
     const SpareThreads none(Parallel::serial(), 1);
     const StopRequest never;

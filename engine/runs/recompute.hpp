@@ -40,7 +40,7 @@ class Recomputation {
   const StudyPlan& plan_;
   PosixFile file_;
   ResultSlabs slabs_;
-  std::vector<RecordLayout> layouts_;  ///< one per cell
+  std::vector<RecordLayout> layouts_, full_layouts_;  ///< one per cell
 };
 
 }  // namespace montecarta::engine

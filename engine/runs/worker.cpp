@@ -129,9 +129,18 @@ void Worker::execute(const Task& task) {
   const RunConditions conditions{
       plan.seed,    run, plan.drives->itinerary_of(run), drive_, session_.spare_threads,
       session_.stop};
-  if (run_one(conditions, *here.filter, here.recorder, here.record) == RunEnd::dropped) return;
-  session_.writer.write(task.cell, task.run_index, here.record);
-  session_.progress.run_ended(here.record.status());
+  if (run >= plan.columns.full_runs) return run_into(here.record, here.recorder, task, conditions);
+  RunRecord record(session_.full_layouts[task.cell]);  // of few runs, so that none is kept for them
+  Recorder recorder(record);
+  run_into(record, recorder, task, conditions);
+}
+
+void Worker::run_into(RunRecord& record, Recorder& recorder, const Task& task,
+                      const RunConditions& conditions) {
+  SlamFilter& filter = *cell_state(task.cell).filter;
+  if (run_one(conditions, filter, recorder, record) == RunEnd::dropped) return;
+  session_.writer.write(task.cell, task.run_index, record);
+  session_.progress.run_ended(record.status());
 }
 
 void Worker::fetch_drive(std::size_t run_index) {

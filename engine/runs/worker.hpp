@@ -93,7 +93,7 @@ class TaskList {
 /// What the workers of a session have in common.
 struct Session {
   const StudyPlan& plan;
-  std::span<const RecordLayout> layouts;  ///< one per cell
+  std::span<const RecordLayout> layouts, full_layouts;  ///< one per cell
   ResultWriter& writer;
   TaskList& tasks;
   SpareThreads& spare_threads;
@@ -121,6 +121,8 @@ class Worker {
   void fetch_drive(std::size_t run_index);
   CellState& cell_state(std::size_t cell);
   void execute(const Task& task);
+  void run_into(RunRecord& record, Recorder& recorder, const Task& task,
+                const RunConditions& conditions);
 
   const Session& session_;
   Drive drive_;

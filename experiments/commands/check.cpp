@@ -5,6 +5,7 @@
 #include "analysis/output/text_table.hpp"
 #include "engine/records/fingerprint.hpp"
 #include "engine/records/posix_file.hpp"
+#include "engine/records/result_description.hpp"
 #include "engine/records/run_record.hpp"
 #include "experiments/commands/arguments.hpp"
 #include "experiments/commands/commands.hpp"
@@ -188,19 +189,22 @@ Costs costs_of(const StudyPlan& plan) {
   const Itinerary& itinerary = plan.drives->itinerary();
   const double runs = static_cast<double>(plan.runs_here());
   const double alike = runs_like_the_first(plan);
+  const ResultDescription file = describe(plan, {});
+  const auto full_runs = static_cast<double>(file.full_runs_here());
+  const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
+  const std::vector<RecordLayout> full_layouts = layouts_of(plan, Detail::full);
   Costs costs;
-  const auto truth = static_cast<double>(itinerary.steps() * sizeof(Pose));
-  costs.disk = itinerary.has_truth ? runs * truth : 0.0;
-  costs.per_thread = 2.0 * truth;
-  for (const Cell& cell : plan.cells) {
-    const std::optional<Trial> first = trial_of(cell, plan, drive);
+  costs.disk = file.bytes();
+  costs.per_thread = 2.0 * static_cast<double>(itinerary.steps() * sizeof(Pose));
+  for (std::size_t c = 0; c < plan.cells.size(); ++c) {
+    const std::optional<Trial> first = trial_of(plan.cells[c], plan, drive);
     const double cpu_seconds = first.value_or(Trial{}).seconds * alike;
-    const double bytes = static_cast<double>(RecordLayout(cell, plan.columns, itinerary).bytes());
-    costs.rows.push_back(
-        {time_of_run(first, cpu_seconds / runs), bytes_text(bytes), bytes_text(bytes * runs)});
+    const auto bytes = static_cast<double>(layouts[c].bytes());
+    const double more = static_cast<double>(full_layouts[c].bytes()) - bytes;
+    costs.rows.push_back({time_of_run(first, cpu_seconds / runs), bytes_text(bytes),
+                          bytes_text(bytes * runs + more * full_runs)});
     costs.cpu_seconds += cpu_seconds;
-    costs.disk += bytes * runs;
-    costs.per_thread += bytes + first.value_or(Trial{}).bytes;
+    costs.per_thread += bytes + std::min(full_runs, 1.0) * more + first.value_or(Trial{}).bytes;
   }
   return costs;
 }

@@ -80,6 +80,18 @@ void print_datasets(const std::vector<Dataset>& datasets, std::size_t indent) {
   std::cout << listing(items, indent, output_width() / 2);
 }
 
+void print_columns(const std::string& group, const std::vector<Column>& columns,
+                   std::size_t runs) {
+  std::vector<Dataset> datasets;
+  for (const Column& column : columns) {
+    const std::string units = column.units == "1" ? "" : " [" + column.units + "]";
+    datasets.push_back(
+        {column.name, static_cast<double>(column.bytes() * runs), column.long_name + units});
+  }
+  std::cout << "  " << group << "\n";
+  print_datasets(datasets, 4);
+}
+
 void print_datasets(const ResultFile& file) {
   const auto bytes_of = [](std::size_t numbers) {
     return static_cast<double>(numbers * sizeof(double));
@@ -92,15 +104,12 @@ void print_datasets(const ResultFile& file) {
        {"/truth", bytes_of(runs * (3 * file.times().size() + 1)), "true poses of every run"},
        {"/timing", bytes_of(runs * file.cells().size() + 1), "computing time of the filters [s]"}},
       2);
+  const std::size_t full_runs = file.description().full_runs_here();
   for (const StoredCell& cell : file.cells()) {
-    std::vector<Dataset> datasets;
-    for (const Column& column : cell.columns) {
-      const std::string units = column.units == "1" ? "" : " [" + column.units + "]";
-      datasets.push_back(
-          {column.name, static_cast<double>(column.bytes() * runs), column.long_name + units});
+    print_columns("/cells/" + cell.label, cell.columns, runs);
+    if (!cell.full_columns.empty()) {
+      print_columns("/cells/" + cell.label + "/full", cell.full_columns, full_runs);
     }
-    std::cout << "  /cells/" << cell.label << "\n";
-    print_datasets(datasets, 4);
   }
 }
 

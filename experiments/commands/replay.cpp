@@ -54,6 +54,7 @@ Study recording_everything(Study study, std::size_t cell, std::uint64_t run) {
   study.until.reset();  // one run decides nothing
   study.settings.replace("study", "until", "");
   study.settings.replace("record", "columns", all_columns(study));
+  study.settings.replace("record", "full_runs", "0");  // there is no more
   study.settings.replace("record", "rate", "control");
   if (study.own_logs.empty()) return study;
   study.log = study.own_logs.at(run);  // of one drive every step can be kept

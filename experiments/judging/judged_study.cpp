@@ -154,9 +154,7 @@ LongestRun longest_of(const JudgedFiles& files, double tolerance) {
 
 void write_runs(const JudgedFiles& files, const JudgingOptions& options, const LongestRun& longest,
                 const StudyPlan& plan, ResultWriter& writer) {
-  std::vector<RecordLayout> layouts;
-  for (const Cell& cell : plan.cells)
-    layouts.emplace_back(cell, plan.columns, plan.drives->itinerary());
+  const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);
   for (std::size_t run = 0; run < files.runs.size(); ++run) {
     const StateRows truth = read_truth(files.truth[run], longest.rows.shape);
     for (std::size_t c = 0; c < files.cells.size(); ++c) {

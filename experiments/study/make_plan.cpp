@@ -54,7 +54,8 @@ AssociationSettings association_of(const Settings& s) {
 
 ColumnSelection columns_of(const Settings& s) {
   ColumnSelection columns{.joint_scans = s.count("record", "joint_scans"),
-                          .scans_only = s.text("record", "rate") == "scan"};
+                          .scans_only = s.text("record", "rate") == "scan",
+                          .full_runs = s.count("record", "full_runs")};
   for (const ColumnGroup& group : column_groups()) {
     if (group.is_chosen != nullptr)
       columns.*(group.is_chosen) = s.lists("record", "columns", group.name);

@@ -279,6 +279,8 @@ void add_record(std::vector<Setting>& table) {
   columns.kind = Setting::Kind::choices;
   columns.fallback = "pose, covariance, ancestry";
   table.push_back(but_for("log", "pose, covariance, ancestry, final_map", columns));
+  table.push_back(count(s, "full_runs", "0", 0, 1e7,
+                        "of so many runs, the first, particles, ancestry and maps are stored too"));
   table.push_back(but_for("log", "scan",
                           choice(s, "rate", {"control", "scan"},
                                  "whether poses are stored at control steps or scans")));

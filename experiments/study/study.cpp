@@ -280,13 +280,18 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
   return parse_study(text_file(path), path.string(), path.parent_path(), overrides);
 }
 
+/// What is left out where it says nothing, so that a study without it keeps its fingerprint.
+bool is_silent(const std::string& key, const std::string& value) {
+  return (key == "until" && value.empty()) || (key == "full_runs" && value == "0");
+}
+
 std::string resolved_text(const Study& study) {
   std::string text;
   for (const std::string& section : study_sections()) {
     if (section == "world" && study.log != nullptr) continue;
     text += "[" + section + "]\n";
     for (const auto& [key, value] : study.settings.section(section)) {
-      if (key != "until" || !value.empty()) text += key + " = " + value + "\n";
+      if (!is_silent(key, value)) text += key + " = " + value + "\n";
     }
     if (section == "cells") {
       for (const CellSpec& cell : study.cells) text += "cell = " + cell_line(cell) + "\n";

@@ -30,7 +30,7 @@ TEST(Report, HoldsEverySectionAndNeedsNothingElse) {
   write_report(ResultFile(folder / "out.h5"), folder / "report");
   const std::string page = text_in(folder / "report/index.html");
   EXPECT_THAT(page, HasSubstr("gain is &lt;not&gt; a number &amp; worse"));
-  EXPECT_THAT(page, Not(HasSubstr("to record.columns of the study")));
+  EXPECT_THAT(page, Not(HasSubstr("record.full_runs = 1")));
   EXPECT_THAT(page, Not(HasSubstr("src=")));
   EXPECT_THAT(page, Not(HasSubstr("href=\"http")));
   for (const std::string name :
@@ -197,7 +197,7 @@ TEST(Report, JudgesARecordedDriveByItsReferences) {
   EXPECT_THAT(section_in(page, "references"), HasSubstr("id=\"figure_reference_error\""));
   EXPECT_EQ(section_in(page, "cards"), "");
   EXPECT_THAT(page, HasSubstr("class=\"replay-data\">{\"run\":"));
-  EXPECT_THAT(page, HasSubstr("' to record.columns of the study"));
+  EXPECT_THAT(page, HasSubstr("record.full_runs = 1"));
   EXPECT_THAT(page, HasSubstr("nobody knows its true path"));
   for (const char* name :
        {"figures/paths.svg", "figures/reference_error.svg", "figures/map_size.svg",

@@ -81,7 +81,8 @@ inline void write_synthetic_result(
     plan.drives->generate(run, drive);
     writer.write_truth(run, drive);
     for (std::size_t cell = 0; cell < plan.cells.size(); ++cell) {
-      const RecordLayout layout(plan.cells[cell], plan.columns, plan.drives->itinerary());
+      const RecordLayout layout(plan.cells[cell], plan.columns, plan.drives->itinerary(),
+                                run < plan.columns.full_runs ? Detail::full : Detail::usual);
       RunRecord record(layout);
       fill_record(plan, cell, run, drive, record);
       perturb(drive, run, cell == 0 ? 1.0 : 3.0, record);

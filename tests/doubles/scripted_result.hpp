@@ -47,7 +47,9 @@ inline void fill_record(const StudyPlan& plan, std::size_t cell, std::uint64_t r
 /// The record of one run of a cell, complete, with the layout and the drive that it is of.
 struct FilledRecord {
   FilledRecord(const StudyPlan& plan, std::size_t cell, std::uint64_t run)
-      : layout(plan.cells.at(cell), plan.columns, plan.drives->itinerary()), record(layout) {
+      : layout(plan.cells.at(cell), plan.columns, plan.drives->itinerary(),
+               run < plan.columns.full_runs ? Detail::full : Detail::usual),
+        record(layout) {
     plan.drives->generate(run, drive);
     fill_record(plan, cell, run, drive, record);
   }

@@ -47,7 +47,7 @@ std::vector<Ellipse> pose_ellipses_at(const MomentRows& moments, const Scans& fr
 /// Ancestors of a failed run are zeros behind its end, which is a particle like any other.
 ReplayParticles read_particles(const ResultFile& file, const StoredCell& cell, std::size_t run,
                                const RunRows& rows, const Scans& frames, std::size_t most) {
-  if (cell.particles == 0 || !cell.has("particle_pose")) return {};
+  if (cell.particles == 0 || !file.holds(cell, "particle_pose", run)) return {};
   std::vector<double> pose(file.scan_times().size() * cell.particles * 3);
   file.read(cell, "particle_pose", run, std::span(pose));
   return thin_particles({cell.particles, pose, rows.ancestor}, frames, most);
@@ -337,10 +337,10 @@ std::string shown(const Replay& replay) {
 }
 
 /// What to record to see more; empty where all is there.
-std::string wanted(const ResultFile& file, const Replay& replay) {
+std::string wanted(const ResultFile& file, std::size_t run) {
   const auto lacks = [&](const char* column, bool of_particles) {
     return std::ranges::any_of(file.cells(), [&](const StoredCell& cell) {
-      return !(of_particles && cell.particles == 0) && !cell.has(column);
+      return !(of_particles && cell.particles == 0) && !file.holds(cell, column, run);
     });
   };
   std::string more;
@@ -349,10 +349,11 @@ std::string wanted(const ResultFile& file, const Replay& replay) {
   if (lacks("ancestor", true)) more += ", ancestry";
   if (lacks("map_mean", false)) more += ", map";
   if (more.empty()) return "";
-  return "This file does not hold everything that can be replayed: add '" + more.substr(2) +
-         "' to record.columns of the study, or let montecarta replay " +
-         file.path().filename().string() + " --cell CELL --run " + std::to_string(replay.run) +
-         " -o ONE.h5 record all of one run, and report on that file.";
+  return "This file does not hold everything of this run that can be replayed (" + more.substr(2) +
+         "): give the study record.full_runs = 1 to store all of the first run, or let "
+         "montecarta replay " +
+         file.path().filename().string() + " --cell CELL --run " +
+         std::to_string(file.runs()[run]) + " -o ONE.h5 record it, and report on that file.";
 }
 
 }  // namespace
@@ -368,7 +369,7 @@ Section replay_section(const ResultFile& file, std::optional<std::uint64_t> run)
       "paths below show the same run.</p></noscript>\n" +
       html_data("replay-data", replay_json(replay)) + "</div>\n");
   section.add(std::vector{shown(replay)});
-  if (const std::string more = wanted(file, replay); !more.empty()) section.add(std::vector{more});
+  if (const std::string more = wanted(file, *index); !more.empty()) section.add(std::vector{more});
   return section;
 }
 

@@ -176,7 +176,7 @@ class SealOfResult : public ResultWriting {
   /// Ranges that are left open in the result at `path`.
   std::vector<ByteRange> open_ranges(const std::filesystem::path& path) const {
     const ResultDescription description = read_description(h5::open_file(path), path);
-    return written_later(find_slabs(path, description), description.runs.size());
+    return written_later(find_slabs(path, description));
   }
   std::string refusal(const std::filesystem::path& path) const {
     return message<StudyError>([&] { check_seal(path); });

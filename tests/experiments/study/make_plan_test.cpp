@@ -43,6 +43,19 @@ TEST(Plan, CarriesTheStudy) {
   EXPECT_EQ(plan.drives->itinerary().landmarks.size(), 35U);
 }
 
+TEST(Plan, OfFullRunsIsAnotherStudyAndOfNoneTheSame) {
+  const auto with_runs = [](const std::string& runs) {
+    return make_plan(parsed(with("[cells]", "[record]\nfull_runs = " + runs + "\n[cells]")));
+  };
+  const StudyPlan plain = make_plan(parsed(kGoodStudy)), none = with_runs("0"),
+                  two = with_runs("2");
+  EXPECT_EQ(plain.columns.full_runs, 0U);
+  EXPECT_EQ(none.resolved_text, plain.resolved_text);
+  EXPECT_EQ(two.columns.full_runs, 2U);
+  EXPECT_EQ(make_plan(parsed(two.resolved_text)).resolved_text, two.resolved_text);
+  EXPECT_NE(two.resolved_text, plain.resolved_text);
+}
+
 TEST(Plan, OfTheResolvedTextIsTheSame) {
   const std::string text =
       with("[cells]",

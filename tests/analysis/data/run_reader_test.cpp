@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "analysis/data/run_reader.hpp"
+
+#include "analysis/figures/ancestry_figure.hpp"
+#include "analysis/figures/path_figure.hpp"
+#include "analysis/metrics/study_analysis.hpp"
+#include "analysis/page/replay/replay.hpp"
+#include "analysis/tables/tables.hpp"
+#include "tests/analysis/synthetic_result.hpp"
+#include "tests/doubles/scratch_folder.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace montecarta::analysis {
+namespace {
+
+using testing::IsEmpty;
+using testing::Not;
+
+/// Poses of six runs, and all of the first two.
+class RunsInFull : public testing::Test {
+ protected:
+  static void store(const std::filesystem::path& path, std::uint64_t full_runs) {
+    write_synthetic_result(path, 6, 120, {}, [&](StudyPlan& plan) {
+      plan.columns = {.ancestry = false, .full_runs = full_runs};
+    });
+  }
+  RunsInFull() : file((store(folder / "out.h5", 2), folder / "out.h5")) {}
+
+  ScratchFolder folder;
+  ResultFile file;
+};
+
+TEST_F(RunsInFull, GiveAnAnalysisWhatEveryRunHas) {
+  const StoredCell& cell = file.cells()[0];
+  const RunReader reader(file, cell);
+  RunRows rows;
+  RunReader::Scratch scratch;
+  for (const std::size_t run : {0U, 3U}) {
+    reader.read(run, rows, scratch);
+    EXPECT_THAT(rows.spread.covariance, Not(IsEmpty()));
+    EXPECT_THAT(rows.ancestor, IsEmpty());
+    EXPECT_THAT(rows.particle_pose, IsEmpty());
+    EXPECT_THAT(rows.cloud.pose, IsEmpty());
+    EXPECT_FALSE(rows.final_map.has_value());
+  }
+}
+
+TEST_F(RunsInFull, GiveAFigureOfOneRunAllThatIsThere) {
+  const StoredCell& cell = file.cells()[0];
+  const std::size_t scans = file.scan_times().size();
+  const RunRows full = read_run(file, cell, 1), other = read_run(file, cell, 2);
+  EXPECT_EQ(full.ancestor.size(), scans * cell.particles);
+  EXPECT_EQ(full.particle_pose.size(), 3 * scans * cell.particles);
+  EXPECT_THAT(other.ancestor, IsEmpty());
+  EXPECT_EQ(StoredMap(file, cell, 1).scans(), scans);
+  EXPECT_EQ(StoredMap(file, cell, 2).scans(), 0U);
+  EXPECT_THAT(ancestry_figure(file, 1).data, Not(IsEmpty()));
+  EXPECT_THAT(ancestry_figure(file, 2).data, IsEmpty());
+  EXPECT_THAT(read_replay(file, 1).cells[0].particles.frames, Not(IsEmpty()));
+  EXPECT_THAT(read_replay(file, 2).cells[0].particles.frames, IsEmpty());
+}
+
+TEST_F(RunsInFull, ChangeNoTableOfTheStudy) {
+  store(folder / "plain.h5", 0);
+  const auto table_of = [](const ResultFile& of) {
+    StudyAnalysis study = analyze(of);
+    study.file.clear();
+    std::ostringstream table;
+    print_tables(table, study);
+    return table.str();
+  };
+  EXPECT_EQ(table_of(file), table_of(ResultFile(folder / "plain.h5")));
+}
+
+}  // namespace
+}  // namespace montecarta::analysis
