@@ -8,6 +8,7 @@
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/output/csv_file.hpp"
 #include "analysis/page/page.hpp"
+#include "analysis/page/replay/replay.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
 
@@ -116,11 +117,12 @@ std::vector<Section> arranged(std::vector<Section> sections, std::vector<Figure>
 
 /// All parts of the page.
 std::vector<Section> all_sections(const ResultFile& file, const StudyAnalysis& study,
-                                  const StudyComparison& comparison, const ReportOptions& options) {
+                                  const StudyComparison& comparison, const Replay& replay,
+                                  const ReportOptions& options) {
   std::vector<Section> sections = sections_of(study);
   sections.insert(sections.end(),
                   {title_section(study), verdict_cards(study), failure_section(study),
-                   replay_section(file, options.run), comparison_section(study, comparison)});
+                   replay_section(file, replay), comparison_section(study, comparison)});
   std::vector<Figure> figures = figures_of(study);
   figures.insert(figures.end(),
                  {path_figure(file, options.run), ancestry_figure(file, options.run)});
@@ -139,10 +141,14 @@ void write_report(const ResultFile& file, const fs::path& directory, const Repor
   const StudyAnalysis study = analyze(file, options.level, *options.parallel, options.within);
   const StudyComparison comparison =
       compare_study(study, study.cells.front().label, usual_scores(study.has_truth));
-  const std::vector<Section> sections = all_sections(file, study, comparison, options);
+  const Replay replay = chosen_replay(file, options.run);
+  const std::vector<Section> sections = all_sections(file, study, comparison, replay, options);
   write_csv(study, directory / "tables");
   write_comparison_csv(comparison, directory / "tables");
   write_page(study, sections, directory);
+  if (!replay.cells.empty()) {
+    write_text(directory / "figures" / "replay.svg", replay_still(replay));
+  }
   write_text(directory / "summary.md", markdown_page(study, sections, file.provenance()));
 }
 

@@ -37,12 +37,17 @@ StoredMap::StoredMap(const ResultFile& file, const StoredCell& cell, std::size_t
   file.read(cell, prefix + "covariance", run, std::span(covariance_));
 }
 
+std::optional<Ellipse> StoredMap::at(std::size_t scan, std::size_t l) const {
+  const std::size_t k = scan * landmarks_ + l;
+  if (seen_[k] == 0.0) return std::nullopt;
+  const double* P = covariance_.data() + 4 * k;
+  return two_sigma_ellipse(mean_[2 * k], mean_[2 * k + 1], P[0], P[2], P[3]);
+}
+
 std::vector<Ellipse> StoredMap::at(std::size_t scan) const {
   std::vector<Ellipse> ellipses;
-  for (std::size_t k = scan * landmarks_; k < (scan + 1) * landmarks_; ++k) {
-    if (seen_[k] == 0.0) continue;
-    const double* P = covariance_.data() + 4 * k;
-    ellipses.push_back(two_sigma_ellipse(mean_[2 * k], mean_[2 * k + 1], P[0], P[2], P[3]));
+  for (std::size_t l = 0; l < landmarks_; ++l) {
+    if (const auto ellipse = at(scan, l)) ellipses.push_back(*ellipse);
   }
   return ellipses;
 }
@@ -212,6 +217,7 @@ FigureData pose_ellipses(const StoredCell& cell, const RunRows& run) {
 
 FigureData map_data(const ResultFile& file, const StoredCell& cell, std::size_t run_index) {
   FigureData data{"map_" + cell.label + ".csv", kEllipseHeadings, {}};
+  if (!cell.has("map_seen") && !cell.has("final_map_seen")) return data;
   const StoredMap map(file, cell, run_index);
   if (map.scans() == 0) return data;
   for (const Ellipse& ellipse : map.at(map.scans() - 1)) data.rows.push_back(ellipse_row(ellipse));

@@ -36,7 +36,9 @@ class StoredMap {
   std::size_t scans() const { return scans_; }          ///< 1 where only the final map is stored
   bool is_final_only() const { return final_only_; }
 
-  /// Two-sigma ellipses of the landmarks that the filter has at a scan.
+  /// Two-sigma ellipse of landmark `l` at a scan; nullopt while the filter does not have it.
+  std::optional<Ellipse> at(std::size_t scan, std::size_t l) const;
+  /// Those of all landmarks that the filter has.
   std::vector<Ellipse> at(std::size_t scan) const;
 
  private:
@@ -83,7 +85,7 @@ FigureData path_data(const ResultFile& file, const StoredCell& cell, const RunRo
 /// Two-sigma ellipses of the pose at kPoseEllipses moments; no rows without covariance.
 FigureData pose_ellipses(const StoredCell& cell, const RunRows& run);
 /// Two-sigma ellipses of the landmarks that the filter has at the last scan; no rows where neither
-/// the map nor the final map is stored.
+/// the map nor the final map is stored of every run: what is stored of one is in its replay.
 FigureData map_data(const ResultFile& file, const StoredCell& cell, std::size_t run_index);
 /// (time, x, y) of up to some hundred fixes of the leading reference; no rows where there is none.
 FigureData fix_data(const ResultFile& file, std::size_t run_index);

@@ -7,9 +7,7 @@
 #include "engine/records/result_description.hpp"
 #include "engine/records/result_file.hpp"
 
-#include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +24,6 @@ Section title_section(const StudyAnalysis& study);
 Section verdict_cards(const StudyAnalysis& study);
 /// Which runs failed, and why.
 Section failure_section(const StudyAnalysis& study);
-/// A player that replays one run, chosen as chosen_run() does, as far as the file holds it.
-Section replay_section(const ResultFile& file, std::optional<std::uint64_t> run);
 /// Every cell beside the first one, and what each is worth; where two cells have truth.
 Section comparison_section(const StudyAnalysis& study, const StudyComparison& comparison);
 /// The notes of sections that have nothing else: what is not there, and what to record for it.

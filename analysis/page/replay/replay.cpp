@@ -2,9 +2,9 @@
 #include "analysis/page/replay/replay.hpp"
 
 #include "analysis/data/run_reader.hpp"
-#include "analysis/output/figure.hpp"
+#include "analysis/metrics/measured_run.hpp"
+#include "analysis/output/number_text.hpp"
 #include "analysis/page/html.hpp"
-#include "analysis/page/page.hpp"
 #include "engine/errors.hpp"
 
 #include <algorithm>
@@ -33,24 +33,43 @@ std::vector<double> component(const std::vector<double>& rows, std::size_t which
   return values;
 }
 
+/// The ellipse of two standard deviations grown to hold kReplayShare of a Gaussian.
+Ellipse grown(Ellipse ellipse) {
+  static const double factor = std::sqrt(-2.0 * std::log(1.0 - kReplayShare)) / 2.0;
+  ellipse.major *= factor;
+  ellipse.minor *= factor;
+  return ellipse;
+}
+
 std::vector<Ellipse> pose_ellipses_at(const MomentRows& moments, const Scans& frames) {
   std::vector<Ellipse> ellipses;
   if (moments.covariance.empty()) return ellipses;
   for (const std::size_t s : frames) {
     const double* P = moments.covariance.data() + 9 * s;
     ellipses.push_back(
-        two_sigma_ellipse(moments.mean[3 * s], moments.mean[3 * s + 1], P[0], P[3], P[4]));
+        grown(two_sigma_ellipse(moments.mean[3 * s], moments.mean[3 * s + 1], P[0], P[3], P[4])));
   }
   return ellipses;
 }
 
 /// Ancestors of a failed run are zeros behind its end, which is a particle like any other.
-ReplayParticles read_particles(const ResultFile& file, const StoredCell& cell, std::size_t run,
-                               const RunRows& rows, const Scans& frames, std::size_t most) {
-  if (cell.particles == 0 || !file.holds(cell, "particle_pose", run)) return {};
-  std::vector<double> pose(file.scan_times().size() * cell.particles * 3);
-  file.read(cell, "particle_pose", run, std::span(pose));
-  return thin_particles({cell.particles, pose, rows.ancestor}, frames, most);
+ReplayParticles read_particles(const StoredCell& cell, const RunRows& rows, const Scans& frames,
+                               std::size_t most) {
+  if (rows.particle_pose.empty()) return {};
+  return thin_particles({cell.particles, rows.particle_pose, rows.ancestor, rows.log_weight},
+                        frames, most);
+}
+
+/// The NEES of a complete run whose truth is known.
+void read_nees(const RunRows& rows, const StoredCell& cell, std::span<const double> times,
+               const Scans& frames, ReplayCell& replay) {
+  if (!replay.failure.empty() || rows.truth.empty()) return;
+  RunMetrics metrics;
+  metrics.measure(rows, cell.particles, times);
+  const NeesRows* nees = metrics.leading_nees();
+  if (nees == nullptr) return;
+  for (const std::size_t s : frames) replay.nees.push_back(nees->value.front()[s]);
+  replay.nees_band = nees_bounds(1, nees->dimension.front(), kReplayShare);
 }
 
 /// Why a run failed; empty where it is complete.
@@ -70,7 +89,8 @@ ReplayCell read_cell(const ResultFile& file, std::size_t index, std::size_t run,
   replay.y = component(moments.mean, 1, frames);
   replay.h = component(moments.mean, 2, frames);
   replay.pose = pose_ellipses_at(moments, frames);
-  replay.particles = read_particles(file, cell, run, rows, frames, size.particles);
+  read_nees(rows, cell, drive_met_by(file, file.runs()[run]).scan_times, frames, replay);
+  replay.particles = read_particles(cell, rows, frames, size.particles);
   replay.has_ancestry = !rows.ancestor.empty();
   replay.maps = read_maps(file, cell, run, frames, size.ellipses);
   return replay;
@@ -106,6 +126,27 @@ void read_truth(const ResultFile& file, std::size_t run, const Scans& frames, Re
   replay.h = component(rows, 2, frames);
 }
 
+/// [m] What is within reach of the ellipses in nine of ten frames: 1, 2 or 5 times a power of ten.
+double close_up_of(const Replay& replay) {
+  std::vector<double> reach;
+  for (const ReplayCell& cell : replay.cells) {
+    for (std::size_t f = 0; f < cell.x.size(); ++f) {
+      const double error =
+          replay.x.empty() ? 0.0 : std::hypot(cell.x[f] - replay.x[f], cell.y[f] - replay.y[f]);
+      reach.push_back(error + (cell.pose.empty() ? 0.0 : 0.5 * cell.pose[f].major));
+    }
+  }
+  std::erase_if(reach, [](double value) { return !std::isfinite(value); });
+  if (reach.empty()) return 1.0;
+  std::ranges::sort(reach);
+  const double wanted = std::clamp(reach[reach.size() * 9 / 10], 0.1, 1e6);
+  const double power = std::pow(10.0, std::floor(std::log10(wanted)));
+  for (const double step : {1.0, 2.0, 5.0}) {
+    if (step * power >= wanted) return step * power;
+  }
+  return 10.0 * power;
+}
+
 }  // namespace
 
 Replay read_replay(const ResultFile& file, std::size_t run, const ReplaySize& size) {
@@ -125,20 +166,58 @@ Replay read_replay(const ResultFile& file, std::size_t run, const ReplaySize& si
     const ReplaySize share = share_of(size, cells.size(), frames.size());
     replay.cells.push_back(read_cell(file, c, run, frames, share));
   }
+  replay.close_up = close_up_of(replay);
   return replay;
 }
+
+namespace {
+
+/// [m] Nobody sees less in a drawing of the whole map: a thousandth of it, half a pixel.
+double visible_change(const ResultFile& file, const StoredMap& stored, std::size_t run,
+                      std::size_t last_scan) {
+  Bounds bounds;
+  for (const auto& row : landmark_data(file, run).rows) bounds.include(row[0], row[1]);
+  if (bounds.empty()) {
+    for (const Ellipse& ellipse : stored.at(last_scan)) bounds.include(ellipse.x, ellipse.y);
+  }
+  if (bounds.empty()) return 0.0;
+  return 1e-3 * std::max(bounds.right - bounds.left, bounds.high - bounds.low);
+}
+
+bool looks_alike(const Ellipse& a, const Ellipse& b, double least) {
+  return std::abs(a.x - b.x) < least && std::abs(a.y - b.y) < least &&
+         std::abs(a.major - b.major) < least && std::abs(a.minor - b.minor) < least;
+}
+
+/// What has changed since `shown`, which is brought up to date.
+std::vector<ReplayMap::Landmark> changes_at(const StoredMap& stored, std::size_t scan, double least,
+                                            std::vector<std::optional<Ellipse>>& shown) {
+  std::vector<ReplayMap::Landmark> changed;
+  for (std::size_t l = 0; l < shown.size(); ++l) {
+    const auto ellipse = stored.at(scan, l);
+    if (!ellipse || (shown[l] && looks_alike(*shown[l], grown(*ellipse), least))) continue;
+    shown[l] = grown(*ellipse);
+    changed.push_back({static_cast<std::uint32_t>(l), *shown[l]});
+  }
+  return changed;
+}
+
+}  // namespace
 
 std::vector<ReplayMap> read_maps(const ResultFile& file, const StoredCell& cell, std::size_t run,
                                  std::span<const std::size_t> frame_scans, std::size_t ellipses) {
   const StoredMap stored(file, cell, run);
   if (stored.scans() == 0) return {};
   const std::size_t frames = frame_scans.size();
-  if (stored.is_final_only()) return {{frames - 1, stored.at(0)}};
+  std::vector<std::optional<Ellipse>> shown(stored.landmarks());
+  if (stored.is_final_only()) return {{frames - 1, changes_at(stored, 0, 0.0, shown)}};
+  const double least = visible_change(file, stored, run, frame_scans.back());
   std::vector<ReplayMap> maps;
   const std::size_t count = std::clamp<std::size_t>(ellipses / stored.landmarks(), 1, frames);
   for (std::size_t k = 1; k <= count; ++k) {
     const std::size_t frame = k * frames / count - 1;
-    maps.push_back({frame, stored.at(frame_scans[frame])});
+    auto changed = changes_at(stored, frame_scans[frame], least, shown);
+    if (!changed.empty()) maps.push_back({frame, std::move(changed)});
   }
   return maps;
 }
@@ -187,6 +266,14 @@ void tie_to_parents(const StoredParticles& stored, std::span<const std::size_t> 
   }
 }
 
+/// Of the particles that are shown, by the heaviest of all.
+void add_weights(const StoredParticles& stored, std::size_t scan, ReplayParticles::Frame& frame) {
+  if (stored.log_weight.empty()) return;
+  const auto all = stored.log_weight.subspan(scan * stored.count, stored.count);
+  const double heaviest = *std::ranges::max_element(all);
+  for (const std::uint32_t i : frame.shown) frame.weight.push_back(std::exp(all[i] - heaviest));
+}
+
 }  // namespace
 
 ReplayParticles thin_particles(const StoredParticles& stored, std::span<const std::size_t> scans,
@@ -203,109 +290,9 @@ ReplayParticles thin_particles(const StoredParticles& stored, std::span<const st
       particles.frames[f].x.push_back(pose[0]);
       particles.frames[f].y.push_back(pose[1]);
     }
+    add_weights(stored, scans[f], particles.frames[f]);
   }
   return particles;
-}
-
-namespace {
-
-constexpr int kPlaceDigits = 6;  // a millimetre in 300 m
-constexpr int kSizeDigits = 3;
-
-Json json_of(const std::vector<std::pair<double, double>>& points) {
-  Json array = Json::array();
-  for (const auto& [x, y] : points) {
-    array.push_back(rounded(x));
-    array.push_back(rounded(y));
-  }
-  return array;
-}
-
-/// Diameters [m] and angle [deg].
-void add_size(const Ellipse& e, Json& array) {
-  for (const double value : {e.major, e.minor, e.angle}) {
-    array.push_back(rounded(value, kSizeDigits));
-  }
-}
-
-/// Places relative to the estimate in whole units, which are short to write.
-Json relative_places(const std::vector<double>& places, double centre, double unit) {
-  Json array = Json::array();
-  for (const double place : places) {
-    const double units = std::round((place - centre) / unit);
-    array.push_back(std::abs(units) < 1e9 ? Json(static_cast<int>(units)) : rounded(units, 9));
-  }
-  return array;
-}
-
-/// A power of ten [m], a hundred thousandth of the greatest coordinate or less.
-double unit_of(const ReplayCell& cell) {
-  double greatest = 1.0;
-  for (const auto* values : {&cell.x, &cell.y}) {
-    for (const double value : *values) {
-      if (std::isfinite(value)) greatest = std::max(greatest, std::abs(value));
-    }
-  }
-  return std::pow(10.0, std::floor(std::log10(greatest)) - 5.0);
-}
-
-void add_particles(const ReplayCell& cell, Json& json) {
-  const double unit = unit_of(cell);
-  json["particles"] = cell.particles.all;
-  json["unit"] = rounded(unit);
-  Json& clouds = json["clouds"] = Json::array();
-  for (std::size_t f = 0; f < cell.particles.frames.size(); ++f) {
-    const ReplayParticles::Frame& frame = cell.particles.frames[f];
-    Json cloud = {{"x", relative_places(frame.x, cell.x[f], unit)},
-                  {"y", relative_places(frame.y, cell.y[f], unit)}};
-    if (!frame.parent.empty()) cloud["parent"] = frame.parent;
-    clouds.push_back(std::move(cloud));
-  }
-}
-
-/// Centre [m], diameters [m] and angle [deg], five numbers a landmark.
-Json json_of(const ReplayMap& map) {
-  Json landmarks = Json::array();
-  for (const Ellipse& e : map.landmarks) {
-    landmarks.push_back(rounded(e.x));
-    landmarks.push_back(rounded(e.y));
-    add_size(e, landmarks);
-  }
-  return {{"frame", map.frame}, {"landmarks", std::move(landmarks)}};
-}
-
-void add_path(const std::vector<double>& x, const std::vector<double>& y,
-              const std::vector<double>& h, Json& json) {
-  json["x"] = rounded(x, kPlaceDigits);
-  json["y"] = rounded(y, kPlaceDigits);
-  json["h"] = rounded(h, kSizeDigits + 1);
-}
-
-Json json_of(const ReplayCell& cell) {
-  Json json = {{"label", cell.label},
-               {"failure", cell.failure},
-               {"colour", line_colour(cell.style)},
-               {"ancestry", cell.has_ancestry}};
-  add_path(cell.x, cell.y, cell.h, json);
-  Json& pose = json["pose"] = Json::array();
-  for (const Ellipse& e : cell.pose) add_size(e, pose);
-  add_particles(cell, json);
-  Json& maps = json["maps"] = Json::array();
-  for (const ReplayMap& map : cell.maps) maps.push_back(json_of(map));
-  return json;
-}
-
-}  // namespace
-
-std::string replay_json(const Replay& replay) {
-  Json json = {{"run", replay.run}, {"times", rounded(replay.times, kPlaceDigits)}};
-  json["truth"] = Json::object();
-  add_path(replay.x, replay.y, replay.h, json["truth"]);
-  json["landmarks"] = json_of(replay.landmarks);
-  json["fixes"] = json_of(replay.fixes);
-  Json& cells = json["cells"] = Json::array();
-  for (const ReplayCell& cell : replay.cells) cells.push_back(json_of(cell));
-  return script_text(json);
 }
 
 namespace {
@@ -320,20 +307,28 @@ bool has_particles(const ReplayCell& cell) { return !cell.particles.frames.empty
 
 /// What the player shows of this file.
 std::string shown(const Replay& replay) {
-  std::string words = "Run " + std::to_string(replay.run) + ", cell by cell: the " +
-                      (replay.x.empty() ? "" : "vehicle in grey and the ") +
-                      "estimate in colour, with the paths they came along";
-  if (any(replay, [](const ReplayCell& cell) { return !cell.pose.empty(); })) {
-    words += "; the ellipse holds two standard deviations of the position";
-  }
-  if (any(replay, has_particles)) words += "; dots are particles";
+  std::string words = "Run " + std::to_string(replay.run) + ", all cells on the same drive: the " +
+                      (replay.x.empty() ? "" : "true path in grey and the ") +
+                      "estimate in colour; ellipses hold " + level_text(kReplayShare) +
+                      " of the probability of a position or a landmark (true ones are crosses)";
+  if (any(replay, has_particles)) words += "; dots are particles, the paler the less they weigh";
   if (any(replay,
           [](const ReplayCell& cell) { return has_particles(cell) && cell.has_ancestry; })) {
     words +=
         ", and the threads behind them the ways their ancestors came: where all threads run "
         "together, the particles share one past and cannot doubt it";
   }
-  return words + ". Where the filter is consistent, the vehicle is seldom outside of the ellipse.";
+  words += ". The square below shows " + exact_text(2.0 * replay.close_up) +
+           " m about the vehicle. Where a filter is consistent, the vehicle is outside of the "
+           "ellipse in one of twenty scans";
+  if (any(replay, [](const ReplayCell& cell) { return !cell.nees.empty(); })) {
+    words += ", and the NEES of the run as often outside of the grey band";
+  }
+  return words + ".";
+}
+
+std::size_t held_index(const ResultFile& file, std::uint64_t run) {
+  return static_cast<std::size_t>(std::ranges::find(file.runs(), run) - file.runs().begin());
 }
 
 /// What to record to see more; empty where all is there.
@@ -358,18 +353,21 @@ std::string wanted(const ResultFile& file, std::size_t run) {
 
 }  // namespace
 
-Section replay_section(const ResultFile& file, std::optional<std::uint64_t> run) {
+Replay chosen_replay(const ResultFile& file, std::optional<std::uint64_t> run) {
   const auto index = chosen_run(file, run);
-  if (!index) return {};
-  const Replay replay = read_replay(file, *index);
+  return index ? read_replay(file, *index) : Replay{};
+}
+
+Section replay_section(const ResultFile& file, const Replay& replay) {
   if (replay.cells.empty()) return {};
   Section section{"replay", "What happened in one run?"};
   section.add_html(
-      "<div class=\"player\">\n<noscript><p class=\"soft\">The player needs scripts; the "
-      "paths below show the same run.</p></noscript>\n" +
+      "<div class=\"player\">\n<noscript><p class=\"soft\">The player needs scripts; its last "
+      "moment is drawn in <a href=\"figures/replay.svg\">figures/replay.svg</a>.</p></noscript>\n" +
       html_data("replay-data", replay_json(replay)) + "</div>\n");
   section.add(std::vector{shown(replay)});
-  if (const std::string more = wanted(file, *index); !more.empty()) section.add(std::vector{more});
+  const std::string more = wanted(file, held_index(file, replay.run));
+  if (!more.empty()) section.add(std::vector{more});
   return section;
 }
 

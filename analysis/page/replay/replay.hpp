@@ -2,10 +2,13 @@
 #pragma once
 
 #include "analysis/figures/path_figure.hpp"
+#include "analysis/metrics/verdict_table.hpp"
+#include "analysis/statistics/nees_bounds.hpp"
 #include "engine/records/result_file.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -21,16 +24,24 @@ struct ReplayParticles {
     std::vector<std::uint32_t> parent;  ///< their parents' places in the frame before; empty where
                                         ///< no ancestry is stored, and in the first frame
     std::vector<double> x, y;           ///< [m]
+    std::vector<double> weight;         ///< of 1, the heaviest of the frame's; empty: not stored
   };
   std::size_t all = 0;  ///< particles of the cell
   std::vector<Frame> frames;
 };
 
-/// Landmarks that the filter has, as ellipses of two standard deviations.
+/// What becomes of the map at a frame: the landmarks that are new or have changed.
 struct ReplayMap {
-  std::size_t frame = 0;  ///< from which it holds
-  std::vector<Ellipse> landmarks;
+  struct Landmark {
+    std::uint32_t row = 0;  ///< which one it is
+    Ellipse ellipse;        ///< kReplayShare of its probability
+  };
+  std::size_t frame = 0;
+  std::vector<Landmark> changed;
 };
+
+/// The probability that an ellipse of a replay holds.
+inline constexpr double kReplayShare = 0.95;
 
 /// What one cell thought at every frame. A failed run ends in NaN.
 struct ReplayCell {
@@ -38,9 +49,11 @@ struct ReplayCell {
   std::size_t style = 0;                       ///< for line_colour()
   std::string failure = {};                    ///< why the run failed; empty where it is complete
   std::vector<double> x = {}, y = {}, h = {};  ///< [m], [rad] estimate
-  std::vector<Ellipse> pose = {};              ///< two standard deviations; empty: not stored
+  std::vector<Ellipse> pose = {};              ///< kReplayShare of it; empty: not stored
+  std::vector<double> nees = {};               ///< by which the verdict is; empty: not known
+  Interval nees_band = {};                     ///< kReplayShare of a consistent filter's
   ReplayParticles particles = {};              ///< without frames: not stored
-  std::vector<ReplayMap> maps = {};            ///< by frame; empty: not stored
+  std::vector<ReplayMap> maps = {};            ///< increasing frames; empty: not stored
   bool has_ancestry = false;
 };
 
@@ -52,6 +65,7 @@ struct Replay {
   std::vector<std::pair<double, double>> landmarks = {};  ///< [m] true ones
   std::vector<std::pair<double, double>> fixes = {};      ///< [m] of a recorded drive's reference
   std::vector<ReplayCell> cells = {};
+  double close_up = 1.0;  ///< [m] half the width of a picture about the vehicle
 };
 
 /// What is stored of a cell's particles in one run.
@@ -59,6 +73,7 @@ struct StoredParticles {
   std::size_t count = 0;                    ///< particles
   std::span<const double> pose;             ///< {scan, particle, 3}
   std::span<const std::uint32_t> ancestor;  ///< {scan, particle}; empty: not stored
+  std::span<const double> log_weight = {};  ///< likewise
 };
 
 /// At most `most` particles a frame; `scans`, increasing, are those of the frames. The last frame
@@ -67,24 +82,35 @@ struct StoredParticles {
 ReplayParticles thin_particles(const StoredParticles& stored, std::span<const std::size_t> scans,
                                std::size_t most);
 
-/// How much of a run a page can carry: some megabytes over all cells.
+/// How much of a run a page can carry: some hundred thousand bytes over all cells.
 struct ReplaySize {
-  std::size_t frames = 400;         ///< at most
-  std::size_t particles = 100;      ///< of a cell in a frame, at most
-  std::size_t positions = 300'000;  ///< of particles, over all cells and frames
-  std::size_t ellipses = 30'000;    ///< of landmarks, over all cells and frames
+  std::size_t frames = 300;        ///< at most
+  std::size_t particles = 100;     ///< of a cell in a frame, at most
+  std::size_t positions = 24'000;  ///< of particles, over all cells and frames
+  std::size_t ellipses = 60'000;   ///< of landmarks, over all cells and frames
 };
 
 /// Reads run index `run` of every cell that completed it or failed in it, thinned in time to equal
 /// steps from scan to scan.
 Replay read_replay(const ResultFile& file, std::size_t run, const ReplaySize& size = {});
 
-/// The landmarks a cell had, at as many of the frames, evenly, as `ellipses` in all allow; where
-/// only the final map is stored that one, at the last frame; else nothing.
+/// How the map of a cell came to be, at as many of the frames, evenly, as `ellipses` in all allow:
+/// a landmark counts as changed once a drawing would show it; where only the final map is stored
+/// that one, at the last frame; else nothing.
 std::vector<ReplayMap> read_maps(const ResultFile& file, const StoredCell& cell, std::size_t run,
                                  std::span<const std::size_t> frame_scans, std::size_t ellipses);
 
 /// A run as the page's player reads it (page/script/replay.js).
 std::string replay_json(const Replay& replay);
+
+/// The last moment of a replay as a drawing (SVG): of the first cells what the player shows of
+/// them.
+std::string replay_still(const Replay& replay);
+
+/// The run that chosen_run() chooses; without cells where there is none.
+Replay chosen_replay(const ResultFile& file, std::optional<std::uint64_t> run);
+
+/// A player of it; empty where it has no cells.
+Section replay_section(const ResultFile& file, const Replay& replay);
 
 }  // namespace montecarta::analysis

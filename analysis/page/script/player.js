@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Plays a stored run: buttons, keys and the clock.
+// Plays a stored run, cell beside cell: buttons, keys and the one clock of them all.
 
 const WANTED_SECONDS = 30;  // that a run takes to play unless told otherwise
+const MOST_PANELS = 4;
 
 class Player {
   constructor(parent, replay) {
+    parent.classList.add("has-live");
     this.replay = replay;
     this.cells = replay.cells.map((data) => new ReplayedCell(data));
     this.camera = new Camera(boundsOf(replay));
     this.frame = 0;
     this.playing = false;
-    this.addControls(htmlElement("div", {class: "live controls"}, parent));
-    this.canvas = htmlElement("canvas", {class: "scene", tabindex: 0, role: "img",
-      "aria-label": "The vehicle, what the filter thinks, and the landmarks"}, parent);
-    this.addLayers(htmlElement("div", {class: "live layers"}, parent));
-    this.scene = new Scene(this.canvas, replay, this.camera);
-    new Gestures(this.canvas, this, "move");
-    parent.addEventListener("keydown", (event) => this.key(event));
-    new ResizeObserver(() => this.layOut()).observe(parent);
+    const live = htmlElement("div", {class: "live"}, parent);
+    this.addControls(htmlElement("div", {class: "controls"}, live));
+    this.addPanels(live);
+    this.addLayers(htmlElement("div", {class: "layers"}, live));
+    live.addEventListener("keydown", (event) => this.key(event));
+    new ResizeObserver(() => this.layOut()).observe(live);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
-    this.choose(0);
-    this.layOut();
+    this.show(this.panels.slice(0, MOST_PANELS));
   }
 
   addControls(bar) {
@@ -30,10 +29,6 @@ class Player {
       max: this.replay.times.length - 1, "aria-label": "time"}, bar);
     this.slider.addEventListener("input", () => this.seek(Number(this.slider.value)));
     this.clock = htmlElement("output", {class: "clock"}, bar);
-    this.chooser = htmlElement("select", {"aria-label": "cell"}, bar);
-    this.cells.forEach(({data}, c) => htmlElement("option", {value: c,
-      text: data.failure ? `${data.label} (failed)` : data.label}, this.chooser));
-    this.chooser.addEventListener("change", () => this.choose(Number(this.chooser.value)));
     this.addSpeeds(bar);
   }
 
@@ -50,15 +45,56 @@ class Player {
     this.pace.value = String(first);
   }
 
-  /** What can be shown or left out, as far as the file holds it for any cell. */
+  addPanels(parent) {
+    const axis = this.cells.some((cell) => cell.hasNees) ? neesAxis(this.cells) : null;
+    const panels = htmlElement("div", {class: "panels"}, parent);
+    this.chooser = htmlElement("div", {class: "legend", role: "group", "aria-label": "cells"});
+    this.panels = this.cells.map((cell) => {
+      const panel = new ReplayPanel(panels, cell, this.replay, this.camera, axis);
+      new Gestures(panel.canvas, this, "move");
+      panel.button = this.addChoice(panel);
+      return panel;
+    });
+    this.chooser.hidden = this.panels.length < 2;
+  }
+
+  addChoice(panel) {
+    const {label, failure, colour} = panel.cell.data;
+    const button = htmlElement("button", {type: "button", "data-cell": label,
+      text: failure ? `${label} (failed)` : label}, this.chooser);
+    button.style.borderColor = colour;
+    button.addEventListener("click", () => this.choose(panel));
+    return button;
+  }
+
+  /** Shows a cell, in place of the one that was chosen first where there are too many; or hides
+   *  it, unless it is the last. */
+  choose(panel) {
+    const others = this.shown.filter((one) => one !== panel);
+    if (others.length === this.shown.length) this.show([...others, panel].slice(-MOST_PANELS));
+    else if (others.length > 0) this.show(others);
+  }
+
+  show(panels) {
+    this.shown = panels;
+    for (const panel of this.panels) {
+      panel.element.hidden = !panels.includes(panel);
+      panel.button.setAttribute("aria-pressed", String(!panel.element.hidden));
+    }
+    this.width = null;
+    this.layOut();
+  }
+
+  /** What can be shown or left out: cells, and what the file holds of any of them. */
   addLayers(bar) {
+    bar.append(this.chooser);
     const {cells, replay} = this;
     const names = {
       truth: replay.truth.x.length > 0 && "true path",
-      ellipse: cells.some(({data}) => data.pose.length > 0) && "2 sigma of the position",
+      ellipse: cells.some(({data}) => data.pose.length > 0) && "95 % of the position",
       particles: cells.some((cell) => cell.hasParticles) && "particles",
       ancestry: cells.some((cell) => cell.hasParticles && cell.data.ancestry) && "ancestry",
-      map: cells.some(({data}) => data.maps.length > 0) && "map",
+      map: cells.some(({data}) => data.maps.length > 0) && "map, 95 % of each landmark",
       follow: "follow the vehicle",
     };
     this.layers = {};
@@ -66,7 +102,6 @@ class Player {
       this.layers[name] = Boolean(words) && name !== "follow";
       if (words) this.addLayer(name, words, bar);
     }
-    this.note = htmlElement("span", {class: "soft"}, bar);
   }
 
   addLayer(name, words, bar) {
@@ -87,45 +122,30 @@ class Player {
     if (this.layers.follow) this.camera.zoom_factor = 10;
   }
 
-  choose(c) {
-    this.cell = this.cells[c];
+  layOut() {
+    const width = this.slider.parentElement.clientWidth;
+    if (width === this.width || width === 0) return;
+    this.width = width;
+    for (const panel of this.shown) panel.layOut();
     this.draw();
   }
 
-  layOut() {
-    const width = this.canvas.parentElement.clientWidth;
-    if (width === this.width) return;
-    this.width = width;
-    const height = clamp(width * Camera.aspect(this.camera.bounds), 240, width < 600 ? 420 : 560);
-    const sharp = devicePixelRatio || 1;
-    fill(this.canvas, {width: Math.round(width * sharp), height: Math.round(height * sharp)});
-    this.canvas.style.height = `${height}px`;
-    this.camera.resize(width, height);
-    this.draw();
+  /** Where all cameras look that follow: at the vehicle, or else where the first cell takes it. */
+  here() {
+    const {truth} = this.replay;
+    if (truth.x.length > 0) return {x: truth.x[this.frame], y: truth.y[this.frame]};
+    return this.shown[0].cell.poseAt(this.frame);
   }
 
   draw() {
     if (!this.camera.width) return;
     const {times} = this.replay;
-    const here = this.cell.poseAt(this.frame);
+    const here = this.here();
     if (this.layers.follow && here) this.camera.centre = here;
-    this.scene.draw(this.cell, this.frame, this.layers);
+    for (const panel of this.shown) panel.draw(this.frame, this.layers);
     this.slider.value = String(this.frame);
     this.clock.textContent = `${times[this.frame].toFixed(1)} s of ${times.at(-1).toFixed(1)} s`;
     this.button.textContent = this.playing ? "Pause" : "Play";
-    this.note.textContent = this.sayMore();
-  }
-
-  sayMore() {
-    const {data, end} = this.cell;
-    if (data.failure && this.frame >= end - 1) return data.failure;
-    if (!this.cell.hasParticles) return "";
-    const shown = data.clouds[this.frame].x.length;
-    const seen = shown < data.particles ? `${shown} of ${data.particles} particles shown` :
-      `${shown} particles`;
-    const roots = this.cell.ancestorsAt(this.frame, this.frame);
-    return roots === null ? seen : `${seen}; at the start they had ${roots} ancestor${
-      roots === 1 ? "" : "s"}`;
   }
 
   seek(frame) {
@@ -159,9 +179,9 @@ class Player {
     requestAnimationFrame((next) => this.tick(next));
   }
 
-  /** Space plays, arrows step, on the picture and its slider; elsewhere keys mean what they do. */
+  /** Space plays, arrows step, on a picture and the slider; elsewhere keys mean what they do. */
   key(event) {
-    if (event.target !== this.canvas && event.target !== this.slider) return;
+    if (!event.target.matches(".scene") && event.target !== this.slider) return;
     const many = event.shiftKey ? 10 : 1;
     const actions = {
       " ": () => this.toggle(),

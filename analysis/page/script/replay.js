@@ -1,11 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a stored run says about any moment of it.
 
+const DIGITS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz-_";
+
+/** A number of base 64. */
+function numberOf(digits) {
+  return [...digits].reduce((number, digit) => 64 * number + DIGITS.indexOf(digit), 0);
+}
+
+/** Metres from the estimate; 0 stands for what is no number. */
+function offset(digits, size) {
+  const number = numberOf(digits);
+  return number === 0 ? NaN : (number - 2048) / 2047 * size;
+}
+
 /** A cell of a replayed run: the page's numbers as things to draw, in metres and radians. */
 class ReplayedCell {
   constructor(data) {
     this.data = data;
     this.frames = data.x.length;
+    this.clouds = data.clouds.map(({size, dots, parent, weight}) => ({
+      offsets: dots.match(/..../g).map((digits) => [offset(digits.slice(0, 2), size),
+                                                    offset(digits.slice(2), size)]),
+      parent: parent?.match(/../g).map(numberOf),
+      darkness: weight && [...weight].map((digit) => numberOf(digit) / 63),
+    }));
   }
 
   /** The frames that there are: a failed run ends early. */
@@ -27,15 +46,24 @@ class ReplayedCell {
   }
 
   get hasParticles() {
-    return this.data.clouds.length > 0;
+    return this.clouds.length > 0;
+  }
+
+  get hasNees() {
+    return this.data.nees.length > 0;
   }
 
   /** Particles as [[x, y], ...]. */
   cloudAt(f) {
-    const {clouds, unit} = this.data;
     const centre = this.poseAt(f);
-    if (!centre || !clouds[f]) return [];
-    return clouds[f].x.map((dx, i) => [centre.x + unit * dx, centre.y + unit * clouds[f].y[i]]);
+    if (!centre || !this.clouds[f]) return [];
+    return this.clouds[f].offsets.map(([dx, dy]) => [centre.x + dx, centre.y + dy]);
+  }
+
+  /** How dark each particle is drawn, from 0 to 1: the root of its weight by the heaviest's. */
+  darknessAt(f) {
+    const {darkness} = this.clouds[f];
+    return (i) => darkness ? darkness[i] : 1;
   }
 
   /** The ways of the present particles' ancestors: [[from, to], ...], each way once. */
@@ -44,7 +72,7 @@ class ReplayedCell {
     let alive = this.cloudAt(f).map((_, i) => i);
     let cloud = this.cloudAt(f);
     for (; f > 0 && alive.length > 0; --f) {
-      const {parent} = this.data.clouds[f];
+      const {parent} = this.clouds[f];
       if (!parent) break;
       const before = this.cloudAt(f - 1);
       for (const i of alive) ways.push([before[parent[i]], cloud[i]]);
@@ -58,23 +86,24 @@ class ReplayedCell {
   ancestorsAt(f, back) {
     let alive = this.cloudAt(f).map((_, i) => i);
     for (const last = Math.max(f - back, 0); f > last; --f) {
-      const {parent} = this.data.clouds[f];
+      const {parent} = this.clouds[f];
       if (!parent) return null;
       alive = [...new Set(alive.map((i) => parent[i]))];
     }
     return alive.length;
   }
 
-  /** The last map not later than frame `f`, as ellipses. */
+  /** The map at frame `f`, as ellipses: each landmark as it was when it last changed. */
   mapAt(f) {
-    const map = this.data.maps.findLast(({frame}) => frame <= f);
-    if (!map) return [];
-    const ellipses = [];
-    for (let k = 0; k < map.landmarks.length; k += 5) {
-      const [x, y, major, minor, angle] = map.landmarks.slice(k, k + 5);
-      ellipses.push({x, y, major, minor, angle});
+    const ellipses = new Map();
+    for (const {frame, landmarks} of this.data.maps) {
+      if (frame > f) break;
+      for (let k = 0; k < landmarks.length; k += 6) {
+        const [row, x, y, major, minor, angle] = landmarks.slice(k, k + 6);
+        ellipses.set(row, {x, y, major, minor, angle});
+      }
     }
-    return ellipses;
+    return [...ellipses.values()];
   }
 }
 

@@ -1,35 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Draws one moment of a run.
+// Draws one moment of a run on a canvas.
 
-class Scene {
-  constructor(canvas, replay, camera) {
+/** A canvas for sharp drawings of any size, in pixels of the page. */
+class Paper {
+  constructor(canvas) {
     this.canvas = canvas;
-    this.replay = replay;
-    this.camera = camera;
     this.pen = canvas.getContext("2d");
   }
 
-  /** Colours of the page, light or dark. */
-  colours() {
-    const style = getComputedStyle(this.canvas);
-    const [text, line, page] = ["--text", "--line", "--page"].map((name) =>
-      style.getPropertyValue(name).trim());
-    return {text, line, page, truth: "#999999"};
+  resize(width, height) {
+    const sharp = devicePixelRatio || 1;
+    fill(this.canvas, {width: Math.round(width * sharp), height: Math.round(height * sharp)});
+    this.canvas.style.height = `${height}px`;
+    Object.assign(this, {width, height});
   }
 
-  draw(cell, f, layers) {
-    this.colour = this.colours();
+  /** Empty again, in the colours of the page, light or dark. */
+  clear() {
+    const style = getComputedStyle(this.canvas);
+    const [text, soft, line, page] = ["--text", "--soft", "--line", "--page"].map((name) =>
+      style.getPropertyValue(name).trim());
+    this.colour = {text, soft, line, page, truth: "#999999"};
     const sharp = devicePixelRatio || 1;
     this.pen.setTransform(sharp, 0, 0, sharp, 0, 0);
-    this.pen.clearRect(0, 0, this.camera.width, this.camera.height);
-    this.drawSurroundings(layers);
-    if (layers.map) this.drawEllipses(cell.mapAt(f), cell.data.colour, 1);
-    if (layers.truth) this.drawPath(this.replay.truth, f, this.colour.truth, 3);
-    if (layers.ancestry) this.drawLineages(cell, f);
-    this.drawPath(cell.data, Math.min(f, cell.end - 1), cell.data.colour, 1.6);
-    if (layers.particles) this.drawCloud(cell, f);
-    this.drawPresent(cell, f, layers);
-    this.drawScale();
+    this.pen.clearRect(0, 0, this.width, this.height);
+    this.pen.lineJoin = "round";
   }
 
   line(colour, width, alpha = 1) {
@@ -38,29 +33,54 @@ class Scene {
     this.pen.lineWidth = width;
     this.pen.globalAlpha = alpha;
   }
+}
+
+class Scene {
+  /** `size` of vehicles, dots and lines, by the usual. */
+  constructor(canvas, replay, camera, size = 1) {
+    this.paper = new Paper(canvas);
+    this.pen = this.paper.pen;
+    this.replay = replay;
+    this.camera = camera;
+    this.size = size;
+  }
+
+  draw(cell, f, layers) {
+    this.paper.clear();
+    this.drawSurroundings(layers);
+    if (layers.map) this.drawEllipses(cell.mapAt(f), cell.data.colour);
+    if (layers.truth) this.drawPath(this.replay.truth, f, this.paper.colour.truth, 2.4, 0.75);
+    if (layers.ancestry) this.drawLineages(cell, f);
+    this.drawPath(cell.data, Math.min(f, cell.end - 1), cell.data.colour, 1.3);
+    const ellipse = layers.ellipse && cell.ellipseAt(f);
+    if (ellipse) this.drawEllipses([ellipse], cell.data.colour);
+    if (layers.particles) this.drawCloud(cell, f);
+    this.drawVehicles(cell, f, layers);
+    this.drawScale();
+  }
 
   drawSurroundings(layers) {
-    const {camera, pen} = this;
+    const {camera, pen, paper} = this;
     const {truth, landmarks, fixes} = this.replay;
-    if (layers.truth) this.drawPath(truth, truth.x.length - 1, this.colour.line, 1);
-    this.line(this.colour.truth, 1, 0.7);
+    if (layers.truth) this.drawPath(truth, truth.x.length - 1, paper.colour.line, 1);
+    paper.line(paper.colour.truth, 1, 0.7);
     for (let k = 0; k < fixes.length; k += 2) {
       pen.fillRect(camera.x(fixes[k]) - 1, camera.y(fixes[k + 1]) - 1, 2, 2);
     }
-    this.line(this.colour.text, 1, 0.8);
+    paper.line(paper.colour.text, 1, 0.55);
     pen.beginPath();
     for (let k = 0; k < landmarks.length; k += 2) {
       const x = camera.x(landmarks[k]), y = camera.y(landmarks[k + 1]);
-      pen.moveTo(x - 3, y);
-      pen.lineTo(x + 3, y);
-      pen.moveTo(x, y - 3);
-      pen.lineTo(x, y + 3);
+      pen.moveTo(x - 2.5, y);
+      pen.lineTo(x + 2.5, y);
+      pen.moveTo(x, y - 2.5);
+      pen.lineTo(x, y + 2.5);
     }
     pen.stroke();
   }
 
-  drawPath({x, y}, last, colour, width) {
-    this.line(colour, width);
+  drawPath({x, y}, last, colour, width, alpha = 1) {
+    this.paper.line(colour, width * this.size, alpha);
     this.pen.beginPath();
     for (let f = 0; f <= last && f < x.length; ++f) {
       if (x[f] !== null) this.pen.lineTo(this.camera.x(x[f]), this.camera.y(y[f]));
@@ -70,7 +90,7 @@ class Scene {
 
   drawLineages(cell, f) {
     const {camera, pen} = this;
-    this.line(cell.data.colour, 0.8, 0.45);
+    this.paper.line(cell.data.colour, 0.6, 0.4);
     pen.beginPath();
     for (const [from, to] of cell.lineagesAt(f)) {
       pen.moveTo(camera.x(from[0]), camera.y(from[1]));
@@ -80,70 +100,74 @@ class Scene {
   }
 
   drawCloud(cell, f) {
+    if (!cell.hasParticles) return;
     const {camera, pen} = this;
-    this.line(cell.data.colour, 1, 0.7);
-    pen.beginPath();
-    for (const [x, y] of cell.cloudAt(f)) {
-      pen.moveTo(camera.x(x) + 1.8, camera.y(y));
-      pen.arc(camera.x(x), camera.y(y), 1.8, 0, 2 * Math.PI);
-    }
-    pen.fill();
+    const darkness = cell.darknessAt(f);
+    this.paper.line(cell.data.colour, 1);
+    cell.cloudAt(f).forEach(([x, y], i) => {
+      pen.globalAlpha = 0.1 + 0.7 * darkness(i);
+      pen.beginPath();
+      pen.arc(camera.x(x), camera.y(y), 1.6 * this.size, 0, 2 * Math.PI);
+      pen.fill();
+    });
   }
 
-  drawEllipses(ellipses, colour, width) {
+  /** Filled faintly, so that many are seen as many; never too small to be seen. */
+  drawEllipses(ellipses, colour) {
     const {camera, pen} = this;
-    this.line(colour, width);
     for (const {x, y, major, minor, angle} of ellipses) {
       if (major === null || minor === null) continue;
       pen.beginPath();
-      pen.ellipse(camera.x(x), camera.y(y), Math.max(major * camera.scale / 2, 1),
-                  Math.max(minor * camera.scale / 2, 1), -angle * Math.PI / 180, 0, 2 * Math.PI);
+      pen.ellipse(camera.x(x), camera.y(y), Math.max(major * camera.scale / 2, 1.5),
+                  Math.max(minor * camera.scale / 2, 1.5), -angle * Math.PI / 180, 0, 2 * Math.PI);
+      this.paper.line(colour, 1.1, 0.14);
+      pen.fill();
+      pen.globalAlpha = 0.9;
       pen.stroke();
     }
   }
 
-  drawPresent(cell, f, layers) {
+  /** The true one hollow, the estimated one full. */
+  drawVehicles(cell, f, layers) {
     const {x, y, h} = this.replay.truth;
-    if (layers.truth && x.length > 0) {
-      this.drawVehicle({x: x[f], y: y[f], heading: h[f]}, this.colour.truth);
-    }
-    const pose = cell.poseAt(f), ellipse = cell.ellipseAt(f);
-    if (pose) this.drawVehicle(pose, cell.data.colour);
-    if (ellipse && layers.ellipse) this.drawEllipses([ellipse], this.colour.text, 1.4);
+    const pose = cell.poseAt(f);
+    if (pose) this.drawVehicle(pose, cell.data.colour, () => this.pen.fill());
+    if (!layers.truth || x.length === 0) return;
+    this.drawVehicle({x: x[f], y: y[f], heading: h[f]}, this.paper.colour.text,
+                     () => this.pen.stroke());
   }
 
   /** An arrow head of fixed size, whatever the zoom, so that it is always seen. */
-  drawVehicle({x, y, heading}, colour) {
+  drawVehicle({x, y, heading}, colour, finish) {
     const {camera, pen} = this;
-    this.line(colour, 1.2);
+    this.paper.line(colour, 1.3);
     pen.save();
     pen.translate(camera.x(x), camera.y(y));
     pen.rotate(-heading);
     pen.beginPath();
-    pen.moveTo(10, 0);
-    pen.lineTo(-7, 6);
+    pen.moveTo(9, 0);
+    pen.lineTo(-6, 5);
     pen.lineTo(-3, 0);
-    pen.lineTo(-7, -6);
+    pen.lineTo(-6, -5);
     pen.closePath();
-    pen.fill();
-    pen.strokeStyle = this.colour.page;
-    pen.stroke();
+    finish();
     pen.restore();
   }
 
   /** A bar of a round number of metres. */
   drawScale() {
-    const {camera, pen} = this;
+    const {camera, pen, paper} = this;
     const metres = niceDistance(camera.width / camera.scale, 9);
-    const left = 10, y = camera.height - 12, length = metres * camera.scale;
-    this.line(this.colour.text, 1);
+    const left = 8, y = camera.height - 8, length = metres * camera.scale;
+    paper.line(paper.colour.soft, 1);
     pen.beginPath();
-    pen.moveTo(left, y - 4);
+    pen.moveTo(left, y - 3);
     pen.lineTo(left, y);
     pen.lineTo(left + length, y);
-    pen.lineTo(left + length, y - 4);
+    pen.lineTo(left + length, y - 3);
     pen.stroke();
-    pen.font = "12px system-ui, sans-serif";
-    pen.fillText(`${readable(metres)} m`, left + 4, y - 5);
+    pen.font = "11px system-ui, sans-serif";
+    pen.textAlign = "left";
+    pen.fillText(`${readable(metres)} m`, left + 4, y - 4);
   }
 }

@@ -2,6 +2,7 @@
 """A report of a small study, opened in a browser once for each test."""
 
 import json
+import pathlib
 import subprocess
 import unittest
 
@@ -55,6 +56,7 @@ landmark = -3, 6
 # Nine of them: more than a figure over time draws as curves.
 STRIPS = TILES.replace("motion_noise=1,2 sensor_noise=1,2", "motion_noise=1,2,4 sensor_noise=1,2,4")
 OPEN_ALL = "for (const one of document.querySelectorAll('details')) one.open = true"
+FIRST_STUDY = pathlib.Path(__file__).parents[3] / "experiments/studies/first_study.ini"
 CTRL, SHIFT = 2, 8  # modifiers of a key or click
 
 

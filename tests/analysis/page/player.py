@@ -62,18 +62,58 @@ class Player(OnPage):
         self.page.press(" ", "Space")
         self.wait_for(f"parseFloat(document.querySelector('.player .clock').textContent) > {step}")
 
-    def test_every_layer_and_cell_is_another_picture(self):
+    def cells(self):
+        return self.page.evaluate("[...document.querySelectorAll('.player .panel')]"
+                                  ".filter(e => !e.hidden).map(e => e.dataset.cell)")
+
+    def pictures(self, kind):
+        return self.page.evaluate(f"[...document.querySelectorAll('.player canvas.{kind}')]"
+                                  ".map(e => e.toDataURL())")
+
+    def test_shows_all_cells_on_one_clock(self):
+        self.assertEqual(self.cells(), ["fastslam2_m10", "fastslam2_m20", "ekf_slam"])
+        for kind in ("scene", "close", "growth"):
+            before = self.pictures(kind)
+            self.assertEqual(len(set(before)), 3, kind)
+            self.page.click(self.page.middle(".player input[type=range]", x=0.6))
+            after = self.pictures(kind)
+            self.assertEqual([a == b for a, b in zip(before, after)], [False] * 3, kind)
+            self.focus()
+            self.page.press("Home")
+
+    def test_switches_cells_but_never_the_last(self):
+        for cell in ("fastslam2_m10", "ekf_slam", "fastslam2_m20"):
+            self.page.click(self.page.middle(f".player .legend button[data-cell={cell}]"))
+        self.assertEqual(self.cells(), ["fastslam2_m20"])
+        self.page.click(self.page.middle(".player .legend button[data-cell=ekf_slam]"))
+        self.assertEqual(self.cells(), ["fastslam2_m20", "ekf_slam"])
+
+    def test_says_the_nees_of_the_moment(self):
+        nees = self.page.evaluate("JSON.parse(document.querySelector('.replay-data')"
+                                  ".textContent).cells.map(cell => cell.nees)")
+        self.focus()
+        self.page.press("End")
+        said = self.page.evaluate("[...document.querySelectorAll('.player .head .soft')]"
+                                  ".map(e => e.textContent)")
+        for text, values in zip(said, nees):
+            self.assertAlmostEqual(float(text.removeprefix("NEES ")) / values[-1], 1, delta=0.01)
+
+    def test_panels_stand_below_each_other_on_a_phone(self):
+        places = ("[...document.querySelectorAll('.player .panel')]"
+                  ".map(e => { const box = e.getBoundingClientRect(); return [box.x, box.y]; })")
+        beside = self.page.evaluate(places)
+        self.assertEqual(len({y for _, y in beside}), 1)
+        self.page = self.open(width=390)
+        below = self.page.evaluate(places)
+        self.assertEqual([len({x for x, _ in below}), len({y for _, y in below})], [1, 3])
+        self.assertLessEqual(self.ask("html", "scrollWidth"), 390)
+
+    def test_every_layer_is_another_picture(self):
         self.page.click(self.page.middle(".player input[type=range]", x=0.6))
         seen = [self.picture()]
         for layer in ("follow", "truth", "ellipse", "particles", "ancestry", "map"):
             self.page.click(self.page.middle(f".player input[name={layer}]"))
             seen.append(self.picture())
-        self.page.evaluate("""(() => {
-            const chooser = document.querySelector(".player select[aria-label=cell]");
-            chooser.value = "2";
-            chooser.dispatchEvent(new Event("change"));
-        })()""")
-        seen.append(self.picture())
         self.assertEqual(len(set(seen)), len(seen))
 
     def test_is_zoomed_and_moved_like_a_map(self):
@@ -86,3 +126,22 @@ class Player(OnPage):
         self.assertEqual(len(set(seen)), 3)
         self.page.click(middle, count=2)
         self.assertEqual(self.picture(), seen[0])
+
+
+class FirstStudy(OnPage):
+    """The replay that a newcomer sees first."""
+
+    study = "first"
+
+    def test_is_small_enough_to_be_sent(self):
+        self.assertLess(self.html.stat().st_size, 2e6)
+        self.assertLess((self.html.parent.parent / "out.h5").stat().st_size, 40e6)
+
+    def test_has_particles_ancestry_and_maps_of_one_run(self):
+        shown = self.page.evaluate("""JSON.parse(document.querySelector('.replay-data').textContent)
+            .cells.map(cell => [cell.clouds.length > 0, cell.ancestry, cell.maps.length > 0])""")
+        self.assertEqual(shown, [[False, False, True], [True, True, True], [True, True, True]])
+
+    def test_has_a_still(self):
+        still = (self.html.parent / "figures/replay.svg").read_text()
+        self.assertEqual(still.count("<svg"), 1 + 2 * 3)

@@ -55,6 +55,44 @@ TEST_F(ReadReplay, HoldsWhatTheFileHolds) {
   EXPECT_EQ(replay.cells[0].maps.back().frame, replay.times.size() - 1);
 }
 
+TEST_F(ReadReplay, KnowsTheNeesOfACompleteRunAndHowFarToLook) {
+  const Replay replay = read_replay(file, 1, {.frames = 1000});
+  double sum = 0.0;
+  for (const double value : replay.cells[0].nees) sum += value;
+  const double average = sum / static_cast<double>(replay.cells[0].nees.size());
+  EXPECT_NEAR(average, 3.0, 1.0);  // 50 scans
+  EXPECT_NEAR(replay.cells[0].nees_band.lower, 0.2158, 1e-4);
+  EXPECT_NEAR(replay.cells[0].nees_band.upper, 9.3484, 1e-4);
+  std::size_t outside = 0;
+  for (std::size_t f = 0; f < replay.times.size(); ++f) {
+    const double error =
+        std::hypot(replay.cells[0].x[f] - replay.x[f], replay.cells[0].y[f] - replay.y[f]);
+    outside += error > replay.close_up ? 1U : 0U;
+  }
+  EXPECT_LT(outside, replay.times.size() / 5);
+}
+
+TEST_F(ReadReplay, TellsOfALandmarkWhenItChanges) {
+  const std::vector<ReplayMap> maps = read_replay(file, 1, {.frames = 1000}).cells[0].maps;
+  ASSERT_FALSE(maps.empty());
+  const StoredMap stored(file, file.cells()[0], 1);
+  std::vector<ReplayMap::Landmark> latest;
+  for (std::size_t f = 0, k = 0; f < file.scan_times().size(); ++f) {
+    for (; k < maps.size() && maps[k].frame <= f; ++k) {
+      for (const ReplayMap::Landmark& landmark : maps[k].changed) {
+        std::erase_if(latest, [&](const auto& old) { return old.row == landmark.row; });
+        latest.push_back(landmark);
+      }
+    }
+    ASSERT_EQ(latest.size(), stored.at(f).size()) << f;
+    for (const auto& [row, shown] : latest) {
+      const Ellipse there = *stored.at(f, row);
+      EXPECT_NEAR(shown.x, there.x, 0.02);
+      EXPECT_NEAR(shown.major, there.major * std::sqrt(-2.0 * std::log(0.05)) / 2.0, 0.02);
+    }
+  }
+}
+
 TEST_F(ReadReplay, EndsAFailedRunWhereItFailed) {
   const ReplayCell failed = read_replay(file, 2).cells.at(1);
   EXPECT_THAT(failed.failure, HasSubstr("failed at step 5: gain is <not> a number"));
@@ -92,17 +130,22 @@ TEST(ReplayJson, IsShortAndComplete) {
   cell.y = {3, nan};
   cell.h = {0.123456, nan};
   cell.pose = {{1, 3, 0.5, 0.25, 45}, {nan, nan, nan, nan, nan}};
-  cell.particles = {9, {{{4}, {}, {1.1}, {2.9}}, {{5}, {0}, {nan}, {nan}}}};
-  cell.maps = {{1, {{10, -20, 0.1, 0.05, 30}}}};
+  cell.nees = {2.3456, nan};
+  cell.nees_band = {0.25, 9.5};
+  cell.particles = {9, {{{4}, {}, {1.1}, {2.9}, {0.25}}, {{5}, {0}, {nan}, {nan}, {nan}}}};
+  cell.maps = {{1, {{6, {10, -20, 0.1, 0.05, 30}}}}};
   cell.has_ancestry = true;
   replay.cells = {cell};
-  EXPECT_EQ(replay_json(replay),
-            R"({"run":7,"times":[0.2,0.4],"truth":{"x":[1,2],"y":[3,4],"h":[0.5,0.25]},)"
-            R"("landmarks":[10,-20],"fixes":[],"cells":[{"label":"pf","failure":"failed",)"
-            R"("colour":"#D55E00","ancestry":true,"x":[1.00049,null],"y":[3,null],)"
-            R"("h":[0.1235,null],"pose":[0.5,0.25,45,null,null,null],"particles":9,"unit":1e-05,)"
-            R"("clouds":[{"x":[9951],"y":[-10000]},{"x":[null],"y":[null],"parent":[0]}],)"
-            R"("maps":[{"frame":1,"landmarks":[10,-20,0.1,0.05,30]}]}]})");
+  EXPECT_EQ(
+      replay_json(replay),
+      R"({"run":7,"close_up":1,"times":[0.2,0.4],"truth":{"x":[1,2],"y":[3,4],"h":[0.5,0.25]},)"
+      R"("landmarks":[10,-20],"fixes":[],"cells":[{"label":"pf","failure":"failed",)"
+      R"("colour":"#D55E00","ancestry":true,"x":[1.00049,null],"y":[3,null],)"
+      R"("h":[0.1235,null],"pose":[0.5,0.25,45,null,null,null],"nees":[2.35,null],)"
+      R"("band":[0.25,9.5],"particles":9,)"
+      R"("clouds":[{"size":0.10001,"dots":"_r01","weight":"W"},)"  // 63 * 64 + 53 and 1; 32
+      R"({"size":1e-09,"dots":"0000","parent":"00","weight":"0"}],)"
+      R"("maps":[{"frame":1,"landmarks":[6,10,-20,0.1,0.05,30]}]}]})");
 }
 
 /// Particles of random ancestry; the pose tells scan and index.
@@ -130,7 +173,8 @@ TEST(ThinParticles, ShowTheAncestorsOfAllThatAreShown) {
     const ReplayParticles particles = thin_particles(family.stored(), scans, 8);
     ASSERT_EQ(particles.frames.size(), scans.size());
     for (std::size_t f = 0; f < scans.size(); ++f) {
-      const auto& [shown, parent, x, y] = particles.frames[f];
+      const auto& [shown, parent, x, y, weight] = particles.frames[f];
+      EXPECT_THAT(weight, IsEmpty());
       EXPECT_EQ(shown.size(), 8u);
       EXPECT_TRUE(std::ranges::is_sorted(shown));
       ASSERT_EQ(parent.size(), f == 0 ? 0u : 8u);
@@ -157,6 +201,17 @@ TEST(ThinParticles, ShowAllWhereThereIsRoom) {
     EXPECT_THAT(frame.shown, ElementsAre(0, 1, 2));
     EXPECT_THAT(frame.parent, IsEmpty());
   }
+}
+
+TEST(ThinParticles, WeighByTheHeaviestOfAllShownOrNot) {
+  const Genealogy family(3, 2, 1);
+  const std::vector<double> log_weight = {0, 0, 0, std::log(0.1), std::log(0.6), std::log(0.3)};
+  const ReplayParticles particles = thin_particles({3, family.pose, family.ancestor, log_weight},
+                                                   std::vector<std::size_t>{0, 1}, 2);
+  const auto& [shown, parent, x, y, weight] = particles.frames[1];
+  ASSERT_THAT(shown, ElementsAre(0, 1));
+  EXPECT_NEAR(weight[0], 1.0 / 6.0, 1e-12);
+  EXPECT_NEAR(weight[1], 1.0, 1e-12);
 }
 
 TEST(ThinParticles, RefuseAnAncestorThatIsNoParticle) {
