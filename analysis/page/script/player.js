@@ -10,7 +10,7 @@ class Player {
     this.replay = replay;
     this.cells = replay.cells.map((data) => new ReplayedCell(data));
     this.camera = new Camera(boundsOf(replay));
-    this.frame = 0;
+    this.frame = replay.times.length - 1;  // all of the run is seen; playing begins anew
     this.playing = false;
     const live = htmlElement("div", {class: "live"}, parent);
     this.addControls(htmlElement("div", {class: "controls"}, live));

@@ -70,7 +70,7 @@ TEST_F(RunsInFull, ChangeNoTableOfTheStudy) {
     StudyAnalysis study = analyze(of);
     study.file.clear();
     std::ostringstream table;
-    print_tables(table, study);
+    print_all(table, study, 80);
     return table.str();
   };
   EXPECT_EQ(table_of(file), table_of(ResultFile(folder / "plain.h5")));
