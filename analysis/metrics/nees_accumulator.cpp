@@ -259,8 +259,8 @@ Figure anees_figure(const StudyAnalysis& study) {
     return figure;
   }
   figure.sentence =
-      "Average NEES of the pose over time, divided by its expectation: 1 is right. A consistent "
-      "filter is in the grey band at " +
+      "Average NEES of the pose over time, divided by its expectation: 1 is right, and what is far "
+      "above leaves the figure at the top. A consistent filter is in the grey band at " +
       level_text(study.level) +
       " of the scans. A curve that climbs above the band and stays there belongs to a filter that "
       "is sure of a wrong answer. The axis ends at 1000 times the band; the numbers below the "

@@ -9,7 +9,7 @@
 #include "engine/runs/monte_carlo.hpp"
 
 #include <algorithm>
-#include <deque>
+#include <exception>
 
 namespace montecarta::analysis {
 namespace {
@@ -93,6 +93,23 @@ struct CellTask {
   RunReader reader;
   std::vector<std::size_t> complete;
 };
+
+/// All tasks at once, but with OpenMP, whose inner loops would stay on one thread. If several fail,
+/// the exception of the first one is thrown, for any number of threads.
+void add_up(std::vector<CellTask>& tasks, const RunCriteria& criteria, const Parallel& parallel) {
+  const bool is_nested = parallel.backend() == Backend::tbb;
+  std::vector<std::exception_ptr> failures(tasks.size());
+  (is_nested ? parallel : Parallel::serial()).for_each(tasks.size(), [&](std::size_t k) {
+    try {
+      tasks[k].add_up(criteria, parallel, is_nested ? tasks.size() : 1);
+    } catch (...) {
+      failures[k] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+}
 
 /// What the study in the file says, by a function of its text.
 template <class Read>
@@ -179,10 +196,9 @@ StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& para
   expect_scans(file);
   const RunCriteria criteria = criteria_of(file, level, study.within);
   study.references = judged_references(criteria);
-  std::deque<CellTask> tasks;  // a reader has one place
+  std::vector<CellTask> tasks;
   for (const StoredCell& cell : file.cells()) tasks.emplace_back(file, cell, file.runs().size());
-  parallel.for_each(tasks.size(),
-                    [&](std::size_t k) { tasks[k].add_up(criteria, parallel, tasks.size()); });
+  add_up(tasks, criteria, parallel);
   for (CellTask& task : tasks) study.cells.push_back(std::move(task.cell));
   study.bound = cramer_rao_bound(file, parallel);
   for (CellAnalysis& cell : study.cells) {

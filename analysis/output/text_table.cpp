@@ -87,8 +87,10 @@ TableLayout layout_of(const TextTable& table, std::size_t width) {
   if (layout.total() > width) layout.gap = 1;
   for (std::size_t c = table.keys; c < layout.widths.size(); ++c) {
     const std::size_t all = layout.total(), here = layout.widths[c];
-    if (table.headings[c].align == Align::right || all <= width || here < kNarrowestText) continue;
-    layout.widths[c] = std::max(kNarrowestText, here - std::min(all - width, here));
+    if (table.headings[c].align == Align::right || all <= width) continue;
+    std::size_t least = kNarrowestText;
+    for (const TableRow& row : table.rows) least = std::max(least, longest_word(row[c]));
+    if (here > least) layout.widths[c] = std::max(least, here - std::min(all - width, here));
   }
   return layout;
 }

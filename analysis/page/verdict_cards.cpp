@@ -49,7 +49,7 @@ struct Sparkline {
     const double share = (highest - std::log10(ratio)) / (highest - kLeastDecade);
     return 4.0 + kSparkHeight * std::clamp(share, 0.0, 1.0);
   }
-  double x(double time) const { return kSparkLeft + kSparkWidth * time / duration; }
+  double x(double time) const { return kSparkLeft + kSparkWidth * time / std::max(duration, 1e-9); }
 
   std::string path(const ThinnedSeries& thinned, double dimension) const {
     std::string path;
@@ -130,15 +130,15 @@ std::string number_html(const std::string& name, const std::string& value,
       html_paragraphs(notes));
 }
 
-/// Of a score with a heavy tail the median, since no interval holds for the mean.
+/// The mean over runs; without an interval if it has a heavy tail.
 std::string rmse_html(const StudyAnalysis& study, const std::string& name,
                       const std::string& value) {
   const std::size_t tail = value.find(" (heavy tail), ");
   if (tail == value.npos) return number_html(name, value, {rmse_note(study)});
   return number_html(
-      name, value.substr(value.find("median")),
-      {rmse_note(study), "This is the median over runs in its place: the mean, " +
-                             value.substr(0, tail) + ", has a heavy tail, a few runs decide it."});
+      name, value.substr(0, tail),
+      {rmse_note(study), "A few runs decide this mean, so it has no interval. The " +
+                             value.substr(value.find("median")) + " is over the same runs."});
 }
 
 std::string numbers_html(const StudyAnalysis& study, const CellAnalysis& cell) {

@@ -21,6 +21,9 @@ struct Traces {
   double freedom = std::numeric_limits<double>::infinity();
 };
 
+/// Studies of fewer runs are not judged.
+inline constexpr std::size_t kFewestJudgedRuns = 3;
+
 /// Studies of fewer runs are judged by the law of errors that never change within a run.
 inline constexpr std::size_t kFewestRunsOfTraces = 20;
 

@@ -11,12 +11,19 @@ namespace montecarta::analysis {
 namespace {
 
 constexpr double kDegreesOfARadian = 180.0 / kPi;
+constexpr std::size_t kComplete = 1;  // the column of complete runs
 
 /// "40", or "32 of 200" where runs failed, are missing or were not needed.
 std::string complete_runs(const CellAnalysis& cell) {
   const std::size_t all = cell.complete + cell.failures.size() + cell.missing + cell.spared;
   const std::string complete = std::to_string(cell.complete);
   return cell.complete == all ? complete : complete + " of " + std::to_string(all);
+}
+
+/// "1.0 of 100": first particles that still have descendants at the end.
+std::string ancestors_text(const CellAnalysis& cell) {
+  const std::string count = readable(cell.over_runs("ancestors_at_start_at_the_end").mean, 2);
+  return count == "-" ? count : count + " of " + std::to_string(cell.particles);
 }
 
 TableRow summary_row(const CellAnalysis& cell) {
@@ -28,20 +35,16 @@ TableRow summary_row(const CellAnalysis& cell) {
           is_tested ? with_interval(verdict.ratio_estimate(), verdict.ratio()) : "-",
           readable(cell.over_runs("position_rmse").mean),
           readable(kDegreesOfARadian * cell.over_runs("heading_rmse").mean),
-          readable(cell.over_runs("ancestors_at_start_at_the_end").mean),
+          ancestors_text(cell),
           readable(cell.over_runs("cpu_seconds").mean, 2)};
 }
 
-/// Leaves out columns in which all cells say `text`.
-void leave_out_columns(const std::string& text, TextTable& table) {
-  for (std::size_t c = table.headings.size(); c-- > 1;) {
-    if (!std::ranges::all_of(table.rows, [&](const TableRow& row) { return row[c] == text; })) {
-      continue;
-    }
-    const auto place = static_cast<std::ptrdiff_t>(c);
-    table.headings.erase(table.headings.begin() + place);
-    for (TableRow& row : table.rows) row.erase(row.begin() + place);
-  }
+/// Leaves out column `c` if all cells say `text` in it.
+void leave_out(std::size_t c, const std::string& text, TextTable& table) {
+  if (!std::ranges::all_of(table.rows, [&](const TableRow& row) { return row[c] == text; })) return;
+  const auto place = static_cast<std::ptrdiff_t>(c);
+  table.headings.erase(table.headings.begin() + place);
+  for (TableRow& row : table.rows) row.erase(row.begin() + place);
 }
 
 }  // namespace
@@ -55,10 +58,10 @@ TextTable summary_table(const StudyAnalysis& study) {
                     {"RMSE [m]"},
                     {"RMSE [deg]"},
                     {"ancestors"},
-                    {"CPU [s]"}};
+                    {"CPU per run [s]"}};
   for (const CellAnalysis& cell : study.cells) table.rows.push_back(summary_row(cell));
-  leave_out_columns("-", table);
-  leave_out_columns(std::to_string(study.runs_here), table);
+  for (std::size_t c = table.headings.size() - 1; c > kComplete; --c) leave_out(c, "-", table);
+  leave_out(kComplete, std::to_string(study.runs_here), table);
   return table;
 }
 

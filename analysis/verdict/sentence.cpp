@@ -82,18 +82,19 @@ std::string place_of(const Shown& shown) {
   }
 }
 
-/// ", from 138 s on"; empty where all stretches are off, or none is shown.
+/// "from 138 s on"; empty where no stretch is shown.
 std::string when(const Verdict& verdict, Direction direction) {
   const FamilyTest* stretches = verdict.find(Family::stretch);
   const auto shown = shown_in(stretches, direction);
-  if (shown.empty() || shown.size() == stretches->members.size()) return "";
+  if (shown.empty()) return "";
   const auto gap = static_cast<std::size_t>(shown.back() - shown.front()) + 1;
-  if (gap != shown.size()) return ", at some times more than at others";
+  if (gap != shown.size()) return "at some times more than at others";
   const bool from_start = shown.front() == &stretches->members.front();
   const bool to_end = shown.back() == &stretches->members.back();
-  if (to_end) return ", from " + readable(shown.front()->from) + " s on";
-  if (from_start) return ", until " + readable(shown.back()->to) + " s";
-  return ", from " + readable(shown.front()->from) + " s to " + readable(shown.back()->to) + " s";
+  if (to_end && from_start) return "from the start";
+  if (to_end) return "from " + readable(shown.front()->from) + " s on";
+  if (from_start) return "until " + readable(shown.back()->to) + " s";
+  return "from " + readable(shown.front()->from) + " s to " + readable(shown.back()->to) + " s";
 }
 
 /// ", mainly in heading"; empty where components do not differ.
@@ -151,7 +152,9 @@ std::string other_words(const Verdict& verdict) {
 /// When the size is off, if its ratio alone would not say why it is.
 std::string time_words(const Verdict& verdict, Direction direction) {
   const auto shown = leading(verdict, direction);
-  return shown && shown->test->family == Family::size ? when(verdict, direction) : "";
+  if (!shown || shown->test->family != Family::size) return "";
+  const std::string time = when(verdict, direction);
+  return time.empty() ? "" : ", " + time;
 }
 
 std::string inconsistent_words(const Verdict& verdict) {
@@ -223,18 +226,20 @@ std::string answer_words(const Verdict& verdict) {
   return undecided_words(verdict);
 }
 
-/// "its squared errors are 1.28 to 2.25 times what it claims, from 138 s on, mainly forward"
+/// "on average its squared errors are 1.67 times what it claims (1.28 to 2.25), seen from 138 s on,
+/// mainly forward"
 std::string squared_errors(const Verdict& verdict, Direction direction) {
   const auto shown = leading(verdict, direction);
   if (!shown) return "";
+  const bool is_above = direction == Direction::above;
   const std::string factor = factor_text(*shown, direction);
+  const std::string than = is_above ? " times what it claims" : " times smaller than it claims";
   const std::string place = place_of(*shown);
-  std::string words =
-      direction == Direction::above
-          ? "its squared errors" + place + " are " + factor + " times what it claims"
-          : "its squared errors" + place + " are " + factor + " times smaller than it claims";
-  if (!place.empty()) return words;
-  return words + when(verdict, direction) + where(verdict, direction);
+  if (!place.empty()) return "its squared errors" + place + " are " + factor + than;
+  const double ratio = shown->member->estimate;
+  const std::string time = when(verdict, direction);
+  return "on average its squared errors are " + compact(is_above ? ratio : 1.0 / ratio) + than +
+         " (" + factor + ")" + (time.empty() ? "" : ", seen " + time) + where(verdict, direction);
 }
 
 std::string consistent_sentence(const std::string& label, const Verdict& verdict) {
@@ -264,7 +269,7 @@ std::string sentence_of(const std::string& label, const Verdict& verdict) {
     case Answer::consistent:
       return consistent_sentence(label, verdict);
     case Answer::optimistic:
-      return label + " is optimistic: " + squared_errors(verdict, Direction::above);
+      return label + " is optimistic (overconfident): " + squared_errors(verdict, Direction::above);
     case Answer::conservative:
       return label + " is conservative: " + squared_errors(verdict, Direction::below);
     case Answer::inconsistent:
@@ -273,6 +278,11 @@ std::string sentence_of(const std::string& label, const Verdict& verdict) {
       return undecided_sentence(label, verdict);
     case Answer::untested:
       break;
+  }
+  const std::uint64_t runs = complete_runs(verdict);
+  if (runs > 0 && runs < kFewestJudgedRuns) {
+    return label + " is not tested: fewer than " + std::to_string(kFewestJudgedRuns) +
+           " runs are complete";
   }
   return label + " is not tested: no complete run has a covariance that can be judged";
 }

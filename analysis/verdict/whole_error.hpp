@@ -13,8 +13,6 @@ namespace montecarta::analysis {
 
 /// The spread between runs is judged from so many runs on.
 inline constexpr std::size_t kFewestRunsOfSpread = 50;
-/// Fewer runs are not judged.
-inline constexpr std::size_t kFewestJudgedRuns = 3;
 
 /// Errors of one run in units of the covariance that its filter reported, {scan, component}. What
 /// cannot be judged by its components is NaN.

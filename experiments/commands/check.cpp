@@ -266,7 +266,8 @@ void print_cells(const StudyPlan& plan, const std::vector<TableRow>& rows) {
     std::getline(lines, line);
     items.emplace_back(cell.label, line);
   }
-  std::cout << "\n" << listing(items, 2, output_width() - line.size() - 4);
+  std::cout << "\n"
+            << listing(items, 2, output_width() - std::min(line.size() + 4, output_width() / 2));
 }
 
 int check(const Arguments& arguments) {

@@ -80,8 +80,7 @@ void print_datasets(const std::vector<Dataset>& datasets, std::size_t indent) {
   std::cout << listing(items, indent, output_width() / 2);
 }
 
-void print_columns(const std::string& group, const std::vector<Column>& columns,
-                   std::size_t runs) {
+void print_columns(const std::string& group, const std::vector<Column>& columns, std::size_t runs) {
   std::vector<Dataset> datasets;
   for (const Column& column : columns) {
     const std::string units = column.units == "1" ? "" : " [" + column.units + "]";

@@ -60,7 +60,7 @@ ReplayParticles read_particles(const StoredCell& cell, const RunRows& rows, cons
                         frames, most);
 }
 
-/// The NEES of a complete run whose truth is known.
+/// The NEES ratio of a complete run whose truth is known.
 void read_nees(const RunRows& rows, const StoredCell& cell, std::span<const double> times,
                const Scans& frames, ReplayCell& replay) {
   if (!replay.failure.empty() || rows.truth.empty()) return;
@@ -68,8 +68,10 @@ void read_nees(const RunRows& rows, const StoredCell& cell, std::span<const doub
   metrics.measure(rows, cell.particles, times);
   const NeesRows* nees = metrics.leading_nees();
   if (nees == nullptr) return;
-  for (const std::size_t s : frames) replay.nees.push_back(nees->value.front()[s]);
-  replay.nees_band = nees_bounds(1, nees->dimension.front(), kReplayShare);
+  const auto dimension = static_cast<double>(nees->dimension.front());
+  for (const std::size_t s : frames) replay.nees.push_back(nees->value.front()[s] / dimension);
+  const Interval band = nees_bounds(1, nees->dimension.front(), kReplayShare);
+  replay.nees_band = {band.lower / dimension, band.upper / dimension};
 }
 
 /// Why a run failed; empty where it is complete.
@@ -160,7 +162,7 @@ Replay read_replay(const ResultFile& file, std::size_t run, const ReplaySize& si
   for (std::size_t c = 0; c < file.cells().size(); ++c) {
     const StoredCell& cell = file.cells()[c];
     if (!cell.has("pose_mean")) continue;
-    if (file.status(cell)[run] != RunStatus::missing) cells.push_back(c);
+    if (engine::is_stored(file.status(cell)[run])) cells.push_back(c);
   }
   for (const std::size_t c : cells) {
     const ReplaySize share = share_of(size, cells.size(), frames.size());
@@ -189,15 +191,22 @@ bool looks_alike(const Ellipse& a, const Ellipse& b, double least) {
          std::abs(a.major - b.major) < least && std::abs(a.minor - b.minor) < least;
 }
 
-/// What has changed since `shown`, which is brought up to date.
+/// What has changed since `shown`, which is brought up to date. A landmark that is no longer in the
+/// map has an ellipse of NaN.
 std::vector<ReplayMap::Landmark> changes_at(const StoredMap& stored, std::size_t scan, double least,
                                             std::vector<std::optional<Ellipse>>& shown) {
   std::vector<ReplayMap::Landmark> changed;
   for (std::size_t l = 0; l < shown.size(); ++l) {
+    const auto row = static_cast<std::uint32_t>(l);
     const auto ellipse = stored.at(scan, l);
-    if (!ellipse || (shown[l] && looks_alike(*shown[l], grown(*ellipse), least))) continue;
+    if (!ellipse) {
+      if (shown[l]) changed.push_back({row, {kNaN, kNaN, kNaN, kNaN, kNaN}});
+      shown[l].reset();
+      continue;
+    }
+    if (shown[l] && looks_alike(*shown[l], grown(*ellipse), least)) continue;
     shown[l] = grown(*ellipse);
-    changed.push_back({static_cast<std::uint32_t>(l), *shown[l]});
+    changed.push_back({row, *shown[l]});
   }
   return changed;
 }
@@ -322,7 +331,7 @@ std::string shown(const Replay& replay) {
            " m about the vehicle. Where a filter is consistent, the vehicle is outside of the "
            "ellipse in one of twenty scans";
   if (any(replay, [](const ReplayCell& cell) { return !cell.nees.empty(); })) {
-    words += ", and the NEES of the run as often outside of the grey band";
+    words += ", and the NEES ratio of the run as often outside of the grey band";
   }
   return words + ".";
 }
@@ -344,8 +353,13 @@ std::string wanted(const ResultFile& file, std::size_t run) {
   if (lacks("ancestor", true)) more += ", ancestry";
   if (lacks("map_mean", false)) more += ", map";
   if (more.empty()) return "";
+  const std::uint64_t full = file.description().full_runs;
+  const std::string remedy =
+      full > 0 ? "report on one of the first " + std::to_string(full) + " runs with --run"
+               : "give the study record.full_runs = 1 to store all of the first run";
   return "This file does not hold everything of this run that can be replayed (" + more.substr(2) +
-         "): give the study record.full_runs = 1 to store all of the first run, or let "
+         "): " + remedy +
+         ", or let "
          "montecarta replay " +
          file.path().filename().string() + " --cell CELL --run " +
          std::to_string(file.runs()[run]) + " -o ONE.h5 record it, and report on that file.";

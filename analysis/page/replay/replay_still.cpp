@@ -116,12 +116,14 @@ std::string point(double x, double y, const View& view) {
 /// Gaps where there is no number, and between places that are both out of the picture.
 std::string path_of(const std::vector<double>& x, const std::vector<double>& y, const View& view) {
   std::string d;
+  const auto is_known = [&](std::size_t f) { return std::isfinite(x[f]) && std::isfinite(y[f]); };
   bool is_drawing = false;
   for (std::size_t f = 1; f < x.size(); ++f) {
-    const bool is_seen = view.shows(x[f - 1], y[f - 1]) || view.shows(x[f], y[f]);
+    const bool is_seen = is_known(f - 1) && is_known(f) &&
+                         (view.shows(x[f - 1], y[f - 1]) || view.shows(x[f], y[f]));
     if (is_seen && !is_drawing) d += "M" + point(x[f - 1], y[f - 1], view);
     if (is_seen) d += "L" + point(x[f], y[f], view);
-    is_drawing = is_seen && std::isfinite(x[f]) && std::isfinite(y[f]);
+    is_drawing = is_seen;
   }
   return d;
 }
@@ -285,7 +287,8 @@ void draw_growth(const Replay& replay, const ReplayCell& cell, const GrowthAxes&
     drawing.path("M" + px(left) + " " + px(axes.y(tick)) + "h" + px(width), stroke("#d5d5d5", 0.6));
     drawing.text(left - 5.0, axes.y(tick) + 4.0, power_text(power), end);
   }
-  drawing.text(left, top + height + 17.0, "NEES, " + level_text(kReplayShare) + " band", kSoftText);
+  drawing.text(left, top + height + 17.0, "NEES ratio, " + level_text(kReplayShare) + " band",
+               kSoftText);
   drawing.text(left + width, top + height + 17.0, exact_text(std::round(axes.to)) + " s", end);
   std::string d;
   bool is_drawing = false;
@@ -306,7 +309,7 @@ void draw_head(const ReplayCell& cell, const Box& box, Drawing& drawing) {
                "font-size=\"16\" font-weight=\"600\" fill=\"currentColor\"");
   const std::string end = !cell.failure.empty() ? "failed"
                           : cell.nees.empty()   ? ""
-                                                : "NEES " + compact(cell.nees.back());
+                                                : "NEES ratio " + compact(cell.nees.back());
   drawing.text(box.left + box.width, box.top + 18.0, end,
                "font-size=\"14\" fill=\"#777777\" text-anchor=\"end\"");
 }

@@ -62,7 +62,7 @@ class Growth {
     pen.textAlign = "right";
     pen.fillText(`${Math.round(times.at(-1))} s`, width - 8, height - 5);
     pen.textAlign = "left";
-    pen.fillText("NEES, 95 % band", 34, height - 5);
+    pen.fillText("NEES ratio, 95 % band", 34, height - 5);
   }
 
   drawCurve(cell, f) {

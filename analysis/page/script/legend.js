@@ -80,7 +80,7 @@ class Legend {
     const label = htmlElement("label", {class: "entry"}, this.element);
     const box = htmlElement("input", {type: "checkbox"}, label);
     box.checked = true;
-    label.append("hide in all figures");
+    label.append("a name hides its filter in all figures");
     box.addEventListener("change", () => {
       this.hidden = box.checked ? hiddenEverywhere : new HiddenCells(hiddenEverywhere.cells);
       this.update();

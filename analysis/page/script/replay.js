@@ -100,7 +100,8 @@ class ReplayedCell {
       if (frame > f) break;
       for (let k = 0; k < landmarks.length; k += 6) {
         const [row, x, y, major, minor, angle] = landmarks.slice(k, k + 6);
-        ellipses.set(row, {x, y, major, minor, angle});
+        if (x === null) ellipses.delete(row);  // no longer in the map
+        else ellipses.set(row, {x, y, major, minor, angle});
       }
     }
     return [...ellipses.values()];

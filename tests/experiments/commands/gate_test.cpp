@@ -50,7 +50,10 @@ TEST_F(GateOfAFile, TellsByItsExitCode) {
   EXPECT_THAT(right.out, ContainsRegex("^right is consistent within 2 in every component"));
   const Called too_sure = gate("too_sure", {"--within", "1.5"});
   EXPECT_EQ(too_sure.code, 4);
-  EXPECT_THAT(too_sure.out, ContainsRegex("^too_sure is optimistic: its squared errors are [3-5]"));
+  EXPECT_THAT(
+      too_sure.out,
+      ContainsRegex("^too_sure is optimistic .overconfident.: on average its squared errors "
+                    "are [3-5]"));
   const Called open = gate("right", {"--within", "1.01"});
   EXPECT_EQ(open.code, 5);
   EXPECT_THAT(open.out,

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace montecarta::analysis {
@@ -63,6 +64,23 @@ TEST_F(ReplayStill, ShowsARunThatFailedAndHasNoNumbers) {
   EXPECT_THAT(svg, HasSubstr(">failed</text>"));
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
   EXPECT_THAT(svg, Not(HasSubstr("inf")));
+}
+
+TEST_F(ReplayStill, EndsALineWhereItsNumbersEnd) {
+  Replay replay = read_replay(file, 1);
+  std::vector<double>& x = replay.cells[0].x;
+  std::fill(x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2), x.end(),
+            std::numeric_limits<double>::quiet_NaN());
+  EXPECT_THAT(replay_still(replay), Not(HasSubstr("L0 ")));
+}
+
+TEST_F(ReplayStill, LeavesOutALandmarkThatIsNoLongerInTheMap) {
+  Replay replay = read_replay(file, 1);
+  const std::size_t before = count_of("<ellipse", replay_still(replay));
+  ReplayMap::Landmark gone = replay.cells[0].maps.back().changed.front();
+  gone.ellipse.major = std::numeric_limits<double>::quiet_NaN();
+  replay.cells[0].maps.push_back({replay.times.size() - 1, {gone}});
+  EXPECT_LT(count_of("<ellipse", replay_still(replay)), before);
 }
 
 TEST_F(ReplayStill, HasRoomForFourCells) {
