@@ -34,25 +34,23 @@ void refuse_existing(const fs::path& directory, ExistingReport existing) {
   }
 }
 
-using Shown = Section::Shown;
-
 /// Where a section stands on the page, with the figures of its subject.
 struct Place {
   std::string section;
   std::vector<std::string> figures = {};
-  Shown shown = Shown::folded;
+  Section::Shown shown = Section::Shown::folded;
 };
 
 /// The page from top to bottom. What is named nowhere here comes before the last two.
 const std::vector<Place>& reading_order() {
   static const std::vector<Place> order = {
-      {"title", {}, Shown::open},
-      {"cards", {}, Shown::open},
-      {"drive", {}, Shown::open},
-      {"references", {"reference_error"}, Shown::open},
-      {"nees", {"anees"}, Shown::open},
-      {"replay", {}, Shown::open},
-      {"errors", {"rmse", "error_envelopes"}, Shown::open},
+      {"title", {}, Section::Shown::open},
+      {"cards", {}, Section::Shown::open},
+      {"drive", {}, Section::Shown::open},
+      {"references", {"reference_error"}, Section::Shown::open},
+      {"nees", {"anees"}, Section::Shown::open},
+      {"replay", {}, Section::Shown::open},
+      {"errors", {"rmse", "error_envelopes"}, Section::Shown::open},
       {"verdict"},
       {"failures"},
       {"components"},
@@ -89,7 +87,7 @@ std::optional<Named> take(const std::string& name, std::vector<Named>& all) {
 
 /// A folded section without a heading has that of its first figure.
 Section titled(Section section) {
-  const bool is_open = section.shown == Shown::open;
+  const bool is_open = section.shown == Section::Shown::open;
   if (is_open || !section.title.empty() || section.figures.empty()) return section;
   const Figure& first = section.figures.front();
   section.title = first.title;

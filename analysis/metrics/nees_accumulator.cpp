@@ -263,7 +263,7 @@ Figure anees_figure(const StudyAnalysis& study) {
       "above leaves the figure at the top. A consistent filter is in the grey band at " +
       level_text(study.level) +
       " of the scans. A curve that climbs above the band and stays there belongs to a filter that "
-      "is sure of a wrong answer. The axis ends at 1000 times the band; the numbers below the "
+      "is sure of a wrong answer. The axis ends at 100 000 times the band; the numbers below the "
       "figure hold every value.";
   add_panels({nees_panel(study, ErrorBlock::pose)}, study.times, figure);
   return figure;

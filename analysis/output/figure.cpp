@@ -134,7 +134,7 @@ FigureData data_of(const std::string& name, const std::string& heading,
 namespace {
 
 constexpr std::size_t kBuckets = 240;
-constexpr double kBelowBand = 0.3, kAboveBand = 1000.0;  // where the axis ends at the latest
+constexpr double kBelowBand = 0.3, kAboveBand = 1e5;  // where the axis ends at the latest
 constexpr double kLogarithmicFrom = 30.0, kDecade = 10.0, kRoom = 1.05;
 
 struct Range {

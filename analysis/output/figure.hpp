@@ -32,8 +32,8 @@ using Colour = std::array<int, 3>;
 std::string colour_within(std::span<const Colour> palette, double share);
 
 /// A horizontal band, e.g. where a consistent filter stays. It keeps the vertical axis near: from
-/// 0.3 times its lower end to 1000 times its upper one at most, so that it is seen beside a filter
-/// that is off by many powers of ten.
+/// 0.3 times its lower end to 100 000 times its upper one at most, so that it is seen beside a
+/// filter that is off by many powers of ten.
 struct Band {
   std::string legend;
   double lower = 0.0;

@@ -268,8 +268,8 @@ std::string html_page(const std::string& title, const std::string& body) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n" +
          std::string(kNoNetwork) + "<title>" + html_escape(title) + "</title>\n<style>\n" +
-         std::string(page_style()) + "</style>\n</head>\n<body>\n" + body +
-         "<script>\n(() => {\n\"use strict\";\n" + std::string(page_script()) +
+         page_style() + "</style>\n</head>\n<body>\n" + body +
+         "<script>\n(() => {\n\"use strict\";\n" + page_script() +
          "})();\n</script>\n</body>\n</html>\n";
 }
 

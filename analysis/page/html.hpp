@@ -28,10 +28,10 @@ std::string script_text(const Json& json);
 std::string chart_json(const Chart& chart);
 
 /// The style sheet of the page: analysis/page/page.css, put into the program when it is built.
-std::string_view page_style();
+std::string page_style();
 /// The scripts of the page, analysis/page/script/*.js in the order in which they need each other,
 /// as the body of one function.
-std::string_view page_script();
+std::string page_script();
 
 /// Plain text as a page shows it.
 std::string html_escape(const std::string& text);

@@ -329,7 +329,7 @@ Section missing_section(const std::vector<Section>& sections) {
 }
 
 Section origin_section(const ResultFile& file, const StudyAnalysis& study) {
-  const TextPairs provenance = file.provenance();
+  const TextPairs& provenance = file.provenance();
   Section section{"origin", "Where this comes from"};
   section.summary =
       "montecarta " + value_of(provenance, "version") + ", " + value_of(provenance, "date");

@@ -17,7 +17,7 @@ namespace {
 /// The box of a curve [px]; left of it stand the numbers of the axis.
 constexpr double kSparkLeft = 32.0, kSparkWidth = 240.0, kSparkHeight = 64.0;
 /// Powers of ten: the axis reaches at least from the first to the second, at most to the third.
-constexpr int kLeastDecade = -1, kUsualDecade = 1, kMostDecade = 3;
+constexpr int kLeastDecade = -1, kUsualDecade = 1, kMostDecade = 5;
 
 const NeesSeries* judged_series(const CellAnalysis& cell) {
   const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
@@ -144,7 +144,7 @@ std::string rmse_html(const StudyAnalysis& study, const std::string& name,
 std::string numbers_html(const StudyAnalysis& study, const CellAnalysis& cell) {
   std::vector<std::string> ratio_notes = too_few_notes(cell);
   ratio_notes.insert(ratio_notes.begin(), ratio_note(study));
-  const std::string html = number_html("NEES ratio", ratio_text(cell), ratio_notes);
+  std::string html = number_html("NEES ratio", ratio_text(cell), ratio_notes);
   if (study.imported.is_imported() && study.imported.state != "pose") return html;
   return html +
          rmse_html(study, "position RMSE [m]", score_text(cell, "position_rmse", study.level)) +

@@ -58,7 +58,7 @@ TextTable summary_table(const StudyAnalysis& study) {
                     {"RMSE [m]"},
                     {"RMSE [deg]"},
                     {"ancestors"},
-                    {"CPU per run [s]"}};
+                    {"CPU/run [s]"}};
   for (const CellAnalysis& cell : study.cells) table.rows.push_back(summary_row(cell));
   for (std::size_t c = table.headings.size() - 1; c > kComplete; --c) leave_out(c, "-", table);
   leave_out(kComplete, std::to_string(study.runs_here), table);

@@ -91,7 +91,7 @@ std::string when(const Verdict& verdict, Direction direction) {
   if (gap != shown.size()) return "at some times more than at others";
   const bool from_start = shown.front() == &stretches->members.front();
   const bool to_end = shown.back() == &stretches->members.back();
-  if (to_end && from_start) return "from the start";
+  if (to_end && from_start) return "in every eighth of the drive";
   if (to_end) return "from " + readable(shown.front()->from) + " s on";
   if (from_start) return "until " + readable(shown.back()->to) + " s";
   return "from " + readable(shown.front()->from) + " s to " + readable(shown.back()->to) + " s";
@@ -226,8 +226,8 @@ std::string answer_words(const Verdict& verdict) {
   return undecided_words(verdict);
 }
 
-/// "on average its squared errors are 1.67 times what it claims (1.28 to 2.25), seen from 138 s on,
-/// mainly forward"
+/// "on average its squared errors are 1.67 times what it claims (95 %: 1.28 to 2.25), shown from
+/// 138 s on, mainly forward"
 std::string squared_errors(const Verdict& verdict, Direction direction) {
   const auto shown = leading(verdict, direction);
   if (!shown) return "";
@@ -239,7 +239,8 @@ std::string squared_errors(const Verdict& verdict, Direction direction) {
   const double ratio = shown->member->estimate;
   const std::string time = when(verdict, direction);
   return "on average its squared errors are " + compact(is_above ? ratio : 1.0 / ratio) + than +
-         " (" + factor + ")" + (time.empty() ? "" : ", seen " + time) + where(verdict, direction);
+         " (" + level_text(verdict.level) + ": " + factor + ")" +
+         (time.empty() ? "" : ", shown " + time) + where(verdict, direction);
 }
 
 std::string consistent_sentence(const std::string& label, const Verdict& verdict) {

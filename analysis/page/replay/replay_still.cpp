@@ -309,7 +309,7 @@ void draw_head(const ReplayCell& cell, const Box& box, Drawing& drawing) {
                "font-size=\"16\" font-weight=\"600\" fill=\"currentColor\"");
   const std::string end = !cell.failure.empty() ? "failed"
                           : cell.nees.empty()   ? ""
-                                                : "NEES ratio " + compact(cell.nees.back());
+                                              : "this run: NEES ratio " + compact(cell.nees.back());
   drawing.text(box.left + box.width, box.top + 18.0, end,
                "font-size=\"14\" fill=\"#777777\" text-anchor=\"end\"");
 }
@@ -350,7 +350,8 @@ std::string replay_still(const Replay& replay) {
   const double height = kHead + view.height + 10.0 + kLower;
   Drawing drawing;
   for (std::size_t i = 0; i < panels; ++i) {
-    const auto column = static_cast<double>(i % columns), row = static_cast<double>(i / columns);
+    const std::size_t in_row = i % columns, before = i / columns;
+    const auto column = static_cast<double>(in_row), row = static_cast<double>(before);
     draw_panel(replay, replay.cells[i], view,
                {kSpace + column * (kPanelWidth + kSpace), kSpace / 2.0 + row * (height + kSpace),
                 kPanelWidth, height},

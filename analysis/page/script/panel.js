@@ -55,7 +55,7 @@ class ReplayPanel {
   say(f) {
     const {data, end} = this.cell;
     if (data.failure && f >= end - 1) return data.failure;
-    return this.cell.hasNees ? `NEES ratio ${readable(data.nees[f], 3)}` : "";
+    return this.cell.hasNees ? `this run: NEES ratio ${readable(data.nees[f], 3)}` : "";
   }
 
   sayMore(f) {

@@ -98,7 +98,7 @@ class Player(OnPage):
         said = self.page.evaluate("[...document.querySelectorAll('.player .head .soft')]"
                                   ".map(e => e.textContent)")
         for text, values in zip(said, nees):
-            ratio = float(text.removeprefix("NEES ratio "))
+            ratio = float(text.removeprefix("this run: NEES ratio "))
             self.assertAlmostEqual(ratio / values[-1], 1, delta=0.01)
 
     def test_panels_stand_below_each_other_on_a_phone(self):

@@ -138,10 +138,10 @@ TEST(Words, SayHowMuchWhenAndWhere) {
   EXPECT_EQ(in_words(late), "optimistic: NEES 1.28 to 2.25 times too large, from 20.0 s on");
   EXPECT_EQ(sentence("ekf_slam", late),
             "ekf_slam is optimistic (overconfident): on average its squared errors are 1.70 times "
-            "what it claims (1.28 to 2.25), seen from 20.0 s on, mainly forward.");
+            "what it claims (95 %: 1.28 to 2.25), shown from 20.0 s on, mainly forward.");
   EXPECT_EQ(sentence("ukf", judged({size({0.125, 0.25})})),
             "ukf is conservative: on average its squared errors are 5.66 times smaller than it "
-            "claims (4.00 to 8.00).");
+            "claims (95 %: 4.00 to 8.00).");
   EXPECT_EQ(in_words(judged({size({0.125, 0.25})})),
             "conservative: NEES 4.00 to 8.00 times too small");
   EXPECT_THAT(sentence("a", judged({size(kRight), stretches({kRight, off, kRight, kRight})})),
