@@ -3,6 +3,7 @@
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
+#include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/verdict/whole_error.hpp"
 

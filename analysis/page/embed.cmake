@@ -2,8 +2,8 @@
 cmake_minimum_required(VERSION 3.25)
 
 # Writes SOURCE, the C++ that holds the page's own files: STYLES and SCRIPTS, paths separated by
-# spaces, joined in their order. A constant for each file, since a text constant has a limit of 65536
-# characters, in pieces of 8000 characters.
+# spaces, joined in their order. A constant for each file, since a text constant has a limit of
+# 65536 characters, in pieces of 8000 characters.
 function(append_text name constant files)
   file(APPEND ${SOURCE} "\nstatic constexpr std::string_view ${constant}[] = {\n")
   foreach(path IN LISTS files)

@@ -3,6 +3,7 @@
 
 #include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/csv_file.hpp"
+#include "analysis/output/number_text.hpp"
 #include "analysis/page/html.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
