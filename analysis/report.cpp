@@ -11,6 +11,7 @@
 #include "analysis/page/replay/replay.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
+#include "engine/wrapped_text.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -91,7 +92,7 @@ Section titled(Section section) {
   if (is_open || !section.title.empty() || section.figures.empty()) return section;
   const Figure& first = section.figures.front();
   section.title = first.title;
-  section.summary = first.sentence.substr(0, first.sentence.find(". "));
+  section.summary = engine::first_sentence(first.sentence);
   return section;
 }
 

@@ -4,6 +4,7 @@
 #include "engine/namespaces.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <sstream>
 #include <sys/ioctl.h>
@@ -62,6 +63,14 @@ std::string wrapped(std::string_view text, std::size_t width, std::size_t hang) 
   for (std::string paragraph; std::getline(paragraphs, paragraph);)
     lines += wrapped_paragraph(paragraph, width, hang);
   return lines;
+}
+
+std::string first_sentence(const std::string& text) {
+  for (std::size_t at = text.find(". "); at != text.npos; at = text.find(". ", at + 1)) {
+    if (at + 2 < text.size() && std::isupper(static_cast<unsigned char>(text[at + 2])) != 0)
+      return text.substr(0, at);
+  }
+  return text;
 }
 
 }  // namespace montecarta::engine

@@ -20,4 +20,7 @@ std::size_t output_width(int descriptor = 1);
 /// indented by `hang` more. One that fits stays as it is. Every line ends in a line break.
 std::string wrapped(std::string_view text, std::size_t width, std::size_t hang = 0);
 
+/// `text` up to its first full stop before a capital letter, without the stop.
+std::string first_sentence(const std::string& text);
+
 }  // namespace montecarta::engine

@@ -324,9 +324,8 @@ std::vector<std::string> calibration_notes(const StudyAnalysis& study) {
       "calibrated filter stays within the bands of all tests of its cell with a probability of at "
       "least " +
       level_text(study.level) + ". Fewer than " + std::to_string(kLeastValues) +
-      " runs are not judged. That these tests find no fault does not make a filter consistent: "
-      "they "
-      "look at four moments, the verdict at all scans together.");
+      " runs are not judged. A filter in which these tests find no fault need not be consistent: "
+      "they test four moments, the verdict tests all scans together.");
   for (const CellAnalysis& cell : study.cells) {
     std::size_t undefined = 0;
     for (const JudgedPits& one : cell.get<Calibrations>()) undefined += one.undefined;

@@ -288,7 +288,7 @@ Figure joint_figure(const StudyAnalysis& study) {
         "around the scans at which it is stored: a row for each filter, its mean at the right. A "
         "strip that is grey all along belongs to a filter whose covariance, with all its "
         "correlations, fits its errors; red errors are too large for it, blue ones too small. It "
-        "finds fault with a filter sooner than the pose alone, since every landmark is a witness.";
+        "shows an inconsistency sooner than the pose alone, since every landmark contributes.";
     add_strips({strips}, study.joint_times, figure);
     return figure;
   }

@@ -239,53 +239,52 @@ StripPanel nees_strips(const StudyAnalysis& study, ErrorBlock block) {
 }
 
 std::string how_strips_are_read(double level) {
-  return "A row for each filter, its mean at the right. Grey: inside the band, where chance leaves "
-         "a filter whose stated uncertainty fits its real errors at " +
+  return "A row for each filter, its mean at the right. Grey: inside the band, where a "
+         "consistent filter is at " +
          level_text(level) +
-         " of the scans. Red: squared errors are so many times too large, the filter is "
-         "overconfident. Blue: they are too small. Neighbouring scans share a column, which shows "
-         "the one that is farthest from 1. A row is empty where there is no value.";
+         " of the scans. Red: squared errors are larger than claimed, and the filter is "
+         "overconfident. Blue: they are smaller. A column shows the scan farthest from 1 among its "
+         "neighbours. A row is empty where there is no value.";
+}
+
+/// Strips for more than kMostRatioCurves cells, else curves.
+Figure nees_figure(const StudyAnalysis& study, const std::vector<ErrorBlock>& blocks,
+                   const std::string& of_strips, const std::string& of_curves, Figure figure) {
+  std::vector<StripPanel> strips;
+  std::vector<Panel> panels;
+  for (const ErrorBlock block : blocks) {
+    strips.push_back(nees_strips(study, block));
+    panels.push_back(nees_panel(study, block));
+  }
+  if (strips.front().rows.size() > kMostRatioCurves) {
+    figure.sentence = of_strips + " " + how_strips_are_read(study.level);
+    add_strips(strips, study.times, figure);
+  } else {
+    figure.sentence = of_curves;
+    add_panels(panels, study.times, figure);
+  }
+  return figure;
 }
 
 Figure anees_figure(const StudyAnalysis& study) {
-  Figure figure{"anees", "Is the filter right about its own errors?", ""};
-  const StripPanel strips = nees_strips(study, ErrorBlock::pose);
-  if (strips.rows.size() > kMostRatioCurves) {
-    figure.sentence =
-        "How many times larger the squared errors of the pose are than the filter says, over "
-        "time. " +
-        how_strips_are_read(study.level);
-    add_strips({strips}, study.times, figure);
-    return figure;
-  }
-  figure.sentence =
-      "Average NEES of the pose over time, divided by its expectation: 1 is right, and what is far "
-      "above leaves the figure at the top. A consistent filter is in the grey band at " +
-      level_text(study.level) +
-      " of the scans. A curve that climbs above the band and stays there belongs to a filter that "
-      "is sure of a wrong answer. The axis ends at 100 000 times the band; the numbers below the "
-      "figure hold every value.";
-  add_panels({nees_panel(study, ErrorBlock::pose)}, study.times, figure);
-  return figure;
+  return nees_figure(
+      study, {ErrorBlock::pose},
+      "How many times larger the squared errors of the pose are than the filter claims, over time.",
+      "Average NEES of the pose over time, divided by its expectation: 1 is right. A consistent "
+      "filter is in the grey band at " +
+          level_text(study.level) +
+          " of the scans. A filter above the band trusts a wrong answer. The axis ends at 100 000 "
+          "times the band; the files below the figure have every value.",
+      {"anees", "Is the filter right about its own errors?", ""});
 }
 
 Figure anees_parts_figure(const StudyAnalysis& study) {
-  Figure figure{"anees_parts", "Position or heading: which one goes wrong?", ""};
-  const StripPanel position = nees_strips(study, ErrorBlock::position);
-  if (position.rows.size() > kMostRatioCurves) {
-    figure.sentence =
-        "The same for position alone and heading alone: the strip that turns red first shows where "
-        "trouble begins. " +
-        how_strips_are_read(study.level);
-    add_strips({position, nees_strips(study, ErrorBlock::heading)}, study.times, figure);
-    return figure;
-  }
-  figure.sentence =
-      "The same for position alone and heading alone. The curve that leaves its band first shows "
-      "where trouble begins.";
-  add_panels({nees_panel(study, ErrorBlock::position), nees_panel(study, ErrorBlock::heading)},
-             study.times, figure);
-  return figure;
+  return nees_figure(study, {ErrorBlock::position, ErrorBlock::heading},
+                     "The same for position alone and heading alone: the strip that turns red "
+                     "first shows where the inconsistency begins.",
+                     "The same for position alone and heading alone. The curve that leaves its "
+                     "band first shows where the inconsistency begins.",
+                     {"anees_parts", "Position or heading: which one goes wrong?", ""});
 }
 
 /// "2 of 3 cells are optimistic, 1 is undecided", in the order of the cells.
@@ -315,7 +314,7 @@ Section verdict_section(const StudyAnalysis& study) {
   section.add(imported_notes(study));
   section.add(verdict_notes(study));
   section.add(bound_notes(study.bound));
-  section.add(cautions(study));
+  section.add(cautions(study.cells, study.imported));
   return section;
 }
 

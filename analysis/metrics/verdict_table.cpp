@@ -15,8 +15,6 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr double kDegrees = 180.0 / kPi;
-
 /// The band of all complete runs: single scans may have fewer valid ones.
 std::string band_text(const CellAnalysis& cell, std::size_t dimension, double level) {
   if (cell.complete == 0) return "-";
@@ -43,7 +41,7 @@ std::vector<std::string> verdict_row(const CellAnalysis& cell) {
 std::vector<std::string> accuracy_row(const CellAnalysis& cell, double level) {
   return {cell.label,
           score_text(cell, "position_rmse", level),
-          score_text(cell, "heading_rmse", level, kDegrees),
+          score_text(cell, "heading_rmse", level, 180.0 / kPi),
           percent(cell.get<Efficiency>().position),
           readable(cell.over_runs("ess").mean),
           readable(cell.over_runs("ancestors_at_start_at_the_end").mean),
@@ -309,13 +307,14 @@ std::vector<std::string> consistency_notes() {
       "complete runs in which no scan is left."};
 }
 
-std::vector<std::string> cautions(const StudyAnalysis& study) {
+std::vector<std::string> cautions(std::span<const CellAnalysis> cells,
+                                  const ImportedState& imported) {
   constexpr double kLeastShare = 0.01;
   std::string runs, draws, singular;
   const auto list = [](std::string& text, const CellAnalysis& cell, const std::string& count) {
     text += (text.empty() ? "" : ", ") + cell.label + " " + count;
   };
-  for (const CellAnalysis& cell : study.cells) {
+  for (const CellAnalysis& cell : cells) {
     const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
     if (pose == nullptr) continue;
     const NeesSeries& series = pose->series;
@@ -328,7 +327,7 @@ std::vector<std::string> cautions(const StudyAnalysis& study) {
     }
     if (share(series.too_few) >= kLeastShare) list(draws, cell, percent(share(series.too_few)));
     const double lower = share(series.lower_rank);
-    if (lower >= kLeastShare && !study.imported.is_imported()) list(singular, cell, percent(lower));
+    if (lower >= kLeastShare && !imported.is_imported()) list(singular, cell, percent(lower));
   }
   std::vector<std::string> sentences;
   if (!runs.empty()) sentences.push_back("Runs without a scan that can be judged: " + runs + ".");
@@ -342,27 +341,6 @@ std::vector<std::string> cautions(const StudyAnalysis& study) {
         "Singular covariances, judged by the components that they leave: " + singular + ".");
   }
   return sentences;
-}
-
-std::vector<std::string> too_few_notes(const CellAnalysis& cell) {
-  const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
-  if (pose == nullptr) return {};
-  std::vector<std::string> notes;
-  if (pose->series.unjudged_runs > 0) {
-    notes.push_back(cell.label + ": " + std::to_string(pose->series.unjudged_runs) + " of " +
-                    std::to_string(cell.complete) +
-                    " complete runs have no scan that can be judged; ANEES and verdict are of "
-                    "the other runs.");
-  }
-  if (pose->series.too_few == 0) return notes;
-  const double share =
-      static_cast<double>(pose->series.too_few) / static_cast<double>(pose->series.samples);
-  notes.push_back(cell.label + ": in " + std::to_string(pose->series.too_few) + " of " +
-                  std::to_string(pose->series.samples) + " scans (" + percent(share) +
-                  ") the weights leave no more than 5 effective draws (ESS), of which a "
-                  "covariance of three components cannot be judged; ANEES and verdict are of "
-                  "the other scans.");
-  return notes;
 }
 
 }  // namespace montecarta::analysis

@@ -5,6 +5,7 @@
 #include "analysis/output/text_table.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,9 +40,8 @@ std::vector<std::string> verdict_notes(const StudyAnalysis& study);
 
 /// At most a sentence each on runs, scans and covariances that the verdict judges in part or not at
 /// all. Cells with less than one in a hundred are not named; consistency_table() has all counts.
-std::vector<std::string> cautions(const StudyAnalysis& study);
-/// How many scans of a cell have too few effective draws to be judged; nothing where none has.
-std::vector<std::string> too_few_notes(const CellAnalysis& cell);
+std::vector<std::string> cautions(std::span<const CellAnalysis> cells,
+                                  const ImportedState& imported);
 
 /// "40 complete", "2 FAILED, 38 complete", ...
 std::string runs_in_words(const CellAnalysis& cell);

@@ -7,6 +7,7 @@
 #include "analysis/page/html.hpp"
 #include "analysis/tables/tables.hpp"
 #include "engine/errors.hpp"
+#include "engine/wrapped_text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -30,13 +31,6 @@ std::string read_text(const fs::path& path) {
 std::string html_heading(int level, const std::string& title) {
   const std::string name = "h" + std::to_string(level);
   return title.empty() ? "" : "<" + name + ">" + html_escape(title) + "</" + name + ">\n";
-}
-
-/// A text's first sentence, and the others.
-std::pair<std::string, std::string> first_sentence(const std::string& text) {
-  const std::size_t end = text.find(". ");
-  if (end == text.npos) return {text, ""};
-  return {text.substr(0, end + 1), text.substr(end + 2)};
 }
 
 /// A figure's numbers; where there are many files, folded away.
@@ -79,11 +73,14 @@ std::string html_figures(const Section& section, const fs::path& directory) {
   const int level = section.title.empty() ? 2 : 3;
   std::string html;
   for (const Figure& figure : section.figures) {
-    const auto [first, others] = first_sentence(figure.sentence);
-    const bool is_said = first == section.summary + ".";
+    const std::string first = engine::first_sentence(figure.sentence);
+    const std::string others = figure.sentence.substr(first.size());
+    const std::string stop = others.empty() ? "" : ".";
+    const bool is_said = first == section.summary;
     if (figure.title != section.title) html += html_heading(level, figure.title);
-    html += html_explained(is_said ? "" : "<span class=\"soft\">" + html_escape(first) + "</span>",
-                           others.empty() ? "" : html_paragraphs({others}));
+    html += html_explained(
+        is_said ? "" : "<span class=\"soft\">" + html_escape(first + stop) + "</span>",
+        others.empty() ? "" : html_paragraphs({others.substr(2)}));
     html += html_drawing(figure, directory);
   }
   return html;

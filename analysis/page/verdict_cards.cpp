@@ -142,7 +142,7 @@ std::string rmse_html(const StudyAnalysis& study, const std::string& name,
 }
 
 std::string numbers_html(const StudyAnalysis& study, const CellAnalysis& cell) {
-  std::vector<std::string> ratio_notes = too_few_notes(cell);
+  std::vector<std::string> ratio_notes = cautions({&cell, 1}, study.imported);
   ratio_notes.insert(ratio_notes.begin(), ratio_note(study));
   std::string html = number_html("NEES ratio", ratio_text(cell), ratio_notes);
   if (study.imported.is_imported() && study.imported.state != "pose") return html;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/tables/summary_table.hpp"
 
+#include "analysis/metrics/verdict_table.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/verdict/verdict.hpp"
 #include "engine/numbers/angle.hpp"
@@ -10,7 +11,6 @@
 namespace montecarta::analysis {
 namespace {
 
-constexpr double kDegreesOfARadian = 180.0 / kPi;
 constexpr std::size_t kComplete = 1;  // the column of complete runs
 
 /// "40", or "32 of 200" where runs failed, are missing or were not needed.
@@ -27,14 +27,12 @@ std::string ancestors_text(const CellAnalysis& cell) {
 }
 
 TableRow summary_row(const CellAnalysis& cell) {
-  const Verdict& verdict = cell.verdict;
-  const bool is_tested = verdict.answer != Answer::untested;
   return {cell.label,
           complete_runs(cell),
-          name_of(verdict.answer),
-          is_tested ? with_interval(verdict.ratio_estimate(), verdict.ratio()) : "-",
+          name_of(cell.verdict.answer),
+          ratio_text(cell),
           readable(cell.over_runs("position_rmse").mean),
-          readable(kDegreesOfARadian * cell.over_runs("heading_rmse").mean),
+          readable(180.0 / kPi * cell.over_runs("heading_rmse").mean),
           ancestors_text(cell),
           readable(cell.over_runs("cpu_seconds").mean, 2)};
 }

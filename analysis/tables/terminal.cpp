@@ -86,7 +86,7 @@ void print_head(std::ostream& out, const StudyAnalysis& study, std::size_t width
 /// What a reader must know even if they look at the summary only.
 void print_cautions(std::ostream& out, const StudyAnalysis& study, std::size_t width) {
   std::vector<std::string> sentences = imported_notes(study);
-  std::ranges::copy(cautions(study), std::back_inserter(sentences));
+  std::ranges::copy(cautions(study.cells, study.imported), std::back_inserter(sentences));
   for (const std::string& caution : sentences) out << engine::wrapped(caution, width, 2);
   if (!sentences.empty()) out << '\n';
 }

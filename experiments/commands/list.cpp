@@ -2,6 +2,7 @@
 #include "analysis/metrics/score.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/columns.hpp"
+#include "engine/wrapped_text.hpp"
 #include "experiments/commands/commands.hpp"
 #include "experiments/commands/listing.hpp"
 #include "experiments/external/external_filter.hpp"
@@ -89,7 +90,7 @@ std::string fallback_text(const Setting& setting) {
 }
 
 void describe(const Setting& setting) {
-  const std::string first = first_sentence(setting.meaning);
+  const std::string first = engine::first_sentence(setting.meaning);
   std::cout << wrapped(name_of(setting) + ": " + first, output_width());
   if (first.size() < setting.meaning.size())
     std::cout << wrapped(setting.meaning.substr(first.size() + 2), output_width());
@@ -130,7 +131,7 @@ void list_section(const std::string& section) {
   TextPairs items;
   for (const Setting& setting : study_settings()) {
     if (setting.section == section)
-      items.emplace_back(setting.key, first_sentence(setting.meaning));
+      items.emplace_back(setting.key, engine::first_sentence(setting.meaning));
   }
   if (items.empty()) return;
   std::cout << wrapped("[" + section + "] " + title_of_section(section), output_width())

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/data/study_settings.hpp"
 #include "engine/records/columns.hpp"
+#include "engine/wrapped_text.hpp"
 #include "experiments/study/settings.hpp"
 #include "experiments/text/words.hpp"
 #include "filters/models/sensor.hpp"
@@ -209,7 +210,7 @@ void add_scenario(std::vector<Setting>& table) {
 void add_belief(std::vector<Setting>& table) {
   const char* s = "belief";
   const auto add = [&](Setting setting, const std::string& example = {}) {
-    setting.meaning = first_sentence(setting.meaning) +
+    setting.meaning = engine::first_sentence(setting.meaning) +
                       ". This is the value that the filters assume. The true one is that of "
                       "[scenario].";
     table.push_back(believed(std::move(setting), example));

@@ -4,6 +4,7 @@
 #include "engine/errors.hpp"
 #include "engine/numbers/angle.hpp"
 #include "engine/visible_text.hpp"
+#include "engine/wrapped_text.hpp"
 #include "experiments/text/words.hpp"
 
 #include <boost/program_options/parsers.hpp>
@@ -256,7 +257,7 @@ void Settings::fill_in(const std::string& name) {
     const std::optional<std::string> fallback = setting.fallback_for(kind);
     if (!fallback) {
       throw StudyError(name + ": " + setting.section + "." + setting.key + " is missing (" +
-                       first_sentence(setting.meaning) + "): add " + setting.key + " = " +
+                       engine::first_sentence(setting.meaning) + "): add " + setting.key + " = " +
                        setting.example + " under [" + setting.section + "]");
     }
     const std::string value =

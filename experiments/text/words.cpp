@@ -78,14 +78,6 @@ std::string excerpt(std::string_view text) {
   return text.size() > kLongest ? shown + "..." : shown;
 }
 
-std::string first_sentence(const std::string& text) {
-  for (std::size_t at = text.find(". "); at != text.npos; at = text.find(". ", at + 1)) {
-    if (at + 2 < text.size() && std::isupper(static_cast<unsigned char>(text[at + 2])) != 0)
-      return text.substr(0, at);
-  }
-  return text;
-}
-
 std::string shortened(const std::string& message) {
   constexpr std::size_t kLongestWord = 400, kKept = 100, kLongestMessage = 8000;
   std::string shown;

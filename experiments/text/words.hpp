@@ -21,9 +21,6 @@ std::string joined(std::span<const std::string> parts, std::string_view between 
 /// `text` as an error message may quote it: its first 40 bytes, with ? for what cannot be printed.
 std::string excerpt(std::string_view text);
 
-/// `text` up to its first full stop before a capital letter: what a list has of it.
-std::string first_sentence(const std::string& text);
-
 /// A message as a terminal shows it: words of thousands of characters lose their middle, and a
 /// message of tens of thousands its end.
 std::string shortened(const std::string& message);

@@ -110,7 +110,6 @@ class JointGaussian {
   /// Starts with the vehicle exactly at `start` and an empty map.
   void start(const Pose& start);
   /// Becomes a copy of `other`, without its unused memory.
-  void become(const JointGaussian& other);
 
   const Belief& belief() const { return belief_; }
   const PoseMoments& pose() const { return pose_; }

@@ -46,5 +46,11 @@ TEST(WrappedText, WidthOfWhatIsNoTerminalIs80OrThatOfTheEnvironment) {
   ::close(ends[1]);
 }
 
+TEST(FirstSentence, EndsBeforeACapitalLetter) {
+  EXPECT_EQ(first_sentence("speed along the path. It is constant."), "speed along the path");
+  EXPECT_EQ(first_sentence("as in Kim et al. 2008, eq. (3)"), "as in Kim et al. 2008, eq. (3)");
+  EXPECT_EQ(first_sentence("one. "), "one. ");
+}
+
 }  // namespace
 }  // namespace montecarta::engine

@@ -189,7 +189,8 @@ TEST(CellSums, LeavesOutAndCountsARunWithoutAJudgedScan) {
   StudyAnalysis analysis;
   analysis.cells = {cell};
   analysis.cells[0].label = "kf";
-  EXPECT_EQ(cautions(analysis).front(), "Runs without a scan that can be judged: kf 1 of 12.");
+  EXPECT_EQ(cautions(analysis.cells, {}).front(),
+            "Runs without a scan that can be judged: kf 1 of 12.");
 }
 
 TEST(CellSums, CountsWhatIsSingularOrUnusable) {
