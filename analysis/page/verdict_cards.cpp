@@ -73,7 +73,7 @@ struct Sparkline {
               pixels(kSparkWidth) + "\"/>";
       if (decade != 0 && decade != highest) continue;
       html += "<text x=\"" + pixels(kSparkLeft - 5.0) + "\" y=\"" + pixels(y(ratio) + 4.0) + "\">" +
-              exact_text(ratio) + "</text>";
+              (decade > 3 ? "1e" + std::to_string(decade) : exact_text(ratio)) + "</text>";
     }
     return html;
   }
