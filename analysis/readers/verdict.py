@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Computes the verdict on a Gaussian filter by the equations of STATISTICS 5:
 
-    python3 verdict.py FILE.h5 CELL [--within R] [--level L]
+    python3 verdict.py FILE.h5 CELL [WITHIN [LEVEL]]
 
-prints the answer and the members of all families, of scans the one with the smallest p-value. R is
-1.1 if not given; L is 0.95, or verdict_level of cells.csv if cells stop by verdict. The cell must
-have poses by one Gaussian, with a covariance of full rank at every scan, and 3 complete runs."""
+WITHIN is 1.1 if not given; LEVEL is 0.95, or verdict_level of cells.csv if cells stop by verdict.
+The cell must have poses by one Gaussian of full rank at every scan, and 3 complete runs."""
 import sys
 from collections import Counter, namedtuple
 
@@ -14,29 +13,26 @@ import numpy as np
 from scipy import special, stats
 from scipy.spatial.transform import Rotation
 
-NAMES = ["forward", "left", "heading"]
-RATIOS = ["size", "component", "stretch", "scan"]
+NAMES, RATIOS = ["forward", "left", "heading"], ["size", "component", "stretch", "scan"]
 Member = namedtuple("Member", "family name estimate p interval")  # interval(level)
 
 
 def errors_of(path, label):
     """Whitened and standardised errors {run, scan, component}, and the times of the scans [s]."""
     with h5py.File(path, "r") as file:
-        cell, rows = file["cells"][label], file["scan_row"][:]
+        cell, rows, times = file["cells"][label], file["scan_row"][:], file["scan"][:]
         is_several = cell.attrs["particles"] > 0 or "pose_mean_mixture" in cell
         if is_several or "error" in cell or "pose_covariance" not in cell:
             sys.exit(f"{label}: verdict.py takes only poses by one Gaussian with its covariance")
-        runs, times = np.flatnonzero(cell["status"][:] == 1), file["scan"][:]
-        truth, mean, P = (dataset[:][runs][:, rows] for dataset in (
-            file["truth/pose"], cell["pose_mean"], cell["pose_covariance"]))
+        columns = file["truth/pose"], cell["pose_mean"], cell["pose_covariance"]
+        truth, mean, P = (column[:][cell["status"][:] == 1][:, rows] for column in columns)
     e = mean - truth
     e[..., 2] -= 2 * np.pi * np.round(e[..., 2] / (2 * np.pi))
     turn = Rotation.from_euler("z", -truth[..., 2].ravel()).as_matrix().reshape(P.shape)
     e, P = (turn @ e[..., None])[..., 0], turn @ P @ np.swapaxes(turn, -1, -2)  # vehicle's frame
     sigma = np.sqrt(np.diagonal(P, axis1=-2, axis2=-1))
     correlation = P / (sigma[..., :, None] * sigma[..., None, :])
-    if not (np.isfinite(correlation).all() and np.isfinite(e).all() and sigma.min() > 1e-9
-            and np.linalg.eigvalsh(correlation).min() > 1e-12):
+    if not (np.isfinite(e).all() and np.linalg.eigvalsh(correlation).min() > 1e-12):
         sys.exit(f"{label}: verdict.py needs finite errors and covariances of full rank")
     return np.linalg.solve(np.linalg.cholesky(P), e[..., None])[..., 0], e / sigma, times
 
@@ -73,8 +69,8 @@ def ratio_member(family, name, ratio, runs, t1, t2, t3, freedom):
     def interval(level):
         tail = stats.norm.sf(min(stats.t.isf((1 - level) / 2, freedom), 37))
         lower = shift + scale * special.gammaincinv(shape, tail)
-        return (ratio / (shift + scale * special.gammainccinv(shape, tail)),
-                ratio / lower if lower > 0 else np.inf)
+        upper = shift + scale * special.gammainccinv(shape, tail)
+        return ratio / upper, ratio / lower if lower > 0 else np.inf
 
     return Member(family, name, ratio, 2 * stats.t.sf(min(score, 37), freedom), interval)
 
@@ -82,12 +78,9 @@ def ratio_member(family, name, ratio, runs, t1, t2, t3, freedom):
 def mean_member(family, name, values):
     """A mean over runs that should be zero, by Student's t."""
     n, mean, error = len(values), values.mean(), stats.sem(values)
-
-    def interval(level):
-        half = stats.t.isf((1 - level) / 2, n - 1) * error
-        return mean - half, mean + half
-
-    return Member(family, name, mean, 2 * stats.t.sf(abs(mean / error), n - 1), interval)
+    return Member(family, name, mean, 2 * stats.t.sf(abs(mean / error), n - 1),
+                  lambda level: tuple(mean + error * stats.t.ppf([(1 - level) / 2, (1 + level) / 2],
+                                                                 n - 1)))
 
 
 def spread_member(x):
@@ -102,6 +95,7 @@ def spread_member(x):
 
 
 def members_of(u, z, times):
+    """All tests of whitened errors u and standardised errors z {run, scan, component}."""
     runs, scans, d = u.shape
     kept = max(50, min(256, 8_000_000 // (scans * d)))  # runs whose products are made
 
@@ -131,23 +125,20 @@ def judge(members, level, within):
     family, and whether it is shown to be off."""
     alpha, sizes = 1 - level, Counter(member.family for member in members)
     least = {f: min(1.0, n * min(m.p for m in members if m.family == f)) for f, n in sizes.items()}
-    adjusted, largest = {}, 0.0
-    for k, family in enumerate(sorted(least, key=least.get)):  # Holm
-        adjusted[family] = largest = max(largest, min(1.0, (len(least) - k) * least[family]))
+    order = sorted(least, key=least.get)
+    holm = np.maximum.accumulate([(len(order) - k) * least[f] for k, f in enumerate(order)])
+    adjusted = dict(zip(order, np.minimum(1.0, holm)))
     rows, is_within, signs = [], True, set()
     for family, _, estimate, p, interval in members:
-        n, limit = sizes[family], alpha  # of p times the members
-        if least[family] > 0:
-            limit *= least[family] / adjusted[family]
+        n, limit = sizes[family], alpha * (least[family] / adjusted[family] or 1)
         shown = adjusted[family] <= alpha and p * n <= limit
         own, joint = interval(level), interval(1 - alpha / (len(sizes) * n))
         rows.append((own, joint, adjusted[family], shown))
         most = np.sqrt(within - 1) if family == "bias" else within - (family not in RATIOS)
         least_allowed = 1 / most if family in RATIOS else -most
-        if family in ("scan", "between_runs"):
-            is_within &= joint[0] <= most and joint[1] >= least_allowed
-        else:
-            is_within &= own[0] >= least_allowed and own[1] <= most
+        is_disproved = joint[0] > most or joint[1] < least_allowed
+        is_proved = own[0] >= least_allowed and own[1] <= most
+        is_within &= not is_disproved if family in ("scan", "between_runs") else is_proved
         if shown and family in RATIOS:
             signs.add("optimistic" if estimate > 1 else "conservative")
     rejected = min(adjusted.values()) <= alpha
@@ -156,14 +147,12 @@ def judge(members, level, within):
 
 
 if __name__ == "__main__":
-    path, cell, *options = sys.argv[1:]
-    asked = dict(zip(options[::2], map(float, options[1::2])))
-    members = list(members_of(*errors_of(path, cell)))
-    answer, rows = judge(members, asked.get("--level", 0.95), asked.get("--within", 1.1))
-    head = ["family", "member", "estimate", "lower", "upper", "p", "family p", "shown"]
-    print(f"{cell}: {answer}", "{:13}{:21}{:>9}{:>10}{:>10}{:>9}{:>9}  {}".format(*head), sep="\n")
-    form = "{:13}{:21}{:>9.4}{:>10.4}{:>10.4}{:>9.2}{:>9.2}  {}"
+    within, level = [float(text) for text in sys.argv[3:] + ["1.1", "0.95"][len(sys.argv) - 3:]]
+    members = list(members_of(*errors_of(*sys.argv[1:3])))
+    answer, rows = judge(members, level, within)
+    print(f"{sys.argv[2]}: {answer}\nfamily, member: estimate [interval], p of the family")
     least = min(member.p for member in members if member.family == "scan")
     for (family, name, estimate, p, _), (own, _, family_p, shown) in zip(members, rows):
         if family != "scan" or p == least:
-            print(form.format(family, name, estimate, *own, p, family_p, "yes" if shown else "no"))
+            print(f"{family + ', ' + name:32} {estimate:8.4f} [{own[0]:.4f}, {own[1]:.4f}] "
+                  f"{family_p:.2g}{'  shown' if shown else ''}")
