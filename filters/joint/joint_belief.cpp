@@ -10,67 +10,27 @@ namespace {
 /// Number of landmarks for which memory is reserved at first; identities may be sparse.
 constexpr std::size_t kRoomAtFirst = 300;
 
-bool stands_still(const MotionIncrement& motion) {
-  const Pose& pose = motion.pose();
-  return pose.x == 0.0 && pose.y == 0.0 && pose.heading == 0.0 &&
-         symmetric(motion.covariance()).isZero(0.0);
-}
-
 }  // namespace
 
-void LinearisationPoints::start(const Pose& start) {
-  pose_ = start;
-  landmarks_.clear();
-}
-
-Eigen::Vector2d LinearisationPoints::behind(const Pose& place) const {
-  return place_of(place) - place_of(pose_);
-}
-
-Eigen::Vector2d LinearisationPoints::shift_to(const CompressedGaussian& gaussian) const {
-  Eigen::Vector2d sum = behind(gaussian.pose().mean);
-  for (std::size_t slot = 0; slot < landmarks_.size(); ++slot) {
-    sum += gaussian.mean_of(slot) - landmarks_[slot];
-  }
-  return sum / static_cast<double>(1 + landmarks_.size());
-}
-
-void LinearisationPoints::shift(const Eigen::Vector2d& way) {
-  pose_.x += way(0);
-  pose_.y += way(1);
-  for (Eigen::Vector2d& landmark : landmarks_) landmark += way;
-}
-
-void LinearisationPoints::move(const LinearisedMotion& motion) {
-  const Eigen::Vector2d way = -quarter_turned(motion.by_heading);
-  pose_ = {pose_.x + way(0), pose_.y + way(1), motion.mean.heading};
-}
-
-Eigen::Vector2d turned(const ExpectedObservation& expected, const Eigen::Vector2d& place,
-                       const Eigen::Vector2d& landmark) {
-  return expected.pose_jacobian.leftCols<2>() * quarter_turned(place) +
-         expected.pose_jacobian.col(2) + expected.landmark_jacobian * quarter_turned(landmark);
-}
-
 JointBelief::JointBelief(const FilterSetup& setup, Retraction retraction, int iterations,
-                         Moments moments, Linearisation linearisation)
+                         Moments moments, std::unique_ptr<Linearisation> linearisation)
     : sensor_(setup.belief.sensor),
       association_(setup),
-      gaussian_(setup.belief, retraction, std::min(setup.landmarks, kRoomAtFirst)),
+      linearisation_(std::move(linearisation)),
+      system_{{setup.belief, retraction, std::min(setup.landmarks, kRoomAtFirst)}, {}},
       delayed_(setup.belief),
       iterations_(iterations),
       moments_(moments),
-      linearisation_(linearisation),
       retraction_(retraction),
       sigma_(deviations_of(setup.belief.sensor, setup.belief)) {}
 
 void JointBelief::start(const Pose& start) {
-  gaussian_.start(start);
-  if (is_robocentric()) frame_.start(start, gaussian_);
+  system_.gaussian.start(start);
+  linearisation_->start(start, system_.gaussian);
   association_.clear();
   point_of_.clear();
   delayed_.clear();
-  points_.start(start);
+  system_.points.start(start);
   rotation_information_ = 0.0;
   used_detections_.clear();
   outcome_ = {};
@@ -79,7 +39,7 @@ void JointBelief::start(const Pose& start) {
 void JointBelief::update_with(const MotionIncrement& motion, Scan scan) {
   outcome_ = {};
   used_detections_.clear();
-  move(motion);
+  linearisation_->move(motion, system_);
   association_.known() ? association_.pair_by_identity(scan) : pair_nearest(scan);
   select_matched();
   for (std::size_t k = 0; k < scan.size(); ++k) {
@@ -89,7 +49,7 @@ void JointBelief::update_with(const MotionIncrement& motion, Scan scan) {
       outcome_.log_likelihood += association_.unmatched_log_density();  // every belief adds it
     }
   }
-  if (is_robocentric()) frame_.centre(gaussian_);
+  linearisation_->end_scan(system_.gaussian);
 }
 
 /// Makes the landmarks that the scan matches near.
@@ -98,7 +58,7 @@ void JointBelief::select_matched() {
   for (const Pairing& pairing : association_.pairings()) {
     if (pairing.kind == PairingKind::matched) matched_.push_back(point_of_[pairing.landmark]);
   }
-  gaussian_.make_near(matched_);
+  system_.gaussian.make_near(matched_);
 }
 
 /// Determines which detections of this scan can advance the initialisation of a landmark.
@@ -111,9 +71,9 @@ void JointBelief::find_advancing(Scan scan) {
   for (std::size_t k = 0; k < scan.size(); ++k) {
     if (is_fresh(k)) delayed_.add_points_of(scan[k].identity, matched_);
   }
-  gaussian_.make_near(matched_);
+  system_.gaussian.make_near(matched_);
   for (std::size_t k = 0; k < scan.size(); ++k) {
-    if (is_fresh(k)) advancing_[k] = delayed_.can_advance(gaussian_, scan[k]);
+    if (is_fresh(k)) advancing_[k] = delayed_.can_advance(system_.gaussian, scan[k]);
   }
 }
 
@@ -123,12 +83,12 @@ void JointBelief::add_landmark(const Detection& fresh, std::uint32_t point) {
 }
 
 void JointBelief::place_landmark(const Detection& fresh) {
-  const std::size_t slot = gaussian_.landmarks();
+  CompressedGaussian& gaussian = system_.gaussian;
+  const std::size_t slot = gaussian.landmarks();
   add_landmark(fresh, static_cast<std::uint32_t>(slot));
-  Eigen::Vector2d behind = Eigen::Vector2d::Zero();
-  if (has_own_points()) behind = points_.behind(gaussian_.pose().mean);
-  gaussian_.append(vector_of(fresh), behind);
-  points_.append(gaussian_.mean_of(slot) - place_of(gaussian_.pose().mean) + behind);
+  const Eigen::Vector2d offset = linearisation_->offset(system_);
+  gaussian.append(vector_of(fresh), offset);
+  system_.points.append(gaussian.mean_of(slot) - place_of(gaussian.pose().mean) + offset);
 }
 
 void JointBelief::initialise_landmarks(Scan scan) {
@@ -138,32 +98,29 @@ void JointBelief::initialise_landmarks(Scan scan) {
     if (fixes_landmark(sensor_)) {
       place_landmark(scan[k]);
     } else if (advancing_[k]) {
-      const auto point = delayed_.advance(gaussian_, scan[k]);
+      const auto point = delayed_.advance(system_.gaussian, scan[k]);
       if (point) add_landmark(scan[k], *point);
     }
   }
 }
 
 PoseMoments JointBelief::pose_after(const MotionIncrement& motion) const {
-  if (linearisation_ == Linearisation::estimate && moments_ == Moments::map)
-    return gaussian_.pose_after(motion);  // called at every control step
-  const PoseMoments pose = gaussian_.pose_after(linearised(motion));
-  if (is_robocentric()) return frame_.in_map(pose);
-  return moments_ == Moments::map ? pose : pushed(pose);
+  if (moments_ == Moments::map) return linearisation_->pose_after(system_, motion);
+  return pushed(system_.gaussian.pose_after(linearisation_->linearised(system_, motion)));
 }
 
 std::optional<LandmarkEstimate> JointBelief::landmark(std::size_t k) const {
   const std::size_t at = association_.slot_of(k);
   if (at >= landmarks()) return std::nullopt;
+  const CompressedGaussian& gaussian = system_.gaussian;
   const std::size_t slot = point_of_[at];
-  if (is_robocentric()) return frame_.in_map(gaussian_, slot);
-  if (moments_ == Moments::map) return gaussian_.landmark(slot);
-  return pushed(gaussian_.point(slot), gaussian_.pose().covariance(2, 2));
+  if (moments_ == Moments::map) return linearisation_->landmark(gaussian, slot);
+  return pushed(gaussian.point(slot), gaussian.pose().covariance(2, 2));
 }
 
 JointEstimate JointBelief::joint(std::size_t landmarks) const {
-  JointEstimate held = gaussian_.joint();
-  if (is_robocentric()) frame_.put_in_map(held);
+  JointEstimate held = system_.gaussian.joint();
+  linearisation_->put_in_map(held);
   JointEstimate joint = joint_report(held, association_, landmarks, [&](std::size_t slot) {
     return slot < this->landmarks() ? 3 + row_of(point_of_[slot]) : Eigen::Index{-1};
   });
@@ -188,12 +145,12 @@ void JointBelief::pair_nearest(Scan scan) {
   const double range = reach_of(scan);
   const AssociationSettings& settings = association_.settings();
   const double sigmas = std::sqrt(std::max(settings.gate, settings.new_gate));
-  const auto drift = gaussian_.drift();
+  const auto drift = system_.gaussian.drift();
   ExpectedObservation expected;
   for (std::uint32_t landmark = 0; landmark < landmarks(); ++landmark) {
     const std::uint32_t slot = point_of_[landmark];
-    if (gaussian_.is_out_of_reach(slot, drift, range, sigmas)) continue;
-    if (!look_at(slot, expected)) continue;
+    if (system_.gaussian.is_out_of_reach(slot, drift, range, sigmas)) continue;
+    if (!predict(slot, expected)) continue;
     const double log_det = expected.factor.log_det();
     for (std::size_t k = 0; k < scan.size(); ++k) {
       const double distance =
@@ -205,9 +162,8 @@ void JointBelief::pair_nearest(Scan scan) {
 }
 
 /// Predicts the detection of a landmark; returns false if it cannot be used. A fault is counted.
-bool JointBelief::look_at(std::size_t slot, ExpectedObservation& expected) {
-  const auto trouble = regresses() ? gaussian_.look_by_sigma_points(slot, expected)
-                                   : gaussian_.look_at(slot, expected, observation_point(slot));
+bool JointBelief::predict(std::size_t slot, ExpectedObservation& expected) {
+  const auto trouble = linearisation_->predict(system_, slot, expected);
   if (trouble == CompressedGaussian::Trouble::faulty) ++outcome_.faults;
   return trouble == CompressedGaussian::Trouble::none;
 }
@@ -218,13 +174,13 @@ void JointBelief::update_with(std::size_t k, const Detection& detection) {
   const std::size_t slot = point_of_[association_.pairings()[k].landmark];
   const Eigen::Vector2d detected = vector_of(detection);
   ExpectedObservation expected;
-  if (!look_at(slot, expected)) {
+  if (!predict(slot, expected)) {
     outcome_.log_likelihood += association_.unmatched_log_density();
     return;
   }
   const ObservationPoint turning = rotation_point(slot);
   used_detections_.push_back({k, expected.innovation(detected), expected.factor.covariance()});
-  const auto trouble = gaussian_.update_with(slot, detected, iterations_, expected);
+  const auto trouble = system_.gaussian.update_with(slot, detected, iterations_, expected);
   if (trouble == CompressedGaussian::Trouble::faulty) ++outcome_.faults;
   rotation_information_ += turned(expected, place_of(turning.pose), turning.landmark)
                                .cwiseQuotient(sigma_)
@@ -235,42 +191,13 @@ void JointBelief::update_with(std::size_t k, const Detection& detection) {
       log_normal_density(distance, L, static_cast<double>(components_of(sensor_).size()));
 }
 
-// The following functions choose the points of linearisation.
-
-Eigen::Vector2d JointBelief::shift_of_points() const {
-  if (linearisation_ != Linearisation::constrained) return Eigen::Vector2d::Zero();
-  return points_.shift_to(gaussian_);
-}
-
-/// A vehicle that has not moved keeps its point, and nothing is linearised.
-LinearisedMotion JointBelief::linearised(const MotionIncrement& motion) const {
-  if (regresses()) return gaussian_.regressed(motion);
-  LinearisedMotion linearised = gaussian_.linearised(motion);
-  if (!has_own_points() || stands_still(motion)) return linearised;
-  linearised.by_heading +=
-      quarter_turned(points_.behind(gaussian_.pose().mean) - shift_of_points());
-  return linearised;
-}
-
-void JointBelief::move(const MotionIncrement& motion) {
-  const LinearisedMotion how = linearised(motion);
-  if (linearisation_ == Linearisation::constrained && !stands_still(motion))
-    points_.shift(shift_of_points());
-  gaussian_.move(how);
-  points_.move(how);
-}
-
-std::optional<ObservationPoint> JointBelief::observation_point(std::size_t slot) const {
-  if (!has_own_points()) return std::nullopt;
-  return ObservationPoint{points_.pose(), points_.landmark(slot)};
-}
-
 /// The rotation of the invariant error is about the estimate, since its covariance is transformed
 /// after every detection. With errors relative to the vehicle, only the frame of the map rotates.
 ObservationPoint JointBelief::rotation_point(std::size_t slot) const {
-  if (retraction_ == Retraction::invariant || is_robocentric() || !fixes_landmark(sensor_))
-    return {gaussian_.pose().mean, gaussian_.mean_of(slot)};
-  return {points_.pose(), points_.landmark(slot)};
+  if (retraction_ == Retraction::invariant || linearisation_->is_relative() ||
+      !fixes_landmark(sensor_))
+    return {system_.gaussian.pose().mean, system_.gaussian.mean_of(slot)};
+  return {system_.points.pose(), system_.points.landmark(slot)};
 }
 
 }  // namespace montecarta::filters

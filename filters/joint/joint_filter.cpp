@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace montecarta::filters {
 namespace {
@@ -17,17 +18,17 @@ struct JointFilterSettings {
   int iterations = 0;  ///< number of linearisations after the first
   Motion motion = Motion::linearised;
   Moments moments = Moments::map;  ///< those that it reports
-  Linearisation linearisation = Linearisation::estimate;
+  std::unique_ptr<Linearisation> linearisation = at_estimate();
 };
 
 /// A filter with one Gaussian over pose and map: EKF-SLAM and its variants (EQUATIONS 15).
 class JointFilter final : public SlamFilter {
  public:
-  JointFilter(const FilterSetup& setup, const JointFilterSettings& settings)
+  JointFilter(const FilterSetup& setup, JointFilterSettings settings)
       : belief_(setup.belief),
         motion_form_(settings.motion),
         joint_(setup, settings.retraction, settings.iterations, settings.moments,
-               settings.linearisation) {}
+               std::move(settings.linearisation)) {}
 
   void start(const Pose& start) override {
     motion_.restart();
@@ -110,18 +111,18 @@ std::unique_ptr<SlamFilter> one_gaussian(const FilterSetup& setup, Retraction re
 }
 
 /// EKF-SLAM that linearises at other points than the estimate.
-template <Linearisation kLinearisation>
+template <std::unique_ptr<Linearisation> kLinearisation()>
 std::unique_ptr<SlamFilter> linearised_elsewhere(const FilterSetup& setup) {
   return std::make_unique<JointFilter>(setup,
                                        JointFilterSettings{.motion = motion_of(setup.options),
                                                            .moments = moments_of(setup.options),
-                                                           .linearisation = kLinearisation});
+                                                           .linearisation = kLinearisation()});
 }
 
 std::unique_ptr<SlamFilter> make_robocentric(const FilterSetup& setup) {
-  return std::make_unique<JointFilter>(
-      setup, JointFilterSettings{.motion = motion_of(setup.options),
-                                 .linearisation = Linearisation::relative});
+  return std::make_unique<JointFilter>(setup,
+                                       JointFilterSettings{.motion = motion_of(setup.options),
+                                                           .linearisation = relative_to_vehicle()});
 }
 
 FilterKind joint_kind(const char* name, const char* long_name, const char* source,
@@ -173,20 +174,20 @@ FilterKind fej_ekf_slam_kind() {
   return joint_kind("fej_ekf_slam", "first-estimates Jacobian EKF-SLAM",
                     "Huang, Mourikis, Roumeliotis 2008",
                     {linearised_motion_option(), moments_option("map")},
-                    linearised_elsewhere<Linearisation::first>);
+                    linearised_elsewhere<at_first_estimates>);
 }
 
 FilterKind oc_ekf_slam_kind() {
   return joint_kind("oc_ekf_slam", "observability-constrained EKF-SLAM",
                     "Huang, Mourikis, Roumeliotis 2010",
                     {linearised_motion_option(), moments_option("map")},
-                    linearised_elsewhere<Linearisation::constrained>);
+                    linearised_elsewhere<at_constrained_estimates>);
 }
 
 FilterKind ukf_slam_kind() {
   return joint_kind("ukf_slam", "unscented Kalman filter SLAM", "Huang, Mourikis, Roumeliotis 2009",
                     {fitting_motion_option(), moments_option("map")},
-                    linearised_elsewhere<Linearisation::regression>);
+                    linearised_elsewhere<by_sigma_points>);
 }
 
 FilterKind robocentric_ekf_slam_kind() {
