@@ -112,14 +112,10 @@ concept PoseProposal = requires(P p, const P now, const StepContext& context, st
                                 const Weights<Real>& weights, typename A::Maps& maps,
                                 const typename MixtureInnovations<Real>::OfBlock& innovations,
                                 typename P::Refined& refined, const FreshLandmark<Real>& fresh) {
-  // Begins a run, and moves by a control step of `duration`.
-  p.start();
+  // Moves by a control step of `duration`.
   p.predict(context, Control(), /*duration*/ 0.1, poses);
   // The estimate of a particle of its pose before the scan.
   { now.predicted(block, poses[block]) } -> Is<PoseGaussian<Real>>;
-
-  // Prepares an associated scan, once for all particles.
-  p.prepare(context, a, weights, predicted);
 
   // For each block: refines the pose by the scan, draws a pose from the result, and updates the
   // landmarks from it, which returns the log of the weight's factor. P::Refined links these calls.
@@ -127,10 +123,24 @@ concept PoseProposal = requires(P p, const P now, const StepContext& context, st
   { p.draw(context, block, refined) } -> Is<BasicPose<Real>>;
   { p.update_map(block, poses[block], a, refined, innovations) } -> Is<Weighing<Real>>;
 
-  p.end_scan();
   p.initialise(fresh, poses[block], maps);  // fills the slot of a new landmark
-  p.begin_step();                           // called after resampling
   { now.estimate(weights, poses) } -> Is<PoseEstimate>;
+};
+
+/// A proposal that keeps a Gaussian for each particle between its steps.
+template <class P>
+concept KeepsGaussians = requires(P p) {
+  p.start();       // begins a run
+  p.end_scan();    // all poses of the scan have been drawn
+  p.begin_step();  // the particles of the last scan have been resampled, where that was due
+};
+
+/// A proposal that has work to do for all particles together, between association and refinement.
+template <class P, class Real, class A>
+concept PreparesScan = requires(P p, const StepContext& context, const A& a,
+                                const Weights<Real>& weights,
+                                const std::vector<PoseGaussian<Real>>& predicted) {
+  p.prepare(context, a, weights, predicted);
 };
 
 }  // namespace montecarta::filters

@@ -34,7 +34,7 @@ class FastSlam final : public SlamFilter {
     population_.start();
     maps_.clear();
     association_.start();
-    proposal_.start();
+    if constexpr (KeepsGaussians<Proposal>) proposal_.start();
     std::fill(poses_.begin(), poses_.end(), BasicPose<Real>{start.x, start.y, start.heading});
   }
 
@@ -81,10 +81,11 @@ class FastSlam final : public SlamFilter {
     innovations_.start(tasks.count(), association_.matches());
     for (std::size_t k = 0; k < association_.matches(); ++k)
       innovations_.matched_weight(k) = association_.matched_weight(k, weights());
-    proposal_.prepare(context, association_, weights(), predicted_);
+    if constexpr (PreparesScan<Proposal, Real, Associating>)
+      proposal_.prepare(context, association_, weights(), predicted_);
     tasks.run(context,
               [&](std::size_t task, std::size_t b) { weigh_and_draw_block(context, task, b); });
-    proposal_.end_scan();
+    if constexpr (KeepsGaussians<Proposal>) proposal_.end_scan();
     population_.normalise();
     innovations_.add_to(population_.report(), components_);
   }
@@ -117,7 +118,7 @@ class FastSlam final : public SlamFilter {
       maps_.resample(parents);
       association_.resample(parents);
     }
-    proposal_.begin_step();
+    if constexpr (KeepsGaussians<Proposal>) proposal_.begin_step();
   }
 
   std::size_t components_;

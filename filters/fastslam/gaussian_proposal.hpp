@@ -144,12 +144,6 @@ class GaussianProposal : public RefinedCloud<Real, PoseTransform, MapTransform> 
                    const PoseTransform& pose_transform, const MapTransform& map_transform)
       : Cloud(particles, belief, time_of(form), pose_transform, map_transform), form_(form) {}
 
-  /// There is nothing to prepare for all particles together.
-  template <class Associating>
-  void prepare(const StepContext& /*context*/, const Associating& /*association*/,
-               const Weights<Real>& /*weights*/,
-               const std::vector<PoseGaussian<Real>>& /*predicted*/) {}
-
   template <class Associating, class Innovations>
   Refined refine(const StepContext& /*context*/, std::size_t b, const PoseGaussian<Real>& predicted,
                  const Associating& association, const Innovations& innovations) const {

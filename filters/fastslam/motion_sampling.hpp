@@ -23,7 +23,6 @@ class MotionSampling {
   MotionSampling(const Belief& belief, const MapTransform& map_transform)
       : belief_(belief), noise_(SensorNoise::of(belief)), map_transform_(map_transform) {}
 
-  void start() {}
   void predict(const StepContext& context, const Control& control, double duration,
                std::vector<BasicPose<Real>>& poses) {
     const auto sigma = deviations_of(belief_.control, control, belief_.vehicle);
@@ -41,11 +40,6 @@ class MotionSampling {
   PoseGaussian<Real> predicted(std::size_t /*b*/, const BasicPose<Real>& pose) const {
     return {pose, {}};
   }
-
-  template <class Associating>
-  void prepare(const StepContext& /*context*/, const Associating& /*association*/,
-               const Weights<Real>& /*weights*/,
-               const std::vector<PoseGaussian<Real>>& /*predicted*/) {}
 
   template <class Associating, class Innovations>
   Refined refine(const StepContext& /*context*/, std::size_t /*b*/,
@@ -72,13 +66,11 @@ class MotionSampling {
     return {likelihood.log_density(), likelihood.left_out()};
   }
 
-  void end_scan() {}
   void initialise(const FreshLandmark<Real>& fresh, const BasicPose<Real>& pose,
                   ParticleMaps<Real, Landmark>& maps) const {
     fresh.put(map_transform_.initialise(pose, observation_of<Real>(fresh.detection), noise_),
               maps.blocks_of(fresh.slot)[fresh.block]);
   }
-  void begin_step() {}
   PoseEstimate estimate(const Weights<Real>& weights,
                         const std::vector<BasicPose<Real>>& poses) const {
     return {spread_of(weights, poses), std::nullopt};
