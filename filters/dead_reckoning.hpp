@@ -40,9 +40,7 @@ inline FilterKind dead_reckoning_kind() {
   return {.name = "dead_reckoning",
           .long_name = "dead reckoning",
           .source = "EQUATIONS 1",
-          .has_particles = false,
-          .has_mixture = false,
-          .has_map = false,
+          .reports = {.map = false},
           .options = {},
           .sensors = {},
           .make = [](const FilterSetup& setup) { return std::make_unique<DeadReckoning>(setup); }};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/capabilities.hpp"
 #include "engine/core/drive.hpp"
 #include "engine/core/slam_filter.hpp"
 #include "engine/namespaces.hpp"
@@ -11,6 +12,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,22 +37,23 @@ struct ColumnSelection {
   std::uint64_t full_runs = 0;
 };
 
+/// The error of another program's estimate, which a file holds in place of our own columns.
+struct ImportedError {
+  std::size_t components = 0;
+  bool has_innovations = false;
+  bool has_conventions = false;  ///< the error may follow several conventions (kErrorConventions)
+  bool has_pose = false;         ///< the estimate is a pose in the plane, and stored as well
+};
+
 /// One filter in one setting, repeated in runs; one curve of a figure.
 struct Cell {
   std::string label;      ///< unique in the study, from the settings that differ: "fastslam2_m100"
   std::string filter;     ///< name in study files, for instance "fastslam2"
   std::string long_name;  ///< for instance "FastSLAM II, 100 particles"
-  std::size_t particles = 0;          ///< 0 if it is not a particle filter
-  bool mixture = false;               ///< true if estimate() has a mixture before sampling
-  bool joint = false;                 ///< true if joint() has an estimate
-  bool rotation_information = false;  ///< true if ScanReport has it
-  std::size_t landmarks = 0;          ///< number of rows of the map columns
-  /// Number of components of the stored error of another program's estimate; 0 for our own filters.
-  std::size_t error_components = 0;
-  bool innovations = true;  ///< true if the NIS of such an estimate is stored too
-  /// True if the error of such an estimate may follow several conventions (kErrorConventions).
-  bool several_conventions = false;
-  bool poses = true;  ///< true if it estimates a pose in the plane; else only its error is stored
+  std::size_t particles = 0;  ///< 0 if it is not a particle filter
+  Capabilities reports;
+  std::size_t landmarks = 0;                                  ///< number of rows of the map columns
+  std::optional<ImportedError> imported = {};                 ///< nullopt for our own filters
   std::vector<std::pair<std::string, std::string>> settings;  ///< all, resolved, for the file
   std::function<std::unique_ptr<SlamFilter>()> make_filter;   ///< callable from any thread
 };

@@ -78,16 +78,18 @@ constexpr ColumnGroup kGroups[] = {{"pose", nullptr},
                                    {"joint", &ColumnSelection::joint},
                                    {"observability", &ColumnSelection::observability}};
 
-bool has_mixture(const Cell& cell) { return cell.mixture; }
+bool has_mixture(const Cell& cell) { return cell.reports.mixture; }
 bool has_particles(const Cell& cell) { return cell.particles > 0; }
 bool has_map(const Cell& cell) { return cell.landmarks > 0; }
-bool has_joint(const Cell& cell) { return cell.joint; }
-bool has_rotation_information(const Cell& cell) { return cell.rotation_information; }
-bool has_pose(const Cell& cell) { return cell.poses; }
-bool is_imported(const Cell& cell) { return cell.error_components > 0; }
-bool has_conventions(const Cell& cell) { return is_imported(cell) && cell.several_conventions; }
+bool has_joint(const Cell& cell) { return cell.reports.joint; }
+bool has_rotation_information(const Cell& cell) { return cell.reports.rotation_information; }
+bool is_imported(const Cell& cell) { return cell.imported.has_value(); }
 bool is_filter(const Cell& cell) { return !is_imported(cell); }
-bool has_innovations(const Cell& cell) { return is_filter(cell) || cell.innovations; }
+bool has_pose(const Cell& cell) { return is_filter(cell) || cell.imported->has_pose; }
+bool has_conventions(const Cell& cell) {
+  return is_imported(cell) && cell.imported->has_conventions;
+}
+bool has_innovations(const Cell& cell) { return is_filter(cell) || cell.imported->has_innovations; }
 
 constexpr const char* kPose = "m, m, rad";
 constexpr const char* kPoseSquared = "(m, m, rad)^2";

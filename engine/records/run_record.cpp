@@ -29,13 +29,13 @@ RecordLayout::RecordLayout(const Cell& cell, const ColumnSelection& selection,
       scans_(itinerary.scans()),
       particles_(cell.particles),
       landmarks_(cell.landmarks) {
-  if (selection.joint && cell.joint) joint_scans_ = joint_scans_of(scans_, selection.joint_scans);
+  if (selection.joint && cell.reports.joint) joint_scans_ = joint_scans_of(scans_, selection.joint_scans);
   const AxisLengths lengths{.time = scans_only_ ? scans_ : itinerary.steps(),
                             .scan = scans_,
                             .joint = joint_scans_.size(),
                             .particle = cell.particles,
                             .landmark = cell.landmarks,
-                            .error_component = cell.error_components};
+                            .error_component = cell.imported ? cell.imported->components : 0};
   add_columns(cell, selection, lengths);
   usual_columns_ = columns_.size();
   if (detail == Detail::full) add_columns(cell, in_full(selection), lengths);

@@ -145,9 +145,7 @@ FilterKind external_kind() {
       .name = kExternal,
       .long_name = "external program",
       .source = "experiments/EXTERNAL_FILTERS.md",
-      .has_particles = false,
-      .has_mixture = false,
-      .has_joint = false,
+      .reports = {},
       .options =
           {command_option(),
            number_parameter("answer_limit", "30", 1e-3, 86400,

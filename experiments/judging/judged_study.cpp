@@ -263,10 +263,10 @@ Cell imported_cell(const EstimatorFiles& files, const StateRows& first, const Te
   cell.label = files.cell;
   cell.filter = "imported";
   cell.long_name = files.cell + " (imported)";
-  cell.error_components = first.shape.dimension();
-  cell.innovations = !first.nis.empty();
-  cell.several_conventions = conventions_of(first.shape.kind).size() > 1;
-  cell.poses = first.shape.kind == StateKind::pose;
+  cell.imported = ImportedError{.components = first.shape.dimension(),
+                                .has_innovations = !first.nis.empty(),
+                                .has_conventions = conventions_of(first.shape.kind).size() > 1,
+                                .has_pose = first.shape.kind == StateKind::pose};
   cell.settings = settings;
   return cell;
 }

@@ -73,7 +73,7 @@ std::size_t map_rows_of(const FilterSetup& setup, const Settings& s) {
 }
 
 std::size_t particles_of(const CellSpec& spec) {
-  if (!spec.filter->has_particles) return 0;
+  if (!spec.filter->reports.particles) return 0;
   const auto named = [](const auto& option) { return option.first == "particles"; };
   return to_count(std::ranges::find_if(spec.options, named)->second).value();
 }
@@ -104,8 +104,13 @@ std::function<std::unique_ptr<SlamFilter>()> maker_of(const CellSpec& spec,
   return make;
 }
 
-bool tells_rotation_information(const CellSpec& spec, const Settings& s) {
-  return spec.filter->tells_rotation_information && fixes_landmark(sensor_of(s, "belief"));
+/// The capabilities of the filter that it has with these options and this sensor.
+Capabilities capabilities_of(const CellSpec& spec, const Settings& s,
+                             const FilterOptions& options) {
+  Capabilities reports = spec.filter->reports;
+  if (spec.filter->drops_mixture && spec.filter->drops_mixture(options)) reports.mixture = false;
+  if (!fixes_landmark(sensor_of(s, "belief"))) reports.rotation_information = false;
+  return reports;
 }
 
 Cell cell_of(const CellSpec& spec, const Study& study, ExternalPrograms programs) {
@@ -119,10 +124,7 @@ Cell cell_of(const CellSpec& spec, const Study& study, ExternalPrograms programs
           .filter = filter.name,
           .long_name = filter.long_name + (spec.distinction.empty() ? "" : ", " + spec.distinction),
           .particles = particles_of(spec),
-          .mixture =
-              filter.has_mixture && !(filter.drops_mixture && filter.drops_mixture(setup.options)),
-          .joint = filter.has_joint,
-          .rotation_information = tells_rotation_information(spec, study.settings),
+          .reports = capabilities_of(spec, study.settings, setup.options),
           .landmarks = map_rows_of(setup, study.settings),
           .settings = settings_of(spec),
           .make_filter = maker_of(spec, setup, programs)};
@@ -204,7 +206,7 @@ RunRange parse_shard(const std::string& text, std::uint64_t runs) {
 }
 
 std::string objection_to_joint(const Study& study) {
-  const auto has_joint = [](const CellSpec& cell) { return cell.filter->has_joint; };
+  const auto has_joint = [](const CellSpec& cell) { return cell.filter->reports.joint; };
   if (std::ranges::none_of(study.cells, has_joint)) {
     return "(none of the cells' filters has a joint covariance): take joint out, or add a cell of "
            "ekf_slam, riekf_slam, relative_ekf_slam or smoother";
@@ -217,10 +219,11 @@ std::string objection_to_joint(const Study& study) {
 }
 
 std::string objection_to_observability(const Study& study) {
-  const auto tells = [&study](const CellSpec& cell) {
-    return tells_rotation_information(cell, study.settings);
+  const auto reports_it = [](const CellSpec& cell) {
+    return cell.filter->reports.rotation_information;
   };
-  if (std::ranges::any_of(study.cells, tells)) return {};
+  const bool fixes = fixes_landmark(sensor_of(study.settings, "belief"));
+  if (fixes && std::ranges::any_of(study.cells, reports_it)) return {};
   return "(no cell tells what its detections are taken for about the heading of the whole): take "
          "observability out, or add a cell of ekf_slam or riekf_slam with a sensor of which one "
          "detection fixes a landmark";

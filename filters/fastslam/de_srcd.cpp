@@ -48,7 +48,7 @@ FilterKind de_srcd_kind() {
   return {.name = "de_srcd",
           .long_name = "DE-SRCD-FastSLAM",
           .source = "Ankishan et al. 2016; EQUATIONS 10",
-          .has_mixture = true,
+          .reports = {.particles = true, .mixture = true},
           .options = std::move(options),
           .drops_mixture =
               [](const FilterOptions& chosen) {

@@ -131,9 +131,7 @@ FilterKind joint_kind(const char* name, const char* long_name, const char* sourc
   return {.name = name,
           .long_name = long_name,
           .source = source,
-          .has_particles = false,
-          .has_joint = true,
-          .tells_rotation_information = true,
+          .reports = {.joint = true, .rotation_information = true},
           .options = std::move(options),
           .sensors = {RangeBearingSensor::kName, PositionSensor::kName},
           .make = make};

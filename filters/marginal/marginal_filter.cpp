@@ -87,6 +87,7 @@ FilterKind marginal_kind() {
   return {.name = "marginal",
           .long_name = "marginal particle filter with one map",
           .source = "Martinez-Cantin et al. 2007; Klaas et al. 2005; EQUATIONS 12",
+          .reports = {.particles = true},
           .options = marginal_options(MapSolver::gauss_newton),
           .make = make_marginal<Lanes, Choice::by_weight>};
 }
@@ -95,6 +96,7 @@ FilterKind ampf_de_kind() {
   return {.name = "ampf_de",
           .long_name = "auxiliary marginal particle filter, map by DE",
           .source = "Havangi et al. 2013; EQUATIONS 12, 14",
+          .reports = {.particles = true},
           .options = marginal_options(MapSolver::de),
           .make = make_marginal<Lanes, Choice::by_likelihood>};
 }

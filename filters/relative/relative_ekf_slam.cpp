@@ -172,8 +172,7 @@ FilterKind relative_ekf_slam_kind() {
       .name = "relative_ekf_slam",
       .long_name = "EKF-SLAM in relative coordinates",
       .source = "EQUATIONS 22",
-      .has_particles = false,
-      .has_joint = true,
+      .reports = {.joint = true},
       .options =
           {count_parameter(
                "frames", "40", 1, 10000,

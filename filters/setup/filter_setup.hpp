@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/core/capabilities.hpp"
 #include "engine/core/slam_filter.hpp"
 #include "engine/namespaces.hpp"
 #include "filters/models/parameter.hpp"
@@ -71,15 +72,13 @@ struct FilterSetup {
 
 /// A filter by name, one line in the table of factory.cpp.
 struct FilterKind {
-  std::string name;           ///< name in study files
-  std::string long_name;      ///< name in legends
-  std::string source;         ///< paper and equation
-  bool has_particles = true;  ///< true if it has the option `particles` (always the first)
-  bool has_mixture = false;   ///< true if estimate() reports a mixture, unless drops_mixture
-  bool has_joint = false;     ///< true if joint() reports an estimate
-  bool tells_rotation_information = false;  ///< true if it reports rotation_information
-  bool has_map = true;                      ///< true if it initialises landmarks
-  std::vector<Parameter> options;           ///< in the order of the documentation
+  std::string name;       ///< name in study files
+  std::string long_name;  ///< name in legends
+  std::string source;     ///< paper and equation
+  /// With particles it has the option `particles` (always the first). drops_mixture may remove the
+  /// mixture.
+  Capabilities reports = {};
+  std::vector<Parameter> options;  ///< in the order of the documentation
   /// Sensors that it supports, mounted at the pose; empty means all sensors, mounted anywhere.
   std::vector<std::string> sensors = {RangeBearingSensor::kName};
   /// True if it initialises landmarks that one detection does not fix. It then needs known

@@ -221,8 +221,7 @@ FilterKind smoother_kind() {
       .name = "smoother",
       .long_name = "full smoothing",
       .source = "Dellaert, Kaess 2006; EQUATIONS 21",
-      .has_particles = false,
-      .has_joint = true,
+      .reports = {.joint = true},
       .options = {number_parameter("relinearise", "0.5", 0, 1e9,
                                    "standard deviations that a landmark may move before everything "
                                    "is linearised again"),

@@ -148,7 +148,7 @@ void leave_out_particles(StudyPlan& plan) {
   plan.columns.particles = false;
   for (Cell& cell : plan.cells) {
     cell.particles = 0;
-    cell.mixture = false;
+    cell.reports.mixture = false;
   }
 }
 
@@ -156,14 +156,14 @@ void leave_out_particles(StudyPlan& plan) {
 void leave_out_mixtures(StudyPlan& plan) {
   plan.cells = {scripted_cell("scripted_m60", {.particles = 60}),
                 scripted_cell("scripted_m20", {.particles = 20})};
-  for (Cell& cell : plan.cells) cell.mixture = false;
+  for (Cell& cell : plan.cells) cell.reports.mixture = false;
 }
 
 /// Filters that know pose and map together, in a world whose landmarks have names.
 void store_joint_estimates(StudyPlan& plan) {
   plan.columns.joint = true;
   plan.scenario.emplace_back("association.kind", "known");
-  for (Cell& cell : plan.cells) cell.joint = true;
+  for (Cell& cell : plan.cells) cell.reports.joint = true;
 }
 
 class SlowRecompute : public testing::Test {

@@ -29,7 +29,7 @@ void store_everything(StudyPlan& plan) {
                   .final_map = true,
                   .joint = true};
   plan.scenario = {{"kind", "scripted"}, {"noise", "matched"}, {"association.kind", "known"}};
-  for (Cell& cell : plan.cells) cell.joint = true;
+  for (Cell& cell : plan.cells) cell.reports.joint = true;
 }
 
 class ResultFuzz : public testing::Test {

@@ -18,7 +18,7 @@ inline Cell scripted_cell(std::string label, const ScriptedFilter::Script& scrip
   cell.filter = "scripted";
   cell.long_name = "Scripted, " + std::to_string(script.particles) + " particles";
   cell.particles = script.particles;
-  cell.mixture = true;
+  cell.reports.mixture = true;
   cell.landmarks = script.landmarks;
   cell.settings = {{"particles", std::to_string(script.particles)}};
   cell.make_filter = [script] { return std::make_unique<ScriptedFilter>(script); };

@@ -28,7 +28,7 @@ std::unique_ptr<SlamFilter> make(
 class Listener {
  public:
   explicit Listener(const FilterKind& kind) {
-    if (!kind.has_particles) return;
+    if (!kind.reports.particles) return;
     for (const Parameter& option : kind.options) {
       if (option.key == "particles") log_weights_.resize(std::stoul(*option.fallback));
     }

@@ -184,7 +184,7 @@ TEST(ADriveWithTruth, IsJudgedByPoseAndMapTogetherWhereThatIsStored) {
     write_synthetic_result(folder / "out.h5", 3, 80, {}, [&](StudyPlan& plan) {
       plan.columns.joint = true;
       plan.scenario.emplace_back("association.kind", association);
-      plan.cells[0].joint = true;
+      plan.cells[0].reports.joint = true;
     });
     return analyze(ResultFile(folder / "out.h5"));
   };

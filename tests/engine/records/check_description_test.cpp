@@ -48,7 +48,7 @@ class CheckDescription : public ResultWriting {
 TEST_F(CheckDescription, LetsAGoodOnePass) {
   for (const bool scans_only : {false, true}) {
     plan_.columns.scans_only = scans_only;
-    plan_.columns.joint = plan_.cells[0].joint = true;
+    plan_.columns.joint = plan_.cells[0].reports.joint = true;
     EXPECT_NO_THROW(check_description(describe(plan_, {}), "out.h5"));
   }
 }
@@ -73,7 +73,7 @@ TEST_F(CheckDescription, RefusesRunsAndTimesThatAreNone) {
       {[](auto& d) { d.scan_times[0] += 1e-9; }, "scan is not time"},
       {[=](auto& d) { d.start.x = infinite; }, "no places"},
   });
-  plan_.columns.joint = plan_.cells[0].joint = true;
+  plan_.columns.joint = plan_.cells[0].reports.joint = true;
   ResultDescription description = describe(plan_, {});
   description.joint_scans.back() = 4000;
   EXPECT_THAT(message<StudyError>([&] { check_description(description, path_); }),
@@ -118,8 +118,7 @@ TEST_F(CheckDescription, RefusesTextsThatAreNotOneLine) {
 }
 
 TEST_F(CheckDescription, HoldsErrorsOfAnyDimension) {
-  plan_.cells[0].error_components = 4;
-  plan_.cells[0].poses = plan_.cells[0].innovations = false;
+  plan_.cells[0].imported = ImportedError{.components = 4};
   ResultDescription good = describe(plan_, {});
   EXPECT_NO_THROW(check_description(good, "out.h5"));
   for (const char* name : {"pose_mean", "pose_covariance", "ess", "nis"})

@@ -30,7 +30,7 @@ TEST(RecordLayout, HoldsWhatWasAskedFor) {
   EXPECT_THAT(names(least), ElementsAre("pose_mean", "ess", "resampled", "log_likelihood", "nis",
                                         "nis_dof", "numerical_faults", "map_size"));
   plan.columns = {};
-  plan.cells[0].mixture = false;
+  plan.cells[0].reports.mixture = false;
   const RecordLayout usual(plan.cells[0], plan.columns, plan.drives->itinerary());
   EXPECT_FALSE(usual.find("pose_mean_mixture"));
   EXPECT_TRUE(usual.find("ancestor"));
@@ -123,7 +123,7 @@ TEST(Recorder, StoresJointEstimatesAtTheEndOfEachPartOfTheRun) {
   EXPECT_FALSE(
       RecordLayout(plan.cells[0], plan.columns, plan.drives->itinerary()).find("joint_mean"))
       << "of a filter that has none";
-  plan.cells[0].joint = true;
+  plan.cells[0].reports.joint = true;
   FilledRecord filled(plan, 0, 2);
   EXPECT_THAT(filled.layout.joint_scans(), ElementsAre(1, 3, 5));
   const auto mean = filled.column<double>("joint_mean");

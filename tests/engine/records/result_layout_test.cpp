@@ -66,13 +66,13 @@ StudyPlan plan_of_every_column() {
   plan.columns.observability = true;
   Cell& kalman = plan.cells[1];
   kalman.particles = 0;
-  kalman.mixture = false;
-  kalman.joint = true;
-  kalman.rotation_information = true;
+  kalman.reports.mixture = false;
+  kalman.reports.joint = true;
+  kalman.reports.rotation_information = true;
   Cell imported;
   imported.label = imported.filter = "imported";
-  imported.error_components = 3;
-  imported.several_conventions = true;
+  imported.imported = ImportedError{
+      .components = 3, .has_innovations = true, .has_conventions = true, .has_pose = true};
   plan.cells.push_back(imported);
   return plan;
 }

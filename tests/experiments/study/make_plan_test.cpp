@@ -90,8 +90,8 @@ TEST(Plan, RefusesJointEstimatesThatNoCellHas) {
   EXPECT_THAT(plan_complaint(with("[cells]\ncell = ekf_slam", record + "\ncell = fastslam2")),
               HasSubstr("trial.ini:7: joint (none of the cells' filters"));
   const StudyPlan plan = make_plan(parsed(with("[cells]", record) + "cell = fastslam2\n"));
-  EXPECT_TRUE(plan.cells[0].joint);
-  EXPECT_FALSE(plan.cells[1].joint);
+  EXPECT_TRUE(plan.cells[0].reports.joint);
+  EXPECT_FALSE(plan.cells[1].reports.joint);
   EXPECT_EQ(plan.columns.joint_scans, 16u);
   EXPECT_THAT(plan.resolved_text, HasSubstr("joint_scans = 16"));
   EXPECT_THAT(plan_complaint(with("[cells]", "[association]\nkind = nearest\n" + record) +
@@ -123,11 +123,11 @@ TEST(Plan, HasAMixtureWhereTheEstimatesHaveOne) {
     for (std::uint32_t step = 0; step < 4; ++step) {
       const StepContext context(1, 0, step, Parallel::serial());
       filter->predict(context, {1.0, 0.1}, 0.1);
-      EXPECT_EQ(filter->estimate().mixture.has_value(), cell.mixture) << cell.long_name;
+      EXPECT_EQ(filter->estimate().mixture.has_value(), cell.reports.mixture) << cell.long_name;
       filter->update(context, scan);
-      EXPECT_EQ(filter->estimate().mixture.has_value(), cell.mixture) << cell.long_name;
+      EXPECT_EQ(filter->estimate().mixture.has_value(), cell.reports.mixture) << cell.long_name;
     }
-    mixtures += cell.mixture ? 1 : 0;
+    mixtures += cell.reports.mixture ? 1 : 0;
   }
   EXPECT_EQ(mixtures, 7U);
 }

@@ -163,7 +163,7 @@ std::vector<FilterKind> paper_filters() {
     FilterKind made;
     made.name = name;
     made.long_name = long_name;
-    made.has_particles = has_particles;
+    made.reports.particles = has_particles;
     made.options = std::move(options);
     made.sensors = {};
     return made;

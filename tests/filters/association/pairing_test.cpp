@@ -203,7 +203,7 @@ TEST(AssociationCounts, AddUpToTheDetectionsInEveryFilter) {
   const SmallWorld world = small_world(settings);
   const std::map<std::string, std::string, std::less<>> few{{"particles", "24"}};
   for (const FilterKind& kind : filter_kinds()) {
-    if (!kind.has_map) continue;  // associates nothing
+    if (!kind.reports.map) continue;  // associates nothing
     for (const Association association : {Association::known, Association::nearest}) {
       const auto filter = kind.make({.belief = settings.noise,
                                      .association = {.kind = association},

@@ -19,7 +19,7 @@ constexpr Mounting kMounted{.forward = 0.8, .left = -0.3, .turn = 0.4};
 FilterSetup setup_of(const FilterKind& kind, const SmallWorldSettings& settings,
                      const std::string& weights = {}) {
   std::map<std::string, std::string, std::less<>> special;
-  if (kind.has_particles) special = {{"particles", "30"}, {"weights", weights}};
+  if (kind.reports.particles) special = {{"particles", "30"}, {"weights", weights}};
   return {.belief = settings.noise,
           .association = {},
           .options = default_options(kind, special),

@@ -20,7 +20,7 @@ std::unique_ptr<SlamFilter> make_default(
     const FilterKind& kind, std::size_t particles, const SmallWorldSettings& world,
     Association association = Association::known,
     std::map<std::string, std::string, std::less<>> special = {}) {
-  if (kind.has_particles) special["particles"] = std::to_string(particles);
+  if (kind.reports.particles) special["particles"] = std::to_string(particles);
   return kind.make({.belief = world.noise,
                     .association = {.kind = association},
                     .options = default_options(kind, special),
@@ -40,7 +40,7 @@ Pose driven_on(const double* pose, const SmallWorldSettings& settings) {
 }
 
 TEST_P(EveryFilter, WalkingBackThroughAncestorsNeverJumpsFartherThanTheVehicleCanMove) {
-  if (!GetParam().has_particles) GTEST_SKIP() << "a filter without particles has no genealogy";
+  if (!GetParam().reports.particles) GTEST_SKIP() << "a filter without particles has no genealogy";
   // The sensor is so rough that the cloud grows metres wide: a wrong ancestor stands too far away.
   // It sees far, so no scan is empty, and poses are drawn after every 0.2 s.
   const std::size_t n = 50;
@@ -102,7 +102,7 @@ TEST_P(EveryFilter, LeavesADetectionOutWhoseLandmarkItStandsOn) {
     ASSERT_LT(boxminus(filter->estimate().spread.mean, Pose()).norm(), has_floor ? 0.1 : 1e-6);
   }
   if (!has_floor) {
-    EXPECT_EQ(filter->report().numerical_faults, GetParam().has_particles ? 9U : 0U);
+    EXPECT_EQ(filter->report().numerical_faults, GetParam().reports.particles ? 9U : 0U);
   }
 }
 
@@ -113,7 +113,7 @@ TEST_P(EveryFilter, ForgetsADifferentRunBefore) {
     const auto used = make_default(GetParam(), 11, settings, association);
     const auto fresh = make_default(GetParam(), 11, settings, association);
     drive_through(*used, first, Pose(), [](std::size_t) {});
-    const std::size_t n = GetParam().has_particles ? 11 : 0;
+    const std::size_t n = GetParam().reports.particles ? 11 : 0;
     EXPECT_TRUE(told(*used, n, world) == told(*fresh, n, world));
   }
 }
@@ -122,7 +122,7 @@ TEST_P(EveryFilter, GivesTheSameBitsOnAnyNumberOfThreads) {
   const SmallWorldSettings settings{.scans = 4};
   const SmallWorld world = small_world(settings);
   const std::size_t particles = 2500;  // more than two tasks, those of a step included
-  const std::size_t n = GetParam().has_particles ? particles : 0;
+  const std::size_t n = GetParam().reports.particles ? particles : 0;
   const Parallel threads(Backend::tbb, 3);
   for (const auto association : {Association::known, Association::nearest}) {
     const auto filter = make_default(GetParam(), particles, settings, association);
@@ -134,7 +134,7 @@ TEST_P(EveryFilter, GivesTheSameBitsOnEveryThreadWhileOthersRun) {
   const SmallWorldSettings settings{.scans = 8};
   const SmallWorld world = small_world(settings);
   const std::size_t particles = 300;
-  const std::size_t n = GetParam().has_particles ? particles : 0;
+  const std::size_t n = GetParam().reports.particles ? particles : 0;
   const auto make = [&] {
     return make_default(GetParam(), particles, settings, Association::known);
   };

@@ -71,7 +71,7 @@ class EveryFilterAndSensor : public testing::TestWithParam<Offered> {
   std::unique_ptr<SlamFilter> make(std::size_t n = kParticles) const { return made(kind(), n); }
   std::unique_ptr<SlamFilter> made(const FilterKind& of, std::size_t n) const {
     std::map<std::string, std::string, std::less<>> special;
-    if (of.has_particles) special["particles"] = std::to_string(n);
+    if (of.reports.particles) special["particles"] = std::to_string(n);
     return of.make({.belief = settings(1, 1).noise,
                     .association = {},
                     .options = default_options(of, special),
@@ -86,12 +86,12 @@ TEST_P(EveryFilterAndSensor, TurningTheWorldTurnsTheEstimate) {
 TEST_P(EveryFilterAndSensor, GivesTheSameBitsAgain) {
   const SmallWorld world = small_world(settings(2, 40));
   const auto filter = make();
-  const std::size_t n = kind().has_particles ? kParticles : 0;
+  const std::size_t n = kind().reports.particles ? kParticles : 0;
   EXPECT_TRUE(told(*filter, n, world) == told(*filter, n, world));
 }
 
 TEST_P(EveryFilterAndSensor, BuildsAMapNearTheTruthAndCountsItsInnovations) {
-  if (!kind().has_map) GTEST_SKIP() << "no map";
+  if (!kind().reports.map) GTEST_SKIP() << "no map";
   const SmallWorld world = small_world(settings(3, 120));
   const auto filter = make();
   double nis = 0.0, dof = 0.0;
@@ -116,22 +116,22 @@ TEST_P(EveryFilterAndSensor, BuildsAMapNearTheTruthAndCountsItsInnovations) {
     if ((map[k]->mean - world.itinerary.landmarks[k]).norm() > 1.5) ++astray;
   }
   EXPECT_GE(held, 8);
-  EXPECT_LE(astray, kind().has_particles ? held / 5 : 0);  // paths of few particles are coarse
+  EXPECT_LE(astray, kind().reports.particles ? held / 5 : 0);  // paths of few particles are coarse
   EXPECT_NEAR(filter->report().map_size, held, 1e-9);
   EXPECT_GT(dof, 300.0);
-  if (kind().has_particles) return;
+  if (kind().reports.particles) return;
   EXPECT_NEAR(nis / dof, 1.0, 5.0 * std::sqrt(2.0 / dof));
 }
 
 /// Of joint filters: particles run out of diversity. Bands of five standard errors.
 TEST_P(EveryFilterAndSensor, IsConsistentOnAnEasyWorld) {
-  if (kind().has_particles) GTEST_SKIP() << "no joint covariance";
+  if (kind().reports.particles) GTEST_SKIP() << "no joint covariance";
   constexpr std::uint64_t kRuns = 60;
   EXPECT_TRUE(is_consistent(final_errors(*make(), settings(100, 60), kRuns).anees, kRuns));
 }
 
 TEST_P(EveryFilterAndSensor, SlowErrsByLessThanTwiceTheKalmanFilterOnAnEasyWorld) {
-  if (!kind().has_particles) GTEST_SKIP() << "is one, or has no map";
+  if (!kind().reports.particles) GTEST_SKIP() << "is one, or has no map";
   constexpr std::uint64_t kRuns = 60;
   const auto kalman = std::ranges::find(filter_kinds(), "ekf_slam", &FilterKind::name);
   const double expected = final_errors(*made(*kalman, 0), settings(100, 60), kRuns).squared;

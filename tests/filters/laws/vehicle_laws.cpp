@@ -28,7 +28,7 @@ class EveryFilterAndVehicle : public testing::TestWithParam<std::tuple<FilterKin
   }
   std::unique_ptr<SlamFilter> make() const {
     std::map<std::string, std::string, std::less<>> special;
-    if (kind().has_particles) special["particles"] = std::to_string(kParticles);
+    if (kind().reports.particles) special["particles"] = std::to_string(kParticles);
     return kind().make({.belief = settings().noise,
                         .association = {},
                         .options = default_options(kind(), special),
@@ -54,7 +54,7 @@ TEST_P(EveryFilterAndVehicle, StaysNearTheTruth) {
 TEST_P(EveryFilterAndVehicle, GivesTheSameBitsAgain) {
   const SmallWorld world = small_world(settings());
   const auto filter = make();
-  const std::size_t n = kind().has_particles ? kParticles : 0;
+  const std::size_t n = kind().reports.particles ? kParticles : 0;
   EXPECT_TRUE(told(*filter, n, world) == told(*filter, n, world));
 }
 

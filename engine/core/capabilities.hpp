@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace montecarta::engine {
+
+/// The estimates of a filter besides the spread of its pose. The filter declares them, and the
+/// engine stores the columns that they have.
+struct Capabilities {
+  bool particles = false;
+  bool mixture = false;               ///< estimate() has a mixture before sampling
+  bool joint = false;                 ///< joint() has an estimate
+  bool rotation_information = false;  ///< ScanReport has it
+  bool map = true;                    ///< map() has landmarks
+};
+
+}  // namespace montecarta::engine
