@@ -4,7 +4,7 @@
 #include <csignal>
 
 int main(int argc, char** argv) {
-  // A file that grows beyond `ulimit -f` shall be an error with a remedy, not a sudden death.
+  // Growing a file beyond `ulimit -f` must be an error with a remedy instead of ending the process.
   std::signal(SIGXFSZ, SIG_IGN);
   return montecarta::experiments::run_program(std::vector<std::string>(argv + 1, argv + argc));
 }

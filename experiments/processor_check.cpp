@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ends the program with a sentence, not by an illegal instruction, on a processor that lacks what
-// it was compiled for. Compiled for any processor (CMakeLists.txt), and run before the constructors
-// of the program's global objects.
+// Ends the program with a message instead of an illegal instruction on a processor that lacks
+// instructions for which the program was compiled. This file is compiled for any processor
+// (CMakeLists.txt), and the check runs before the constructors of global objects.
 #include <cstring>
 #include <unistd.h>
 
@@ -9,7 +9,8 @@
 
 namespace {
 
-/// The floating-point part of x86-64-v3 or, where AVX-512 is used, of x86-64-v4.
+/// Whether the processor has the floating-point instructions of x86-64-v3 and, if AVX-512 is used,
+/// of x86-64-v4.
 bool has_what_is_needed() {
   __builtin_cpu_init();
 #ifdef MONTECARTA_NEEDS_AVX512

@@ -14,7 +14,7 @@
 namespace montecarta::experiments {
 namespace {
 
-/// Finds out before the work, not after it, that the results have no place to go.
+/// Throws StudyError before the analysis starts if one of its outputs cannot be written.
 void check_outputs(const Arguments& arguments, const ResultFile& file) {
   const auto output = arguments.text("output");
   const auto directory = arguments.text("csv");
@@ -30,7 +30,8 @@ void check_outputs(const Arguments& arguments, const ResultFile& file) {
   refuse_existing(*directory, csv_names(labels));
 }
 
-/// Tables of different studies below each other would be taken for one.
+/// Throws StudyError unless all files hold the same study: the tables of different studies below
+/// each other could be mistaken for one.
 void expect_one_study(const std::vector<std::string>& names) {
   if (names.size() == 1) return;
   const std::string first = open_stored(names.front()).study_sha256();

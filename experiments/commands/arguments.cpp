@@ -164,7 +164,7 @@ std::optional<RunRange> range_of(const Arguments& arguments, std::uint64_t runs)
   return std::nullopt;
 }
 
-/// The file of a study that comes with the program, as `montecarta list studies` names them.
+/// The file of a shipped study, by its name in `montecarta list studies`; nullopt if there is none.
 std::optional<std::filesystem::path> shipped_study(const std::string& name) {
   if (name.find('/') != std::string::npos) return std::nullopt;
   return shipped_file("studies", name + ".ini");

@@ -19,47 +19,48 @@ namespace montecarta::experiments {
 /// One option of a command.
 struct OptionSpec {
   std::string name;                 ///< without dashes
-  std::string letter;               ///< one letter, or ""
-  std::vector<std::string> values;  ///< names of what follows it; empty: a flag
+  std::string letter;               ///< one letter, or "" if there is none
+  std::vector<std::string> values;  ///< names of the values that follow it; empty: a flag
   std::string meaning;
   bool repeatable = false;
-  bool is_list = false;  ///< one value or more, up to the next option
+  bool is_list = false;  ///< takes one or more values, up to the next option
 };
 
-/// What stands on a command's line besides options.
+/// A positional argument of a command.
 struct OperandSpec {
   std::string name;  ///< e.g. "STUDY.ini"
   std::size_t least = 1;
   std::size_t most = 1;
 };
 
-/// How a command is called; parsing and help come from this alone.
+/// How a command is called. Both the parser and the help text are made from it.
 struct CommandSpec {
   std::string name;
   std::string summary;                ///< one line
-  std::vector<OperandSpec> operands;  ///< of several only the last may repeat
+  std::vector<OperandSpec> operands;  ///< only the last one may repeat
   std::vector<OptionSpec> options;
-  std::string details;  ///< the end of --help: examples
+  std::string details;  ///< text at the end of --help, e.g. examples
 };
 
-/// What a user typed behind a command's name, checked against its CommandSpec.
+/// The words that follow a command's name, checked against its CommandSpec.
 class Arguments {
  public:
-  /// Throws StudyError naming the nearest known spelling of what is unknown.
+  /// Throws StudyError if a word is unknown, and suggests the nearest known spelling.
   Arguments(const CommandSpec& spec, std::vector<std::string> words);
 
   bool has(const std::string& option) const { return values_.contains(option); }
-  /// The value behind an option; nullopt where it is not given.
+  /// The value of an option; nullopt if it was not given.
   std::optional<std::string> text(const std::string& option) const;
-  /// All values behind an option, in the order given.
+  /// All values of an option, in the order given.
   std::vector<std::string> texts(const std::string& option) const;
-  /// A number or whole number within limits; throws StudyError where it is none.
+  /// The value of an option as a number within [least, most]; nullopt if it was not given. Throws
+  /// StudyError if the value is not such a number.
   std::optional<double> number(const std::string& option, double least, double most) const;
   std::optional<std::uint64_t> count(const std::string& option, std::uint64_t least,
                                      std::uint64_t most) const;
-  /// One of `known`; the first where it is not given.
+  /// The value of an option, which must be one of `known`; the first of them if it was not given.
   std::string choice(const std::string& option, const std::vector<std::string>& known) const;
-  /// As typed, in order.
+  /// Positional arguments, and all words, in the order in which they were typed.
   const std::vector<std::string>& operands() const { return operands_; }
   const std::vector<std::string>& words() const { return words_; }
 
@@ -71,32 +72,34 @@ class Arguments {
   std::vector<std::string> operands_;
 };
 
-/// "montecarta run STUDY.ini -o OUT.h5 [options]" and all below it.
+/// The text of --help: "montecarta run STUDY.ini -o OUT.h5 [options]", summary, options, details.
 std::string help_text(const CommandSpec& spec);
 
-/// One word as a POSIX shell reads it back.
+/// `word`, quoted so that a POSIX shell reads it back as one word.
 std::string shell_quoted(const std::string& word);
 
-/// Of options that several commands have.
+/// Descriptions of options that several commands share.
 inline constexpr const char* kWithinMeaning = "margin of the verdict; default: the study's";
 inline constexpr const char* kLevelMeaning = "probability of the intervals; default 0.95";
 inline constexpr const char* kThreadsMeaning = "number of threads; default: all available";
 inline constexpr const char* kBackendMeaning = "thread library; results are the same";
 
-/// Options that choose what part of a study runs and on how many threads: --set, --runs, --shard,
-/// --threads, --backend.
+/// Options that select the part of a study to run and how to run it: --set, --runs, --shard,
+/// --allow-external, --threads, --backend.
 std::vector<OptionSpec> plan_options();
-/// --allow-external, without which no command starts a program that a study names.
+/// The option --allow-external. Without it no command starts a program that a study names.
 OptionSpec external_option();
-/// Whether that was given. Throws StudyError where it was not and a cell of the study is a program.
+/// Whether --allow-external was given. Throws StudyError if it was not and a cell of the study is
+/// an external program.
 ExternalPrograms programs_of(const Study& study, const Arguments& arguments);
-/// The study that is the first operand, a file or the name of a shipped study, changed by --set.
+/// Reads the study that the first operand names, a file or a shipped study, and applies --set.
 Study study_of(const Arguments& arguments);
-/// Its plan, cut by --runs or --shard, with programs if --allow-external is given.
+/// The plan of `study`, restricted by --runs or --shard, with external programs if --allow-external
+/// was given.
 StudyPlan plan_of(const Study& study, const Arguments& arguments);
-/// As --threads, --backend and the environment have it.
+/// Threads and backend as set by --threads, --backend and the environment.
 Parallel parallel_of(const Arguments& arguments);
-/// How `command` makes a file, for the file: this build and machine, the command line, threads.
+/// The provenance to store in a file that `command` makes: build, machine, command line, threads.
 TextPairs provenance_of(const std::string& command, const Arguments& arguments);
 
 }  // namespace montecarta::experiments

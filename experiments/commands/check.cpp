@@ -29,7 +29,7 @@ namespace {
 
 constexpr double kTrialSeconds = 0.25;
 
-/// [bytes] of memory that this process has touched and not given back.
+/// Resident memory of this process [byte].
 double resident_bytes() {
   std::ifstream file("/proc/self/statm");
   double all = 0.0, resident = 0.0;
@@ -37,8 +37,8 @@ double resident_bytes() {
   return resident * static_cast<double>(::sysconf(_SC_PAGESIZE));
 }
 
-/// While one lives, this process gets no more memory than the machine has free, and is told so
-/// instead of being killed.
+/// Limits the memory of this process, while the object exists, to the free memory of the
+/// machine, so that an allocation beyond it throws an exception instead of ending the process.
 class WithinFreeMemory {
  public:
   WithinFreeMemory() {
@@ -60,7 +60,7 @@ class WithinFreeMemory {
   struct rlimit before_ {};
 };
 
-/// One step as the engine takes it; `scan` is the next scan of the itinerary.
+/// Performs one step in the way of the engine. `scan` is the index of the next scan.
 void step_through(SlamFilter& filter, const StudyPlan& plan, const Drive& drive, std::size_t k,
                   std::size_t& scan) {
   const Itinerary& itinerary = plan.drives->itinerary_of(plan.first_run);
@@ -74,7 +74,7 @@ void step_through(SlamFilter& filter, const StudyPlan& plan, const Drive& drive,
   (void)filter.estimate();
 }
 
-/// How many landmarks are detected in the first `scans` scans.
+/// Number of different landmarks that are detected in the first `scans` scans.
 double landmarks_in(const Drive& drive, std::size_t scans) {
   std::set<std::int32_t> seen;
   for (std::size_t s = 0; s < scans; ++s) {
@@ -83,15 +83,15 @@ double landmarks_in(const Drive& drive, std::size_t scans) {
   return static_cast<double>(seen.size());
 }
 
-/// Memory after some steps.
+/// Memory that a filter holds after a number of steps.
 struct Held {
   std::size_t steps = 0;
   double bytes = 0.0;
 };
 
-/// What a filter holds at the end of a drive, from what it held at two times: it grows with the
-/// landmarks of each particle's map, or with their square in one covariance; one that keeps its
-/// path grows with the steps.
+/// Extrapolates the memory of a filter at the end of a drive from that at two times. It grows with
+/// the number of landmarks if every particle has a map, and with its square if there is one joint
+/// covariance. A filter that keeps its path also grows with the number of steps.
 double bytes_at_end(const Cell& cell, const Itinerary& itinerary, const Drive& drive,
                     const Held& half, const Held& end) {
   const auto landmarks_by = [&](std::size_t steps) {
@@ -103,7 +103,7 @@ double bytes_at_end(const Cell& cell, const Itinerary& itinerary, const Drive& d
   const double all = landmarks_by(itinerary.steps());
   const double by_steps = static_cast<double>(itinerary.steps() - end.steps) /
                           static_cast<double>(std::max<std::size_t>(end.steps - half.steps, 1));
-  double rest = by_steps;  // of the growth between the two times
+  double rest = by_steps;  // further growth in units of that between the two times
   if (now > before && cell.particles > 0) rest = (all - now) / (now - before);
   if (now > before && cell.particles == 0)
     rest = std::max(by_steps, (all * all - now * now) / (now * now - before * before));
@@ -117,7 +117,7 @@ std::optional<Trial> trial_of(const Cell& cell, const StudyPlan& plan, const Dri
   const Itinerary& itinerary = plan.drives->itinerary_of(plan.first_run);
   const std::size_t steps = itinerary.steps();
   const WithinFreeMemory limit;
-  ::malloc_trim(0);  // what an earlier trial left would hide what this one takes
+  ::malloc_trim(0);  // memory left by an earlier trial would hide that of this one
   const double before = resident_bytes();
   Clock::time_point begin;
   const auto passed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
@@ -127,7 +127,8 @@ std::optional<Trial> trial_of(const Cell& cell, const StudyPlan& plan, const Dri
   try {
     const std::unique_ptr<SlamFilter> filter = cell.make_filter();
     std::size_t scan = 0;
-    filter->start(itinerary.start);  // a program starts with the first step of its first run
+    // An external program is started in the first step of its first run.
+    filter->start(itinerary.start);
     step_through(*filter, plan, drive, 0, scan);
     scan = 0;
     begin = Clock::now();
@@ -169,7 +170,7 @@ std::string memory_text(double bytes) {
   return "about " + bytes_text(bytes);
 }
 
-/// What a study costs, and a row for each cell below the headings.
+/// Estimated cost of a study, with a table row for each cell below the headings.
 struct Costs {
   double cpu_seconds = 0.0;
   double disk = 0.0;        ///< [byte]
@@ -222,7 +223,7 @@ std::string filters_of(const Study& study) {
   return joined(names);
 }
 
-/// What a person wants to know first.
+/// Prints the overview of a study: title, time, size of the file, filters, runs.
 void print_summary(const Study& study, const StudyPlan& plan, const Costs& costs, int threads) {
   const std::string part = plan.runs_here() == plan.runs ? "" : " of " + std::to_string(plan.runs);
   const std::string cells = std::to_string(plan.cells.size());
@@ -256,7 +257,8 @@ void print_details(const Study& study, const StudyPlan& plan) {
   std::cout << "\ndetails\n" << listing(details);
 }
 
-/// A row for each cell; a label that leaves no room for the numbers has them below it.
+/// Prints a row for each cell. If a label leaves no room for the numbers, they are printed below
+/// it.
 void print_cells(const StudyPlan& plan, const std::vector<TableRow>& rows) {
   std::istringstream lines(aligned(rows, 0, {Align::right, Align::right, Align::right}));
   std::string line;

@@ -7,20 +7,21 @@
 
 namespace montecarta::experiments {
 
-/// What one run of a cell takes on one thread.
+/// Cost of one run of a cell on one thread.
 struct Trial {
-  double seconds = 0.0;  ///< of a filter that has been started before
-  double bytes = 0.0;  ///< of memory that the filter holds at its end; infinity: more than is free
+  double seconds = 0.0;  ///< of the steps, without the start of an external program
+  double bytes = 0.0;  ///< of memory that the filter holds at the end of the run; infinity if more
+                       ///< than is free
 };
 
-/// From the first part of `drive`: a quarter of a second of it, or all. The time of
-/// all steps but the first is taken to grow with the steps, memory with the landmarks that come
-/// into view. nullopt if the filter throws at once (the run itself will say why) or is a program
-/// that nobody allowed to start.
+/// Runs the first part of `drive`, for a quarter of a second at most, and extrapolates to all of
+/// it. The time of all steps but the first is assumed to grow with the number of steps, the memory
+/// with the number of landmarks detected. Returns nullopt if the filter throws at once (the run
+/// itself will report the reason) or is an external program that may not be started.
 std::optional<Trial> trial_of(const Cell& cell, const StudyPlan& plan, const Drive& drive);
 
-/// How many runs like the first one have as many steps as all runs of the plan: drives of their own
-/// have different lengths.
+/// Number of runs of the length of the first run that together have as many steps as all runs of
+/// the plan. It differs from the number of runs if every run is a drive of its own.
 double runs_like_the_first(const StudyPlan& plan);
 
 }  // namespace montecarta::experiments

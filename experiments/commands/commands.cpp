@@ -72,7 +72,7 @@ int dispatch(const std::vector<std::string>& words) {
 
 int print_error(const std::string& message, int code) {
   std::cout.flush();
-  // One line in a log, where it is searched for; whole words on a terminal.
+  // A log gets the message as one line, so that it can be searched; a terminal gets whole words.
   const std::size_t width = ::isatty(STDERR_FILENO) == 1 ? output_width(STDERR_FILENO) : SIZE_MAX;
   std::cerr << wrapped("montecarta: " + shortened(message), width, 2);
   return code;

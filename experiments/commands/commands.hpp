@@ -9,12 +9,12 @@
 
 namespace montecarta::experiments {
 
-/// Exit codes that users and scripts rely on; those of an interrupted study come from exit_code().
+/// Exit codes that users and scripts rely on. exit_code() gives those of an interrupted study.
 inline constexpr int kDone = 0, kFailed = 1, kWrongInput = 2, kDifferent = 4;
-/// Of `gate`: the filter is not consistent, or there are too few runs to know.
+/// Exit codes of `gate`: the filter is not consistent, or there are too few runs to decide.
 inline constexpr int kInconsistent = 4, kUndecided = 5;
 
-/// One command of the program: how it is called and what it does. Returns the exit code.
+/// One command of the program. `run` returns the exit code.
 struct Command {
   CommandSpec spec;
   std::function<int(const Arguments&)> run;
@@ -40,8 +40,8 @@ Command list_command();
 /// All commands, in the order of the help.
 std::vector<Command> all_commands();
 
-/// The whole program but its name: finds the command, runs it, and turns exceptions into messages
-/// on standard error and exit codes.
+/// Runs the program with the words that follow its name: finds the command, runs it, and turns
+/// exceptions into messages on standard error. Returns the exit code.
 int run_program(const std::vector<std::string>& words);
 
 }  // namespace montecarta::experiments

@@ -33,7 +33,7 @@ std::vector<const Score*> scores_of(const Arguments& arguments, const ResultFile
   return scores;
 }
 
-/// Before the work, not after it.
+/// Label of the baseline cell. It is checked before the comparison starts, which takes long.
 std::string baseline_of(const Arguments& arguments, const ResultFile& file) {
   std::vector<std::string> labels;
   for (const StoredCell& cell : file.cells()) labels.push_back(cell.label);

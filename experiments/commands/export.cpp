@@ -25,7 +25,7 @@ fs::path output_of(const Arguments& arguments) {
                    "name another");
 }
 
-/// "run_0012", so that names sort like numbers.
+/// A name like "run_0012", with leading zeros, so that names sort like numbers.
 std::string name_of_run(std::uint64_t run, std::uint64_t runs) {
   const std::size_t digits = std::max<std::size_t>(4, std::to_string(runs - 1).size());
   std::string number = std::to_string(run);
@@ -33,7 +33,8 @@ std::string name_of_run(std::uint64_t run, std::uint64_t runs) {
   return "run_" + number;
 }
 
-/// What the study has a filter believe, as the lines of its file.
+/// The sections [belief] and [association] of a study, which a filter assumes, as the text of a
+/// file.
 std::string belief_text(const Study& study) {
   std::string text;
   for (const char* section : {"belief", "association"}) {

@@ -33,7 +33,7 @@ const StoredCell& cell_to_judge(const Arguments& arguments, const ResultFile& fi
                    " (it must be one of them): " + nearest_spelling(*label, labels));
 }
 
-/// A sample of those runs that happened to end first is none.
+/// Throws StudyError if runs are missing: those that ended first are not a fair sample.
 void expect_all_runs(const ResultFile& file, const StoredCell& cell) {
   const StatusCounts counts = count_status(file.status(cell));
   if (counts.missing == 0) return;
@@ -55,7 +55,7 @@ const char* name_of(GateAnswer answer) {
                                               : "undecided";
 }
 
-/// Why a gate is closed that the errors alone would have opened.
+/// Why the gate is closed although the errors alone would open it; empty if it is not.
 std::string too_many(const Verdict& verdict, const Allowance& allowed) {
   const auto words = [](const std::string& what, std::uint64_t most) {
     return " More " + what + " than are allowed (" + std::to_string(most) + ").";
@@ -78,7 +78,8 @@ Json json_of(const Member& member, bool is_shown) {
           {"shown", is_shown}};
 }
 
-/// Everything that the verdict rests on. Scans stand there by the one of the least p-value alone.
+/// All numbers on which the verdict rests. The scans are represented by the one with the least
+/// p-value.
 Json json_of(const std::string& label, const Verdict& verdict, const Allowance& allowed,
              GateAnswer answer) {
   Json families = Json::array();

@@ -14,7 +14,7 @@
 namespace montecarta::experiments {
 namespace {
 
-/// How many of the runs held are neither missing nor unfinished in any cell.
+/// Number of runs in the file that no cell is missing.
 std::size_t runs_done(const ResultFile& file) {
   std::vector<bool> done(file.runs().size(), true);
   for (const StoredCell& cell : file.cells()) {
@@ -66,7 +66,7 @@ struct Dataset {
   std::string meaning;
 };
 
-/// Name, size and meaning of each, the meaning wrapped.
+/// Prints the name, size and meaning of each dataset, with the meaning wrapped.
 void print_datasets(const std::vector<Dataset>& datasets, std::size_t indent) {
   std::vector<TableRow> rows;
   for (const Dataset& dataset : datasets) rows.push_back({dataset.name, bytes_text(dataset.bytes)});

@@ -17,7 +17,8 @@
 namespace montecarta::experiments {
 namespace {
 
-/// nullopt if nothing is said, which is enough for a state of one convention.
+/// The convention given by --error; nullopt if the option was not given, which is allowed for a
+/// state that has only one.
 std::optional<ErrorConvention> convention_of(const Arguments& arguments) {
   const auto said = arguments.text("error");
   std::vector<std::string> known;

@@ -33,7 +33,7 @@ void point_to_details(const std::string& what, const std::string& example) {
                        output_width());
 }
 
-/// The default, and the one of measured controls where it is another.
+/// The default, and the one for measured controls if it differs.
 std::string fallback_text(const Parameter& option) {
   std::string text = option.fallback.value_or("none, it must be given");
   if (option.fallback_if_measured)
@@ -73,7 +73,7 @@ void describe_filter(const std::string& name) {
 
 std::string name_of(const Setting& setting) { return setting.section + "." + setting.key; }
 
-/// The default, and those of kinds of scenario that have another.
+/// The default, and the defaults for kinds of scenario that have another one.
 std::string fallback_text(const Setting& setting) {
   const auto in_words = [](const std::string& value) {
     return value == kRequired       ? "none, it must be given"
@@ -104,7 +104,8 @@ void describe(const Setting& setting) {
   std::cout << "\n" << listing(facts);
 }
 
-/// By its whole name, or by the key alone, which several sections may have.
+/// Describes the setting with this full name, or all settings with this key, since several sections
+/// may have the same key.
 void describe_setting(const std::string& name) {
   std::vector<std::string> known;
   bool is_first = true;
@@ -118,7 +119,7 @@ void describe_setting(const std::string& name) {
   if (is_first) throw_unknown("settings", name, known);
 }
 
-/// What the settings of a section are about.
+/// Title of a section in the list of settings.
 std::string title_of_section(const std::string& section) {
   if (section == "study") return "how many runs";
   if (section == "scenario") return "the true world, vehicle and sensor";
@@ -155,7 +156,8 @@ void list_worlds() {
   std::cout << listing(items, 0);
 }
 
-/// The file of `name` below `folder` that comes with the program, for a user who wants a copy.
+/// Path of the shipped file `name` in the folder `what`, which users may copy. Throws StudyError if
+/// there is no such file.
 std::string shipped_path(const std::string& what, const std::string& name,
                          const std::string& ending) {
   const auto path = shipped_file(what, name + ending);
@@ -250,7 +252,7 @@ void describe_column(const std::string& name) {
                         {"unit", kind.units}});
 }
 
-/// One kind of what there is: how all of it is listed, and how one is described.
+/// One kind of entries: how all of them are listed, and how one of them is described.
 struct Listed {
   std::string name;
   void (*list)();

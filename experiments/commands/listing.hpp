@@ -9,8 +9,8 @@
 
 namespace montecarta::experiments {
 
-/// Names, each with its description beside it, wrapped to the width of the output. A name of more
-/// than `widest` characters has its description on the next line.
+/// Formats names with their descriptions beside them, wrapped to the width of the output. The
+/// description of a name with more than `widest` characters begins on the next line.
 std::string listing(const TextPairs& items, std::size_t indent = 2,
                     std::size_t widest = output_width() * 2 / 5);
 

@@ -17,7 +17,7 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
   return fs::equivalent(a, b, ignored);
 }
 
-/// What `path` is that no result may replace; empty if it may be written.
+/// Why no result may replace `path`, e.g. "is a folder"; empty if it may be written.
 std::string obstacle_at(const fs::path& path) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
@@ -29,7 +29,7 @@ std::string obstacle_at(const fs::path& path) {
   const std::string signature = "\x89HDF\r\n\x1a\n";
   std::string head(signature.size(), '\0');
   std::ifstream file(path, std::ios::binary);
-  if (!file) return "";  // opening it for writing will say why
+  if (!file) return "";  // opening it for writing will report the reason
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
   return head == signature ? "" : "is no HDF5 file";
 }
@@ -72,7 +72,7 @@ VisibleOutput::VisibleOutput(std::ostream& stream) : stream_(stream), target_(st
 
 VisibleOutput::~VisibleOutput() {
   sync();
-  const std::ios_base::iostate state = stream_.rdstate();  // which a new buffer would clear
+  const std::ios_base::iostate state = stream_.rdstate();  // setting a buffer clears it
   stream_.rdbuf(target_);
   stream_.clear(state);
 }
@@ -98,7 +98,7 @@ std::streamsize VisibleOutput::xsputn(const char* text, std::streamsize length) 
 }
 
 int VisibleOutput::sync() {
-  const std::string rest = engine::visible(waiting_, "\n\t");  // nothing will make it whole
+  const std::string rest = engine::visible(waiting_, "\n\t");  // no later byte can complete it
   waiting_.clear();
   const auto length = static_cast<std::streamsize>(rest.size());
   if (target_->sputn(rest.data(), length) != length) return -1;

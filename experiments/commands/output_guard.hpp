@@ -9,22 +9,22 @@
 
 namespace montecarta::experiments {
 
-/// Throws StudyError where writing `output` would destroy one of `inputs`, or the unfinished work
-/// (.part) beside it, under whatever name, symbolic or hard link. --force does not help.
+/// Throws StudyError if writing `output` would overwrite one of `inputs` or the unfinished work
+/// (.part) beside it, also through a symbolic or hard link. --force does not change this.
 void refuse_input_as_output(const std::filesystem::path& output,
                             const std::vector<std::string>& inputs);
 
-/// Throws StudyError if no result may be written to `output`: the name is empty, it is a link to
-/// nothing, or it or the unfinished work beside it is there and is anything but a regular HDF5
-/// file.
-/// --force replaces results, never a study, a device, a pipe or a letter.
+/// Throws StudyError if no result may be written to `output`: its name is empty, it is a link to
+/// nothing, or it or the unfinished work beside it exists and is not a regular HDF5 file. --force
+/// replaces results only, so that it cannot destroy a study, a device or a text.
 void expect_place_for_result(const std::filesystem::path& output);
 
-/// Throws StudyError naming the first of `names` that is in `folder` already.
+/// Throws StudyError with the first of `names` that exists in `folder`.
 void refuse_existing(const std::filesystem::path& folder, const std::vector<std::string>& names);
 
-/// While one lives, what is written to a stream reaches it with control characters written out, but
-/// for line breaks and tabs: text of a file or of another program cannot command the terminal.
+/// While the object exists, control characters that are written to the stream, other than line
+/// breaks and tabs, are replaced by visible text, so that the contents of a file or the messages of
+/// another program cannot control the terminal.
 class VisibleOutput final : public std::streambuf {
  public:
   explicit VisibleOutput(std::ostream& stream);
@@ -42,7 +42,7 @@ class VisibleOutput final : public std::streambuf {
 
   std::ostream& stream_;
   std::streambuf* target_;
-  std::string waiting_;  ///< not yet passed on: at most the beginning of a character
+  std::string waiting_;  ///< bytes not passed on yet: the beginning of a character at most
 };
 
 }  // namespace montecarta::experiments

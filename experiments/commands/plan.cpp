@@ -27,7 +27,7 @@ TableRow row_of(const std::string& what, const NeesTest& test, const Question& q
           std::to_string(plan.runs_to_show(question.within, question.power))};
 }
 
-/// Explains the table to a reader who does not know what a chi-square is.
+/// Explains the table to a reader who does not know the chi-square distribution.
 std::string meaning_of(const NeesTest& test, const Question& question) {
   const double d = static_cast<double>(test.dimension);
   const double off = std::sqrt(question.ratio);

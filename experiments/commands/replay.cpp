@@ -36,7 +36,8 @@ std::size_t cell_of(const Study& study, const std::string& label) {
                    ": no cell of this study: " + nearest_spelling(label, known));
 }
 
-/// Every column there is. Who cannot say which landmark was seen cannot count mistakes either.
+/// All columns that this study can record. Without identities there is no ground truth for
+/// associations.
 std::string all_columns(const Study& study) {
   std::vector<std::string> columns;
   for (const Setting& setting : study_settings()) {
@@ -48,22 +49,23 @@ std::string all_columns(const Study& study) {
   return joined(columns, ", ");
 }
 
-/// The study of one run of one cell alone that keeps all it can.
+/// The study reduced to one run of one cell, with everything recorded.
 Study recording_everything(Study study, std::size_t cell, std::uint64_t run) {
   study.cells = {study.cells[cell]};
-  study.until.reset();  // one run decides nothing
+  study.until.reset();  // a single run never stops early
   study.settings.replace("study", "until", "");
   study.settings.replace("record", "columns", all_columns(study));
-  study.settings.replace("record", "full_runs", "0");  // there is no more
+  study.settings.replace("record", "full_runs", "0");  // there is only one run
   study.settings.replace("record", "rate", "control");
   if (study.own_logs.empty()) return study;
-  study.log = study.own_logs.at(run);  // of one drive every step can be kept
+  study.log = study.own_logs.at(run);  // a single drive allows recording every step
   study.own_logs.clear();
   study.settings.replace("scenario", "data_sha256", fingerprint_of(*study.log));
   return study;
 }
 
-/// What differs from the run as it is stored; nullopt where nothing does or it is not stored.
+/// The difference from the stored run, as a sentence; nullopt if there is none or the run is not
+/// stored.
 std::optional<std::string> departure(const ResultFile& file, const Study& study, std::size_t cell,
                                      std::uint64_t run, ExternalPrograms programs) {
   if (cell >= file.cells().size() || file.cells()[cell].label != study.cells[cell].label) {

@@ -16,11 +16,11 @@
 namespace montecarta::experiments {
 namespace {
 
-/// A report takes minutes: what it needs at the end is tried at the beginning.
+/// Tries gnuplot before the work: a report takes minutes and needs gnuplot only at the end.
 void expect_gnuplot() {
   namespace fs = std::filesystem;
   std::string folder = (fs::temp_directory_path() / "montecarta_XXXXXX").string();
-  if (::mkdtemp(folder.data()) == nullptr) return;  // then the figures will tell
+  if (::mkdtemp(folder.data()) == nullptr) return;  // drawing the figures will report the error
   const auto remove = [](const std::string* path) { fs::remove_all(*path); };
   const std::unique_ptr<const std::string, decltype(remove)> removed_at_end(&folder, remove);
   std::ofstream(fs::path(folder) / "trial.gp") << "set terminal svg\nset terminal pdfcairo\n";

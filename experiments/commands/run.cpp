@@ -20,11 +20,12 @@
 namespace montecarta::experiments {
 namespace {
 
-/// Beyond this a verdict would take longer to read than to wait for: the command that gives it is
-/// printed instead.
+/// [byte] Size of a result above which its verdict takes too long to compute after the run. Then
+/// the command that prints the verdict is printed instead.
 constexpr std::uintmax_t kLargestVerdict = 2'000'000'000;
 
-/// [s]: in no time nothing is done, and a script that resumes would never end.
+/// [s] Shortest time budget. With none, no run would ever be done, and a script that resumes would
+/// never end.
 constexpr double kLeastBudget = 0.001;
 
 ProgressStyle progress_of(const Arguments& arguments) {
@@ -34,7 +35,7 @@ ProgressStyle progress_of(const Arguments& arguments) {
                            : ProgressStyle::automatic;
 }
 
-/// What a user types to go on where this command stopped.
+/// The command line that continues this run after an interruption.
 std::string resuming_command(const Arguments& arguments) {
   std::string line = std::filesystem::read_symlink("/proc/self/exe").string() + " run";
   for (const std::string& word : arguments.words()) {
@@ -43,7 +44,7 @@ std::string resuming_command(const Arguments& arguments) {
   return arguments.has("attempt") ? line : line + " --resume";
 }
 
-/// Without -o: by the name of the study, where the command is called.
+/// The file given by -o, or a file in the current folder that is named after the study.
 std::filesystem::path output_of(const Study& study, const Arguments& arguments) {
   if (const auto output = arguments.text("output")) return *output;
   if (arguments.has("shard"))
@@ -55,7 +56,7 @@ std::filesystem::path output_of(const Study& study, const Arguments& arguments) 
   return name + ".h5";
 }
 
-/// The folder of the report with which a study without -o ends.
+/// Folder of the report, which only a study without -o writes; nullopt if there is none.
 std::optional<std::filesystem::path> report_folder(const RunOptions& options,
                                                    const Arguments& arguments) {
   if (arguments.has("output") || options.quiet) return std::nullopt;
@@ -91,8 +92,8 @@ void tell_how_to_resume(const RunOutcome& outcome, const RunOptions& options,
             << ". Continue with:\n  " << resuming_command(arguments) << "\n";
 }
 
-/// The page, or nothing if it cannot be drawn, e.g. without gnuplot: the results are safe by now,
-/// so that this is no failure of the study.
+/// Draws the report and returns the path of its page, or an empty text if it cannot be drawn, e.g.
+/// without gnuplot. That is not an error of the study, because the results are stored by now.
 std::string draw_report(const ResultFile& file, const std::filesystem::path& folder,
                         const RunOptions& options) {
   analysis::ReportOptions how;

@@ -13,7 +13,7 @@
 namespace montecarta::experiments {
 namespace {
 
-/// The state of every run of a study, cell by cell, over many files.
+/// The state of every run of a study in each cell, collected from many files.
 class StudyStatus {
  public:
   explicit StudyStatus(const ResultFile& first) : sha256_(first.study_sha256()) {
@@ -54,11 +54,11 @@ class StudyStatus {
   std::vector<std::vector<RunStatus>> status_;
 };
 
-/// How far to look into a file.
+/// How thoroughly a file is checked.
 enum class Depth { statuses, every_byte };
 
-/// "run 7 is damaged", of the first stored run that does not fit its fingerprint; empty where all
-/// do.
+/// A sentence such as "run 7 is damaged" about the first stored run that does not match its
+/// fingerprint; empty if all match.
 std::string defect_of(const ResultFile& file) {
   const ResultSlabs slabs = find_slabs(file.path(), file.description());
   const PosixFile bytes(file.path(), PosixFile::Mode::read);
@@ -91,9 +91,9 @@ std::string line_of(const ResultFile& file, Depth depth) {
                 "\t");
 }
 
-/// What scripts read of one file, separated by tabs: name, state (complete, unfinished, damaged),
-/// SHA-256 of the study, runs of cells complete, failed, missing, wall time [s], what is wrong.
-/// Never throws: a file that cannot be read is damaged.
+/// A line about one file for scripts, with fields separated by tabs: name, state (complete,
+/// unfinished, damaged), SHA-256 of the study, numbers of complete, failed and missing runs of all
+/// cells, wall time [s], error. Never throws: a file that cannot be read counts as damaged.
 std::string status_line(const std::string& name, Depth depth) {
   std::string line;
   try {

@@ -10,15 +10,14 @@
 
 namespace montecarta::experiments {
 
-/// Opens FILE.h5, or FILE.h5.part where only unfinished work is there (and says so on standard
-/// error).
+/// Opens FILE.h5, or FILE.h5.part if only unfinished work exists, with a note on standard error.
 ResultFile open_stored(const std::string& name);
 
-/// Says on standard output where the page of a result file is (empty: how to draw it), and how to
-/// see more of the file.
+/// Prints where the report of a result file is and how to see more of the file. If `page` is empty,
+/// prints how to draw the report.
 void print_where_to_look(const std::string& name, const std::string& page);
 
-/// How many runs of a cell are in which state.
+/// Number of runs of a cell in each state.
 struct StatusCounts {
   std::size_t complete = 0;
   std::size_t failed = 0;
@@ -27,17 +26,16 @@ struct StatusCounts {
 };
 StatusCounts count_status(const std::vector<RunStatus>& status);
 
-/// A table whose last column is of spared runs, without it where no cell spared any: most studies
-/// make all.
+/// Removes the last column of a table, which counts spared runs, if no cell has any.
 std::vector<TableRow> without_idle_spared(std::vector<TableRow> rows);
 
-/// --data FOLDER, where the drive of a study lies: a result file holds all of a study but what was
-/// recorded.
+/// The option --data FOLDER, which names the folder of a recorded drive. A result file holds
+/// everything of a study except recorded data.
 OptionSpec data_option();
 
-/// The study that a result file holds, its recorded drive read from --data or where
-/// $MONTECARTA_DATA says. Tells on standard error where this build may round otherwise than the one
-/// that made the file. Throws StudyError where the drive is missing or another one.
+/// The study that a result file holds, with its recorded drive read from --data or
+/// $MONTECARTA_DATA. Warns on standard error if this build may round differently from the one that
+/// made the file. Throws StudyError if the drive is missing or is another one.
 Study study_in(const ResultFile& file, const Arguments& arguments);
 
 }  // namespace montecarta::experiments

@@ -28,7 +28,8 @@ std::vector<StoredRun> runs_stored(const ResultFile& file) {
   return stored;
 }
 
-/// Names every run besides those of the sample whose bytes do not fit their fingerprint.
+/// Checks the fingerprints of all stored runs outside the sample, prints the runs that do not
+/// match, and returns their number.
 std::size_t tell_damaged(const ResultFile& file, const std::vector<StoredRun>& sample) {
   const auto is_in_sample = [&](std::size_t c, std::size_t i) {
     return std::ranges::any_of(
@@ -51,7 +52,7 @@ std::size_t tell_damaged(const ResultFile& file, const std::vector<StoredRun>& s
   return damaged;
 }
 
-/// Where a run stands in the shuffle that `seed` names.
+/// Sort key of a run in the random order that `seed` determines.
 std::uint64_t draw_order(std::uint64_t seed, const StoredRun& run) {
   Fingerprint draw_order;
   draw_order.add(std::as_bytes(std::span(&seed, 1)));
@@ -59,7 +60,7 @@ std::uint64_t draw_order(std::uint64_t seed, const StoredRun& run) {
   return draw_order.value();
 }
 
-/// `count` of the runs, or all, chosen by `seed`.
+/// A random sample of `count` runs (all if there are fewer), determined by `seed`.
 std::vector<StoredRun> sample(std::vector<StoredRun> runs, std::uint64_t count,
                               std::uint64_t seed) {
   std::ranges::sort(runs, {}, [&](const StoredRun& run) { return draw_order(seed, run); });
@@ -67,7 +68,7 @@ std::vector<StoredRun> sample(std::vector<StoredRun> runs, std::uint64_t count,
   return runs;
 }
 
-/// Another sample at every call, unless one is asked for again.
+/// The seed given by --seed, or one from the clock, which gives another sample at every call.
 std::uint64_t seed_of(const Arguments& arguments) {
   const auto now = std::chrono::system_clock::now().time_since_epoch().count();
   return arguments.count("seed", 0, UINT64_MAX)

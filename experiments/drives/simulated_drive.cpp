@@ -17,7 +17,7 @@ StreamIdentity with(StreamIdentity place, Draw purpose, std::int32_t index) {
   return place;
 }
 
-/// Poisson by multiplying uniforms (Knuth); `mean` is a few per scan.
+/// Draws a Poisson number by multiplying uniforms (Knuth); `mean` should be small.
 std::uint32_t poisson(double mean, RngStream& draw) {
   const double limit = std::exp(-mean);
   std::uint32_t count = 0;
@@ -38,7 +38,8 @@ SimulatedSensor::SimulatedSensor(const Scenario& scenario)
       miss_probability_(scenario.miss_probability),
       clutter_rate_(scenario.clutter_rate) {}
 
-/// A detection with noise, if there is any, of values that the sensor can have.
+/// The detection of exact values, with noise if `noise` is given, limited to values that the sensor
+/// can measure.
 Detection SimulatedSensor::noisy(const Eigen::Vector2d& exact, std::int32_t identity,
                                  RngStream* noise) const {
   Detection detection{.values = {}, .identity = identity};
@@ -100,7 +101,8 @@ namespace {
 /// [m]
 double step_length(const Scenario& scenario) { return scenario.speed / scenario.control_rate; }
 
-/// How far [m] a vehicle may drive towards one way-point before it is clear that it misses it.
+/// Distance [m] within which a vehicle must reach a way-point; beyond it the way-point counts as
+/// missed.
 double time_limit(const Pose& pose, const Eigen::Vector2d& waypoint, const Scenario& scenario) {
   const double distance = length(waypoint.x() - pose.x, waypoint.y() - pose.y);
   return 3.0 * distance + 10.0 * way_to_turn(scenario.vehicle, scenario.speed);
@@ -137,7 +139,7 @@ std::vector<Eigen::Vector2d> RandomMap::operator()(std::uint64_t run) const {
   for (const Eigen::Vector2d& place : places_) {
     RngStream draw(identity);
     ++identity.index;
-    const double distance = shift_ * std::sqrt(draw.uniform());  // even over the disc
+    const double distance = shift_ * std::sqrt(draw.uniform());  // uniform over the disc
     const double direction = kTwoPi * draw.uniform();
     landmarks.emplace_back(place.x() + distance * std::cos(direction),
                            place.y() + distance * std::sin(direction));
@@ -227,7 +229,7 @@ void SimulatedDrive::move_measured(std::uint64_t run, Drive& drive) const {
   }
 }
 
-/// What is in view is the same in all runs.
+/// The landmarks in view are the same in all runs, because the true path is.
 void SimulatedDrive::generate_measured(std::uint64_t run, Drive& drive) const {
   move_measured(run, drive);
   for (std::size_t s = 0; s < itinerary_.scans(); ++s) {
@@ -266,8 +268,8 @@ void SimulatedDrive::end_scan(const StreamIdentity& here, Drive& drive) const {
   drive.scan_begin.push_back(static_cast<std::uint32_t>(drive.detections.size()));
 }
 
-/// Twice the mean and some: a path that noise moved sees a little more or less than the nominal
-/// one.
+/// Number of detections to reserve: twice the nominal number and some more, since a path with noise
+/// has slightly more or fewer landmarks in view than the nominal one.
 std::size_t SimulatedDrive::expected_detections() const {
   const double clutter = scenario_.clutter_rate * static_cast<double>(itinerary_.scans());
   return 2 * (visible_.size() + static_cast<std::size_t>(clutter)) + 1000;

@@ -19,13 +19,13 @@
 
 namespace montecarta::experiments {
 
-/// A landmark in view, as a perfect sensor would see it.
+/// A landmark in view and its detection by a sensor without noise.
 struct VisibleLandmark {
   std::int32_t identity = 0;
   Eigen::Vector2d detection;  ///< components of the sensor
 };
 
-/// Measured ranges are never below this [m], however large the noise (EQUATIONS 2).
+/// Lower bound of measured ranges [m], for noise of any size (EQUATIONS 2).
 inline constexpr double kLeastRange = 1e-3;
 
 /// The sensor of a simulated vehicle (EQUATIONS 1 and 2).
@@ -33,7 +33,7 @@ class SimulatedSensor {
  public:
   explicit SimulatedSensor(const Scenario& scenario);
 
-  /// Calls visit(observation) for everything in view from `pose`, in increasing identity.
+  /// Calls visit(observation) for every landmark in view from `pose`, in increasing identity.
   template <class Visit>
   void see(const Pose& pose, std::span<const Eigen::Vector2d> landmarks, const Visit& visit) const {
     view_.look(pose, landmarks, [&](const InView& seen) {
@@ -43,8 +43,9 @@ class SimulatedSensor {
     });
   }
 
-  /// Appends the detection of `observation`, with noise, unless it is missed. `place` names study
-  /// seed, run and step; every landmark has its own numbers, so that what one sees shifts no other.
+  /// Appends the noisy detection of `observation`, unless it is missed. `place` gives the study's
+  /// seed, run and step. Every landmark has its own random numbers, so that a detection does not
+  /// change those of other landmarks.
   void detect(const VisibleLandmark& observation, const StreamIdentity& place,
               std::vector<Detection>& detections) const;
   /// Appends the false alarms of one scan, uniform over the area in view.
@@ -54,7 +55,7 @@ class SimulatedSensor {
   Detection noisy(const Eigen::Vector2d& exact, std::int32_t identity, RngStream* noise) const;
 
   Sensor sensor_;
-  Eigen::Vector2d sigma_;  ///< of the components
+  Eigen::Vector2d sigma_;  ///< standard deviations of the components
   FieldOfView view_;
   double min_range_;
   double max_range_;
@@ -64,13 +65,14 @@ class SimulatedSensor {
 };
 
 /// Steers from way-point to way-point, loop after loop (EQUATIONS 1). `waypoints` and `scenario`
-/// must outlive it.
+/// must outlive the pilot.
 class WaypointPilot {
  public:
   WaypointPilot(const std::vector<Eigen::Vector2d>& waypoints, const Scenario& scenario)
       : waypoints_(&waypoints), scenario_(&scenario) {}
 
-  /// Notes whether the way-point ahead is reached at `pose`; at most one a step.
+  /// Advances to the next way-point if the current one is reached at `pose`. Advances by at most
+  /// one way-point per step.
   void look_ahead(const Pose& pose);
   /// The control for the next step from `pose`.
   const Control& steer(const Pose& pose);
@@ -83,18 +85,18 @@ class WaypointPilot {
   const Scenario* scenario_;
   std::size_t next_ = 0;
   std::uint32_t loops_done_ = 0;
-  Control control_;  ///< of the step before
+  Control control_;  ///< control of the step before
 };
 
-/// Draws the map of a run: every landmark displaced from where the world has it, uniformly within a
-/// distance. A pure function of (study seed, run).
+/// Draws the map of a run: every landmark is displaced uniformly within a distance of its place in
+/// the world. A pure function of (study seed, run).
 class RandomMap {
  public:
-  /// `places` [m] in the world; `shift` [m] at most.
+  /// `places` are the positions in the world [m], `shift` is the largest displacement [m].
   RandomMap(std::vector<Eigen::Vector2d> places, double shift, std::uint64_t seed)
       : places_(std::move(places)), shift_(shift), seed_(seed) {}
 
-  /// [m] by identity.
+  /// Positions by identity [m].
   std::vector<Eigen::Vector2d> operator()(std::uint64_t run) const;
 
  private:
@@ -103,16 +105,17 @@ class RandomMap {
   std::uint64_t seed_;
 };
 
-/// More steps than this in one run would not fit a result file; a study of so many is a slip of the
-/// pen.
+/// Largest number of steps of a run. More would not fit a result file, and are probably a typing
+/// error in the study.
 inline constexpr std::size_t kMostSteps = 20'000'000;
 
 /// A vehicle simulated along the way-points of a world (EQUATIONS 1). Every run has the steps and
-/// scans of the noise-free drive; where noise moves the truth it drives on along the loop. The
-/// noise depends on (seed, run) only.
+/// scans of the noise-free drive. If noise moves the truth, the vehicle keeps driving along the
+/// loop until the last step. The noise depends on (seed, run) only.
 class SimulatedDrive final : public DriveSource {
  public:
-  /// Throws StudyError where a way-point cannot be reached or the drive is longer than kMostSteps.
+  /// Throws StudyError if a way-point cannot be reached or the drive has more than kMostSteps
+  /// steps.
   SimulatedDrive(World world, const Scenario& scenario, std::uint64_t seed);
   SimulatedDrive(const SimulatedDrive&) = delete;
   SimulatedDrive& operator=(const SimulatedDrive&) = delete;
@@ -131,7 +134,7 @@ class SimulatedDrive final : public DriveSource {
   void scan(const StreamIdentity& here, const Pose& pose, Landmarks landmarks, Drive& drive) const;
   void end_scan(const StreamIdentity& here, Drive& drive) const;
   std::size_t expected_detections() const;
-  /// `control` with the noise of that run and step.
+  /// `control` with the noise of this run and step.
   Control noisy(const Control& control, std::uint64_t run, std::size_t step) const;
   StreamIdentity place(std::uint64_t run, std::size_t step) const;
 
@@ -139,11 +142,11 @@ class SimulatedDrive final : public DriveSource {
   Scenario scenario_;
   std::uint64_t seed_;
   SimulatedSensor sensor_;
-  std::optional<RandomMap> random_map_;  ///< nullopt: every run has the world's landmarks
+  std::optional<RandomMap> random_map_;  ///< nullopt if every run has the landmarks of the world
   Itinerary itinerary_;
   std::vector<Control> nominal_;              ///< controls of the noise-free drive
   std::vector<Pose> path_;                    ///< its poses after each step
-  std::vector<VisibleLandmark> visible_;      ///< of all its scans
+  std::vector<VisibleLandmark> visible_;      ///< landmarks in view in its scans
   std::vector<std::uint32_t> visible_begin_;  ///< scans + 1 offsets into visible_
 };
 

@@ -25,10 +25,11 @@ namespace {
 
 constexpr std::size_t kMostGroups = 4096;
 
-/// All of the guarding process. It was forked from a process of many threads, so it calls nothing
-/// that may wait for a lock, and it closes what it inherited: locks and pipes are not its own.
+/// The main loop of the guard process. It was forked from a process with many threads, so it calls
+/// no function that may wait for a lock. It closes the descriptors that it inherited, which belong
+/// to the parent and its programs.
 [[noreturn]] void guard_until_end_of(int line) {
-  ::setsid();  // Ctrl-C in a terminal is not for it
+  ::setsid();  // so that Ctrl-C in a terminal does not reach it
   ::dup2(line, STDIN_FILENO);
   ::syscall(SYS_close_range, 1U, ~0U, 0U);
   const pid_t ready = 0;
@@ -59,7 +60,8 @@ OrphanGuard& OrphanGuard::instance() {
   return guard;
 }
 
-/// By way of a process that ends at once, so that the guard is no child that we would wait for.
+/// Forks twice, and the process in between ends at once. So the guard is not a child of this
+/// process, which would have to wait for it.
 OrphanGuard::OrphanGuard() {
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) return;
@@ -75,7 +77,8 @@ OrphanGuard::OrphanGuard() {
     return;
   }
   while (::waitpid(between, nullptr, 0) < 0 && errno == EINTR) continue;
-  // Until the guard has closed what it inherited it would keep pipes of other programs open.
+  // The guard keeps pipes of other programs open until it has closed the descriptors that it
+  // inherited.
   pid_t ready = 0;
   while (::recv(ends[1], &ready, sizeof ready, 0) < 0 && errno == EINTR) continue;
   line_ = ends[1];
@@ -83,7 +86,7 @@ OrphanGuard::OrphanGuard() {
 
 void OrphanGuard::tell(pid_t signed_group) const {
   if (line_ < 0) return;
-  // No signal where somebody killed the guard.
+  // Raises no signal if the guard was killed.
   while (::send(line_, &signed_group, sizeof signed_group, MSG_NOSIGNAL) < 0 && errno == EINTR) {
     continue;
   }
@@ -97,7 +100,8 @@ struct Pipe {
   Descriptor read, write;
 };
 
-/// Beyond the standard ones, so that none of a child's three is in the way of another.
+/// Moves a descriptor above the three standard ones, so that it cannot collide with those of a
+/// child.
 Descriptor beyond_standard(int number) {
   Descriptor first(number);
   if (number > 2) return first;
@@ -117,8 +121,9 @@ void do_not_wait_for(const Descriptor& descriptor) {
   ::fcntl(descriptor.number(), F_SETFL, O_NONBLOCK);
 }
 
-/// Our environment, and what makes interpreters and linear algebra the same from process to process
-/// and leaves the other cores to the other workers, unless the user says otherwise.
+/// The environment of this process, with variables that make interpreters and linear algebra
+/// reproducible and single-threaded, so that they leave the other cores to the other workers.
+/// Variables that the user has set are kept.
 std::vector<std::string> environment_of_child() {
   std::vector<std::string> variables;
   for (char** variable = environ; *variable != nullptr; ++variable)
@@ -132,7 +137,7 @@ std::vector<std::string> environment_of_child() {
   return variables;
 }
 
-/// As execve() takes them.
+/// Pointers to the texts and a null pointer at the end, as execve() takes them.
 std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   std::vector<char*> pointers;
   for (std::string& text : texts) pointers.push_back(text.data());
@@ -140,7 +145,7 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
-/// What posix_spawn() is told.
+/// File actions and attributes for posix_spawn().
 class SpawnOrders {
  public:
   SpawnOrders() {
@@ -181,14 +186,15 @@ bool may_be_run(const fs::path& file) {
   return fs::is_regular_file(file, failure) && ::access(file.c_str(), X_OK) == 0;
 }
 
-constexpr int kFarewell = 1000;  // [ms] for a program to end when nobody asks it any more
-constexpr int kLookUp = 50;      // [ms] between two looks at the stop flag
-/// How long a worker looks for an answer before it sleeps: to wake it on an idle core costs more
-/// than a scan of a fast filter.
+constexpr int kFarewell = 1000;  // [ms] that a program has to end after its input is closed
+constexpr int kLookUp = 50;      // [ms] between two checks of the stop flag
+/// Time for which a worker polls for an answer before it sleeps. Waking it on an idle core takes
+/// longer than a scan of a fast filter.
 constexpr std::chrono::microseconds kAwake{50};
-constexpr std::size_t kErrorOutput = 4096;  // [byte]
+constexpr std::size_t kErrorOutput = 4096;  // [byte] kept of the standard error
 
-/// While one lives, a pipe that nobody reads is an error of write(), no signal to this thread.
+/// While the object exists, writing to a pipe without a reader is an error of write() instead of a
+/// signal to this thread.
 class WithoutSigpipe {
  public:
   WithoutSigpipe() {
@@ -233,7 +239,7 @@ fs::path find_program(const std::string& program) {
 }
 
 ChildProcess::ChildProcess(std::span<const std::string> words) {
-  OrphanGuard::instance();  // before there are pipes that it would inherit
+  OrphanGuard::instance();  // before the pipes exist, because it would inherit them
   Pipe input = make_pipe(), output = make_pipe(), error = make_pipe();
   start(words, input.read.number(), output.write.number(), error.write.number());
   process_handle_ = Descriptor(static_cast<int>(::syscall(SYS_pidfd_open, process_, 0)));
@@ -270,7 +276,7 @@ void Descriptor::close() {
 ChildProcess::~ChildProcess() {
   input_.close();
   if (!failed_) ends_within(kFarewell);
-  ::kill(-process_, SIGKILL);  // before the process is reaped its number is nobody else's
+  ::kill(-process_, SIGKILL);  // its number is not reused before the process is reaped
   OrphanGuard::instance().release(process_);
   while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) continue;
 }
@@ -332,7 +338,7 @@ void ChildProcess::receive() {
   }
 }
 
-/// Reads what there is on the program's standard error.
+/// Reads the available output of the program's standard error.
 void ChildProcess::listen() {
   std::array<char, 4096> buffer;
   const ssize_t n = ::read(error_.number(), buffer.data(), buffer.size());
@@ -350,7 +356,7 @@ void ChildProcess::fail(const std::string& reason) {
   throw ProgramError(reason);
 }
 
-/// It said its last line: how it ended, and why, if it told.
+/// Fails with the exit status of the program and the last line of its standard error.
 void ChildProcess::fail_ended() {
   const std::string how = how_it_ended();
   while (error_.is_open()) {

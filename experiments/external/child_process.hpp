@@ -13,19 +13,20 @@
 
 namespace montecarta::experiments {
 
-/// A process beside ours that outlives us by a moment: when we are gone, killed perhaps, it kills
-/// the process groups that are still guarded. It listens to a socket whose other end nobody but we
-/// hold, so it cannot miss our end. (A parent-death signal would follow the thread that started a
-/// program.) Any number of threads may use it.
+/// A second process that kills the guarded process groups when this process has ended, for
+/// whichever reason. It waits on a socket of which only this process holds the other end, so it
+/// cannot miss the end. (A parent-death signal would depend on the thread that started a program
+/// instead of the process.) May be used by any number of threads.
 class OrphanGuard {
  public:
-  /// The one of this process, started by the first call.
+  /// The guard of this process, which the first call starts.
   static OrphanGuard& instance();
   OrphanGuard(const OrphanGuard&) = delete;
   OrphanGuard& operator=(const OrphanGuard&) = delete;
 
   void guard(pid_t group) const { tell(group); }
-  /// To be called before the group's leader is waited for: its number may be another's afterwards.
+  /// Must be called before the leader of the group is waited for, because its number may belong to
+  /// another process afterwards.
   void release(pid_t group) const { tell(-group); }
 
  private:
@@ -33,26 +34,26 @@ class OrphanGuard {
   ~OrphanGuard() = default;  // the socket is closed when the process ends
   void tell(pid_t signed_group) const;
 
-  int line_ = -1;  ///< -1: the system has no process left to give, and nothing is guarded
+  int line_ = -1;  ///< -1 if the system could not start a process; then nothing is guarded
 };
 
-/// What went wrong with a program outside of ours, worded as the reason of a failed run.
+/// An error of an external program, worded as the reason of a failed run.
 class ProgramError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The file that `program` names, looked for in $PATH where it holds no '/'. Throws StudyError,
-/// worded "problem (why): remedy", where there is none that may be run.
+/// The file that `program` names, searched in $PATH if the name contains no '/'. Throws StudyError,
+/// worded "problem (why): remedy", if there is no executable file of that name.
 std::filesystem::path find_program(const std::string& program);
 
-/// How long to wait for an answer.
+/// Limits of the wait for an answer.
 struct TimeLimit {
   double seconds = 30.0;           ///< of wall time
   const StopFlag* stop = nullptr;  ///< ends the wait early
 };
 
-/// A file descriptor that is closed with its owner and inherited by nobody.
+/// A file descriptor that is closed with its owner. Child processes do not inherit it.
 class Descriptor {
  public:
   explicit Descriptor(int number = -1) : number_(number) {}
@@ -67,25 +68,27 @@ class Descriptor {
   int number_;
 };
 
-/// A program that runs beside ours and exchanges lines with it over pipes: no shell, no inherited
-/// descriptor, the signals' defaults, a process group of its own, so that Ctrl-C in a terminal is
-/// ours alone. What it says on standard error is read and the end of it kept. For one thread.
+/// A program that runs beside this one and exchanges lines with it over pipes. It is started
+/// without a shell, without inherited descriptors, with default signal handlers, and in a process
+/// group of its own, so that Ctrl-C in a terminal reaches only this process. The end of its
+/// standard error is kept. For use by one thread.
 class ChildProcess {
  public:
-  /// The most bytes that one line of an answer may have.
+  /// Largest length of an answer [byte].
   static constexpr std::size_t kLongestLine = std::size_t{4} << 20;
 
-  /// Starts words[0] with the others as arguments. Throws RunError where that fails.
+  /// Starts words[0] with the other words as arguments. Throws RunError if that fails.
   explicit ChildProcess(std::span<const std::string> words);
-  /// Closes the program's standard input and gives it a moment to end, unless an exchange has
-  /// failed; then kills it and all of its process group. Leaves no zombie.
+  /// Closes the program's standard input and, unless an exchange has failed, waits a moment for the
+  /// program to end. Then kills it and its process group. Leaves no zombie.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// Says `line`, which holds no new line, and returns the next line that the program says, valid
-  /// until the next exchange. Throws ProgramError where it ends, says nothing in time or too much,
-  /// or where the wait is stopped; no exchange is possible afterwards.
+  /// Sends `line`, which must not contain a line break, and returns the next line of the program's
+  /// output, which is valid until the next exchange. Throws ProgramError if the program ends, its
+  /// answer is late or too long, or the wait is stopped. After an error no further exchange is
+  /// possible.
   std::string_view exchange(std::string_view line, const TimeLimit& time_limit);
 
  private:
@@ -102,14 +105,14 @@ class ChildProcess {
 
   pid_t process_ = -1;
   Descriptor process_handle_;          ///< readable when the process has ended
-  Descriptor input_, output_, error_;  ///< our ends
+  Descriptor input_, output_, error_;  ///< ends of the pipes in this process
   std::string outgoing_;
   std::size_t sent_ = 0;
   std::string incoming_;
-  std::size_t answered_ = 0;  ///< of incoming_: the answer that was returned last
-  bool at_end_ = false;       ///< it has closed its standard output, or input
+  std::size_t answered_ = 0;  ///< length of the answer in incoming_ that was returned last
+  bool at_end_ = false;       ///< the program has closed its standard output or input
   bool failed_ = false;
-  std::string error_output_;  ///< the end of its standard error
+  std::string error_output_;  ///< end of the program's standard error
 };
 
 }  // namespace montecarta::experiments

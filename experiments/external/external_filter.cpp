@@ -13,7 +13,7 @@ ExternalFilter::ExternalFilter(FilterSetup setup, ExternalCommand command)
       command_(std::move(command)),
       session_(std::make_unique<Session>()) {}
 
-/// The program hears of it with the first step, which knows the run's number and seed.
+/// The program receives the start only with the first step, which has the run's number and seed.
 void ExternalFilter::start(const Pose& start) {
   start_ = start;
   is_begun_ = false;
@@ -67,7 +67,7 @@ void ExternalFilter::begin(const StepContext& context) {
   is_begun_ = true;
   stop_ = context.stop();
   StreamIdentity identity = context.identity(Draw::external_filter, 0);
-  identity.step = 0;  // whichever step is the first with something to say
+  identity.step = 0;  // so that the seed does not depend on the step of the first message
   const auto seed = static_cast<std::uint32_t>(RngStream(identity).bits() >> 32U);
   const RunStart start{context.run(), seed, start_};
   if (!command_.keeps_process) session_->process.reset();

@@ -16,30 +16,30 @@
 
 namespace montecarta::experiments {
 
-/// How a cell asks for a program outside of ours.
+/// How a cell runs its external program.
 struct ExternalCommand {
   std::vector<std::string> words;  ///< the program and its arguments
-  double answer_limit = 30.0;      ///< [s] to wait for one answer
-  bool keeps_process = true;       ///< one process for all runs, else a new one for each
+  double answer_limit = 30.0;      ///< [s] time limit of one answer
+  bool keeps_process = true;       ///< one process for all runs; otherwise a new one for each run
 
-  /// How the starts of the program went, in all runs of its cell together.
+  /// Results of the attempts to start the program, over all runs of its cell.
   struct Starts {
     std::atomic<bool> any_was_answered{false};
     std::atomic<int> failed{0};
   };
   std::shared_ptr<Starts> starts = std::make_shared<Starts>();
 };
-/// After so many starts without one that was answered the study is stopped.
+/// The study is stopped after this many failed starts if no start has been answered.
 inline constexpr int kHopelessStarts = 8;
 
-/// A filter in any language: a process that is told each run's controls and detections and asked
-/// what it believes (EXTERNAL_FILTERS.md). It is started at the first run and kept; after a failure
-/// the next run has a new one. What a run gives depends on that run alone as long as the program
-/// forgets at `start` what came before: a run whose `start` is not answered rightly by a process
-/// that was used before is told to a new one.
+/// A filter in any language: a process that receives the controls and detections of each run and
+/// answers with its estimates (EXTERNAL_FILTERS.md). It is started in the first run and kept for
+/// later runs; after an error the next run starts a new process. The results of a run depend on
+/// that run alone, provided that the program resets its state at `start`. If a process that has
+/// been used before does not answer `start` correctly, a new process is started for the run.
 ///
-/// Between scans the program is asked what it predicts only where the study stores that, and for
-/// its map likewise.
+/// Between scans the program is asked for its prediction only if the study stores predictions. The
+/// same holds for its map.
 class ExternalFilter final : public SlamFilter {
  public:
   ExternalFilter(FilterSetup setup, ExternalCommand command);
@@ -52,18 +52,19 @@ class ExternalFilter final : public SlamFilter {
   void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override;
 
  private:
-  /// The process, and what has been said in this run. Asking changes it, not what is believed.
+  /// The process and the messages of this run. A request changes the session, but not the estimate,
+  /// so it may be made by a const function.
   struct Session {
     std::unique_ptr<ChildProcess> process;
-    std::uint64_t next_id = 0;         ///< of the messages of this run
-    std::vector<ControlRow> controls;  ///< that the program has not been told
-    PoseMoments pose;                  ///< what it last said
+    std::uint64_t next_id = 0;         ///< of the next message in this run
+    std::vector<ControlRow> controls;  ///< controls that were not yet sent to the program
+    PoseMoments pose;                  ///< its last answer
   };
 
   void begin(const StepContext& context);
   void tell_start(const RunStart& start) const;
   std::string_view ask(const std::string& message) const;
-  /// Calls `use`; the process does not survive what goes wrong.
+  /// Calls `use`, and ends the process if that throws.
   template <class Use>
   void use_process(const Use& use) const;
 
@@ -76,20 +77,21 @@ class ExternalFilter final : public SlamFilter {
   std::unique_ptr<Session> session_;
 };
 
-/// Whether a cell may start the program that it names. Who runs a study says so; the study does
-/// not.
+/// Whether a cell may start the program that it names. The user decides this when running a study;
+/// a study file cannot.
 enum class ExternalPrograms { refused, allowed };
 
-/// The option that says it, without dashes.
+/// Name of the option that allows it, without dashes.
 inline constexpr const char* kAllowExternal = "allow-external";
 
-/// A program outside of ours: "cell = external command="python3 my_filter.py" label=mine".
+/// The filter kind of external programs: "cell = external command="python3 my_filter.py"
+/// label=mine".
 FilterKind external_kind();
 
 /// Whether cells of this kind start a program.
 bool starts_program(const FilterKind& filter);
 
-/// What a study may name: the filters of the table, then `external`.
+/// All filters that a study may name: those of the filter table, then `external`.
 std::span<const FilterKind> known_filters();
 
 }  // namespace montecarta::experiments

@@ -16,7 +16,7 @@
 namespace montecarta::experiments {
 namespace {
 
-/// Members stand in the order in which they are added.
+/// Members keep the order in which they are added.
 using Json = nlohmann::ordered_json;
 
 Json json_message(std::uint64_t id, const char* type) { return {{"id", id}, {"type", type}}; }
@@ -101,21 +101,22 @@ std::string map_message(std::uint64_t id) { return json_message(id, "map").dump(
 
 namespace {
 
-/// What a program answers, by name: an answer may have very many members.
+/// A parsed answer. Members are found by name in logarithmic time, since there may be very many.
 using Answer = nlohmann::json;
 
-constexpr int kDeepest = 4;  // of brackets within brackets; no answer needs more
-/// Of a correlation matrix: what rounding leaves of an eigenvalue that is zero.
+constexpr int kDeepest = 4;  // deepest nesting of brackets in a valid answer
+/// Bound on the rounding error of the zero eigenvalues of a correlation matrix.
 constexpr double kEigenvalueRounding = 1e-9;
 
 [[noreturn]] void refuse_answer(const std::string& reason) { throw ProgramError(reason); }
 
-/// Python and others write what JSON does not have.
+/// Whether the line has NaN or Infinity, which Python and others write although JSON has neither.
 bool names_no_number(std::string_view line) {
   return line.find("NaN") != line.npos || line.find("Infinity") != line.npos;
 }
 
-/// Whether brackets nest deeper than in any answer: a parser would need memory for each.
+/// Whether brackets are nested deeper than in any valid answer. A parser needs memory for each
+/// level.
 bool is_too_deep(std::string_view line) {
   int depth = 0;
   for (const char c : line) {
@@ -134,7 +135,7 @@ Answer parsed_answer(std::string_view line) {
   refuse_answer("answer is not JSON: " + excerpt(line));
 }
 
-/// The object in a line that answers message `id` and has no members but those.
+/// The JSON object in a line. It must answer message `id` and have no other members than these.
 Answer object_in(std::string_view line, std::uint64_t id,
                  std::initializer_list<std::string_view> members) {
   Answer answer = parsed_answer(line);
@@ -168,8 +169,9 @@ void expect_array(const Answer& value, std::size_t size, const std::string& what
   refuse_answer(what + " is no array of " + std::to_string(size));
 }
 
-/// Throws unless C is a covariance: no variance and no eigenvalue of the correlations negative but
-/// for rounding. Singular it may be: a pose that is known exactly is.
+/// Throws ProgramError unless C is a covariance: no variance is negative, and no eigenvalue of the
+/// correlations is negative beyond rounding. C may be singular, e.g. for a pose that is known
+/// exactly.
 void expect_covariance(const Eigen::MatrixXd& C, const std::string& what) {
   const Eigen::Index n = C.rows();
   Eigen::VectorXd scale(n);
@@ -182,7 +184,7 @@ void expect_covariance(const Eigen::MatrixXd& C, const std::string& what) {
   const Eigen::MatrixXd correlations = scale.asDiagonal() * C * scale.asDiagonal();
   if (!correlations.allFinite())
     refuse_answer(what + " is not positive definite: beyond all bounds");
-  // Positive definite when raised by the tolerance: no eigenvalue is below its negative.
+  // If the raised matrix is positive definite, no eigenvalue is below the negative tolerance.
   const Eigen::MatrixXd raised =
       correlations + kEigenvalueRounding * Eigen::MatrixXd::Identity(n, n);
   if (raised.llt().info() != Eigen::Success) refuse_answer(what + " is not positive definite");

@@ -14,45 +14,46 @@
 
 namespace montecarta::experiments {
 
-// What a program is told, one line of JSON a message; EXTERNAL_FILTERS.md describes them. Numbers
-// are texts that read back as the same bits.
+// Messages to a program, each one line of JSON; EXTERNAL_FILTERS.md describes them. Every number
+// reads back as the same bits.
 
-/// One control step: the controls of the vehicle, then its duration [s].
+/// The control of one step: its components, then the duration [s].
 using ControlRow = std::vector<double>;
 
-/// A run that begins.
+/// The start of a run.
 struct RunStart {
   std::uint64_t run;
-  std::uint32_t seed;  ///< for the program's generator: a pure function of study and run
+  std::uint32_t seed;  ///< for the program's random generator; a pure function of study and run
   Pose pose;
 };
 
 std::string start_message(std::uint64_t id, const RunStart& start, const FilterSetup& setup);
 std::string predict_message(std::uint64_t id, std::span<const ControlRow> controls);
-/// Identities are told with known association only; -1 is a false alarm, or unknown. `components`
-/// of a detection.
+/// Identities are sent with known association only; -1 stands for a false alarm or an unknown
+/// landmark. `components` is the number of components of a detection.
 std::string scan_message(std::uint64_t id, std::span<const ControlRow> controls, Scan scan,
                          Association association, std::size_t components);
 std::string map_message(std::uint64_t id);
 
-// What a program may answer, checked: whatever bytes it says, the result is as promised here or a
-// ProgramError with the reason. EXTERNAL_FILTERS.md describes the lines.
+// Readers of a program's answers. For any bytes that it sends, they return a result as documented
+// here or throw ProgramError with the reason. EXTERNAL_FILTERS.md describes the lines.
 
-/// What a program believes after a scan, or between scans.
+/// Estimate of a program after a scan or between scans.
 struct ProgramEstimate {
-  PoseMoments pose;   ///< finite; covariance symmetric, no eigenvalue negative but for rounding
-  ScanReport report;  ///< what it said of; else zero
+  PoseMoments pose;  ///< finite; covariance symmetric, without eigenvalues that are negative beyond
+                     ///< rounding
+  ScanReport report;  ///< zero for members that the answer omits
 };
 
-/// The answer to `start`, message number `id` of its run.
+/// Reads the answer to `start`, which is message number `id` of its run.
 void read_started(std::string_view line, std::uint64_t id);
 
-/// The answer to `scan` or `predict`.
+/// Reads the answer to `scan` or `predict`.
 ProgramEstimate read_estimate(std::string_view line, std::uint64_t id);
 
-/// The answer to `map`: into `landmarks`, by number; nullopt where it names none. With known
-/// association a number beyond them is an error; else it is a new landmark that the study has no
-/// row for.
+/// Reads the answer to `map` into `landmarks`, ordered by number, which must be nullopt before.
+/// With known association a number beyond the end is an error. Otherwise it belongs to a new
+/// landmark for which the study has no row, and is ignored.
 void read_map(std::string_view line, std::uint64_t id, Association association,
               std::span<std::optional<LandmarkEstimate>> landmarks);
 

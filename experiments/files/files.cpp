@@ -113,7 +113,8 @@ std::vector<std::string> CsvRows::columns() const { return split(header_text_, '
 
 std::string CsvRows::place() const { return path_ + ":" + std::to_string(line_); }
 
-/// A file that was cut short may end in a number that reads as another one.
+/// A number at the end of a truncated file may be incomplete and still be valid, so a last line
+/// without line break is refused.
 void CsvRows::refuse_open_end(std::string_view line) const {
   if (trimmed(line.substr(0, line.find('#'))).empty()) return;
   throw StudyError(place() +

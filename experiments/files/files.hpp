@@ -11,49 +11,51 @@
 
 namespace montecarta::experiments {
 
-/// A file that comes with montecarta, e.g. ("worlds", "web_loop.csv"): beside the installed
-/// executable (../share/montecarta), else in the source tree this was built from. nullopt where
-/// there is none.
+/// A file that is shipped with montecarta, e.g. ("worlds", "web_loop.csv"): beside the installed
+/// executable (../share/montecarta), otherwise in the source tree of this build. nullopt if there
+/// is none.
 std::optional<std::filesystem::path> shipped_file(const std::string& folder,
                                                   const std::string& name);
 
-/// Names without ending of the files of a shipped folder that end so, in alphabetical order.
+/// Names, without `ending`, of the files with this ending in a shipped folder, in alphabetical
+/// order.
 std::vector<std::string> shipped_names(const std::string& folder, const std::string& ending);
 
-/// A file of more bytes than this is no study, world or log, and would not fit into memory either.
+/// Largest size of an input file [byte]. No study, world or log is larger, and larger files may not
+/// fit into memory.
 inline constexpr std::uintmax_t kLargestFile = std::uintmax_t{512} << 20U;
 
-/// All bytes of a file that the user named. Throws StudyError where there is none, where it is no
-/// file (a folder, a device), cannot be read or is larger than kLargestFile.
+/// All bytes of a file that the user named. Throws StudyError if the file does not exist, is not a
+/// regular file (but a folder or a device), cannot be read or is larger than kLargestFile.
 std::string whole_file(const std::filesystem::path& path);
-/// The text of a file in UTF-8, without a byte order mark. Throws StudyError as whole_file() does,
-/// and if the file is in UTF-16 or holds NUL bytes.
+/// The text of a file in UTF-8, without a byte order mark. Throws StudyError in the same cases as
+/// whole_file(), and if the file is in UTF-16 or contains NUL bytes.
 std::string text_file(const std::filesystem::path& path);
 
-/// The rows of a comma-separated text file: `#` begins a comment, empty lines do not count, the
+/// The rows of a comma-separated text file: `#` begins a comment, empty lines are ignored, and the
 /// first row names the columns. Errors (StudyError) name file and line.
 class CsvRows {
  public:
   /// Reads the file and its header, which must be one of `headers`, e.g. "kind,x,y".
   CsvRows(const std::filesystem::path& path, std::span<const std::string> headers);
-  /// Whatever its header is: see columns().
+  /// Reads the file with any header, which columns() returns.
   explicit CsvRows(const std::filesystem::path& path);
 
   CsvRows(const CsvRows&) = delete;
   CsvRows& operator=(const CsvRows&) = delete;
 
-  /// Which of the headers it has.
+  /// Index of the file's header in `headers`.
   std::size_t header() const { return header_; }
-  /// Names of its columns, trimmed.
+  /// Names of the columns, trimmed.
   std::vector<std::string> columns() const;
-  /// Reads the next row; false after the last one. Throws unless it has as many fields as the
-  /// header.
+  /// Reads the next row; false after the last one. Throws StudyError if the number of fields
+  /// differs from that of the header.
   bool next();
-  /// Of the row that was read last, trimmed.
+  /// Field i of the current row, trimmed.
   std::string_view field(std::size_t i) const { return fields_[i]; }
-  /// Field i as a finite number; `noun` says in the error what it should have been.
+  /// Field i as a finite number; `noun` names the quantity in errors.
   double number(std::size_t i, const char* noun) const;
-  /// "FILE:LINE" of the row that was read last.
+  /// "FILE:LINE" of the current row.
   std::string place() const;
 
  private:

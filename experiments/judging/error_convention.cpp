@@ -20,7 +20,7 @@ using Convention = ErrorConvention;
 constexpr std::array kConventions = {Convention::world, Convention::body,
                                      Convention::right_invariant};
 static_assert(kConventions.size() == kErrorConventions.size(), "all are stored, in this order");
-constexpr double kSmallTurn = 1e-5;  // [rad] below it series to second order have all digits
+constexpr double kSmallTurn = 1e-5;  // [rad] below this, series of second order are exact
 
 const StoredConvention& stored(Convention convention) {
   return kErrorConventions.at(static_cast<std::size_t>(convention));
@@ -44,7 +44,7 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   return Eigen::Matrix3d{{0.0, -v.z(), v.y()}, {v.z(), 0.0, -v.x()}, {-v.y(), v.x(), 0.0}};
 }
 
-/// Angle times axis of a rotation, the shorter way round.
+/// Axis times angle of a rotation, with an angle of at most pi.
 Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& rotation) {
   const double sign = rotation.w() < 0.0 ? -1.0 : 1.0;
   const double sine = rotation.vec().norm();
@@ -53,7 +53,7 @@ Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& rotation) {
   return sign * factor * rotation.vec();
 }
 
-/// V of the exponential of SE(3): exp(turn, rho) = (R(turn), V(turn) rho).
+/// The matrix V of the exponential of SE(3): exp(turn, rho) = (R(turn), V(turn) rho).
 Eigen::Matrix3d exponential_jacobian_in_space(const Eigen::Vector3d& turn) {
   const double angle = turn.norm();
   const Eigen::Matrix3d cross = cross_matrix(turn);

@@ -19,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Averages over runs are taken at each time; a run may end before the others.
+/// Checks that all files have the same kind of state and the same times, because averages over runs
+/// are taken at each time. A run may end before the others.
 void expect_alike(const StateRows& rows, const fs::path& path, const StateRows& first,
                   const fs::path& first_path, double tolerance) {
   if (rows.shape != first.shape) {
@@ -57,7 +58,7 @@ std::vector<Eigen::VectorXd> truths_for(const std::vector<double>& times, const 
 
 Pose pose_in(const Eigen::VectorXd& state) { return {state(0), state(1), wrap(state(2))}; }
 
-/// Puts a matrix row by row at its scan.
+/// Writes the elements of a matrix, row by row, to its scan.
 void put_rows(const Eigen::MatrixXd& matrix, std::size_t scan, std::span<double> column) {
   auto out =
       column.begin() + static_cast<std::ptrdiff_t>(scan * static_cast<std::size_t>(matrix.size()));
@@ -66,7 +67,7 @@ void put_rows(const Eigen::MatrixXd& matrix, std::size_t scan, std::span<double>
   }
 }
 
-/// A run that ends before the others has failed there.
+/// Marks a run as complete, or as failed if it ends before the others.
 void end_run(const StateRows& rows, std::size_t scans, RunRecord& record) {
   constexpr double kUnknownCost = std::numeric_limits<double>::quiet_NaN();
   if (rows.time.size() == scans) {
@@ -78,7 +79,7 @@ void end_run(const StateRows& rows, std::size_t scans, RunRecord& record) {
   record.mark_failed(static_cast<std::uint32_t>(rows.time.size()), reason, kUnknownCost);
 }
 
-/// NEES by every convention that the state has, of which the file has columns.
+/// Writes the NEES under every convention of the state, if the file has columns for them.
 void put_conventions(const StateRows& rows, const std::vector<Eigen::VectorXd>& truths,
                      RunRecord& record) {
   for (const ErrorConvention convention : conventions_of(rows.shape.kind)) {
@@ -93,7 +94,7 @@ void put_conventions(const StateRows& rows, const std::vector<Eigen::VectorXd>& 
   }
 }
 
-/// One run of one estimator as the file holds it.
+/// The record of one run of one estimator.
 RunRecord record_of(const RecordLayout& layout, const StateRows& rows,
                     const std::vector<Eigen::VectorXd>& truths, ErrorConvention convention) {
   RunRecord record(layout);
@@ -119,7 +120,7 @@ RunRecord record_of(const RecordLayout& layout, const StateRows& rows,
   return record;
 }
 
-/// The estimates whose times are those of the study.
+/// The estimates that define the times of the study.
 struct LongestRun {
   fs::path path;
   StateRows rows;
@@ -133,7 +134,7 @@ StateRows read_with_innovations(const fs::path& path, double tolerance) {
   return rows;
 }
 
-/// Reads the file with most lines alone: the others are read when they are written.
+/// Reads only the file with the most lines; the others are read when their runs are written.
 LongestRun longest_of(const JudgedFiles& files, double tolerance) {
   fs::path longest;
   std::size_t most = 0;
@@ -173,8 +174,8 @@ void write_runs(const JudgedFiles& files, const JudgingOptions& options, const L
   }
 }
 
-/// The convention that is said, or the only one that the state has. Throws StudyError if nothing is
-/// said and it has several.
+/// The convention that the user gave, or the only one that the state may have. Throws StudyError if
+/// none was given and there are several.
 ErrorConvention stated_error(const LongestRun& longest, std::optional<ErrorConvention> said) {
   const auto known = conventions_of(longest.rows.shape.kind);
   if (!said && known.size() == 1) return known.front();
@@ -210,7 +211,7 @@ void judge_files(const JudgedFiles& files, const JudgingOptions& given) {
 
 namespace {
 
-/// The times of estimates; what was driven then nobody tells.
+/// A source of drives that has only the times of the estimates.
 class ImportedDrives final : public DriveSource {
  public:
   explicit ImportedDrives(const StateRows& rows) {
@@ -228,7 +229,7 @@ class ImportedDrives final : public DriveSource {
   Itinerary itinerary_;
 };
 
-/// Of all files, in their order, and of what is read beside each.
+/// SHA-256 of the contents of all files, in their order, and of the innovations beside each.
 std::string contents_of(const std::vector<std::filesystem::path>& files) {
   std::string all;
   for (const std::filesystem::path& file : files) {

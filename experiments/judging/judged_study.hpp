@@ -14,28 +14,28 @@
 
 namespace montecarta::experiments {
 
-/// How estimates of another program become a result file.
+/// How the estimates of another program are made into a result file.
 struct JudgingOptions {
   std::filesystem::path output;
-  /// nullopt: nothing is said, which is enough for a state of one convention.
+  /// nullopt if the user gave none, which is allowed for a state that has only one.
   std::optional<ErrorConvention> convention = {};
   TimeMatch match;
   Existing existing = Existing::refuse;
   TextPairs provenance;
-  std::optional<double> within;  ///< stored as what counts as consistent; nothing where not given
+  std::optional<double> within;  ///< margin of consistency; not stored if not given
 };
 
-/// Reads estimates and truths run by run, and writes their errors as a result file that every
-/// reader of a study reads. Nothing is aligned. Memory does not grow with the runs. Throws
-/// StudyError naming file, line and remedy, and leaves no file then.
+/// Reads estimates and truths run by run, and writes their errors as a result file that can be
+/// analysed like that of a study. Trajectories are not aligned. Memory does not grow with the
+/// number of runs. Throws StudyError with file, line and remedy, and then leaves no file.
 void judge_files(const JudgedFiles& files, const JudgingOptions& options);
 
-/// How the text of an imported study begins, that no study file does.
+/// Beginning of the text of an imported study, with which no study file begins.
 inline constexpr std::string_view kImportedSection = "[imported]";
 
-/// A plan by which a result file of these estimates is laid out: nothing can run it. `first`: the
-/// estimates whose state and times all have. Its text names the contents of all files by their
-/// SHA-256, so that two results of the same estimates, judged alike, agree in study_sha256.
+/// The plan that defines the layout of the result file; it cannot be run. `first` has the state and
+/// the times of all estimates. The text of the plan contains the SHA-256 of all files, so that
+/// results of the same estimates, judged with the same options, have the same study_sha256.
 StudyPlan imported_plan(const JudgedFiles& files, const StateRows& first,
                         const JudgingOptions& options);
 

@@ -15,10 +15,11 @@ namespace fs = std::filesystem;
 
 using RunNumber = std::optional<std::uint64_t>;
 
-/// As many as a study may have.
+/// Largest number of runs, as in a study.
 constexpr std::uint64_t kMostRuns = 10'000'000;
 
-/// "12" -> 12, "run_12", "run12" and "ekf_12" likewise; nullopt of "ekf2" and "estimate".
+/// Number of the run in a name: 12 for "12", "run_12", "run12" and "ekf_12", nullopt for "ekf2" and
+/// "estimate".
 RunNumber run_in(const std::string& name) {
   const std::size_t end = name.find_last_not_of("0123456789");
   const std::size_t begin = end == std::string::npos ? 0 : end + 1;
@@ -30,11 +31,11 @@ RunNumber run_in(const std::string& name) {
   return run && *run < kMostRuns ? run : std::nullopt;
 }
 
-/// A file of one run, and what its path says besides the run.
+/// The file of one run, and the rest of its path.
 struct FoundFile {
   fs::path path;
   RunNumber run;
-  std::vector<std::string> rest;  ///< names of folders and file, the run's number taken out
+  std::vector<std::string> rest;  ///< names of folders and file without the number of the run
 };
 
 FoundFile file_of_run(const fs::path& path) {
@@ -56,15 +57,15 @@ FoundFile file_of_run(const fs::path& path) {
   return file;
 }
 
-/// The run that a single truth names itself after, by its own name or its folder's: such a truth is
-/// of no other run.
+/// Number of the run in the name of a single truth or of its folder. With a number, the truth
+/// belongs to that run only.
 RunNumber own_run_of(const fs::path& path) {
   const RunNumber by_name = run_in(path.stem().string());
   const std::string folder = path.parent_path().filename().string();
   return by_name || !folder.starts_with("run") ? by_name : run_in(folder);
 }
 
-/// Files that a word after --truth stands for.
+/// The files that an argument of --truth stands for.
 std::vector<fs::path> truths_in(const std::string& word) {
   std::error_code ignored;
   const auto is_folder = [&](const fs::path& path) { return fs::is_directory(path, ignored); };
@@ -101,7 +102,7 @@ void add_run(const FoundFile& file, FilesByRun& files) {
                    "give each run a number, each estimator a folder or a name");
 }
 
-/// Words by which the cells' paths differ.
+/// The words in which a cell's path differs from those of the other cells, joined to a label.
 std::string label_of(const std::vector<std::string>& rest,
                      const std::vector<std::vector<std::string>>& all) {
   if (all.size() == 1) return rest.empty() ? "estimate" : rest.back();
@@ -174,7 +175,7 @@ void expect_no_gap(const FilesByRun& runs) {
   }
 }
 
-/// The truth of each run. `is_unnumbered`: there is one estimate, and no number tells its run.
+/// The truth of each run. `is_unnumbered` says that there is one estimate without a number.
 FilesByRun truths_of(const FilesByRun& first, const std::vector<std::string>& truths,
                      bool is_unnumbered) {
   std::vector<fs::path> truth_files;

@@ -9,25 +9,25 @@
 
 namespace montecarta::experiments {
 
-/// Estimates of one estimator.
+/// The files of one estimator.
 struct EstimatorFiles {
   std::string cell;                           ///< label
-  std::vector<std::filesystem::path> of_run;  ///< one for each run of JudgedFiles
+  std::vector<std::filesystem::path> of_run;  ///< one file for each run of JudgedFiles
 };
 
-/// Which files belong together.
+/// Estimates and truths, matched by run.
 struct JudgedFiles {
-  std::vector<std::uint64_t> runs;           ///< one after the other, increasing
+  std::vector<std::uint64_t> runs;           ///< consecutive, increasing
   std::vector<std::filesystem::path> truth;  ///< {run}
-  std::vector<EstimatorFiles> cells;         ///< by label
+  std::vector<EstimatorFiles> cells;         ///< ordered by label
 };
 
 /// How files are paired, for --help.
 std::string pairing_rule();
 
-/// Pairs estimates with truths by that rule. `truths` are files, or folders that `export` made (or
-/// their folder truth/). `cell` labels all estimates. Throws StudyError where a run is there twice
-/// or not at all.
+/// Pairs estimates with truths by that rule. `truths` are files, folders that `export` made, or
+/// their folder truth/. `cell`, if given, is the label of all estimates. Throws StudyError if a run
+/// occurs twice or is missing.
 JudgedFiles pair_files(const std::vector<std::string>& estimates,
                        const std::vector<std::string>& truths,
                        const std::optional<std::string>& cell);

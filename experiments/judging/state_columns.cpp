@@ -34,7 +34,8 @@ const Names kPoseColumns = {"x_m", "y_m", "heading_rad"};
 const Names kQuaternionColumns = {"qx", "qy", "qz", "qw"};
 const std::string kNis = "nis", kNisDof = "nis_dof";
 constexpr std::array kKnownUnits = {"m", "rad", "mps", "mps2", "radps", "s"};
-/// Without a unit nobody knows whether degrees are meant, and a heading would not be wrapped.
+/// Columns that need a unit. Otherwise angles might be in degrees, and a heading would not be
+/// wrapped.
 const Names kNeedUnit = {"x", "y", "z", "heading", "yaw", "pitch", "roll", "theta", "phi", "psi"};
 
 bool has_name(const Names& names, const std::string& name) {
@@ -61,7 +62,7 @@ void check_header(const Names& header, const std::string& place) {
   }
 }
 
-/// Component and unit of "vx_mps".
+/// Component and unit in a column name such as "vx_mps".
 std::pair<std::string, std::string> component_and_unit(const std::string& column,
                                                        const std::string& place) {
   const std::size_t underscore = column.rfind('_');
@@ -117,7 +118,7 @@ StateShape shape_of(const Names& state, const std::string& place) {
   return shape;
 }
 
-/// Row and column of the covariance for each name that its columns may have.
+/// Row and column of the covariance for every name that an element may have in the header.
 std::map<std::string, std::pair<std::size_t, std::size_t>> names_of_elements(
     const StateShape& shape) {
   std::map<std::string, std::pair<std::size_t, std::size_t>> elements;
@@ -237,11 +238,11 @@ std::vector<std::size_t> truth_fields(const Names& header, const StateShape& sha
 
 namespace {
 
-/// Printed with three digits a quaternion is as long as this.
+/// Tolerance of the length of a quaternion that was printed with three digits.
 constexpr double kQuaternionPlaceSlack = 2e-3;
-constexpr Eigen::Index kQuaternionPlace = 3;  // behind x, y, z
+constexpr Eigen::Index kQuaternionPlace = 3;  // index of the quaternion, behind x, y, z
 
-/// Adds the time [s] of the next row.
+/// Appends the time [s] of the next row, which must be later than the one before.
 void take_time(double time, const std::string& place, std::vector<double>& times) {
   if (!times.empty() && time <= times.back()) {
     throw StudyError(place + ": time " + to_text(time) +
@@ -251,7 +252,7 @@ void take_time(double time, const std::string& place, std::vector<double>& times
   times.push_back(time);
 }
 
-/// Makes the quaternion at the end of the state of a pose in space one of length 1.
+/// Normalises the quaternion at the end of the state of a pose in space.
 void normalise_quaternion(Eigen::VectorXd& state, const std::string& place) {
   const double length = state.tail<4>().norm();
   if (std::abs(length - 1.0) > kQuaternionPlaceSlack) {
@@ -294,7 +295,7 @@ bool is_angle(const StateShape& shape, Eigen::Index k) {
          shape.units[static_cast<std::size_t>(k)] == "rad";
 }
 
-/// Between two states, `share` of the way.
+/// Interpolates from state `a` (`share` = 0) to state `b` (`share` = 1).
 Eigen::VectorXd between(const StateShape& shape, const Eigen::VectorXd& a, const Eigen::VectorXd& b,
                         double share) {
   Eigen::VectorXd state = a + share * (b - a);
@@ -311,13 +312,13 @@ Eigen::VectorXd between(const StateShape& shape, const Eigen::VectorXd& a, const
 
 namespace fs = std::filesystem;
 
-/// Squares and components of one row.
+/// The NIS of one row and its number of components.
 struct RowOfInnovations {
   double nis = 0.0;
   std::uint32_t dof = 0;
 };
 
-/// Which estimate a row belongs to.
+/// Index of the estimate to which a row of innovations belongs.
 std::size_t place_in(const StateRows& rows, double time, double tolerance, const CsvRows& file,
                      const fs::path& estimates) {
   const auto after = std::ranges::lower_bound(rows.time, time);
@@ -330,7 +331,7 @@ std::size_t place_in(const StateRows& rows, double time, double tolerance, const
                    "those of scans that have none");
 }
 
-/// From the innovation itself, where the file has no NIS.
+/// Computes the NIS of a row from the innovation and its covariance.
 RowOfInnovations squares_of(const CsvRows& file, const EstimateFields& fields) {
   const auto d = static_cast<Eigen::Index>(fields.shape.dimension());
   Eigen::VectorXd innovation(d);
@@ -381,7 +382,7 @@ std::size_t rows_in(const std::filesystem::path& path) {
     rest.remove_prefix(std::min(length + 1, rest.size()));
     if (!trimmed(line.substr(0, line.find('#'))).empty()) ++lines;
   }
-  return lines - std::min<std::size_t>(lines, 1);  // the header
+  return lines - std::min<std::size_t>(lines, 1);  // without the header
 }
 
 StateRows read_truth(const std::filesystem::path& path, const StateShape& shape) {

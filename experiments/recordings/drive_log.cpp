@@ -13,26 +13,26 @@
 namespace montecarta::experiments {
 namespace {
 
-constexpr double kLatestTime = 1e10;  ///< [s] beyond are nanoseconds
-constexpr double kLongestHold = 5.0;  ///< [s] that scans may outlast the odometry
+constexpr double kLatestTime = 1e10;  ///< [s] larger numbers are probably nanoseconds
+constexpr double kLongestHold = 5.0;  ///< [s] for which scans may continue after the odometry
 
-/// Where a part of a log stands: a file of its own, or a part of `place`.
+/// Name of a part of a log in errors: its own file, or a part of `place`.
 std::string part_of_log(const std::string& place, LogForm form, const char* noun,
                         const char* file) {
   return form == LogForm::csv ? place + "/" + file : place + " (" + noun + ")";
 }
 
-/// A record of one file, for errors.
+/// A record of a file, for errors.
 struct Record {
   const std::string& place;
   std::size_t index;
-  std::optional<double> time = {};  ///< [s] by which it is found in its file
+  std::optional<double> time = {};  ///< [s] that helps to find the record in its file
 
   [[noreturn]] void refuse(const std::string& fault) const {
     throw StudyError(place + ": record " + std::to_string(index + 1) +
                      (time ? ", at " + to_text(*time) + " s: " : ": ") + fault);
   }
-  /// Throws unless |value| <= most; NaN is never.
+  /// Throws unless |value| <= most, so also for NaN.
   void limit(double value, double most, const char* noun, const char* why) const {
     if (std::abs(value) <= most) return;
     refuse(std::string(noun) + " " + to_text(value) + " (" + why + "): correct it");
@@ -45,7 +45,7 @@ struct Record {
   }
 };
 
-/// `time(i)` of `count` records must be real times, each later than the one before.
+/// Checks that `time(i)` of `count` records is plausible and later than the one before.
 template <class Time>
 void check_times(std::size_t count, const Time& time, const std::string& place) {
   if (count == 0) {
@@ -77,7 +77,7 @@ void check_detection(const Detection& detection, std::span<const Quantity> compo
   }
 }
 
-/// Identities of one log: given for all detections (clutter included) or for none.
+/// Checks that identities are given for all detections of a log (clutter included) or for none.
 void check_identities(const DriveLog& log, const std::string& place) {
   bool identified = false, unidentified = false;
   for (std::size_t s = 0; s < log.scans.size(); ++s) {
@@ -127,7 +127,7 @@ void check_references(const DriveLog& log, const std::string& place) {
   }
 }
 
-/// One for each fix, or none; their numbers are those of errors that fixes can have.
+/// Checks that covariances are given for all fixes or for none, with plausible standard deviations.
 void check_covariances(const ReferencePath& reference, const std::string& place) {
   const std::vector<Eigen::Matrix3d>& covariance = reference.covariance;
   if (!covariance.empty() && covariance.size() != reference.time.size()) {
@@ -144,7 +144,8 @@ void check_covariances(const ReferencePath& reference, const std::string& place)
   }
 }
 
-/// Odometry holds until the next record: where none follows for so long, the file was cut.
+/// Refuses scans long after the last odometry. Odometry holds until its next record, so if none
+/// follows for that long, the file was probably cut.
 void check_end(const DriveLog& log, const std::string& place, LogForm form) {
   const double last_scan = log.scans.back().time, last_move = log.odometry.back().time;
   if (last_scan <= last_move + kLongestHold) return;
@@ -155,7 +156,8 @@ void check_end(const DriveLog& log, const std::string& place, LogForm form) {
                    "take the whole file, or leave out the scans");
 }
 
-/// A scan before the start has no pose to be seen from; odometry all before it moves nothing.
+/// Refuses scans before the start, where the pose is unknown, and odometry that ends before the
+/// start.
 void check_start(const DriveLog& log, const std::string& place, LogForm form) {
   const std::string start = to_text(log.start_time) + " s";
   if (log.scans.front().time < log.start_time) {

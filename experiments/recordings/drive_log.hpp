@@ -13,38 +13,38 @@
 
 namespace montecarta::experiments {
 
-/// What the vehicle measured of its motion, or was told; holds from its time to that of the next.
+/// A measured or commanded control, which holds from its time until the next one.
 struct Odometry {
   double time = 0.0;  ///< [s]
   Control control;
 };
 
-/// All that the sensor saw at one instant.
+/// All detections at one instant.
 struct LoggedScan {
   double time = 0.0;                  ///< [s]
   std::vector<Detection> detections;  ///< in the sensor's order; may be empty
 };
 
-/// A recorded drive as it was measured, whatever files it came in. Times of one log share an
+/// A recorded drive as it was measured, independent of its files. All times of a log have the same
 /// origin.
 struct DriveLog {
-  /// [s] when the vehicle was at `start`; what it did before nobody knows.
+  /// [s] time at which the vehicle was at `start`. Its motion before is unknown.
   double start_time = 0.0;
   Pose start;
-  std::span<const Quantity> controls = controls_of(Vehicle());     ///< what odometry consists of
+  std::span<const Quantity> controls = controls_of(Vehicle());     ///< components of the controls
   std::vector<Odometry> odometry;                                  ///< in increasing time
-  std::span<const Quantity> components = components_of(Sensor());  ///< of the detections
+  std::span<const Quantity> components = components_of(Sensor());  ///< components of the detections
   std::vector<LoggedScan> scans;                                   ///< in increasing time
-  std::vector<ReferencePath> references;   ///< at least one; the first one leads
-  std::vector<Eigen::Vector2d> landmarks;  ///< [m] surveyed positions; empty where unknown
+  std::vector<ReferencePath> references;   ///< at least one; the first is the leading one
+  std::vector<Eigen::Vector2d> landmarks;  ///< [m] surveyed positions; empty if unknown
 };
 
-/// An identity from here on is a mistake: no map has as many landmarks.
+/// Bound on identities. No map has so many landmarks, so larger ones are mistakes.
 inline constexpr std::int32_t kMostIdentities = 1'000'000;
 
-// Each throws StudyError "place: record N: problem (why): remedy" at the first record (from 1) that
-// cannot be: time not increasing, a number not finite or beyond anything that drives, e.g. degrees
-// in place of radians. `place` is the file.
+// Each of these throws StudyError "place: record N: problem (why): remedy" for the first record
+// (from 1) that is impossible: its time does not increase, or a number is not finite or not
+// plausible for a vehicle, e.g. degrees instead of radians. `place` is the file.
 void check_odometry(std::span<const Odometry> odometry, std::span<const Quantity> controls,
                     const std::string& place);
 void check_scans(std::span<const LoggedScan> scans, const std::string& place,
@@ -52,12 +52,12 @@ void check_scans(std::span<const LoggedScan> scans, const std::string& place,
 void check_reference(const ReferencePath& reference, const std::string& place);
 void check_landmarks(std::span<const Eigen::Vector2d> landmarks, const std::string& place);
 
-/// How a log is stored: as the files of kind = log, of which errors name one, or otherwise.
+/// How a log is stored: as files of kind = log, which errors then name, or in another way.
 enum class LogForm { csv, other };
 
-/// All of the above for the whole log, and what its parts owe to each other: odometry, scans and a
-/// reference are there, references have different names, identities are given to all detections or
-/// to none and belong to a landmark where landmarks are known. `place` is the folder.
+/// Checks all parts of the log as above, and that they fit together: odometry, scans and a
+/// reference exist, references have different names, identities are given to all detections or to
+/// none and belong to a landmark if landmarks are known. `place` is the folder.
 void check_log(const DriveLog& log, const std::string& place, LogForm form = LogForm::other);
 
 }  // namespace montecarta::experiments

@@ -42,7 +42,7 @@ std::vector<std::span<const Quantity>> known_controls() {
   return known;
 }
 
-/// The columns say what kind of vehicle it is of.
+/// Reads the odometry. Its columns determine the components of the controls.
 void read_odometry(const fs::path& path, DriveLog& log) {
   const std::vector<std::span<const Quantity>> known = known_controls();
   std::vector<std::string> headers;
@@ -58,7 +58,7 @@ void read_odometry(const fs::path& path, DriveLog& log) {
   check_odometry(log.odometry, log.controls, path.string());
 }
 
-/// The whole number in a field; nullopt where it is empty.
+/// The identity in a field; nullopt if the field is empty.
 std::optional<std::int32_t> identity_in(const CsvRows& rows, std::size_t column) {
   if (rows.field(column).empty()) return std::nullopt;
   const auto identity = to_count(rows.field(column));
@@ -78,7 +78,7 @@ Detection detection_in(const CsvRows& rows, std::span<const Quantity> components
   return detection;
 }
 
-/// Nothing behind the time, in so many fields.
+/// Whether all fields behind the time are empty.
 bool is_empty_scan(const CsvRows& rows, std::size_t fields) {
   for (std::size_t i = 1; i <= fields; ++i) {
     if (!rows.field(i).empty()) return false;
@@ -86,7 +86,7 @@ bool is_empty_scan(const CsvRows& rows, std::size_t fields) {
   return true;
 }
 
-/// Headers of the detections of all sensors, two of each.
+/// Headers of the detections of all sensors, two for each sensor.
 std::vector<std::string> known_detections() {
   std::vector<std::string> headers;
   for_each_sensor([&](const Sensor& sensor) {
@@ -96,8 +96,8 @@ std::vector<std::string> known_detections() {
   return headers;
 }
 
-/// The columns say what sensor it is of. Rows of one time make one scan; a row of a time alone is a
-/// scan that saw nothing.
+/// Reads the scans. Their columns determine the sensor. Rows with the same time form one scan; a
+/// row with only a time is a scan without detections.
 void read_scans(const fs::path& path, DriveLog& log) {
   CsvRows rows(path, known_detections());
   const bool identified = rows.header() % 2 == 1;
@@ -122,7 +122,8 @@ void read_scans(const fs::path& path, DriveLog& log) {
   check_scans(scans, path.string(), log.components);
 }
 
-/// By identity where that column is there: each from 0 on once.
+/// Reads the landmarks. If there is a column of identities, every identity from 0 on must occur
+/// once.
 std::vector<Eigen::Vector2d> read_landmarks(const fs::path& path) {
   CsvRows rows(path, log_csv::kLandmarks);
   std::vector<std::pair<std::int32_t, Eigen::Vector2d>> landmarks;
@@ -148,8 +149,8 @@ std::vector<Eigen::Vector2d> read_landmarks(const fs::path& path) {
   return places;
 }
 
-/// The name of the reference in a file; empty where it holds none. A file that looks misspelt is
-/// refused, for nobody would miss what it holds.
+/// The name of the reference in a file; empty if the file is no reference. Throws StudyError if the
+/// file name looks misspelt, because the file would be ignored unnoticed.
 std::string reference_in(const fs::path& file) {
   std::string stem = file.stem().string();
   if (file.extension() != ".csv" || stem == "landmarks") return {};
@@ -191,7 +192,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file as text, row by row.
+/// The text of a file, built row by row.
 class Table {
  public:
   explicit Table(const std::string& header) : text_(header + "\n") {}
@@ -298,7 +299,7 @@ using log_csv::ReferenceColumns;
 
 constexpr double kLeastDeviation = 1e-9;  // [m, rad]
 
-/// Diagonal, of as many sigmas from field `first` on.
+/// Diagonal covariance from standard deviations in the fields from `first` on.
 Eigen::Matrix3d covariance_of_sigmas(const CsvRows& rows, std::size_t first, int dimension) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (int i = 0; i < dimension; ++i) {
@@ -326,7 +327,7 @@ bool is_positive_definite(const Eigen::Matrix3d& covariance, int dimension) {
          (factor.matrixLLT().diagonal().array().square() > kLeastPivot).all();
 }
 
-/// Of its lower triangle, row by row from field `first` on.
+/// Covariance from its lower triangle, row by row, in the fields from `first` on.
 Eigen::Matrix3d covariance_in(const CsvRows& rows, std::size_t first, int dimension) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   std::size_t field = first;

@@ -13,11 +13,11 @@
 
 namespace montecarta::experiments::log_csv {
 
-/// Headers of each file of a log: without and with its optional last column.
+/// Headers of a file of a log, without and with its optional last column.
 using Headers = std::array<std::string, 2>;
 
 inline const std::array<std::string, 1> kStart = {"time_s,x_m,y_m,heading_rad"};
-/// Of the odometry of a vehicle with these controls.
+/// Header of the odometry of a vehicle with these controls.
 inline std::string odometry_header(std::span<const Quantity> controls) {
   std::string header = "time_s";
   for (const Quantity control : controls) {
@@ -25,7 +25,7 @@ inline std::string odometry_header(std::span<const Quantity> controls) {
   }
   return header;
 }
-/// Of the detections of a sensor with these components.
+/// Headers of the detections of a sensor with these components.
 inline Headers detection_headers(std::span<const Quantity> components) {
   std::string header = "time_s";
   for (const Quantity quantity : components)
@@ -34,7 +34,7 @@ inline Headers detection_headers(std::span<const Quantity> components) {
 }
 inline const Headers kLandmarks = {"x_m,y_m", "x_m,y_m,identity"};
 
-/// Headers of a reference: what a fix measures, then what is known of its error.
+/// Headers of a reference: the components of a fix, then the form of its uncertainty.
 enum class ReferenceColumns {
   position,
   pose,
@@ -61,7 +61,7 @@ inline const std::string& header_of(ReferenceColumns columns) {
   return kReference[static_cast<std::size_t>(columns)];
 }
 
-/// The reference of the file reference.csv; it comes first, others follow by name.
+/// Name of the reference in reference.csv. It comes first; the others follow in alphabetical order.
 inline const std::string kLeading = "reference";
 
 inline std::string file_of_reference(const std::string& name) {
@@ -77,29 +77,28 @@ inline bool is_before(const std::string& a, const std::string& b) {
 
 namespace montecarta::experiments {
 
-/// Reads a drive from a folder of comma-separated files, described in
-/// experiments/RECORDED_DRIVES.md: start.csv, odometry.csv, detections.csv, reference.csv or
-/// reference_NAME.csv, landmarks.csv. Throws StudyError naming file and line or record where one is
-/// missing or malformed.
+/// Reads a drive from a folder of comma-separated files (experiments/RECORDED_DRIVES.md):
+/// start.csv, odometry.csv, detections.csv, reference.csv or reference_NAME.csv, landmarks.csv.
+/// Throws StudyError with file and line or record if a file is missing or malformed.
 DriveLog read_log_csv(const std::filesystem::path& folder);
 
-/// Writes `log` to a folder that is new or empty, so that reading it gives the same log bit for
-/// bit. Throws StudyError where the folder holds something already or the log cannot be written so
-/// (references out of the order in which they are read), RunError where writing fails.
+/// Writes `log` to a new or empty folder. Reading it gives the same log, bit for bit. Throws
+/// StudyError if the folder is not empty or the references are not in the order in which they are
+/// read, and RunError if writing fails.
 void write_log_csv(const DriveLog& log, const std::filesystem::path& folder);
 
-/// Likewise, with what an estimator must not see, references and landmarks, in a folder apart,
-/// which is new or empty too.
+/// Like above, but writes references and landmarks, which an estimator must not see, to a separate
+/// folder. It must be new or empty too.
 void write_log_csv(const DriveLog& log, const std::filesystem::path& folder,
                    const std::filesystem::path& truth_folder);
 
-/// Reads a reference of a log (experiments/RECORDED_DRIVES.md): fixes of a position or a pose, with
-/// or without standard deviations or the covariance of their errors. Throws StudyError naming file
-/// and line where a row is malformed, a standard deviation is not above 0, or a covariance is not
+/// Reads a reference of a log (experiments/RECORDED_DRIVES.md): fixes of a position or a pose,
+/// optionally with standard deviations or the covariance of their errors. Throws StudyError with
+/// file and line if a row is malformed, a standard deviation is not positive or a covariance is not
 /// positive definite.
 ReferencePath read_reference_csv(const std::filesystem::path& path, const std::string& name);
 
-/// The text of that file; reading it gives the same numbers bit for bit.
+/// The text of such a file. Reading it gives the same numbers, bit for bit.
 std::string csv_of(const ReferencePath& reference);
 
 }  // namespace montecarta::experiments

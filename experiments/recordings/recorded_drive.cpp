@@ -19,10 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// All numbers of a log, one behind the other, lengths before what has one.
+/// The numbers of a log, one behind the other. Lists and names are preceded by their length.
 class Bytes {
  public:
-  /// Of a log with so many controls, and components of a detection.
+  /// Bytes of a log with this many controls, and this many components of a detection.
   Bytes(std::size_t controls, std::size_t components)
       : controls_(controls), components_(components) {}
   template <class Number>
@@ -47,7 +47,7 @@ class Bytes {
   void add(const ReferencePath& path) {
     add_name(path.name);
     add(path.time), add(path.position), add(path.heading);
-    if (!path.covariance.empty()) add(path.covariance);  // drives without keep their fingerprint
+    if (!path.covariance.empty()) add(path.covariance);  // keeps fingerprints of drives without
   }
   void add(const Eigen::Matrix3d& matrix) {
     for (const double element : matrix.reshaped()) add(element);
@@ -70,13 +70,14 @@ std::optional<fs::path> recording_at(const std::string& path, std::vector<fs::pa
     for (const std::string& folder : split(data, ':')) places.emplace_back(folder);
   }
   for (const fs::path& place : places) {
-    std::error_code ignored;  // what cannot be looked at is not there
+    std::error_code ignored;  // a folder that cannot be accessed counts as missing
     if (fs::is_directory(place / path, ignored)) return place / path;
   }
   return std::nullopt;
 }
 
-/// Of the first name in a list: the longest one with commas that is a folder, else up to a comma.
+/// End of the first name in a list: the longest text up to a comma that is an existing folder, or
+/// else the text up to the first comma.
 std::size_t end_of_name(std::string_view list, const std::vector<fs::path>& folders) {
   const std::size_t first_comma = std::min(list.find(','), list.size());
   for (std::size_t end = list.size(); end > first_comma; end = list.rfind(',', end - 1)) {
@@ -110,10 +111,11 @@ std::string fingerprint_of(const DriveLog& log) {
   Bytes bytes(log.controls.size(), log.components.size());
   bytes.add(log.start_time);
   bytes.add(log.start);
-  if (log.controls.data() != controls_of(Car()).data()) {  // drives of cars keep theirs
+  // The fingerprints of drives of cars, and of sensors of range and bearing, do not change.
+  if (log.controls.data() != controls_of(Car()).data()) {
     for (const Quantity control : log.controls) bytes.add_name(component_of(control).name);
   }
-  if (log.components.data() != components_of(Sensor()).data()) {  // those of range and bearing too
+  if (log.components.data() != components_of(Sensor()).data()) {
     for (const Quantity quantity : log.components) bytes.add_name(component_of(quantity).name);
   }
   bytes.add(log.odometry);
@@ -125,7 +127,7 @@ std::string fingerprint_of(const DriveLog& log) {
 
 namespace {
 
-/// "gps (headings, errors)" of each reference.
+/// Describes all references: "gps with headings, without errors of its own; ...".
 std::string references_in_words(const Itinerary& itinerary) {
   std::vector<std::string> all;
   for (const ReferencePath& path : itinerary.references) {
@@ -194,7 +196,7 @@ RecordedDrive::RecordedDrive(const DriveLog& log, const Reach& reach, double sca
 
 void RecordedDrive::merge(const DriveLog& log, const Reach& reach, double scan_delay) {
   drive_.scan_begin.assign(1, 0);
-  Control control;  // the vehicle stands until it says otherwise
+  Control control;  // the vehicle stands still before the first odometry
   auto odometry = log.odometry.begin();
   const auto drive_until = [&](double time) {
     for (; odometry != log.odometry.end() && odometry->time < time; ++odometry) {
@@ -211,8 +213,8 @@ void RecordedDrive::merge(const DriveLog& log, const Reach& reach, double scan_d
   drive_until(std::numeric_limits<double>::infinity());
 }
 
-/// Nothing happens between two events at one time, and nothing is known of what came before the
-/// start but the odometry that still holds then.
+/// Ends a step at `time` and ignores steps without duration. Odometry from before the start matters
+/// only if it still holds at the start.
 void RecordedDrive::end_step(double time, const Control& control) {
   const double before = itinerary_.step_time.empty() ? 0.0 : itinerary_.step_time.back();
   if (time <= before) return;

@@ -12,35 +12,34 @@
 
 namespace montecarta::experiments {
 
-/// The folder that a study means by `path`: below one of `folders`, or as it is, or below a folder
-/// of the environment variable MONTECARTA_DATA (separated by colons). Throws StudyError where there
-/// is none.
+/// The folder that a study names: `path` below one of `folders`, the path itself, or `path` below a
+/// folder of the environment variable MONTECARTA_DATA (separated by colons). Throws StudyError if
+/// there is none.
 std::filesystem::path find_recording(const std::string& path,
                                      const std::vector<std::filesystem::path>& folders);
 
-/// The folders that a list names, separated by commas; where a folder has commas in its name, and
-/// is there, it is one.
+/// The folders in a list that is separated by commas. An existing folder with commas in its name
+/// counts as one.
 std::vector<std::string> recordings_in(const std::string& list,
                                        const std::vector<std::filesystem::path>& folders);
 
-/// SHA-256 of all that a log says, hexadecimal: whatever files it came in, the same drive has the
-/// same one.
+/// SHA-256 of all numbers of a log, hexadecimal. It depends on the drive alone, not on its files.
 std::string fingerprint_of(const DriveLog& log);
 
-/// A recorded drive as the engine takes it: odometry, scans and fixes merged by their times, which
-/// are counted from the start. A step ends wherever odometry or a scan comes in, so that no
-/// step has two scans, and drives by the odometry that came in last. Before the first odometry the
-/// vehicle stands. Scans that a delay puts before the start are taken there. All runs are the same:
-/// they differ by the filter's random numbers alone.
+/// A recorded drive in the form of the engine: odometry, scans and fixes are merged by their times,
+/// which are counted from the start. A step ends at every odometry record and every scan, so that
+/// no step has two scans, and its control is the last odometry before. The vehicle stands still
+/// before the first odometry. Scans that a delay moves before the start are taken at the start. All
+/// runs are the same drive and differ in the filter's random numbers only.
 class RecordedDrive final : public DriveSource {
  public:
-  /// Distances [m] of detections that are used, as far as detections say how far they are.
+  /// Limits of the distance [m] of detections. Detections without a distance are always used.
   struct Reach {
     double max_range;
     double min_range = 0.0;
   };
-  /// Scans happened `scan_delay` [s] before the log has them (a laser scanner takes its time to
-  /// send). The log must have passed check_log().
+  /// Moves all scans by `scan_delay` [s] before their times in the log, because a laser scanner
+  /// needs time to send a scan. The log must have passed check_log().
   RecordedDrive(const DriveLog& log, const Reach& reach, double scan_delay = 0.0);
 
   const Itinerary& itinerary() const override { return itinerary_; }
@@ -55,12 +54,12 @@ class RecordedDrive final : public DriveSource {
   Drive drive_;
 };
 
-/// Several recorded drives of one scenario: run k meets drive k. Their lengths, starts and fixes
-/// are their own; references have the same names and tell the same of themselves, and surveyed
-/// landmarks are those of all.
+/// Several recorded drives of one scenario: run k uses drive k. Drives may differ in length, start
+/// and fixes. Their references have the same names and the same kinds of columns. They share the
+/// surveyed landmarks.
 class SeveralDrives final : public DriveSource {
  public:
-  /// As RecordedDrive has them; at least one. Throws StudyError where two do not belong together.
+  /// `drives` holds at least one drive. Throws StudyError if two drives do not belong together.
   explicit SeveralDrives(std::vector<RecordedDrive> drives);
 
   const Itinerary& itinerary() const override { return itinerary_; }
@@ -70,16 +69,16 @@ class SeveralDrives final : public DriveSource {
 
  private:
   std::vector<RecordedDrive> drives_;
-  Itinerary itinerary_;  ///< of the drive with most scans, without references
+  Itinerary itinerary_;  ///< of the drive with the most scans, without references
 };
 
-/// Whether a log tells which landmark each detection is of.
+/// Whether a log contains the identities of detections.
 enum class Identities { told, withheld };
 
-/// A drive with known truth as if it had been recorded: RecordedDrive makes the same steps,
-/// controls and scans of it, bit for bit, while no detection is beyond its max_range. Times count
-/// from the start. The truth after every step is its only reference, `landmarks` its survey,
-/// `controls` what its controls are.
+/// Converts a drive with known truth to a log. RecordedDrive makes the same steps, controls and
+/// scans of it, bit for bit, if no detection is beyond its max_range. Times count from the start.
+/// The only reference is the truth after every step. `landmarks` are the surveyed landmarks,
+/// `controls` the components of the controls.
 DriveLog log_of(const Itinerary& itinerary, const Drive& drive, std::span<const Quantity> controls,
                 std::vector<Eigen::Vector2d> landmarks, Identities identities);
 

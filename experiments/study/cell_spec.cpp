@@ -13,7 +13,7 @@
 namespace montecarta::experiments {
 namespace {
 
-/// The values that a line lists for each option, checked.
+/// The checked values of each option in a line.
 using Lists = std::map<std::string, std::vector<std::string>>;
 
 const FilterKind& known_filter(const std::string& name, const std::string& place,
@@ -53,7 +53,7 @@ std::string checked_label(const std::string& label, const std::string& place) {
                    "and _, at most " + std::to_string(kLongestLabel) + "): choose another");
 }
 
-/// One word of a cell line behind the filter's name.
+/// Parses one word of a cell line behind the name of the filter.
 void take_word(const std::string& word, const FilterKind& filter, CellSpec& cell, Lists& lists) {
   const std::size_t equals = word.find('=');
   if (equals == std::string::npos) {
@@ -77,7 +77,7 @@ void take_word(const std::string& word, const FilterKind& filter, CellSpec& cell
   }
 }
 
-/// Every cell once for each of `values`.
+/// Replaces every cell by one copy for each of `values`.
 template <class Take>
 void multiply(const std::vector<std::string>& values, const Take& take,
               std::vector<CellSpec>& cells) {
@@ -91,7 +91,8 @@ void multiply(const std::vector<std::string>& values, const Take& take,
   cells = std::move(longer);
 }
 
-/// All combinations, the last option varying fastest; one that the line leaves out has its default.
+/// All combinations of values, with the last option varying fastest. An option that the line omits
+/// has its default.
 std::vector<CellSpec> combinations(const CellSpec& line, const Lists& lists,
                                    bool controls_are_measured) {
   std::vector<CellSpec> cells{line};
@@ -116,7 +117,7 @@ std::vector<CellSpec> combinations(const CellSpec& line, const Lists& lists,
   return cells;
 }
 
-/// The words of a cell line, each with what it holds in quotes.
+/// The words of a cell line, split at blanks outside quotes.
 std::vector<std::string> words_in(const IniEntry& entry) {
   try {
     return quoted_words(entry.value);
@@ -244,14 +245,15 @@ void refuse_sensors(const Settings& settings, std::span<const CellSpec> cells) {
 
 namespace {
 
-/// Whether nothing but its label can tell a cell from others of its filter.
+/// Whether a cell may differ from others of its filter in its label only, because an option is a
+/// text.
 bool is_known_by_label(const CellSpec& cell) {
   return std::ranges::any_of(cell.filter->options, [](const Parameter& option) {
     return option.kind == Parameter::Kind::text;
   });
 }
 
-/// A value as part of a label: 0.75 -> 0p75, -1 -> m1.
+/// Converts a value to a part of a label: 0.75 -> 0p75, -1 -> m1.
 std::string label_part(std::string text) {
   for (char& c : text) {
     if (c == '-') c = 'm';
@@ -260,8 +262,8 @@ std::string label_part(std::string text) {
   return text;
 }
 
-/// Whether cells of the same filter differ in their option number `i`, other than by a text, which
-/// makes no label.
+/// Whether cells of the same filter differ in option number `i`. Options that are texts do not
+/// count, because they are no part of labels.
 bool distinguishes(const std::vector<CellSpec>& cells, const CellSpec& cell, std::size_t i) {
   if (cell.filter->options[i].kind == Parameter::Kind::text) return false;
   return std::ranges::any_of(cells, [&](const CellSpec& other) {

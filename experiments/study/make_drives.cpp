@@ -13,8 +13,8 @@
 namespace montecarta::experiments {
 namespace {
 
-/// Scans happen at every so-many-th control step: a whole number, for an integer counter never
-/// drifts (EQUATIONS 1).
+/// Number of control steps per scan. It must be a whole number, because an integer counter does not
+/// drift (EQUATIONS 1).
 std::uint32_t steps_per_scan(const Settings& settings) {
   const double ratio =
       settings.number("scenario", "control_rate") / settings.number("scenario", "scan_rate");
@@ -59,7 +59,7 @@ Scenario scenario_of(const Settings& s) {
   return scenario;
 }
 
-/// A log whose detections nobody identified leaves that to the filters, and nothing to count.
+/// Refuses known association and the column `association` for a log without identities.
 void refuse_use_of_identities(const Settings& s) {
   if (s.text("association", "kind") == "known") {
     throw StudyError(s.place("association", "kind") +
@@ -73,7 +73,8 @@ void refuse_use_of_identities(const Settings& s) {
   }
 }
 
-/// Scans before the start would all be taken there, at one time and with the same random numbers.
+/// Refuses scans before the start: all of them would be taken there, at one time and with the same
+/// random numbers.
 void refuse_early_scans(const Settings& s, const DriveLog& log) {
   const double most = log.scans.front().time - log.start_time;
   if (s.number("scenario", "scan_delay") <= most) return;
@@ -84,7 +85,7 @@ void refuse_early_scans(const Settings& s, const DriveLog& log) {
                    to_text(most) + " s");
 }
 
-/// Where the model has no answer: steering at which the measured wheel all but stands still.
+/// Refuses steering for which the model has no solution, because the measured wheel hardly moves.
 void refuse_impossible_steering(const Settings& s, const DriveLog& log) {
   const Vehicle vehicle = vehicle_of(s, "belief");
   for (std::size_t i = 0; i < log.odometry.size(); ++i) {
@@ -106,7 +107,7 @@ std::string names_of(std::span<const Quantity> controls) {
   return joined(names);
 }
 
-/// A filter is given controls of the vehicle that drives: it must believe in one that has these.
+/// Throws StudyError unless the assumed vehicle has the controls of the drive.
 void refuse_other_controls(const Settings& s, std::span<const Quantity> driven) {
   const std::string given = names_of(driven);
   const std::string believed = names_of(controls_of(vehicle_of(s, "belief")));
@@ -117,7 +118,7 @@ void refuse_other_controls(const Settings& s, std::span<const Quantity> driven) 
                    "): give belief.vehicle one that is controlled by these");
 }
 
-/// A filter is given detections of the sensor that saw them.
+/// Throws StudyError unless the assumed sensor has the components of the detections.
 void refuse_other_detections(const Settings& s, std::span<const Quantity> seen) {
   const std::span<const Quantity> believed = components_of(sensor_of(s, "belief"));
   if (std::ranges::equal(seen, believed)) return;
@@ -126,7 +127,7 @@ void refuse_other_detections(const Settings& s, std::span<const Quantity> seen) 
                    "belief.sensor to the sensor of the drive");
 }
 
-/// The log with the reference alone that the study judges by, if it names one.
+/// The log with only the reference that the study names, if it names one.
 DriveLog judged(const Settings& s, DriveLog log) {
   const std::string& name = s.text("scenario", "reference");
   if (!name.empty())
@@ -134,7 +135,7 @@ DriveLog judged(const Settings& s, DriveLog log) {
   return log;
 }
 
-/// How many landmarks its detections can name; 0 where nobody identified them.
+/// Number of landmarks that the detections can name; 0 if they have no identities.
 std::size_t identities_in(const DriveLog& log) {
   std::int32_t last = -1;
   for (const LoggedScan& scan : log.scans) {
@@ -171,7 +172,7 @@ std::shared_ptr<const DriveSource> several_drives_of(const Study& study) {
   }
 }
 
-/// The pilot's limits are in [scenario] only.
+/// The value of a setting; nullopt if the section has none, such as the limits of the pilot.
 std::optional<double> number_of(const Settings& s, const char* in, const std::string& key) {
   return s.has(in, key) ? std::optional(s.number(in, key)) : std::nullopt;
 }

@@ -15,7 +15,7 @@
 namespace montecarta::experiments {
 namespace {
 
-/// What the study says that filters believe, times what the cell says of its own.
+/// The belief of a cell: that of the study, with noise scaled by the factors of the cell.
 Belief belief_of(const Settings& s, const CellSpec& spec) {
   const char* in = "belief";
   const double motion = mismatch_of(spec, "motion_noise");
@@ -28,8 +28,8 @@ Belief belief_of(const Settings& s, const CellSpec& spec) {
   return belief;
 }
 
-/// The chi-square gate, of 1 or 2 degrees of freedom, that accepts as often as k sigma of a normal:
-/// the quantile at p = erf(k / sqrt 2), which is k^2 or -2 ln(1 - p).
+/// The chi-square gate with 1 or 2 degrees of freedom that accepts with the probability of k sigma
+/// of a normal: the quantile at p = erf(k / sqrt 2), which is k^2 or -2 ln(1 - p).
 double gate_of(double sigmas, std::size_t dimension) {
   if (dimension == 1) return sigmas * sigmas;
   return -2.0 * std::log(engine::normal_tails(sigmas));
@@ -63,8 +63,9 @@ ColumnSelection columns_of(const Settings& s) {
   return columns;
 }
 
-/// Rows of the map columns: with unknown association landmarks are numbered by initialisation, and
-/// there may be more than the world has, of which a recorded drive knows nothing.
+/// Number of rows of the map columns. With unknown association, landmarks are numbered in the order
+/// of initialisation and may outnumber those of the world, and for a recorded drive the number of
+/// those is unknown.
 std::size_t map_rows_of(const FilterSetup& setup, const Settings& s) {
   const std::uint64_t asked = s.count("record", "map_rows");
   if (setup.association.kind == Association::known) return setup.landmarks;
@@ -84,8 +85,8 @@ std::vector<std::pair<std::string, std::string>> settings_of(const CellSpec& spe
   return settings;
 }
 
-/// What makes the cell's filter, tried once where it is a program that may be started: making it
-/// does not start it, but finds out whether it is there.
+/// A function that makes the cell's filter. An external program that is allowed is made once here,
+/// which does not start it but checks that it exists.
 std::function<std::unique_ptr<SlamFilter>()> maker_of(const CellSpec& spec,
                                                       const FilterSetup& setup,
                                                       ExternalPrograms programs) {
@@ -130,8 +131,8 @@ Cell cell_of(const CellSpec& spec, const Study& study, ExternalPrograms programs
           .make_filter = maker_of(spec, setup, programs)};
 }
 
-/// The settings of the scenario as they are, those of other sections with the section's name before
-/// them.
+/// The settings of the scenario, then those of other sections with the name of the section in
+/// front.
 std::vector<std::pair<std::string, std::string>> scenario_facts(const Settings& settings) {
   auto facts = settings.section("scenario");
   for (const char* section : {"belief", "association"}) {
@@ -141,7 +142,8 @@ std::vector<std::pair<std::string, std::string>> scenario_facts(const Settings& 
   return facts;
 }
 
-/// Asking for what no cell can give, or nobody could judge, is a mistake.
+/// Throws StudyError if joint estimates are to be stored although no cell has them or they cannot
+/// be judged.
 void expect_joint_estimates(const Study& study) {
   const std::string objection = objection_to_joint(study);
   if (objection.empty()) return;
@@ -154,7 +156,7 @@ void expect_rotation_information(const Study& study) {
   throw StudyError(study.settings.place("record", "columns") + ": observability " + objection);
 }
 
-/// Cells that stop by their verdict need one.
+/// Throws StudyError if cells stop by their verdict but cannot have one.
 void expect_verdict(const Study& study) {
   if (!study.until || study.until->score != nullptr) return;
   const Settings& settings = study.settings;
@@ -172,7 +174,7 @@ void expect_verdict(const Study& study) {
   }
 }
 
-/// A cell stops by what all of its first runs say.
+/// Refuses to run a part of the runs, because the stopping rule needs all first runs of a cell.
 [[noreturn]] void refuse_part(const Study& study) {
   throw StudyError(study.settings.place("study", "until") + ": until = " + text_of(*study.until) +
                    " and only part of the runs (none of the parts knows when the whole is "
@@ -267,7 +269,7 @@ fs::path folder_of(const Settings& settings, const std::string& path,
   }
 }
 
-/// The drive has the reference that the study judges by, if it names one.
+/// Throws StudyError unless the drive has the reference that the study names.
 void expect_reference(const Settings& settings, const DriveLog& log) {
   const std::string& name = settings.text(kScenario, "reference");
   if (name.empty()) return;
@@ -286,7 +288,7 @@ void expect_same_drive(const Settings& settings, const std::string& expected,
                    fingerprint + "): give the same files, or remove data_sha256");
 }
 
-/// The folders that the study names.
+/// The folders of recorded drives that the study names.
 std::vector<std::string> paths_in(const Settings& settings, const fs::path& study_folder) {
   const std::string& path = settings.text(kScenario, "path");
   std::vector<std::string> paths = recordings_in(path, {study_folder});
@@ -296,7 +298,8 @@ std::vector<std::string> paths_in(const Settings& settings, const fs::path& stud
                    "path = monday, tuesday");
 }
 
-/// Each drive is a run, and only then are its steps not the others'.
+/// Throws StudyError unless there is one run for each drive, and poses are stored at scans only,
+/// because drives differ in their steps.
 void expect_runs_to_fit(const Settings& settings, std::size_t drives) {
   if (drives < 2) return;
   if (settings.count("study", "runs") != drives) {
@@ -312,7 +315,7 @@ void expect_runs_to_fit(const Settings& settings, std::size_t drives) {
                    "scans): set rate = scan");
 }
 
-/// Of each drive, as far as the study has them already; as many as drives, or none.
+/// The fingerprint of each drive as stored in the study; empty texts if it has none.
 std::vector<std::string> expected_fingerprints(const Settings& settings, std::size_t drives) {
   const std::string& text = settings.text(kScenario, "data_sha256");
   if (text.empty()) return std::vector<std::string>(drives);
@@ -324,7 +327,7 @@ std::vector<std::string> expected_fingerprints(const Settings& settings, std::si
                    "as many folders in scenario.path, in the same order, or remove data_sha256");
 }
 
-/// A drive that is there twice would count as two independent ones.
+/// Refuses a drive that is listed twice, because it would count as two independent ones.
 void refuse_drive_again(const Settings& settings, const std::vector<std::string>& paths,
                         const std::vector<std::string>& fingerprints) {
   for (std::size_t k = 0; k < fingerprints.size(); ++k) {

@@ -24,15 +24,16 @@ RunRange parse_run_range(const std::string& text, std::uint64_t runs);
 RunRange parse_shard(const std::string& text, std::uint64_t runs);
 
 /// Why the study cannot store joint estimates, as the end of a StudyError: "(why): remedy"; empty
-/// where it can.
+/// if it can.
 std::string objection_to_joint(const Study& study);
 
-/// The same of the column observability.
+/// The same for the column observability.
 std::string objection_to_observability(const Study& study);
 
-/// The study made ready to run: drives simulated, filters at hand. Without `range` all its runs.
-/// Filters that are programs cannot be made unless those are allowed. Throws StudyError where
-/// settings that are right alone do not fit together, or there is no such program.
+/// Makes the plan of a study: its drives and its filters, for all runs or those in `range`. Filters
+/// that are external programs cannot be made unless `programs` allows it. Throws StudyError if
+/// settings that are valid by themselves do not fit together, or if an external program does not
+/// exist.
 StudyPlan make_plan(const Study& study, std::optional<RunRange> range = std::nullopt,
                     ExternalPrograms programs = ExternalPrograms::refused);
 

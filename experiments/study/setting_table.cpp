@@ -15,7 +15,7 @@
 namespace montecarta::experiments {
 namespace {
 
-constexpr double kTiny = 1e-6;  // least of what must be positive
+constexpr double kTiny = 1e-6;  // lower bound of settings that must be positive
 constexpr double kMostSeed = 18446744073709551615.0;
 
 Setting text(const char* section, const char* key, const char* meaning) {
@@ -39,27 +39,27 @@ Setting choice(const char* section, const char* key, std::vector<std::string> ch
   return {choice_parameter(key, first, std::move(choices), meaning), section};
 }
 
-/// Without a default; `example` is offered as remedy.
+/// A setting without default. Errors offer `example` as a remedy.
 Setting required(Setting setting, const char* example) {
   setting.fallback.reset();
   setting.example = example;
   return setting;
 }
 
-/// Of these kinds of scenario only.
+/// A setting for these kinds of scenario only.
 Setting only_for(std::vector<std::string> kinds, Setting setting) {
   setting.kinds = std::move(kinds);
   return setting;
 }
 
-/// A setting of some vehicles.
+/// A setting that only some vehicles have.
 Setting of_vehicles(const char* section, const Parameter& parameter) {
   Setting setting{parameter, section};
   setting.chooser = "vehicle";
   return setting;
 }
 
-/// The deviation of a component of some sensors, from `least` on.
+/// The deviation of a component that some sensors have, bounded below by `least`.
 Setting deviation_setting(const char* section, Quantity quantity, double least) {
   Setting setting{component_of(quantity).sigma, section};
   setting.least = least;
@@ -68,13 +68,13 @@ Setting deviation_setting(const char* section, Quantity quantity, double least) 
   return setting;
 }
 
-/// With another default where the scenario is of that kind.
+/// Gives a setting another default for one kind of scenario.
 Setting but_for(const char* kind, const char* fallback, Setting setting) {
   setting.fallback_of_kind.emplace_back(kind, fallback);
   return setting;
 }
 
-/// alpha_1 to alpha_4 (EQUATIONS 1), added by `add`.
+/// Adds alpha_1 to alpha_4 (EQUATIONS 1) by calling `add`.
 template <class Add>
 void add_growth(const char* section, const Add& add) {
   static constexpr std::array<const char*, 4> kMeanings = {
@@ -87,7 +87,7 @@ void add_growth(const char* section, const Add& add) {
   }
 }
 
-/// Which sensor, where it is mounted, and its noise, added by `add`. Deviations from `least` on.
+/// Adds the kind of sensor, its mounting and its noise. Deviations are bounded below by `least`.
 template <class Add>
 void add_sensor_kind(const char* section, double least, const Add& add) {
   const auto mount = [&](const char* key, const char* unit, double most, const char* meaning) {
@@ -105,7 +105,7 @@ void add_sensor_kind(const char* section, double least, const Add& add) {
   }
 }
 
-/// Where the vehicle drives, and what differs from run to run, added by `add`.
+/// Adds the course of the vehicle and the variation between runs.
 template <class Add>
 void add_course(const char* s, const Add& add) {
   add(required(text(s, "world", "name of a shipped world, or path of a .csv file"), "web_loop"));
@@ -188,8 +188,8 @@ void add_sensor(std::vector<Setting>& table) {
              "probability that a landmark in view is missed"));
 }
 
-/// In a simulation it follows the scenario. With an `example` it must be given for a recorded
-/// drive, of which only the user knows it.
+/// A setting of [belief], which in a simulation defaults to that of [scenario]. With an `example`
+/// it must be given for a recorded drive, for which only the user knows it.
 Setting believed(Setting setting, const std::string& example) {
   if (!example.empty()) {
     setting.example = example;
@@ -206,7 +206,7 @@ void add_scenario(std::vector<Setting>& table) {
   add_sensor(table);
 }
 
-/// In a simulation everything follows the scenario unless it says otherwise.
+/// Adds [belief]. In a simulation all settings default to those of [scenario].
 void add_belief(std::vector<Setting>& table) {
   const char* s = "belief";
   const auto add = [&](Setting setting, const std::string& example = {}) {
@@ -246,7 +246,7 @@ void add_study(std::vector<Setting>& table) {
              "most."));
 }
 
-/// The fallback gates are chi-square 5.991 (95 %) and 25 with two degrees of freedom.
+/// The default gates are chi-square 5.991 (95 %) and 25 with two degrees of freedom.
 void add_association(std::vector<Setting>& table) {
   const char* s = "association";
   table.push_back(but_for(

@@ -18,8 +18,8 @@ namespace {
 
 namespace po = boost::program_options;
 
-/// Where the sections and entries of a text stand; Program_options does not tell. Entries have
-/// places only.
+/// The places of the sections and entries of a text, which Program_options does not provide. The
+/// entries have no values yet.
 IniText index_of(const std::string& text, const std::string& name) {
   IniText index;
   std::istringstream stream(text);
@@ -91,7 +91,8 @@ std::string checked_count(const Parameter& option, std::string_view text,
   return std::to_string(*value);
 }
 
-/// One line that a terminal shows as it is; the name of a study is part of file names.
+/// Checks a text: it must be one line that a terminal can show, and is limited in length, because
+/// file names contain the name of a study.
 std::string checked_text(const Parameter& option, std::string_view text, const std::string& place) {
   const std::size_t longest = option.key == "name" ? 200 : option.key == "title" ? 1000 : 1'000'000;
   if (text.size() > longest) {
@@ -111,7 +112,7 @@ void check_choice(const Parameter& option, const std::string& word, const std::s
                    " is needed): " + nearest_spelling(word, option.choices));
 }
 
-/// In the order of the table, without repetition.
+/// Checks a list of choices, and returns it in the order of the table without repetitions.
 std::string checked_choices(const Parameter& option, std::string_view text,
                             const std::string& place) {
   const std::vector<std::string> given = split(text, ',');
@@ -123,7 +124,8 @@ std::string checked_choices(const Parameter& option, std::string_view text,
   return joined(ordered);
 }
 
-/// A double cannot hold the largest of 64 bits, of which the reader takes every one.
+/// The largest value as a text. A double cannot represent the largest integer of 64 bits, which is
+/// allowed.
 std::string most_of(const Parameter& option) {
   constexpr std::uint64_t kLargest = std::numeric_limits<std::uint64_t>::max();
   const bool is_all = option.kind == Kind::count && option.most >= static_cast<double>(kLargest);
@@ -226,7 +228,7 @@ Settings::Settings(std::span<const IniEntry> entries, const std::string& name) {
   fill_in(name);
 }
 
-/// Before anything else is known: what kind of scenario the rest is about.
+/// The kind of scenario. It is available before the other settings, which depend on it.
 std::string Settings::scenario_kind() const {
   const auto given = values_.find({"scenario", "kind"});
   return given == values_.end() ? "simulated" : given->second.text;
@@ -267,7 +269,8 @@ void Settings::fill_in(const std::string& name) {
   }
 }
 
-/// What a filter is not told it takes from the world, which may have values that no filter can use.
+/// The value of [scenario] for a setting that [belief] omits. Throws StudyError if a filter cannot
+/// use the value.
 std::string Settings::copied_from_scenario(const Setting& setting) const {
   if (!has("scenario", setting.key))
     return setting.fallback.value();  // of another vehicle or sensor
@@ -287,7 +290,7 @@ const Settings::Value& Settings::at(std::string_view section, std::string_view k
   return found->second;
 }
 
-/// What chooses comes before what depends on it.
+/// Whether a setting applies, given the setting that chooses, which is filled in earlier.
 bool Settings::is_for_choice(const Setting& setting) const {
   return setting.chooser.empty() || setting.is_for_choice(text(setting.section, setting.chooser));
 }

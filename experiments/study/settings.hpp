@@ -14,7 +14,7 @@
 
 namespace montecarta::experiments {
 
-/// One `key = value` of an INI text, and where it stands.
+/// One `key = value` of an INI text, with its place.
 struct IniEntry {
   std::string section;
   std::string key;
@@ -22,37 +22,37 @@ struct IniEntry {
   std::string place;  ///< "file:line"
 };
 
-/// A `[section]` line, and where it stands.
+/// A `[section]` line, with its place.
 struct IniSection {
   std::string name;
   std::string place;
 };
 
-/// What an INI text says, in its order.
+/// The contents of an INI text, in its order.
 struct IniText {
   std::vector<IniSection> sections;
   std::vector<IniEntry> entries;
 };
 
-/// Reads INI: sections in brackets, `key = value`, # begins a comment. `name` stands before line
-/// numbers. Throws StudyError at stray text and at entries before the first section.
+/// Parses an INI text: sections in brackets, `key = value`, # begins a comment. Places are `name`
+/// and a line number. Throws StudyError for stray text and for entries before the first section.
 IniText read_ini(const std::string& text, const std::string& name);
 
 inline constexpr const char* kFromScenario = "scenario";
 inline constexpr const char* kRequired = "(required)";
-inline constexpr const char* kUsualWithin = "1.1";  ///< kUsualMargin of the analysis
+inline constexpr const char* kUsualWithin = "1.1";  ///< equals kUsualMargin of the analysis
 
-/// One thing that a study file may say. The table of them drives parsing, checking, the resolved
+/// One setting of a study file. The table of settings is used for parsing, checking, the resolved
 /// text, and `montecarta list settings`.
 struct Setting : Parameter {
   std::string section = {};
-  /// Kinds of scenario (scenario.kind) that it says something of; empty: all.
+  /// Kinds of scenario (scenario.kind) to which the setting applies; empty: all.
   std::vector<std::string> kinds = {};
-  /// "vehicle", "sensor" or "noise": the setting of the same section that decides whether this one
-  /// says something, by its values in `applies_to`; empty: always.
+  /// "vehicle", "sensor" or "noise": the setting of the same section that determines whether this
+  /// one applies, by its values in `applies_to`; empty: it always applies.
   std::string chooser = {};
-  /// (kind of scenario, its fallback) where that differs. kFromScenario: the scenario's value of
-  /// that key; kRequired: must be given.
+  /// Pairs (kind of scenario, default) for kinds with a default of their own. kFromScenario stands
+  /// for the scenario's value of that key, kRequired for no default.
   std::vector<std::pair<std::string, std::string>> fallback_of_kind = {};
 
   bool is_for(std::string_view scenario_kind) const;
@@ -62,22 +62,21 @@ struct Setting : Parameter {
 
 /// All settings but those of the filters, section by section in the order of the resolved text.
 std::span<const Setting> study_settings();
-/// `text` in the one spelling that the resolved study uses. Throws StudyError, beginning with
-/// `place`, where the text is no value of the option.
+/// `text` in the canonical spelling of the resolved study. Throws StudyError that begins with
+/// `place` if the text is not a valid value of the option.
 std::string checked_value(const Parameter& option, std::string_view text, const std::string& place);
 
-/// What a value must be: "a number from 0 to 1000 m".
+/// The values that an option allows, e.g. "a number from 0 to 1000 m".
 std::string demand_of(const Parameter& option);
 
 struct Setting;
 
-/// The value of every setting of study_settings(), checked and in its one spelling.
+/// The values of all settings of study_settings(), checked and in canonical spelling.
 class Settings {
  public:
-  /// Fills what `entries` leave open. Sections "cells" and "world" are no concern of it.
-  /// Throws StudyError at unknown and repeated keys, bad values, and where a required one is
-  /// missing
-  /// (`name`: of the study file).
+  /// Takes the values from `entries` and fills in defaults. Ignores the sections "cells" and
+  /// "world". Throws StudyError for unknown and repeated keys, bad values, and missing values;
+  /// `name` is that of the study file.
   Settings(std::span<const IniEntry> entries, const std::string& name);
 
   const std::string& text(std::string_view section, std::string_view key) const;
@@ -85,19 +84,18 @@ class Settings {
   bool lists(std::string_view section, std::string_view key, std::string_view item) const;
   double number(std::string_view section, std::string_view key) const;
   std::uint64_t count(std::string_view section, std::string_view key) const;
-  /// A setting in degrees, in radians.
+  /// A setting in degrees, converted to radians.
   double radians(std::string_view section, std::string_view key) const;
-  /// "file:line" where it was given, or the file where it was not.
+  /// "file:line" of the setting, or the file if it has a default.
   const std::string& place(std::string_view section, std::string_view key) const;
   void replace(std::string_view section, std::string_view key, const std::string& value);
 
-  /// What scenario.kind says.
+  /// The value of scenario.kind.
   std::string scenario_kind() const;
 
-  /// Whether there is a value: kind of scenario, vehicle and sensor have that key.
+  /// Whether the setting applies to the kind of scenario, vehicle and sensor, and so has a value.
   bool has(std::string_view section, std::string_view key) const;
-  /// (key, value) of a section in the order of the table, as far as the kind of scenario,
-  /// vehicle and sensor have them.
+  /// (key, value) of the settings of a section that have a value, in the order of the table.
   std::vector<std::pair<std::string, std::string>> section(std::string_view name) const;
 
  private:

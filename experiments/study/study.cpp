@@ -39,7 +39,8 @@ const Score* score_called(const std::string& name, const std::string& place) {
                    nearest_spelling(name, usable_scores()));
 }
 
-/// Rare divergence is what an early end would miss: "consistent" needs `least_runs`.
+/// Whether the verdict of a cell is known after `runs` runs. "Consistent" needs `least_runs`,
+/// because an early stop would miss rare divergence.
 bool is_verdict_known(const ResultFile& file, std::size_t cell, std::uint64_t runs,
                       std::uint64_t least_runs, const Parallel& parallel) {
   const CellAnalysis found =
@@ -49,7 +50,7 @@ bool is_verdict_known(const ResultFile& file, std::size_t cell, std::uint64_t ru
   return answer != analysis::Answer::undecided && answer != analysis::Answer::untested;
 }
 
-/// The number behind "verdict," of "verdict, 100 runs"; nullopt where it is not understood.
+/// The number in "verdict, 100 runs"; nullopt if the text is malformed.
 std::optional<std::uint64_t> least_runs_in(const std::string& text) {
   const std::vector<std::string> parts = split(text, ',');
   if (parts.size() != 2 || parts[0] != kUntilVerdict || !parts[1].ends_with(" runs")) return {};
@@ -140,7 +141,8 @@ std::string lines_of(const std::string& kind, const std::vector<Eigen::Vector2d>
   return text;
 }
 
-/// A world written out in a study: [world] with `waypoint = x, y` and `landmark = x, y` lines [m].
+/// Whether the study contains its world: [world] with `waypoint = x, y` and `landmark = x, y` lines
+/// [m].
 bool has_inline_world(const IniText& ini) {
   return std::ranges::any_of(ini.entries,
                              [](const IniEntry& entry) { return entry.section == "world"; });
@@ -194,8 +196,8 @@ IniEntry override_entry(const std::string& text) {
           std::string(trimmed(whole.substr(equals + 1))), "--set " + text.substr(0, equals)};
 }
 
-/// An override takes the place of what the file says of that key; several overrides of one key are
-/// an error later.
+/// Applies overrides, which replace entries of the file with the same key. Several overrides of one
+/// key are reported as an error later.
 void apply(std::span<const std::string> overrides, IniText& ini) {
   const std::size_t in_file = ini.entries.size();
   for (const std::string& text : overrides) {
@@ -215,7 +217,7 @@ void apply(std::span<const std::string> overrides, IniText& ini) {
   ini.entries = std::move(kept);
 }
 
-/// The world that is written out in the study, else the one that it names.
+/// The world that is written in the study, otherwise the one that it names.
 World world_of(const IniText& ini, const Settings& settings, const std::filesystem::path& folder) {
   const std::string& name = settings.text("scenario", "world");
   const std::string& place = settings.place("scenario", "world");
@@ -235,8 +237,8 @@ void refuse_world(const IniText& ini, const Settings& settings) {
                    "[world]");
 }
 
-/// Where nothing is said of the association, and the log says which landmark each detection is of,
-/// filters are told.
+/// Sets known association if the study does not set any and the detections of the log have
+/// identities.
 void use_identities(Study& study, const std::string& name) {
   const bool is_given = study.settings.place("association", "kind") != name;
   if (is_given || identities_of(study) == 0) return;
@@ -280,7 +282,8 @@ Study read_study(const std::filesystem::path& path, std::span<const std::string>
   return parse_study(text_file(path), path.string(), path.parent_path(), overrides);
 }
 
-/// What is left out where it says nothing, so that a study without it keeps its fingerprint.
+/// Whether a setting has no effect and is left out of the resolved text, so that the fingerprints
+/// of studies without it do not change.
 bool is_silent(const std::string& key, const std::string& value) {
   return (key == "until" && value.empty()) || (key == "full_runs" && value == "0");
 }

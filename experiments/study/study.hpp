@@ -17,55 +17,58 @@
 
 namespace montecarta::experiments {
 
-/// study.until = METRIC < HALF-WIDTH: a cell stops when so precise; or verdict: when its verdict is
-/// known; or verdict, N runs: likewise, with another number of runs that "consistent" needs.
+/// The stopping rule study.until. With METRIC < HALF-WIDTH a cell stops when its mean is that
+/// precise. With verdict it stops when its verdict is known. With verdict, N runs it does the same,
+/// but "consistent" needs N runs.
 struct Until {
   static constexpr double kLevel = 0.95;
 
-  const Score* score = nullptr;  ///< nullptr: the verdict
+  const Score* score = nullptr;  ///< nullptr: the verdict decides
   double half_width = 0.0;  ///< of the kLevel interval of the mean over runs, in the score's unit
-  /// A cell is not called consistent before so many runs: rare divergence is what an early end
-  /// misses.
+  /// Number of runs that the verdict "consistent" needs, because an early stop would miss rare
+  /// divergence.
   std::uint64_t least_runs = kUsualLeastRuns;
   static constexpr std::uint64_t kUsualLeastRuns = 300;
 };
 
-/// nullopt where `text` is empty: all runs are made. Throws StudyError, beginning with `place`,
-/// where it is not understood, or names what no result follows from (processor time).
+/// Parses study.until; nullopt if `text` is empty, which means all runs. Throws StudyError that
+/// begins with `place` if the text is malformed or the metric is no result (processor time).
 std::optional<Until> parse_until(const std::string& text, const std::string& place);
 
-/// In the one spelling that the resolved study uses.
+/// The rule in the canonical spelling of the resolved study.
 std::string text_of(const Until& until);
 
-/// The question the engine asks between rounds. Failed runs are in no mean and no verdict; a score
-/// that is not a number, or has a heavy tail, is never precise; what was not tested is not known.
+/// The rule as a function that the engine calls between rounds. Failed runs are left out of means
+/// and verdicts. A score that is not a number or has a heavy tail is never precise. A verdict is
+/// not known if the cell was not tested.
 EnoughRuns rule_of(const Until& until);
 
-/// For `montecarta check`: when a cell stops, in words.
+/// Description of the rule for `montecarta check`.
 std::string in_words(const Until& until, std::uint64_t runs);
 
-/// A study file understood: everything filled in and checked, nothing built yet.
+/// A study file, parsed and checked, with all defaults filled in. Nothing is simulated yet.
 struct Study {
   Settings settings;
   std::vector<CellSpec> cells;
   World world;                          ///< of a simulation
   std::shared_ptr<const DriveLog> log;  ///< nullptr in a simulation
-  /// {run} Where every run is a drive of its own, the first one being `log`; else empty.
+  /// {run} One drive for each run, the first of which is `log`; empty if all runs share a drive.
   std::vector<std::shared_ptr<const DriveLog>> own_logs;
   std::optional<Until> until;  ///< when a cell stops early
 };
 
 /// Reads a study file. `overrides` are "section.key=value" as given to --set; "cells.cell=..."
-/// replaces all cells. Throws StudyError naming file, line, key and reason.
+/// replaces all cells. Throws StudyError with file, line, key and reason.
 Study read_study(const std::filesystem::path& path, std::span<const std::string> overrides = {});
 
-/// Likewise from text; `name` stands before line numbers, `folder` is where relative world paths
-/// begin.
+/// Reads a study from a text. `name` stands before line numbers in errors. Relative paths of worlds
+/// begin in `folder`.
 Study parse_study(const std::string& text, const std::string& name,
                   const std::filesystem::path& folder, std::span<const std::string> overrides = {});
 
-/// The study file with everything filled in, world included, in one order and spelling: reading it
-/// gives the same study and the same text, so that its SHA-256 names the study.
+/// The study file with all defaults filled in, including the world, in canonical order and
+/// spelling. Reading it gives the same study and the same text, so its SHA-256 identifies the
+/// study.
 std::string resolved_text(const Study& study);
 
 }  // namespace montecarta::experiments

@@ -25,7 +25,7 @@ std::optional<Number> whole_text_as(std::string_view text) {
   return value;
 }
 
-/// The text in the quotes that begin at `at`, which becomes the place behind them.
+/// The text between the quotes that begin at `at`. Moves `at` behind the closing quote.
 std::string between_quotes(std::string_view text, std::size_t& at) {
   const char quote = text[at];
   std::string inside;

@@ -26,7 +26,7 @@ bool is_path(const std::string& name) {
   return name.find('/') != std::string::npos || fs::path(name).has_extension();
 }
 
-/// Where a path that a study gives leads, or the path itself where there is nothing.
+/// The path `name` in the first of `folders` in which it exists, otherwise `name` itself.
 fs::path resolved_path(const std::string& name, const std::vector<fs::path>& folders) {
   for (const fs::path& folder : folders) {
     if (fs::exists(folder / name)) return folder / name;

@@ -9,31 +9,31 @@
 
 namespace montecarta::experiments {
 
-/// What there is to map and where to drive, in the map frame.
+/// Landmarks to map and way-points to drive along, in the map frame.
 struct World {
-  std::string name;                        ///< as studies call it: the file's name without ending
+  std::string name;                        ///< name in studies: that of the file without its ending
   std::vector<Eigen::Vector2d> waypoints;  ///< [m], in the order in which they are driven
-  std::vector<Eigen::Vector2d> landmarks;  ///< [m], by identity
-  /// "file:line" of each way-point, for errors; empty if there are no lines.
+  std::vector<Eigen::Vector2d> landmarks;  ///< [m], ordered by identity
+  /// "file:line" of each way-point, for errors; empty if the world was not read from lines.
   std::vector<std::string> waypoint_places = {};
 };
 
-/// A coordinate larger than this [m] is a mistake of units, not a place.
+/// Bound on coordinates [m]. A larger one is a mistake of units.
 inline constexpr double kFarthestCoordinate = 1e6;
 
-/// Throws StudyError "place: problem (why): remedy" unless `world` has landmarks, enough
-/// way-points, and only places.
+/// Throws StudyError "place: problem (why): remedy" unless `world` has landmarks, at least two
+/// way-points, and valid coordinates.
 void check_world(const World& world, const std::string& place);
 
-/// Reads a world from a .csv file (header `kind,x,y`, kind landmark or waypoint, # begins a
-/// comment). Throws StudyError naming file and line where it is missing or malformed.
+/// Reads a world from a .csv file with the header `kind,x,y`, where kind is landmark or waypoint
+/// and # begins a comment. Throws StudyError with file and line if it is missing or malformed.
 World read_world_file(const std::filesystem::path& path);
 
-/// Reads the world that a study calls `name`: a path to a .csv file, tried below each of
-/// `folders` and then as it stands, or else a shipped world.
+/// Finds the world that a study calls `name`: a .csv file below one of `folders`, at that path
+/// itself, or a shipped world.
 World find_world(const std::string& name, const std::vector<std::filesystem::path>& folders = {});
 
-/// Names of the worlds that come with montecarta, in alphabetical order.
+/// Names of the shipped worlds, in alphabetical order.
 std::vector<std::string> shipped_worlds();
 
 }  // namespace montecarta::experiments
