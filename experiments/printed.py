@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compares what a paper printed with what `montecarta analyze FILE --csv FOLDER` measured, and
-prints the comparison as Markdown.
+"""Compares the numbers in a paper with those of `montecarta analyze FILE --csv FOLDER`, and prints
+the comparison as Markdown.
 
     python3 printed.py studies/ankishan2016_sim1.printed FOLDER [BATCH...]
 
-The .printed file beside a study has one statement in a line:
+The .printed file beside a study has one statement per line:
 
     source = Authors: title, year; Table 1
-    runs = 20                  # the printed numbers are means over so many runs
-    baseline = fastslam2       # if its number is far off, no other cell's is compared
+    runs = 20                  # number of runs over which the paper averages
+    baseline = fastslam2       # if its number is far off, other cells are not compared
     band = position 1.3 2.79   # the band that the paper drew for its average NEES
     value = cell=srcd metric=position_rmse printed=2.8211 note="Table 1"
     value = cell=ufastslam metric=cpu_seconds printed=1.82 relative_to=fastslam2 note="Table 3"
@@ -18,9 +18,10 @@ The .printed file beside a study has one statement in a line:
 
 Cells are named by their labels. A metric is a column of runs.csv, or share_inside_BLOCK,
 share_above_BLOCK or stays_above_from_BLOCK (pose, position, heading), which compare the average
-NEES of all runs with a band: the paper's, or else the chi-square band of so many runs. Such numbers
-depend on the number of runs, so each is computed for every BATCH: a folder that `analyze --csv`
-wrote of a part of the study with as many runs as the paper had. Needs NumPy and SciPy.
+NEES of all runs with a band: that of the paper, or else the chi-square band for the number of runs.
+These metrics depend on the number of runs, so they are computed for every BATCH, a folder that
+`analyze --csv` wrote for a part of the study with as many runs as in the paper. Needs NumPy and
+SciPy.
 """
 import argparse
 import csv
@@ -38,21 +39,21 @@ except ImportError as missing:
              "convert, and call the script by /usr/bin/python3")
 
 LEVEL = 0.95
-REPRODUCED_WITHIN = 2.0  # a number that is farther off than this factor is not reproduced
+REPRODUCED_WITHIN = 2.0  # a number that is off by more than this factor is not reproduced
 ALIKE_WITHIN = 0.1  # cells are alike if they differ by less than this share of their mean
 BAND_METRIC = re.compile("(share_inside|share_above|stays_above_from)_(pose|position|heading)$")
 DIMENSIONS = {"pose": 3, "position": 2, "heading": 1}
 
 
 class PrintedError(Exception):
-    """A file is missing, damaged or says something that cannot be. "file: problem: remedy"."""
+    """A file is missing, damaged or inconsistent. The text is "file: problem: remedy"."""
 
 
-# ---- What the paper says
+# ---- Numbers in the paper
 
 
 def fields_of(text, required, optional):
-    """The fields key=value of a line, as a dictionary."""
+    """The fields key=value of a line as a dictionary."""
     fields = {}
     for word in shlex.split(text):
         key, equals, value = word.partition("=")
@@ -108,7 +109,7 @@ def band_of(text):
 
 
 def read_printed(path):
-    """What a .printed file says, as a dictionary of its keys. Raises PrintedError."""
+    """The statements of a .printed file as a dictionary by key. Raises PrintedError."""
     printed = {"source": "", "runs": None, "baseline": "", "band": {}, "value": [], "claim": [],
                "assume": []}
     try:
@@ -142,11 +143,11 @@ def read_printed(path):
     return printed
 
 
-# ---- What was measured
+# ---- Measured numbers
 
 
 def table_of(folder, name):
-    """The rows of a CSV file of `analyze` as dictionaries, by names without units."""
+    """The rows of a CSV file of `analyze` as dictionaries, with names of columns without units."""
     path = os.path.join(folder, name)
     try:
         with open(path, encoding="utf-8", newline="") as file:
@@ -161,7 +162,7 @@ def table_of(folder, name):
 
 
 class Measured:
-    """The tables of one folder that `analyze --csv` wrote."""
+    """The tables of a folder that `analyze --csv` wrote."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -181,11 +182,11 @@ class Measured:
                                "the metric")
 
     def scores(self, label, metric):
-        """{run} of the complete runs; NaN where a run has no such number."""
+        """The metric {run} of the complete runs; NaN if a run has no such number."""
         return {run: float(row[metric] or "nan") for run, row in self.runs[label].items()}
 
     def by_band(self, label, metric, printed_bands):
-        """A share of scans, or a time [s], from the average NEES over all runs of the folder."""
+        """A band metric, i.e. a share of scans or a time [s], of the average NEES of all runs."""
         kind, block = BAND_METRIC.match(metric).groups()
         tests = [row for row in table_of(self.folder, "consistency.csv")
                  if row["cell"] == label and row["error"] == block]
@@ -225,7 +226,7 @@ def distance_text(measured, number):
 
 
 def interval_of(values):
-    """Student's interval of the mean; None of fewer than two values."""
+    """Student's interval of the mean; None if there are fewer than two values."""
     if len(values) < 2:
         return None
     half = stats.t.ppf(0.5 + LEVEL / 2, len(values) - 1) * stats.sem(values)
@@ -233,14 +234,14 @@ def interval_of(values):
 
 
 def paired(measured, left, right, metric):
-    """{run, (left, right)} of the runs that both cells completed."""
+    """The metric {run, (left, right)} of the runs that both cells completed."""
     l, r = measured.scores(left, metric), measured.scores(right, metric)
     pairs = np.array([(l[run], r[run]) for run in sorted(l.keys() & r.keys())]).reshape(-1, 2)
     return pairs[np.isfinite(pairs).all(1)]
 
 
 def judge_value(value, printed, measured, batches):
-    """(measured mean, its interval or None, verdict) of a printed number."""
+    """Compares a printed number: (measured mean, its interval or None, verdict)."""
     number, rounding = value["number"], value["rounding"]
     cell, metric = value["cell"], value["metric"]
     if BAND_METRIC.match(metric):
@@ -258,7 +259,7 @@ def judge_value(value, printed, measured, batches):
             return math.nan, None, "not measured"
         base = pairs[:, 1].mean()
         mean = pairs[:, 0].mean() / base
-        sample = mean + (pairs[:, 0] - mean * pairs[:, 1]) / base  # of a linearised ratio
+        sample = mean + (pairs[:, 0] - mean * pairs[:, 1]) / base  # linearised ratio of each run
     else:
         sample = np.array(list(measured.scores(cell, metric).values()))
         sample = sample[np.isfinite(sample)]
@@ -271,7 +272,7 @@ def judge_value(value, printed, measured, batches):
         return mean, interval, "agrees"
     if interval is None:
         return mean, None, "differs (one run)" if off > 0.2 * abs(number) else "agrees within 20 %"
-    if paper_runs == 1 and "relative_to" not in value:  # a single run must be among ours
+    if paper_runs == 1 and "relative_to" not in value:  # it must lie among our runs
         beyond = min((sample <= number + rounding).sum(), (sample >= number - rounding).sum())
         if beyond < max(1, int(0.5 * (1 - LEVEL) * len(sample))):
             return mean, interval, distance_text(mean, number)
@@ -281,7 +282,7 @@ def judge_value(value, printed, measured, batches):
 
 
 def another_world(value, printed, measured, batches):
-    """Says how far the baseline is off in the same metric, if that is too far; else None."""
+    """The verdict if the baseline is off too far in the same metric; else None."""
     if value["cell"] == printed["baseline"]:
         return None
     for other in printed["value"]:
@@ -293,7 +294,7 @@ def another_world(value, printed, measured, batches):
 
 
 def judge_claim(claim, printed, measured, batches):
-    """(left minus right, its interval or None, verdict) of a claim."""
+    """Tests a claim: (left minus right, its interval or None, verdict)."""
     metric, left, right, relation = (claim[key] for key in ("metric", "left", "right", "relation"))
     sign = -1.0 if relation == "<" else 1.0
     if BAND_METRIC.match(metric):
@@ -396,8 +397,8 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("printed", help="the .printed file")
-    parser.add_argument("folder", help="what analyze --csv wrote of the whole study")
-    parser.add_argument("batch", nargs="*", help="what it wrote of each batch of runs")
+    parser.add_argument("folder", help="folder that analyze --csv wrote for the whole study")
+    parser.add_argument("batch", nargs="*", help="folder that it wrote for a batch of runs")
     arguments = parser.parse_args()
     try:
         compare(read_printed(arguments.printed), Measured(arguments.folder),

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Converts the drive around a car park with reflecting poles (E. Nebot and J. Guivant, ACFR) from
-its files as published to the CSV log of montecarta; poles are detected in the laser's sweeps.
+its published files to the CSV log of montecarta. Poles are detected in the sweeps of the laser.
 
     python3 car_park.py FOLDER -o car_park_log
 
-FOLDER holds data_set.mat and perhaps beac_juan3.mat, the surveyed poles. See
+FOLDER holds data_set.mat and optionally beac_juan3.mat, the surveyed poles. See
 experiments/RECORDED_DRIVES.md.
 """
 import math
@@ -15,15 +15,15 @@ import conversion
 from conversion import MatFile, np
 
 START_HEADING = -125.5 * math.pi / 180.0
-NO_RETURN = 80.0                   # [m] from here on nothing came back
+NO_RETURN = 80.0                   # [m] range of a beam without echo, or more
 ANGLE_GAP = 3.5 * math.pi / 360    # [rad] between echoes of one pole: 3 beams
-RANGE_STEP = 1.0                   # [m] likewise
+RANGE_STEP = 1.0                   # [m] between echoes of one pole
 POLE_RADIUS = 0.03                 # [m] from its surface to its centre
 
 
 def detect_reflectors(ranges, intensities):
-    """(range, bearing) of the poles in one sweep {beam}, by increasing bearing, as [reflectors] in
-    experiments/RECORDED_DRIVES.md says."""
+    """(range, bearing) of the poles in one sweep {beam}, in order of increasing bearing, by the
+    steps of [reflectors] in experiments/RECORDED_DRIVES.md."""
     beams = np.flatnonzero((intensities > 0) & (ranges < NO_RETURN))
     angle, distance = beams * math.pi / 360.0, ranges[beams]
     cut = (np.diff(angle) >= ANGLE_GAP) | (np.abs(np.diff(distance)) > RANGE_STEP)
@@ -32,7 +32,7 @@ def detect_reflectors(ranges, intensities):
         if group.size == 0:
             continue
         angle_sum = range_sum = 0.0
-        for k in group:  # one after the other: np.sum adds in another order
+        for k in group:  # np.sum would add in another order
             angle_sum += float(angle[k])
             range_sum += float(distance[k])
         poles.append((range_sum / group.size + POLE_RADIUS,
@@ -41,7 +41,7 @@ def detect_reflectors(ranges, intensities):
 
 
 def poles_in(path):
-    """{pole, (East, North)}"""
+    """The surveyed poles as {pole, (East, North)}."""
     poles = MatFile(path).matrix("estbeac")
     if poles.shape[1] != 2 or not np.all(np.isfinite(poles)):
         raise conversion.ConversionError(
@@ -79,6 +79,6 @@ def convert(arguments):
 
 if __name__ == "__main__":
     parser = conversion.parser_of(__doc__)
-    parser.add_argument("folder", help="of the files as published")
+    parser.add_argument("folder", help="folder of the published files")
     parser.add_argument("-o", "--output", required=True, help="the log's folder, new or empty")
     conversion.run(convert, parser.parse_args())

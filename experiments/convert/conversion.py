@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the scripts of this folder share: reading foreign files, and writing the CSV files that
-montecarta reads (experiments/RECORDED_DRIVES.md). Needs NumPy and SciPy (.ci/packages.txt, group
-`convert`).
+"""Functions that the scripts of this folder share: they read foreign files and write the CSV files
+that montecarta reads (experiments/RECORDED_DRIVES.md). Needs NumPy and SciPy (.ci/packages.txt,
+group `convert`).
 """
 import argparse
 import os
@@ -16,18 +16,18 @@ except ImportError as missing:
              "scripts compute with NumPy and SciPy): bash .ci/install-packages convert, and call "
              "the script by /usr/bin/python3")
 
-LASER_BEAMS = 361  # of a sweep: half a degree apart, beam 0 right, 180 ahead, 360 left
-ROUNDING = 0.0006  # [s]: the list of all records has times in whole milliseconds
+LASER_BEAMS = 361  # per sweep, half a degree apart: beam 0 right, 180 ahead, 360 left
+ROUNDING = 0.0006  # [s] tolerance: the list of all records has times in whole milliseconds
 SENSORS = ("GPS", "odometry", "laser")
 
 
 class ConversionError(Exception):
-    """A file is missing, damaged or another one than expected. "file: problem (why): remedy"."""
+    """A file is missing, damaged or unexpected. The text is "file: problem (why): remedy"."""
 
 
 def number_text(value):
-    """The shortest text of a number that reads back as the same bits, without an exponent unless
-    that makes it shorter: "0.1", "-0", "12", "1e-05"."""
+    """The shortest text of a number that reads back as the same bits, with an exponent only if that
+    makes it shorter: "0.1", "-0", "12", "1e-05"."""
     text = repr(float(value)).removesuffix(".0")
     if "e" not in text and (1e-3 <= abs(value) < 1e5 or value == 0.0):
         return text
@@ -42,7 +42,7 @@ def number_text(value):
 
 
 def finite_number(word):
-    """The finite number that a word is, else None."""
+    """The finite number in a word; None if it is not one."""
     try:
         value = float(word)
     except ValueError:
@@ -61,8 +61,8 @@ def text_of(path):
 
 
 def numbers_in(path, width, record_is_line=True):
-    """The records of a text file of numbers between white space, {record, width}. A record is a
-    line, or else as many numbers as it has, wherever lines end."""
+    """The records of a text file of numbers separated by white space, {record, width}. A record is
+    a line if `record_is_line`, otherwise the next `width` numbers, independent of line breaks."""
     text = text_of(path)
     words = text.split()
     if words and not text[-1].isspace():
@@ -94,7 +94,7 @@ class MatFile:
         self.path = path
         try:
             self.variables = scipy.io.loadmat(path, appendmat=False)
-        except Exception as fault:  # SciPy has no kind of error for a damaged file
+        except Exception as fault:  # SciPy raises various errors for a damaged file
             if isinstance(fault, OSError) and fault.errno:
                 raise ConversionError(f"{path}: cannot be opened ({fault.strerror}): check the "
                                       "path and its permissions") from None
@@ -112,7 +112,7 @@ class MatFile:
         return values.astype(float)
 
     def series(self, name, count=None):
-        """One row or one column; of `count` records, if that is given."""
+        """A matrix of one row or one column as a vector. Checks its length if `count` is given."""
         values = self.matrix(name)
         if 1 not in values.shape:
             raise ConversionError(f"{self.path}: '{name}' is {values.shape[0]} x {values.shape[1]} "
@@ -127,7 +127,7 @@ class MatFile:
         return values.ravel()
 
     def sweeps(self, name, count):
-        """{scan, beam}: one row for each of `count` scans."""
+        """The matrix `name` as {scan, beam}, with one row for each of `count` scans."""
         values = self.matrix(name)
         if values.shape != (count, LASER_BEAMS):
             raise ConversionError(
@@ -137,7 +137,7 @@ class MatFile:
 
 
 def check_times(times, path):
-    """Refuses no records, and times that do not increase."""
+    """Raises ConversionError if there are no records or times do not increase."""
     if len(times) == 0:
         raise ConversionError(f"{path}: no records (it is empty): take the file as published")
     wrong = np.flatnonzero(~(np.diff(times) > 0))
@@ -149,7 +149,7 @@ def check_times(times, path):
 
 
 def check_sweeps(sweeps, path):
-    """Refuses ranges that are negative or no numbers."""
+    """Raises ConversionError if a range is negative or not a number."""
     wrong = np.argwhere(~(sweeps >= 0))
     if wrong.size:
         scan, beam = wrong[0]
@@ -159,9 +159,9 @@ def check_sweeps(sweeps, path):
 
 
 def check_events(events, times, path):
-    """`events` {record, (time, sensor, index)} must list every record of the sensors 1, 2 and 3,
-    whose `times` were read, once and in order; None for a sensor that was not read. Finds missing
-    records where a sensor's file alone still looks whole."""
+    """Checks that `events` {record, (time, sensor, index)} lists every record of the sensors 1, 2
+    and 3 once and in order. `times` holds the times of each sensor, or None if it was not read.
+    This finds missing records in files that look complete by themselves."""
     def refuse(fault):
         raise ConversionError(f"{path}: {fault} (the list and the sensors' files must be of one "
                               "drive): take all files as published")
@@ -185,7 +185,7 @@ def check_events(events, times, path):
 
 
 def write_rows(path, header, rows):
-    """A CSV file: the header, then rows of numbers; a row that is a text stands as it is."""
+    """Writes a CSV file: the header, then rows, which are sequences of numbers or ready texts."""
     with open(path, "x", encoding="utf-8") as file:
         file.write(header + "\n")
         for row in rows:
@@ -219,8 +219,8 @@ def parser_of(text):
 
 
 def run(convert, arguments):
-    """Calls convert(arguments). A ConversionError, or a fault of the disk, ends the script with
-    its text and code 2."""
+    """Calls convert(arguments). A ConversionError or an error of the disk ends the script with its
+    text and exit code 2."""
     try:
         convert(arguments)
     except (ConversionError, OSError) as error:

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Converts trajectories of poses in space, as evo (TUM) and OpenVINS write them, to the CSV files
-that `montecarta judge` reads. FILE.txt becomes FILE.csv, beside it.
+"""Converts trajectories of poses in space, as written by evo (TUM) and OpenVINS, to the CSV files
+that `montecarta judge` reads. FILE.txt is converted to FILE.csv in the same folder.
 
     python3 trajectory.py estimate runs/*/estimate.txt
     python3 trajectory.py truth runs/*/truth.txt
 
-Lines are `timestamp tx ty tz qx qy qz qw`; `#` begins a comment. Behind the pose of an estimate
-stand the 12 numbers of OpenVINS, or its covariances stand in FILE.cov beside: a timestamp and 36
-numbers row by row, or 21 of the upper triangle, in the order x, y, z, rx, ry, rz. Nothing is needed
-behind a truth. See experiments/JUDGING_ESTIMATES.md.
+Lines are `timestamp tx ty tz qx qy qz qw`; `#` begins a comment. In a file of estimates, the pose
+is followed by the 12 numbers of OpenVINS, or the covariances are in FILE.cov. A line of that has a
+timestamp and 36 numbers row by row, or the 21 of the upper triangle, in the order x, y, z, rx, ry,
+rz. A truth needs poses only. See experiments/JUDGING_ESTIMATES.md.
 """
 import os
 import sys
@@ -18,14 +18,14 @@ import conversion
 from conversion import ConversionError, np
 
 POSE, OPEN_VINS, WHOLE, TRIANGLE = 8, 20, 37, 22  # numbers in a line, the timestamp included
-SAME_TIME = 1e-6         # [s] of pose and covariance
-QUATERNION_SLACK = 2e-3  # printed with three digits a quaternion is as long as this
+SAME_TIME = 1e-6         # [s] tolerance between the times of pose and covariance
+QUATERNION_SLACK = 2e-3  # tolerance of its length, if printed with three digits
 HEADER = "time_s,x_m,y_m,z_m,qx,qy,qz,qw"
 UPPER = np.triu_indices(6)
 
 
 def lines_in(path):
-    """("FILE:LINE", numbers) of each line, without comments and empty lines."""
+    """Yields ("FILE:LINE", numbers) of each line, without comments and empty lines."""
     text = conversion.text_of(path)
     for number, line in enumerate(text.splitlines(keepends=True), 1):
         words = line.split("#")[0].split()
@@ -43,14 +43,14 @@ def lines_in(path):
 
 
 def symmetric(triangle, side):
-    """The matrix of an upper triangle, row by row."""
+    """The symmetric matrix of an upper triangle, which is given row by row."""
     P = np.zeros((side, side))
     P[np.triu_indices(side)] = triangle
     return P + np.triu(P, 1).T
 
 
 def rotation(quaternion, place):
-    """The matrix of qx, qy, qz, qw."""
+    """The rotation matrix of a quaternion qx, qy, qz, qw."""
     length = float(np.linalg.norm(quaternion))
     if not abs(length - 1.0) <= QUATERNION_SLACK:
         raise ConversionError(f"{place}: the quaternion has length {length:g} (of a rotation it is "
@@ -62,9 +62,9 @@ def rotation(quaternion, place):
 
 
 def open_vins_covariance(numbers, place):
-    """{6, 6}, position first. OpenVINS has Pr of the rotation in the frame of the estimated body,
-    Log(R_truth' R_mean), then Pt of the position in the map, and none between the two. R Pr R'
-    makes both of the error `world`."""
+    """The covariance {6, 6} under the convention `world`, position first. OpenVINS writes Pr of the
+    rotation error in the frame of the estimated body, Log(R_truth' R_mean), then Pt of the position
+    in the map, and no correlation of the two. R Pr R' converts Pr to the map frame."""
     R = rotation(numbers[4:POSE], place)
     turned = R @ symmetric(numbers[POSE:POSE + 6], 3) @ R.T
     P = np.zeros((6, 6))
@@ -74,7 +74,7 @@ def open_vins_covariance(numbers, place):
 
 
 def covariances_in(path, poses, of):
-    """[{6, 6}] of a file of covariances beside the poses of the file `of`."""
+    """The covariances [{6, 6}] in the file `path`, which belong to the poses of the file `of`."""
     covariances = []
     for place, numbers in lines_in(path):
         k = len(covariances)
@@ -94,7 +94,7 @@ def covariances_in(path, poses, of):
 
 
 def poses_in(path, widths, why):
-    """[numbers] and their places; each line has as many numbers as `widths` allows."""
+    """The numbers of each line and their places. The count of numbers must be in `widths`."""
     poses, places = [], []
     for place, numbers in lines_in(path):
         if len(numbers) not in widths:
@@ -113,12 +113,12 @@ def poses_in(path, widths, why):
 
 
 def covariances_beside(path):
-    """The file of covariances of a file of estimates."""
+    """Path of the file of covariances that belongs to a file of estimates."""
     return os.path.splitext(path)[0] + ".cov"
 
 
 def estimate_rows(path):
-    """Header and rows of the CSV of estimates."""
+    """Header and rows of the CSV file of estimates."""
     beside = covariances_beside(path)
     if os.path.isfile(beside):
         poses, _ = poses_in(path, (POSE,), "a timestamp and 7 are a pose, whose covariance is in "
@@ -134,7 +134,7 @@ def estimate_rows(path):
 
 
 def truth_rows(path):
-    """Header and rows of the CSV of a truth; what stands behind the pose is not looked at."""
+    """Header and rows of the CSV file of a truth. Numbers behind the pose are ignored."""
     poses, _ = poses_in(path, range(POSE, 1000), "a timestamp and 7 are a pose")
     if not poses:
         raise ConversionError(f"{path}: no rows (a truth of no time): write one row for each time")

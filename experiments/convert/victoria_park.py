@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Converts the drive through Victoria Park (Sydney; E. Nebot and J. Guivant, ACFR) from its files
-as published to the CSV log of montecarta; trees are detected in the laser's sweeps.
+"""Converts the drive through Victoria Park (Sydney; E. Nebot and J. Guivant, ACFR) from its
+published files to the CSV log of montecarta. Trees are detected in the sweeps of the laser.
 
     python3 victoria_park.py FOLDER -o victoria_park_log
     python3 victoria_park.py FOLDER -o victoria_park_raw_log --steering raw
 
-FOLDER holds DRS.txt (calibrated steering) or aa3_dr.mat (raw), LASER.txt or else aa3_lsr2.mat, one
-or both of GPS.txt (reference gps) and aa3_gpsx.mat (reference gps_all), and perhaps
-Sensors_manager.txt, with which the text files must agree. See experiments/RECORDED_DRIVES.md.
+FOLDER holds DRS.txt (calibrated steering) or aa3_dr.mat (raw steering), LASER.txt or aa3_lsr2.mat,
+and one or both of GPS.txt (reference gps) and aa3_gpsx.mat (reference gps_all). If it also holds
+Sensors_manager.txt, the text files must agree with that. See experiments/RECORDED_DRIVES.md.
 """
 import math
 import os
@@ -17,25 +17,26 @@ import conversion
 from conversion import MatFile, np
 
 START_HEADING = 35.5 * math.pi / 180.0
-MAT_CLOCK_AHEAD = 20967.0  # [ms] of the .mat release's clock on the text's
-RANGE_BITS = 0x1fff        # of a stored echo: centimetres; the bits above are its intensity
+MAT_CLOCK_AHEAD = 20967.0  # [ms] of the .mat release's times relative to those of the text release
+RANGE_BITS = 0x1fff        # range of a stored echo [cm]; the bits above are its intensity
 
-# The tree detector. Lengths [m] and angles [rad]. Echoes lie at whole beams, so many differences of
-# angles equal a limit but for rounding. Both sides are computed as the published code does, or the
-# yield is another one (53,537 trees in place of 52,792).
+# Parameters of the tree detector, with lengths [m] and angles [rad]. Echoes lie at whole beams, so
+# many differences of angles equal a limit up to rounding. Both sides are therefore computed as in
+# the published code; otherwise 53,537 trees are detected instead of 52,792.
 FARTHEST_ECHO = 75.0
-RANGE_STEP = 1.5                     # cuts a segment
-ANGLE_STEP = 10 * math.pi / 360      # likewise
-CLEARANCE = 3.0                      # nearer segments are one bush or wall
-NEIGHBOURS = 3                       # segments that must be clear of one
-OCCLUSION_GAP = 2 * math.pi / 360    # nearer, one hides part of the other
-HALF_DEGREE = math.pi / 360          # a trunk's edges lie between beams
-LONGEST_CHORD = 1.0                  # of a trunk
-NEAREST_START = 1.0                  # nearer is the vehicle itself
-FIRST_ANGLE = 5 * math.pi / 306      # a trunk lies wholly after it
+RANGE_STEP = 1.5                     # a larger one separates segments
+ANGLE_STEP = 10 * math.pi / 360      # a larger one separates segments
+CLEARANCE = 3.0                      # segments closer than this are part of a bush or wall
+NEIGHBOURS = 3                       # number of segments on each side that need the clearance
+OCCLUSION_GAP = 2 * math.pi / 360    # of closer segments, one hides a part of the other
+HALF_DEGREE = math.pi / 360          # edges of a trunk lie between beams
+LONGEST_CHORD = 1.0                  # largest chord of a trunk
+NEAREST_START = 1.0                  # closer echoes are from the vehicle itself
+FIRST_ANGLE = 5 * math.pi / 306      # a trunk lies completely after this angle
 LAST_ANGLE = math.pi - FIRST_ANGLE   # and before this one
 
-# Counter-clockwise from the right. NumPy's sine may differ from the C library's in the last bit.
+# Counted counter-clockwise from the right. NumPy's sine may differ from the C library's in the last
+# bit.
 ANGLES = [beam * math.pi / 360.0 for beam in range(conversion.LASER_BEAMS)]
 ANGLE = np.array(ANGLES)
 COSINE = np.array([math.cos(angle) for angle in ANGLES])
@@ -43,9 +44,9 @@ SINE = np.array([math.sin(angle) for angle in ANGLES])
 
 
 def detect_trees(ranges):
-    """(range, bearing) of the trunks in one sweep of ranges {beam}, by increasing bearing: the
-    detector of every code on these data (J. Guivant), by the steps of [trees] in
-    experiments/RECORDED_DRIVES.md."""
+    """(range, bearing) of the trunks in one sweep of ranges {beam}, in order of increasing bearing.
+    This is J. Guivant's detector, which all codes use on these data; experiments/RECORDED_DRIVES.md
+    lists its steps under [trees]."""
     beams = np.flatnonzero(ranges < FARTHEST_ECHO)                                     # step 1
     if beams.size == 0:
         return []
@@ -80,12 +81,12 @@ def detect_trees(ranges):
 
 
 def text_times(milliseconds):
-    """Times of the .mat release as the text release has them [s]."""
+    """Converts times of the .mat release to those of the text release [s]."""
     return (milliseconds - MAT_CLOCK_AHEAD) / 1000.0
 
 
 def odometry_in(folder, steering):
-    """Rows (time, speed, steer)."""
+    """The odometry as rows (time, speed, steer)."""
     if steering == "calibrated":
         path = os.path.join(folder, "DRS.txt")
         rows = conversion.numbers_in(path, 3)
@@ -100,7 +101,7 @@ def odometry_in(folder, steering):
 
 
 def sweeps_in(folder):
-    """Times, ranges {scan, beam}, and whether they are of the text release."""
+    """Times, ranges {scan, beam}, and whether they are from the text release."""
     text, mat = os.path.join(folder, "LASER.txt"), os.path.join(folder, "aa3_lsr2.mat")
     is_text = os.path.exists(text) or not os.path.exists(mat)
     if is_text:
@@ -123,7 +124,7 @@ def sweeps_in(folder):
 
 
 def references_in(folder):
-    """{name: rows (time, East, North)}, GPS.txt first."""
+    """The references as {name: rows (time, East, North)}, GPS.txt first."""
     text, mat = os.path.join(folder, "GPS.txt"), os.path.join(folder, "aa3_gpsx.mat")
     references = {}
     if os.path.exists(text) or not os.path.exists(mat):
@@ -134,7 +135,7 @@ def references_in(folder):
         times = text_times(file.series("timeGps"))
         east, north = file.series("Lo_m", times.size), file.series("La_m", times.size)
         conversion.check_times(times, mat)
-        # The fixes of the .mat release stand on another origin.
+        # The fixes of the .mat release have another origin.
         references["gps_all"] = np.column_stack([times, east - east[0], north - north[0]])
     return references
 
@@ -145,7 +146,7 @@ def convert(arguments):
     scan_times, ranges, is_text = sweeps_in(folder)
     references = references_in(folder)
     manager = os.path.join(folder, "Sensors_manager.txt")
-    if os.path.exists(manager):  # which lists records of text files only
+    if os.path.exists(manager):  # it lists records of text files only
         times = [references["gps"][:, 0] if "gps" in references else None,
                  odometry[:, 0] if arguments.steering == "calibrated" else None,
                  scan_times if is_text else None]
@@ -159,8 +160,8 @@ def convert(arguments):
 
 if __name__ == "__main__":
     parser = conversion.parser_of(__doc__)
-    parser.add_argument("folder", help="of the files as published")
+    parser.add_argument("folder", help="folder of the published files")
     parser.add_argument("-o", "--output", required=True, help="the log's folder, new or empty")
     parser.add_argument("--steering", choices=("calibrated", "raw"), default="calibrated",
-                        help="of DRS.txt, or as measured, of aa3_dr.mat; default: calibrated")
+                        help="calibrated, from DRS.txt (default), or raw, from aa3_dr.mat")
     conversion.run(convert, parser.parse_args())

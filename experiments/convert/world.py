@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Converts a map in MATLAB's format, as T. Bailey published them with his SLAM simulators, to the
-CSV of a world: landmarks `lm` and way-points `wp`, 2 x N or N x 2 [m].
+"""Converts a map of T. Bailey's SLAM simulators from MATLAB's format to the CSV of a world. The
+file holds landmarks `lm` and way-points `wp`, each 2 x N or N x 2 [m].
 
     python3 world.py example_webmap.mat -o example_webmap.csv
 """
@@ -10,7 +10,7 @@ from conversion import MatFile, np
 
 
 def points_of(file, name):
-    """{point, (x, y)}. Rows are x and y where both sides are 2, as published."""
+    """The matrix `name` as {point, (x, y)}. A 2 x 2 matrix has rows of x and y, as published."""
     values = file.matrix(name)
     if 2 not in values.shape or not np.all(np.isfinite(values)):
         raise conversion.ConversionError(
@@ -34,5 +34,5 @@ def convert(arguments):
 if __name__ == "__main__":
     parser = conversion.parser_of(__doc__)
     parser.add_argument("map", help="the .mat file")
-    parser.add_argument("-o", "--output", required=True, help="the .csv file, a new one")
+    parser.add_argument("-o", "--output", required=True, help="the .csv file, which must not exist")
     conversion.run(convert, parser.parse_args())

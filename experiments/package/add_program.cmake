@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# montecarta_add_program(NAME SOURCE...): the program montecarta with more in it, e.g. filters that
-# add themselves (filters/WRITE_YOUR_OWN.md).
+# montecarta_add_program(NAME SOURCE...): adds the program montecarta with additional sources, e.g.
+# filters that register themselves (filters/WRITE_YOUR_OWN.md).
 function(montecarta_add_program name)
   set(objects montecarta_main montecarta_processor_check)
   set(library montecarta_experiments)
-  if(TARGET montecarta::montecarta_experiments)  # an installed one
+  if(TARGET montecarta::montecarta_experiments)  # of an installation
     list(TRANSFORM objects PREPEND montecarta::)
     set(library montecarta::montecarta_experiments)
   endif()
@@ -13,8 +13,8 @@ function(montecarta_add_program name)
   target_link_libraries(${name} PRIVATE ${library})
 endfunction()
 
-# montecarta_add_laws(NAME SOURCE...): a test program, which ctest runs, that holds the filters
-# which these sources add to what every filter is held to; the sources may have tests of their own.
+# montecarta_add_laws(NAME SOURCE...): adds a test program that checks the filters in these sources
+# with the tests that every filter must pass. The sources may contain further tests.
 function(montecarta_add_laws name)
   find_package(GTest REQUIRED)
   include(GoogleTest)

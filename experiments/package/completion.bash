@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Completes commands and options of montecarta in bash, from what its --help says.
+# Completes commands and options of montecarta in bash, based on its help.
 _montecarta() {
   local word=${COMP_WORDS[COMP_CWORD]} command=${COMP_WORDS[1]} words
   if [ "$COMP_CWORD" -eq 1 ]; then

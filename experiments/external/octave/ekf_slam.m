@@ -1,6 +1,6 @@
 % SPDX-License-Identifier: BSD-3-Clause
 function ekf_slam()
-% EKF-SLAM with known association (EQUATIONS 1, 2, 15), the same numbers as the cell ekf_slam.
+% EKF-SLAM with known association (EQUATIONS 1, 2, 15). Gives the numbers of the cell ekf_slam.
   montecarta_filter(struct('start', @start, 'predict', @predict, 'update', @update, ...
                            'estimate', @estimate, 'report', @(b) b.said, 'map', @map));
 end
@@ -12,7 +12,7 @@ function b = start(pose, settings, run, seed)
   b.R = diag([settings.sigma_range settings.sigma_bearing].^2);
   b.m = pose(:);  % pose, then x and y of each landmark in order of initialisation
   b.P = zeros(3);
-  b.row_of = zeros(1, settings.landmarks);  % of m and P, by identity + 1; 0: not in the map
+  b.row_of = zeros(1, settings.landmarks);  % index in m and P, by identity + 1; 0: not mapped
   b.said = struct();
 end
 

@@ -1,22 +1,23 @@
 % SPDX-License-Identifier: BSD-3-Clause
 function montecarta_filter(filter)
-% A filter in Octave as a cell of a montecarta study; copy this file beside yours.
+% Runs a filter in Octave as a cell of a montecarta study. Copy this file beside yours.
 %
-% filter  struct of functions; lengths in m, angles in rad, time in s:
+% filter  struct of functions, with lengths in m, angles in rad, times in s:
 %   belief = filter.start(pose, settings, run, seed)
-%     a run begins at pose [x; y; heading], known exactly; settings: vehicle and noise as believed;
-%     seed: for a random generator, the same for the same study and run
+%     starts a run at pose [x; y; heading], which is known exactly; settings has the vehicle and the
+%     noise that the filter should assume; seed is for a random generator
 %   belief = filter.predict(belief, speed, steer, duration)
-%     instead of speed and steer what settings.controls names, where the vehicle is no car
+%     vehicles other than cars have the controls that settings.controls names, then duration
 %   belief = filter.update(belief, detections)
-%     detections: n x 3, rows [range bearing identity]; identity -1: a false alarm, or unknown
+%     detections is n x 3 with rows [range bearing identity]; identity -1: false alarm, or unknown
 %   [mean, covariance] = filter.estimate(belief)
-%   report = filter.report(belief)  may be left out: struct of log_likelihood, nis, nis_dof, ess,
-%     map_size, or some of them, of the last update
-%   rows = filter.map(belief)       may be left out: rows [identity x y xx xy yy]
+%   report = filter.report(belief)
+%     optional; struct with any of log_likelihood, nis, nis_dof, ess, map_size of the last update
+%   rows = filter.map(belief)
+%     optional; rows [identity x y xx xy yy]
 %
-% Since a belief is all that goes from call to call, nothing of an earlier run is left at start.
-% Print to standard error only, fprintf(stderr, ...): standard output belongs to the answers.
+% The belief is the only state between calls, so a start does not depend on earlier runs.
+% Print to standard error only, fprintf(stderr, ...): standard output is reserved for the answers.
   if ~isfield(filter, 'report')
     filter.report = @(belief) struct();
   end
@@ -26,9 +27,9 @@ function montecarta_filter(filter)
   belief = [];
   while true
     try
-      line = input('', 's');  % fgetl() would wait for the line after it
+      line = input('', 's');  % fgetl() would wait for the next line
     catch
-      return  % there are no more
+      return  % the input has ended
     end
     message = jsondecode(line);
     [belief, members] = answer(filter, belief, message, line);
@@ -68,14 +69,14 @@ function [belief, members] = answer(filter, belief, message, line)
   members = [members ',"mean":' row_text(mean) ',"covariance":' rows_text(covariance)];
 end
 
-% The numbers of a member, one below the other; jsondecode() rounds some of them wrongly.
+% The numbers of a member as a column. jsondecode() does not round all of them correctly.
 function numbers = exact(line, name)
   text = regexp(line, ['"' name '":([^"}]*)'], 'tokens', 'once'){1};
   text(text == '[' | text == ']' | text == ',') = ' ';
   numbers = sscanf(text, '%f');
 end
 
-% Numbers that read back as the same bits; one that is none is null.
+% Text of numbers that reads back as the same bits. NaN becomes null.
 function text = number_text(numbers)
   text = strrep(sprintf('%.17g,', numbers)(1:end-1), 'NaN', 'null');
   text = strrep(text, 'Inf', '1e999');

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""EKF-SLAM with known association (EQUATIONS 1, 2, 15), the same numbers as the cell ekf_slam."""
+"""EKF-SLAM with known association (EQUATIONS 1, 2, 15). Gives the numbers of the cell ekf_slam."""
 import math
 
 import numpy as np
@@ -20,7 +20,7 @@ class EkfSlam(montecarta_filter.Filter):
         self.R = np.diag([settings["sigma_range"], settings["sigma_bearing"]]) ** 2
         self.m = np.array(pose)  # pose, then x and y of each landmark in order of initialisation
         self.P = np.zeros((3, 3))
-        self.row_of = {}  # of m and P, by identity
+        self.row_of = {}  # index of a landmark in m and P, by identity
         self.said = {}
 
     def predict(self, speed, steer, duration):

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A filter in Python as a cell of a montecarta study; copy this file beside yours.
+"""Runs a filter in Python as a cell of a montecarta study. Copy this file beside yours.
 
     class MyFilter(montecarta_filter.Filter): ...
     montecarta_filter.serve(MyFilter())
 
-Python's own library alone; numpy arrays and numbers may be answered as they are. What the filter
-prints goes to standard error, since standard output belongs to the answers.
+Needs only Python's standard library. The filter may return numpy arrays and numbers. Its prints go
+to standard error, because standard output is reserved for the answers.
 """
 import json
 import os
@@ -13,46 +13,46 @@ import sys
 
 
 class Filter:
-    """What to write. Lengths in m, angles in rad, time in s."""
+    """The interface of a filter. Lengths are in m, angles in rad, times in s."""
 
     def start(self, pose, settings, run, seed):
-        """A run begins at `pose` [x, y, heading], known exactly, with an empty map.
+        """Starts a run at `pose` [x, y, heading], which is known exactly, with an empty map.
 
-        Forget every earlier run. `settings`: dict of vehicle and noise as the study has the filter
-        believe them. `seed`: for a random generator; the same for the same study and run.
+        Must reset all state of earlier runs. `settings` is a dict of the vehicle and the noise that
+        the filter should assume. `seed` is for a random generator, and depends on study and run.
         """
         raise NotImplementedError
 
     def predict(self, speed, steer, duration):
-        """The vehicle drove at `speed` [m/s] with its wheel at `steer` [rad] for `duration` [s].
+        """Predicts a drive at `speed` [m/s] with the wheel at `steer` [rad] for `duration` [s].
 
         Other vehicles have other controls: those that settings["controls"] names, then `duration`.
         """
         raise NotImplementedError
 
     def update(self, detections):
-        """The sensor saw `detections`, a list of [range, bearing, identity], perhaps empty.
+        """Updates with `detections`, a list of [range, bearing, identity] that may be empty.
 
-        Identity -1: a false alarm, or, where settings["association"] is "nearest", unknown.
+        Identity -1 means a false alarm or, if settings["association"] is "nearest", unknown.
         """
         raise NotImplementedError
 
     def estimate(self):
-        """What is believed now: mean (x, y, heading) and its 3 x 3 covariance; changes nothing."""
+        """Returns the mean (x, y, heading) and its 3 x 3 covariance. Must not change the filter."""
         raise NotImplementedError
 
     def report(self):
-        """Of the last update: a dict of log_likelihood, nis, nis_dof, ess, map_size, or some."""
+        """Returns a dict with any of log_likelihood, nis, nis_dof, ess, map_size of the update."""
         return {}
 
     def map(self):
-        """Landmarks as rows (identity, x, y, xx, xy, yy) with the covariance; else by
-        initialisation."""
+        """Returns landmarks as rows (identity, x, y, xx, xy, yy), where xx, xy, yy are the
+        covariance. With unknown association the identity is the order of initialisation."""
         return []
 
 
 def _answer(filter, message):
-    """What to say to a message, without its number."""
+    """Returns the answer to a message, without its id."""
     if message["type"] == "start":
         filter.start(message["start"], message["settings"], message["run"], message["seed"])
         return {}
@@ -69,7 +69,7 @@ def _answer(filter, message):
 
 
 def serve(filter):
-    """Answers montecarta's messages until there are no more."""
+    """Answers the messages of montecarta until its input ends."""
     answers = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
     encode = json.JSONEncoder(default=lambda array: array.tolist()).encode
