@@ -24,7 +24,7 @@ struct Control {
   double operator[](std::size_t i) const { return values[i]; }
   double& operator[](std::size_t i) { return values[i]; }
   /// Returns whether the vehicle stands still, that is, whether its first `moving` components are
-  /// all 0. It is then not predicted, whatever noise its motion has (EQUATIONS 1).
+  /// all 0. It is then not predicted, independent of the noise of its motion (EQUATIONS 1).
   bool stands(std::size_t moving) const {
     return std::all_of(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(moving),
                        [](double value) { return value == 0.0; });

@@ -11,7 +11,7 @@
 namespace montecarta::engine {
 namespace {
 
-/// In the order of Axis.
+/// Names in the order of Axis.
 constexpr std::array<std::string_view, 13> kAxisNames = {"time",
                                                          "scan",
                                                          "particle",
@@ -94,7 +94,7 @@ bool has_innovations(const Cell& cell) { return is_filter(cell) || cell.imported
 constexpr const char* kPose = "m, m, rad";
 constexpr const char* kPoseSquared = "(m, m, rad)^2";
 
-/// Of a number of every scan, without a unit.
+/// A column with one number without unit per scan, from the report of a filter.
 ColumnKind of_report(const char* name, const char* group, Element element, const char* long_name,
                      double (*value)(const ScanReport&), bool (*applies)(const Cell&) = is_filter) {
   return {name, group, element, {Axis::scan}, "1", long_name, applies, value};

@@ -16,14 +16,14 @@
 
 namespace montecarta::engine {
 
-/// What error the covariance of an imported pose may be the covariance of (STATISTICS 19).
+/// Definition of the error that the covariance of an imported pose describes (STATISTICS 19).
 struct StoredConvention {
-  const char* name;     ///< as users type it
-  const char* column;   ///< of the NEES by it
-  const char* meaning;  ///< of that column
+  const char* name;     ///< as typed by users
+  const char* column;   ///< name of the column of the NEES under this convention
+  const char* meaning;  ///< description of that column
 };
 
-/// All of them, in the order of files and tables.
+/// All conventions, in the order of files and tables.
 inline constexpr std::array kErrorConventions = {
     StoredConvention{"world", "nees_world",
                      "imported: NEES if the covariance were of the error world"},
@@ -48,67 +48,67 @@ enum class Axis : std::uint8_t {
   joint,  ///< the scans of joint_scans_of()
   state,  ///< x, y, heading, then x and y of each landmark
   state_column,
-  error_component,  ///< of an imported estimate's error, as the cell's settings name them
+  error_component,  ///< of the error of an imported estimate, named in the cell's settings
   error_component_column
 };
-/// The scans of `all` at which joint estimates are stored: the last of each of `wanted` parts, as
-/// equal as can be, of the run.
+/// The scans at which joint estimates are stored. The run of `all` scans is divided into `wanted`
+/// parts of nearly equal length, and the last scan of each part is chosen.
 std::vector<std::uint32_t> joint_scans_of(std::size_t all, std::size_t wanted);
 
 std::string_view name_of(Axis axis);
-/// The axis of that name; nullopt where there is none.
+/// The axis of that name; nullopt if there is none.
 std::optional<Axis> axis_named(std::string_view name);
 
-/// One dataset of a cell; the shape is that of one run.
+/// One dataset of a cell. The shape is that of one run.
 struct Column {
   std::string name;  ///< as in the file, e.g. "pose_mean"
   Element element = Element::f64;
   std::vector<Axis> axes;
-  std::vector<std::size_t> shape;  ///< as many as axes; empty = one value a run
-  std::string units;  ///< UDUNITS style: "m", "rad", "1"; "m, m, rad" where components differ
+  std::vector<std::size_t> shape;  ///< one length per axis; empty = one value per run
+  std::string units;  ///< UDUNITS style: "m", "rad", "1"; "m, m, rad" if components differ
   std::string long_name;
 
   std::size_t elements() const;
   std::size_t bytes() const { return elements() * size_of(element); }
 };
 
-/// A group of columns that a study chooses together (record.columns).
+/// A group of columns that a study selects together (record.columns).
 struct ColumnGroup {
   const char* name;
   bool ColumnSelection::*is_chosen;  ///< nullptr: always stored
 };
-/// In the order of `montecarta list columns`.
+/// All groups, in the order of `montecarta list columns`.
 std::span<const ColumnGroup> column_groups();
 
-/// One row of the table of all columns, from which the layout of a record, what is recorded, what
-/// is checked in a file and `montecarta list columns` follow.
+/// One row of the table of all columns. The layout of records, the recorder, the checks of a file
+/// and `montecarta list columns` are derived from this table.
 struct ColumnKind {
   const char* name;
-  const char* group;  ///< of column_groups()
+  const char* group;  ///< one of column_groups()
   Element element;
   std::vector<Axis> axes;
   const char* units;
   const char* long_name;
-  bool (*applies)(const Cell&) = nullptr;  ///< which cells have it; nullptr: all
-  /// Of a number of every scan that a filter reports; others are filled by Recorder.
+  bool (*applies)(const Cell&) = nullptr;  ///< whether a cell has it; nullptr: all have
+  /// Takes the number from the report of a scan; nullptr if Recorder fills the column otherwise.
   double (*of_report)(const ScanReport&) = nullptr;
 };
-/// In the order of the file.
+/// All columns, in the order of the file.
 std::span<const ColumnKind> column_table();
 
-/// Whether a study that chooses `selection` stores it.
+/// Whether a study with `selection` stores the column.
 bool is_selected(const ColumnKind& kind, const ColumnSelection& selection);
 
-/// `selection` and all that a replay needs: covariance, ancestry, particles and the map.
+/// Adds everything that a replay shows to `selection`: covariance, ancestry, particles, map.
 ColumnSelection in_full(ColumnSelection selection);
 
-/// How long the axes of a cell's columns are.
+/// Lengths of the axes of a cell's columns.
 struct AxisLengths {
   std::size_t time = 0, scan = 0, joint = 0, particle = 0;
-  std::optional<std::size_t> landmark;         ///< nullopt: not known
-  std::optional<std::size_t> error_component;  ///< likewise
+  std::optional<std::size_t> landmark;         ///< nullopt if not known
+  std::optional<std::size_t> error_component;  ///< nullopt if not known
 };
-/// nullopt where that of the landmarks or of the error decides, which is not known.
+/// Length of an axis; nullopt if it depends on the landmarks or the error, and those are not known.
 std::optional<std::size_t> length_of(Axis axis, const AxisLengths& lengths);
 
 }  // namespace montecarta::engine

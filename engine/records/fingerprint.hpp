@@ -11,7 +11,7 @@
 
 namespace montecarta::engine {
 
-/// 64-bit XXH3 over bytes handed in piece by piece: tells torn data from whole, not a signature.
+/// 64-bit XXH3 over bytes that are added piece by piece. Detects damaged data, but is no signature.
 class Fingerprint {
  public:
   Fingerprint();
@@ -20,14 +20,14 @@ class Fingerprint {
   Fingerprint& operator=(const Fingerprint&) = delete;
 
   void add(std::span<const std::byte> bytes);
-  /// Of everything added so far; never 0, which means "not there" in a file.
+  /// The fingerprint of all bytes added so far. Never 0, which means "not stored" in a file.
   std::uint64_t value() const;
 
  private:
   alignas(64) std::byte state_[640];
 };
 
-/// SHA-256 in lower-case hexadecimal, 64 characters, as sha256sum prints it.
+/// SHA-256 as 64 lower-case hexadecimal digits, as printed by sha256sum.
 std::string sha256(std::string_view text);
 
 }  // namespace montecarta::engine

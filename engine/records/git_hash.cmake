@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 cmake_minimum_required(VERSION 3.25)
 
-# Run at every build: writes HEADER with the commit of SOURCE, "unknown" outside git, "-dirty"
-# behind it where sources differ from that; pages of results are none. Touches the header only when
-# the commit changed, so nothing is compiled needlessly, and never fails.
+# Runs at every build and writes the commit of SOURCE to HEADER: "unknown" outside git, and with
+# "-dirty" at the end if sources have uncommitted changes (pages of results do not count). Changes
+# the header only if the commit has changed, so nothing is compiled needlessly. Never fails.
 set(git git --no-optional-locks -C ${SOURCE})
 execute_process(
   COMMAND ${git} describe --always --abbrev=40 --exclude=*

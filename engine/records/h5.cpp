@@ -14,13 +14,13 @@
 namespace montecarta::engine::h5 {
 namespace {
 
-constexpr hsize_t kPage = 4096;          // large datasets begin on a page, for pwrite's sake
-constexpr hsize_t kLarge = 1024 * 1024;  // [byte] what counts as large
+constexpr hsize_t kPage = 4096;  // large datasets begin on a page, which makes pwrite faster
+constexpr hsize_t kLarge = 1024 * 1024;  // [byte] least size of a large dataset
 
 static_assert(sizeof(hid_t) == sizeof(std::int64_t));
 
-/// Errors become exceptions here; HDF5's own printed stacks would only frighten. Its tidying up at
-/// exit goes, too: nothing is left open for it, and it crashes on a file it could not write out.
+/// Errors become exceptions here, so HDF5 must not print its own stacks. Its clean-up at exit is
+/// disabled too: nothing is left open, and it crashes if a file cannot be written.
 void disable_error_printing() {
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
@@ -35,7 +35,7 @@ Handle file_access() {
   return access;
 }
 
-/// Members and attributes keep the order in which they are made.
+/// Properties of a new file: members and attributes keep the order in which they are made.
 Handle file_creation() {
   Handle creation(H5Pcreate(H5P_FILE_CREATE));
   H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
@@ -62,7 +62,8 @@ herr_t collect_name(hid_t, const char* name, const H5L_info_t*, void* names) {
   return 0;
 }
 
-/// What cannot be read is the user's file; what cannot be written is the machine's fault.
+/// Whether the file is open for reading only. Then an error is due to the user's file, otherwise to
+/// the machine.
 bool is_only_read(const Handle& object) {
   const Handle file(H5Iget_file_id(object.id()));
   unsigned intent = 0;
@@ -86,7 +87,7 @@ std::int64_t check(std::int64_t status, const char* what, const Handle& object,
 
 void expect_in_file(std::span<const unsigned long long> elements, std::size_t width,
                     const Handle& object, const std::string& name) {
-  constexpr unsigned long long kMostCompression = 1032;  // of deflate
+  constexpr unsigned long long kMostCompression = 1032;  // largest factor of deflate
   hsize_t most = 0;
   const Handle file(check(H5Iget_file_id(object.id()), "find the file of", object, name));
   check(H5Fget_filesize(file.id(), &most), "measure the file of", object, name);
@@ -218,7 +219,7 @@ namespace {
 
 using detail::check;
 
-/// Strings of any length in UTF-8: what h5py hands back as str.
+/// Type of UTF-8 strings of any length, which h5py reads as str.
 Handle text_type() {
   Handle type(H5Tcopy(H5T_C_S1));
   H5Tset_size(type.id(), H5T_VARIABLE);
@@ -238,7 +239,7 @@ Handle open_attribute(const Handle& object, const std::string& name) {
   return Handle(check(opened, "open attribute", object, name));
 }
 
-/// The value of a text attribute, of fixed or any length; nullopt where it is no single text.
+/// The value of a text attribute of fixed or variable length; nullopt if it is not a single text.
 std::optional<std::string> value_of(const Handle& attribute) {
   const Handle type(H5Aget_type(attribute.id()));
   const Handle space(H5Aget_space(attribute.id()));
@@ -342,7 +343,8 @@ Handle space_of(const Shape& shape) {
   return Handle(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr));
 }
 
-/// Marked ASCII, though the text may be UTF-8: Octave 7 reads no text that is marked UTF-8.
+/// Type of texts of fixed width. It is marked as ASCII even for UTF-8, because Octave 7 does not
+/// read texts that are marked as UTF-8.
 Handle text_type(std::size_t width) {
   Handle type(H5Tcopy(H5T_C_S1));
   H5Tset_size(type.id(), std::max<std::size_t>(width, 1));
@@ -370,7 +372,7 @@ void expect_fit(std::uint64_t elements, Element element, std::span<std::byte> by
   check(elements * size_of(element) == bytes.size() ? 0 : -1, "fit to its axes", dataset, "");
 }
 
-/// Of a dataset that may be anything.
+/// Size of an element of any dataset [byte].
 std::size_t width_of(const Handle& dataset) {
   return H5Tget_size(Handle(H5Dget_type(dataset.id())).id());
 }

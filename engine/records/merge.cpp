@@ -15,7 +15,7 @@
 namespace montecarta::engine {
 namespace {
 
-/// What is stored of a true path.
+/// The stored data of a true path.
 std::vector<Slab> slabs_of_truth(const ResultSlabs& slabs) {
   if (!slabs.truth) return {};
   std::vector<Slab> all = {slabs.truth->pose, slabs.truth->fingerprint};
@@ -23,14 +23,14 @@ std::vector<Slab> slabs_of_truth(const ResultSlabs& slabs) {
   return all;
 }
 
-/// What is stored of a run of a cell, and what it cost, but its status.
+/// The stored data of one run of a cell, without its status.
 void add_slabs(const CellSlabs& cell, std::vector<Slab>& all) {
   all.insert(all.end(), cell.columns.begin(), cell.columns.end());
   all.insert(all.end(), {cell.full_fingerprint, cell.failure_reason, cell.failure_step,
                          cell.fingerprint, cell.cpu_seconds});
 }
 
-/// Everything stored of one run under /cells and /truth, and what it cost; statuses last.
+/// All data of one run under /cells, /truth and /timing, with the statuses last.
 std::vector<Slab> slabs_of_run(const ResultSlabs& slabs) {
   std::vector<Slab> all = slabs_of_truth(slabs);
   for (const CellSlabs& cell : slabs.cells) add_slabs(cell, all);
@@ -55,15 +55,15 @@ std::vector<Slab> slabs_of_cell(const CellSlabs& cell) {
   return all;
 }
 
-/// Runs of a file that follow each other.
+/// Consecutive runs of a file.
 struct Stretch {
   const PosixFile& file;
   const std::vector<Slab>& slabs;
   std::size_t first;  ///< run index
 };
 
-/// Copies slab by slab: runs that follow each other lie in one piece. A run that one of the files
-/// holds in full is full in the other.
+/// Copies slab by slab, since consecutive runs are contiguous in a slab. A run that is stored in
+/// full in one file is stored in full in the other.
 void copy_slabs(const Stretch& from, const Stretch& to, std::size_t runs) {
   for (std::size_t i = 0; i < from.slabs.size(); ++i) {
     const Slab& slab = from.slabs[i];
@@ -84,7 +84,7 @@ T read_value(const PosixFile& file, std::uint64_t offset) {
 
 ResultDescription describe_shard(const std::filesystem::path& path) {
   const PosixFile readable(path,
-                           PosixFile::Mode::read);  // says better than HDF5 why it cannot be opened
+                           PosixFile::Mode::read);  // its errors are clearer than those of HDF5
   return read_description(open_checked(path), path);
 }
 
@@ -176,7 +176,8 @@ bool same_columns(const StoredCell& a, const StoredCell& b) {
          std::ranges::equal(a.full_columns, b.full_columns, same_column);
 }
 
-/// Of a build; flags without the instruction set, on which no bit depends.
+/// A fact about a build. Flags are returned without the instruction set, which does not change any
+/// bit.
 std::optional<std::string> fact(const TextPairs& build, const std::string& name) {
   const auto found = std::ranges::find(build, name, [](const auto& pair) { return pair.first; });
   if (found == build.end()) return std::nullopt;
@@ -233,7 +234,7 @@ void expect_mergeable(const fs::path& out, const std::vector<fs::path>& shards, 
   if (existing == Existing::refuse) expect_free(out);
 }
 
-/// Opens every shard and makes sure that all are of one study.
+/// Opens every shard, and throws StudyError unless all are of one study.
 std::vector<Shard> open_shards(const std::vector<fs::path>& paths, ResultDescription& first) {
   std::vector<Shard> shards;
   for (const fs::path& path : paths) {
@@ -245,7 +246,7 @@ std::vector<Shard> open_shards(const std::vector<fs::path>& paths, ResultDescrip
   return shards;
 }
 
-/// {"3:5", "8:9"} for the runs 3, 4 and 8.
+/// Ranges of consecutive runs: {"3:5", "8:9"} for the runs 3, 4 and 8.
 std::vector<std::string> ranges(const std::vector<std::uint64_t>& runs) {
   std::vector<std::string> found;
   for (std::size_t begin = 0, end = 0; begin < runs.size(); begin = end) {
@@ -255,7 +256,7 @@ std::vector<std::string> ranges(const std::vector<std::uint64_t>& runs) {
   return found;
 }
 
-/// Names what is missing, and the commands that fill the first gaps.
+/// Throws StudyError that lists the missing runs and the commands for the first gaps.
 [[noreturn]] void refuse_gaps(const std::vector<std::uint64_t>& missing, std::uint64_t runs,
                               const fs::path& shard) {
   std::string named, commands;
@@ -274,7 +275,8 @@ std::vector<std::string> ranges(const std::vector<std::uint64_t>& runs) {
                    (gaps.size() > 3 ? "\n  ..." : ""));
 }
 
-/// For every run of the study which shard gives it. Runs held twice must be equal.
+/// Chooses the shard from which each run of the study is copied. Throws StudyError if a run differs
+/// between two shards.
 std::vector<std::size_t> choose_sources(const std::vector<Shard>& shards, std::uint64_t runs,
                                         MergeSummary& summary) {
   constexpr std::size_t none = static_cast<std::size_t>(-1);
@@ -297,7 +299,7 @@ std::vector<std::size_t> choose_sources(const std::vector<Shard>& shards, std::u
   return source;
 }
 
-/// The description of the whole study: that of the first shard with all runs.
+/// The description of the whole study, derived from that of the first shard.
 ResultDescription whole_study(ResultDescription description, std::size_t n_shards) {
   description.runs.resize(description.study_runs);
   std::iota(description.runs.begin(), description.runs.end(), 0U);
@@ -315,7 +317,7 @@ void note_builds(const std::vector<Shard>& shards, MergeSummary& summary) {
   }
 }
 
-/// The runs that shard `s` gives, in stretches.
+/// The runs that are copied from shard `s`, as ranges of consecutive runs.
 std::vector<RunSpan> given_by(const Shard& shard, std::size_t s,
                               const std::vector<std::size_t>& source) {
   std::vector<RunSpan> spans;
@@ -332,7 +334,8 @@ void copy_runs(const std::vector<Shard>& shards, const std::vector<std::size_t>&
   std::vector<std::byte> buffer;
   for (std::size_t s = 0; s < shards.size(); ++s) {
     const PosixFile from(shards[s].path, PosixFile::Mode::read);
-    // Also those that another shard gives: equal by fingerprints that fit both.
+    // Runs that are copied from another shard are checked too: they were compared by fingerprints,
+    // which must match the bytes in both shards.
     for (std::uint64_t run : shards[s].complete_runs) expect_whole(from, shards[s], run, buffer);
     for (const RunSpan& runs : given_by(shards[s], s, source))
       summary.failed += copy_runs(from, shards[s], runs, file, slabs);

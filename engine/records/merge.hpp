@@ -12,59 +12,59 @@
 
 namespace montecarta::engine {
 
-/// What a merge keeps in mind of one shard: nothing that grows with the size of its runs.
+/// The part of a shard that a merge keeps in memory. It does not grow with the size of the runs.
 struct Shard {
   std::filesystem::path path;
   ResultSlabs slabs;
   std::uint64_t first_run = 0;               ///< number of the run at run index 0
-  std::vector<std::uint64_t> complete_runs;  ///< numbers of the runs of which no cell is missing
+  std::vector<std::uint64_t> complete_runs;  ///< numbers of the runs that are missing in no cell
   TextPairs provenance;
   double wall_seconds = 0.0;  ///< [s]
 
   std::size_t index(std::uint64_t run) const { return run - first_run; }
 };
 
-/// Throws StudyError where the file at `path` is no result.
+/// Reads the description of a shard. Throws StudyError if the file at `path` is no result.
 ResultDescription describe_shard(const std::filesystem::path& path);
 Shard make_shard(const std::filesystem::path& path, const ResultDescription& description);
 
-/// Throws StudyError where the two shards hold different bytes for a run they both have.
+/// Throws StudyError if the two shards hold different bytes for run `run`, which both have.
 void expect_equal(const Shard& a, const Shard& b, std::uint64_t run);
-/// Throws StudyError where a run does not fit its fingerprints.
+/// Throws StudyError if a run does not match its fingerprints.
 void expect_whole(const PosixFile& file, const Shard& shard, std::uint64_t run,
                   std::vector<std::byte>& buffer);
-/// Runs of the study that follow each other.
+/// Consecutive runs of the study.
 struct RunSpan {
   std::uint64_t first = 0;
   std::size_t count = 0;
 };
 
-/// Copies all cells of some runs and their true paths to a file of the whole study; tells how many
-/// runs of cells failed.
+/// Copies all cells and the true paths of some runs to a file of the whole study. Returns the
+/// number of failed runs of cells.
 std::uint64_t copy_runs(const PosixFile& from, const Shard& shard, RunSpan runs,
                         const PosixFile& to, const ResultSlabs& slabs);
-/// Copies one run of one cell between files that hold the same runs, its status last.
+/// Copies one run of one cell between files with the same runs. The status is copied last.
 void copy_cell(const PosixFile& from, const CellSlabs& source, const PosixFile& to,
                const CellSlabs& sink, std::size_t run_index);
-/// The same for its true path; nothing where there is none to store.
+/// Copies the true path of one run, if it is stored.
 void copy_truth(const PosixFile& from, const ResultSlabs& source, const PosixFile& to,
                 const ResultSlabs& sink, std::size_t run_index);
 
-/// What a merge did.
+/// Summary of a merge.
 struct MergeSummary {
   std::uint64_t runs = 0;
   std::size_t cells = 0;
-  std::uint64_t failed = 0;        ///< runs of cells that are stored as failed
-  std::uint64_t overlapping = 0;   ///< runs found equal in more than one shard
+  std::uint64_t failed = 0;        ///< number of runs of cells that are stored as failed
+  std::uint64_t overlapping = 0;   ///< number of runs that are equal in more than one shard
   std::uint64_t bytes = 0;         ///< size of the new file
-  std::vector<std::string> notes;  ///< what a user should hear, e.g. of different builds
+  std::vector<std::string> notes;  ///< messages for the user, e.g. about different builds
 };
 
-/// Makes one self-contained file of all runs of a study out of shards, each checked by its
-/// fingerprints and copied as it is; memory does not grow with the runs. `out` appears under its
-/// name only when complete. Throws StudyError and writes nothing where a shard is of another study,
-/// runs held twice differ, or runs are missing; RunError where a shard is damaged or the disk
-/// fails.
+/// Merges shards to one self-contained file of all runs of a study. Every run is checked by its
+/// fingerprints and copied unchanged. Memory does not grow with the number of runs. `out` gets its
+/// name only when it is complete. Throws StudyError and writes nothing if a shard is of another
+/// study, runs in two shards differ, or runs are missing. Throws RunError if a shard is damaged or
+/// the disk fails.
 MergeSummary merge_results(const std::filesystem::path& out,
                            const std::vector<std::filesystem::path>& shards, Existing existing);
 

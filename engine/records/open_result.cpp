@@ -67,7 +67,7 @@ OpenResult create_result(const fs::path& path, const StudyPlan& plan, const Text
   if (existing == Existing::refuse) refuse_existing(path);
   ResultDescription description = describe(plan, provenance);
   if (is_there(path)) description.provenance.emplace_back(format::kReplaces, "an older result");
-  std::optional<PosixFile> replaced;  // its lock proves that nobody writes the work we replace
+  std::optional<PosixFile> replaced;  // locked, so no process is writing the replaced work
   if (is_there(part_of(path))) replaced.emplace(part_of(path), PosixFile::Mode::write).lock();
   OpenResult result{lay_out_new(with_suffix(part_of(path), ".new"), description), {}, {}, {}, {}};
   result.file.rename(part_of(path),
@@ -114,11 +114,11 @@ bool holds_the_same(const fs::path& path, const ResultDescription& planned) {
     const ResultDescription stored = read_description(open_checked(path), path);
     return stored.runs == planned.runs && !difference(planned, stored, path);
   } catch (const std::runtime_error&) {
-    return false;  // no result at all: the user's own file, which is not ours to replace either
+    return false;  // no result but another file of the user, which must not be replaced
   }
 }
 
-/// Finishing replaces what is at `path`; the user must have asked for that, or lose nothing by it.
+/// Throws StudyError if finishing would replace a different file at `path` without --force.
 void expect_replaceable(const fs::path& path, const ResultDescription& planned,
                         const ResultDescription& begun) {
   if (!is_there(path) || begun_with_force(begun) || holds_the_same(path, planned)) return;
@@ -133,7 +133,7 @@ void forget(OpenResult& result, std::size_t cell, std::size_t run_index) {
   result.file.write_at(result.slabs.cells[cell].status.at(run_index), std::span(&missing, 1));
 }
 
-/// Marks what is torn as missing; tells how many runs of cells that were.
+/// Marks damaged runs as missing. Returns the number of runs of cells that were damaged.
 std::size_t reset_torn_runs(OpenResult& result) {
   std::vector<std::byte> buffer;
   std::size_t torn = 0;
@@ -151,7 +151,7 @@ std::size_t reset_torn_runs(OpenResult& result) {
   return torn;
 }
 
-/// What differs from how the work was begun, "name=value" each, in one line.
+/// Facts that differ from those at the beginning of the work, as "name=value" in one line.
 std::string differences(const TextPairs& begun, const TextPairs& now) {
   std::string line;
   for (const auto& pair : now) {
@@ -161,7 +161,7 @@ std::string differences(const TextPairs& begun, const TextPairs& now) {
   return line.empty() ? "resumed" : line.substr(0, line.size() - 2);
 }
 
-/// Adds a line to the log of resumptions; once it is full, no more.
+/// Appends a line to the log of resumptions, unless the log is full.
 void log_session(const OpenResult& result, const std::string& line) {
   std::string log(format::kSittingsBytes, '\0');
   result.file.read_at(result.slabs.sittings.offset, std::as_writable_bytes(std::span(log)));
@@ -184,7 +184,8 @@ OpenResult open_existing(const fs::path& path, PosixFile::Mode mode,
   return result;
 }
 
-/// A file has its final name only once nothing is missing, unless somebody else renamed it.
+/// Throws StudyError if runs are missing although the file has its final name, e.g. because it was
+/// renamed.
 void expect_finished(const OpenResult& result) {
   std::size_t missing = 0;
   std::size_t all = 0;
@@ -237,11 +238,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A cluster may run two copies of one task: a node that was cut off goes on while the scheduler
-// starts the task elsewhere, and on network file systems no lock keeps them apart. So nobody ever
-// writes a file that another process may be writing, and every byte taken over is checked.
+// A cluster may run two copies of one task: a node that lost its connection continues while the
+// scheduler starts the task elsewhere, and locks do not work on network file systems. Therefore no
+// process writes a file that another process may be writing, and all bytes taken from another file
+// are checked.
 
-/// A name nobody else has: OUT.h5.part.HOST.PID.TIME.
+/// A unique name for the file of this process: OUT.h5.part.HOST.PID.TIME.
 fs::path own_name(const fs::path& path) {
   std::array<char, 65> host{};
   ::gethostname(host.data(), host.size() - 1);
@@ -251,7 +253,7 @@ fs::path own_name(const fs::path& path) {
                  std::to_string(now);
 }
 
-/// What attempts at `path` left or are writing: OUT.h5.part.*
+/// The files of other attempts at `path`, finished or running: OUT.h5.part.*
 std::vector<fs::path> attempts_at(const fs::path& path) {
   const std::string prefix = part_of(path).filename().string() + ".";
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
@@ -263,8 +265,8 @@ std::vector<fs::path> attempts_at(const fs::path& path) {
   return found;
 }
 
-/// What a file of ours says of itself; nullopt where it is in the making, cut short or gone. Throws
-/// StudyError where it is of another study: completing this one would remove it.
+/// The description in a file of an attempt; nullopt if the file is incomplete or gone. Throws
+/// StudyError if it is of another study, because it would be removed when this one is complete.
 std::optional<ResultDescription> description_of(const fs::path& work,
                                                 const ResultDescription& planned) {
   std::optional<ResultDescription> stored;
@@ -280,8 +282,9 @@ std::optional<ResultDescription> description_of(const fs::path& work,
                    "number of shards?): give the same --runs or --shard as at the start");
 }
 
-/// Makes OUT.h5.part, which its writer let go of, ours by its name; false where there is none or
-/// another attempt was faster. A network may report a failure of what it did.
+/// Renames OUT.h5.part, which its writer has released, to `own`. Returns false if it does not exist
+/// or another attempt was faster. A network file system may report an error although it renamed the
+/// file.
 bool take_checkpoint(const fs::path& path, const fs::path& own, const ResultDescription& planned) {
   if (!description_of(part_of(path), planned)) return false;
   std::error_code failed;
@@ -301,8 +304,8 @@ OpenResult new_attempt(const fs::path& path, const fs::path& own,
   return result;
 }
 
-/// Copies what is whole in another attempt's file and missing here; tells how many runs of cells
-/// that were.
+/// Copies undamaged runs that are missing here from the file of another attempt. Returns the number
+/// of runs of cells that were copied.
 std::size_t copy_complete_runs(const PosixFile& from, const ResultSlabs& slabs, OpenResult& to) {
   std::vector<std::byte> buffer;
   std::size_t copied = 0;
@@ -323,7 +326,7 @@ std::size_t copy_complete_runs(const PosixFile& from, const ResultSlabs& slabs, 
   return copied;
 }
 
-/// Takes over what another attempt stored and may still be writing.
+/// Copies runs from another attempt, which may still be writing its file.
 void copy_complete_runs(const fs::path& other, const ResultDescription& planned, OpenResult& to) {
   const auto stored = description_of(other, planned);
   if (!stored) return;
@@ -363,7 +366,7 @@ void rename_finished(OpenResult& attempt, const fs::path& path) {
   if (is_there(part_of(path))) return;
   try {
     attempt.file.rename(part_of(path), PosixFile::Target::keep);
-  } catch (const std::runtime_error&) {  // then the next one finds it by its own name
+  } catch (const std::runtime_error&) {  // the next attempt finds it under its own name
   }
 }
 
@@ -371,7 +374,7 @@ void complete_attempt(OpenResult& attempt, const fs::path& path) {
   try {
     if (!is_there(path)) attempt.file.rename(path, PosixFile::Target::keep);
   } catch (const std::runtime_error&) {
-    if (!is_there(path)) throw;  // else another attempt was first, with the same bytes
+    if (!is_there(path)) throw;  // another attempt was first and has the same bytes
   }
   std::error_code ignored;
   for (const fs::path& left : attempts_at(path)) fs::remove(left, ignored);

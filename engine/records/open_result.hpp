@@ -12,40 +12,39 @@
 
 namespace montecarta::engine {
 
-/// Whether one process at a time works at a result, under OUT.h5.part, or several attempts may,
-/// each under a name of its own.
+/// Whether one process at a time works on a result, as OUT.h5.part, or several attempts may, each
+/// in a file with its own name.
 enum class Claim : std::uint8_t { sole, attempt };
 
-/// A result file at hand, locked, with what it holds.
+/// An open, locked result file and its state.
 struct OpenResult {
-  PosixFile file;  ///< OUT.h5.part; OUT.h5 itself where there was nothing left to do
+  PosixFile file;  ///< OUT.h5.part, or OUT.h5 itself if it was complete already
   ResultSlabs slabs;
   std::vector<std::vector<RunStatus>> status;          ///< [cell][run index]
   std::vector<bool> truth_stored;                      ///< [run index]
-  std::vector<std::string> notes;                      ///< what the user should hear
-  PosixFile::Target target = PosixFile::Target::keep;  ///< what finishing does to an older OUT.h5
+  std::vector<std::string> notes;                      ///< messages for the user
+  PosixFile::Target target = PosixFile::Target::keep;  ///< for an older OUT.h5 when finishing
   Claim claim = Claim::sole;
 };
 
-/// Throws RunError where less than `bytes` are free beside `path`.
+/// Throws RunError if less than `bytes` are free beside `path`.
 void expect_room(const std::filesystem::path& path, double bytes);
 
-/// Lays out an empty result at the temporary name `path` and hands it back locked; leaves nothing
-/// where that fails.
+/// Lays out an empty result at the temporary name `path` and returns it locked. Leaves no file if
+/// that fails.
 PosixFile lay_out_new(const std::filesystem::path& path, const ResultDescription& description);
 
-/// Whether two descriptions are of the same study laid out alike (their runs may differ); else what
-/// differs, worded "place: problem (why): remedy" for the file `path`, which `b` describes.
+/// Why `b`, which describes the file `path`, is not of the same study and layout as `a`, worded
+/// "place: problem (why): remedy"; nullopt if it is. Their runs may differ.
 std::optional<std::string> difference(const ResultDescription& a, const ResultDescription& b,
                                       const std::filesystem::path& path);
 
-/// Of two builds, worded for the user; empty where they round alike.
+/// Differences between two builds, worded for the user; empty if both round alike.
 std::vector<std::string> build_differences(const TextPairs& a, const TextPairs& b);
 
-/// A result under its final name, of which nothing is missing; throws StudyError where something
-/// is.
+/// Opens a result under its final name. Throws StudyError if runs are missing.
 OpenResult finished_result(const std::filesystem::path& path, const ResultDescription& planned);
-/// Unfinished work at hand that will become `path`, damaged runs forgotten.
+/// Opens unfinished work that will become `path`, and marks damaged runs as missing.
 OpenResult continued_work(const std::filesystem::path& work, const std::filesystem::path& path,
                           const ResultDescription& planned);
 
@@ -58,11 +57,10 @@ OpenResult resume_result(const std::filesystem::path& path, const StudyPlan& pla
 /// See ResultWriter::attempt.
 OpenResult attempt_result(const std::filesystem::path& path, const StudyPlan& plan,
                           const TextPairs& provenance);
-/// Leaves an attempt that is not complete to the next one: under the name OUT.h5.part, if no other
-/// left one there.
+/// Leaves an incomplete attempt to a later one, as OUT.h5.part unless that name is taken.
 void rename_finished(OpenResult& attempt, const std::filesystem::path& path);
-/// Gives a complete attempt the final name, unless another one was first, and removes what all
-/// attempts left.
+/// Renames a complete attempt to the final name, unless another one was first, and removes the
+/// files of all other attempts.
 void complete_attempt(OpenResult& attempt, const std::filesystem::path& path);
 
 }  // namespace montecarta::engine

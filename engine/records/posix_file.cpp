@@ -45,7 +45,7 @@ std::string remedy(int error) {
 
 off_t signed_offset(std::uint64_t offset) { return static_cast<off_t>(offset); }
 
-/// A pipe is opened without waiting for its other end.
+/// Does not wait for the other end if the path is a pipe.
 int flags_of(PosixFile::Mode mode) {
   constexpr int always = O_CLOEXEC | O_NONBLOCK;
   switch (mode) {
@@ -64,11 +64,11 @@ bool is_regular(int descriptor) {
   return ::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
 }
 
-/// A new name lasts only when its folder is on the disk.
+/// Writes the folder to the disk, without which a new name is not durable.
 void sync_folder_of(const std::filesystem::path& path) {
   const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;  // a folder one may write but not read: nothing to be done
+  if (descriptor < 0) return;  // nothing can be done if the folder is not readable
   ::fsync(descriptor);
   ::close(descriptor);
 }
@@ -169,7 +169,7 @@ void PosixFile::sync() const {
 }
 
 void PosixFile::lock() const {
-  // A lock of the open file description, not flock: HDF5 readers take flocks and would be kept out.
+  // A lock of the open file description, not flock, because flock would exclude HDF5 readers.
   struct flock whole {};
   whole.l_type = F_WRLCK;
   whole.l_whence = SEEK_SET;
@@ -182,7 +182,7 @@ void PosixFile::lock() const {
   }
 }
 
-/// False where another process renamed or replaced the file between opening and locking it.
+/// False if another process renamed or replaced the file between opening and locking.
 bool PosixFile::still_has_its_name() const {
   struct stat opened {};
   struct stat named {};

@@ -11,14 +11,14 @@
 
 namespace montecarta::engine {
 
-/// A file read and written at offsets, from any thread, with errors that say what to do.
-/// Interrupted and partial transfers are carried on. Throws RunError where the disk fails.
+/// A file that is read and written at offsets by any thread. Interrupted and partial transfers are
+/// continued. Throws RunError with a remedy if the disk fails.
 class PosixFile {
  public:
   enum class Mode { read, write, create };
 
-  /// Throws StudyError where the path cannot be opened so or is no regular file. `create` keeps
-  /// what is there.
+  /// Opens a file. Throws StudyError if it cannot be opened in this mode or is no regular file.
+  /// `create` keeps existing contents.
   PosixFile(std::filesystem::path path, Mode mode);
   ~PosixFile();
   PosixFile(PosixFile&& other) noexcept;
@@ -27,20 +27,19 @@ class PosixFile {
   std::uint64_t size() const;
   void write_at(std::uint64_t offset, std::span<const std::byte> bytes) const;
   void read_at(std::uint64_t offset, std::span<std::byte> bytes) const;
-  /// Copies `count` bytes from another file without a detour through this program where the system
-  /// can.
+  /// Copies `count` bytes from another file, within the operating system if it can.
   void copy_at(std::uint64_t offset, const PosixFile& from, std::uint64_t from_offset,
                std::uint64_t count) const;
-  /// Takes the disk space of the whole file now, so that it cannot run out later; writing then also
-  /// costs the system about half. Does nothing on file systems that cannot.
+  /// Allocates the disk space of the whole file, so that it cannot run out later and writing takes
+  /// about half the system time. Does nothing on file systems that do not support it.
   void reserve() const;
-  /// Waits until everything is on the disk.
+  /// Waits until all data are on the disk.
   void sync() const;
-  /// Keeps other montecarta processes out until this file is closed; readers are not kept out.
-  /// Throws StudyError where another process holds it.
+  /// Locks the file against other montecarta processes that write, until it is closed. Readers are
+  /// not excluded. Throws StudyError if another process has locked it.
   void lock() const;
-  /// Gives the file its final name, on the disk too. What had the name is replaced, or StudyError
-  /// where `keep`.
+  /// Gives the file its final name and writes that to the disk. An existing file is replaced, or
+  /// with `keep` StudyError is thrown.
   enum class Target { replace, keep };
   void rename(const std::filesystem::path& name, Target target);
 
@@ -53,17 +52,17 @@ class PosixFile {
   int descriptor_ = -1;
 };
 
-/// "3.8 MB", "12 kB", "17 B": powers of 1000, two digits or more.
+/// A size in powers of 1000 with at least two digits: "3.8 MB", "12 kB", "17 B".
 std::string bytes_text(double bytes);
 
-/// Name of the work in progress of the result `path`.
+/// Name of the unfinished work of the result `path`.
 std::filesystem::path part_of(std::filesystem::path path);
 
-/// Whether something has that name. False where its folder may not be searched: opening the file
-/// says so better than this could.
+/// Whether a file of that name exists. False if its folder cannot be searched; opening the file
+/// reports that.
 bool is_there(const std::filesystem::path& path);
 
-/// Throws StudyError where something has that name already.
+/// Throws StudyError if a file of that name exists.
 void expect_free(const std::filesystem::path& path);
 
 }  // namespace montecarta::engine

@@ -15,7 +15,7 @@
 namespace montecarta::engine {
 namespace {
 
-/// The widest registers the program was compiled for; no result depends on it.
+/// The widest registers for which the program was compiled. Results do not depend on it.
 std::string instruction_set() {
 #if defined(__AVX512F__)
   return "AVX-512";
@@ -30,7 +30,7 @@ std::string instruction_set() {
 #endif
 }
 
-/// Whose exp(), sin() and so on the program calls.
+/// The C library that provides exp(), sin() and the like.
 std::string libm() {
 #if defined(__GLIBC__)
   return std::string("glibc ") + gnu_get_libc_version();

@@ -15,7 +15,7 @@ std::span<T> column(RunRecord& record, std::string_view name) {
   return c ? record.column<T>(*c) : std::span<T>();
 }
 
-/// Row `row` of a column whose rows have `width` elements; empty where the column is.
+/// Row `row` of a column with `width` elements per row; empty if the column is.
 template <class T>
 std::span<T> row_of(std::span<T> column, std::size_t row, std::size_t width) {
   return column.empty() ? column : column.subspan(row * width, width);
@@ -154,7 +154,7 @@ void Recorder::record_joint(const SlamFilter& filter, std::size_t scan) {
   const auto row = static_cast<std::size_t>(found - scans.begin());
   const std::size_t states = columns_.joint_mean.size() / scans.size();
   std::ranges::copy(joint->mean, row_of(columns_.joint_mean, row, states).begin());
-  std::ranges::copy(joint->covariance.reshaped(),  // symmetric: the order is one and the same
+  std::ranges::copy(joint->covariance.reshaped(),  // symmetric, so rows and columns are equal
                     row_of(columns_.joint_covariance, row, states * states).begin());
   columns_.numerical_faults[scan] += joint->numerical_faults;
 }

@@ -13,28 +13,28 @@
 
 namespace montecarta::engine {
 
-/// Watches a filter and copies what the layout asks for into a record: predict(), then update() and
-/// after_scan() where the step ends with a scan, then after_step(). A column nobody asked for is
-/// never computed. One per worker and cell; allocates nothing after construction. The record must
-/// outlive it.
+/// Copies the data of a filter that the layout contains into a record. The calls follow the filter:
+/// predict(), then update() and after_scan() if the step ends with a scan, then after_step().
+/// Columns that are not stored are not computed. There is one recorder for each worker and cell; it
+/// allocates nothing after construction. The record must outlive it.
 class Recorder {
  public:
   explicit Recorder(RunRecord& record);
 
-  /// Of the next run, where that has fewer scans than the layout: the last of them has the final
-  /// map.
+  /// Sets the number of scans of the next run, if it has fewer than the layout. The final map is
+  /// stored at the last of them.
   void expect_scans(std::size_t scans) { scans_ = scans; }
 
-  /// Row `step` of the columns over time. Nothing where rows are scans. Returns the estimate it
-  /// recorded, nullptr where it recorded none, so that the caller can judge it without asking
-  /// twice.
+  /// Writes row `step` of the columns over time, unless their rows are scans. Returns the recorded
+  /// estimate, so that the caller can check it without computing it again; nullptr if none was
+  /// recorded.
   const PoseEstimate* after_step(const SlamFilter& filter, std::size_t step);
-  /// Row `scan` of the columns over scans (and over time, where rows are scans). Returns as
-  /// after_step().
+  /// Writes row `scan` of the columns over scans, and over time if those rows are scans. Returns
+  /// the same as after_step().
   const PoseEstimate* after_scan(const SlamFilter& filter, std::size_t scan);
 
  private:
-  /// Empty where it is not stored.
+  /// Columns of a map; empty if they are not stored.
   struct MapColumns {
     std::span<double> mean, covariance;
     std::span<std::uint8_t> seen;
@@ -49,7 +49,7 @@ class Recorder {
     std::span<std::uint32_t> numerical_faults;
   };
 
-  /// A number of every scan that the filter reports.
+  /// A number that the filter reports at every scan.
   struct Reported {
     double (*value)(const ScanReport&);
     std::variant<std::span<double>, std::span<std::uint8_t>, std::span<std::uint32_t>> column;
@@ -65,10 +65,10 @@ class Recorder {
   void write_map(const MapColumns& columns, std::size_t row) const;
 
   const RecordLayout* layout_;
-  std::size_t scans_;  ///< of this run
+  std::size_t scans_;  ///< number of scans of this run
   Columns columns_;
   std::vector<Reported> reported_;
-  PoseEstimate estimate_;                 ///< the last one recorded
+  PoseEstimate estimate_;                 ///< the last recorded estimate
   std::vector<std::uint32_t> ancestors_;  ///< of one scan, before narrowing to 16 bits
   std::vector<std::optional<LandmarkEstimate>> landmarks_;  ///< of one scan
 };

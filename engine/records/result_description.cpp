@@ -17,7 +17,7 @@
 namespace montecarta::engine {
 namespace {
 
-constexpr std::uint64_t kMostRuns = 10'000'000;  // keeps the bookkeeping of a file in memory
+constexpr std::uint64_t kMostRuns = 10'000'000;  // limits the memory for the bookkeeping of a file
 
 void number_runs(const StudyPlan& plan, ResultDescription& result) {
   if (plan.runs_here() > kMostRuns) {
@@ -143,7 +143,8 @@ void expect_result_file(const h5::Handle& file, const std::filesystem::path& pat
   }
 }
 
-/// The axes behind `run_axis` out of "run, time, component"; nullopt where it is not of that kind.
+/// The axes behind `run_axis` in a text such as "run, time, component"; nullopt if the text is
+/// different.
 std::optional<std::vector<Axis>> axes_of(const std::string& dimension_order,
                                          std::string_view run_axis) {
   std::vector<Axis> axes;
@@ -160,8 +161,8 @@ std::optional<std::vector<Axis>> axes_of(const std::string& dimension_order,
   return axes;
 }
 
-/// A dataset as a column; nullopt where it is not one (a later version may have added other
-/// things).
+/// A dataset as a column; nullopt if it is none, since later versions may have added other
+/// datasets.
 std::optional<Column> column_of(const h5::Handle& group, const std::string& name,
                                 std::string_view run_axis, std::size_t runs) {
   if (std::ranges::find(kBookkeeping, name) != kBookkeeping.end()) return std::nullopt;
@@ -179,7 +180,7 @@ std::optional<Column> column_of(const h5::Handle& group, const std::string& name
                 h5::find_text(dataset, "long_name").value_or(name)};
 }
 
-/// All of the group that are columns of `runs` runs.
+/// All members of the group that are columns of `runs` runs.
 std::vector<Column> read_columns(const h5::Handle& group, std::string_view run_axis,
                                  std::size_t runs) {
   std::vector<Column> columns;
@@ -225,7 +226,7 @@ ResultDescription read_description(const h5::Handle& file, const std::filesystem
 namespace {
 
 constexpr std::size_t kLongestLabel = 1000;
-constexpr std::uint32_t kMostSteps = 1U << 27U;  // of a run; more would take days to go through
+constexpr std::uint32_t kMostSteps = 1U << 27U;  // of a run; more would take days to process
 
 bool are_finite(const std::vector<double>& values) {
   return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
@@ -263,7 +264,7 @@ class Check {
   const std::filesystem::path& path_;
 };
 
-/// Texts that stand on one line of a table, a figure or a comment.
+/// Texts that are shown within one line of a table, a figure or a comment.
 void check_texts(const ResultDescription& d, const Check& check) {
   const auto expect_line = [&](const std::string& text) {
     check.expect(visible(text, "\t") == text, "a control character in '" + visible(text) + "'");
@@ -322,7 +323,7 @@ void check_references(const std::vector<ReferencePath>& references, const Check&
   }
 }
 
-/// Whether two drives are judged alike by the two.
+/// Whether two references have the same name and the same kinds of data.
 bool are_alike(const ReferencePath& a, const ReferencePath& b) {
   return a.name == b.name && a.heading.empty() == b.heading.empty() &&
          a.covariance.empty() == b.covariance.empty();
@@ -335,7 +336,7 @@ void check_scenario(const ResultDescription& d, const Check& check) {
   check_references(d.references, check);
 }
 
-/// Runs of their own drives are read by the times of these.
+/// Checks the scans of runs that are drives of their own.
 void check_drives(const ResultDescription& d, const Check& check) {
   if (d.drives.empty()) return;
   check.expect(d.drives.size() == d.study_runs && d.times.size() == d.scan_times.size(),
@@ -361,7 +362,7 @@ std::vector<std::string_view> nees_columns() {
   return names;
 }
 
-/// Columns that are read together.
+/// Columns that must be stored together.
 const std::vector<std::vector<std::string_view>> kTogether = {
     {"pose_mean_mixture", "pose_covariance_mixture"},
     {"nis", "nis_dof"},
@@ -395,7 +396,7 @@ void check_columns(const StoredCell& cell, const Check& check) {
   check.expect(cell.label.size() <= kLongestLabel, "the label of a cell is too long");
 }
 
-/// Rows and columns of a covariance are as many.
+/// The row axis of a covariance, which has the length of its column axis.
 Axis row_axis(Axis axis) {
   if (axis == Axis::state_column) return Axis::state;
   return axis == Axis::error_component_column ? Axis::error_component : axis;

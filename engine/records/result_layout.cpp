@@ -21,7 +21,7 @@ class SlabFinder {
         runs_(description.runs.size()),
         full_runs_(description.full_runs_here()) {}
 
-  /// A dataset of `run_bytes` for each run.
+  /// Finds a dataset with `run_bytes` for each run.
   Slab find(const std::string& name, std::uint64_t run_bytes) const {
     return find(name, run_bytes, runs_);
   }
@@ -151,7 +151,7 @@ void put_label(const h5::Handle& dataset, const Label& label) {
   h5::put_text(dataset, "long_name", label.long_name);
 }
 
-/// Attaches scales and names the axes, slowest first, for readers that turn them round.
+/// Attaches scales and stores the names of the axes, slowest first, for readers that reverse axes.
 void put_dimensions(const h5::Handle& dataset, const std::vector<std::string>& dimensions,
                     const Scales& scales) {
   std::string order;
@@ -213,7 +213,7 @@ void add_index_scale(const h5::Handle& parent, const std::string& name, std::siz
 
 namespace {
 
-/// Bookkeeping must not depend on what happens to lie in the new file.
+/// Fills a dataset with zeros: a new dataset has undefined contents.
 void write_zeros(const h5::Handle& dataset, Element element, std::size_t count) {
   const std::vector<std::byte> zeros(count * size_of(element));
   h5::write(dataset, element, zeros.data());
@@ -233,7 +233,7 @@ void add_truth(const h5::Handle& file, const ResultDescription& result, const Sc
   write_zeros(fingerprint, Element::u64, result.runs.size());
 }
 
-/// Scales whose length differs from cell to cell live with the cell.
+/// Adds a scale to the group of a cell, if cells differ in its length.
 void add_own_scale(const h5::Handle& group, const StoredCell& cell, Axis axis,
                    const std::string& long_name, Scales& scales) {
   for (const auto* columns : {&cell.columns, &cell.full_columns}) {
@@ -260,7 +260,7 @@ void add_bookkeeping(const h5::Handle& group, std::size_t runs, const Scales& sc
   write_zeros(fingerprint, Element::u64, runs);
 }
 
-/// `run_axis`: the axis of its `runs` runs.
+/// Adds a column of `runs` runs along `run_axis`.
 void add_column(const h5::Handle& group, const Column& column, const char* run_axis,
                 std::size_t runs, const Scales& scales) {
   h5::Shape shape = {runs};
@@ -271,7 +271,7 @@ void add_column(const h5::Handle& group, const Column& column, const char* run_a
               {column.units, column.long_name}, scales);
 }
 
-/// What only the first runs have.
+/// Adds the columns that only the first runs have.
 void add_full(const h5::Handle& group, const StoredCell& cell, std::size_t runs,
               const Scales& scales) {
   if (cell.full_columns.empty()) return;

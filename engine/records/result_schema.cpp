@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a result file says of itself, listed once for the writer and the reader
+// The description in a result file, listed once for both the writer and the reader
 // (analysis/FORMAT.md).
 #include "engine/records/result_layout.hpp"
 #include "engine/records/run_record.hpp"
@@ -25,7 +25,7 @@ constexpr Element element_of() {
   return std::is_same_v<T, std::uint64_t> ? Element::u64 : Element::u32;
 }
 
-/// The name of member i of a group: a reference has one of its own, a drive that of its run.
+/// The name of member i of a group. A reference has a name of its own, a drive that of its run.
 std::string member_name(const ReferencePath& path, std::size_t /*i*/) { return path.name; }
 std::string member_name(const OwnDrive& /*drive*/, std::size_t i) {
   constexpr std::size_t kDigits = 5;
@@ -44,7 +44,7 @@ class FieldWriter {
   void number(const char* name, std::uint64_t value) {
     h5::put_numbers(object_, name, std::array{value});
   }
-  /// Nothing where no run is stored in full.
+  /// Writes the scale of full runs, unless no run is stored in full.
   void full_runs(const ResultDescription& d) {
     if (d.full_runs == 0) return;
     number(format::kFullRuns, d.full_runs);
@@ -82,7 +82,7 @@ class FieldWriter {
   void pose(const char* name, const Pose& pose, const char* meaning) {
     write(name, Element::f64, {3}, {"component"}, {"m, m, rad", meaning}, &pose);
   }
-  /// Points with a scale of their own: "landmark" and "landmarks".
+  /// Writes points with their scale: e.g. "landmark" and "landmarks".
   void points(const std::string& one, const Points& points, const char* meaning) {
     if (points.empty()) return;
     counting_scale(one.c_str(), points.size(), ("identity of the " + one).c_str());
@@ -94,7 +94,7 @@ class FieldWriter {
     write(name, Element::f64, {positions.size(), 2}, {dimension, "coordinate"}, {"m", meaning},
           positions.data());
   }
-  /// Of every fix the block of the components that it measures.
+  /// Writes the covariance of the measured components of every fix.
   void covariances(const ReferencePath& path) {
     if (path.covariance.empty()) return;
     const int d = path.dimension();
@@ -140,7 +140,7 @@ class FieldWriter {
   Scales& scales_;
 };
 
-/// Reads them, by members of the same names.
+/// Reads the fields of one HDF5 object. Its members are those of FieldWriter.
 class FieldReader {
  public:
   explicit FieldReader(const h5::Handle& object) : object_(object) {}
@@ -188,7 +188,7 @@ class FieldReader {
     for (std::size_t i = 0; i + 1 < flat.size(); i += 2)
       positions.emplace_back(flat[i], flat[i + 1]);
   }
-  /// As many as there are whole blocks of numbers.
+  /// Reads one covariance for each complete block of numbers.
   void covariances(ReferencePath& path) {
     if (!h5::has(object_, "covariance")) return;
     const int d = path.dimension();
@@ -219,7 +219,7 @@ class FieldReader {
   }
 
  private:
-  /// All numbers of a dataset, one behind the other.
+  /// All numbers of a dataset as one vector.
   template <class T>
   std::vector<T> read_all(const std::string& name) {
     const h5::Handle dataset = h5::open_dataset(object_, name);
@@ -280,7 +280,7 @@ void visit_scenario(Fields& scenario, Description& d) {
   });
 }
 
-/// `between` comes before what is last in the file.
+/// `between` is called before the last fields.
 template <class Fields, class Description>
 void visit(Fields& file, Description& d, const std::function<void()>& between) {
   file.text("title", d.title);

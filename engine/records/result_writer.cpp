@@ -134,7 +134,7 @@ void ResultWriter::write(std::size_t cell, std::size_t run_index, const RunRecor
   file.write_at(slabs.failure_step.at(run_index), bytes_of(record.failure_step()));
   file.write_at(slabs.fingerprint.at(run_index), bytes_of(record.fingerprint()));
   file.write_at(slabs.cpu_seconds.at(run_index), bytes_of(record.cpu_seconds()));
-  // Last, so that whoever sees it finds all the rest in place.
+  // Written last, so that a reader that sees the status finds all other data in place.
   file.write_at(slabs.status.at(run_index), bytes_of(record.status()));
   work_->status[cell][run_index].store(record.status(), std::memory_order_release);
 }

@@ -14,58 +14,58 @@
 
 namespace montecarta::engine {
 
-/// What to do where a result of that name is already there.
+/// What happens to an existing file of the same name.
 enum class Existing { refuse, replace };
 
-/// Writes the result file of a plan. Work in progress lies in OUT.h5.part, which any HDF5 reader
-/// opens at any moment; finish() gives it its final name. Runs go straight from the caller's thread
-/// to their place in the file, the status byte last, so there is no queue, and `kill -9` loses only
-/// runs in flight. `run_index` counts from 0 within this file: run number plan.first_run +
-/// run_index. Throws StudyError where the user must act before running (result exists, other study,
-/// path), RunError where the disk fails.
+/// Writes the result file of a plan. Unfinished work is in OUT.h5.part, which any HDF5 reader can
+/// open at any time; finish() renames it. A thread writes its run directly to its place in the
+/// file, the status byte last, so that there is no queue and `kill -9` loses only the current runs.
+/// `run_index` counts from 0 within this file: it stands for run number plan.first_run + run_index.
+/// Throws StudyError if the user must act first (existing result, other study, path), and RunError
+/// if the disk fails.
 class ResultWriter {
  public:
-  /// Lays out a new file. `existing` also says what happens to an unfinished OUT.h5.part. An OUT.h5
-  /// to be replaced stays untouched until finish(). `provenance` (how the file is made) becomes
-  /// attributes of /provenance.
+  /// Lays out a new file. `existing` also applies to an unfinished OUT.h5.part. An OUT.h5 that is
+  /// to be replaced stays unchanged until finish(). `provenance` is stored as attributes of
+  /// /provenance.
   static ResultWriter create(const std::filesystem::path& path, const StudyPlan& plan,
                              const TextPairs& provenance, Existing existing);
-  /// Goes on with OUT.h5.part, or finds OUT.h5 finished with nothing missing, or begins where there
-  /// is neither. Refuses beside an OUT.h5 of another study or other runs, unless `replace` began
-  /// it. Stored runs whose fingerprint does not fit (a power cut) count as missing again.
+  /// Continues OUT.h5.part, opens OUT.h5 if it is complete, or begins if neither exists. Throws
+  /// StudyError if OUT.h5 is of another study or other runs, unless the work was begun with
+  /// `replace`. Stored runs that do not match their fingerprints (after a power cut) become missing
+  /// again.
   static ResultWriter resume(const std::filesystem::path& path, const StudyPlan& plan,
                              const TextPairs& provenance);
-  /// One of several attempts at one result, perhaps on a machine that was given up for dead: works
-  /// under a name of its own, OUT.h5.part.*, goes on from what others left or still write, checked
-  /// and copied, and never disturbs them. The first that is complete becomes OUT.h5. Finds OUT.h5
-  /// finished as resume() does.
+  /// Makes one of several attempts at the same result, perhaps by machines that were considered
+  /// dead. Works in a file of its own, OUT.h5.part.*, and copies undamaged runs from other
+  /// attempts, finished or running, without disturbing them. The first attempt that is complete
+  /// becomes OUT.h5. Opens OUT.h5 if it is complete, like resume().
   static ResultWriter attempt(const std::filesystem::path& path, const StudyPlan& plan,
                               const TextPairs& provenance);
   ~ResultWriter();
   ResultWriter(ResultWriter&&) noexcept;
 
-  /// Whether this run of this cell is in the file. Thread-safe.
+  /// Status of this run of this cell in the file. Thread-safe.
   RunStatus status(std::size_t cell, std::size_t run_index) const;
-  /// What a user should hear about a resumption ("3 runs were damaged ..."), one sentence each.
+  /// Messages for the user about a resumption ("3 runs were damaged ..."), one sentence each.
   const std::vector<std::string>& notes() const;
 
-  /// Stores the true path of a run, once; call it for every drive made, before write().
+  /// Stores the true path of a run. Must be called once for every drive, before write().
   /// Thread-safe.
   void write_truth(std::size_t run_index, const Drive& drive);
   /// Stores a finished run (complete or failed), once. Thread-safe for different (cell, run).
   void write(std::size_t cell, std::size_t run_index, const RunRecord& record);
-  /// Marks a run as not needed, for good. Between runs.
+  /// Marks a run as not needed, permanently. Must be called between rounds.
   void spare(std::size_t cell, std::size_t run_index);
-  /// The file with what is stored so far, to be read.
+  /// The file with the runs stored so far, for reading.
   const std::filesystem::path& unfinished() const;
-  /// Adds to the wall time of all sittings [s] in /timing.
+  /// Adds to the wall time of all sessions in /timing [s].
   void note_wall_seconds(double seconds);
 
-  /// Flushes what is written to the disk; the file stays, or as an attempt becomes, OUT.h5.part, to
-  /// be resumed. Call before an early exit.
+  /// Flushes all data to the disk. The file remains as OUT.h5.part and can be resumed; an attempt
+  /// is renamed to that. Must be called before an early exit.
   void suspend();
-  /// No run is missing: flushes, renames OUT.h5.part to OUT.h5. Throws std::logic_error where one
-  /// is missing.
+  /// Flushes and renames OUT.h5.part to OUT.h5. Throws std::logic_error if a run is missing.
   void finish();
 
  private:

@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::size_t kAlignment = 64;  // a cache line, so that no two columns share one
 
-constexpr std::size_t kMostOfU16 = 65535;  // particles whose indices need no more
+constexpr std::size_t kMostOfU16 = 65535;  // largest number of particles with 16-bit indices
 
-/// Without a shape.
+/// The column of a kind for this cell, without its shape.
 Column column_of(const ColumnKind& kind, const Cell& cell) {
   Column column{kind.name, kind.element, kind.axes, {}, kind.units, kind.long_name};
   if (kind.element == Element::u16 && cell.particles > kMostOfU16) column.element = Element::u32;
@@ -41,7 +41,7 @@ RecordLayout::RecordLayout(const Cell& cell, const ColumnSelection& selection,
   if (detail == Detail::full) add_columns(cell, in_full(selection), lengths);
 }
 
-/// Those that are not there yet.
+/// Adds the columns that are not yet present.
 void RecordLayout::add_columns(const Cell& cell, const ColumnSelection& selection,
                                const AxisLengths& lengths) {
   for (const ColumnKind& kind : column_table()) {
@@ -105,7 +105,7 @@ void RunRecord::mark_failed(std::uint32_t step, std::string_view reason, double 
   outcome_ = {};
   outcome_.step = step;
   std::size_t length = std::min(reason.size(), kFailureReasonBytes);
-  // Never half of a UTF-8 character: step back over continuation bytes.
+  // A UTF-8 character is never cut: its continuation bytes are removed too.
   const auto continues = [&](std::size_t i) {
     return i < reason.size() && (static_cast<unsigned char>(reason[i]) & 0xC0U) == 0x80U;
   };

@@ -18,33 +18,33 @@
 
 namespace montecarta::engine {
 
-/// What is stored of a run: the columns of every run, or behind them also those that only the first
+/// Which columns of a run are stored: those of every run, or also those that only the first
 /// ColumnSelection::full_runs have.
 enum class Detail : std::uint8_t { usual, full };
 
-/// The columns a cell stores and where they lie in the memory of one run. Columns nobody asked for
-/// are absent.
+/// The columns that a cell stores, and their places in the memory of one run. Other columns are
+/// absent.
 class RecordLayout {
  public:
   RecordLayout(const Cell& cell, const ColumnSelection& selection, const Itinerary& itinerary,
                Detail detail = Detail::usual);
 
-  /// In the order of the file.
+  /// All columns, in the order of the file.
   const std::vector<Column>& columns() const { return columns_; }
-  /// How many of them every run has; the others come behind.
+  /// Number of columns that every run has. The others follow them.
   std::size_t usual_columns() const { return usual_columns_; }
-  /// Where column `c` begins [byte]; a multiple of 64.
+  /// Offset of column `c` [byte], a multiple of 64.
   std::size_t offset(std::size_t c) const { return offsets_[c]; }
   /// Memory of one run [byte].
   std::size_t bytes() const { return bytes_; }
-  /// Which column has this name; nullopt where it is not stored.
+  /// Index of the column of that name; nullopt if it is not stored.
   std::optional<std::size_t> find(std::string_view name) const;
-  /// Rows of `time` are scans, not steps (record.rate = scan).
+  /// Whether the rows of `time` are scans instead of steps (record.rate = scan).
   bool scans_only() const { return scans_only_; }
   std::size_t scans() const { return scans_; }
   std::size_t particles() const { return particles_; }
   std::size_t landmarks() const { return landmarks_; }
-  /// Scans of the rows of the joint columns, in order; empty where there are none.
+  /// The scans of the rows of the joint columns, in order; empty if there are none.
   const std::vector<std::uint32_t>& joint_scans() const { return joint_scans_; }
 
  private:
@@ -61,64 +61,65 @@ class RecordLayout {
   std::vector<std::uint32_t> joint_scans_;
 };
 
-/// One for each cell of the plan.
+/// One layout for each cell of the plan.
 std::vector<RecordLayout> layouts_of(const StudyPlan& plan, Detail detail);
 
-/// State of one run of one cell; the numbers are those of the file's `status`. Spared: not made,
-/// since the runs before it were enough.
+/// State of one run of one cell, with the numbers of the file's `status`. A spared run was not
+/// made, because the runs before it were enough.
 enum class RunStatus : std::uint8_t { missing = 0, complete = 1, failed = 2, spared = 3 };
 
-/// Whether a run of that state has left a record.
+/// Whether a run with that status has a stored record.
 inline bool is_stored(RunStatus status) {
   return status == RunStatus::complete || status == RunStatus::failed;
 }
 
-/// Throws StudyError, beginning with `place`, where a number read from a file is none of these.
+/// Throws StudyError that begins with `place` if a number from a file is no status.
 void expect_known(std::span<const RunStatus> statuses, const std::string& place);
 
-/// Width of failure_reason in the file: fixed, so that a run's reason has its own place.
+/// Width of failure_reason in the file. It is fixed, so that each run has its place.
 inline constexpr std::size_t kFailureReasonBytes = 128;
 
-/// One run of one cell. Made once by each worker and cleared from run to run; allocates nothing
+/// One run of one cell. Each worker makes it once and clears it for every run; it allocates nothing
 /// after construction. The layout must outlive it.
 class RunRecord {
  public:
-  /// In memory of its own.
+  /// Allocates its own memory.
   explicit RunRecord(const RecordLayout& layout);
-  /// In memory that is lent, at least layout.bytes() aligned for doubles: a worker's records of all
-  /// cells share one piece. Whoever lent it in between must clear() first.
+  /// Uses given memory of at least layout.bytes() bytes that is aligned for doubles: the records of
+  /// all cells of a worker share one buffer. After another record has used it, clear() must be
+  /// called.
   RunRecord(const RecordLayout& layout, std::span<std::byte> memory);
   RunRecord(RunRecord&&) = default;
   RunRecord& operator=(RunRecord&&) = default;
 
-  /// Forgets the run: numbers become NaN, counts and flags 0, status missing.
+  /// Resets the record: numbers become NaN, counts and flags 0, the status missing.
   void clear();
-  /// The run went through. `cpu_seconds`: processor time of the run's own thread over its steps
-  /// (analysis/FORMAT.md, "/timing").
+  /// Marks the run as complete. `cpu_seconds` is the processor time of the run's own thread over
+  /// its steps (analysis/FORMAT.md, "/timing").
   void mark_complete(double cpu_seconds);
-  /// The run ended at `step` (0-based) for `reason`; a longer reason than the file holds is cut at
-  /// a character.
+  /// Marks the run as failed at `step` (from 0) for `reason`, which is cut between two characters
+  /// if it is longer than its place in the file.
   void mark_failed(std::uint32_t step, std::string_view reason, double cpu_seconds);
 
   const RecordLayout& layout() const { return *layout_; }
   RunStatus status() const { return status_; }
   std::uint32_t failure_step() const { return outcome_.step; }
   std::string_view failure_reason() const;
-  /// The reason as it goes to the file: zeros behind the text.
+  /// The reason as stored in the file, padded with zeros.
   std::span<const char> failure_text() const { return outcome_.reason; }
   double cpu_seconds() const { return cpu_seconds_; }
 
-  /// Column `c` of the layout as it goes to the file, row by row in the machine's byte order.
+  /// Column `c` of the layout as stored in the file, row by row in the byte order of the machine.
   std::span<const std::byte> bytes(std::size_t c) const;
-  /// The same as elements of `T`, whose size must be the column's.
+  /// The same as elements of type T, which must have the element size of the column.
   template <class T>
   std::span<T> column(std::size_t c) {
     const Column& described = layout_->columns()[c];
     expect_element(described, sizeof(T));
     return {reinterpret_cast<T*>(memory_.data() + layout_->offset(c)), described.elements()};
   }
-  /// XXH3 of what every run has in /cells: columns, status, failure step and reason. Tells torn
-  /// data from whole.
+  /// XXH3 of the data of every run in /cells: columns, status, failure step and reason. Detects
+  /// damaged data.
   std::uint64_t fingerprint() const;
   /// XXH3 of the columns that only the first runs have.
   std::uint64_t full_fingerprint() const;

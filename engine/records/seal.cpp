@@ -25,7 +25,7 @@ constexpr std::string_view kMagic = "\x89MCSEAL\n";
 constexpr std::uint64_t kVersion = 1;
 constexpr std::size_t kHeadWords = 4;         // magic, version, size of the file, number of ranges
 constexpr std::size_t kTailWords = 2;         // fingerprint of the file, fingerprint of the seal
-constexpr std::size_t kSuperblockBytes = 52;  // more than any version needs up to its end address
+constexpr std::size_t kSuperblockBytes = 52;  // contains the end address in every version
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
   throw StudyError(path.string() + ": damaged (" + why +
@@ -45,8 +45,8 @@ T value_at(std::span<const std::byte> bytes, std::size_t offset) {
   return value;
 }
 
-/// Where the HDF5 library takes the file to end, as its superblock says. Throws StudyError where
-/// the file does not begin as HDF5 does.
+/// End of the file according to its HDF5 superblock. Throws StudyError if the file does not begin
+/// like HDF5.
 std::uint64_t end_of_hdf5(const PosixFile& file) {
   std::array<std::byte, kSuperblockBytes> head{};
   if (file.size() >= head.size()) file.read_at(0, head);
@@ -71,7 +71,7 @@ void add_bytes(const PosixFile& file, std::uint64_t from, std::uint64_t to,
   }
 }
 
-/// Of every byte before `end` that lies in no range.
+/// Fingerprint of all bytes before `end` outside the ranges.
 std::uint64_t fingerprint_outside(const PosixFile& file, std::span<const ByteRange> ranges,
                                   std::uint64_t end) {
   Fingerprint fingerprint;
@@ -91,7 +91,7 @@ std::uint64_t fingerprint_of(std::span<const std::uint64_t> words) {
   return fingerprint.value();
 }
 
-/// The ranges of a seal that is whole; they must lie one behind the other and before `end`.
+/// The ranges of an undamaged seal. Throws StudyError unless they are increasing and before `end`.
 std::vector<ByteRange> ranges_of(const Words& seal, std::uint64_t end,
                                  const std::filesystem::path& path) {
   std::vector<ByteRange> ranges;

@@ -10,9 +10,9 @@
 #include <filesystem>
 #include <vector>
 
-/// The seal of a result file: a block behind the end of what is HDF5's, with a fingerprint of every
-/// byte that is not written again once the file is laid out (analysis/FORMAT.md, "The seal"). It is
-/// looked at before the HDF5 library sees the file, which damaged metadata can crash.
+/// The seal of a result file: a block behind the HDF5 data with a fingerprint of all bytes that do
+/// not change after the file is laid out (analysis/FORMAT.md, "The seal"). It is checked before the
+/// HDF5 library opens the file, because damaged metadata can crash the library.
 namespace montecarta::engine {
 
 /// Bytes [offset, offset + length) of a file.
@@ -21,20 +21,20 @@ struct ByteRange {
   std::uint64_t length = 0;
 };
 
-/// What is written after a file is laid out: increasing, none touches another.
+/// The ranges that are written after a file is laid out, increasing and disjoint.
 std::vector<ByteRange> written_later(const ResultSlabs& slabs);
 
-/// Appends the seal to a file just laid out; `open` are the ranges that it leaves open.
+/// Appends the seal to a new file. Its fingerprint leaves out the ranges `open`.
 void put_seal(const PosixFile& file, const std::vector<ByteRange>& open);
 
 enum class Seal : std::uint8_t {
   holds,
-  absent,  ///< laid out by an older version, or written again by another program
+  absent,  ///< of an older version, or the file was rewritten by another program
 };
-/// Throws StudyError where the file is not HDF5, was cut short, or does not fit its seal.
+/// Throws StudyError if the file is not HDF5, is cut short, or does not match its seal.
 Seal check_seal(const std::filesystem::path& path);
 
-/// Opens a result file for reading once its seal is checked; throws as check_seal() does.
+/// Opens a result file for reading after checking its seal. Throws like check_seal().
 h5::Handle open_checked(const std::filesystem::path& path);
 
 }  // namespace montecarta::engine

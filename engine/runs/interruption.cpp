@@ -8,7 +8,7 @@
 namespace montecarta::engine {
 namespace {
 
-// A signal handler can reach nothing but globals.
+// Globals, because a signal handler has access to nothing else.
 std::atomic<int> received{0};
 std::atomic<bool> installed{false};
 std::atomic<bool> repeats_terms{false};
@@ -29,7 +29,7 @@ Interruption::Interruption(From from) {
   received = 0;
   struct sigaction action {};
   action.sa_handler = note_signal;
-  action.sa_flags = SA_RESTART;  // so that no read or write in flight is cut short
+  action.sa_flags = SA_RESTART;  // so that reads and writes are not interrupted
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, &before_int_);
   sigaction(SIGTERM, &action, &before_term_);

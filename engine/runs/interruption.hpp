@@ -12,22 +12,22 @@ namespace montecarta::engine {
 
 /// Why a session of a study ended.
 enum class StopReason : std::uint8_t {
-  complete,     ///< nothing is missing
-  time_budget,  ///< --time-budget is used up
+  complete,     ///< no run is missing
+  time_budget,  ///< --time-budget is exhausted
   sigterm,
   sigint,
-  error,  ///< an exception is on its way to the caller
+  error,  ///< an exception is thrown to the caller
 };
 
-/// Asks all workers to stop: they drop the run they are at and take no other. One relaxed load to
-/// look.
+/// A request to all workers to stop: they drop their run and begin no other. A check costs one
+/// relaxed load.
 class StopRequest final : public StopFlag {
  public:
   bool is_set() const override {
     return reason_.load(std::memory_order_relaxed) != StopReason::complete;
   }
   StopReason reason() const { return reason_.load(); }
-  /// The first reason stays.
+  /// Sets the reason, unless there is one already.
   void make(StopReason reason) {
     StopReason none = StopReason::complete;
     reason_.compare_exchange_strong(none, reason);
@@ -37,9 +37,9 @@ class StopRequest final : public StopFlag {
   std::atomic<StopReason> reason_{StopReason::complete};
 };
 
-/// While one lives, the first SIGINT or SIGTERM is only noted, so that the program can close its
-/// file; the second ends the program at once with exit code 128 + signal. A scheduler, unlike a
-/// person, repeats itself: from it a second SIGTERM says nothing new. One at a time: signals belong
+/// While the object exists, the first SIGINT or SIGTERM is only recorded, so that the program can
+/// close its file. The second one ends the program at once with exit code 128 + signal, except that
+/// a scheduler may repeat SIGTERM without effect. Only one object may exist, because signals belong
 /// to the process.
 class Interruption {
  public:
@@ -49,7 +49,7 @@ class Interruption {
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
 
-  /// SIGINT, SIGTERM, or 0 where none has come since construction.
+  /// SIGINT or SIGTERM; 0 if none was received since construction.
   int signal() const;
 
  private:

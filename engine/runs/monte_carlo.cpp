@@ -13,7 +13,7 @@
 namespace montecarta::engine {
 namespace {
 
-/// Tells how many runs of the cell from `first` on were missing and are not any more.
+/// Spares the missing runs of a cell from `first` on, and returns their number.
 std::uint64_t spare_rest(std::size_t cell, std::uint64_t first, std::uint64_t last,
                          ResultWriter& writer) {
   std::uint64_t spared = 0;
@@ -46,7 +46,7 @@ std::uint64_t spare_what_is_enough(const StudyPlan& plan, std::uint64_t runs,
                                    const Parallel& parallel, ResultWriter& writer) {
   std::uint64_t spared = 0;
   for (std::size_t cell = 0; cell < plan.cells.size(); ++cell) {
-    // An earlier session may have asked already, and have been stopped before it was through.
+    // An earlier session may have decided this, and been stopped before it had spared all runs.
     const bool known = writer.status(cell, runs) == RunStatus::spared;
     if (known || plan.is_enough(writer.unfinished(), cell, runs, parallel)) {
       spared += spare_rest(cell, runs, plan.runs_here(), writer);
@@ -103,8 +103,9 @@ RunCounts counts_of(const RunOutcome& outcome) {
   return counts;
 }
 
-/// How many runs to work at at once. OpenMP spreads either the runs or the loops inside them, so
-/// few large runs go one after the other, each on all threads; TBB does both at once.
+/// Number of runs that are processed at the same time. OpenMP can distribute either the runs or the
+/// loops inside them, so a few large runs are processed in sequence, each by all threads. TBB does
+/// both at once.
 std::size_t workers_for(const StudyPlan& plan, const Parallel& parallel, std::uint64_t missing) {
   const auto threads = static_cast<std::uint64_t>(parallel.threads());
   const bool all_large = std::ranges::all_of(
@@ -113,7 +114,7 @@ std::size_t workers_for(const StudyPlan& plan, const Parallel& parallel, std::ui
   return std::max<std::uint64_t>(1, std::min(threads, missing));
 }
 
-/// Runs one worker to its end. An exception ends the others too, before it goes to the caller.
+/// Runs one worker to its end. An exception stops the other workers and is thrown to the caller.
 void run_worker(Session& session) {
   try {
     Worker(session).work();
@@ -126,7 +127,7 @@ void run_worker(Session& session) {
 
 class Stopwatch {
  public:
-  /// [s] of wall time since construction.
+  /// Wall time since construction [s].
   double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
  private:
@@ -134,7 +135,7 @@ class Stopwatch {
   Clock::time_point begin_ = Clock::now();
 };
 
-/// Works until nothing is missing or somebody asks to stop.
+/// Runs until no run is missing or a stop is requested.
 void run_missing(const StudyPlan& plan, const RunOptions& options, const RunOutcome& before,
                  ResultWriter& writer, StopRequest& stop, const Watch::Orders& orders) {
   const std::vector<RecordLayout> layouts = layouts_of(plan, Detail::usual);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kBarInterval = 0.1;     // [s]
 constexpr double kLeastInterval = 60.0;  // [s] between plain lines
-constexpr double kPlainGrowth = 0.02;    // a night on a cluster gives some hundred lines
+constexpr double kPlainGrowth = 0.02;    // yields a few hundred lines in a night
 
 bool is_smart_terminal(std::FILE* out) {
   const char* kind = std::getenv("TERM");
@@ -93,8 +93,8 @@ void Progress::finish() {
 
 void Progress::show_bar(double now) {
   last_shown_ = now;
-  // One column stays free: some terminals wrap when the last one is written. ESC [ K clears the
-  // rest.
+  // The last column stays empty, because some terminals wrap when it is written. ESC [ K clears the
+  // rest of the line.
   const std::size_t width = terminal_width(fileno(out_)).value_or(80) - 1;
   const std::string line = progress_bar(counts(), now, width);
   std::fprintf(out_, "\r%s\x1b[K", line.c_str());
@@ -139,7 +139,7 @@ std::string progress_words(const RunCounts& counts, double seconds) {
 
 std::string progress_bar(const RunCounts& counts, double seconds, std::size_t width) {
   const double filled = share(counts);
-  // Rounded down, so that 100 % means that nothing is left.
+  // Rounded down, so that 100 % means that no run is left.
   std::string line =
       print("%3.0f %%  ", std::floor(100.0 * filled)) + progress_words(counts, seconds);
   const std::size_t room = width > line.size() + 3 ? width - line.size() - 3 : 0;
@@ -151,7 +151,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr auto kInterval = std::chrono::milliseconds(50);
-constexpr double kLongestBudget = 1e9;  // [s], 31 years: beyond it the clock's ticks would overflow
+constexpr double kLongestBudget = 1e9;  // [s], 31 years; more would overflow the clock
 
 std::optional<Clock::time_point> deadline_after(std::optional<double> seconds) {
   if (!seconds) return std::nullopt;
@@ -186,7 +186,7 @@ void Watch::keep_watch() {
   }
 }
 
-/// Closing the file may take seconds, in which a user would wonder whether Ctrl-C was heard.
+/// Reports a signal at once, because closing the file may take seconds.
 void Watch::acknowledge_signal() const {
   if (interruption_.signal() == 0 || stop_.is_set()) return;
   std::fputs("\nmontecarta: stopping; finished runs are kept", stderr);

@@ -17,10 +17,10 @@
 
 namespace montecarta::engine {
 
-/// How far a study has come; a run counts once for every cell.
+/// Progress of a study. A run is counted once for every cell.
 struct RunCounts {
-  std::uint64_t done = 0;    ///< complete, those of earlier sittings included
-  std::uint64_t failed = 0;  ///< likewise
+  std::uint64_t done = 0;    ///< complete, including earlier sessions
+  std::uint64_t failed = 0;  ///< including earlier sessions
   std::uint64_t total = 0;
   std::uint64_t earlier = 0;  ///< done or failed before this session
 
@@ -33,31 +33,32 @@ std::string duration_in_words(double seconds);
 /// "1350/3000 runs, 2 failed, 85.2/s, 19 s left" after `seconds` of this session.
 std::string progress_words(const RunCounts& counts, double seconds);
 
-/// A bar, the share and the words, at most `width` characters; where they do not fit, the bar goes
-/// first.
+/// A bar, the percentage and the words, with at most `width` characters. If they do not fit, the
+/// bar is left out first.
 std::string progress_bar(const RunCounts& counts, double seconds, std::size_t width);
 
 enum class ProgressStyle { automatic, plain, none };
 
-/// [s] from one plain line to the next, `seconds` after the start: a minute, later more.
+/// Time between two plain lines, `seconds` after the start [s]: at first a minute, later more.
 double plain_interval(double seconds);
 
-/// Shows how far a study has come: on a terminal by one line that is redrawn at most ten times a
-/// second, elsewhere by a plain line every plain_interval(). Workers only add to counters; one
-/// other thread shows.
+/// Shows the progress of a study: on a terminal as one line that is redrawn at most ten times a
+/// second, elsewhere as a plain line every plain_interval(). Workers only increment counters;
+/// another thread shows them.
 class Progress {
  public:
-  /// `out` is standard error but for tests.
+  /// `out` is standard error except in tests.
   Progress(ProgressStyle style, const RunCounts& at_start, std::FILE* out = stderr);
 
-  /// A worker has stored a run. Thread-safe, no lock.
+  /// Counts a run that a worker has stored. Thread-safe without a lock.
   void run_ended(RunStatus status);
-  /// So many runs will not be made.
+  /// Counts `runs` runs that will not be made.
   void runs_spared(std::uint64_t runs);
   RunCounts counts() const;
-  /// Draws if it is time to.
+  /// Draws if enough time has passed.
   void show();
-  /// On a terminal draws the last state and ends the line. A log has the outcome from the command.
+  /// Draws the final state and ends the line on a terminal. In a log the command prints the
+  /// outcome.
   void finish();
 
  private:
@@ -79,18 +80,18 @@ class Progress {
   std::atomic<std::uint64_t> spared_{0};
 };
 
-/// A thread of its own that looks twenty times a second whether a signal has come or the time
-/// budget is used up, asks the workers to stop then, and shows progress, so that the workers need
-/// no clock and no terminal.
+/// A thread that checks twenty times a second for signals and for the end of the time budget,
+/// requests the workers to stop if there is one, and shows progress. So the workers need neither
+/// clock nor terminal.
 class Watch {
  public:
-  /// What may end a study early.
+  /// Conditions that end a study early.
   struct Orders {
     const Interruption& interruption;
     std::optional<double> time_budget;  ///< [s] from the construction of the watch
   };
 
-  /// What is referred to must outlive the watch.
+  /// All arguments must outlive the watch.
   Watch(const Orders& orders, StopRequest& stop, Progress& progress);
   ~Watch();
   Watch(const Watch&) = delete;

@@ -40,7 +40,7 @@ std::string text_of(Bytes bytes, Element element, std::size_t i) {
   return {digits, end};
 }
 
-/// "time 12, component 1" of element `i`.
+/// Position of element `i`, e.g. "time 12, component 1".
 std::string position_text(const Column& column, std::size_t i) {
   std::string text;
   std::size_t block = column.elements();
@@ -53,7 +53,7 @@ std::string position_text(const Column& column, std::size_t i) {
   return text;
 }
 
-/// Which numbers of a column differ; nullopt where every bit is the same.
+/// Describes the numbers of a column that differ; nullopt if all bits are equal.
 std::optional<std::string> compare(const Column& column, Bytes stored, Bytes computed) {
   if (std::ranges::equal(stored, computed)) return std::nullopt;
   const std::size_t width = size_of(column.element);
@@ -90,7 +90,7 @@ Column landmark_column(std::size_t rows) {
 
 ResultDescription comparable(const StudyPlan& plan, const ResultDescription& stored) {
   ResultDescription planned = describe(plan, {});
-  planned.study_sha256 = stored.study_sha256;  // a later version may spell the same study otherwise
+  planned.study_sha256 = stored.study_sha256;  // later versions may spell a study differently
   return planned;
 }
 

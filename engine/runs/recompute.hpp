@@ -14,22 +14,22 @@
 
 namespace montecarta::engine {
 
-/// One run of one cell as a file holds it.
+/// One run of one cell in a file.
 struct StoredRun {
   std::size_t cell;       ///< in the order of the file, which is the plan's
   std::size_t run_index;  ///< within the file
 };
 
-/// Computes stored runs again, each by itself, and compares every byte under /cells and /truth.
+/// Computes stored runs again, each by itself, and compares all bytes under /cells and /truth.
 class Recomputation {
  public:
-  /// `stored` describes the file at `path`, `plan` is the plan of the study it holds; both must
-  /// outlive this. Throws StudyError where the plan would lay a file out otherwise.
+  /// `stored` is the description of the file at `path`, and `plan` is the plan of its study. Both
+  /// must outlive the object. Throws StudyError if the plan defines another layout.
   Recomputation(const std::filesystem::path& path, const ResultDescription& stored,
                 const StudyPlan& plan);
 
-  /// What differs in a run that is stored as complete or failed, worded for the user; nullopt where
-  /// every byte is the same. Thread-safe.
+  /// Describes the difference of a run that is stored as complete or failed, worded for the user;
+  /// nullopt if all bytes are equal. Thread-safe.
   std::optional<std::string> difference(StoredRun which) const;
 
  private:

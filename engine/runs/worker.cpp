@@ -16,7 +16,7 @@ bool is_finite(const Pose& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.heading);
 }
 
-/// What of an estimate is not finite, in words; empty where all is well or nothing was estimated.
+/// Describes the part of an estimate that is not finite; empty if all is finite or there is none.
 std::string_view defect_of(const PoseEstimate* estimate) {
   if (estimate == nullptr) return {};
   if (!is_finite(estimate->spread.mean)) return "estimated pose is not finite";
@@ -27,7 +27,7 @@ std::string_view defect_of(const PoseEstimate* estimate) {
   return {};
 }
 
-/// The run as it goes from step to step; what it learns is told by `step` and `scan`.
+/// The progress of a run from step to step.
 class Walk {
  public:
   Walk(const RunConditions& conditions, SlamFilter& filter, Recorder& recorder,
@@ -39,7 +39,7 @@ class Walk {
   std::uint32_t step() const { return step_; }
   void next() { ++step_; }
 
-  /// One step; returns what is wrong with its estimate, empty if nothing.
+  /// Runs one step. Returns a description of the defect of its estimate; empty if there is none.
   std::string_view take_step() {
     const Itinerary& itinerary = conditions_.itinerary;
     const StepContext context(conditions_.seed, conditions_.run, step_,
@@ -82,11 +82,11 @@ RunEnd run_one(const RunConditions& conditions, SlamFilter& filter, Recorder& re
     }
     record.mark_complete(clock.seconds());
   } catch (const std::bad_alloc&) {
-    throw;  // says something of the machine, not of the filter: no result of the study
+    throw;  // a failure of the machine, not of the filter, is no result of the study
   } catch (const RunError&) {
-    throw;  // likewise
+    throw;  // also a failure of the machine
   } catch (const std::exception& error) {
-    if (conditions.stop.is_set()) return RunEnd::dropped;  // it may be why the filter gave up
+    if (conditions.stop.is_set()) return RunEnd::dropped;  // the stop may have caused the exception
     record.mark_failed(walk.step(), error.what(), clock.seconds());
   } catch (...) {
     record.mark_failed(walk.step(), "an exception that is no std::exception", clock.seconds());
@@ -130,7 +130,7 @@ void Worker::execute(const Task& task) {
       plan.seed,    run, plan.drives->itinerary_of(run), drive_, session_.spare_threads,
       session_.stop};
   if (run >= plan.columns.full_runs) return run_into(here.record, here.recorder, task, conditions);
-  RunRecord record(session_.full_layouts[task.cell]);  // of few runs, so that none is kept for them
+  RunRecord record(session_.full_layouts[task.cell]);  // few runs need it, so it is not kept
   Recorder recorder(record);
   run_into(record, recorder, task, conditions);
 }
@@ -145,7 +145,7 @@ void Worker::run_into(RunRecord& record, Recorder& recorder, const Task& task,
 
 void Worker::fetch_drive(std::size_t run_index) {
   if (drive_run_index_ == run_index) return;
-  drive_run_index_.reset();  // while it is half made it is nobody's
+  drive_run_index_.reset();  // invalid until it is generated completely
   session_.plan.drives->generate(session_.plan.first_run + run_index, drive_);
   session_.writer.write_truth(run_index, drive_);
   drive_run_index_ = run_index;

@@ -23,8 +23,8 @@
 
 namespace montecarta::engine {
 
-/// Processor time of the calling thread since construction. A system call (0.7 us where measured),
-/// so it is read once a run, not once a step.
+/// Processor time of the calling thread since construction. Reading it is a system call (measured:
+/// 0.7 us), so it is read once per run, not once per step.
 class CpuClock {
  public:
   CpuClock() : begin_(now()) {}
@@ -40,7 +40,7 @@ class CpuClock {
   double begin_;
 };
 
-/// All that a run depends on besides its filter, and what it may use meanwhile.
+/// Everything besides the filter on which a run depends, and the resources that it may use.
 struct RunConditions {
   std::uint64_t seed;  ///< of the study
   std::uint64_t run;
@@ -52,28 +52,28 @@ struct RunConditions {
 
 enum class RunEnd { recorded, dropped };
 
-/// Takes `filter` through one run and leaves what `recorder` saw in `record`, marked complete or,
-/// where the filter threw or its estimate was not finite, failed with step and reason; rows behind
-/// the failure stay NaN. Stops at the next step when asked to: the record then is worthless
-/// (dropped). `recorder` belongs to `record`.
+/// Performs one run of `filter`, with its results recorded in `record` by `recorder`, which must
+/// belong to it. The record is marked as complete or, if the filter throws or its estimate is not
+/// finite, as failed with step and reason; rows after the failure stay NaN. If a stop is requested,
+/// the run ends at the next step and the record is invalid (dropped).
 [[nodiscard]] RunEnd run_one(const RunConditions& conditions, SlamFilter& filter,
                              Recorder& recorder, RunRecord& record);
 
-/// One run of one cell: the unit of work.
+/// One run of one cell, the unit of work.
 struct Task {
   std::size_t run_index;  ///< within the file
   std::size_t cell;
 };
 
-/// The tasks a file still misses of its first `runs` runs, run by run and within a run cell by
-/// cell, handed out one at a time. Holds nothing but a counter: its memory does not grow with the
+/// Distributes the tasks that are missing of the first `runs` runs of a file, run by run and within
+/// a run cell by cell. Its only state is a counter, so that its memory does not grow with the
 /// study.
 class TaskList {
  public:
   TaskList(const StudyPlan& plan, std::uint64_t runs, const ResultWriter& writer)
       : n_cells_(plan.cells.size()), n_tasks_(runs * n_cells_), writer_(&writer) {}
 
-  /// The next missing task, nullopt where there is none. Thread-safe.
+  /// The next missing task; nullopt if there is none. Thread-safe.
   std::optional<Task> take() {
     for (;;) {
       const std::uint64_t index = next_.fetch_add(1, std::memory_order_relaxed);
@@ -90,7 +90,7 @@ class TaskList {
   std::atomic<std::uint64_t> next_{0};
 };
 
-/// What the workers of a session have in common.
+/// Data that all workers of a session share.
 struct Session {
   const StudyPlan& plan;
   std::span<const RecordLayout> layouts, full_layouts;  ///< one per cell
@@ -101,8 +101,8 @@ struct Session {
   Progress& progress;
 };
 
-/// Takes tasks until none is left or it is asked to stop. Keeps its drive, its record and one
-/// filter per cell from task to task: after the first run of each cell nothing allocates. For one
+/// Processes tasks until none is left or a stop is requested. Keeps its drive, its record and one
+/// filter per cell, so that nothing is allocated after the first run of each cell. For use by one
 /// thread.
 class Worker {
  public:
@@ -110,7 +110,7 @@ class Worker {
   void work();
 
  private:
-  /// What a cell needs on this worker.
+  /// The objects of a cell on this worker.
   struct CellState {
     CellState(const Cell& cell, const RecordLayout& layout, std::span<std::byte> memory);
     std::unique_ptr<SlamFilter> filter;
@@ -126,8 +126,8 @@ class Worker {
 
   const Session& session_;
   Drive drive_;
-  std::optional<std::size_t> drive_run_index_;  ///< whose drive it is
-  std::vector<std::byte> memory_;               ///< of one record, whichever cell's
+  std::optional<std::size_t> drive_run_index_;  ///< run index of drive_; nullopt if it is invalid
+  std::vector<std::byte> memory_;               ///< of the record, which all cells share
   std::vector<std::unique_ptr<CellState>> cell_states_;
 };
 
