@@ -1,13 +1,13 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Merges the shards of a study and analyses the result, as a Slurm job; cluster/submit submits it.
+# Merges the shards of a study and analyses the result. cluster/submit submits it as a Slurm job.
 # usage: merge.sh DIR PROGRAM SHARDS
 set -u
 dir=$1 program=$2 shards=$3
 cd "$dir" || exit 1
 shopt -s nullglob
 
-# What another node finished may take a network file system a minute to show.
+# A network file system may take a minute to show files that another node has finished.
 for ((waited = 0; waited < ${MONTECARTA_MERGE_WAIT:-60}; waited++)); do
   files=(shards/shard_*.h5)
   [ ${#files[@]} -lt "$shards" ] || break

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A folder of shards: its plan, what its files hold and what the scheduler says of its tasks.
+"""Access to a folder of shards: its plan, the state of its files, and its tasks in the scheduler.
 
-Shared by submit, status and cancel. Files are the truth: a shard has its final name only when it is
-complete; the scheduler is asked only what it will still do.
+Shared by submit, status and cancel. Files determine the state: a shard has its final name only when
+it is complete. The scheduler is only queried for tasks that have not ended.
 """
 import hashlib
 import json
@@ -18,11 +18,11 @@ HERE = Path(__file__).resolve().parent
 
 
 class Problem(Exception):
-    """Something the user must act on, worded "place: problem (why): remedy"."""
+    """An error that the user must resolve, worded "place: problem (why): remedy"."""
 
 
 def main(name, work):
-    """Runs a script's work; a Problem becomes a message and exit code 2."""
+    """Calls work(). A Problem becomes a message and exit code 2."""
     try:
         work()
         sys.stdout.flush()
@@ -33,7 +33,7 @@ def main(name, work):
 
 
 def answer(words, why):
-    """Standard output of a command; a Problem beginning with `why` where it fails."""
+    """The standard output of a command. Raises Problem that begins with `why` if it fails."""
     try:
         done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     except OSError as error:
@@ -44,7 +44,7 @@ def answer(words, why):
 
 
 def program():
-    """The montecarta to run: $MONTECARTA, the one built in this tree, or the one on the PATH."""
+    """Path of montecarta: $MONTECARTA, the program built in this tree, or the one on the PATH."""
     built = HERE.parent / "build" / "montecarta"
     for path in (os.environ.get("MONTECARTA"), built, shutil.which("montecarta")):
         if path and os.access(path, os.X_OK):
@@ -57,7 +57,7 @@ Plan = namedtuple("Plan", "sha256 runs cells shards program settings")
 
 
 def plan_of(study_text, shards, settings):
-    """The plan of a resolved study: what must not change between two calls of submit."""
+    """The plan of a resolved study, which must not change between two calls of submit."""
     study = re.search(r"^\[study\]\n((?:[^\[].*\n|\n)*)", study_text, re.M).group(1)
     runs = int(re.search(r"^runs = (\d+)$", study, re.M).group(1))
     cells = len(re.findall(r"^cell = ", study_text, re.M))
@@ -77,7 +77,7 @@ def read_plan(folder):
 
 
 def write_whole(path, text):
-    """A file appears under its name only when all of it is there."""
+    """Writes a file that gets its name only when it is complete."""
     draft = path.with_name(path.name + ".new")
     with open(draft, "w", encoding="utf-8") as file:
         file.write(text)
@@ -94,7 +94,7 @@ def shard_file(folder, index):
 
 
 def index_of(name):
-    """(index, is final) of a file of a shard; (None, False) of anything else."""
+    """(index, is final) of a shard's file; (None, False) for other names."""
     match = re.fullmatch(r"shard_(\d{4,})\.h5(\.part(\..*)?)?", name)
     if not match or name.endswith(".new"):
         return None, False
@@ -102,7 +102,7 @@ def index_of(name):
 
 
 def survey(folder, plan, whole=False):
-    """({index: Stored} of final names, {index: Stored} of the best unfinished work)."""
+    """({index: Stored} of final names, {index: Stored} of the unfinished files with most runs)."""
     paths = sorted(p for p in (folder / "shards").glob("shard_*.h5*")
                    if index_of(p.name)[0] is not None)
     if not paths:
@@ -122,7 +122,7 @@ def survey(folder, plan, whole=False):
 
 
 def checked(stored, plan):
-    """A complete file of another study is as bad as a damaged one."""
+    """Treats a complete file of another study as damaged."""
     if stored.state == "complete" and stored.sha256 != plan.sha256:
         return stored._replace(state="damaged", problem="it belongs to another study")
     return stored
@@ -132,7 +132,7 @@ Task = namedtuple("Task", "job index state reason")
 
 
 def job_name(folder):
-    """Names the jobs of a folder and of no other."""
+    """Name of the jobs of a folder, which is unique to the folder."""
     letters = re.sub(r"[^A-Za-z0-9_.-]", "_", folder.name)[:24]
     return f"mc-{letters}-{hashlib.sha256(str(folder).encode()).hexdigest()[:6]}"
 
@@ -142,7 +142,7 @@ def has_scheduler():
 
 
 def queue(name):
-    """Tasks of that job name which the scheduler has not finished with."""
+    """Tasks with this job name that have not ended."""
     words = ["squeue", "--noheader", "--array", "--user", str(os.getuid()), "--name", name,
              "--format", "%F|%K|%T|%r"]
     tasks = []
@@ -153,8 +153,8 @@ def queue(name):
 
 
 def is_stuck(task):
-    """The scheduler put it aside after failures of its own, or too many new starts, and will never
-    start it again. A task that the user holds is none of these."""
+    """Whether the scheduler holds a task after failures or too many restarts, so that it will never
+    start it again. False for a task that the user holds."""
     return task.state == "PENDING" and task.reason.lower().replace("_", " ") in (
         "launch failed requeued held", "job requeued in held state", "jobholdmaxrequeue")
 
@@ -164,7 +164,7 @@ def task_id(task):
 
 
 def ranges(indices):
-    """"0-3,7" of 0, 1, 2, 3, 7."""
+    """Joins indices to ranges: 0, 1, 2, 3, 7 gives "0-3,7"."""
     parts = []
     for index in sorted(indices):
         if parts and index == parts[-1][1] + 1:
