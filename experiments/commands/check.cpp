@@ -291,13 +291,13 @@ int check(const Arguments& arguments) {
 Command check_command() {
   CommandSpec spec{
       .name = "check",
-      .summary = "Check a study and print what it costs, without running it",
+      .summary = "Check a study and estimate its cost, without running it",
       .operands = {{"STUDY.ini"}},
       .options = plan_options(),
       .details =
-          "Mistakes are named with line, reason and remedy. Times are extrapolated from a short "
+          "Errors are reported with line, reason and remedy. Times are extrapolated from a short "
           "trial of every filter.\n\nexample:\n  montecarta check first_study\n"};
-  spec.options.push_back({"text", "", {}, "print only the study, every setting filled in"});
+  spec.options.push_back({"text", "", {}, "print only the study, with all settings filled in"});
   return {spec, check};
 }
 

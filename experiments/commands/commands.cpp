@@ -20,7 +20,7 @@ std::string general_help(const std::vector<Command>& commands) {
   for (const Command& command : commands)
     items.emplace_back(command.spec.name, command.spec.summary);
   return wrapped(
-             "montecarta runs Monte Carlo studies of SLAM filters and says whether their "
+             "montecarta runs Monte Carlo studies of SLAM filters and tests whether their "
              "covariances can be trusted.\n\n"
              "usage: montecarta COMMAND ...\n\n",
              output_width()) +

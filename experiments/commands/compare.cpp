@@ -45,7 +45,7 @@ std::string baseline_of(const Arguments& arguments, const ResultFile& file) {
   }
   if (!baseline) {
     throw StudyError(
-        "compare: --baseline CELL is needed (what the others are compared with): one of " +
+        "compare: --baseline CELL is needed (the others are compared with it): one of " +
         joined(labels));
   }
   if (std::ranges::find(labels, *baseline) != labels.end()) return *baseline;

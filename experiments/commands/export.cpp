@@ -21,7 +21,7 @@ fs::path output_of(const Arguments& arguments) {
   if (!fs::exists(*directory) || (fs::is_directory(*directory) && fs::is_empty(*directory)))
     return *directory;
   throw StudyError(*directory +
-                   ": not a new folder (what lies there would be taken for a drive of this study): "
+                   ": not a new folder (other files would be taken for drives of this study): "
                    "name another");
 }
 

@@ -119,7 +119,7 @@ int gate_file(const Arguments& arguments) {
   const std::string place = file.path().string();
   if (!file.has_errors()) {
     throw StudyError(place +
-                     ": a recorded drive without truth (no run knows its errors): gate a simulated "
+                     ": a recorded drive without truth (its errors are unknown): gate a simulated "
                      "study, or see the scores against references by montecarta analyze");
   }
   expect_all_runs(file, stored);
@@ -144,7 +144,7 @@ int gate_file(const Arguments& arguments) {
 Command gate_command() {
   return {
       {.name = "gate",
-       .summary = "Tell a script by the exit code whether a filter is consistent",
+       .summary = "Report by the exit code whether a filter is consistent",
        .operands = {{"FILE.h5"}},
        .options = {{"cell", "", {"CELL"}, "the cell to judge, if there are several"},
                    {"within", "", {"R"}, kWithinMeaning},
@@ -153,7 +153,7 @@ Command gate_command() {
                    {"json", "", {}, "print the tests behind the verdict as JSON"},
                    {"threads", "", {"N"}, kThreadsMeaning},
                    {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}},
-       .details = "One sentence says why. The verdict is that of montecarta analyze at 95 %. Exit "
+       .details = "The reason is printed. The verdict is that of montecarta analyze at 95 %. Exit "
                   "codes:\n  0 shown to be consistent within the margin R\n  4 not consistent: "
                   "optimistic, conservative or inconsistent, or more failed runs or unusable "
                   "samples than accepted\n  5 too few runs to decide\n  2 wrong input, or nothing "

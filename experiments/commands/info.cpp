@@ -135,7 +135,7 @@ int info(const Arguments& arguments) {
 
 Command info_command() {
   return {{.name = "info",
-           .summary = "Print what is in a file: study, cells, runs, provenance, sizes",
+           .summary = "Print the contents of a file: study, cells, runs, provenance, sizes",
            .operands = {{"FILE.h5"}},
            .options = {{"text", "", {}, "print only the study that made the file"}},
            .details = "example:\n  montecarta info first_study.h5\n"},

@@ -94,10 +94,11 @@ Command judge_command() {
             {"threads", "", {"N"}, kThreadsMeaning},
             {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}},
        .details =
-           "Columns of an estimate: time_s, then x_m,y_m,heading_rad or x_m,y_m,z_m,qx,qy,qz,qw or "
-           "any other state, then cov_A_B, with components or indices from 0, all of them or one "
-           "triangle. Innovations are optional: the columns nis,nis_dof, or innovation.csv beside "
-           "estimate.csv. Truths have no covariance. Nothing is aligned. "
+           "The columns of an estimate are time_s, then x_m,y_m,heading_rad or "
+           "x_m,y_m,z_m,qx,qy,qz,qw or any other state, then cov_A_B, where A and B are components "
+           "or indices from 0, for the whole covariance or one triangle. Innovations are optional: "
+           "the columns nis,nis_dof, or innovation.csv beside estimate.csv. Truths have no "
+           "covariance. Trajectories are not aligned. "
            "experiments/convert/trajectory.py converts trajectories of TUM and "
            "OpenVINS.\n\n--error names the error that the covariance describes:\n" +
            explained_conventions() + "\n" + pairing_rule() +

@@ -123,9 +123,10 @@ void describe_setting(const std::string& name) {
 std::string title_of_section(const std::string& section) {
   if (section == "study") return "how many runs";
   if (section == "scenario") return "the true world, vehicle and sensor";
-  if (section == "belief") return "what the filters assume; in a simulation by default the truth";
-  if (section == "association") return "which landmark a detection is of";
-  return "what is stored";
+  if (section == "belief")
+    return "assumptions of the filters; in a simulation by default the truth";
+  if (section == "association") return "association of detections with landmarks";
+  return "columns to store";
 }
 
 void list_section(const std::string& section) {
@@ -284,7 +285,7 @@ Command list_command() {
            .operands = {{"WHAT"}, {"NAME", 0}},
            .options = {},
            .details = "WHAT is filters, settings, studies, worlds, metrics or columns. With NAME "
-                      "everything about that one is printed.\n\n"
+                      "that one is described in full.\n\n"
                       "examples:\n"
                       "  montecarta list filters\n"
                       "  montecarta list settings scenario.noise\n"},

@@ -30,8 +30,8 @@ Command merge_command() {
            .summary = "Join the shards of a study to one file",
            .operands = {{"OUT.h5"}, {"SHARD.h5", 1, SIZE_MAX}},
            .options = {{"force", "", {}, "replace OUT.h5"}},
-           .details = "Shards of other studies are refused and missing runs are named. A run that "
-                      "several shards hold must be the same in all of them.\n\nexample:\n  "
+           .details = "It is an error if shards belong to different studies, if runs are missing, "
+                      "or if a run differs between shards.\n\nexample:\n  "
                       "montecarta merge study.h5 shard0.h5 shard1.h5\n"},
           merge};
 }

@@ -41,7 +41,7 @@ void refuse_input_as_output(const fs::path& output, const std::vector<std::strin
     for (const std::string& name : {input, input + ".part"}) {
       if (!is_same_file(output, name)) continue;
       throw StudyError(output.string() + ": is the same file as " + name +
-                       " (what is read would be destroyed, --force or not): choose another name");
+                       " (the input would be overwritten, even with --force): choose another name");
     }
   }
 }

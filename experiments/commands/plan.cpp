@@ -32,12 +32,13 @@ std::string meaning_of(const NeesTest& test, const Question& question) {
   const double d = static_cast<double>(test.dimension);
   const double off = std::sqrt(question.ratio);
   const std::string way = question.ratio > 1.0
-                              ? readable(off) + " times larger than the filter says"
-                              : readable(1.0 / off) + " times smaller than the filter says";
+                              ? readable(off) + " times larger than the filter estimates"
+                              : readable(1.0 / off) + " times smaller than the filter estimates";
   const std::string power = percent(question.power), margin = readable(question.within);
   return "NEES is the squared error in units of its covariance. Its mean is " + readable(d) +
          " for a consistent filter and " + readable(d * question.ratio) +
-         " for the filter in question, whose errors are " + way + ".\nfind: the filter is called " +
+         " for the filter in question, whose errors are " + way +
+         ".\ndetect: the filter is called " +
          (question.ratio > 1.0 ? "optimistic" : "conservative") + " in at least " + power +
          " of studies, unless the ratio is within the margin.\nshow: a consistent filter is called "
          "consistent within " +
@@ -57,8 +58,8 @@ int plan(const Arguments& arguments) {
   const auto ratio = arguments.number("ratio", 1e-6, 1e6);
   if (!dimension || !ratio) {
     throw StudyError(
-        "plan: --dim D and --ratio R are needed (what error, and how far off its NEES is): add "
-        "e.g. --dim 3 --ratio 1.5");
+        "plan: --dim D and --ratio R are needed (dimension of the error, and ratio of its NEES): "
+        "add e.g. --dim 3 --ratio 1.5");
   }
   const auto probability = [&](const char* option, double usual) {
     return arguments.number(option, kLeastProbability, 1.0 - kLeastProbability).value_or(usual);
@@ -69,7 +70,7 @@ int plan(const Arguments& arguments) {
       .within = arguments.number("within", kLeastMargin, kMostMargin).value_or(kUsualMargin),
       .power = probability("power", 0.9)};
   const std::uint64_t scans = arguments.count("scans", 1, kMostPlannedScans).value_or(1);
-  std::vector<TableRow> rows{{"NEES within a run", "runs: find " + readable(*ratio),
+  std::vector<TableRow> rows{{"NEES within a run", "runs: detect " + readable(*ratio),
                               "show within " + readable(question.within)}};
   rows.push_back(row_of("constant", test, question));
   test.scans = scans;
@@ -88,8 +89,8 @@ Command plan_command() {
            .operands = {},
            .options =
                {{"dim", "", {"D"}, "dimension of the error: 3 for a pose, 2 for a position"},
-                {"ratio", "", {"R"}, "ratio of the NEES to its expected value that is to be found"},
-                {"power", "", {"P"}, "probability of finding or showing it; default 0.9"},
+                {"ratio", "", {"R"}, "ratio of the NEES to its expected value, to be detected"},
+                {"power", "", {"P"}, "probability of detecting or showing it; default 0.9"},
                 {"within", "", {"M"}, "ratios from 1/M to M are consistent; default 1.1"},
                 {"level", "", {"L"}, "probability that a consistent filter passes; default 0.95"},
                 {"scans", "", {"K"}, "also for runs of K independent scans"}},

@@ -132,7 +132,7 @@ Command replay_command() {
                        {"threads", "", {"N"}, kThreadsMeaning},
                        {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}},
            .details = "The exit code is 4 if the repeated run differs in a byte from the one in "
-                      "FILE.h5. ONE.h5 is written all the same.\n\nexample:\n  montecarta replay "
+                      "FILE.h5. ONE.h5 is written in any case.\n\nexample:\n  montecarta replay "
                       "first_study.h5 --cell ekf_slam --run 3 -o run3.h5\n"},
           replay};
 }

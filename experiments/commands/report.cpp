@@ -54,7 +54,7 @@ Command report_command() {
                        {"level", "", {"L"}, kLevelMeaning},
                        {"within", "", {"R"}, kWithinMeaning},
                        {"run", "", {"R"}, "run to draw; default: first complete one"},
-                       {"force", "", {}, "replace a report that is there"},
+                       {"force", "", {}, "replace an existing report"},
                        {"threads", "", {"N"}, kThreadsMeaning},
                        {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}},
            .details = "Figures are SVG and PDF, tables CSV and LaTeX.\n\nexample:\n  montecarta "

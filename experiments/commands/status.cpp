@@ -128,12 +128,11 @@ Command status_command() {
       {.name = "status",
        .summary = "Count complete, failed and missing runs, over one file or shards",
        .operands = {{"FILE.h5", 1, SIZE_MAX}},
-       .options =
-           {{"each", "", {}, "print one line per file, for scripts"},
-            {"whole", "", {}, "with --each: check every byte, not only the states of the runs"}},
+       .options = {{"each", "", {}, "print one line per file, for scripts"},
+                   {"whole", "", {}, "with --each: check every byte, not only the states of runs"}},
        .details = "A line of --each has these fields, separated by tabs: file, state (complete, "
                   "unfinished or damaged), SHA-256 of the study, complete, failed and missing runs "
-                  "of all cells, wall time in seconds, and what is wrong.\n\nexample:\n  "
+                  "of all cells, wall time in seconds, and error.\n\nexample:\n  "
                   "montecarta status shard*.h5\n"},
       status};
 }

@@ -117,12 +117,13 @@ Command verify_command() {
                    {"threads", "", {"N"}, kThreadsMeaning},
                    {"backend", "", {"tbb|openmp|serial"}, kBackendMeaning}},
        .details = "The exit code is 4 if a run differs. The runs are chosen at random. All stored "
-                  "runs are also compared with their fingerprints. The study is taken from the "
-                  "file.\nThe bytes are promised to be the same with the same version, compiler "
+                  "runs are also compared with their fingerprints. The study is read from the "
+                  "file.\nThe bytes are guaranteed to be the same with the same version, compiler "
                   "and C library on any x86-64-v3 processor or newer. If this build differs from "
-                  "that of the file (montecarta info FILE.h5), this is said first. A cell that is "
-                  "a program is started anew for each run, so that state which it keeps between "
-                  "runs is found.\n\nexample:\n  montecarta verify first_study.h5 --sample 20\n"},
+                  "that of the file (montecarta info FILE.h5), a warning is printed first. An "
+                  "external program is started anew for each run, so that state which it keeps "
+                  "between runs is detected.\n\nexample:\n  montecarta verify first_study.h5 "
+                  "--sample 20\n"},
       verify};
 }
 

@@ -197,7 +197,7 @@ def write_log(folder, start, odometry, scans, references, landmarks=()):
     `start` is (time, x, y, heading), `odometry` has rows (time, speed, steer), `scans` are (time,
     [(range, bearing), ...]), `references` {name: rows (time, x, y)}; seconds, metres, radians."""
     if os.path.isdir(folder) and os.listdir(folder):
-        raise ConversionError(f"{folder}: not empty (what lies there would be read with the log): "
+        raise ConversionError(f"{folder}: not empty (other files would be read with the log): "
                               "name a new folder")
     os.makedirs(folder, exist_ok=True)
     write_rows(os.path.join(folder, "start.csv"), "time_s,x_m,y_m,heading_rad", [start])

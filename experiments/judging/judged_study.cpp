@@ -39,7 +39,7 @@ void expect_alike(const StateRows& rows, const fs::path& path, const StateRows& 
   }
   for (std::size_t s = 0; s < rows.time.size(); ++s) {
     if (std::abs(rows.time[s] - first.time[s]) <= tolerance) continue;
-    throw StudyError(path.string() + ": row " + std::to_string(s + 1) + " is of time " +
+    throw StudyError(path.string() + ": row " + std::to_string(s + 1) + " has time " +
                      to_text(rows.time[s]) + " s (" + first_path.string() + " has " +
                      to_text(first.time[s]) +
                      " s there, and averages over runs are taken at each "
@@ -181,13 +181,13 @@ ErrorConvention stated_error(const LongestRun& longest, std::optional<ErrorConve
   if (!said && known.size() == 1) return known.front();
   if (!said) {
     throw StudyError(
-        "judge: --error is missing (the covariance is that of an error, and nothing tells which; "
-        "the wrong one makes a wrong verdict): say --error with one of\n" +
+        "judge: --error is missing (the verdict depends on the error that the covariance "
+        "describes): give --error with one of\n" +
         explained_conventions());
   }
   if (std::ranges::find(known, *said) != known.end()) return *said;
   throw StudyError("--error " + name_of(*said) + ": not of a vector (" + longest.path.string() +
-                   " has no pose, which alone has a frame): say --error world");
+                   " has no pose, and only poses have frames): give --error world");
 }
 
 }  // namespace

@@ -91,14 +91,13 @@ using FilesByRun = std::map<std::uint64_t, fs::path>;
 void add_run(const FoundFile& file, FilesByRun& files) {
   if (!file.run) {
     throw StudyError(file.path.string() +
-                     ": of which run? (neither the file nor a folder is named after a number): " +
+                     ": has no run number (neither the file nor a folder is named after one): " +
                      "name it or its folder e.g. run_0007");
   }
   const auto [there, is_new] = files.try_emplace(*file.run, file.path);
   if (is_new) return;
-  throw StudyError(file.path.string() + ": run " + std::to_string(*file.run) + " again (that of " +
-                   there->second.string() +
-                   " has the same number, and nothing tells them apart): " +
+  throw StudyError(file.path.string() + ": run " + std::to_string(*file.run) + " again (" +
+                   there->second.string() + " has the same number and the same estimator): " +
                    "give each run a number, each estimator a folder or a name");
 }
 
@@ -128,7 +127,7 @@ void check_label(const std::string& label) {
   if (is_good && !label.empty() && label.size() <= 100 && label != "." && label != "..") return;
   throw StudyError("'" + excerpt(label) +
                    "' cannot label a cell (up to 100 letters, digits, _ - . can): rename the "
-                   "folder, or say --cell NAME");
+                   "folder, or give --cell NAME");
 }
 
 std::map<std::string, FilesByRun> cells_of(const std::vector<FoundFile>& files,
@@ -169,8 +168,8 @@ void expect_no_gap(const FilesByRun& runs) {
     if (run != next++) {
       throw StudyError(file.string() + ": runs " + std::to_string(next - 1) + " to " +
                        std::to_string(run - 1) +
-                       " are missing (runs are numbered one after the other; one that failed is "
-                       "a result): give a failed run the file that it wrote, the header at least");
+                       " are missing (run numbers must be consecutive; a failed run is a "
+                       "result): give a failed run the file that it wrote, the header at least");
     }
   }
 }
@@ -221,8 +220,8 @@ JudgedFiles pair_files(const std::vector<std::string>& estimates,
   const FilesByRun truth_of = truths_of(first, truths, is_unnumbered);
   expect_same_runs(first, truth_of, "truth", "name its truth after --truth too");
   expect_same_runs(truth_of, first, "estimate",
-                   "a run that failed is a result, give it the file that it wrote, the header at "
-                   "least; of fewer runs name the truths of these alone");
+                   "give a failed run, which is a result, the file that it wrote, the header at "
+                   "least; for fewer runs name only their truths");
   JudgedFiles judged;
   for (const auto& [run, file] : truth_of) {
     judged.runs.push_back(run);

@@ -72,7 +72,7 @@ std::pair<std::string, std::string> component_and_unit(const std::string& column
                      "' is in degrees (angles are in rad): convert it and its covariance");
   }
   if (has_name(kNeedUnit, column)) {
-    throw StudyError(place + ": '" + column + "' has no unit (m and rad are meant, and said): " +
+    throw StudyError(place + ": '" + column + "' has no unit (m and rad are part of the name): " +
                      "write x_m, y_m, heading_rad");
   }
   if (std::ranges::find(kKnownUnits, unit) == kKnownUnits.end()) return {column, "1"};
@@ -190,7 +190,7 @@ EstimateFields estimate_fields(const Names& header, const std::string& place) {
       .shape = shape_of(state, place), .state = {}, .covariance = {}, .nis = {}, .nis_dof = {}};
   if (has_name(header, kNis) != has_name(header, kNisDof)) {
     throw StudyError(place +
-                     ": nis and nis_dof belong together (one says nothing without the "
+                     ": nis and nis_dof belong together (neither is of use without the "
                      "other): add the other one");
   }
   if (has_name(header, kNis)) {
@@ -325,10 +325,10 @@ std::size_t place_in(const StateRows& rows, double time, double tolerance, const
   auto k = static_cast<std::size_t>(after - rows.time.begin());
   if (k == rows.time.size() || (k > 0 && time - rows.time[k - 1] < rows.time[k] - time)) --k;
   if (std::abs(rows.time[k] - time) <= tolerance) return k;
-  throw StudyError(file.place() + ": no estimate in " + estimates.string() + " is of time " +
-                   to_text(time) + " s (the nearest is of " + to_text(rows.time[k]) +
+  throw StudyError(file.place() + ": no estimate in " + estimates.string() + " has time " +
+                   to_text(time) + " s (the nearest has " + to_text(rows.time[k]) +
                    " s): give innovations the times of the estimates after them, or leave out "
-                   "those of scans that have none");
+                   "innovations without an estimate");
 }
 
 /// Computes the NIS of a row from the innovation and its covariance.
@@ -356,8 +356,8 @@ std::uint32_t checked_dof(double nis, double dof, const std::string& place) {
     return static_cast<std::uint32_t>(dof);
   }
   throw StudyError(place + ": nis " + to_text(nis) + " with nis_dof " + to_text(dof) +
-                   " (a sum of squares, and how many components it has): write 0 and 0 where "
-                   "nothing was observed");
+                   " (a sum of squares and its number of components are needed): write 0 "
+                   "and 0 if nothing was observed");
 }
 
 StateRows read_estimates(const std::filesystem::path& path) {
@@ -395,7 +395,7 @@ StateRows read_truth(const std::filesystem::path& path, const StateShape& shape)
   }
   if (!rows.time.empty()) return rows;
   throw StudyError(path.string() +
-                   ": no rows behind the header (a truth of no time): write one row for each time");
+                   ": no rows behind the header (the truth is empty): write one row for each time");
 }
 
 Eigen::VectorXd truth_at(const StateRows& truth, double time, const TimeMatch& match,
@@ -417,10 +417,10 @@ Eigen::VectorXd truth_at(const StateRows& truth, double time, const TimeMatch& m
                    truths.string() + " (the nearest is " + to_text(std::min(to_left, to_right)) +
                    " s away, --tolerance is " + to_text(match.tolerance) + " s): " +
                    (has_left && has_right
-                        ? "give truths at the times of the estimates, or say --interpolate, or a "
-                          "larger --tolerance where times have few digits"
-                        : "leave out what lies outside of the truth, or say a larger --tolerance "
-                          "where times have few digits"));
+                        ? "give truths at the times of the estimates, or use --interpolate, or a "
+                          "larger --tolerance if times have few digits"
+                        : "leave out estimates outside of the truth, or use a larger --tolerance "
+                          "if times have few digits"));
 }
 
 std::optional<fs::path> innovations_beside(const fs::path& estimates) {

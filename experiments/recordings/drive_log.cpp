@@ -152,7 +152,7 @@ void check_end(const DriveLog& log, const std::string& place, LogForm form) {
   throw StudyError(part_of_log(place, form, "odometry", "odometry.csv") +
                    ": the last record is at " + to_text(last_move) + " s, the last scan at " +
                    to_text(last_scan) +
-                   " s (nobody knows how the vehicle moved in between; was the file cut short?): "
+                   " s (the motion in between is unknown; was the file cut short?): "
                    "take the whole file, or leave out the scans");
 }
 
@@ -163,7 +163,7 @@ void check_start(const DriveLog& log, const std::string& place, LogForm form) {
   if (log.scans.front().time < log.start_time) {
     throw StudyError(part_of_log(place, form, "scans", "detections.csv") + ": the first is at " +
                      to_text(log.scans.front().time) + " s, before the start at " + start +
-                     " (nobody knows where it was taken): give an earlier start, or leave it out");
+                     " (its pose is unknown): give an earlier start, or leave it out");
   }
   if (log.odometry.back().time < log.start_time) {
     throw StudyError(part_of_log(place, form, "odometry", "odometry.csv") +

@@ -270,7 +270,7 @@ void make_folder(const fs::path& folder) {
   make_directory(folder);
   if (fs::is_empty(folder)) return;
   throw StudyError(folder.string() +
-                   ": not empty (what lies there would be read with the log): name a new folder");
+                   ": not empty (other files would be read with the log): name a new folder");
 }
 
 }  // namespace
@@ -308,7 +308,7 @@ Eigen::Matrix3d covariance_of_sigmas(const CsvRows& rows, std::size_t first, int
     if (!(sigma >= kLeastDeviation)) {
       throw StudyError(rows.place() + ": standard deviation " + std::string(rows.field(field)) +
                        " (every fix has an error, at least 1e-9 m or rad): correct it, or leave "
-                       "the sigmas out where nobody knows them");
+                       "the sigmas out if they are unknown");
     }
     covariance(i, i) = sigma * sigma;
   }

@@ -195,9 +195,9 @@ void refuse_association(const Settings& settings, const CellSpec& cell, const Se
   }
   if (!cell.filter->delays_initialisation || fixes_landmark(sensor)) return;
   throw StudyError(settings.place("association", "kind") + ": association.kind = nearest with " +
-                   name_of(sensor) + " (one detection does not say where a landmark is, so that " +
-                   cell.filter->name +
-                   " cannot tell which one it is of): set association.kind = known");
+                   name_of(sensor) +
+                   " (one detection does not determine the position of a landmark, so that " +
+                   cell.filter->name + " cannot associate it): set association.kind = known");
 }
 
 }  // namespace

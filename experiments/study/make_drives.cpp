@@ -80,8 +80,8 @@ void refuse_early_scans(const Settings& s, const DriveLog& log) {
   if (s.number("scenario", "scan_delay") <= most) return;
   throw StudyError(s.place("scenario", "scan_delay") +
                    ": scan_delay = " + s.text("scenario", "scan_delay") +
-                   " puts the first scan before the start of the drive (nobody knows where that "
-                   "was): at most " +
+                   " puts the first scan before the start of the drive (its pose was "
+                   "unknown then): at most " +
                    to_text(most) + " s");
 }
 

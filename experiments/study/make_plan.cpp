@@ -94,7 +94,7 @@ std::function<std::unique_ptr<SlamFilter>()> maker_of(const CellSpec& spec,
   if (!starts_program(*spec.filter)) return make;
   if (programs == ExternalPrograms::refused) {
     return [label = spec.label]() -> std::unique_ptr<SlamFilter> {
-      throw StudyError("cell " + label + " is a program that nobody allowed to start");
+      throw StudyError("cell " + label + " is an external program that may not be started");
     };
   }
   try {
@@ -177,7 +177,7 @@ void expect_verdict(const Study& study) {
 /// Refuses to run a part of the runs, because the stopping rule needs all first runs of a cell.
 [[noreturn]] void refuse_part(const Study& study) {
   throw StudyError(study.settings.place("study", "until") + ": until = " + text_of(*study.until) +
-                   " and only part of the runs (none of the parts knows when the whole is "
+                   " and only part of the runs (a part cannot decide when all runs are "
                    "enough): run the whole study in one piece, or add --set study.until= to make "
                    "all runs");
 }
@@ -216,7 +216,7 @@ std::string objection_to_joint(const Study& study) {
   const Settings& settings = study.settings;
   if (settings.text("association", "kind") == "known" && settings.scenario_kind() == "simulated")
     return {};
-  return "(nobody knows which landmark of a map is which, and covariances of whole maps are "
+  return "(the landmarks of a map cannot be identified, and covariances of whole maps are "
          "large): take joint out, or set association.kind = known in a simulation";
 }
 
@@ -226,7 +226,7 @@ std::string objection_to_observability(const Study& study) {
   };
   const bool fixes = fixes_landmark(sensor_of(study.settings, "belief"));
   if (fixes && std::ranges::any_of(study.cells, reports_it)) return {};
-  return "(no cell tells what its detections are taken for about the heading of the whole): take "
+  return "(no cell reports the information of its detections about the common heading): take "
          "observability out, or add a cell of ekf_slam or riekf_slam with a sensor of which one "
          "detection fixes a landmark";
 }

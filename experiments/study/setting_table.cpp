@@ -109,18 +109,18 @@ void add_sensor_kind(const char* section, double least, const Add& add) {
 template <class Add>
 void add_course(const char* s, const Add& add) {
   add(required(text(s, "world", "name of a shipped world, or path of a .csv file"), "web_loop"));
-  add(count(s, "loops", "1", 1, 10'000, "times that the vehicle drives round the way-points"));
+  add(count(s, "loops", "1", 1, 10'000, "number of loops along the way-points"));
   add(choice(
       s, "noise", {"measured-control", "matched"},
       "where the noise of the controls acts. With measured-control the vehicle moves as commanded "
       "and the filter is given noisy measurements of the controls. With matched the noise "
-      "acts on the vehicle, and the filter is given the commanded controls, which is what "
-      "filters assume (EQUATIONS 1)."));
+      "acts on the vehicle, and the filter is given the commanded controls, as filters assume "
+      "(EQUATIONS 1)."));
   Setting pilot =
       choice(s, "pilot", {"closed_loop", "open_loop"},
-             "what the pilot steers by. In closed_loop it steers by the true pose. In open_loop it "
-             "applies the controls of the noise-free drive, and the vehicle strays from "
-             "the way-points.");
+             "whether the pilot sees the true pose. In closed_loop it steers by the true pose. In "
+             "open_loop it applies the controls of the noise-free drive, so that the vehicle "
+             "strays from the way-points.");
   pilot.chooser = "noise";
   pilot.applies_to = {"matched"};
   add(pilot);
@@ -164,14 +164,14 @@ void add_recording(std::vector<Setting>& table) {
   const auto add = [&](Setting setting) { table.push_back(only_for({"log"}, std::move(setting))); };
   add(required(
       text(s, "path",
-           "folder of the recorded drive. Several folders, separated by commas, are the drives of "
-           "one run each."),
+           "folder of the recorded drive. With several folders, separated by commas, run k uses "
+           "drive k."),
       "my_drive"));
   add(text(s, "data_sha256", "fingerprint of each drive, which montecarta fills in"));
-  add(text(s, "reference", "reference that errors refer to; all of them if empty"));
+  add(text(s, "reference", "reference for the errors; all references if empty"));
   add(number(
       s, "scan_delay", "s", "0", -10, 10,
-      "delay of the time stamps of the scans. A scan was taken earlier than its stamp by this."));
+      "delay of the time stamps of the scans. A scan is taken this long before its time stamp."));
 }
 
 void add_sensor(std::vector<Setting>& table) {
@@ -237,8 +237,8 @@ void add_study(std::vector<Setting>& table) {
       s, "until",
       "when a cell stops before its last run; never if empty. With METRIC < HALF-WIDTH it stops "
       "when the 95 % interval of the mean of that metric is within +- the half-width. With "
-      "verdict it stops when it is shown to be consistent, which needs 300 runs, or shown not "
-      "to be. With verdict, N runs it needs N runs instead of 300."));
+      "verdict it stops when it is shown to be consistent, after 300 runs at the earliest, or not "
+      "to be consistent. With verdict, N runs this is after N runs instead of 300."));
   table.push_back(
       number(s, "within", "1", kUsualWithin, kLeastMargin, kMostMargin,
              "factor within which the NEES counts as consistent. A filter is consistent if its "
@@ -257,12 +257,12 @@ void add_association(std::vector<Setting>& table) {
              "landmarks itself (EQUATIONS 17).")));
   table.push_back(number(
       s, "gate_sigma", "sigma", "1.959963984540054", 0.01, 30,
-      "gate within which a detection may be of a landmark. It has the probability of this many "
+      "gate within which a detection may belong to a landmark. It has the probability of this many "
       "standard deviations of a normal distribution (EQUATIONS 17)."));
-  table.push_back(number(
-      s, "new_gate_sigma", "sigma", "4.626072265579014", 0.01, 30,
-      "gate beyond which a detection is of a new landmark. It has the probability of this many "
-      "standard deviations of a normal distribution (EQUATIONS 17)."));
+  table.push_back(number(s, "new_gate_sigma", "sigma", "4.626072265579014", 0.01, 30,
+                         "gate beyond which a detection belongs to a new landmark. It has the "
+                         "probability of this many standard deviations of a normal distribution "
+                         "(EQUATIONS 17)."));
   table.push_back(number(
       s, "log_new_density_offset", "1", "0", -1000, 1000,
       "added to the log density of a new landmark. The log density is that of EQUATIONS (17.2)."));
@@ -280,15 +280,16 @@ void add_record(std::vector<Setting>& table) {
   columns.kind = Setting::Kind::choices;
   columns.fallback = "pose, covariance, ancestry";
   table.push_back(but_for("log", "pose, covariance, ancestry, final_map", columns));
-  table.push_back(count(s, "full_runs", "0", 0, 1e7,
-                        "of so many runs, the first, particles, ancestry and maps are stored too"));
+  table.push_back(
+      count(s, "full_runs", "0", 0, 1e7,
+            "number of first runs for which particles, ancestry and maps are stored too"));
   table.push_back(but_for("log", "scan",
                           choice(s, "rate", {"control", "scan"},
                                  "whether poses are stored at control steps or scans")));
   table.push_back(
       count(s, "map_rows", "0", 0, 100'000,
-            "rows of the map's columns with unknown association. With 0 there are as many as the "
-            "world has landmarks, or else most_landmarks."));
+            "rows of the map's columns with unknown association. With 0 it is the number of "
+            "landmarks of a simulated world, and most_landmarks for a recorded drive."));
   table.push_back(count(s, "joint_scans", "16", 1, 100'000,
                         "number of scans at which the column joint is stored"));
 }

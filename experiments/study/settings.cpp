@@ -197,7 +197,7 @@ const Setting& known_setting(const IniEntry& entry) {
     known.push_back(setting.key);
   }
   throw StudyError(entry.place + ": unknown key " + entry.section + "." + entry.key +
-                   " (nothing would come of it): " + nearest_spelling(entry.key, known));
+                   " (it would have no effect): " + nearest_spelling(entry.key, known));
 }
 
 [[noreturn]] void throw_out_of_place(const Setting& setting, const std::string& kind,
@@ -207,14 +207,14 @@ const Setting& known_setting(const IniEntry& entry) {
   };
   const bool believed = std::ranges::any_of(study_settings(), in_belief);
   throw StudyError(place + ": " + setting.section + "." + setting.key +
-                   " says nothing of a scenario of kind " + kind + " (it is for " +
+                   " does not apply to a scenario of kind " + kind + " (it is for " +
                    joined(setting.kinds) +
                    "): " + (believed ? "give it under [belief], or remove it" : "remove it"));
 }
 
 [[noreturn]] void throw_other_choice(const Setting& setting, const std::string& choice,
                                      const std::string& place) {
-  throw StudyError(place + ": " + setting.section + "." + setting.key + " says nothing of a " +
+  throw StudyError(place + ": " + setting.section + "." + setting.key + " does not apply to a " +
                    setting.chooser + " " + choice + " (it is for " + joined(setting.applies_to) +
                    "): remove it, or correct " + setting.section + "." + setting.chooser);
 }
@@ -279,8 +279,8 @@ std::string Settings::copied_from_scenario(const Setting& setting) const {
     return checked_value(setting, value, given_at);
   } catch (const StudyError&) {
     throw StudyError(given_at + ": scenario." + setting.key + " = " + value +
-                     " is what the filters would believe (" + demand_of(setting) +
-                     " is needed there): give [belief] " + setting.key);
+                     " cannot be assumed by the filters (" + demand_of(setting) +
+                     " is needed): give [belief] " + setting.key);
   }
 }
 

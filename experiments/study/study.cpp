@@ -108,14 +108,14 @@ std::string in_words(const Until& until, std::uint64_t runs) {
                              std::to_string(4 * kFirstRound) + ", ... runs when ";
   if (until.score == nullptr) {
     return rounds + "its verdict is known, by intervals widened for up to " +
-           std::to_string(rounds_of(runs).size()) + " looks, after " + std::to_string(runs) +
-           " runs in any case; failed runs are in no verdict";
+           std::to_string(rounds_of(runs).size()) + " interim analyses, after " +
+           std::to_string(runs) + " runs in any case; failed runs do not count";
   }
   const std::string unit =
       until.score->units == std::string("1") ? "" : std::string(" ") + until.score->units;
   return rounds + "the 95 % interval of its mean " + until.score->name + " is within +- " +
          to_text(until.half_width) + unit + ", after " + std::to_string(runs) +
-         " runs in any case; failed runs are in no mean, and values with a heavy tail are never "
+         " runs in any case; failed runs do not count, and values with a heavy tail are never "
          "precise";
 }
 
@@ -174,7 +174,7 @@ void refuse_unknown_sections(const IniText& ini) {
   for (const IniSection& section : ini.sections) {
     if (std::ranges::find(known, section.name) != known.end()) continue;
     throw StudyError(section.place + ": unknown section [" + section.name +
-                     "] (nothing would come of it): " + nearest_spelling(section.name, known));
+                     "] (it would have no effect): " + nearest_spelling(section.name, known));
   }
 }
 
@@ -233,7 +233,7 @@ void refuse_world(const IniText& ini, const Settings& settings) {
   if (!has_inline_world(ini)) return;
   throw StudyError(settings.place("scenario", "kind") +
                    ": scenario.kind = " + settings.scenario_kind() +
-                   " has its own world, and the study a [world] (nothing would come of it): remove "
+                   " has its own world, and the study a [world] (it would have no effect): remove "
                    "[world]");
 }
 

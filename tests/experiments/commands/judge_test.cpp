@@ -233,7 +233,7 @@ TEST_F(Judge, RunsThatAreNotAlikeAreNamed) {
         .err;
   };
   EXPECT_THAT(said("time_s,x_m\n1,0\n2.5,0\n", "time_s,x_m,cov_0_0\n1,0,1\n2.5,0,1\n"),
-              HasSubstr("e_1.csv: row 2 is of time 2.5 s (e_0.csv has 2 s there"));
+              HasSubstr("e_1.csv: row 2 has time 2.5 s (e_0.csv has 2 s there"));
   EXPECT_THAT(said("time_s,x_m,v_mps\n1,0,0\n2,0,0\n",
                    "time_s,x_m,v_mps,cov_0_0,cov_0_1,cov_1_1\n1,0,0,1,0,1\n2,0,0,1,0,1\n"),
               HasSubstr("e_1.csv: another state than in e_0.csv"));

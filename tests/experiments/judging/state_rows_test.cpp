@@ -210,7 +210,7 @@ TEST(RunFiles, ThatDoNotFitAreNamed) {
   EXPECT_THAT(complaint({"r/run_3/e.csv", "r/run_4/e.csv", "r/run_5/e.csv"}),
               HasSubstr("r/run_5/e.csv: run 5 has no truth"));
   EXPECT_THAT(complaint({"r/run_3/e.csv", "r/run_5/e.csv"}), HasSubstr("r/run_5/e.csv: runs 4"));
-  EXPECT_THAT(complaint({"a.csv", "b.csv"}), HasSubstr("a.csv: of which run?"));
+  EXPECT_THAT(complaint({"a.csv", "b.csv"}), HasSubstr("a.csv: has no run number"));
   EXPECT_THAT(complaint({"r/run_3.csv", "r/run_03.csv"}), HasSubstr("run 3 again"));
   EXPECT_THAT(complaint({"a/run_3.csv", "a/run_4.csv", "b/run_3.csv"}), HasSubstr("run 4 has no"));
   EXPECT_THAT(complaint({"a b/run_3.csv", "a b/run_4.csv"}), HasSubstr("cannot label a cell"));
@@ -223,7 +223,7 @@ TEST(PairFiles, GivesASingleTruthToAllRunsUnlessItIsOfOne) {
   EXPECT_EQ(pair_files(estimates, {"2026/truth.csv"}, std::nullopt).truth.size(), 2U);
   EXPECT_THAT(complaint(estimates, {"t/run_0000/reference.csv"}), HasSubstr("has no truth"));
   EXPECT_THAT(complaint(estimates, {"t/run_0001/reference.csv"}), HasSubstr("run 2 has no truth"));
-  EXPECT_THAT(complaint({"e/99999999999.csv", "e/2.csv"}), HasSubstr("of which run?"));
+  EXPECT_THAT(complaint({"e/99999999999.csv", "e/2.csv"}), HasSubstr("has no run number"));
   const JudgedFiles alone = pair_files({"mine.csv"}, {"t/run_0007/reference.csv"}, std::nullopt);
   EXPECT_EQ(alone.truth.size(), 1U);
 }

@@ -96,7 +96,7 @@ TEST(Plan, RefusesJointEstimatesThatNoCellHas) {
   EXPECT_THAT(plan.resolved_text, HasSubstr("joint_scans = 16"));
   EXPECT_THAT(plan_complaint(with("[cells]", "[association]\nkind = nearest\n" + record) +
                              "cell = smoother\n"),
-              HasSubstr("nobody knows which landmark of a map is which"));
+              HasSubstr("the landmarks of a map cannot be identified"));
 }
 
 TEST(Plan, KeepsTheMarginInTheText) {
@@ -205,7 +205,7 @@ TEST(Until, MayBeTheVerdict) {
   EXPECT_THAT(resolved_text(study), HasSubstr("until = verdict\n"));
   EXPECT_TRUE(make_plan(study).is_enough);
   EXPECT_THROW(make_plan(study, RunRange{0, 10}), StudyError);
-  EXPECT_THAT(in_words(*study.until, 1000), HasSubstr("widened for up to 6 looks"));
+  EXPECT_THAT(in_words(*study.until, 1000), HasSubstr("widened for up to 6 interim analyses"));
   const Study poses = parsed(study_until("verdict"), {"record.columns=pose"});
   EXPECT_THAT(engine::complaint_of([&] { make_plan(poses); }), HasSubstr("trial.ini:4"));
 }
@@ -297,7 +297,7 @@ TEST_F(RecordedStudy, RefusesAnotherDriveThanItWasMadeWith) {
 
 TEST_F(RecordedStudy, SaysWhatDoesNotFitARecordedDrive) {
   EXPECT_THAT(complaint({}), "nothing");
-  EXPECT_THAT(complaint({"scenario.loops=2"}), HasSubstr("scenario.loops says nothing of a"));
+  EXPECT_THAT(complaint({"scenario.loops=2"}), HasSubstr("scenario.loops does not apply to a"));
   EXPECT_THAT(complaint({"scenario.sigma_speed=2"}), HasSubstr("give it under [belief]"));
   EXPECT_THAT(complaint({"scenario.path=nowhere"}), HasSubstr("no folder 'nowhere'"));
   EXPECT_THAT(complaint({"scenario.reference=gpz"}), HasSubstr("did you mean gps?"));

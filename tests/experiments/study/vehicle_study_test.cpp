@@ -57,14 +57,15 @@ TEST(VehicleStudy, SettingsReachTheVehicleAndItsNoise) {
 }
 
 TEST(VehicleStudy, WhatIsOfAnotherVehicleIsRefused) {
-  EXPECT_THAT(complaint(kRobot, {"scenario.wheelbase=2"}), HasSubstr("scenario.wheelbase says"));
+  EXPECT_THAT(complaint(kRobot, {"scenario.wheelbase=2"}),
+              HasSubstr("scenario.wheelbase does not apply"));
   EXPECT_THAT(complaint(kRobot, {"belief.sigma_steer_deg=2"}),
-              HasSubstr("belief.sigma_steer_deg says nothing of a vehicle differential_drive"));
+              HasSubstr("belief.sigma_steer_deg does not apply to a vehicle differential_drive"));
 }
 
 TEST(VehicleStudy, ThePilotIsOfMatchedNoise) {
   EXPECT_THAT(complaint(kRobot, {"scenario.noise=measured-control", "scenario.pilot=open_loop"}),
-              HasSubstr("scenario.pilot says nothing of a noise measured-control"));
+              HasSubstr("scenario.pilot does not apply to a noise measured-control"));
   EXPECT_THAT(resolved_text(parsed(kRobot, {"scenario.noise=matched", "scenario.pilot=open_loop"})),
               HasSubstr("pilot = open_loop\n"));
 }
@@ -111,7 +112,7 @@ TEST(SensorStudy, ASensorHasItsOwnNoiseAndNoOther) {
               AllOf(HasSubstr("sigma_range"), Not(HasSubstr("sigma_position"))));
   EXPECT_THAT(
       complaint(of_cell("ekf_slam"), {"scenario.sensor=bearing_only", "scenario.sigma_range=1"}),
-      AllOf(HasSubstr("scenario.sigma_range says nothing of a sensor bearing_only"),
+      AllOf(HasSubstr("scenario.sigma_range does not apply to a sensor bearing_only"),
             HasSubstr("range_bearing, range_only")));
 }
 
@@ -266,7 +267,7 @@ TEST(SensorStudy, ObservabilityIsOfFiltersThatTellItAndSensorsThatFixLandmarks) 
     return complaint_of([&] { make_plan(study); });
   };
   EXPECT_THAT(refusal("dead_reckoning", "range_bearing"), HasSubstr("observability (no cell"));
-  EXPECT_THAT(refusal("ekf_slam", "bearing_only"), HasSubstr("observability (no cell tells"));
+  EXPECT_THAT(refusal("ekf_slam", "bearing_only"), HasSubstr("observability (no cell reports"));
   EXPECT_EQ(refusal("ekf_slam", "position"), "nothing");
   EXPECT_EQ(refusal("fej_ekf_slam", "range_bearing"), "nothing");
 }
