@@ -111,6 +111,15 @@ class Player(OnPage):
         self.assertEqual([len({x for x, _ in below}), len({y for _, y in below})], [1, 3])
         self.assertLessEqual(self.ask("html", "scrollWidth"), 390)
 
+    def test_is_on_paper_in_its_proportions(self):
+        self.page.call("Emulation.setEmulatedMedia", media="print")
+        self.later()
+        shapes = self.page.evaluate("""[...document.querySelectorAll(".player canvas")].map(one =>
+            one.clientWidth / one.clientHeight * one.height / one.width)""")
+        self.assertEqual(len(shapes), 9)
+        for shape in shapes:
+            self.assertAlmostEqual(shape, 1, delta=0.03)
+
     def test_every_layer_is_another_picture(self):
         self.page.click(self.page.middle(".player input[type=range]", x=0.6))
         seen = [self.picture()]
