@@ -33,11 +33,9 @@ class ChartFigure {
 
   addHint(parent) {
     const hint = htmlElement("div", {class: "hint"}, parent);
-    const words = matchMedia("(pointer: coarse)").matches
-      ? "Slide a finger to read values; two fingers zoom, a double tap shows all."
-      : "Point to read values; drag a box to zoom, Shift and drag to move, Ctrl and wheel to "
-        + "zoom; a double click shows all.";
-    htmlElement("span", {text: words}, hint);
+    htmlElement("span", {text: handsSay("Point to read values; drag a box to zoom, Shift and drag "
+      + "to move, Ctrl and wheel to zoom; a double click shows all.",
+    "Slide a finger to read values; two fingers zoom, a double tap shows all.")}, hint);
     this.all = htmlElement("button", {type: "button", text: "show all", hidden: ""}, hint);
     this.all.addEventListener("click", () => this.reset());
   }

@@ -10,6 +10,13 @@
 
 const LEAST_BOX = 6;
 
+/** How to do something with the mouse and with fingers, as far as this machine has them. */
+function handsSay(mouse, fingers) {
+  const has = (query) => matchMedia(query).matches;
+  if (has("(pointer: coarse)")) return fingers;
+  return has("(any-pointer: coarse)") ? `${mouse} On a touch screen: ${fingers}` : mouse;
+}
+
 class Gestures {
   constructor(surface, handler, drag = "box") {
     this.surface = surface;

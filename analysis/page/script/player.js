@@ -16,6 +16,9 @@ class Player {
     this.addControls(htmlElement("div", {class: "controls"}, live));
     this.addPanels(live);
     this.addLayers(htmlElement("div", {class: "layers"}, live));
+    htmlElement("div", {class: "hint", text: handsSay("Drag a map to move it, Ctrl and wheel to "
+      + "zoom; a double click shows all. Space plays, arrow keys step.",
+    "Two fingers move and zoom a map; a double tap shows all.")}, live);
     live.addEventListener("keydown", (event) => this.key(event));
     new ResizeObserver(() => this.layOut()).observe(live);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
