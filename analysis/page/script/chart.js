@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A figure that is zoomed into and asked: panels over one horizontal axis, a legend, a readout.
 
-const CHART = {right: 14, top: 26, bottom: 44, narrow: 480, widest: 640, lowest: 80};
+const CHART = {right: 14, top: 30, bottom: 44, narrow: 480, widest: 640, lowest: 80};
 
 class ChartFigure {
   constructor(figure, data) {
@@ -56,7 +56,9 @@ class ChartFigure {
     const fit = Math.floor(this.width / least);
     const columns = clamp(fit, 1, Math.min(most, this.shown.length || 1));
     const each = Math.min(this.width / columns, aspect ? CHART.widest : Infinity);
-    const {left: room, right} = this.plots[0].margins(this.width);
+    const margins = this.plots.map((plot) => plot.margins(this.width));
+    const room = Math.max(...margins.map(({left}) => left));
+    const right = Math.max(...margins.map((margin) => margin.right));
     const width = each - room - right;
     const height = this.plots[0].wantedHeight()
       ?? (aspect ? Math.max(aspect * width, CHART.lowest) : this.usualHeight());

@@ -55,14 +55,17 @@ class Growth {
     pen.fillText(text, 29, this.y(tick) + 4);
   }
 
+  /** The name of the curve is short where there is little room. */
   drawTimes() {
     const {times} = this;
     const {pen, colour, height, width} = this.paper;
+    const end = `${Math.round(times.at(-1))} s`, name = "NEES ratio, 95 % band";
+    const room = width - 50 - pen.measureText(end).width;
     this.paper.line(colour.soft, 1);
     pen.textAlign = "right";
-    pen.fillText(`${Math.round(times.at(-1))} s`, width - 8, height - 5);
+    pen.fillText(end, width - 8, height - 5);
     pen.textAlign = "left";
-    pen.fillText("NEES ratio, 95 % band", 34, height - 5);
+    pen.fillText(pen.measureText(name).width < room ? name : "NEES ratio", 34, height - 5);
   }
 
   drawCurve(cell, f) {

@@ -94,10 +94,11 @@ class Plot {
   /** As much as there is room for. */
   drawLabel() {
     const {left, room, top, width} = this.box;
-    const most = Math.floor((room + width) / 6.7);
     const {label} = this.panel;
-    const text = label.length > most ? `${label.slice(0, most - 1)}…` : label;
-    svgElement("text", {x: left - room, y: top - 8, class: "label", text}, this.group);
+    const element = svgElement("text", {x: left - room, y: top - 11, class: "label", text: label},
+                               this.group);
+    const share = (room + width) / element.getComputedTextLength();
+    if (share < 1) element.textContent = `${label.slice(0, share * label.length - 2)}…`;
   }
 
   drawGrid() {

@@ -183,6 +183,16 @@ class Strips(OnPage):
                 self.assertTrue(is_beside, "a text covers a strip")
         self.assertEqual(names[0][3] <= strips[0][2] + 3, self.names_stand_above)
 
+    def test_cut_no_name_of_a_second_panel(self):
+        self.unfold("consistency", "anees_parts")
+        inside = self.page.evaluate("""(() => {
+            const chart = document.querySelector("#figure_anees_parts svg.chart");
+            const {left, right} = chart.getBoundingClientRect();
+            return [...chart.querySelectorAll("text.row")].map(one => one.getBoundingClientRect())
+                .map(box => box.left >= left - 1 && box.right <= right + 1);
+        })()""")
+        self.assertEqual(inside, [True] * 2 * 2 * 9)
+
     def test_zoom_in_time_alone(self):
         self.page.drag(self.place_of_strip(1, 0.4), self.place_of_strip(6, 0.6))
         self.assertGreater(float(self.ask(CHART, "dataset.from")), 0)
