@@ -7,6 +7,7 @@
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/output/csv_file.hpp"
+#include "analysis/output/reading_order.hpp"
 #include "analysis/page/page.hpp"
 #include "analysis/page/replay/replay.hpp"
 #include "analysis/tables/tables.hpp"
@@ -33,47 +34,6 @@ void refuse_existing(const fs::path& directory, ExistingReport existing) {
                      ": is there already (nothing is overwritten unasked): add --force, or choose "
                      "another directory");
   }
-}
-
-/// Where a section stands on the page, with the figures of its subject.
-struct Place {
-  std::string section;
-  std::vector<std::string> figures = {};
-  Section::Shown shown = Section::Shown::folded;
-};
-
-/// The page from top to bottom. What is named nowhere here comes before the last two.
-const std::vector<Place>& reading_order() {
-  static const std::vector<Place> order = {
-      {"title", {}, Section::Shown::open},
-      {"cards", {}, Section::Shown::open},
-      {"drive", {}, Section::Shown::open},
-      {"references", {"reference_error"}, Section::Shown::open},
-      {"nees", {"anees"}, Section::Shown::open},
-      {"replay", {}, Section::Shown::open},
-      {"errors", {"rmse", "error_envelopes"}, Section::Shown::open},
-      {"verdict"},
-      {"failures"},
-      {"components"},
-      {"paths", {"paths"}},
-      {"survival", {"survival"}},
-      {"map_errors"},
-      {"map_size", {"map_size"}},
-      {"joint_nees", {"joint_nees"}},
-      {"observability", {"observability"}},
-      {"smoother"},
-      {"mismatch", {"mismatch"}},
-      {"error_anatomy", {"bias"}},
-      {"innovations", {"nis", "whiteness"}},
-      {"calibration", {"nees_quantiles", "calibration", "ranks"}},
-      {"diversity", {"diversity", "ess", "ancestry"}},
-      {"association"},
-      {"proper_scores"},
-      {"comparison"},
-      {"families"},
-      {"consistency", {"anees_parts"}},
-  };
-  return order;
 }
 
 /// Takes the element of this name out of `all`; nullopt where there is none.

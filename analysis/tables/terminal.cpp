@@ -3,6 +3,7 @@
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/reference_report.hpp"
 #include "analysis/metrics/verdict_table.hpp"
+#include "analysis/output/reading_order.hpp"
 #include "analysis/output/text_table.hpp"
 #include "analysis/tables/summary_table.hpp"
 #include "analysis/tables/tables.hpp"
@@ -10,7 +11,6 @@
 #include "engine/wrapped_text.hpp"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <map>
 #include <ostream>
@@ -45,16 +45,12 @@ void print_failures(std::ostream& out, const StudyAnalysis& study, std::size_t w
   out << '\n';
 }
 
-/// In this order; tables of other sections follow.
-constexpr std::array kTerminalOrder = {
-    "verdict",       "drive",         "references", "map_errors",  "joint_nees", "smoother",
-    "proper_scores", "error_anatomy", "diversity",  "innovations", "association"};
-
 std::vector<Section> terminal_sections(const StudyAnalysis& study) {
   std::vector<Section> sections = sections_of(study);
   std::erase_if(sections, [](const Section& section) { return !section.is_for_terminal; });
   std::ranges::stable_sort(sections, {}, [](const Section& section) {
-    return std::ranges::find(kTerminalOrder, section.name) - kTerminalOrder.begin();
+    const auto& places = reading_order();
+    return std::ranges::find(places, section.name, &Place::section) - places.begin();
   });
   return sections;
 }

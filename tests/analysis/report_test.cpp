@@ -3,6 +3,7 @@
 
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/study_analysis.hpp"
+#include "analysis/output/reading_order.hpp"
 #include "analysis/page/html.hpp"
 #include "analysis/page/page.hpp"
 #include "engine/errors.hpp"
@@ -85,6 +86,17 @@ std::string without_explanations(std::string page) {
     page.erase(at, page.find(end, at) + end.size() - at);
   }
   return page;
+}
+
+TEST(ReadingOrder, PlacesEverySectionAndFigureOnce) {
+  std::set<std::string> names;
+  std::size_t places = 0;
+  for (const Place& place : reading_order()) {
+    names.insert(place.section);
+    for (const std::string& figure : place.figures) names.insert("figure " + figure);
+    places += 1 + place.figures.size();
+  }
+  EXPECT_EQ(names.size(), places);
 }
 
 class ReportOfTwoCells : public testing::Test {
