@@ -40,8 +40,8 @@ std::vector<std::string> verdict_row(const CellAnalysis& cell) {
 
 std::vector<std::string> accuracy_row(const CellAnalysis& cell, double level) {
   return {cell.label,
-          score_text(cell, "position_rmse", level),
-          score_text(cell, "heading_rmse", level, 180.0 / kPi),
+          score_text(cell, "position_rmse", level).text(),
+          score_text(cell, "heading_rmse", level, 180.0 / kPi).text(),
           percent(cell.get<Efficiency>().position),
           readable(cell.over_runs("ess").mean),
           readable(cell.over_runs("ancestors_at_start_at_the_end").mean),
@@ -116,10 +116,20 @@ std::string ratio_text(const CellAnalysis& cell) {
   return with_interval(cell.verdict.ratio_estimate(), cell.verdict.ratio());
 }
 
-std::string score_text(const CellAnalysis& cell, std::string_view score, double level,
-                       double factor) {
-  return text_of_mean(cell.scores.column(score), cell.over_runs(score).mean,
-                      cell.interval_of(score), factor, level);
+std::string MeanText::text() const {
+  return median.empty() ? mean : mean + " (heavy tail), median " + median;
+}
+
+MeanText score_text(const CellAnalysis& cell, std::string_view score, double level, double factor) {
+  const auto scaled = [&](const Interval& interval) {
+    return Interval{factor * interval.lower, factor * interval.upper};
+  };
+  std::vector<double> sorted = cell.scores.column(score);
+  const double mean = factor * cell.over_runs(score).mean;
+  if (!is_heavy_tailed(sorted)) return {with_interval(mean, scaled(cell.interval_of(score))), ""};
+  std::ranges::sort(sorted);
+  return {compact(mean),
+          with_interval(factor * median_of(sorted), scaled(median_interval(sorted, level)))};
 }
 
 std::string runs_in_words(const CellAnalysis& cell) {
@@ -221,18 +231,6 @@ TextTable failure_table(const StudyAnalysis& study) {
     }
   }
   return table;
-}
-
-std::string text_of_mean(const std::vector<double>& values, double mean, const Interval& interval,
-                         double factor, double level) {
-  if (!is_heavy_tailed(values)) {
-    return with_interval(factor * mean, {factor * interval.lower, factor * interval.upper});
-  }
-  std::vector<double> sorted = values;
-  std::ranges::sort(sorted);
-  const Interval middle = median_interval(sorted, level);
-  return compact(factor * mean) + " (heavy tail), median " +
-         with_interval(factor * median_of(values), {factor * middle.lower, factor * middle.upper});
 }
 
 std::string ratio_note(const StudyAnalysis& study) {

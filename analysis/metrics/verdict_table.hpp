@@ -51,14 +51,18 @@ std::string name_of(Moments moments);
 
 /// The NEES ratio with its interval; "-" where it is not tested.
 std::string ratio_text(const CellAnalysis& cell);
-/// text_of_mean() of a score of a cell.
-std::string score_text(const CellAnalysis& cell, std::string_view score, double level,
-                       double factor = 1.0);
+/// The mean of a score over the complete runs of a cell, in words.
+struct MeanText {
+  std::string mean;    ///< with its interval, or alone if the scores have a heavy tail
+  std::string median;  ///< with its interval if the scores have a heavy tail, else empty
 
-/// The mean of `values`, one a run, with its `interval`. Where they have a heavy tail, of which no
-/// interval of the mean holds, the mean says so and the median over runs follows with its interval
-/// at `level`. All times `factor`.
-std::string text_of_mean(const std::vector<double>& values, double mean, const Interval& interval,
-                         double factor, double level);
+  /// "0.29 [0.22, 0.37]", "3.1 (heavy tail), median 0.4 [0.3, 0.6]"
+  std::string text() const;
+};
+
+/// The mean with the interval of the cell. No interval holds the mean of a heavy tail: then the
+/// median follows with an interval at `level`. All times `factor`.
+MeanText score_text(const CellAnalysis& cell, std::string_view score, double level,
+                    double factor = 1.0);
 
 }  // namespace montecarta::analysis

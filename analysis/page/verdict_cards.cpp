@@ -130,15 +130,14 @@ std::string number_html(const std::string& name, const std::string& value,
       html_paragraphs(notes));
 }
 
-/// The mean over runs; without an interval if it has a heavy tail.
-std::string rmse_html(const StudyAnalysis& study, const std::string& name,
-                      const std::string& value) {
-  const std::size_t tail = value.find(" (heavy tail), ");
-  if (tail == value.npos) return number_html(name, value, {rmse_note(study)});
-  return number_html(
-      name, value.substr(0, tail),
-      {rmse_note(study), "A few runs decide this mean, so it has no interval. The " +
-                             value.substr(value.find("median")) + " is over the same runs."});
+std::string rmse_html(const StudyAnalysis& study, const std::string& name, const MeanText& value) {
+  std::vector<std::string> notes = {rmse_note(study)};
+  if (!value.median.empty()) {
+    notes.push_back(
+        "A few runs decide this mean, so it has no interval. The median over the same runs is " +
+        value.median + ".");
+  }
+  return number_html(name, value.mean, notes);
 }
 
 std::string numbers_html(const StudyAnalysis& study, const CellAnalysis& cell) {
