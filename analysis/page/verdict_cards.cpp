@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace montecarta::analysis {
 namespace {
@@ -84,15 +85,49 @@ struct Sparkline {
            "\" width=\"" + pixels(kSparkWidth) + "\" height=\"" +
            pixels(y(bounds.lower / dimension) - top) + "\"/>";
   }
+
+  /// A bar below each eighth of the drive in which a deviation is shown, else below each such scan.
+  std::string bars(const Verdict& verdict) const {
+    for (const Family family : {Family::stretch, Family::scan}) {
+      const FamilyTest* test = verdict.find(family);
+      const std::string html = test == nullptr ? "" : bars_of(*test);
+      if (!html.empty()) return html;
+    }
+    return "";
+  }
+
+  /// With the first and the last time where they are not those of the drive.
+  std::string bars_of(const FamilyTest& test) const {
+    constexpr double kLeastWidth = 2.0;
+    const bool is_scan = test.family == Family::scan;
+    const auto words = [&](double t) { return is_scan ? fixed_seconds(t) : readable(t) + " s"; };
+    const auto& all = test.members;
+    std::string path, from, to;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (!test.is_shown(all[k])) continue;
+      const bool is_last = k + 1 == all.size();
+      const double left = x(all[k].from), right = x(is_last ? all[k].to : all[k + 1].from);
+      if (path.empty() && k > 0) from = text_at(all[k].from, words(all[k].from), "from");
+      to = is_last || is_scan ? "" : text_at(all[k].to, words(all[k].to), "to");
+      path += "M" + pixels(left) + " " + pixels(kSparkHeight + 9.0) + "H" +
+              pixels(std::max(right, left + kLeastWidth));
+    }
+    return path.empty() ? "" : "<path class=\"shown\" d=\"" + path + "\"/>" + from + to;
+  }
+
+  std::string text_at(double time, const std::string& words, const std::string& side) const {
+    return "<text class=\"" + side + "\" x=\"" + pixels(x(time)) + "\" y=\"" +
+           pixels(kSparkHeight + 21.0) + "\">" + words + "</text>";
+  }
 };
 
 std::string spark_note(const StudyAnalysis& study) {
   return "The NEES ratio of each scan, averaged over runs, on a logarithmic axis that is the same "
          "on all cards. 1 is right; the grey band is where chance leaves a consistent filter in " +
          level_text(study.level) +
-         " of scans. Above the band the filter is optimistic, below it conservative. What is "
-         "beyond "
-         "the top is drawn there.";
+         " of scans. Above the band the filter is optimistic, below it conservative. What lies "
+         "beyond the top is drawn there. A bar below the curve marks the eighths of the drive, or "
+         "else the scans, in which a deviation is shown.";
 }
 
 std::string spark_html(const StudyAnalysis& study, const CellAnalysis& cell, std::size_t style,
@@ -104,20 +139,21 @@ std::string spark_html(const StudyAnalysis& study, const CellAnalysis& cell, std
   const auto dimension = static_cast<double>(series->dimension);
   const ThinnedSeries thinned = thin(study.times, {{"anees", "1", series->average}}, kSparkColumns);
   const Interval bounds = nees_bounds(cell.complete, series->dimension, study.level);
+  const std::string bars = line.bars(cell.verdict);
   return html_explained("NEES ratio from 0 to " + readable(study.times.back()) + " s",
                         html_paragraphs({spark_note(study)})) +
          "<svg class=\"spark\" role=\"img\" viewBox=\"0 0 " +
-         pixels(kSparkLeft + kSparkWidth + 2.0) + " " + pixels(kSparkHeight + 8.0) +
+         pixels(kSparkLeft + kSparkWidth + 2.0) + " " +
+         pixels(kSparkHeight + (bars.empty() ? 8.0 : 24.0)) +
          "\" aria-label=\"NEES ratio over time, at the end " +
          compact(series->average.back() / dimension) + "\">" + line.band(bounds, dimension) +
          line.grid() + "<path class=\"curve\" stroke=\"" + line_colour(style) + "\" d=\"" +
-         line.path(thinned, dimension) + "\"/></svg>\n";
+         line.path(thinned, dimension) + "\"/>" + bars + "</svg>\n";
 }
 
 std::string rmse_note(const StudyAnalysis& study) {
   return "Root mean square error over the scans of a run, mean over the complete runs. The "
-         "brackets "
-         "hold the mean of infinitely many runs in " +
+         "brackets hold the mean of infinitely many runs in " +
          level_text(study.level) + " of studies.";
 }
 
@@ -140,10 +176,31 @@ std::string rmse_html(const StudyAnalysis& study, const std::string& name, const
   return number_html(name, value.mean, notes);
 }
 
+/// The ratio of this cell as a multiple of a standard deviation.
+std::string deviations_note(const CellAnalysis& cell) {
+  const double ratio = cell.verdict.ratio_estimate();
+  return "Here errors are about " + compact(std::sqrt(ratio)) + " times (the square root of " +
+         compact(ratio) + ") as large as the standard deviations that its covariance claims.";
+}
+
+/// Which covariance of a particle filter is judged (STATISTICS 1, 4).
+std::string particles_note(const CellAnalysis& cell) {
+  return "The covariance of this particle filter is the spread of the poses that its " +
+         std::to_string(cell.particles) +
+         " particles drew at a scan, by their weights before resampling. Since the spread of few "
+         "draws is too small by construction, its NEES is corrected for the number of effective "
+         "draws (ESS). At a scan that drew no poses, each particle's own covariance is part of it.";
+}
+
+std::vector<std::string> ratio_notes(const StudyAnalysis& study, const CellAnalysis& cell) {
+  std::vector<std::string> notes = {deviations_note(cell), ratio_note(study)};
+  if (cell.leading == Moments::corrected) notes.push_back(particles_note(cell));
+  std::ranges::copy(cautions({&cell, 1}, study.imported), std::back_inserter(notes));
+  return notes;
+}
+
 std::string numbers_html(const StudyAnalysis& study, const CellAnalysis& cell) {
-  std::vector<std::string> ratio_notes = cautions({&cell, 1}, study.imported);
-  ratio_notes.insert(ratio_notes.begin(), ratio_note(study));
-  std::string html = number_html("NEES ratio", ratio_text(cell), ratio_notes);
+  std::string html = number_html("NEES ratio", ratio_text(cell), ratio_notes(study, cell));
   if (study.imported.is_imported() && study.imported.state != "pose") return html;
   return html +
          rmse_html(study, "position RMSE [m]", score_text(cell, "position_rmse", study.level)) +

@@ -151,6 +151,7 @@ TEST_F(ReportOfTwoCells, HasACardForEveryCell) {
   EXPECT_EQ(count_in(cards, "<article class=\"card optimistic\">"), 1u);
   EXPECT_EQ(count_in(cards, "<p class=\"word\">optimistic</p>"), 1u);
   EXPECT_EQ(count_in(cards, "<svg class=\"spark\""), 2u);
+  EXPECT_EQ(count_in(cards, "<path class=\"shown\""), 1u);
   EXPECT_EQ(count_in(cards, "<p class=\"sentence\">scripted_m"), 2u);
   EXPECT_EQ(count_in(cards, "<a href=\"#failures\">Runs: 1 FAILED, 5 complete</a>"), 1u);
   EXPECT_THAT(section_in(page(), "failures"), HasSubstr("gain is &lt;not&gt; a number"));
