@@ -177,6 +177,10 @@ TEST_F(ReportOfTwoCells, ShowsNoNoteBeforeItIsAskedFor) {
   EXPECT_GT(notes, 5u);
 }
 
+TEST_F(ReportOfTwoCells, SaysWhichRunOfHowManyItReplays) {
+  EXPECT_THAT(without_explanations(section_in(page(), "replay")), HasSubstr(", one of 6 "));
+}
+
 TEST_F(ReportOfTwoCells, NamesWhatIsNotThereInOnePlace) {
   EXPECT_EQ(section_in(page(), "map_errors"), "");
   EXPECT_THAT(section_in(page(), "missing"), HasSubstr("final_map"));

@@ -316,7 +316,7 @@ bool has_particles(const ReplayCell& cell) { return !cell.particles.frames.empty
 
 /// What the player shows of this file.
 std::string shown(const Replay& replay) {
-  std::string words = "Run " + std::to_string(replay.run) + ", all cells on the same drive: the " +
+  std::string words = std::string("All cells are on the same drive: the ") +
                       (replay.x.empty() ? "" : "true path in grey and the ") +
                       "estimate in colour; ellipses hold " + level_text(kReplayShare) +
                       " of the probability of a position or a landmark (true ones are crosses)";
@@ -340,8 +340,27 @@ std::size_t held_index(const ResultFile& file, std::uint64_t run) {
   return static_cast<std::size_t>(std::ranges::find(file.runs(), run) - file.runs().begin());
 }
 
-/// What to record to see more; empty where all is there.
+/// Which run is shown, of how many, why this one, and whether more is stored of it than of others.
+std::string which_run(const ResultFile& file, const Replay& replay) {
+  const std::size_t index = held_index(file, replay.run), runs = file.runs().size();
+  if (runs == 1) return "Run " + std::to_string(replay.run) + " is the only one of this file.";
+  const std::size_t cells = file.cells().size();
+  const auto complete = static_cast<std::size_t>(std::ranges::count_if(
+      replay.cells, [](const ReplayCell& cell) { return cell.failure.empty(); }));
+  std::string words = "This is run " + std::to_string(replay.run) + ", one of " +
+                      std::to_string(runs) + " that are numbered from 0: ";
+  words += chosen_run(file, {}) != index ? "it was chosen by --run."
+           : complete == cells           ? "it is the first that every cell completed."
+                               : "it is the first that " + std::to_string(complete) + " of " +
+                                     std::to_string(cells) + " cells completed.";
+  if (index >= file.description().full_runs_here()) return words;
+  return words + " It is stored in full because of record.full_runs = " +
+         std::to_string(file.description().full_runs) + ".";
+}
+
+/// What to record to see more; empty where all is there, and of imported estimates.
 std::string wanted(const ResultFile& file, std::size_t run) {
+  if (file.cells().front().has("error")) return "";
   const auto lacks = [&](const char* column, bool of_particles) {
     return std::ranges::any_of(file.cells(), [&](const StoredCell& cell) {
       return !(of_particles && cell.particles == 0) && !file.holds(cell, column, run);
@@ -375,6 +394,7 @@ Replay chosen_replay(const ResultFile& file, std::optional<std::uint64_t> run) {
 Section replay_section(const ResultFile& file, const Replay& replay) {
   if (replay.cells.empty()) return {};
   Section section{"replay", "What happened in one run?"};
+  section.add_html("<p class=\"soft\">" + html_escape(which_run(file, replay)) + "</p>\n");
   section.add_html(
       "<div class=\"player\">\n<noscript><p class=\"soft\">The player needs scripts; its last "
       "moment is drawn in <a href=\"figures/replay.svg\">figures/replay.svg</a>.</p></noscript>\n" +
