@@ -73,6 +73,7 @@ std::string stroke(const std::string& colour, double width, const char* opacity 
 
 constexpr const char* kText = "currentColor";
 constexpr const char* kTruth = "#999999";
+constexpr double kScaleCharacter = 7.0;  // [px] the width of a character of kSoftText, at most
 constexpr const char* kSoftText = "font-size=\"12\" fill=\"#777777\"";
 
 /// From metres to pixels of a box that is `width` by `height` [px], y upwards.
@@ -215,15 +216,19 @@ void draw_vehicle(const std::vector<double>& x, const std::vector<double>& y,
                                             px(-h.back() * 180.0 / kPi) + ")\" " + style);
 }
 
-/// A bar of a round number of metres.
+/// A bar of a round number of metres, on the colour of the paper.
 void draw_scale(const View& view, Drawing& drawing) {
   const double most = view.width / view.scale / 4.5;
   const double power = std::pow(10.0, std::floor(std::log10(most)));
   const double metres = (most >= 5.0 * power ? 5.0 : most >= 2.0 * power ? 2.0 : 1.0) * power;
   const double y = view.height - 8.0;
+  const std::string text = exact_text(metres) + " m";
+  const double text_width = kScaleCharacter * static_cast<double>(text.size());
+  drawing.rectangle({4.0, y - 17.0, std::max(metres * view.scale, 4.0 + text_width) + 8.0, 21.0},
+                    "fill=\"#ffffff\" fill-opacity=\"0.85\"");
   drawing.path("M8 " + px(y - 3.0) + "v3h" + px(metres * view.scale) + "v-3",
                stroke("#777777", 1.0));
-  drawing.text(12.0, y - 5.0, exact_text(metres) + " m", kSoftText);
+  drawing.text(12.0, y - 5.0, text, kSoftText);
 }
 
 /// `size` of dots and lines, by the usual.

@@ -154,11 +154,16 @@ class Scene {
     pen.restore();
   }
 
-  /** A bar of a round number of metres. */
+  /** A bar of a round number of metres, on the colour of the page. */
   drawScale() {
     const {camera, pen, paper} = this;
     const metres = niceDistance(camera.width / camera.scale, 9);
     const left = 8, y = camera.height - 8, length = metres * camera.scale;
+    const text = `${readable(metres)} m`;
+    pen.font = "11px system-ui, sans-serif";
+    pen.textAlign = "left";
+    paper.line(paper.colour.page, 1, 0.85);
+    pen.fillRect(left - 4, y - 16, Math.max(length, 4 + pen.measureText(text).width) + 8, 20);
     paper.line(paper.colour.soft, 1);
     pen.beginPath();
     pen.moveTo(left, y - 3);
@@ -166,8 +171,6 @@ class Scene {
     pen.lineTo(left + length, y);
     pen.lineTo(left + length, y - 3);
     pen.stroke();
-    pen.font = "11px system-ui, sans-serif";
-    pen.textAlign = "left";
-    pen.fillText(`${readable(metres)} m`, left + 4, y - 4);
+    pen.fillText(text, left + 4, y - 4);
   }
 }
