@@ -160,7 +160,8 @@ constexpr const char* kNoNetwork =
 
 /// Verdicts and failures are seen at a glance; the word itself says the same without the colour.
 std::string class_of(const std::string& text, Align align) {
-  std::string names = align == Align::right ? "right" : "";
+  constexpr std::size_t kLong = 24;  // characters: more are broken into lines on a narrow page
+  std::string names = align == Align::right ? "right" : text.size() > kLong ? "long" : "";
   const bool bad = text.starts_with("optimistic") || text.starts_with("inconsistent") ||
                    text.starts_with("better in no") || text.find("FAILED") != std::string::npos;
   if (bad) names += " bad";

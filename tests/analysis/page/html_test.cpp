@@ -26,7 +26,8 @@ TEST(Html, ColoursWhatIsShownAndNothingElse) {
   };
   EXPECT_THAT(row("consistent within 1.1"), testing::HasSubstr("good"));
   EXPECT_THAT(row("optimistic: NEES 1.2 to 1.4 times too large"), testing::HasSubstr("bad"));
-  EXPECT_THAT(row("undecided: 12 more runs decide"), testing::HasSubstr("<td>undecided"));
+  EXPECT_THAT(row("undecided"), testing::HasSubstr("<td>undecided"));
+  EXPECT_THAT(row("undecided: 12 more runs decide"), testing::HasSubstr("\"long\">undecided"));
 }
 
 TEST(Html, GivesEveryDrawingItsOwnIdentifiersAndTheColourOfTheText) {
