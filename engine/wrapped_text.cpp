@@ -26,11 +26,21 @@ std::size_t width_in_environment() {
   return width > 0 ? static_cast<std::size_t>(width) : kUsualWidth;
 }
 
+/// In place of a space at which no line ends.
+constexpr char kKept = '\x1f';
+
+/// A number and its percent sign are one word.
+std::string with_kept_spaces(std::string text) {
+  for (std::size_t at = text.find(" %"); at != text.npos; at = text.find(" %", at))
+    text[at] = kKept;
+  return text;
+}
+
 std::string wrapped_paragraph(const std::string& text, std::size_t width, std::size_t hang) {
   if (characters_of(text) <= width) return text + '\n';
   std::string line(std::min(text.find_first_not_of(' '), text.size()), ' ');
   const std::string indent(line.size() + hang, ' ');
-  std::istringstream words(text);
+  std::istringstream words(with_kept_spaces(text));
   std::string lines;
   bool begins_line = true;
   for (std::string word; words >> word; begins_line = false) {
@@ -41,7 +51,9 @@ std::string wrapped_paragraph(const std::string& text, std::size_t width, std::s
     }
     line += (begins_line ? "" : " ") + word;
   }
-  return lines + (begins_line ? "" : line) + '\n';
+  lines += (begins_line ? "" : line) + '\n';
+  std::ranges::replace(lines, kKept, ' ');
+  return lines;
 }
 
 }  // namespace

@@ -199,6 +199,7 @@ std::string html_escape(const std::string& text) {
         html += c;
     }
   }
+  html = replaced(html, " %", "&#160;%");  // a number and its percent sign stay together
   return replaced(html, "+-", "&plusmn;");
 }
 

@@ -23,6 +23,10 @@ TEST(WrappedText, KeepsEmptyLinesAndLongWords) {
   EXPECT_EQ(wrapped("", 40), "");
 }
 
+TEST(WrappedText, KeepsANumberWithItsPercentSign) {
+  EXPECT_EQ(wrapped("in 95 % of", 6), "in\n95 %\nof\n");
+}
+
 TEST(WrappedText, CountsCharactersNotBytes) {
   EXPECT_EQ(wrapped("\u00b1\u03c3 \u00b1\u03c3", 5), "\u00b1\u03c3 \u00b1\u03c3\n");
 }
