@@ -431,7 +431,7 @@ std::string strip_axis(const ChartPanel& panel) {
 std::string vertical_axis(const ChartPanel& panel, const PanelBox& box) {
   if (!panel.strips.rows.empty()) return strip_axis(panel);
   const ChartAxis& axis = panel.axis;
-  const bool is_plain = !axis.logarithmic || (axis.low >= 0.01 && axis.high <= 1e4);
+  const bool is_plain = !axis.logarithmic || (axis.low >= 0.01 && axis.high < 1e4);
   const bool is_free = axis.logarithmic || !panel.y_names.empty();
   const double to = upper_end(panel);
   const std::string label = gnuplot_quoted(panel.label) + " noenhanced";
@@ -441,7 +441,7 @@ std::string vertical_axis(const ChartPanel& panel, const PanelBox& box) {
          "unset label\n" +
          (box.has_heading
               ? "unset ylabel\nset label " + label + " at graph 0,1 left offset -3,0.8\n"
-              : "set ylabel " + label + " offset 0.8,0\n");
+              : "set ylabel " + label + " offset 1.2,0\n");
 }
 
 std::string place(const PanelBox& box, double width, double height) {
