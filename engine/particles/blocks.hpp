@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace montecarta::engine {
@@ -17,6 +19,24 @@ template <class Real>
 constexpr std::size_t blocks_for(std::size_t particles) {
   return (particles + kLanesOf<Real> - 1) / kLanesOf<Real>;
 }
+
+/// Allocates memory for elements that are written before they are read. Threads that share this
+/// work then also share that of the system, for which the first touch of memory is slow.
+template <class T>
+struct UntouchedAllocator : std::allocator<T> {
+  template <class U>
+  struct rebind {
+    using other = UntouchedAllocator<U>;
+  };
+  template <class U>
+  void construct(U* /*element*/) const noexcept {}
+  template <class U, class... Arguments>
+  void construct(U* element, Arguments&&... arguments) const {
+    std::construct_at(element, std::forward<Arguments>(arguments)...);
+  }
+};
+template <class T>
+using UntouchedColumn = std::vector<T, UntouchedAllocator<T>>;
 
 /// A column of one Real per block as one double per particle, with the dead lanes at the end.
 template <class Real>
@@ -68,13 +88,6 @@ void copy_lane(const Block& from, Block& to, std::size_t lane) {
   }
 }
 
-/// Makes `to` the population in which particle i is a copy of particle source[i] of `from`.
-template <class Real, class Block>
-void gather(const std::vector<Block>& from, std::span<const std::uint32_t> source,
-            std::vector<Block>& to) {
-  for (std::size_t b = 0; b < to.size(); ++b) to[b] = gather_block<Real, Block>(from, source, b);
-}
-
 /// Distributes the blocks of a population over tasks that may run in parallel.
 template <class Real>
 class BlockTasks {
@@ -105,5 +118,40 @@ class BlockTasks {
  private:
   std::size_t blocks_, per_task_;
 };
+
+/// Makes `to` the population in which particle i is a copy of particle source[i] of `from`.
+template <class Real, class Block>
+void gather(const StepContext& context, const std::vector<Block>& from,
+            std::span<const std::uint32_t> source, std::vector<Block>& to) {
+  BlockTasks<Real>(to.size()).run(context, [&](std::size_t /*task*/, std::size_t b) {
+    to[b] = gather_block<Real, Block>(from, source, b);
+  });
+}
+
+/// Number of particles whose terms are added one after the other. The sum over a larger population
+/// adds the sums of parts of this size in the order of the parts.
+inline constexpr std::size_t kParticlesPerSum = 1024;
+
+/// Joins the parts of a population in their order: join(whole, part) for every part after the
+/// first. part_of(first, n) computes a part from n blocks of at most kParticlesPerSum particles.
+template <class Real, class PartOf, class Join>
+auto joined_parts(const StepContext& context, std::size_t blocks, const PartOf& part_of,
+                  const Join& join) {
+  using Part = decltype(part_of(blocks, blocks));
+  constexpr std::size_t per_part = kParticlesPerSum / kLanesOf<Real>;
+  const BlockTasks<Real> tasks(blocks, per_part);
+  Part whole{};  // no memory is allocated for a population of one part
+  std::vector<Part> more(tasks.count() - 1);
+  tasks.run_together(context, [&](std::size_t first, std::size_t n) {
+    (first == 0 ? whole : more[first / per_part - 1]) = part_of(first, n);
+  });
+  for (const Part& part : more) join(whole, part);
+  return whole;
+}
+/// The sum of numbers over a population; sum_of(first, n) adds up those of n blocks.
+template <class Real, class SumOf>
+double sum_of_parts(const StepContext& context, std::size_t blocks, const SumOf& sum_of) {
+  return joined_parts<Real>(context, blocks, sum_of, [](double& sum, double part) { sum += part; });
+}
 
 }  // namespace montecarta::engine

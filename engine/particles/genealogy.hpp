@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "engine/namespaces.hpp"
+#include "engine/particles/blocks.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -16,53 +17,49 @@ namespace montecarta::engine {
 class Genealogy {
  public:
   /// Takes the number of particles including dead lanes, each of which is its own parent.
-  explicit Genealogy(std::size_t particles) : identity_(particles) {
-    std::iota(identity_.begin(), identity_.end(), 0U);
-  }
+  explicit Genealogy(std::size_t particles) : particles_(particles) {}
 
   void clear() {
-    parents_.clear();
+    kept_ = 0;
     forgotten_ = 0;
   }
   /// Number of resamplings so far.
-  std::uint32_t generation() const {
-    return forgotten_ + static_cast<std::uint32_t>(parents_.size() / identity_.size());
-  }
-  void add(std::span<const std::uint32_t> parents) {
-    parents_.insert(parents_.end(), parents.begin(), parents.end());
+  std::uint32_t generation() const { return forgotten_ + static_cast<std::uint32_t>(kept_); }
+  void add(const StepContext& context, std::span<const std::uint32_t> parents) {
+    if (kept_ == parents_.size()) parents_.emplace_back(particles_);
+    const std::span<std::uint32_t> kept = parents_[kept_++];
+    BlockTasks<double>(particles_).run_together(context, [&](std::size_t first, std::size_t n) {
+      std::ranges::copy(parents.subspan(first, n), kept.subspan(first, n).begin());
+    });
   }
   /// Returns whether so much is stored that all data should be copied and forget() called.
-  bool is_long() const {
-    return parents_.size() >= kMostNumbers || parents_.size() / identity_.size() >= kLongest;
-  }
+  bool is_long() const { return kept_ * particles_ >= kMostNumbers || kept_ >= kLongest; }
   void forget() {
     forgotten_ = generation();
-    parents_.clear();
+    kept_ = 0;
   }
 
   /// The index in generation `since` of the ancestor of a present particle.
   std::uint32_t trace(std::uint32_t since, std::uint32_t particle) const {
-    for (std::size_t g = generation() - forgotten_; g-- > since - forgotten_;) {
-      particle = parents_[g * identity_.size() + particle];
-    }
+    trace(since, particle, std::span(&particle, 1));
     return particle;
   }
-
-  /// Writes source[i], the index in generation `since` of the ancestor of present particle i;
-  /// `since` must not be before the last forget().
-  void trace(std::uint32_t since, std::span<std::uint32_t> source) const {
-    std::copy(identity_.begin(), identity_.end(), source.begin());
-    for (std::size_t g = generation() - forgotten_; g-- > since - forgotten_;) {
-      const std::uint32_t* parents = parents_.data() + g * identity_.size();
-      for (std::uint32_t& index : source) index = parents[index];
+  /// Writes the indices in generation `since` of the ancestors of the present particles from
+  /// `first` on; `since` must not be before the last forget().
+  void trace(std::uint32_t since, std::size_t first, std::span<std::uint32_t> ancestors) const {
+    std::iota(ancestors.begin(), ancestors.end(), static_cast<std::uint32_t>(first));
+    for (std::size_t g = kept_; g-- > since - forgotten_;) {
+      const std::uint32_t* parents = parents_[g].data();
+      for (std::uint32_t& index : ancestors) index = parents[index];
     }
   }
 
  private:
   static constexpr std::size_t kLongest = 256;           // generations
   static constexpr std::size_t kMostNumbers = 1U << 22;  // 16 MiB
-  std::vector<std::uint32_t> identity_;
-  std::vector<std::uint32_t> parents_;  // one generation after the other
+  std::size_t particles_;
+  std::vector<UntouchedColumn<std::uint32_t>> parents_;  // {generation} reused after forget()
+  std::size_t kept_ = 0;                                 // number of generations
   std::uint32_t forgotten_ = 0;
 };
 

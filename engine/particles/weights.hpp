@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <stdexcept>
 #include <vector>
 
@@ -29,13 +30,18 @@ class Weights {
   /// A particle with the greatest weight.
   std::size_t heaviest() const { return heaviest_; }
 
-  void make_equal() {
+  void make_equal() { make_equal(StepContext(0, 0, 0, Parallel::serial())); }
+  void make_equal(const StepContext& context) {
     heaviest_ = 0;
     const double share = 1.0 / static_cast<double>(particles_);
-    std::fill(log_.begin(), log_.end(), Real(std::log(share)));
-    std::fill(linear_.begin(), linear_.end(), Real(share));
+    const Real log_share(std::log(share));
+    const double squares = sum_of_parts<Real>(context, log_.size(), [&](auto first, auto n) {
+      std::fill_n(log_.begin() + static_cast<std::ptrdiff_t>(first), n, log_share);
+      std::fill_n(linear_.begin() + static_cast<std::ptrdiff_t>(first), n, Real(share));
+      return sum_of_squares(first, n);
+    });
+    effective_ = 1.0 / squares;
     clear_padding();
-    effective_ = 1.0 / sum_of_squares();
   }
 
   /// Multiplies a block of weights by exp(increment); normalise() must follow.
@@ -43,25 +49,30 @@ class Weights {
 
   /// Makes the weights sum to one and returns the log of their previous sum, which is the
   /// log-likelihood of the scan. Throws std::runtime_error if all weights are zero or one is NaN.
-  double normalise() {
-    double peak = -std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < particles_; ++i) {
-      const double weight = log_scalars()[i];
-      if (std::isnan(weight)) throw std::runtime_error("a particle's weight is not a number");
-      if (weight > peak) peak = weight, heaviest_ = i;
-    }
-    if (!std::isfinite(peak))
+  double normalise(const StepContext& context) {
+    const Peak peak = joined_parts<Real>(
+        context, log_.size(), [&](auto first, auto n) { return peak_of(first, n); },
+        [](Peak& whole, const Peak& part) {
+          if (part.log_weight > whole.log_weight) whole = part;
+        });
+    if (!std::isfinite(peak.log_weight))
       throw std::runtime_error("no particle explains the scan (all weights are zero)");
-    for (std::size_t b = 0; b < log_.size(); ++b) linear_[b] = exp(log_[b] - Real(peak));
-    double sum = 0.0;
-    for (double weight : linear_scalars()) sum += weight;
-    const double log_sum = peak + std::log(sum);
-    for (std::size_t b = 0; b < log_.size(); ++b) {
-      linear_[b] = linear_[b] * Real(1.0 / sum);
-      log_[b] -= Real(log_sum);
-    }
+    heaviest_ = peak.particle;
+    const double sum = sum_of_parts<Real>(context, log_.size(), [&](auto first, auto n) {
+      for (std::size_t b = first; b < first + n; ++b)
+        linear_[b] = exp(log_[b] - Real(peak.log_weight));
+      return sum_of(first, n, [](double weight) { return weight; });
+    });
+    const double log_sum = peak.log_weight + std::log(sum);
+    const double squares = sum_of_parts<Real>(context, log_.size(), [&](auto first, auto n) {
+      for (std::size_t b = first; b < first + n; ++b) {
+        linear_[b] = linear_[b] * Real(1.0 / sum);
+        log_[b] -= Real(log_sum);
+      }
+      return sum_of_squares(first, n);
+    });
+    effective_ = 1.0 / squares;
     clear_padding();
-    effective_ = 1.0 / sum_of_squares();
     return log_sum;
   }
 
@@ -69,10 +80,33 @@ class Weights {
   double effective() const { return effective_; }
 
  private:
-  double sum_of_squares() const {
-    double squares = 0.0;
-    for (double weight : linear_scalars()) squares += weight * weight;
-    return squares;
+  struct Peak {
+    double log_weight = -std::numeric_limits<double>::infinity();
+    std::size_t particle = 0;
+  };
+
+  /// Indices of the particles of n blocks, without dead lanes.
+  auto particles_of(std::size_t first, std::size_t n) const {
+    return std::views::iota(first * kLanesOf<Real>,
+                            std::min(particles_, (first + n) * kLanesOf<Real>));
+  }
+  Peak peak_of(std::size_t first, std::size_t n) const {
+    Peak peak;
+    for (const std::size_t i : particles_of(first, n)) {
+      const double weight = log_scalars()[i];
+      if (std::isnan(weight)) throw std::runtime_error("a particle's weight is not a number");
+      if (weight > peak.log_weight) peak = {weight, i};
+    }
+    return peak;
+  }
+  template <class Term>
+  double sum_of(std::size_t first, std::size_t n, const Term& term) const {
+    double sum = 0.0;
+    for (const std::size_t i : particles_of(first, n)) sum += term(linear_scalars()[i]);
+    return sum;
+  }
+  double sum_of_squares(std::size_t first, std::size_t n) const {
+    return sum_of(first, n, [](double weight) { return weight * weight; });
   }
   void clear_padding() {
     for (std::size_t i = particles_; i < scalars(log_).size(); ++i) {

@@ -94,14 +94,14 @@ concept Associator = requires(A a, const A decided, const StepContext& context, 
   // log p0 for every detection that a particle has not matched (EQUATIONS 17).
   { decided.unmatched_log_weight(block) } -> Is<Real>;
 
-  // Adds slots to the maps for the caller to fill. If there is initialise(maps, poses), it is
-  // called instead, and it fills the slots itself.
-  { a.new_landmarks(maps) } -> std::convertible_to<std::span<const FreshLandmark<Real>>>;
-  a.resample(/*parents*/ std::span<const std::uint32_t>());
+  // Adds slots to the maps for the caller to fill. If there is initialise(context, maps, poses), it
+  // is called instead, and it fills the slots itself.
+  { a.new_landmarks(context, maps) } -> std::convertible_to<std::span<const FreshLandmark<Real>>>;
+  a.resample(context, /*parents*/ std::span<const std::uint32_t>());
   // The following are for reports.
   { decided.counts(weights) } -> Is<AssociationCounts>;
   { decided.map_size(maps, weights) } -> Is<double>;
-  { decided.landmark(k, maps, weights) } -> Is<std::optional<LandmarkEstimate>>;
+  { decided.landmark(context, k, maps, weights) } -> Is<std::optional<LandmarkEstimate>>;
 };
 
 /// Moves the particles, and draws and weights their poses, given the decisions of `A`.
@@ -124,7 +124,7 @@ concept PoseProposal = requires(P p, const P now, const StepContext& context, st
   { p.update_map(block, poses[block], a, refined, innovations) } -> Is<Weighing<Real>>;
 
   p.initialise(fresh, poses[block], maps);  // fills the slot of a new landmark
-  { now.estimate(weights, poses) } -> Is<PoseEstimate>;
+  { now.estimate(context, weights, poses) } -> Is<PoseEstimate>;
 };
 
 /// A proposal that keeps a Gaussian for each particle between its steps.

@@ -67,7 +67,7 @@ class EvolvedProposal : public RefinedCloud<Real, SigmaPoints, SigmaPoints> {
     const auto aim = settings_.mode == EvolutionMode::as_printed
                          ? CloudEvolution<Real>::Aim::likelihood
                          : CloudEvolution<Real>::Aim::posterior;
-    cloud_.gather(association, weights, predicted, this->noise());
+    cloud_.gather(context, association, weights, predicted, this->noise());
     cloud_.evolve(aim, settings_.bounds, settings_.evolution, context.identity(Draw::evolution, 0),
                   centres_);
   }

@@ -31,6 +31,7 @@ class FastSlam final : public SlamFilter {
         maps_(settings.particles) {}
 
   void start(const Pose& start) override {
+    now_ = before_all_steps();
     population_.start();
     maps_.clear();
     association_.start();
@@ -39,11 +40,13 @@ class FastSlam final : public SlamFilter {
   }
 
   void predict(const StepContext& context, const Control& control, double duration) override {
+    now_ = context;
     resample();
     proposal_.predict(context, control, duration, poses_);
   }
 
   void update(const StepContext& context, Scan scan) override {
+    now_ = context;
     resample();
     population_.begin_scan();
     predict_poses(context);
@@ -51,12 +54,12 @@ class FastSlam final : public SlamFilter {
     const bool found = !association_.matched_nothing();
     if (found) weigh_and_draw(context);
     population_.report().association = association_.counts(weights());
-    if (found) initialise_landmarks();
+    if (found) initialise_landmarks(context);
     population_.report().map_size = association_.map_size(maps_, weights());
     if (found) population_.decide_on_resampling(context);
   }
 
-  PoseEstimate estimate() const override { return proposal_.estimate(weights(), poses_); }
+  PoseEstimate estimate() const override { return proposal_.estimate(now_, weights(), poses_); }
   const ScanReport& report() const override { return population_.report(); }
   void particles(const ParticleColumns& columns) const override {
     const auto mean_of = [&](std::size_t b) { return proposal_.predicted(b, poses_[b]).mean; };
@@ -64,10 +67,11 @@ class FastSlam final : public SlamFilter {
   }
   void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override {
     for (std::size_t j = 0; j < landmarks.size(); ++j)
-      landmarks[j] = association_.landmark(j, maps_, weights());
+      landmarks[j] = association_.landmark(now_, j, maps_, weights());
   }
 
  private:
+  static StepContext before_all_steps() { return {0, 0, 0, Parallel::serial()}; }
   const Weights<Real>& weights() const { return population_.weights(); }
 
   void predict_poses(const StepContext& context) {
@@ -78,7 +82,7 @@ class FastSlam final : public SlamFilter {
 
   void weigh_and_draw(const StepContext& context) {
     const BlockTasks<Real> tasks(poses_.size());
-    innovations_.start(tasks.count(), association_.matches());
+    innovations_.start(context, tasks.count(), association_.matches());
     for (std::size_t k = 0; k < association_.matches(); ++k)
       innovations_.matched_weight(k) = association_.matched_weight(k, weights());
     if constexpr (PreparesScan<Proposal, Real, Associating>)
@@ -86,8 +90,8 @@ class FastSlam final : public SlamFilter {
     tasks.run(context,
               [&](std::size_t task, std::size_t b) { weigh_and_draw_block(context, task, b); });
     if constexpr (KeepsGaussians<Proposal>) proposal_.end_scan();
-    population_.normalise();
-    innovations_.add_to(population_.report(), components_);
+    population_.normalise(context);
+    innovations_.add_to(context, population_.report(), components_);
   }
 
   void weigh_and_draw_block(const StepContext& context, std::size_t task, std::size_t b) {
@@ -101,26 +105,29 @@ class FastSlam final : public SlamFilter {
         b, {weighing.log_weight + association_.unmatched_log_weight(b), weighing.faults});
   }
 
-  void initialise_landmarks() {
-    if constexpr (requires { association_.initialise(maps_, poses_); })
-      return association_.initialise(maps_, poses_);
-    for (const FreshLandmark<Real>& fresh : association_.new_landmarks(maps_))
-      proposal_.initialise(fresh, poses_[fresh.block], maps_);
+  void initialise_landmarks(const StepContext& context) {
+    if constexpr (requires { association_.initialise(context, maps_, poses_); })
+      return association_.initialise(context, maps_, poses_);
+    const std::span<const FreshLandmark<Real>> fresh = association_.new_landmarks(context, maps_);
+    BlockTasks<Real>(fresh.size()).run(context, [&](std::size_t /*task*/, std::size_t k) {
+      proposal_.initialise(fresh[k], poses_[fresh[k].block], maps_);
+    });
   }
 
   /// Applies the pending resampling. The particles of the last scan are gone afterwards.
   void resample() {
     if (!population_.is_after_scan()) return;
-    if (population_.resample()) {
+    if (population_.resample(now_)) {
       const std::span<const std::uint32_t> parents = population_.ancestors();
-      gather<Real>(poses_, parents, resampled_poses_);
+      gather<Real>(now_, poses_, parents, resampled_poses_);
       std::swap(poses_, resampled_poses_);
-      maps_.resample(parents);
-      association_.resample(parents);
+      maps_.resample(now_, parents);
+      association_.resample(now_, parents);
     }
     if constexpr (KeepsGaussians<Proposal>) proposal_.begin_step();
   }
 
+  StepContext now_ = before_all_steps();  ///< context of the present step, with its threads
   std::size_t components_;
   Proposal proposal_;
   Associating association_;

@@ -58,15 +58,15 @@ class RefinedCloud {
     moments_.reset();
     is_drawn_ = false;
   }
-  PoseEstimate estimate(const Weights<Real>& weights,
+  PoseEstimate estimate(const StepContext& context, const Weights<Real>& weights,
                         const std::vector<BasicPose<Real>>& poses) const {
     const bool has_mixture = weighed_ == WeightTime::before_draw;
     if (is_drawn_) {
-      PoseEstimate estimate{spread_of(weights, poses), std::nullopt};
-      if (has_mixture) estimate.mixture = mixture_of(weights, posterior_);
+      PoseEstimate estimate{spread_of(context, weights, poses), std::nullopt};
+      if (has_mixture) estimate.mixture = mixture_of(context, weights, posterior_);
       return estimate;
     }
-    if (!moments_) moments_.emplace(weights, poses);
+    if (!moments_) moments_.emplace(context, weights, poses);
     PoseEstimate estimate = moments_->moved_by(motion_);
     if (!has_mixture) estimate.mixture.reset();
     return estimate;

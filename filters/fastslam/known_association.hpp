@@ -27,7 +27,7 @@ class KnownAssociation {
   void start() { std::fill(slot_of_.begin(), slot_of_.end(), kUnseen); }
 
   /// Divides the scan into known and new landmarks.
-  void associate(const StepContext& /*context*/, Scan scan, Maps& maps,
+  void associate(const StepContext& context, Scan scan, Maps& maps,
                  const std::vector<PoseGaussian<Real>>& /*predicted*/) {
     slots_.clear(), seen_.clear(), new_.clear();
     for (const Detection& detection : scan) {
@@ -40,7 +40,7 @@ class KnownAssociation {
         seen_.push_back(observation_of<Real>(detection));
       }
     }
-    maps.open(slots_, opened_);
+    maps.open(context, slots_, opened_);
   }
 
   bool matched_nothing() const { return slots_.empty() && new_.empty(); }
@@ -69,30 +69,30 @@ class KnownAssociation {
   Real unmatched_log_weight(std::size_t /*b*/) const { return Real(0.0); }
 
   /// Gives every new landmark a slot.
-  const std::vector<FreshLandmark<Real>>& new_landmarks(Maps& maps) {
+  const std::vector<FreshLandmark<Real>>& new_landmarks(const StepContext& context, Maps& maps) {
     fresh_.clear();
     for (const Detection& detection : new_) {
-      const std::uint32_t slot = add_slot(detection, maps);
+      const std::uint32_t slot = add_slot(context, detection, maps);
       for (std::size_t b = 0; b < maps.blocks(); ++b)
         fresh_.push_back({detection, b, slot, std::nullopt});
     }
     return fresh_;
   }
-  void resample(std::span<const std::uint32_t> /*parents*/) {}
+  void resample(const StepContext& /*context*/, std::span<const std::uint32_t> /*parents*/) {}
 
   /// The landmark of identity j, as the mixture of all particles, which have it in the same slot.
-  std::optional<LandmarkEstimate> landmark(std::size_t j, const Maps& maps,
-                                           const Weights<Real>& weights) const {
+  std::optional<LandmarkEstimate> landmark(const StepContext& context, std::size_t j,
+                                           const Maps& maps, const Weights<Real>& weights) const {
     if (j >= slot_of_.size() || slot_of_[j] == kUnseen) return std::nullopt;
-    maps.copy_slot(static_cast<std::uint32_t>(slot_of_[j]), source_, copied_);
-    return mixture_of_landmarks(weights, copied_);
+    maps.copy_slot(context, static_cast<std::uint32_t>(slot_of_[j]), source_, copied_);
+    return mixture_of_landmarks(context, weights, copied_);
   }
 
  protected:
   /// Detections of this scan of landmarks that are not in the maps.
   const std::vector<Detection>& new_detections() const { return new_; }
-  std::uint32_t add_slot(const Detection& detection, Maps& maps) {
-    const std::uint32_t slot = maps.add();
+  std::uint32_t add_slot(const StepContext& context, const Detection& detection, Maps& maps) {
+    const std::uint32_t slot = maps.add(context);
     slot_of_[static_cast<std::size_t>(detection.identity)] = static_cast<std::int32_t>(slot);
     return slot;
   }
@@ -128,21 +128,25 @@ class InitialisationOnPaths {
     waiting_.clear();
     sensors_.clear();
   }
-  void resample(std::span<const std::uint32_t> parents) { sensors_.resample(parents); }
+  void resample(const StepContext& context, std::span<const std::uint32_t> parents) {
+    sensors_.resample(context, parents);
+  }
 
   /// Adds one detection from vehicles at `poses` {block}. Returns whether its landmark is fixed
   /// now.
-  bool advance(const Detection& detection, const std::vector<BasicPose<Real>>& poses) {
+  bool advance(const StepContext& context, const Detection& detection,
+               const std::vector<BasicPose<Real>>& poses) {
     Waiting& waiting = waiting_.entry(detection.identity);
-    open(waiting.kept);
+    open(context, waiting.kept);
     if (!waiting_.can_advance(waiting, Pairs{*this, waiting.kept, detection, poses})) return false;
-    return waiting_.advance(waiting, [&] { keep(waiting.kept, detection, poses); });
+    return waiting_.advance(waiting, [&] { keep(context, waiting.kept, detection, poses); });
   }
 
   /// Writes the landmark that advance() has fixed, for every particle; it waits no longer.
-  void place(std::int32_t identity, std::span<LandmarkGaussian<Real>> blocks) {
+  void place(const StepContext& context, std::int32_t identity,
+             std::span<LandmarkGaussian<Real>> blocks) {
     Waiting& waiting = waiting_.entry(identity);
-    open(waiting.kept);
+    open(context, waiting.kept);
     for (std::size_t i = 0; i < particles_; ++i) {
       const auto at =
           sightings_.crossing(kept(waiting.kept, 0, i), kept(waiting.kept, 1, i), waiting.side);
@@ -202,15 +206,16 @@ class InitialisationOnPaths {
     }
   };
 
-  void keep(Kept& kept, const Detection& detection, const std::vector<BasicPose<Real>>& poses) {
-    const std::uint32_t slot = sensors_.add();
+  void keep(const StepContext& context, Kept& kept, const Detection& detection,
+            const std::vector<BasicPose<Real>>& poses) {
+    const std::uint32_t slot = sensors_.add(context);
     const auto blocks = sensors_.blocks_of(slot);
     for (std::size_t b = 0; b < blocks.size(); ++b) blocks[b] = mounting_.sensor(poses[b]);
     kept.slots[kept.count] = slot;
     kept.values[kept.count++] = detection[0];
   }
-  void open(const Kept& kept) {
-    sensors_.open(std::span(kept.slots).first(kept.count), opened_);
+  void open(const StepContext& context, const Kept& kept) {
+    sensors_.open(context, std::span(kept.slots).first(kept.count), opened_);
     for (const auto& slot : opened_) {
       for (std::size_t b = 0; b < sensors_.blocks(); ++b) slot.fetch(b);
     }
@@ -248,13 +253,17 @@ class DelayedKnownAssociation : public KnownAssociation<Real> {
     waiting_.start();
   }
   /// Initialises landmarks from vehicles at `poses` {block}, drawn for this scan.
-  void initialise(ParticleMaps<Real>& maps, const std::vector<BasicPose<Real>>& poses) {
+  void initialise(const StepContext& context, ParticleMaps<Real>& maps,
+                  const std::vector<BasicPose<Real>>& poses) {
     for (const Detection& detection : this->new_detections()) {
-      if (!waiting_.advance(detection, poses)) continue;
-      waiting_.place(detection.identity, maps.blocks_of(this->add_slot(detection, maps)));
+      if (!waiting_.advance(context, detection, poses)) continue;
+      waiting_.place(context, detection.identity,
+                     maps.blocks_of(this->add_slot(context, detection, maps)));
     }
   }
-  void resample(std::span<const std::uint32_t> parents) { waiting_.resample(parents); }
+  void resample(const StepContext& context, std::span<const std::uint32_t> parents) {
+    waiting_.resample(context, parents);
+  }
 
  private:
   InitialisationOnPaths<Real> waiting_;

@@ -71,9 +71,9 @@ class MotionSampling {
     fresh.put(map_transform_.initialise(pose, observation_of<Real>(fresh.detection), noise_),
               maps.blocks_of(fresh.slot)[fresh.block]);
   }
-  PoseEstimate estimate(const Weights<Real>& weights,
+  PoseEstimate estimate(const StepContext& context, const Weights<Real>& weights,
                         const std::vector<BasicPose<Real>>& poses) const {
-    return {spread_of(weights, poses), std::nullopt};
+    return {spread_of(context, weights, poses), std::nullopt};
   }
 
  private:

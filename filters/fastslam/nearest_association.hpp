@@ -43,7 +43,7 @@ class NearestAssociation {
     for (const Detection& detection : scan) seen_.push_back(observation_of<Real>(detection));
     slots_.resize(maps.slots());
     std::iota(slots_.begin(), slots_.end(), 0U);
-    maps.open(slots_, opened_);
+    maps.open(context, slots_, opened_);
     pairings_.resize(maps.blocks() * kLanes * seen_.size());
     searches_.resize(pairings_.size());
     context.parallel_for(maps.blocks(),
@@ -109,23 +109,23 @@ class NearestAssociation {
   }
 
   /// Gives every particle its own slot for each detection that is new to it.
-  const std::vector<FreshLandmark<Real>>& new_landmarks(Maps& maps) {
+  const std::vector<FreshLandmark<Real>>& new_landmarks(const StepContext& context, Maps& maps) {
     fresh_.clear();
     for (std::size_t k = 0; k < seen_.size(); ++k) {
       for (std::size_t i = 0; i < particles_; ++i) {
-        if (pairings_of(i)[k].kind == PairingKind::fresh) add_slot(scan_[k], i, maps);
+        if (pairings_of(i)[k].kind == PairingKind::fresh) add_slot(context, scan_[k], i, maps);
       }
     }
     return fresh_;
   }
-  void resample(std::span<const std::uint32_t> parents) {
-    gather<Real>(counts_, parents, resampled_counts_);
+  void resample(const StepContext& context, std::span<const std::uint32_t> parents) {
+    gather<Real>(context, counts_, parents, resampled_counts_);
     std::swap(counts_, resampled_counts_);
     made_of_.resample(parents);
   }
   /// The j-th landmark of the heaviest particle. There is no mixture: particles do not share slots.
-  std::optional<LandmarkEstimate> landmark(std::size_t j, const Maps& maps,
-                                           const Weights<Real>& weights) const {
+  std::optional<LandmarkEstimate> landmark(const StepContext& /*context*/, std::size_t j,
+                                           const Maps& maps, const Weights<Real>& weights) const {
     const std::size_t heaviest = weights.heaviest();
     if (j >= count_of(heaviest)) return std::nullopt;
     return maps.landmark_of(static_cast<std::uint32_t>(j), static_cast<std::uint32_t>(heaviest));
@@ -201,13 +201,14 @@ class NearestAssociation {
   std::size_t count_of(std::size_t particle) const {
     return static_cast<std::size_t>(get(counts_[particle / kLanes], particle % kLanes));
   }
-  void add_slot(const Detection& detection, std::size_t particle, Maps& maps) {
+  void add_slot(const StepContext& context, const Detection& detection, std::size_t particle,
+                Maps& maps) {
     const auto slot = static_cast<std::uint32_t>(count_of(particle));
     if (slot >= settings_.most_landmarks) {
       throw RunError("the map of a particle grew beyond " +
                      std::to_string(settings_.most_landmarks) + " landmarks");
     }
-    if (slot == maps.slots()) maps.add();
+    if (slot == maps.slots()) maps.add(context);
     set(counts_[particle / kLanes], particle % kLanes, slot + 1.0);
     made_of_.add(particle, detection.identity);
     fresh_.push_back({detection, particle / kLanes, slot, particle % kLanes});

@@ -47,43 +47,53 @@ class ParticleMaps {
    private:
     friend class ParticleMaps;
     std::span<const Landmark> from_;
-    std::span<const std::uint32_t> source_;
+    std::span<std::uint32_t> source_;  ///< empty if the slot is up to date
+    std::uint32_t since_ = 0;
     std::span<Landmark> to_;
   };
 
   /// Opens different slots for one scan. Every block of each must be fetched.
-  void open(std::span<const std::uint32_t> slots, std::vector<OpenSlot>& opened) {
+  void open(const StepContext& context, std::span<const std::uint32_t> slots,
+            std::vector<OpenSlot>& opened) {
     opened.resize(slots.size());
     while (spares_.size() < slots.size()) spares_.emplace_back(blocks_);
     while (sources_.size() < slots.size()) sources_.emplace_back(blocks_ * kLanesOf<Real>);
     for (std::size_t k = 0; k < slots.size(); ++k) {
       Slot& slot = slots_[slots[k]];
       const bool is_current = slot.generation == genealogy_.generation();
+      opened[k].since_ = slot.generation;
       if (!is_current) {
-        genealogy_.trace(slot.generation, sources_[k]);
         std::swap(slot.blocks, spares_[k]);
         slot.generation = genealogy_.generation();
       }
       opened[k].from_ = spares_[k];
-      opened[k].source_ = is_current ? std::span<const std::uint32_t>() : sources_[k];
+      opened[k].source_ = is_current ? std::span<std::uint32_t>() : sources_[k];
       opened[k].to_ = slot.blocks;
     }
+    in_parts(context, [&](std::size_t first, std::size_t n) {
+      for (const OpenSlot& slot : opened) {
+        if (!slot.source_.empty()) trace(slot.since_, first, n, slot.source_);
+      }
+    });
   }
 
   /// Adds an empty slot for the caller to fill; returns its number.
-  std::uint32_t add() {
-    if (n_slots_ == slots_.size()) slots_.push_back({std::vector<Landmark>(blocks_), 0});
+  std::uint32_t add(const StepContext& context) {
+    if (n_slots_ == slots_.size()) slots_.push_back({UntouchedColumn<Landmark>(blocks_), 0});
     slots_[n_slots_].generation = genealogy_.generation();
-    std::fill(slots_[n_slots_].blocks.begin(), slots_[n_slots_].blocks.end(), Landmark{});
+    const std::span<Landmark> blocks = slots_[n_slots_].blocks;
+    in_parts(context, [&](std::size_t first, std::size_t n) {
+      std::ranges::fill(blocks.subspan(first, n), Landmark{});
+    });
     return static_cast<std::uint32_t>(n_slots_++);
   }
   std::span<Landmark> blocks_of(std::uint32_t slot) { return slots_[slot].blocks; }
 
   /// Makes particle i a copy of particle parents[i], including lanes without a particle.
-  void resample(std::span<const std::uint32_t> parents) {
-    genealogy_.add(parents);
+  void resample(const StepContext& context, std::span<const std::uint32_t> parents) {
+    genealogy_.add(context, parents);
     if (!genealogy_.is_long()) return;
-    for (std::size_t j = 0; j < n_slots_; ++j) bring_up_to_date(slots_[j]);
+    for (std::size_t j = 0; j < n_slots_; ++j) bring_up_to_date(context, slots_[j]);
     genealogy_.forget();
   }
 
@@ -98,28 +108,44 @@ class ParticleMaps {
   }
 
   /// Copies slot j, in the order of the present particles, to `blocks`; the map is not changed.
-  void copy_slot(std::uint32_t j, std::vector<std::uint32_t>& source,
+  void copy_slot(const StepContext& context, std::uint32_t j, std::vector<std::uint32_t>& source,
                  std::vector<LandmarkGaussian<Real>>& blocks) const {
     source.resize(blocks_ * kLanesOf<Real>);
     blocks.resize(blocks_);
-    genealogy_.trace(slots_[j].generation, source);
     const std::span<const Landmark> from = slots_[j].blocks;
-    for (std::size_t b = 0; b < blocks_; ++b) {
-      blocks[b] = gaussian_of(gather_block<Real, Landmark>(from, source, b));
-    }
+    in_parts(context, [&](std::size_t first, std::size_t n) {
+      trace(slots_[j].generation, first, n, source);
+      for (std::size_t b = first; b < first + n; ++b)
+        blocks[b] = gaussian_of(gather_block<Real, Landmark>(from, source, b));
+    });
   }
 
  private:
   struct Slot {
-    std::vector<Landmark> blocks;
+    UntouchedColumn<Landmark> blocks;
     std::uint32_t generation = 0;  ///< number of resamplings that the blocks have followed
   };
 
-  void bring_up_to_date(Slot& slot) {
+  /// Calls body(first, n) for parts of n blocks, perhaps in parallel.
+  template <class Body>
+  void in_parts(const StepContext& context, const Body& body) const {
+    BlockTasks<Real>(blocks_).run_together(context, body);
+  }
+  /// Writes the ancestors in generation `since` of the particles of n blocks.
+  void trace(std::uint32_t since, std::size_t first, std::size_t n,
+             std::span<std::uint32_t> source) const {
+    constexpr std::size_t lanes = kLanesOf<Real>;
+    genealogy_.trace(since, first * lanes, source.subspan(first * lanes, n * lanes));
+  }
+  void bring_up_to_date(const StepContext& context, Slot& slot) {
     if (spares_.empty()) spares_.emplace_back(blocks_);
     if (sources_.empty()) sources_.emplace_back(blocks_ * kLanesOf<Real>);
-    genealogy_.trace(slot.generation, sources_[0]);
-    gather<Real>(slot.blocks, sources_[0], spares_[0]);
+    const std::span<const Landmark> from = slot.blocks;
+    in_parts(context, [&](std::size_t first, std::size_t n) {
+      trace(slot.generation, first, n, sources_[0]);
+      for (std::size_t b = first; b < first + n; ++b)
+        spares_[0][b] = gather_block<Real, Landmark>(from, sources_[0], b);
+    });
     std::swap(slot.blocks, spares_[0]);
     slot.generation = genealogy_.generation();
   }
@@ -128,8 +154,8 @@ class ParticleMaps {
   std::size_t n_slots_ = 0;
   Genealogy genealogy_;
   std::vector<Slot> slots_;
-  std::vector<std::vector<Landmark>> spares_;
-  std::vector<std::vector<std::uint32_t>> sources_;
+  std::vector<UntouchedColumn<Landmark>> spares_;
+  std::vector<UntouchedColumn<std::uint32_t>> sources_;
 };
 
 }  // namespace montecarta::filters

@@ -232,9 +232,10 @@ class CloudEvolution {
 
   /// Collects the poses of the particles and their matches.
   template <class Associating>
-  void gather(const Associating& association, const Weights<Real>& weights,
-              const std::vector<PoseGaussian<Real>>& predicted, const SensorNoise& noise) {
-    moments_ = mixture_of(weights, predicted);
+  void gather(const StepContext& context, const Associating& association,
+              const Weights<Real>& weights, const std::vector<PoseGaussian<Real>>& predicted,
+              const SensorNoise& noise) {
+    moments_ = mixture_of(context, weights, predicted);
     frame_ = direction_of(moments_.mean.heading);
     population_.resize(weights.particles());
     fitness_.clear(), matched_.clear();

@@ -43,10 +43,10 @@ class JointFilter final : public SlamFilter {
   }
 
   /// Throws std::runtime_error if the likelihood of the scan is not finite.
-  void update(const StepContext& /*context*/, Scan scan) override {
+  void update(const StepContext& context, Scan scan) override {
     joint_.update_with(motion_, scan);
     motion_.restart();
-    report_update(scan);
+    report_update(context, scan);
     is_at_scan_ = true;
     pose_at_scan_ = joint_.pose_after(motion_);
     joint_.initialise_landmarks(scan);
@@ -65,7 +65,7 @@ class JointFilter final : public SlamFilter {
   }
 
  private:
-  void report_update(Scan scan) {
+  void report_update(const StepContext& context, Scan scan) {
     const auto& [log_likelihood, faults] = joint_.outcome();
     if (!std::isfinite(log_likelihood))
       throw std::runtime_error("the log-likelihood of the scan is not finite");
@@ -73,13 +73,13 @@ class JointFilter final : public SlamFilter {
                .numerical_faults = faults,
                .association = joint_.association().counts(),
                .rotation_information = joint_.rotation_information()};
-    innovations_.start(1, scan.size(), 0.0);
+    innovations_.start(context, 1, scan.size(), 0.0);
     const auto innovations = innovations_.of_block(0, 1.0);
     for (const auto& [k, v, S] : joint_.used_detections()) {
       innovations.add(k, {{v(0), v(1)}, {S(0, 0), S(1, 0), S(1, 1)}}, Everywhere());
       innovations_.matched_weight(k) = 1.0;
     }
-    innovations_.add_to(report_, components_of(belief_.sensor).size());
+    innovations_.add_to(context, report_, components_of(belief_.sensor).size());
   }
 
   Belief belief_;

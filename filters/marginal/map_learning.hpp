@@ -165,14 +165,15 @@ class MapLearning {
 
   /// A landmark observed for the first time: the mean of the positions given by the particles, with
   /// the information of one detection.
-  SharedLandmark initialised(const std::vector<BasicPose<Real>>& poses,
+  SharedLandmark initialised(const StepContext& context, const std::vector<BasicPose<Real>>& poses,
                              const Weights<Real>& weights, const RangeBearing<double>& seen) const {
-    const auto mean = weighted_sums<Real, 2>(weights, [&](std::size_t b) {
+    const auto mean = weighted_sums<Real, 2>(context, weights, [&](std::size_t b) {
       const BasicPoint<Real> place =
           linearised_place(poses[b], {Real(seen.range), Real(seen.bearing)}).point;
       return std::array<Real, 2>{place.x, place.y};
     });
-    const Pose centre = weighted_mean<Real>(weights, [&](std::size_t b) { return poses[b]; });
+    const Pose centre =
+        weighted_mean<Real>(context, weights, [&](std::size_t b) { return poses[b]; });
     const Symmetric2<double> R = Linearised().initialise(centre, seen, noise_).covariance;
     const Point x = solve(R, {1.0, 0.0}), y = solve(R, {0.0, 1.0});
     return {{mean[0], mean[1]}, {x.x, x.y, y.y}};

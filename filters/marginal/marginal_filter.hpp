@@ -42,14 +42,17 @@ class MarginalFilter final : public SlamFilter {
     association_.clear();
     motion_.restart();
     forget_scan();
+    now_ = before_all_steps();
   }
 
-  void predict(const StepContext& /*context*/, const Control& control, double duration) override {
+  void predict(const StepContext& context, const Control& control, double duration) override {
+    now_ = context;
     if (is_drawn_) forget_scan();
     motion_.advance(control, duration, belief_);
   }
 
   void update(const StepContext& context, Scan scan) override {
+    now_ = context;
     forget_scan();
     propagate_kernels();
     associate(scan);
@@ -65,6 +68,7 @@ class MarginalFilter final : public SlamFilter {
   void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override;
 
  private:
+  static StepContext before_all_steps() { return {0, 0, 0, Parallel::serial()}; }
   const Weights<Real>& weights() const { return population_.weights(); }
 
   void learn(const StepContext& context) {
@@ -91,12 +95,13 @@ class MarginalFilter final : public SlamFilter {
 
   void associate(Scan scan) {
     if (association_.known()) return association_.associate(scan);
-    association_.associate(scan, map_, likelihood_.map_is_exact(), mixture_of(weights(), priors_));
+    association_.associate(scan, map_, likelihood_.map_is_exact(),
+                           mixture_of(now_, weights(), priors_));
   }
 
   /// Step 1 computes lambda_j (EQUATIONS (12.2)); the auxiliary filter includes the likelihood.
   void choose_kernels(const StepContext& context) {
-    innovations_.start(kernels_.size(), likelihood_.matches());
+    innovations_.start(context, kernels_.size(), likelihood_.matches());
     lambda_ = weights();
     over_blocks(context, [&](std::size_t b) {
       const auto innovations = innovations_.of_block(b, weights().linear()[b]);
@@ -106,8 +111,8 @@ class MarginalFilter final : public SlamFilter {
               : likelihood_.refine(kernels_[b] = priors_[b], innovations);
       if (settings_.choice == Choice::by_likelihood) lambda_.multiply(b, explained.log_weight);
     });
-    if (settings_.choice == Choice::by_likelihood) lambda_.normalise();
-    innovations_.add_to(population_.report());
+    if (settings_.choice == Choice::by_likelihood) lambda_.normalise(context);
+    innovations_.add_to(context, population_.report());
   }
   const std::vector<PoseGaussian<Real>>& proposal() const {
     return settings_.kernel == Kernel::prior ? priors_ : kernels_;
@@ -127,10 +132,10 @@ class MarginalFilter final : public SlamFilter {
   /// Steps 3 and 4 weight: w' = p(z | s) Sum w N(s; prior) / Sum lambda N(s; proposal).
   void weigh(const StepContext& context) {
     ratios_.assign(priors_, proposal(), weights(), lambda_);
-    population_.weights().make_equal();
+    population_.weights().make_equal(context);
     over_blocks(context, [&](std::size_t b) { population_.weigh(b, likelihood_.at(poses_[b])); });
     ratios_.multiply(context, poses_, population_.weights());
-    population_.normalise();
+    population_.normalise(context);
     population_.report().log_likelihood += association_.unmatched_log_density();
   }
 
@@ -142,7 +147,7 @@ class MarginalFilter final : public SlamFilter {
                       map_[match.landmark]);
     for (const Detection& fresh : association_.fresh()) {
       association_.add(fresh);
-      map_.push_back(learning_.initialised(poses_, weights(), observation_of(fresh)));
+      map_.push_back(learning_.initialised(context, poses_, weights(), observation_of(fresh)));
     }
   }
 
@@ -156,7 +161,7 @@ class MarginalFilter final : public SlamFilter {
     return static_cast<std::uint32_t>(b * kLanesOf<Real>);
   }
   Pose drawn_mean() const {
-    return weighted_mean<Real>(weights(), [&](std::size_t b) { return poses_[b]; });
+    return weighted_mean<Real>(now_, weights(), [&](std::size_t b) { return poses_[b]; });
   }
   /// Discards the particles of the last scan, which are not available afterwards.
   void forget_scan() {
@@ -165,6 +170,7 @@ class MarginalFilter final : public SlamFilter {
     is_drawn_ = false;
   }
 
+  StepContext now_ = before_all_steps();  ///< context of the present step, with its threads
   MarginalSettings settings_;
   Belief belief_;
   SharedAssociation association_;
@@ -186,8 +192,8 @@ class MarginalFilter final : public SlamFilter {
 /// The drawn poses, moved between scans by the motion since then like the kernels (EQUATIONS 19).
 template <class Real>
 PoseEstimate MarginalFilter<Real>::estimate() const {
-  if (is_drawn_) return {spread_of(weights(), poses_), std::nullopt};
-  if (!moments_) moments_.emplace(weights(), poses_);
+  if (is_drawn_) return {spread_of(now_, weights(), poses_), std::nullopt};
+  if (!moments_) moments_.emplace(now_, weights(), poses_);
   return {moments_->moved_by(motion_).mixture.value(), std::nullopt};
 }
 

@@ -21,22 +21,29 @@
 
 namespace montecarta::filters {
 
-/// Sum over the particles of weight times term(block), lane by lane and then in lane order.
+/// Sum over the particles of weight times term(block): in every part of the population lane by lane
+/// and then in lane order.
 template <class Real, std::size_t N, class Terms>
-std::array<double, N> weighted_sums(const Weights<Real>& weights, const Terms& terms) {
-  std::array<Real, N> lanes;
-  lanes.fill(Real(0.0));
+std::array<double, N> weighted_sums(const StepContext& context, const Weights<Real>& weights,
+                                    const Terms& terms) {
   const std::vector<Real>& w = weights.linear();
-  for (std::size_t b = 0; b < w.size(); ++b) {
-    const std::array<Real, N> values = terms(b);
-    const auto counts = w[b] > Real(0.0);  // values of lanes with weight 0 are ignored
-    for (std::size_t k = 0; k < N; ++k) lanes[k] += select(counts, w[b] * values[k], Real(0.0));
-  }
-  std::array<double, N> sums{};
-  for (std::size_t k = 0; k < N; ++k) {
-    for (std::size_t lane = 0; lane < kLanesOf<Real>; ++lane) sums[k] += get(lanes[k], lane);
-  }
-  return sums;
+  const auto sums_of = [&](std::size_t first, std::size_t n) {
+    std::array<Real, N> lanes;
+    lanes.fill(Real(0.0));
+    for (std::size_t b = first; b < first + n; ++b) {
+      const std::array<Real, N> values = terms(b);
+      const auto counts = w[b] > Real(0.0);  // values of lanes with weight 0 are ignored
+      for (std::size_t k = 0; k < N; ++k) lanes[k] += select(counts, w[b] * values[k], Real(0.0));
+    }
+    std::array<double, N> sums{};
+    for (std::size_t k = 0; k < N; ++k) {
+      for (std::size_t lane = 0; lane < kLanesOf<Real>; ++lane) sums[k] += get(lanes[k], lane);
+    }
+    return sums;
+  };
+  return joined_parts<Real>(context, w.size(), sums_of, [](auto& sums, const auto& part) {
+    for (std::size_t k = 0; k < N; ++k) sums[k] += part[k];
+  });
 }
 
 /// The pose of particle i. `pose_of(block)` gives the poses of one block.
@@ -49,9 +56,10 @@ Pose pose_of_particle(const PoseOf& pose_of, std::size_t i) {
 
 /// Weighted mean of poses, by differences from the heading of the heaviest one (EQUATIONS 19).
 template <class Real, class PoseOf>
-Pose weighted_mean(const Weights<Real>& weights, const PoseOf& pose_of) {
+Pose weighted_mean(const StepContext& context, const Weights<Real>& weights,
+                   const PoseOf& pose_of) {
   const Pose reference = pose_of_particle<Real>(pose_of, weights.heaviest());
-  const auto sums = weighted_sums<Real, 3>(weights, [&](std::size_t b) {
+  const auto sums = weighted_sums<Real, 3>(context, weights, [&](std::size_t b) {
     const BasicPose<Real> p = pose_of(b);
     return std::array<Real, 3>{p.x - reference.x, p.y - reference.y,
                                wrap(p.heading - reference.heading)};
@@ -61,10 +69,11 @@ Pose weighted_mean(const Weights<Real>& weights, const PoseOf& pose_of) {
 
 /// Mean and covariance of a mixture of Gaussians (EQUATIONS 19); `gaussian_of(block)`.
 template <class Real, class GaussianOf>
-PoseMoments mixture_of(const Weights<Real>& weights, const GaussianOf& gaussian_of) {
+PoseMoments mixture_of(const StepContext& context, const Weights<Real>& weights,
+                       const GaussianOf& gaussian_of) {
   const Pose mean =
-      weighted_mean<Real>(weights, [&](std::size_t b) { return gaussian_of(b).mean; });
-  const auto C = weighted_sums<Real, 6>(weights, [&](std::size_t b) {
+      weighted_mean<Real>(context, weights, [&](std::size_t b) { return gaussian_of(b).mean; });
+  const auto C = weighted_sums<Real, 6>(context, weights, [&](std::size_t b) {
     const auto& [m, P] = gaussian_of(b);
     const Real x = m.x - mean.x, y = m.y - mean.y, h = wrap(m.heading - mean.heading);
     return std::array<Real, 6>{P.xx + x * x, P.xy + x * y, P.yy + y * y,
@@ -73,25 +82,28 @@ PoseMoments mixture_of(const Weights<Real>& weights, const GaussianOf& gaussian_
   return {mean, symmetric({C[0], C[1], C[2], C[3], C[4], C[5]})};
 }
 template <class Real>
-PoseMoments mixture_of(const Weights<Real>& weights,
+PoseMoments mixture_of(const StepContext& context, const Weights<Real>& weights,
                        const std::vector<PoseGaussian<Real>>& gaussians) {
-  return mixture_of<Real>(weights, [&](std::size_t b) { return gaussians[b]; });
+  return mixture_of<Real>(context, weights, [&](std::size_t b) { return gaussians[b]; });
 }
 /// Mean and spread of the drawn poses.
 template <class Real>
-PoseMoments spread_of(const Weights<Real>& weights, const std::vector<BasicPose<Real>>& poses) {
-  return mixture_of<Real>(weights, [&](std::size_t b) { return PoseGaussian<Real>{poses[b], {}}; });
+PoseMoments spread_of(const StepContext& context, const Weights<Real>& weights,
+                      const std::vector<BasicPose<Real>>& poses) {
+  return mixture_of<Real>(context, weights, [&](std::size_t b) {
+    return PoseGaussian<Real>{poses[b], {}};
+  });
 }
 
 /// Mean and covariance of the mixture of all particles' Gaussians of one landmark.
 template <class Real>
-LandmarkEstimate mixture_of_landmarks(const Weights<Real>& weights,
+LandmarkEstimate mixture_of_landmarks(const StepContext& context, const Weights<Real>& weights,
                                       const std::vector<LandmarkGaussian<Real>>& landmarks) {
-  const auto first = weighted_sums<Real, 2>(weights, [&](std::size_t b) {
+  const auto first = weighted_sums<Real, 2>(context, weights, [&](std::size_t b) {
     return std::array<Real, 2>{landmarks[b].mean.x, landmarks[b].mean.y};
   });
   const Point mean{first[0], first[1]};
-  const auto C = weighted_sums<Real, 3>(weights, [&](std::size_t b) {
+  const auto C = weighted_sums<Real, 3>(context, weights, [&](std::size_t b) {
     const Real x = landmarks[b].mean.x - mean.x, y = landmarks[b].mean.y - mean.y;
     const Symmetric2<Real>& P = landmarks[b].covariance;
     return std::array<Real, 3>{P.xx + x * x, P.xy + x * y, P.yy + y * y};
@@ -105,8 +117,9 @@ LandmarkEstimate mixture_of_landmarks(const Weights<Real>& weights,
 class CloudMoments {
  public:
   template <class Real>
-  CloudMoments(const Weights<Real>& weights, const std::vector<BasicPose<Real>>& poses)
-      : mean_(weighted_mean<Real>(weights, [&](std::size_t b) { return poses[b]; })),
+  CloudMoments(const StepContext& context, const Weights<Real>& weights,
+               const std::vector<BasicPose<Real>>& poses)
+      : mean_(weighted_mean<Real>(context, weights, [&](std::size_t b) { return poses[b]; })),
         ahead_(direction_of(mean_.heading)) {
     const auto terms = [&](std::size_t b) {
       const Real x = poses[b].x - mean_.x, y = poses[b].y - mean_.y;
@@ -117,7 +130,7 @@ class CloudMoments {
                                   y * h, y * c, y * s, h * h, h * c, h * s, c * c, c * s, s * s};
     };
     const auto [h, c, s, xx, xy, xh, xc, xs, yy, yh, yc, ys, hh, hc, hs, cc, cs, ss] =
-        weighted_sums<Real, 18>(weights, terms);
+        weighted_sums<Real, 18>(context, weights, terms);
     turn_ = {1.0 + c, s};
     turn_squares_ = {1.0 + 2.0 * c + cc, s + cs, ss};
     pose_ = {xx, xy, yy, xh, yh, hh};
@@ -152,9 +165,14 @@ class MixtureInnovations {
 
  public:
   /// `matched` is the total weight, before the scan, of the particles that match a detection.
-  void start(std::size_t tasks, std::size_t detections, double matched = 1.0) {
+  void start(const StepContext& context, std::size_t tasks, std::size_t detections,
+             double matched = 1.0) {
     matched_.assign(detections, matched);
-    sums_.assign(tasks * detections, Sums{});
+    squared_.resize(detections);
+    sums_.resize(tasks * detections);
+    context.parallel_for(tasks, [&](std::size_t task) {
+      std::ranges::fill(std::span(sums_).subspan(task * detections, detections), Sums{});
+    });
   }
   double& matched_weight(std::size_t detection) { return matched_[detection]; }
 
@@ -180,10 +198,12 @@ class MixtureInnovations {
 
   /// Adds to the NIS every detection, of `components` numbers, that particles with at least half of
   /// the weight have matched.
-  void add_to(ScanReport& report, std::size_t components = 2) const {
+  void add_to(const StepContext& context, ScanReport& report, std::size_t components = 2) {
+    context.parallel_for(matched_.size(),
+                         [&](std::size_t k) { squared_[k] = normalised_squared(k); });
     for (std::size_t k = 0; k < matched_.size(); ++k) {
       if (matched_[k] < 0.5) continue;
-      report.nis += normalised_squared(k);
+      report.nis += squared_[k];
       report.nis_dof += static_cast<std::uint32_t>(components);
     }
   }
@@ -207,6 +227,7 @@ class MixtureInnovations {
   }
 
   std::vector<double> matched_;  ///< {detection}
+  std::vector<double> squared_;  ///< {detection} normalised squared innovation
   std::vector<Sums> sums_;       ///< {task, detection}
 };
 
@@ -261,11 +282,16 @@ class Population {
     faults_[block] = weighing.faults;
   }
   /// Normalises the weights; to be called after weigh() of every block.
-  void normalise() {
-    report_.log_likelihood = weights_.normalise();
+  void normalise(const StepContext& context) {
+    report_.log_likelihood = weights_.normalise(context);
     report_.ess = weights_.effective();
-    for (const double faults : scalars(faults_).first(settings_.particles))
-      report_.numerical_faults += static_cast<std::uint32_t>(faults);
+    std::ranges::fill(scalars(faults_).subspan(settings_.particles), 0.0);
+    const double faults = sum_of_parts<Real>(context, blocks(), [&](auto first, auto n) {
+      Real sum(0.0);
+      for (std::size_t b = first; b < first + n; ++b) sum += faults_[b];
+      return sum_of_lanes(sum);
+    });
+    report_.numerical_faults += static_cast<std::uint32_t>(faults);
   }
 
   /// Draws the parents for the pending resampling if the weights have degenerated.
@@ -279,14 +305,14 @@ class Population {
               0U);
   }
   /// Applies the pending resampling before the next step; returns whether it resampled.
-  bool resample() {
+  bool resample(const StepContext& context) {
     if (!std::exchange(is_after_scan_, false)) return false;
     if (!report_.resampled) {
       forget_ancestors();
       return false;
     }
-    ancestors_ = parents_;
-    weights_.make_equal();
+    std::swap(ancestors_, parents_);
+    weights_.make_equal(context);
     return true;
   }
 

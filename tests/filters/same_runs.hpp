@@ -77,6 +77,7 @@ class ToldBits {
       tell_all(landmark->mean.reshaped()), tell_all(landmark->covariance.reshaped());
     }
   }
+  explicit ToldBits(const PoseEstimate& estimate) { tell(estimate); }
   friend bool operator==(const ToldBits&, const ToldBits&) = default;
 
  private:

@@ -7,12 +7,43 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 namespace montecarta::engine {
 namespace {
+
+StepContext step(std::uint32_t k, const Parallel& threads = Parallel::serial()) {
+  return {11, 0, k, threads};
+}
+
+/// Calls check(threads) with both backends and several numbers of threads.
+template <class Check>
+void on_all_threads(const Check& check) {
+  for (const Backend backend : {Backend::tbb, Backend::openmp}) {
+    for (const int threads : {1, 2, 3, 8}) check(Parallel(backend, threads));
+  }
+}
+
+TEST(Parts, AreAddedInTheirOrderOnAnyThreads) {
+  const std::size_t n = 5 * kParticlesPerSum + 17;
+  const auto sum_of = [](std::size_t first, std::size_t many) {
+    double sum = 0.0;
+    for (std::size_t i = first; i < first + many; ++i) sum += 1.0 / static_cast<double>(i + 1);
+    return sum;
+  };
+  double expected = 0.0;
+  for (std::size_t first = 0; first < n; first += kParticlesPerSum)
+    expected += sum_of(first, std::min(n - first, kParticlesPerSum));
+  EXPECT_NE(expected, sum_of(0, n)) << "the order makes no difference to these numbers";
+  on_all_threads([&](const Parallel& threads) {
+    EXPECT_EQ(sum_of_parts<double>(step(0, threads), n, sum_of), expected);
+    EXPECT_EQ(sum_of_parts<double>(step(0, threads), kParticlesPerSum, sum_of),
+              sum_of(0, kParticlesPerSum));
+  });
+}
 
 TEST(Genealogy, TracesLikeStepByStepCopying) {
   const std::size_t n = 16;
@@ -29,7 +60,7 @@ TEST(Genealogy, TracesLikeStepByStepCopying) {
       genealogy.forget();
       copied_since.erase(copied_since.begin(), copied_since.end() - 1);
     }
-    genealogy.add(parents);
+    genealogy.add(step(0), parents);
     for (auto& copy : copied_since) {
       std::vector<std::uint32_t> next(n);
       for (std::size_t i = 0; i < n; ++i) next[i] = copy[parents[i]];
@@ -37,7 +68,7 @@ TEST(Genealogy, TracesLikeStepByStepCopying) {
     }
     const auto first = genealogy.generation() - static_cast<std::uint32_t>(copied_since.size());
     for (std::uint32_t k = 0; k < copied_since.size(); k += 37) {
-      genealogy.trace(first + k, source);
+      genealogy.trace(first + k, 0, source);
       ASSERT_EQ(source, copied_since[k]) << "generation " << g;
     }
   }
@@ -54,7 +85,7 @@ TEST(Blocks, GatherCopiesEveryField) {
     set(from[i / 8].b, i % 8, -static_cast<double>(i));
     source[i] = static_cast<std::uint32_t>((7 * i + 3) % 24);
   }
-  gather<Lanes>(from, source, to);
+  gather<Lanes>(step(0), from, source, to);
   for (std::size_t i = 0; i < 24; ++i) {
     EXPECT_EQ(to[i / 8].a.get(i % 8), source[i]);
     EXPECT_EQ(to[i / 8].b.get(i % 8), -static_cast<double>(source[i]));
@@ -64,12 +95,12 @@ TEST(Blocks, GatherCopiesEveryField) {
 TEST(Weights, NormaliseReturnsTheEvidenceAndLeavesDeadLanesOut) {
   Weights<Lanes> weights(5);
   weights.multiply(0, Lanes(-1000.0));  // far below what exp can hold
-  EXPECT_NEAR(weights.normalise(), -1000.0, 1e-12);
+  EXPECT_NEAR(weights.normalise(step(0)), -1000.0, 1e-12);
   EXPECT_NEAR(weights.effective(), 5.0, 1e-12);
   Lanes increment(0.0);
   set(increment, 2, std::log(3.0));
   weights.multiply(0, increment);
-  EXPECT_NEAR(weights.normalise(), std::log(7.0 / 5.0), 1e-12);
+  EXPECT_NEAR(weights.normalise(step(0)), std::log(7.0 / 5.0), 1e-12);
   EXPECT_NEAR(weights.linear_scalars()[2], 3.0 / 7.0, 1e-12);
   EXPECT_EQ(weights.heaviest(), 2U);
   EXPECT_EQ(get(weights.linear()[0], 6), 0.0);
@@ -78,12 +109,36 @@ TEST(Weights, NormaliseReturnsTheEvidenceAndLeavesDeadLanesOut) {
 TEST(Weights, SayWhenNoParticleIsLeft) {
   Weights<Lanes> dead(4), wild(4);
   dead.multiply(0, Lanes(-std::numeric_limits<double>::infinity()));
-  EXPECT_THROW(dead.normalise(), std::runtime_error);
+  EXPECT_THROW(dead.normalise(step(0)), std::runtime_error);
   wild.multiply(0, Lanes(std::numeric_limits<double>::quiet_NaN()));
-  EXPECT_THROW(wild.normalise(), std::runtime_error);
+  EXPECT_THROW(wild.normalise(step(0)), std::runtime_error);
 }
 
-StepContext step(std::uint32_t k) { return {11, 0, k, Parallel::serial()}; }
+TEST(Weights, HaveTheSameBitsOnAnyThreads) {
+  const std::size_t n = 5 * kParticlesPerSum + 17;
+  const auto weighed = [&](const Parallel& threads) {
+    RngStream draw({6, 0, 0, 0, Draw::test});
+    Weights<Lanes> weights(n);
+    for (std::size_t b = 0; b < blocks_for<Lanes>(n); ++b) {
+      Lanes increment;
+      for (std::size_t lane = 0; lane < kLanesOf<Lanes>; ++lane)
+        set(increment, lane, draw.normal());
+      weights.multiply(b, increment);
+    }
+    std::vector<double> numbers{weights.effective(), weights.normalise(step(0, threads)),
+                                weights.effective(), static_cast<double>(weights.heaviest())};
+    numbers.insert(numbers.end(), weights.log_scalars().begin(), weights.log_scalars().end());
+    numbers.insert(numbers.end(), weights.linear_scalars().begin(), weights.linear_scalars().end());
+    weights.make_equal(step(0, threads));
+    numbers.push_back(weights.effective());
+    return numbers;
+  };
+  const std::vector<double> alone = weighed(Parallel::serial());
+  EXPECT_NEAR(alone[0], static_cast<double>(n), 1e-6);
+  EXPECT_LT(alone[2], 0.5 * static_cast<double>(n));
+  EXPECT_GT(alone[3], static_cast<double>(kParticlesPerSum)) << "not beyond the first part";
+  on_all_threads([&](const Parallel& threads) { EXPECT_EQ(weighed(threads), alone); });
+}
 
 std::vector<double> random_weights(std::uint32_t seed, std::size_t n) {
   RngStream draw({seed, 0, 0, 0, Draw::test});

@@ -157,15 +157,17 @@ LandmarkGaussian<double> initialised_at(double x, double y) {
   return {.mean = {x, y}, .covariance = {0.01, 0.0, 0.01}};
 }
 
+const StepContext kContext(1, 0, 0, Parallel::serial());
+
 /// One scan by particles that stand at x = 0 and at x = `second`, facing along x.
 AssociationCounts look(NearestAssociation<double>& association, ParticleMaps<double>& maps,
                        const Weights<double>& weights, double second,
                        const std::vector<Detection>& scan) {
   std::vector<PoseGaussian<double>> poses(2);
   poses[1].mean.x = second;
-  association.associate(StepContext(1, 0, 0, Parallel::serial()), scan, maps, poses);
+  association.associate(kContext, scan, maps, poses);
   const AssociationCounts counts = association.counts(weights);
-  for (const auto& fresh : association.new_landmarks(maps)) {
+  for (const auto& fresh : association.new_landmarks(kContext, maps)) {
     const auto& values = fresh.detection.values;
     fresh.put(initialised_at(poses[fresh.block].mean.x + values[0] * std::cos(values[1]),
                              values[0] * std::sin(values[1])),
@@ -180,7 +182,7 @@ TEST(AssociationCounts, AreMeansOverParticlesWhoseMemoryGoesWithTheirMaps) {
   ParticleMaps<double> maps(2);
   Weights<double> weights(2);
   weights.multiply(1, std::log(3.0));  // weights 1/4 and 3/4
-  weights.normalise();
+  weights.normalise(kContext);
   const std::vector<Detection> a{{10.0, 0.0, 0}}, b{{10.0, 0.0, 1}}, far_b{{13.0, 0.0, 1}};
   EXPECT_EQ(look(association, maps, weights, 0.0, a).correct, 1.0);  // new to both
   // Where the second particle believes to have gone on by 3 m, it sees another landmark; the first
@@ -189,8 +191,8 @@ TEST(AssociationCounts, AreMeansOverParticlesWhoseMemoryGoesWithTheirMaps) {
   EXPECT_DOUBLE_EQ(second.wrong, 0.25);
   EXPECT_DOUBLE_EQ(second.correct, 0.75);
   const std::vector<std::uint32_t> parents{1, 1};
-  maps.resample(parents);
-  association.resample(parents);
+  maps.resample(kContext, parents);
+  association.resample(kContext, parents);
   // Now both know both landmarks.
   const AssociationCounts third = look(association, maps, weights, 0.0, far_b);
   EXPECT_DOUBLE_EQ(third.correct, 1.0);

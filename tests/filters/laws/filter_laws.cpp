@@ -118,15 +118,37 @@ TEST_P(EveryFilter, ForgetsADifferentRunBefore) {
   }
 }
 
+/// All that a filter tells after every scan, and its estimate after every prediction.
+std::vector<ToldBits> told_at_every_step(SlamFilter& filter, std::size_t particles,
+                                         const SmallWorld& world, const Parallel& parallel) {
+  std::vector<ToldBits> bits;
+  filter.start({});
+  for (std::uint32_t step = 0, scan = 0; step < world.itinerary.steps(); ++step) {
+    const StepContext context(world.seed, 0, step, parallel);
+    filter.predict(context, world.drive.controls[step], world.itinerary.duration(step));
+    bits.emplace_back(filter.estimate());
+    if (world.itinerary.scan_step[scan] != step) continue;
+    filter.update(context, world.drive.scan(scan++));
+    bits.emplace_back(filter, particles, world.itinerary.landmarks.size());
+    rouse(parallel);
+  }
+  return bits;
+}
+
 TEST_P(EveryFilter, GivesTheSameBitsOnAnyNumberOfThreads) {
   const SmallWorldSettings settings{.scans = 4};
   const SmallWorld world = small_world(settings);
-  const std::size_t particles = 2500;  // more than two tasks, those of a step included
+  const std::size_t particles = 2500;  // more than two tasks, those of a step and of sums included
   const std::size_t n = GetParam().reports.particles ? particles : 0;
-  const Parallel threads(Backend::tbb, 3);
   for (const auto association : {Association::known, Association::nearest}) {
     const auto filter = make_default(GetParam(), particles, settings, association);
-    EXPECT_TRUE(told(*filter, n, world) == told(*filter, n, world, threads));
+    const auto alone = told_at_every_step(*filter, n, world, Parallel(Backend::serial, 1));
+    for (const Backend backend : {Backend::tbb, Backend::openmp}) {
+      for (const int threads : {1, 2, 3, 8}) {
+        const auto bits = told_at_every_step(*filter, n, world, Parallel(backend, threads));
+        EXPECT_TRUE(bits == alone) << threads << " threads";
+      }
+    }
   }
 }
 

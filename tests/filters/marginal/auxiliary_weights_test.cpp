@@ -19,7 +19,7 @@ const StepContext kContext(1, 0, 0, Parallel::serial());
 Weights<double> weights_of(const std::vector<double>& linear) {
   Weights<double> weights(linear.size());
   for (std::size_t i = 0; i < linear.size(); ++i) weights.multiply(i, std::log(linear[i]));
-  weights.normalise();
+  weights.normalise(kContext);
   return weights;
 }
 

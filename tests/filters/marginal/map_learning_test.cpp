@@ -37,7 +37,7 @@ struct Cloud {
         set(log_weight, lane, 0.1 * static_cast<double>(b * kLanesOf<Real> + lane));
       weights.multiply(b, log_weight);
     }
-    weights.normalise();
+    weights.normalise(kContext);
   }
   SharedLandmark learnt(const MapSettings& settings, SharedLandmark landmark) const {
     MapLearning<Real> learning(settings, kNoise);
@@ -121,7 +121,7 @@ TEST(MapLearning, AsPrintedTheWeightsMakeNoDifference) {
   cloud.poses[1].x = 1.0;
   cloud.weights.make_equal();
   cloud.weights.multiply(1, -50.0);
-  cloud.weights.normalise();
+  cloud.weights.normalise(kContext);
   const Point of_heavy = linearised_place(cloud.poses[0], cloud.seen).point;
   MapSettings settings{.mode = MapMode::onestep_converged, .objective = MapObjective::squares};
   EXPECT_LT(distance(cloud.learnt(settings, kBefore).mean, of_heavy), 1e-6);
@@ -132,7 +132,8 @@ TEST(MapLearning, AsPrintedTheWeightsMakeNoDifference) {
 TEST(MapLearning, ALandmarkIsInitialisedWhereTheWeightedParticlesSeeIt) {
   const Cloud<Lanes> cloud(0.05);
   MapLearning<Lanes> learning({}, kNoise);
-  const SharedLandmark initialised = learning.initialised(cloud.poses, cloud.weights, cloud.seen);
+  const SharedLandmark initialised =
+      learning.initialised(kContext, cloud.poses, cloud.weights, cloud.seen);
   Point mean;
   for (std::size_t i = 0; i < 13; ++i) {
     const Pose pose = pose_of_particle<Lanes>([&](std::size_t b) { return cloud.poses[b]; }, i);

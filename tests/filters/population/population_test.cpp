@@ -11,6 +11,8 @@
 namespace montecarta::filters {
 namespace {
 
+const StepContext kContext(1, 0, 0, Parallel::serial());
+
 TEST(CloudMoments, MoveAsEveryPoseDoesHoweverWideTheCloud) {
   for (const double width : {0.01, 1.0, kPi}) {
     RngStream draw({3, 0, 0, 0, Draw::test});
@@ -21,17 +23,18 @@ TEST(CloudMoments, MoveAsEveryPoseDoesHoweverWideTheCloud) {
                   wrap(3.0 + width * (2 * draw.uniform() - 1))};
       weights.multiply(i, draw.normal());
     }
-    weights.normalise();
+    weights.normalise(kContext);
     MotionIncrement motion;
     for (int k = 0; k < 5; ++k) motion.advance({3.0, 0.3}, 0.1, Belief{});
-    const PoseEstimate closed = CloudMoments(weights, poses).moved_by(motion);
+    const PoseEstimate closed = CloudMoments(kContext, weights, poses).moved_by(motion);
     std::vector<PoseGaussian<double>> moved;
     std::vector<BasicPose<double>> centres;
     for (const auto& pose : poses) {
       moved.push_back(motion.from(pose));
       centres.push_back(moved.back().mean);
     }
-    const PoseMoments spread = spread_of(weights, centres), mixture = mixture_of(weights, moved);
+    const PoseMoments spread = spread_of(kContext, weights, centres);
+    const PoseMoments mixture = mixture_of(kContext, weights, moved);
     EXPECT_LT((closed.spread.covariance - spread.covariance).norm(), 1e-9) << width;
     EXPECT_LT((closed.mixture->covariance - mixture.covariance).norm(), 1e-9) << width;
     EXPECT_LT(boxminus(closed.spread.mean, spread.mean).norm(), 1e-9) << width;
