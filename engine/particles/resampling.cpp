@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/particles/resampling.hpp"
 
+#include "engine/particles/blocks.hpp"
+
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <ranges>
+#include <utility>
+#include <vector>
 
 namespace montecarta::engine {
 namespace {
@@ -10,24 +16,72 @@ namespace {
 using Parents = std::span<std::uint32_t>;
 using Weights = std::span<const double>;
 
-/// The last particle with a positive weight, which gets the remainder due to rounding.
-std::size_t last_alive(Weights weights) {
-  std::size_t last = weights.size() - 1;
-  while (last > 0 && !(weights[last] > 0.0)) --last;
+/// The last particle in [first, last] with a positive share, which gets the remainder due to
+/// rounding.
+template <class Share>
+std::size_t last_alive(const Share& share, std::size_t first, std::size_t last) {
+  while (last > first && !(share(last) > 0.0)) --last;
   return last;
 }
+std::size_t last_alive(Weights weights) {
+  return last_alive([&](std::size_t j) { return weights[j]; }, 0, weights.size() - 1);
+}
+
+/// Consecutive particles, and the new particles [first_child, end) that descend from them.
+struct Family {
+  std::size_t first, last;
+  double sum_before;  ///< sum of the shares of all particles before the first
+  std::size_t first_child, end;
+};
 
 /// Parent i is the first particle up to which the shares sum to more than place(i). The places must
 /// be in increasing order.
 template <class Share, class Place>
-void sweep(const Share& share, std::size_t last, const Place& place, Parents parents) {
-  std::size_t parent = 0;
-  double sum = share(0);
-  for (std::size_t i = 0; i < parents.size(); ++i) {
+void sweep(const Family& family, const Share& share, const Place& place, Parents parents) {
+  std::size_t parent = family.first;
+  double sum = family.sum_before + share(parent);
+  for (std::size_t i = family.first_child; i < family.end; ++i) {
     const double here = place(i);
-    while (sum <= here && parent < last) sum += share(++parent);
+    while (sum <= here && parent < family.last) sum += share(++parent);
     parents[i] = static_cast<std::uint32_t>(parent);
   }
+}
+
+/// The sum of all shares before each part of kParticlesPerSum particles.
+template <class Share>
+std::vector<double> sums_before_parts(const StepContext& context, const Share& share,
+                                      std::size_t particles) {
+  const BlockTasks<double> parts(particles, kParticlesPerSum);
+  std::vector<double> sums(parts.count());
+  parts.run_together(context, [&](std::size_t first, std::size_t n) {
+    for (std::size_t j = first; j < first + n; ++j) sums[first / kParticlesPerSum] += share(j);
+  });
+  double before = 0.0;
+  for (double& sum : sums) before += std::exchange(sum, before);
+  return sums;
+}
+
+/// The same for all particles up to `last`. Threads share the work by parts of particles; place(i)
+/// may be called in any order.
+template <class Share, class Place>
+void sweep(const StepContext& context, std::size_t last, const Share& share, const Place& place,
+           Parents parents) {
+  if (last < kParticlesPerSum)
+    return sweep({0, last, 0.0, 0, parents.size()}, share, place, parents);
+  const std::vector<double> before = sums_before_parts(context, share, last + 1);
+  const auto first_child = [&](std::size_t part) {  // the first new particle beyond those before
+    if (part == before.size()) return parents.size();
+    const auto all = std::views::iota(0U, static_cast<std::uint32_t>(parents.size()));
+    return static_cast<std::size_t>(std::ranges::lower_bound(all, before[part], {}, place) -
+                                    all.begin());
+  };
+  context.parallel_for(before.size(), [&](std::size_t part) {
+    const std::size_t first = part * kParticlesPerSum;
+    const std::size_t end = std::min(first + kParticlesPerSum, last + 1);
+    const std::size_t heir = end > last ? last : last_alive(share, first, end - 1);
+    sweep({first, heir, before[part], first_child(part), first_child(part + 1)}, share, place,
+          parents);
+  });
 }
 
 double uniform(const StepContext& context, std::size_t index) {
@@ -37,14 +91,16 @@ double uniform(const StepContext& context, std::size_t index) {
 void systematic(Weights weights, const StepContext& context, Parents parents) {
   const double n = static_cast<double>(parents.size());
   const double start = uniform(context, 0);
-  sweep([&](std::size_t j) { return weights[j]; }, last_alive(weights),
-        [&](std::size_t i) { return (static_cast<double>(i) + start) / n; }, parents);
+  sweep(
+      context, last_alive(weights), [&](std::size_t j) { return weights[j]; },
+      [&](std::size_t i) { return (static_cast<double>(i) + start) / n; }, parents);
 }
 
 void stratified(Weights weights, const StepContext& context, Parents parents) {
   const double n = static_cast<double>(parents.size());
-  sweep([&](std::size_t j) { return weights[j]; }, last_alive(weights),
-        [&](std::size_t i) { return (static_cast<double>(i) + uniform(context, i)) / n; }, parents);
+  sweep(
+      context, last_alive(weights), [&](std::size_t j) { return weights[j]; },
+      [&](std::size_t i) { return (static_cast<double>(i) + uniform(context, i)) / n; }, parents);
 }
 
 /// The ordered uniform numbers are arrival times of a Poisson process divided by the last one.
@@ -53,8 +109,9 @@ void multinomial(Weights weights, const StepContext& context, Parents parents) {
   double total = 0.0;
   for (std::size_t i = 0; i <= parents.size(); ++i) total += waiting(i);
   double arrival = 0.0;
-  sweep([&](std::size_t j) { return weights[j]; }, last_alive(weights),
-        [&](std::size_t i) { return (arrival += waiting(i)) / total; }, parents);
+  sweep(
+      {0, last_alive(weights), 0.0, 0, parents.size()}, [&](std::size_t j) { return weights[j]; },
+      [&](std::size_t i) { return (arrival += waiting(i)) / total; }, parents);
 }
 
 /// Gives floor(N w) copies to each particle, and the rest by stratified resampling of the
@@ -68,10 +125,11 @@ void residual(Weights weights, const StepContext& context, Parents parents) {
       parents[filled++] = static_cast<std::uint32_t>(j);
     }
   }
-  sweep([&](std::size_t j) { return n * weights[j] - std::floor(n * weights[j]); },
-        last_alive(weights),
-        [&](std::size_t i) { return static_cast<double>(i) + uniform(context, i); },
-        parents.subspan(filled));
+  sweep(
+      context, last_alive(weights),
+      [&](std::size_t j) { return n * weights[j] - std::floor(n * weights[j]); },
+      [&](std::size_t i) { return static_cast<double>(i) + uniform(context, i); },
+      parents.subspan(filled));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 namespace montecarta::engine {
@@ -188,13 +189,15 @@ TEST_P(Schemes, SurviveWeightsThatSumToAlmostOne) {
   for (std::uint32_t k = 0; k < 200; ++k) children(GetParam(), weights, k);  // looks up .at(parent)
 }
 
-/// How far a number of children may be from its share n w, per scheme.
+/// How far a number of children may be from its share n w, per scheme; the last population has
+/// several parts.
 TEST_P(Schemes, KeepNearTheShare) {
-  for (std::uint32_t k = 0; k < 500; ++k) {
-    const auto weights = random_weights(k, 37);
+  for (std::uint32_t k = 0; k < 501; ++k) {
+    const std::size_t n = k < 500 ? 37 : 5 * kParticlesPerSum + 17;
+    const auto weights = random_weights(k, n);
     const auto counts = children(GetParam(), weights, k);
-    for (std::size_t j = 0; j < 37; ++j) {
-      const double share = 37 * weights[j];
+    for (std::size_t j = 0; j < n; ++j) {
+      const double share = static_cast<double>(n) * weights[j];
       if (GetParam() == Resampling::residual) {
         EXPECT_GE(counts[j], std::floor(share)) << k;
       } else if (GetParam() != Resampling::multinomial) {
@@ -203,6 +206,21 @@ TEST_P(Schemes, KeepNearTheShare) {
       }
     }
   }
+}
+
+TEST_P(Schemes, ChooseTheSameParentsOnAnyThreads) {
+  auto weights = random_weights(2, 5 * kParticlesPerSum + 17);
+  std::fill_n(weights.begin() + 1500, 2000, 0.0);  // a part without weight
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (double& w : weights) w /= sum;
+  const auto parents_on = [&](const Parallel& threads) {
+    std::vector<std::uint32_t> parents(weights.size());
+    draw_parents(GetParam(), weights, step(0, threads), parents);
+    return parents;
+  };
+  const auto alone = parents_on(Parallel::serial());
+  for (const std::uint32_t parent : alone) EXPECT_GT(weights.at(parent), 0.0);
+  on_all_threads([&](const Parallel& threads) { EXPECT_EQ(parents_on(threads), alone); });
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Schemes,
