@@ -6,6 +6,7 @@
 #include "filters/fastslam/fast_slam_filters.hpp"
 #include "filters/joint/joint_filter.hpp"
 #include "filters/marginal/marginal_filter.hpp"
+#include "filters/plain/plain_filters.hpp"
 #include "filters/relative/relative_ekf_slam.hpp"
 #include "filters/smoothing/smoother.hpp"
 
@@ -42,6 +43,7 @@ std::vector<FilterKind> all_kinds() {
       smoother_kind(),
       dead_reckoning_kind(),
   };
+  for (FilterKind& kind : plain_kinds(kinds)) kinds.push_back(std::move(kind));
   for (const auto& make : added_filters()) {
     FilterKind kind = make();
     if (std::ranges::find(kinds, kind.name, &FilterKind::name) != kinds.end())

@@ -18,18 +18,6 @@ const Names kObjectives{"likelihood", "squares", "squares_as_printed"};
 const Names kSums{"direct", "ifgt"};
 const Names kBases{"best", "random", "target"};
 
-MapSettings map_settings(const FilterOptions& options) {
-  return {.mode = chosen<MapMode>(options.choice("map"), kModes),
-          .solver = chosen<MapSolver>(options.choice("map_solver"), kSolvers),
-          .objective = chosen<MapObjective>(options.choice("map_objective"), kObjectives),
-          .threshold = options.number("map_threshold"),
-          .population = options.integer("population"),
-          .evolution = {.scale = options.number("scale"),
-                        .crossover = options.number("crossover"),
-                        .generations = options.integer("generations"),
-                        .base = chosen<EvolutionBase>(options.choice("base"), kBases)}};
-}
-
 }  // namespace
 
 std::vector<Parameter> marginal_options(MapSolver solver) {
@@ -70,6 +58,18 @@ std::vector<Parameter> marginal_options(MapSolver solver) {
           "base", "random", kBases,
           "with map_solver=de: base of a trial; Havangi eq. (6) has random, eq. (30) target"),
   };
+}
+
+MapSettings map_settings(const FilterOptions& options) {
+  return {.mode = chosen<MapMode>(options.choice("map"), kModes),
+          .solver = chosen<MapSolver>(options.choice("map_solver"), kSolvers),
+          .objective = chosen<MapObjective>(options.choice("map_objective"), kObjectives),
+          .threshold = options.number("map_threshold"),
+          .population = options.integer("population"),
+          .evolution = {.scale = options.number("scale"),
+                        .crossover = options.number("crossover"),
+                        .generations = options.integer("generations"),
+                        .base = chosen<EvolutionBase>(options.choice("base"), kBases)}};
 }
 
 MarginalSettings marginal_settings(const FilterOptions& options, Choice choice) {

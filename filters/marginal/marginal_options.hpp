@@ -56,6 +56,7 @@ struct MarginalSettings {
 
 /// The options in the order of the documentation; `solver` is the default of map_solver.
 std::vector<Parameter> marginal_options(MapSolver solver);
+MapSettings map_settings(const FilterOptions& options);
 MarginalSettings marginal_settings(const FilterOptions& options, Choice choice);
 
 }  // namespace montecarta::filters

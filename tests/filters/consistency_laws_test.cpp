@@ -3,9 +3,9 @@
 #include "filters/joint/joint_filter.hpp"
 #include "filters/models/eigen_jacobians.hpp"
 #include "filters/moments/gaussians.hpp"
+#include "filters/plain/gaussian.hpp"
 #include "tests/filters/consistent_anees.hpp"
 #include "tests/filters/fastslam/filter_comparison.hpp"
-#include "tests/filters/reference/particle.hpp"
 #include "tests/filters/small_world.hpp"
 #include "tests/filters/two_scans.hpp"
 
@@ -116,14 +116,14 @@ TEST(FastSlam2Weights, InALinearCaseTheRatioIsTheClosedFormWhateverWasDrawn) {
     const Eigen::Matrix3d P_after = P - K * S_z * K.transpose();
     const PoseGaussian<double> prior = gaussian_of({0.0, 0.0, 0.0}, P);
     const PoseGaussian<double> posterior = gaussian_of(shift, P_after);
-    const double closed = reference::log_gaussian<2>(nu, S_z);
+    const double closed = plain::log_gaussian<2>(nu, S_z);
     for (int k = 0; k < 3; ++k) {
       const Pose pose =
           PoseFactor<double>(posterior).at(draw.normal(), draw.normal(), draw.normal());
       const Eigen::Vector3d x = boxminus(pose, Pose());
-      const double likelihood = reference::log_gaussian<2>(nu - H * x, S_f);
-      const double ratio = likelihood + reference::log_gaussian<3>(x, P) -
-                           reference::log_gaussian<3>(x - shift, P_after);
+      const double likelihood = plain::log_gaussian<2>(nu - H * x, S_f);
+      const double ratio =
+          likelihood + plain::log_gaussian<3>(x, P) - plain::log_gaussian<3>(x - shift, P_after);
       EXPECT_NEAR(ratio, closed, 1e-9 * (1.0 + std::abs(closed))) << "case " << n << ", draw " << k;
       const double weight =
           likelihood + PoseDensity<double>(prior)(pose) - PoseDensity<double>(posterior)(pose);
@@ -149,8 +149,7 @@ TEST(FastSlam2, SeeingAgainFromAKnownPoseIsTheKalmanFiltersUpdate) {
     const Variant variant{.filter = "fastslam2", .particles = particles};
     const SmallWorldSettings settings = settings_of_two_scans();
     const auto production = make_production(variant, settings);
-    const auto plain = reference::make_fast_slam2(reference_settings(variant, settings),
-                                                  reference::Weight::closed);
+    const auto plain = make_plain(variant, settings);
     for (SlamFilter* filter : {production.get(), plain.get()}) {
       const PoseMoments mixture = *after_two_scans(*filter, world).mixture;
       EXPECT_LT(boxminus(mixture.mean, expected.mean).norm(), 1e-12);

@@ -106,8 +106,10 @@ using SameBits = Program;
 TEST(SameBitsStudy, HasEveryFilter) {
   std::ifstream file(kFolder / "every_filter.ini");
   const std::string study((std::istreambuf_iterator<char>(file)), {});
-  for (const filters::FilterKind& kind : filters::filter_kinds())
+  for (const filters::FilterKind& kind : filters::filter_kinds()) {
+    if (kind.name.starts_with("plain_")) continue;  // tests compare it with the fast filter
     EXPECT_NE(study.find("cell = " + kind.name + " "), std::string::npos) << kind.name;
+  }
 }
 
 TEST_F(SameBits, OfEveryFilterOnEveryProcessor) {

@@ -3,7 +3,6 @@
 #include "filters/factory.hpp"
 #include "filters/models/ackermann.hpp"
 #include "filters/models/range_bearing.hpp"
-#include "tests/filters/reference/fast_slams.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -12,7 +11,7 @@
 #include <map>
 #include <string>
 
-// Particle-observation and particle-step costs of the family, and of the plain Eigen references (of
+// Particle-observation and particle-step costs of the family, and of the plain filters (of
 // seven dimensions and fifteen points where the filter has points) in the same run: the ratio is
 // the figure to quote. All particles share one prediction, whose cost a step does not grow with
 // them. build/benchmarks --benchmark_filter='FastSlam2|UFastSlam|Srcd'
@@ -41,7 +40,7 @@ std::vector<Detection> look(const Pose& truth) {
 
 /// As users get it, by name, with options other than the usual ones.
 std::unique_ptr<SlamFilter> production(
-    const char* name, std::size_t particles,
+    const std::string& name, std::size_t particles,
     const std::map<std::string, std::string, std::less<>>& options = {}) {
   const auto kinds = filter_kinds();
   const FilterKind& kind = *std::find_if(kinds.begin(), kinds.end(),
@@ -53,17 +52,6 @@ std::unique_ptr<SlamFilter> production(
                     .association = {},
                     .options = FilterOptions(values),
                     .landmarks = kSeen});
-}
-
-std::unique_ptr<SlamFilter> plain(const std::string& name, std::size_t particles) {
-  const reference::FastSlamSettings settings{
-      .particles = particles, .belief = belief(), .landmarks = kSeen};
-  constexpr auto kWeight = reference::Weight::closed;
-  if (name == "ufastslam")
-    return reference::make_ufast_slam(settings, kWeight, reference::Unscented{}, true);
-  if (name == "srcd")
-    return reference::make_srcd_fast_slam(settings, kWeight, reference::SrcdParts{});
-  return reference::make_fast_slam2(settings, kWeight);
 }
 
 /// What timing nothing takes [s]: reading the clock is a system call.
@@ -122,9 +110,9 @@ void measure_part(benchmark::State& state, SlamFilter& filter, Part part) {
 
 enum class Make { lanes, eigen };
 
-void measure(benchmark::State& state, const char* name, Make make, Part part) {
+void measure(benchmark::State& state, const std::string& name, Make make, Part part) {
   const auto particles = static_cast<std::size_t>(state.range(0));
-  const auto filter = make == Make::lanes ? production(name, particles) : plain(name, particles);
+  const auto filter = production(make == Make::lanes ? name : "plain_" + name, particles);
   measure_part(state, *filter, part);
 }
 

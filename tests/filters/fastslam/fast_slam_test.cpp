@@ -16,27 +16,6 @@ std::unique_ptr<SlamFilter> make_single(const Variant& v, const SmallWorldSettin
   return v.filter == "srcd" ? make_srcd<double>(setup) : make_srcd_pf<double>(setup);
 }
 
-/// The textbook version.
-std::unique_ptr<SlamFilter> make_reference(const Variant& v, const SmallWorldSettings& world) {
-  const reference::FastSlamSettings settings = reference_settings(v, world);
-  const reference::Weight weight = reference_weight(v);
-  if (v.filter == "fastslam1") return reference::make_fast_slam1(settings);
-  if (v.filter == "fastslam2") return reference::make_fast_slam2(settings, weight);
-  const FilterOptions options = setup_of(v, world).options;
-  const bool map_uncertainty = !v.options.contains("map_uncertainty");  // "off" where it is given
-  if (v.filter == "ufastslam") {
-    return reference::make_ufast_slam(
-        settings, weight,
-        {options.number("alpha"), options.number("beta"), options.number("kappa")},
-        map_uncertainty);
-  }
-  return reference::make_srcd_fast_slam(settings, weight,
-                                        {.pose = v.filter != "srcd_aided",
-                                         .map = v.filter != "srcd_pf",
-                                         .map_uncertainty = map_uncertainty,
-                                         .h = options.number("interval")});
-}
-
 class FastSlams : public testing::TestWithParam<Variant> {};
 
 TEST_P(FastSlams, LanesEqualOneParticleAtATime) {
@@ -46,17 +25,17 @@ TEST_P(FastSlams, LanesEqualOneParticleAtATime) {
   expect_same_run(*lanes, *single, small_world(settings), 1e-10);
 }
 
-TEST_P(FastSlams, EqualsTheEigenReference) {
+TEST_P(FastSlams, EqualsThePlainFilter) {
   const SmallWorldSettings settings;
   const auto lanes = make_production(GetParam(), settings);
-  const auto plain = make_reference(GetParam(), settings);
+  const auto plain = make_plain(GetParam(), settings);
   expect_same_run(*lanes, *plain, small_world(settings), 1e-8);
 }
 
-TEST_P(FastSlams, EstimatesBetweenScansAsTheReferenceDoes) {
+TEST_P(FastSlams, EstimatesBetweenScansAsThePlainFilterDoes) {
   const SmallWorldSettings settings{.scans = 12};
   const auto lanes = make_production(GetParam(), settings);
-  const auto plain = make_reference(GetParam(), settings);
+  const auto plain = make_plain(GetParam(), settings);
   expect_same_steps(*lanes, *plain, small_world(settings), 1e-9);
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "filters/factory.hpp"
-#include "tests/filters/reference/fast_slams.hpp"
 #include "tests/filters/same_runs.hpp"
 #include "tests/filters/small_world.hpp"
 
@@ -60,16 +59,9 @@ inline std::unique_ptr<SlamFilter> make_production(const Variant& v,
   return kind_of(v).make(setup_of(v, world));
 }
 
-inline reference::FastSlamSettings reference_settings(const Variant& v,
-                                                      const SmallWorldSettings& world) {
-  return {.particles = v.particles,
-          .belief = world.noise,
-          .association = {.kind = v.association},
-          .landmarks = world.landmarks};
-}
-inline reference::Weight reference_weight(const Variant& v) {
-  if (v.weights == "ratio") return reference::Weight::ratio;
-  return v.weights == "batch" ? reference::Weight::batch : reference::Weight::closed;
+/// The textbook version.
+inline std::unique_ptr<SlamFilter> make_plain(const Variant& v, const SmallWorldSettings& world) {
+  return kind_of({"plain_" + v.filter}).make(setup_of(v, world));
 }
 
 }  // namespace montecarta::filters

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/marginal/kernel_sums.hpp"
 
+#include "filters/plain/particle.hpp"
 #include "tests/filters/marginal/kernel_clouds.hpp"
-#include "tests/filters/reference/particle.hpp"
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ std::vector<std::array<double, 2>> plain_log_sums(const KernelCloud<double>& clo
     for (std::size_t j = 0; j < cloud.kernels.size(); ++j) {
       const Eigen::Vector3d off = boxminus(target, cloud.kernels[j].mean);
       const double density =
-          std::exp(reference::log_gaussian<3>(off, symmetric(cloud.kernels[j].covariance)));
+          std::exp(plain::log_gaussian<3>(off, symmetric(cloud.kernels[j].covariance)));
       sum_w += cloud.w[j] * density;
       sum_lambda += cloud.lambda[j] * density;
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "filters/marginal/marginal_filter.hpp"
 
-#include "tests/filters/reference/marginal.hpp"
+#include "filters/plain/marginal.hpp"
 #include "tests/filters/same_runs.hpp"
 #include "tests/filters/small_world.hpp"
 
@@ -178,16 +178,16 @@ struct Met {
 
 const Pose kAcrossBackward{-30.0, 50.0, 2.8};  // from here the circle crosses the heading pi
 
-class MarginalReference : public testing::TestWithParam<Variant> {
+class PlainMarginal : public testing::TestWithParam<Variant> {
  protected:
   /// One run; returns what evolution met, whose questions are which of two places is fitter. Where
   /// rounding decides one, two makes part for good.
-  reference::Evolution<2> expect_equal(std::uint64_t seed) {
+  plain::Evolution<2> expect_equal(std::uint64_t seed) {
     const Variant& v = GetParam();
     const SmallWorldSettings settings{.seed = seed, .scans = 30};
     const SmallWorld world = with_echoes(turned(small_world(settings), kAcrossBackward));
     const auto lanes = make<Lanes>(v, settings), single = make<double>(v, settings);
-    reference::Marginal plain(marginal_settings(v.options(), v.choice()), setup_of(v, settings));
+    plain::Marginal plain(setup_of(v, settings), v.choice());
     std::vector<Cloud> clouds;
     drive_through(plain, world, kAcrossBackward, [&](std::size_t) {
       clouds.emplace_back(plain, 13, settings.landmarks);
@@ -205,9 +205,9 @@ class MarginalReference : public testing::TestWithParam<Variant> {
   Met met_;
 };
 
-TEST_P(MarginalReference, EqualsPlainEigen) {
+TEST_P(PlainMarginal, EqualsTheFastFilter) {
   for (const std::uint64_t seed : {1, 2, 3}) {
-    const reference::Evolution<2> evolution = expect_equal(seed);
+    const plain::Evolution<2> evolution = expect_equal(seed);
     if (HasFailure()) {
       FAIL() << "seed " << seed << ": the closest of " << evolution.decisions
              << " decisions was one of " << evolution.closest_call;
@@ -228,19 +228,18 @@ TEST_P(MarginalReference, EqualsPlainEigen) {
   }
 }
 
-TEST_P(MarginalReference, EstimatesBetweenScansAsPlainEigenDoes) {
+TEST_P(PlainMarginal, EstimatesBetweenScansAsTheFastFilterDoes) {
   const SmallWorldSettings settings{.scans = 20};
   const SmallWorld world = with_echoes(turned(small_world(settings), kAcrossBackward));
   const auto lanes = make<Lanes>(GetParam(), settings);
-  reference::Marginal plain(marginal_settings(GetParam().options(), GetParam().choice()),
-                            setup_of(GetParam(), settings));
+  plain::Marginal plain(setup_of(GetParam(), settings), GetParam().choice());
   expect_same_steps(*lanes, plain, world, GetParam().tolerance, kAcrossBackward);
 }
 
 constexpr Association kKnown = Association::known, kNearest = Association::nearest;
 
 INSTANTIATE_TEST_SUITE_P(
-    GaussNewton, MarginalReference,
+    GaussNewton, PlainMarginal,
     testing::Values(
         Variant{"marginal", {}}, Variant{"marginal", {{"kernel", "posterior"}}},
         Variant{"ampf_de", {}}, Variant{"ampf_de", {{"kernel", "posterior"}}},
@@ -264,7 +263,7 @@ Variant evolved(Texts changed, Association association = kKnown) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Evolved, MarginalReference,
+    Evolved, PlainMarginal,
     testing::Values(
         evolved({}), evolved({{"kernel", "posterior"}}), evolved({{"map", "onestep_converged"}}),
         evolved(

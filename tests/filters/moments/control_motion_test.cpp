@@ -2,8 +2,8 @@
 #include "filters/moments/control_motion.hpp"
 
 #include "filters/moments/motion_increment.hpp"
+#include "filters/plain/sigma_points.hpp"
 #include "tests/filters/moments/random_gaussians.hpp"
-#include "tests/filters/reference/sigma_points.hpp"
 #include "tests/filters/some_models.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -14,10 +14,10 @@
 namespace montecarta::filters {
 namespace {
 
-using reference::blocks;
-using reference::chol_in;
-using reference::heading_first;
-using reference::Vector;
+using plain::blocks;
+using plain::chol_in;
+using plain::heading_first;
+using plain::Vector;
 
 /// A motion so far, a step to come, and what is believed of both.
 struct Case {
@@ -41,11 +41,11 @@ struct Case {
     const Eigen::Matrix2d q = Q.asDiagonal(), r = R.asDiagonal();
     S = blocks<3, 2, 2>(chol_in<3>(heading_first(), symmetric(before.covariance())), q, r);
   }
-  reference::MotionModel model() const { return {control, 0.4, belief.vehicle}; }
+  plain::MotionModel<2> model() const { return {control, 0.4, belief.vehicle}; }
 };
 
 void expect_near(const MotionIncrement& moved, const Vector<3>& mean, const Eigen::Matrix3d& P) {
-  EXPECT_LT(boxminus(moved.pose(), reference::as_pose(mean)).norm(), 1e-13 * (1 + mean.norm()));
+  EXPECT_LT(boxminus(moved.pose(), plain::as_pose(mean)).norm(), 1e-13 * (1 + mean.norm()));
   EXPECT_LT((symmetric(moved.covariance()) - P).norm(), 1e-13 * (1 + P.norm()));
 }
 
@@ -54,7 +54,7 @@ TEST(SigmaMotion, EqualsFifteenUnscentedPointsOfSevenDimensions) {
   for (int n = 0; n < 500; ++n) {
     const Case c(draw);
     const auto image =
-        reference::unscented<3, 2>(c.x, c.S, {.alpha = 0.9, .beta = 2.0, .kappa = -2.0}, c.model());
+        plain::unscented<3, 2>(c.x, c.S, {.alpha = 0.9, .beta = 2.0, .kappa = -2.0}, c.model());
     expect_near(
         moved_by_sigma_points(c.before, c.control, 0.4, c.belief, unscented_rule(5, 0.9, 2, 0)),
         image.mean, image.covariance);
@@ -66,7 +66,7 @@ TEST(SigmaMotion, EqualsFifteenCentralDifferencePointsOfSevenDimensions) {
   const double h = std::sqrt(3.0);
   for (int n = 0; n < 500; ++n) {
     const Case c(draw);
-    const auto image = reference::central_differences<3, 2>(c.x, c.S, h, c.model());
+    const auto image = plain::central_differences<3, 2>(c.x, c.S, h, c.model());
     expect_near(
         moved_by_sigma_points(c.before, c.control, 0.4, c.belief, central_difference_rule(h)),
         image.mean, image.A * image.A.transpose() + image.B * image.B.transpose());

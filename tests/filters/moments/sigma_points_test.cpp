@@ -2,20 +2,21 @@
 // What sigma points make of a detection, against the papers' formulas.
 #include "filters/moments/sigma_points.hpp"
 
+#include "filters/plain/sigma_points.hpp"
+#include "filters/plain/square_roots.hpp"
 #include "tests/filters/moments/random_gaussians.hpp"
-#include "tests/filters/reference/sigma_points.hpp"
 
 #include <gtest/gtest.h>
 
 namespace montecarta::filters {
 namespace {
 
-using reference::across_first;
-using reference::across_first_with_heading;
-using reference::blocks;
-using reference::chol_in;
-using reference::Image;
-using reference::Vector;
+using plain::across_first;
+using plain::across_first_with_heading;
+using plain::blocks;
+using plain::chol_in;
+using plain::Image;
+using plain::Vector;
 
 const double kInterval = std::sqrt(3.0);
 
@@ -31,7 +32,7 @@ SigmaPoints points_by(const SigmaRule& rule, const SensorNoise& noise,
 template <class Transform>
 Image<7, 2> literal_observation(const RandomObservation& c, const Transform& transform) {
   Vector<7> x = Vector<7>::Zero();
-  x.head<3>() = reference::to_vector(c.pose.mean);
+  x.head<3>() = plain::to_vector(c.pose.mean);
   x.segment<2>(3) = to_vector(c.landmark.mean);
   const Vector<2> R(std::sqrt(c.noise.range), std::sqrt(c.noise.bearing));
   const Eigen::Matrix2d root = R.asDiagonal();
@@ -40,13 +41,13 @@ Image<7, 2> literal_observation(const RandomObservation& c, const Transform& tra
   const auto S = blocks<3, 2, 2>(
       chol_in<3>(across_first_with_heading(pose, landmark), symmetric(c.pose.covariance)),
       chol_in<2>(across_first(pose, landmark), symmetric(c.landmark.covariance)), root);
-  return transform(x, S, reference::ObservationModel{});
+  return transform(x, S, plain::ObservationModel{});
 }
 const auto kUnscented = [](const auto& x, const auto& S, const auto& model) {
-  return reference::unscented<2, 1>(x, S, {.alpha = 0.9, .beta = 2.0, .kappa = -2.0}, model);
+  return plain::unscented<2, 1>(x, S, {.alpha = 0.9, .beta = 2.0, .kappa = -2.0}, model);
 };
 const auto kCentral = [](const auto& x, const auto& S, const auto& model) {
-  const auto image = reference::central_differences<2, 1>(x, S, kInterval, model);
+  const auto image = plain::central_differences<2, 1>(x, S, kInterval, model);
   return Image<7, 2>{image.mean, image.A * image.A.transpose() + image.B * image.B.transpose(),
                      S * image.A.transpose()};
 };
@@ -55,16 +56,16 @@ void expect_refined_as(const RandomObservation& c, const Image<7, 2>& image,
                        const SigmaRule& rule) {
   const Eigen::Matrix<double, 3, 2> C = image.cross.topRows<3>();
   const Eigen::Matrix<double, 3, 2> K = image.covariance.llt().solve(C.transpose()).transpose();
-  const Vector<2> nu = reference::difference<1, 2>(to_vector(c.seen), image.mean);
-  const Vector<3> mean = reference::to_vector(c.pose.mean) + K * nu;
+  const Vector<2> nu = plain::difference<1, 2>(to_vector(c.seen), image.mean);
+  const Vector<3> mean = plain::to_vector(c.pose.mean) + K * nu;
   const Eigen::Matrix3d P = symmetric(c.pose.covariance) - K * image.covariance * K.transpose();
 
   PoseGaussian<double> pose = c.pose;
   Evidence<double> evidence;
   points_by(rule, c.noise).refine(pose, c.landmark, c.seen, c.noise, Everywhere(), evidence);
-  EXPECT_LT((reference::to_vector(pose.mean) - mean).norm(), 1e-11);
+  EXPECT_LT((plain::to_vector(pose.mean) - mean).norm(), 1e-11);
   EXPECT_LT((symmetric(pose.covariance) - P).norm(), 1e-12);
-  EXPECT_NEAR(evidence.log_density(), reference::log_gaussian<2>(nu, image.covariance), 1e-9);
+  EXPECT_NEAR(evidence.log_density(), plain::log_gaussian<2>(nu, image.covariance), 1e-9);
 }
 
 TEST(SigmaObservation, RefinesAPoseAsFifteenPointsOfSevenDimensionsDo) {
@@ -81,20 +82,20 @@ TEST(SigmaObservation, UpdatesALandmarkAsTheSquareRootRecursionDoes) {
   RngStream draw({.seed = 93, .purpose = Draw::test});
   for (int n = 0; n < 500; ++n) {
     const RandomObservation c(draw);
-    const Vector<3> pose = reference::to_vector(c.pose.mean);
+    const Vector<3> pose = plain::to_vector(c.pose.mean);
     const Vector<2> mu = to_vector(c.landmark.mean);
     const Eigen::Matrix2d S = chol_in<2>(across_first(pose, mu), symmetric(c.landmark.covariance));
-    const auto image = reference::central_differences<2, 1>(mu, S, kInterval,
-                                                            reference::LandmarkModel{c.pose.mean});
+    const auto image =
+        plain::central_differences<2, 1>(mu, S, kInterval, plain::LandmarkModel{c.pose.mean});
     const Vector<2> R(std::sqrt(c.noise.range), std::sqrt(c.noise.bearing));
     const Eigen::Matrix2d root = R.asDiagonal();
     Eigen::Matrix<double, 2, 6> columns;
     columns << image.A, image.B, root;
-    const Eigen::Matrix2d S_y = reference::tria<2, 6>(columns);
-    const Eigen::Matrix2d K = reference::gain<2, 2>(S * image.A.transpose(), S_y);
+    const Eigen::Matrix2d S_y = plain::tria<2, 6>(columns);
+    const Eigen::Matrix2d K = plain::square_root_gain<2, 2>(S * image.A.transpose(), S_y);
     columns << S - K * image.A, K * image.B, K * root;
-    const Eigen::Matrix2d after = reference::tria<2, 6>(columns);
-    const Vector<2> nu = reference::difference<1, 2>(to_vector(c.seen), image.mean);
+    const Eigen::Matrix2d after = plain::tria<2, 6>(columns);
+    const Vector<2> nu = plain::difference<1, 2>(to_vector(c.seen), image.mean);
 
     LandmarkGaussian<double> landmark = c.landmark;
     Evidence<double> evidence;
@@ -102,8 +103,7 @@ TEST(SigmaObservation, UpdatesALandmarkAsTheSquareRootRecursionDoes) {
         .update(landmark, c.pose.mean, c.seen, c.noise, Everywhere(), evidence);
     EXPECT_LT((to_vector(landmark.mean) - mu - K * nu).norm(), 1e-12);
     EXPECT_LT((symmetric(landmark.covariance) - after * after.transpose()).norm(), 1e-12);
-    EXPECT_NEAR(evidence.log_density(), reference::log_gaussian<2>(nu, S_y * S_y.transpose()),
-                1e-9);
+    EXPECT_NEAR(evidence.log_density(), plain::log_gaussian<2>(nu, S_y * S_y.transpose()), 1e-9);
   }
 }
 
@@ -113,8 +113,8 @@ TEST(SigmaObservation, InitialisesALandmarkAsFivePointsDo) {
     const RandomObservation c(draw);
     const Vector<2> R(std::sqrt(c.noise.range), std::sqrt(c.noise.bearing));
     const Eigen::Matrix2d root = R.asDiagonal();
-    const auto image = reference::unscented<2, -1>(to_vector(c.seen), root, {},
-                                                   reference::PlaceModel{c.pose.mean});
+    const auto image =
+        plain::unscented<2, -1>(to_vector(c.seen), root, {}, plain::PlaceModel{c.pose.mean});
     const SigmaRule rule = unscented_rule(2, 0.9, 2, 0);
     const auto initialised = points_by(rule, c.noise).initialise(c.pose.mean, c.seen, c.noise);
     EXPECT_LT((to_vector(initialised.mean) - image.mean).norm(), 1e-12);
@@ -175,17 +175,17 @@ Eigen::Matrix2d root_of(const SensorNoise& noise) {
   return Vector<2>(std::sqrt(noise.range), std::sqrt(noise.bearing)).asDiagonal();
 }
 Eigen::Matrix2d root_of(const RandomObservation& c) {
-  const Vector<3> pose = reference::to_vector(c.pose.mean);
-  return reference::chol_in<2>(reference::across_first(pose, to_vector(c.landmark.mean)),
-                               symmetric(c.landmark.covariance));
+  const Vector<3> pose = plain::to_vector(c.pose.mean);
+  return plain::chol_in<2>(plain::across_first(pose, to_vector(c.landmark.mean)),
+                           symmetric(c.landmark.covariance));
 }
 
 /// `v` has the moments of `image`, of ranges up to 35 m but for their rounding.
 template <int N>
 void expect_moments(const Innovation<double>& v, const RandomObservation& c,
-                    const reference::Differences<N, 2>& image) {
+                    const plain::Differences<N, 2>& image) {
   const Eigen::Matrix2d S = image.A * image.A.transpose() + image.B * image.B.transpose();
-  const Vector<2> nu = reference::difference<1, 2>(to_vector(c.seen), image.mean);
+  const Vector<2> nu = plain::difference<1, 2>(to_vector(c.seen), image.mean);
   EXPECT_LT((covariance_of(v) - S).norm(), 1e-13 * (1 + S.norm()));
   EXPECT_LT((to_vector(v.value) - nu).norm(), 1e-13 * (1 + nu.norm()));
 }
@@ -198,8 +198,8 @@ TEST(SigmaInnovation, OfALandmarkAddsTheNoiseThatPointsWouldCarry) {
     both.head<2>() = to_vector(c.landmark.mean);
     Eigen::Matrix4d root = Eigen::Matrix4d::Zero();
     root.topLeftCorner<2, 2>() = root_of(c), root.bottomRightCorner<2, 2>() = root_of(c.noise);
-    const reference::LandmarkModel observation{c.pose.mean};
-    const auto augmented = reference::central_differences<2, 1>(
+    const plain::LandmarkModel observation{c.pose.mean};
+    const auto augmented = plain::central_differences<2, 1>(
         both, root, kInterval,
         [&](const Vector<4>& v) -> Vector<2> { return observation(v.head<2>()) + v.tail<2>(); });
 
@@ -216,14 +216,13 @@ TEST(SigmaInnovation, OfAPoseAddsTheNoiseThatPointsWouldCarry) {
   for (int n = 0; n < 500; ++n) {
     const RandomObservation c(draw);
     Vector<7> all = Vector<7>::Zero();
-    all.head<3>() = reference::to_vector(c.pose.mean);
+    all.head<3>() = plain::to_vector(c.pose.mean);
     all.segment<2>(3) = to_vector(c.landmark.mean);
-    const Eigen::Matrix3d T =
-        reference::across_first_with_heading(all.head<3>(), all.segment<2>(3));
-    const auto root = reference::blocks<3, 2, 2>(
-        reference::chol_in<3>(T, symmetric(c.pose.covariance)), root_of(c), root_of(c.noise));
+    const Eigen::Matrix3d T = plain::across_first_with_heading(all.head<3>(), all.segment<2>(3));
+    const auto root = plain::blocks<3, 2, 2>(plain::chol_in<3>(T, symmetric(c.pose.covariance)),
+                                             root_of(c), root_of(c.noise));
     const auto augmented =
-        reference::central_differences<2, 1>(all, root, kInterval, reference::ObservationModel{});
+        plain::central_differences<2, 1>(all, root, kInterval, plain::ObservationModel{});
 
     const LineOfSight<double> s = line_of_sight(c.pose.mean, c.landmark.mean);
     const auto observation =

@@ -2,15 +2,15 @@
 #include "filters/moments/sigma_rule.hpp"
 
 #include "engine/random/stream.hpp"
-#include "tests/filters/reference/sigma_points.hpp"
+#include "filters/plain/sigma_points.hpp"
 
 #include <gtest/gtest.h>
 
 namespace montecarta::filters {
 namespace {
 
-using reference::Image;
-using reference::Vector;
+using plain::Image;
+using plain::Vector;
 
 /// A vector of three functions of N variables, bent in all of them.
 template <int N>
@@ -69,13 +69,12 @@ void expect_near(const Image<N, 3>& a, const Image<N, 3>& b) {
 
 template <int N>
 void compare_with_unscented(RngStream& draw) {
-  const reference::Unscented u{0.3 + 0.7 * draw.uniform(), 3.0 * draw.uniform(),
-                               2.0 * draw.uniform()};
+  const plain::Unscented u{0.3 + 0.7 * draw.uniform(), 3.0 * draw.uniform(), 2.0 * draw.uniform()};
   const Bent<N> model(draw);
   const Vector<N> x = random_vector<N>(draw);
   const auto S = random_factor<N>(draw);
   expect_near<N>(by_rule<N>(unscented_rule(N, u.alpha, u.beta, u.kappa), x, S, model),
-                 reference::unscented<3, -1>(x, S, u, model));
+                 plain::unscented<3, -1>(x, S, u, model));
 }
 
 TEST(SigmaRule, IsTheScaledUnscentedTransformWithItsTextbookWeights) {
@@ -93,7 +92,7 @@ TEST(SigmaRule, IsCentralDifferencesWithTheirTextbookWeights) {
     const Bent<5> model(draw);
     const Vector<5> x = random_vector<5>(draw);
     const auto S = random_factor<5>(draw);
-    const auto image = reference::central_differences<3, -1>(x, S, h, model);
+    const auto image = plain::central_differences<3, -1>(x, S, h, model);
     expect_near<5>(by_rule<5>(central_difference_rule(h), x, S, model),
                    {image.mean, image.A * image.A.transpose() + image.B * image.B.transpose(),
                     S * image.A.transpose()});

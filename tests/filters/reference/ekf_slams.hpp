@@ -112,45 +112,6 @@ class FullGaussian {
   std::vector<std::int32_t> identities_;
 };
 
-/// EKF-SLAM as the textbook has it.
-class TextbookEkfSlam : public FullGaussian {
- public:
-  explicit TextbookEkfSlam(const Belief& belief) : FullGaussian(belief, 3) {}
-
-  void start(const Pose& start) {
-    FullGaussian::start(Eigen::Vector3d(start.x, start.y, start.heading));
-  }
-  void predict(const Control& control, double duration) {
-    const auto step = linearised_move(pose(), control, duration, belief().vehicle);
-    move(0, step.pose, pose_jacobian(step.jacobians), control_jacobian(step.jacobians));
-  }
-  void update(Scan scan) {
-    use(
-        scan,
-        [&](const Detection& detection, Eigen::Index row) {
-          const auto [observation, H] = look(row);
-          condition(H, residual(observation_of(detection), observation));
-          mean(2) = wrap(mean(2));
-        },
-        [&](const Detection& detection) {
-          const auto placed = linearised_place(pose(), observation_of(detection));
-          append(detection, placed, pose_jacobian(placed));
-        });
-  }
-
-  /// What a landmark should look like, and its derivative by pose and map.
-  struct Look {
-    RangeBearing<double> observation;
-    Eigen::MatrixXd H;
-  };
-  Look look(Eigen::Index row) const {
-    const auto at = linearised_observation(pose(), point_at(row));
-    return {at.observation, derivative(0, row, at)};
-  }
-  Pose pose() const { return pose_at(0); }
-  PoseMoments moments() const { return {pose(), covariance.topLeftCorner<3, 3>()}; }
-};
-
 /// EKF-SLAM by first estimates as Huang, Mourikis and Roumeliotis 2008 have it: propagation by the
 /// predicted place before the last update, observations by that of the scan and the landmark as it
 /// was initialised. `constrained`: as they have it in 2010, with p* = p + lambda / (m + 1) before a

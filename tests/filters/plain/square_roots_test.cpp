@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "filters/plain/square_roots.hpp"
+
 #include "engine/random/stream.hpp"
-#include "tests/filters/reference/particle.hpp"
-#include "tests/filters/reference/sigma_points.hpp"
+#include "filters/plain/sigma_points.hpp"
 
 #include <gtest/gtest.h>
 
-namespace montecarta::filters::reference {
+namespace montecarta::filters::plain {
 namespace {
 
 const double kInterval = std::sqrt(3.0);
@@ -56,7 +57,7 @@ struct SquareRootFilter {
     Eigen::Matrix<double, 2, 8> observation;
     observation << image.A, image.B, system.R;
     const Eigen::Matrix2d S_y = tria<2, 8>(observation);
-    const Eigen::Matrix<double, 3, 2> K = gain<3, 2>(S * image.A.transpose(), S_y);
+    const Eigen::Matrix<double, 3, 2> K = square_root_gain<3, 2>(S * image.A.transpose(), S_y);
     Eigen::Matrix<double, 3, 8> columns;
     columns << S - K * image.A, K * image.B, K * system.R;
     x += K * (z - image.mean);
@@ -142,6 +143,25 @@ TEST(CentralDifferences, NoiseAsPointsIsNoiseAdded) {
   }
 }
 
+/// S S' -> S S' - U U', one hyperbolic downdate per column of U; false if that is not positive.
+template <int N, int M>
+[[nodiscard]] bool cholupdate(Matrix<N>& S, const Matrix<N, M>& U) {
+  for (int c = 0; c < M; ++c) {
+    Vector<N> u = U.col(c);
+    for (int k = 0; k < N; ++k) {
+      const double square = S(k, k) * S(k, k) - u(k) * u(k);
+      if (square <= 0.0) return false;
+      const double root = std::sqrt(square), cosine = root / S(k, k), sine = u(k) / S(k, k);
+      S(k, k) = root;
+      for (int i = k + 1; i < N; ++i) {
+        S(i, k) = (S(i, k) - sine * u(i)) / cosine;
+        u(i) = cosine * u(i) - sine * S(i, k);
+      }
+    }
+  }
+  return true;
+}
+
 TEST(SquareRootUpdate, ThreeFormsAgree) {
   RngStream draw({.seed = 234, .purpose = Draw::test});
   for (int n = 0; n < 1000; ++n) {
@@ -152,7 +172,7 @@ TEST(SquareRootUpdate, ThreeFormsAgree) {
     Eigen::Matrix<double, 2, 8> observation;
     observation << image.A, image.B, R;
     const Eigen::Matrix2d S_y = tria<2, 8>(observation);
-    const Eigen::Matrix<double, 3, 2> K = gain<3, 2>(S * image.A.transpose(), S_y);
+    const Eigen::Matrix<double, 3, 2> K = square_root_gain<3, 2>(S * image.A.transpose(), S_y);
     Eigen::Matrix<double, 3, 8> columns;
     columns << S - K * image.A, K * image.B, K * R;
     const Eigen::Matrix3d by_tria = tria<3, 8>(columns);
@@ -201,4 +221,4 @@ TEST(InnovationOfEquation26, IsThatOfPoseMapAndSensorOnALinearModel) {
 }
 
 }  // namespace
-}  // namespace montecarta::filters::reference
+}  // namespace montecarta::filters::plain

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/plain/association.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+namespace montecarta::filters::plain {
+
+/// EKF-SLAM (EQUATIONS 15; Smith et al. 1990; Thrun et al. 2005, table 10.1): one Gaussian over the
+/// pose and all landmarks. Detections update it one by one.
+class EkfSlam final : public SlamFilter {
+ public:
+  explicit EkfSlam(const FilterSetup& setup) : setup_(setup), R_(observation_noise(setup.belief)) {}
+
+  void start(const Pose& start) override {
+    mean_ = to_vector(start);
+    P_ = Matrix<3>::Zero();
+    identities_.clear();
+    report_ = {};
+  }
+
+  /// Moves the pose (EQUATIONS (1.3), (1.4)) and its covariances with the landmarks.
+  void predict(const StepContext& /*context*/, const Control& u, double duration) override {
+    const auto step = linearised_move(pose(), u, duration, setup_.belief.vehicle);
+    const Matrix<3> Fx = pose_jacobian(step.jacobians);
+    const ControlJacobian Fu = control_jacobian(step.jacobians);
+    mean_.head<3>() = to_vector(step.pose);
+    P_.topRows<3>() = (Fx * P_.topRows<3>()).eval();
+    P_.leftCols<3>() = (P_.leftCols<3>() * Fx.transpose()).eval();
+    P_.topLeftCorner<3, 3>() += Fu * control_noise(setup_.belief, u) * Fu.transpose();
+  }
+
+  void update(const StepContext& /*context*/, Scan scan) override {
+    const std::vector<Pairing> pairings = associated(scan);
+    report_ = {.association = association_counts(scan, pairings, identities_)};
+    for (std::size_t k = 0; k < scan.size(); ++k) {
+      if (pairings[k].kind != PairingKind::matched) {
+        report_.log_likelihood += log_unmatched(setup_);
+      } else if (const auto v = innovation(pairings[k].landmark, scan[k])) {
+        condition(*v);
+      }
+    }
+    if (!std::isfinite(report_.log_likelihood))
+      throw std::runtime_error("the log-likelihood of the scan is not finite");
+    for (std::size_t k = 0; k < scan.size(); ++k) {
+      if (pairings[k].kind == PairingKind::fresh) initialise(scan[k]);
+    }
+    refuse_large_map(identities_.size(), setup_.association);
+    report_.map_size = static_cast<double>(identities_.size());
+  }
+
+  PoseEstimate estimate() const override {
+    return {{pose(), P_.topLeftCorner<3, 3>()}, std::nullopt};
+  }
+  const ScanReport& report() const override { return report_; }
+  void map(std::span<std::optional<LandmarkEstimate>> landmarks) const override {
+    for (std::size_t k = 0; k < landmarks.size(); ++k) {
+      landmarks[k].reset();
+      const auto slot = slot_of(k, identities_, setup_.association.kind);
+      if (!slot) continue;
+      const Eigen::Index row = row_of(*slot);
+      landmarks[k] = {mean_.segment<2>(row), P_.block<2, 2>(row, row)};
+    }
+  }
+
+  /// Pose, then the landmarks in the order of their initialisation.
+  const Eigen::VectorXd& mean() const { return mean_; }
+  const Eigen::MatrixXd& covariance() const { return P_; }
+
+ private:
+  /// An innovation with all that the update needs: nu, S and P H'.
+  struct Innovation {
+    PredictedInnovation value;
+    Eigen::Matrix<double, Eigen::Dynamic, 2> PHt;
+  };
+
+  Pose pose() const { return as_pose(mean_.head<3>()); }
+  static Eigen::Index row_of(std::size_t slot) { return 3 + 2 * static_cast<Eigen::Index>(slot); }
+
+  std::vector<Pairing> associated(Scan scan) const {
+    if (setup_.association.kind == Association::known) return pair_by_identity(scan, identities_);
+    const auto predict = [&](std::uint32_t slot, const Detection& z) {
+      const auto v = innovation(slot, z);
+      return v ? std::optional(v->value) : std::nullopt;
+    };
+    return pair_nearest(scan, identities_.size(), setup_.association, predict);
+  }
+
+  /// nu = z - h, S = H P H' + R with H = [Hx 0 ... Hf ... 0]; nullopt if the landmark is too near.
+  std::optional<Innovation> innovation(std::size_t slot, const Detection& z) const {
+    const Eigen::Index row = row_of(slot);
+    const Landmark known{.mean = mean_.segment<2>(row), .covariance = P_.block<2, 2>(row, row)};
+    const auto v = innovation_at(mean_.head<3>(), known, z, R_);
+    if (!v) return std::nullopt;
+    const Eigen::Matrix<double, Eigen::Dynamic, 2> PHt =
+        P_.leftCols<3>() * v->Hx.transpose() + P_.middleCols<2>(row) * v->Hf.transpose();
+    const Matrix<2> S = v->Hx * PHt.topRows<3>() + v->Hf * PHt.middleRows<2>(row) + R_;
+    return Innovation{{v->nu, S}, PHt};
+  }
+
+  /// m <- m + K nu, P <- P - K S K' (EQUATIONS (15.1)).
+  void condition(const Innovation& v) {
+    const auto& [nu, S] = v.value;
+    const Eigen::Matrix<double, Eigen::Dynamic, 2> K = S.llt().solve(v.PHt.transpose()).transpose();
+    mean_ += K * nu;
+    mean_(2) = wrap(mean_(2));
+    P_ -= K * S * K.transpose();
+    report_.log_likelihood += log_gaussian<2>(nu, S);
+    report_.nis += squared_distance(nu, S);
+    report_.nis_dof += 2;
+  }
+
+  /// Adds a landmark at g(x, z), with derivatives Gx and Gz (EQUATIONS 15).
+  void initialise(const Detection& z) {
+    const auto placed = linearised_place(pose(), observation_of(z));
+    const Matrix23 Gx = pose_jacobian(placed);
+    const Matrix<2> Gz = observation_jacobian(placed);
+    const Eigen::Index n = mean_.size();
+    mean_.conservativeResize(n + 2);
+    P_.conservativeResize(n + 2, n + 2);
+    mean_.tail<2>() = to_vector(placed.point);
+    P_.bottomLeftCorner(2, n) = Gx * P_.topLeftCorner(3, n);
+    P_.topRightCorner(n, 2) = P_.bottomLeftCorner(2, n).transpose();
+    P_.bottomRightCorner<2, 2>() =
+        Gx * P_.topLeftCorner<3, 3>() * Gx.transpose() + Gz * R_ * Gz.transpose();
+    identities_.push_back(z.identity);
+  }
+
+  FilterSetup setup_;
+  Matrix<2> R_;
+  Eigen::VectorXd mean_;
+  Eigen::MatrixXd P_;
+  std::vector<std::int32_t> identities_;  ///< {landmark} of the detection that initialised it
+  ScanReport report_;
+};
+
+}  // namespace montecarta::filters::plain

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "filters/plain/fast_slam.hpp"
+
+namespace montecarta::filters::plain {
+
+/// FastSLAM I (EQUATIONS 5; Montemerlo et al. 2002): every particle moves with its own noise of the
+/// controls, and the scan weighs it.
+class FastSlam1 : public FastSlam {
+ public:
+  using FastSlam::FastSlam;
+  PoseEstimate estimate() const override { return {spread_of(particles_), std::nullopt}; }
+
+ private:
+  /// x ~ f(x, u + e), e ~ N(0, Q), the first half of EQUATIONS (5.1).
+  void predict_particle(const StepContext& context, std::uint32_t i, Particle& p,
+                        const Control& control, double duration) override {
+    const auto sigma = deviations_of(belief_.control, control, belief_.vehicle);
+    RngStream draw = context.stream(Draw::motion_sample, i);
+    Control u = control;
+    for (std::size_t k = 0; k < controls_of(belief_.vehicle).size(); ++k)
+      u[k] += sigma[k] * draw.normal();
+    p.pose = to_vector(move(as_pose(p.pose), u, duration, belief_.vehicle));
+  }
+
+  /// Adds sum_k log N(z_k - h(x, mu_k); Hf Sigma_k Hf' + R), the second half of EQUATIONS (5.1).
+  void weigh_and_draw(const StepContext& /*context*/, std::uint32_t /*i*/, Particle& p,
+                      Scan scan) override {
+    for_each_match(p, scan, [&](const Landmark& landmark, const Detection& z) {
+      p.log_weight += counted(log_likelihood(p.pose, landmark, z));
+    });
+  }
+};
+
+}  // namespace montecarta::filters::plain
