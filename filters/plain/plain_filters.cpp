@@ -62,7 +62,7 @@ FilterKind plain_version(FilterKind kind, const PlainFilter& plain) {
   for (Parameter& option : kind.options) {
     if (option.key == "resampling") option.choices = {"systematic", "stratified"};
   }
-  kind.has_joint = kind.tells_rotation_information = kind.delays_initialisation = false;
+  kind.reports.joint = kind.reports.rotation_information = kind.delays_initialisation = false;
   kind.sensors = {RangeBearingSensor::kName};
   kind.make = plain.make;
   return kind;
