@@ -246,7 +246,7 @@ void write_comparison_csv(const StudyComparison& comparison,
 
 namespace {
 
-/// How many runs the difference is of, and what became of the others.
+/// Number of paired runs, and the reasons why others are not paired.
 std::string pairs_text(const CellComparison& row) {
   std::string text = std::to_string(row.pairs);
   const auto add = [&](std::size_t n, const char* words) {

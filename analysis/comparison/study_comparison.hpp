@@ -15,14 +15,14 @@
 
 namespace montecarta::analysis {
 
-/// How often the one of two cells was better, run by run in the same worlds. A run that failed in
-/// one of them is won by the other.
+/// Counts of runs, in the same worlds, in which the first of two cells was better. A run that
+/// failed in one of them is won by the other.
 struct Wins {
   std::size_t won = 0, lost = 0, tied = 0;
   double p = 1.0;       ///< of the exact sign test
   double p_holm = 1.0;  ///< adjusted for all tests of its table
 
-  /// Of all runs that ended in both; NaN without any.
+  /// Share of the runs that ended in both cells; NaN if there are none.
   double share() const;
 };
 
@@ -44,9 +44,9 @@ struct CellComparison {
   SignedRank rank{};         ///< of the differences
   double rank_p_holm = 1.0;  ///< adjusted for all tests of the table
 
-  /// "better", "worse", "undecided"; "lower" and "higher" where neither is better. What the tests
-  /// over runs say of most runs, and the interval of the mean difference does not, or is worthless:
-  /// "better in most runs", and "mixed" where that interval is on the other side.
+  /// "better", "worse" or "undecided"; "lower" or "higher" if neither direction is better. If only
+  /// the tests over runs show it, and not the interval of the mean difference: "better in most
+  /// runs", or "mixed" if that interval lies on the other side.
   std::string verdict(double level) const;
 };
 
@@ -57,7 +57,7 @@ struct Comparisons {
   std::vector<CellComparison> rows;  ///< score by score, in the order of the cells
 };
 
-/// Which of two values of a score is better: below zero where `left` is.
+/// Negative if `left` is the better of two values of a score.
 double disadvantage(const Score& score, double left, double right);
 
 Wins wins_of(const CellAnalysis& left, const CellAnalysis& right, const Score& score);
@@ -80,7 +80,7 @@ struct WinMatrix {
 /// Tests are adjusted for all pairs of the matrix.
 WinMatrix win_matrix(const StudyAnalysis& study, const Score& score);
 
-/// What is said of the cells beside each other, whoever it is said to.
+/// A comparison of cells with a baseline and with each other.
 struct StudyComparison {
   Comparisons comparisons;
   std::vector<WinMatrix> matrices;  ///< {score} that two cells or more are judged by
@@ -98,12 +98,12 @@ std::vector<std::string> comparison_csv_names();
 void write_comparison_csv(const StudyComparison& comparison,
                           const std::filesystem::path& directory);
 
-/// One row a cell and score: the difference from the baseline and its tests.
+/// One row for each cell and score: the difference from the baseline and its tests.
 TextTable comparison_table(const Comparisons& comparisons);
-/// One row and one column a cell: in what share of runs the row beats the column.
+/// One row and one column for each cell: the share of runs in which the row beats the column.
 TextTable win_table(const WinMatrix& matrix, double level);
 
-/// Each table's meaning, a sentence each, for someone who never heard of a p value.
+/// Notes on the table, for readers who do not know p-values.
 std::vector<std::string> comparison_notes(const StudyAnalysis& study,
                                           const Comparisons& comparisons);
 std::string win_note(double level);

@@ -36,12 +36,12 @@ struct MomentRows {
   std::vector<double> covariance;  ///< {scan, 3, 3}
 };
 
-/// What became of the detections of every scan (AssociationCounts); empty where not stored.
+/// Counts of the associations of every scan (AssociationCounts); empty where not stored.
 struct AssociationRows {
   std::vector<double> correct, wrong, new_again, missed, clutter;  ///< {scan}
 };
 
-/// At the end of how many parts of a run calibration is tested.
+/// Number of parts of a run at the ends of which calibration is tested.
 inline constexpr std::size_t kQuarters = 4;
 
 /// The scan that ends each quarter of a run of `scans` >= 1.
@@ -89,8 +89,8 @@ struct ErrorRows {
   }
 };
 
-/// What analysis needs of one run, as plain arrays: where they come from does not matter. Columns
-/// that are not stored are empty.
+/// All data of one run that the analysis uses, as plain arrays. Columns that are not stored are
+/// empty.
 struct RunRows {
   std::vector<double> truth;  ///< {scan, 3} [m, m, rad]; empty where nobody knows it
   MomentRows spread;          ///< its mean is always there but in files of other states than poses
@@ -111,14 +111,14 @@ struct RunRows {
   std::optional<FinalMap> final_map;         ///< at the last scan, if stored and whole
   CloudRows cloud;
   JointRows joint;
-  ErrorRows error;                         ///< of imported estimates: what NEES is made of
+  ErrorRows error;                         ///< of imported estimates
   std::uint64_t run = 0;                   ///< its number in the study
   std::vector<Eigen::Vector2d> landmarks;  ///< [m] true positions in this run, by identity; empty
                                            ///< where unknown
   double cpu_seconds = 0.0;
 };
 
-/// The estimate that errors are of: the mixture where it is stored, else the spread.
+/// The estimate with the judged errors: the mixture if it is stored, else the spread.
 inline const MomentRows& estimate_of(const RunRows& rows) {
   return rows.mixture.mean.empty() ? rows.spread : rows.mixture;
 }

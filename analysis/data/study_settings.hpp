@@ -9,24 +9,23 @@
 
 namespace montecarta::analysis {
 
-/// What the section [study] of a resolved study, as a result file holds it, says of this key;
-/// nullopt where it says nothing.
+/// A key of the section [study] in the resolved study of a result file; nullopt if it is not given.
 std::optional<std::string> study_setting(const std::string& study_text, std::string_view key);
 
-/// A filter is consistent enough where the ratio of its NEES to the expected one lies within
-/// [1 / r, r], r this where neither the study nor the user says otherwise.
+/// Default margin r: a filter is consistent if the ratio of its NEES to the expected one lies in [1
+/// / r, r].
 inline constexpr double kUsualMargin = 1.1;
 inline constexpr double kLeastMargin = 1.001, kMostMargin = 100.0;
 
-/// What the study of a result file says (study.within of its resolved text), else kUsualMargin.
-/// Throws StudyError where it is no number from kLeastMargin to kMostMargin.
+/// study.within of a resolved study, else kUsualMargin. Throws StudyError if it is no number from
+/// kLeastMargin to kMostMargin.
 double margin_in(const std::string& study_text);
 
-/// study.until of a study whose cells stop when their verdict is known.
+/// Value of study.until if cells stop when their verdict is known.
 inline constexpr const char* kUntilVerdict = "verdict";
 
-/// After how many runs each cell of a study of `runs` runs is judged, where its cells stop by
-/// verdict (its resolved text says so); empty where they do not: then the verdict is taken once.
+/// Numbers of runs of the interim analyses in a study of `runs` runs, if its cells stop by verdict;
+/// else empty: the verdict is then taken once.
 std::vector<std::uint64_t> looks_in(const std::string& study_text, std::uint64_t runs);
 
 }  // namespace montecarta::analysis

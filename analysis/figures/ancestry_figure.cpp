@@ -176,7 +176,7 @@ std::string title_of(const DrawnTree& cell) {
          std::to_string(tree.particles) + " particles";
 }
 
-/// What the youngest common ancestor says of the run.
+/// Part of a title: the age of the youngest common ancestor.
 std::string title_of_end(const DrawnTree& cell) {
   const double since = cell.tree.common_ancestor();
   if (since == 0.0) return "no common ancestor since the start";

@@ -13,8 +13,8 @@
 
 namespace montecarta::analysis {
 
-/// The lines of descent of one run that reach its end. Nothing but where lines meet is kept, so the
-/// tree is as large as the particles are many, however long the run.
+/// The lines of descent of one run that reach its end. Only their meeting points are kept, so the
+/// size of the tree depends on the number of particles, not on the length of the run.
 struct AncestryTree {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
@@ -38,8 +38,8 @@ struct AncestryTree {
 AncestryTree ancestry_tree(std::span<const std::uint32_t> ancestor, std::size_t particles,
                            std::span<const double> times, std::size_t most);
 
-/// Where the particles at the end of one run come from, cell by cell: the run as chosen_run()
-/// chooses it. Without data where no cell has stored its ancestry.
+/// Lines of descent of the particles at the end of one run (chosen_run()), cell by cell. No data if
+/// no cell has stored its ancestry.
 Figure ancestry_figure(const ResultFile& file, std::optional<std::uint64_t> run);
 
 }  // namespace montecarta::analysis

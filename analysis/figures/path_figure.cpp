@@ -54,7 +54,8 @@ std::vector<Ellipse> StoredMap::at(std::size_t scan) const {
 
 namespace {
 
-/// Where points lie: (x, y) in columns `x` and `x` + 1 of data whose name begins with `name`.
+/// Bounds of the points (x, y) in columns `x` and `x` + 1 of data with a name that begins with
+/// `name`.
 void include(const std::vector<FigureData>& all, const std::string& name, std::size_t x,
              Bounds& bounds) {
   for (const FigureData& data : all) {

@@ -52,10 +52,10 @@ struct Bounds {
   double left = std::numeric_limits<double>::infinity(), right = -left;
   double low = left, high = -left;
 
-  /// What is not a number, or beyond any map (1e100 m), has no place.
+  /// Ignores points that are not finite or beyond any map (1e100 m).
   void include(double x, double y);
   bool empty() const { return left > right; }
-  /// Room around, and no axis shorter than a quarter of the other.
+  /// The rectangle with room around it, and with no side shorter than a quarter of the other.
   Bounds widened() const;
   /// `share` of the longer side farther in every direction.
   Bounds grown(double share) const;
@@ -64,35 +64,34 @@ struct Bounds {
   }
 };
 
-/// Of paths (data "path_...") with their truth, and landmarks.
+/// Bounds of paths (data "path_...") with their truth, and of landmarks.
 Bounds path_bounds(const std::vector<FigureData>& all);
-/// Of a recorded drive. A filter that is lost may be anywhere: paths and maps (data "path_...",
+/// Bounds for a recorded drive. A lost filter may be anywhere, so paths and maps (data "path_...",
 /// "map_...") reach no farther than a quarter beyond the fixes.
 Bounds recorded_bounds(const std::vector<FigureData>& all, const FigureData& fixes,
                        const FigureData& landmarks);
 
-/// Index in the file of the run that is shown: `run`, or else the first that is complete in every
-/// cell, else in most; none where no cell is complete. Throws StudyError where the file does not
-/// hold `run`.
+/// Index in the file of the shown run: `run`, or the first that is complete in every cell, else in
+/// most; nullopt if no cell is complete. Throws StudyError if the file does not hold `run`.
 std::optional<std::size_t> chosen_run(const ResultFile& file, std::optional<std::uint64_t> run);
 
-/// How many ellipses of the pose lie along a path.
+/// Number of ellipses of the pose along a path.
 inline constexpr std::size_t kPoseEllipses = 16;
 
-/// (time, true x, true y, x, y) at up to some hundred scans of a run; (time, x, y) where nobody
-/// knows the truth.
+/// (time, true x, true y, x, y) at up to some hundred scans of a run; (time, x, y) without a known
+/// truth.
 FigureData path_data(const ResultFile& file, const StoredCell& cell, const RunRows& run);
 /// Two-sigma ellipses of the pose at kPoseEllipses moments; no rows without covariance.
 FigureData pose_ellipses(const StoredCell& cell, const RunRows& run);
-/// Two-sigma ellipses of the landmarks that the filter has at the last scan; no rows where neither
-/// the map nor the final map is stored of every run: what is stored of one is in its replay.
+/// Two-sigma ellipses of the landmarks in the map at the last scan. No rows if neither the map nor
+/// the final map is stored for every run; a map stored for one run is in its replay.
 FigureData map_data(const ResultFile& file, const StoredCell& cell, std::size_t run_index);
 /// (time, x, y) of up to some hundred fixes of the leading reference; no rows where there is none.
 FigureData fix_data(const ResultFile& file, std::size_t run_index);
 /// True landmarks in a run.
 FigureData landmark_data(const ResultFile& file, std::size_t run_index);
 
-/// What is drawn of one cell: its files of data, those without rows are left out.
+/// Data files of one cell; those without rows are left out.
 struct DrawnPath {
   std::string label;
   std::size_t style = 0;  ///< for line_colour()
@@ -103,11 +102,11 @@ struct DrawnPath {
 Chart path_chart(const std::vector<DrawnPath>& cells, const FigureData& landmarks,
                  const FigureData& fixes, const Bounds& bounds);
 
-/// The true and the estimated path of one run, a panel a cell, with landmarks (estimated ones where
-/// the map is stored) and ellipses of two standard deviations; of a recorded drive the fixes of the
-/// leading reference in place of the truth. Without `run`: the first run that is
-/// complete in every cell, else in most. No data where no cell is complete. Throws StudyError where
-/// the file does not hold `run`.
+/// The true and the estimated path of one run, with a panel for each cell: landmarks (estimated
+/// ones if the map is stored) and ellipses of two standard deviations; for a recorded drive, the
+/// fixes of the leading reference instead of the truth. Without `run` it is the first run that is
+/// complete in every cell, else in most. No data if no cell is complete. Throws StudyError if the
+/// file does not hold `run`.
 Figure path_figure(const ResultFile& file, std::optional<std::uint64_t> run);
 
 }  // namespace montecarta::analysis

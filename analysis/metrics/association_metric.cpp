@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What became of detections in a run, in sums over its scans (AssociationCounts).
+// Associations of detections, summed over the scans of a run (AssociationCounts).
 #include "analysis/metrics/cell_range.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"

@@ -29,7 +29,7 @@ double wrapped(std::size_t component, double difference) {
   return component == 2 ? wrap(difference) : difference;
 }
 
-/// Gaussian probability of less than `deviation` = truth - mean; NaN where the variance is none.
+/// Gaussian probability of less than `deviation` = truth - mean; NaN without a positive variance.
 double gaussian_share(double deviation, double variance) {
   if (!(variance > 0.0) || !std::isfinite(variance) || !std::isfinite(deviation)) return kNaN;
   return 0.5 * std::erfc(-deviation / std::sqrt(2.0 * variance));
@@ -45,7 +45,7 @@ RunPits::Components gaussian_pits(const std::vector<double>& truth, const Moment
   return pits;
 }
 
-/// The truth is one more draw (Hotelling's F of one component). NaN of three effective draws or
+/// The truth is one more draw (Hotelling's F of one component). NaN for three effective draws or
 /// fewer.
 RunPits::Components drawn_pits(const RunRows& rows, const EffectiveDraws& draws, std::size_t scan) {
   RunPits::Components pits{kNaN, kNaN, kNaN};
@@ -61,9 +61,9 @@ RunPits::Components drawn_pits(const RunRows& rows, const EffectiveDraws& draws,
   return pits;
 }
 
-/// Rank of the truth among the particles, smoothed: of E draws of equal weight there are E + 1
-/// gaps, each as probable, and where in its gap the truth lies is spread evenly over runs by
-/// `within`. Of uneven weights E is the effective sample size.
+/// Rank of the truth among the particles, smoothed: E draws of equal weight leave E + 1 gaps of
+/// equal probability, and `within` spreads the truth evenly over its gap from run to run. For
+/// uneven weights E is the effective sample size.
 RunPits::Components rank_pits(const std::vector<double>& truth, const CloudRows& cloud,
                               std::size_t scan, std::size_t moment, double within) {
   const std::size_t M = cloud.log_weight.size() / kQuarters;
@@ -82,7 +82,7 @@ RunPits::Components rank_pits(const std::vector<double>& truth, const CloudRows&
   return pits;
 }
 
-/// One landmark of the map, another one from run to run.
+/// Transforms of one landmark of the map, a different one from run to run.
 std::array<double, 2> landmark_pits(const FinalMap& map, std::uint64_t run,
                                     std::span<const Eigen::Vector2d> landmarks) {
   std::vector<std::size_t> seen;

@@ -19,8 +19,8 @@ namespace montecarta::analysis {
 /// NaN where not defined.
 struct RunPits {
   using Components = std::array<double, 3>;  ///< x, y, heading in the map frame
-  /// By the Gaussian of the leading moments. The poses that a scan drew are transformed by
-  /// Student's t with as many effective draws about their mean.
+  /// By the Gaussian of the leading moments. Where a scan drew poses, it is Student's t with as
+  /// many effective draws about their mean.
   std::array<Components, kQuarters> pose{};
   std::array<Components, kQuarters> rank{};  ///< by the weighted particles
   std::array<double, 2> landmark{};          ///< x, y of one landmark of the final map
@@ -52,7 +52,7 @@ struct JudgedPits {
   }
 };
 
-/// Those of a cell; empty if nothing is judged.
+/// The judged transforms of a cell; empty if nothing is judged.
 using Calibrations = std::vector<JudgedPits>;
 
 /// Collects the transforms of complete runs in the order of the calls.
@@ -60,7 +60,8 @@ class CalibrationSums {
  public:
   void add(const RunPits& run) { runs_.push_back(run); }
   /// `times` [s] of all scans. A calibrated cell has no fault in any test with probability `level`
-  /// at least. The order is pose by moments, ranks, landmarks, NEES; what is not stored is absent.
+  /// at least. The order is pose by moments, ranks, landmarks, NEES; quantities that are not stored
+  /// are absent.
   Calibrations result(std::span<const double> times, double level) const;
 
  private:

@@ -50,7 +50,7 @@ struct NeesResult {
   bool is_tested() const { return !std::isnan(mean); }
 };
 
-/// A run that ended early: a result like any other.
+/// A run that ended early.
 struct FailedRun {
   std::uint64_t run = 0;
   std::uint32_t step = 0;  ///< 0-based
@@ -58,7 +58,7 @@ struct FailedRun {
   double time = 0.0;  ///< [s] of the scan at or after the step
 };
 
-/// What metrics found, one result of a type: a later one replaces it.
+/// Results of the metrics, at most one of each type: a later result replaces an earlier one.
 class Findings {
  public:
   template <class T>
@@ -76,13 +76,13 @@ class Findings {
   std::map<std::type_index, std::any> results_;
 };
 
-/// What is known of a cell. Errors, NEES, weights and diversity are over complete runs only.
+/// The analysis of one cell. Errors, NEES, weights and diversity are over complete runs only.
 struct CellAnalysis {
   std::string label;
   std::string filter;
   std::string long_name;
   std::size_t particles = 0;  ///< 0: not a particle filter
-  Mismatch mismatch;          ///< what it believes besides what the study tells
+  Mismatch mismatch;          ///< factors of the noise that it believes
   std::size_t complete = 0;
   std::size_t missing = 0;
   std::size_t spared = 0;         ///< not made: the cell was precise enough, or its verdict known
@@ -98,12 +98,12 @@ struct CellAnalysis {
   std::vector<NamedSeries> scan_series;   ///< of all_scan_series() those that apply
   Findings findings;                      ///< all else, by the metric's own type
 
-  /// Of a metric; nullptr where it does not apply.
+  /// The result of a metric; nullptr where it does not apply.
   template <class T>
   const T* find() const {
     return findings.find<T>();
   }
-  /// Of a metric; where it does not apply, T{}.
+  /// The result of a metric; T{} where it does not apply.
   template <class T>
   const T& get() const {
     static const T none{};
@@ -112,11 +112,11 @@ struct CellAnalysis {
   }
   /// nullptr where it is not stored.
   const NeesResult* find_nees(ErrorBlock block, Moments moments) const;
-  /// Of a score over the complete runs; NaN where one of them has none.
+  /// A score over the complete runs; NaN if one of them has no value.
   Summary over_runs(std::string_view score) const;
-  /// Of a score over the complete runs that have it: a map without beacons has no beacon error.
+  /// A score over the complete runs that have a value: a map without beacons has no beacon error.
   Spread known_over_runs(std::string_view score) const;
-  /// Where the mean of a score over infinitely many runs lies.
+  /// The interval that holds the mean of a score over infinitely many runs.
   Interval interval_of(std::string_view score) const;
   /// {scan} of this name; empty where it does not apply.
   const std::vector<double>& over_time(std::string_view series) const;

@@ -13,8 +13,8 @@ namespace montecarta::analysis {
 /// The label of a cell without its number of particles: "fastslam2_gps" of "fastslam2_m100_gps".
 std::string label_without_particles(const CellAnalysis& cell);
 
-/// These labels of all cells, each once: where colours stand for filters, the place here is that of
-/// the colour.
+/// These labels of all cells, each once. If colours stand for filters, the index in this list
+/// selects the colour.
 std::vector<std::string> filter_labels(const StudyAnalysis& study);
 
 /// The values of a cell over time; empty where it has none.

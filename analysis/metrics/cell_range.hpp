@@ -9,12 +9,12 @@
 
 namespace montecarta::analysis {
 
-/// A number that every cell may have one of; NaN where it has none.
+/// A number of a cell; NaN if it has none.
 using CellNumber = std::function<double(const CellAnalysis&)>;
 using NumberText = std::function<std::string(double)>;
 
-/// The least and the greatest number of all cells and whose they are, for the summary of a section:
-/// "1.62 (ekf_slam) to 717 (fastslam2)". One number where both read the same; "-" without any.
+/// The least and the greatest number of all cells with their labels, for the summary of a section:
+/// "1.62 (ekf_slam) to 717 (fastslam2)". One number if both read the same; "-" without any.
 std::string range_over_cells(
     const StudyAnalysis& study, const CellNumber& number_of,
     const NumberText& text_of = [](double value) { return readable(value); });

@@ -54,7 +54,7 @@ class Facts {
   bool complete_ = true;
 };
 
-/// Files do not say what is usual. Nothing where the sensor is not known.
+/// The sensor with its mount, which files omit where it is usual; nullopt if it is unknown.
 std::optional<Sensor> sensor_of(const Facts& facts) {
   const auto usual = [&](const char* key) {
     return in_si(key, facts.optional_number(key).value_or(0.0));
@@ -103,8 +103,8 @@ std::optional<SimulatedWorld> simulated_world_of(const ResultFile& file) {
 
 namespace {
 
-/// [m] what is known of a landmark that one detection does not fix: so little that it adds nothing,
-/// and not so little that rounding would.
+/// [m] Initial standard deviation of a landmark that one detection does not fix: large enough to
+/// add no information, and small enough to add no rounding errors.
 constexpr double kUnknown = 1000.0;
 
 void mirror_lower(Eigen::Matrix3d& P) { P.triangularView<Eigen::StrictlyUpper>() = P.transpose(); }

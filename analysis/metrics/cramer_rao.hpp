@@ -21,25 +21,25 @@
 
 namespace montecarta::analysis {
 
-/// Vehicle, sensor and their noise as they really are in a simulation, whatever filters believe.
+/// The true vehicle, sensor and noise of a simulation, which filters may believe to be different.
 struct SimulatedWorld {
   Vehicle vehicle;
   ControlNoise control_noise;
   Eigen::Vector2d sigma_observation;  ///< of the sensor's components (deviations_of())
-  double detected = 1.0;              ///< probability that what is in view is detected
+  double detected = 1.0;              ///< probability that a landmark in view is detected
   FieldOfView view;
   bool same_path = true;  ///< of all runs: the noise is on the controls that filters are given
   Sensor sensor = {};
 };
 
-/// What the file says of its world in the attributes of /scenario; nullopt where it is not that of
-/// a simulation, or lacks any of it.
+/// The simulated world, read from the attributes of /scenario; nullopt if the file is not of a
+/// simulation or lacks an attribute.
 std::optional<SimulatedWorld> simulated_world_of(const ResultFile& file);
 
-/// The Cramer-Rao bound on pose and landmarks together, as a covariance that is carried along a
-/// known path: the recursion of a Kalman filter with all Jacobians at the truth, and nothing known
-/// of a landmark before its first observation; where one detection does not fix it, it is known to
-/// a kilometre. The pose is known exactly at the start.
+/// The Cramer-Rao bound on pose and landmarks together, as a covariance that is propagated along a
+/// known path: the recursion of a Kalman filter with all Jacobians at the truth. A landmark is
+/// unknown before its first observation; if one detection does not fix it, its standard deviation
+/// is a kilometre. The pose is known exactly at the start.
 class JointBound {
  public:
   /// Room for all `landmarks`; nothing is allocated later. `control_noise`: of the vehicle,
@@ -47,10 +47,10 @@ class JointBound {
   JointBound(std::size_t landmarks, const Vehicle& vehicle, const ControlNoise& control_noise,
              const Eigen::Vector2d& observation_variance, const Sensor& sensor = {});
 
-  /// One control step from the true `pose`; returns where it leads.
+  /// One control step from the true `pose`; returns the pose after it.
   Pose move(const Pose& pose, const Control& control, double duration);
   /// A scan from the true `pose` that detects `landmarks`, true positions with their identities.
-  /// False where the noise is so small that numbers do not hold it; the bound is spoilt then.
+  /// False if the noise is too small for the computation; the bound is unusable then.
   struct Seen {
     std::size_t identity = 0;
     Point point;
@@ -58,8 +58,8 @@ class JointBound {
   [[nodiscard]] bool scan(const Pose& pose, std::span<const Seen> landmarks);
 
   const Eigen::Matrix3d& pose() const { return pose_; }
-  /// [m^2] Mean of the squared position error over the landmarks whose place the detections fix;
-  /// NaN where there is none.
+  /// [m^2] Mean squared position error over the landmarks that the detections locate; NaN if there
+  /// are none.
   double mean_map_variance() const;
 
  private:
@@ -82,20 +82,20 @@ class JointBound {
   std::vector<Eigen::Index> row_;                   ///< of each landmark; 0: never seen
 };
 
-/// Runs that the bound is averaged over where every run has a path of its own.
+/// Number of runs in the average if every run has a path of its own.
 inline constexpr std::size_t kBoundRuns = 16;
 
-/// The least root mean square error that is possible, just after each scan, of an estimator without
-/// bias that knows which landmark is which. Empty where there is none. Where every run has a path
-/// of its own it is no bound but what the linearised filter with its Jacobians at the truth reports
-/// (STATISTICS 11): is_bound.
+/// The least root mean square error, just after each scan, of any estimator without bias that knows
+/// which landmark is which. Empty if it cannot be computed. If every run has a path of its own
+/// (is_bound is false), it is no bound but the covariance that a linearised filter with Jacobians
+/// at the truth reports (STATISTICS 11).
 struct CramerRaoBound {
   std::vector<double> position;  ///< [m] {scan}
   std::vector<double> heading;   ///< [rad] {scan}
   double map =
       std::numeric_limits<double>::quiet_NaN();  ///< [m] at the end, RMS over the landmarks
                                                  ///< that came into view; NaN: none did
-  std::size_t runs = 0;  ///< whose paths it is the average of; 1 where all runs share one path
+  std::size_t runs = 0;  ///< number of averaged paths; 1 where all runs share one path
   bool is_bound = true;  ///< false: a linearised reference
   std::string missing;   ///< why there is none
 
@@ -109,7 +109,7 @@ struct CramerRaoBound {
 CramerRaoBound cramer_rao_bound(const ResultFile& file,
                                 const Parallel& parallel = Parallel::serial());
 
-/// A path as rows of poses, and what of them are scans.
+/// A true path as rows of poses, with the rows at which the scans are.
 struct TruePath {
   Pose start;
   std::vector<Pose> rows;
@@ -119,25 +119,25 @@ struct TruePath {
   std::vector<std::uint32_t> scan_rows;    ///< row of each scan
 };
 
-/// Squares of the bound along one path [m^2], [rad^2], [m^2]. Between rows that are several steps
-/// apart all steps turn and advance alike. `missing` where it cannot be computed.
+/// Squares of the bound along one path [m^2], [rad^2], [m^2]. All control steps between two rows
+/// turn and advance alike. `missing` says why it cannot be computed.
 CramerRaoBound squared_bound(const SimulatedWorld& world, const TruePath& path);
 
 struct CellAnalysis;
 
-/// How near a cell comes to the Cramer-Rao bound: 1 is as good as any filter without bias can be.
-/// NaN where there is no bound (a linearised reference is none) or no error.
+/// The bound divided by the error: 1 is as good as any filter without bias can be. NaN if there is
+/// no bound (a linearised reference is none) or no error.
 struct Efficiency {
-  /// Bound by error, each the root of its mean square over scans, that of the error also over runs.
+  /// Root mean squares over scans, that of the error also over runs.
   double position = std::numeric_limits<double>::quiet_NaN();
   double heading = std::numeric_limits<double>::quiet_NaN();
-  /// Of the landmarks in the map at the end; needs known association.
+  /// For the landmarks in the map at the end; needs known association.
   double map = std::numeric_limits<double>::quiet_NaN();
 };
 
 Efficiency efficiency_of(const CellAnalysis& cell, const CramerRaoBound& bound);
 
-/// What the bound and efficiency say, or why there is none.
+/// Notes on the bound and on the efficiency, or the reason why there is none.
 std::vector<std::string> bound_notes(const CramerRaoBound& bound);
 
 }  // namespace montecarta::analysis

@@ -10,7 +10,7 @@
 
 namespace montecarta::analysis {
 
-/// How far back the middle one of the three diversities looks [s] (STATISTICS 14).
+/// Age of the ancestors in Diversity::lag [s] (STATISTICS 14).
 inline constexpr double kDiversityLag = 10.0;
 
 /// Distinct ancestors of the particles of every scan of one run.
@@ -20,7 +20,7 @@ struct Diversity {
   std::vector<std::uint32_t> root;             ///< ancestors at the start; never grows
 };
 
-/// Walks a genealogy. Keeps its memory from run to run.
+/// Counts ancestors along a genealogy. Keeps its memory from run to run.
 class DiversityCounter {
  public:
   /// `ancestor` {scan, particle}: index, among the particles one scan ago, of the parent. `times`
@@ -36,13 +36,13 @@ class DiversityCounter {
   void count_last_resampling();
   void count_lag(std::span<const double> times);
   void count_root();
-  /// How many ancestors the particles of scan `s` had before scan `first`.
+  /// Number of ancestors that the particles of scan `s` had before scan `first`.
   std::uint32_t ancestors_before(std::size_t first, std::size_t s);
 
   Row ancestor_;
   std::size_t particles_ = 0;
   Diversity result_;
-  std::vector<std::size_t> resampled_;   ///< {scan} 1 + latest scan whose parents differ; 0: none
+  std::vector<std::size_t> resampled_;   ///< {scan} 1 + latest scan with a resampling; 0: none
   AncestorSet set_;                      ///< being walked back
   std::vector<std::uint32_t> root_;      ///< {particle} ancestor at the start
   std::vector<std::uint32_t> previous_;  ///< root_ one resampling earlier

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// NEES along a recorded drive, by references whose own errors are known.
+// NEES along a recorded drive, by references with known errors.
 #include "analysis/metrics/drive_consistency.hpp"
 
 #include "analysis/metrics/innovations.hpp"
@@ -65,7 +65,7 @@ Answer answer_of_drive(const Interval& ratio, double within) {
   return ratio.upper < 1.0 ? Answer::conservative : Answer::undecided;
 }
 
-/// Of runs that all have the block.
+/// The average over the runs that have the block.
 CorrelatedAverage over_own_drives(std::span<const DriveScores> runs, std::size_t block,
                                   double level) {
   std::vector<VectorSeries> drives;
@@ -203,7 +203,7 @@ class DrivesOverRuns final : public MetricSums {
   std::vector<std::vector<DriveScores>> runs_;  ///< {reference}{run}
 };
 
-/// Calls visit(cell, reference, what is known of the two).
+/// Calls visit(cell, reference, its DriveConsistency).
 template <class Visit>
 void for_each_drive(const StudyAnalysis& study, const Visit& visit) {
   for (const CellAnalysis& cell : study.cells) {

@@ -73,7 +73,7 @@ namespace {
 
 using BeliefMatrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-/// What a filter says of the pose after a scan.
+/// Covariance of the pose after a scan, as the filter reports it.
 struct ScanBelief {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double inverse_freedom = 0.0;  ///< 1 / degrees of freedom of that covariance; 0: it is exact
@@ -86,7 +86,7 @@ struct ScanBeliefs {
   std::vector<ScanBelief> beliefs;
 };
 
-/// Of drawn poses what the mean's error is expected to be, by Satterthwaite's degrees of freedom
+/// Expected covariance of the mean's error for drawn poses, with Satterthwaite's degrees of freedom
 /// (STATISTICS 4).
 ScanBelief belief_of_draws(const Eigen::Matrix3d& spread, const EffectiveDraws& draws,
                            std::size_t dimension) {
@@ -126,8 +126,8 @@ ScanBelief belief_between(const std::vector<ScanBelief>& scans, const PathAtFixe
           before.is_known && after.is_known};
 }
 
-/// What the NEES by `total` = P + R is on the scale of the chi-square: degrees of freedom of the
-/// sum of an estimated and an exact covariance (K. Krishnamoorthy, J. Yu 2004).
+/// Converts the NEES by `total` = P + R to the scale of the chi-square, with the degrees of freedom
+/// of the sum of an estimated and an exact covariance (K. Krishnamoorthy, J. Yu 2004).
 double on_chi_square_scale(double nees, const Eigen::MatrixXd& total, const Eigen::MatrixXd& own,
                            double inverse_freedom) {
   if (inverse_freedom == 0.0) return nees;
@@ -146,7 +146,7 @@ void add_whitened(const Eigen::VectorXd& error, VectorSeries& series) {
   }
 }
 
-/// The error in units of P + R; nullopt where that is no covariance.
+/// The error in units of P + R; nullopt if that is not positive definite.
 std::optional<Eigen::VectorXd> in_units_of(const Eigen::VectorXd& error, const ScanBelief& belief,
                                            const Eigen::MatrixXd& own,
                                            const Eigen::MatrixXd& of_fix) {

@@ -35,7 +35,7 @@ class PathAtFixes {
   /// [rad]; empty where the reference has none.
   const std::vector<double>& headings() const { return used_.heading; }
 
-  /// (m, m, rad)^2 of each fix; empty where nobody knows it.
+  /// (m, m, rad)^2 of each fix; empty if unknown.
   const std::vector<Eigen::Matrix3d>& covariances() const { return used_.covariance; }
 
   /// Between row `next` - 1 (the start for 0) and row `next`.
@@ -43,9 +43,9 @@ class PathAtFixes {
     std::size_t next = 0;
     double share = 0.0;  ///< of the way, in [0, 1]
   };
-  /// Of each fix.
+  /// The place of each fix.
   const std::vector<Place>& places() const { return places_; }
-  /// Whether a fix is where the vehicle starts, to a micrometre: the start was taken from it.
+  /// Whether the start was taken from a fix: whether the two agree to a micrometre.
   bool has_start() const;
 
   /// `path` {row, 3} [m, m, rad], linearly in time at every fix; the heading turns the shorter way.
@@ -59,14 +59,14 @@ class PathAtFixes {
   std::vector<Place> places_;
 };
 
-/// A fix is judged where the scans before and after it lie at most so far apart [s]: mean and
+/// The longest gap [s] between the scans before and after a fix that is judged, because mean and
 /// covariance are interpolated linearly between them.
 inline constexpr double kLongestScanGap = 1.0;
 
-/// Errors of one run at the fixes of a reference whose own errors are known (STATISTICS 20).
+/// Errors of one run at the fixes of a reference with known errors (STATISTICS 20).
 struct FixErrors {
-  /// {component}{fix judged} in units of P + R, the filter's covariance and that of the fix: their
-  /// squares add up to the NEES, of particle filters on the scale of the chi-square.
+  /// {component}{fix judged} in units of P + R, the covariance of the filter plus that of the fix.
+  /// The sum of squares is the NEES; for particle filters it is on the scale of the chi-square.
   VectorSeries whitened;
   VectorSeries by_reference;  ///< likewise in units of R alone
   std::vector<double> nees;   ///< {fix judged}
@@ -75,19 +75,19 @@ struct FixErrors {
   std::size_t undefined = 0;  ///< fixes left out: no finite covariance, or too few draws
 };
 
-/// `fixes` of the scans at `scan_times` [s], with their covariances, against the leading moments of
-/// `rows`, of a filter with `particles` (0: none). Nothing where no covariance is stored, or the
+/// Errors at `fixes`, which belong to the scans at `scan_times` [s], by the leading moments of
+/// `rows` of a filter with `particles` (0: none). Empty if no covariance is stored or if the
 /// reference does not measure the block.
 FixErrors errors_at_fixes(const PathAtFixes& fixes, std::span<const double> scan_times,
                           const RunRows& rows, std::size_t particles, ErrorBlock block);
 
-/// One run of a filter on one drive by a reference whose errors are known (STATISTICS 20).
+/// Scores of one run on one drive by a reference with known errors (STATISTICS 20).
 struct DriveScores {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
   /// {ErrorBlock} NEES at the fixes; effective_samples 0 where the block is not measured.
   std::array<CorrelatedAverage, kErrorBlocks.size()> blocks;
-  /// {ErrorBlock} what those are of; empty where the block is not measured.
+  /// {ErrorBlock} whitened errors; empty where the block is not measured.
   std::array<VectorSeries, kErrorBlocks.size()> errors;
   ErrorBlock leading = ErrorBlock::pose;  ///< the pose where there are headings, else the position
   double median = kNone;                  ///< of the leading NEES, over that of a chi-square
@@ -98,13 +98,14 @@ struct DriveScores {
   /// The estimate is the reference itself: at no fix it differs by a thousandth of the fix's sigma.
   bool is_the_reference = false;
   /// Errors are shown to be smaller than the fixes' own: their sigmas are too large, or the
-  /// reference fed the filter.
+  /// reference was an input of the filter.
   bool is_below_reference = false;
 
   const CorrelatedAverage& leads() const { return blocks[static_cast<std::size_t>(leading)]; }
 };
 
-/// As errors_at_fixes(), all blocks; `level` of the intervals.
+/// Scores of all blocks, with intervals at `level`; the other parameters are those of
+/// errors_at_fixes().
 DriveScores drive_scores(const PathAtFixes& fixes, std::span<const double> scan_times,
                          const RunRows& rows, std::size_t particles, double level);
 

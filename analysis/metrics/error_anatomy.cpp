@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Errors beside what the filter believes of them, and how much of the NEES is bias (STATISTICS 8).
+// Errors beside the reported deviations, and the share of bias in the NEES (STATISTICS 8).
 #include "analysis/metrics/error_anatomy.hpp"
 
 #include "analysis/metrics/cell_panels.hpp"

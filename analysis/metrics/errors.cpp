@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Errors of the estimates, what a run cost, and how often its arithmetic needed a fallback.
+// Errors of the estimates, cost of a run, and numbers of arithmetic fallbacks.
 #include "analysis/metrics/cell_panels.hpp"
 #include "analysis/metrics/measured_run.hpp"
 #include "analysis/metrics/metric.hpp"

@@ -15,26 +15,26 @@
 
 namespace montecarta::analysis {
 
-/// What a cell of a file that 'montecarta judge' made says of its state, by its settings; the pose
-/// in the plane of all other cells.
+/// The imported state by the settings of a cell, if 'montecarta judge' made the file; else the pose
+/// in the plane.
 ImportedState imported_state(const StoredCell& cell);
 
 /// "x, y, heading".
 std::string components_text(const StudyAnalysis& study);
 
-/// Of imported estimates, one sentence each: in which convention the error is, and of each cell how
-/// many covariances were no covariances. Empty for filters of ours.
+/// Notes on imported estimates: the convention of the error, and the number of unusable covariances
+/// of each cell. Empty for filters of ours.
 std::vector<std::string> imported_notes(const StudyAnalysis& study);
 
-/// What imported estimates of a cell would be by each convention of their error.
+/// Verdicts on the imported estimates of a cell under each convention of their error.
 struct ConventionHint {
-  std::vector<Verdict> by_convention;  ///< {kErrorConventions}; empty where there is one only
+  std::vector<Verdict> by_convention;  ///< {kErrorConventions}; empty if only one applies
 };
 
-/// Adds up runs by every convention.
+/// Adds up the NEES of runs under every convention.
 class ConventionHints {
  public:
-  /// Of errors of so many components at so many scans.
+  /// Sums for errors of `components` at `scans`.
   ConventionHints(std::size_t components, std::size_t scans);
 
   /// One run: {kErrorConventions}{scan}.
@@ -48,8 +48,8 @@ class ConventionHints {
   std::vector<SummedError> nees_;  ///< {kErrorConventions}
 };
 
-/// What a user should hear besides the verdict on `cell` by `said`: which other conventions fit the
-/// same covariances and which do not. Empty where nothing can be said.
+/// The conventions other than `said` that fit the covariances of `cell`, and those that do not.
+/// Empty if none was tested.
 std::string in_words(const ConventionHint& hint, const std::string& cell, const std::string& said);
 
 }  // namespace montecarta::analysis

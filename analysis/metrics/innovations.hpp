@@ -13,19 +13,18 @@
 
 namespace montecarta::analysis {
 
-/// How many scans back innovations are compared, at most: no more than a quarter of the scans.
+/// Largest lag in scans at which innovations are compared; at most a quarter of the scans.
 inline constexpr std::size_t kInnovationLags = 20;
 
-/// What the normalised innovations squared (NIS) say: a test that needs no truth. A consistent
-/// filter has 1 for each degree of freedom, and one scan's tells nothing of the next one's (they
-/// are white).
+/// Test of the normalised innovations squared (NIS), which needs no truth. A consistent filter has
+/// 1 for each degree of freedom, and its innovations are white: independent from scan to scan.
 struct Innovations {
   std::vector<double> average;   ///< {scan} NIS over degrees of freedom, over runs; NaN: none
   std::vector<Interval> bounds;  ///< {scan} of the average (chi-square)
   double share_inside = 0.0;     ///< of scans with a degree of freedom
   Verdict verdict;               ///< on size, stretches and scans, if the innovations are white
   std::vector<double> autocorrelation;  ///< {lag - 1} of the NIS, over all runs; NaN: not tested
-  /// {lag - 1} which white innovations exceed at no lag with the probability of the level.
+  /// {lag - 1} bound that white innovations exceed at no lag with the probability of the level.
   std::vector<double> white_bound;
   std::size_t worst_lag = 0;  ///< with the largest ratio of the two; 0: no lag is tested
 

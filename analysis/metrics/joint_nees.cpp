@@ -26,7 +26,7 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// e' P^-1 e by Cholesky of the correlation matrix, whose pivots do not depend on units.
+/// e' P^-1 e by Cholesky of the correlation matrix, so that the pivots are independent of units.
 double quadratic_form(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
   if (!error.allFinite() || !covariance.allFinite() || !scale.allFinite()) return kNaN;
@@ -35,7 +35,7 @@ double quadratic_form(const Eigen::VectorXd& error, const Eigen::MatrixXd& covar
   return L.matrixL().solve(scale.cwiseProduct(error)).squaredNorm();
 }
 
-/// Of the pose and of each landmark: where the truth is known and the map has one.
+/// Errors of the pose and of each landmark that is in the map and has a known position.
 Eigen::VectorXd error_of(std::span<const double> mean, std::span<const double> pose,
                          std::span<const Eigen::Vector2d> landmarks,
                          std::vector<Eigen::Index>& rows) {

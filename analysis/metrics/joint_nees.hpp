@@ -27,7 +27,7 @@ std::vector<JointScore> joint_scores(const JointRows& rows, std::span<const std:
                                      std::span<const double> truth,
                                      std::span<const Eigen::Vector2d> landmarks);
 
-/// The sum of the defined ones divided by the sum of their dimensions; NaN where there is none.
+/// Sum of the defined NEES divided by the sum of their dimensions; NaN if none is defined.
 double nees_per_component(std::span<const JointScore> scores);
 
 /// Pose and map together over the complete runs of a cell: 1 is expected.
@@ -40,7 +40,7 @@ struct JointConsistency {
   std::uint64_t undefined = 0;      ///< of them, without a NEES
   Verdict verdict;                  ///< by size and rows
   bool stored = false;              ///< whether the cell has joint estimates
-  std::string missing = {};  ///< why those that are stored were not judged; empty where they were
+  std::string missing = {};         ///< why stored estimates were not judged; else empty
 
   bool is_judged() const { return verdict.answer != Answer::untested; }
 };
@@ -51,9 +51,9 @@ class JointNeesSums {
   /// `times` [s] of the rows.
   explicit JointNeesSums(std::span<const double> times);
 
-  /// Nothing: the run has no joint estimates.
+  /// Adds a run; empty if the run has no joint estimates.
   void add(std::span<const JointScore> run);
-  /// `identities_known`: whether anybody knows which landmark is which.
+  /// `identities_known`: whether landmarks of map and truth are matched by identity.
   JointConsistency result(double level, bool identities_known, double within = kUsualMargin) const;
 
  private:

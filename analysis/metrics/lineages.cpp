@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ancestors of the particles some time ago, and what few of them cost.
+// Ancestors of the particles, and the Monte Carlo error of few particles.
 #include "analysis/metrics/lineages.hpp"
 
 #include "analysis/metrics/cell_analysis.hpp"

@@ -18,7 +18,7 @@ namespace montecarta::analysis {
 /// memory from walk to walk.
 class AncestorSet {
  public:
-  /// All of `particles` themselves.
+  /// Starts with all particles.
   void start(std::size_t particles) {
     stamp_.resize(std::max(stamp_.size(), particles));
     members_.resize(particles);
@@ -29,7 +29,7 @@ class AncestorSet {
     members_.assign(indices.begin(), indices.end());
     make_distinct();
   }
-  /// From children to their parents, {particle}.
+  /// Replaces all members by their parents, {particle}.
   void step_back(std::span<const std::uint32_t> parents) {
     for (std::uint32_t& member : members_) member = parents[member];
     make_distinct();
@@ -49,30 +49,31 @@ class AncestorSet {
   }
 
   std::vector<std::uint32_t> members_;
-  std::vector<std::uint64_t> stamp_;  ///< {index} in which set it was last seen
+  std::vector<std::uint64_t> stamp_;  ///< {index} number of the last set that it was in
   std::uint64_t now_ = 0;             ///< stamp of the set being made
 };
 
-/// How far back [s] distinct ancestors are counted.
+/// Ages [s] at which distinct ancestors are counted.
 inline constexpr std::array kLineageLags = {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0};
 
 /// The ancestry of one run, seen from up to 32 of its scans.
 struct Lineages {
-  /// {lag} distinct ancestors so long ago, mean over scans that late; NaN where there is none.
+  /// {lag} number of distinct ancestors of that age, mean over scans that are late enough; NaN if
+  /// there are none.
   std::array<double, kLineageLags.size()> ancestors{};
   /// [s] back to the youngest common ancestor of all particles, mean over the scans that have one.
   double coalescence = 0.0;
   double coalesced_share = 0.0;  ///< of the scans: all particles have one common ancestor
-  /// [m^2] variance of the estimated position that is due to the particles being few, from how far
-  /// families (descendants of one ancestor kDiversityLag ago) differ: Lee and Whiteley 2018, eq.
-  /// (8), with the fixed lag of Olsson and Douc 2019. Mean over scans; NaN where particles are not
-  /// stored.
+  /// [m^2] Variance of the estimated position that comes from the small number of particles, mean
+  /// over scans; NaN if particles are not stored. It is estimated from the differences between
+  /// families, the descendants of one ancestor kDiversityLag ago (Lee and Whiteley 2018, eq. (8),
+  /// with the fixed lag of Olsson and Douc 2019).
   double monte_carlo_variance = 0.0;
   /// [m^2] squared position error at the same scans, mean.
   double squared_error = 0.0;
 };
 
-/// Walks a genealogy back from scan to scan. Keeps its memory from run to run.
+/// Follows a genealogy back from several scans. Keeps its memory from run to run.
 class LineageWalker {
  public:
   /// `rows` with ancestors of `particles`; `squared_position` {scan} [m^2] may be empty; `times`
@@ -95,12 +96,12 @@ struct LineageSummary {
   std::array<double, kLineageLags.size()> ancestors{};  ///< {lag} mean over runs; NaN: too short
   double coalescence = 0.0;      ///< [s] mean over the runs that have a common ancestor
   double coalesced_share = 0.0;  ///< of the scans looked at
-  /// Of the mean squared position error that is due to few particles; NaN where particles are not
-  /// stored.
+  /// Share of the mean squared position error that comes from the small number of particles; NaN if
+  /// particles are not stored.
   double monte_carlo_share = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Adds up Lineages over runs; what a run does not have is not averaged.
+/// Adds up Lineages over runs. Values that a run lacks are left out of the averages.
 class LineageSums {
  public:
   void add(const Lineages& lineages);

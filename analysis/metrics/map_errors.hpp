@@ -24,20 +24,20 @@ struct LandmarkErrors {
 
 /// Final maps over the complete runs of a cell.
 struct MapErrors {
-  std::size_t undefined = 0;              ///< landmarks of runs whose NEES is not a number
+  std::size_t undefined = 0;              ///< landmarks, over all runs, that have no NEES
   std::vector<LandmarkErrors> landmarks;  ///< {landmark}; empty where association is unknown
-  std::string missing = {};               ///< why there are no numbers; empty where there are
+  std::string missing = {};               ///< why there are no numbers; else empty
 
-  /// Of landmarks with a NEES, the share inside their bounds; NaN where there is none.
+  /// Share of the landmarks with a NEES that are inside their bounds; NaN if there are none.
   double share_inside() const;
 };
 
 /// Adds up complete runs in the order of the calls.
 class MapErrorSums {
  public:
-  /// nullopt: the run's map is not stored, or not all of it.
+  /// Adds a run; nullopt if its map is not stored or not whole.
   void add(const std::optional<MapScores>& run);
-  /// `known`: whether anybody knows where the landmarks are.
+  /// `known`: whether the true positions of the landmarks are known.
   MapErrors result(double level, bool known) const;
 
  private:

@@ -19,8 +19,8 @@ namespace {
 constexpr Eigen::Index kUnassigned = -1;
 constexpr double kUnreached = std::numeric_limits<double>::infinity();
 
-/// Prices of rows and columns, none above what a pair costs and equal to it for every pair that is
-/// assigned: as long as that holds, what is assigned is assigned as cheaply as can be.
+/// Dual variables of rows and columns. Their sums never exceed the cost of a pair and equal it for
+/// every assigned pair, which makes the assignment optimal.
 struct Assignment {
   explicit Assignment(const Eigen::MatrixXd& costs)
       : cost(&costs),

@@ -15,16 +15,17 @@
 
 namespace montecarta::analysis {
 
-/// The cheapest way to give every row a column of its own: which one, row by row. `cost` is finite,
-/// with no more rows than columns. Shortest augmenting paths (Jonker and Volgenant 1987), at most
-/// cubic; quadratic where most rows have a cheapest column to themselves, as a good map has.
+/// Column of each row in the assignment of least total cost. `cost` is finite, with no more rows
+/// than columns. Shortest augmenting paths (Jonker and Volgenant 1987): at most cubic, and
+/// quadratic if most rows have a cheapest column of their own, as in a good map.
 std::vector<std::size_t> cheapest_assignment(const Eigen::MatrixXd& cost);
 
-/// A landmark farther than this [m] from where it is believed to be counts as missed and spurious.
+/// A landmark farther than this [m] from its true position counts as missed and spurious.
 inline constexpr double kGospaCutoff = 5.0;
 
-/// How far a map is from the truth, whoever is who (Rahmathullah, Garcia-Fernandez, Svensson 2017;
-/// alpha = 2, p = 2): distance^2 = localisation^2 + cutoff^2 / 2 (missed + spurious).
+/// Distance between a map and the truth, independent of identities (Rahmathullah, Garcia-Fernandez,
+/// Svensson 2017; alpha = 2, p = 2): distance^2 = localisation^2 + cutoff^2 / 2 (missed +
+/// spurious).
 struct Gospa {
   double distance = 0.0;      ///< [m]
   double localisation = 0.0;  ///< [m] root of the sum of squared errors of the pairs
@@ -37,9 +38,9 @@ struct Gospa {
 Gospa gospa(std::span<const Eigen::Vector2d> map, std::span<const Eigen::Vector2d> truth,
             double cutoff = kGospaCutoff);
 
-/// What the final maps of a study are judged by.
+/// Facts by which the final maps of a study are judged.
 struct MapCriteria {
-  bool known = false;               ///< whether anybody knows where the landmarks really are
+  bool known = false;               ///< whether the true positions are known
   std::optional<FieldOfView> view;  ///< of the sensor; without it all count as seen
   bool identities_known = false;    ///< rows of a map are identities of the world
 };
@@ -57,18 +58,18 @@ struct MapScores {
   double rms = std::numeric_limits<double>::quiet_NaN();   ///< [m] over the landmarks in the map;
                                                            ///< by identity: NaN where unknown
   double nees = std::numeric_limits<double>::quiet_NaN();  ///< [1] mean over those with a NEES
-  std::size_t undefined = 0;             ///< landmarks in the map whose NEES is not a number
+  std::size_t undefined = 0;             ///< landmarks in the map that have no NEES
   std::vector<LandmarkScore> landmarks;  ///< {landmark}; empty where identities are unknown
 };
 
-/// `landmarks`: [m] where they really are. `path`: true poses at scans {scan, 3} [m, m, rad].
+/// `landmarks`: true positions [m]. `path`: true poses at scans {scan, 3} [m, m, rad].
 MapScores map_scores(const FinalMap& map, const MapCriteria& criteria,
                      std::span<const Eigen::Vector2d> landmarks, std::span<const double> path);
 
 /// A surveyed beacon is found where an aligned landmark lies within this distance [m].
 inline constexpr double kFoundWithin = 1.0;
 
-/// A run's final map against beacons whose positions were surveyed. NaN where nothing was found.
+/// The final map of a run compared with surveyed beacons. NaN if no beacon was found.
 struct BeaconScores {
   double found = 0.0;                                             ///< [1] beacons
   double rms = std::numeric_limits<double>::quiet_NaN();          ///< [m] of those found
@@ -76,8 +77,8 @@ struct BeaconScores {
 };
 
 /// Pairs each beacon [m] with the nearest landmark of `map` [m] after `alignment`, the motion that
-/// brings the path onto its reference: where a drive began nobody knows exactly. A landmark counts
-/// for one beacon only, the nearer pair first.
+/// aligns the path with its reference, because the start of a drive is not known exactly. A
+/// landmark counts for one beacon only, the nearer pair first.
 BeaconScores beacon_scores(std::span<const Eigen::Vector2d> map,
                            std::span<const Eigen::Vector2d> beacons, const RigidMotion& alignment);
 

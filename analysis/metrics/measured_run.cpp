@@ -37,7 +37,7 @@ void measure_nees(const std::vector<double>& truth, const MomentRows& moments, N
   }
 }
 
-/// Of imported errors: all components, and of a pose in the plane its parts.
+/// NEES of imported errors: all components, and for a pose in the plane also its parts.
 void measure_imported(const ErrorRows& errors, bool is_pose, NeesRows& rows) {
   const std::size_t d = errors.components();
   const std::size_t scans = errors.scans();
@@ -213,7 +213,7 @@ bool noise_is_matched(const ResultFile& file) {
   return file.has_truth() && says(file, "noise", "matched");
 }
 
-/// Of a drive whose truth is known; a recorded one is judged by its beacons.
+/// Criteria for the maps of a drive with known truth; recorded drives are judged by their beacons.
 MapCriteria map_criteria_of(const ResultFile& file) {
   MapCriteria criteria;
   if (!file.has_truth()) return criteria;

@@ -31,8 +31,8 @@ namespace montecarta::analysis {
 /// NEES of one run by one definition of the moments; empty where no covariance is stored.
 struct NeesRows {
   std::array<std::size_t, 3> dimension = {3, 2, 1};  ///< {block} components
-  /// {block}{scan} on the scale of all components (on_full_scale()); NaN if a sample is unusable or
-  /// nothing of it can be judged. A block may be empty but the first.
+  /// {block}{scan} on the scale of all components (on_full_scale()); NaN if a sample cannot be
+  /// judged. Blocks other than the first may be empty.
   std::array<std::vector<double>, 3> value;
   std::array<std::vector<int>, 3> rank;  ///< {block}{scan} of the covariance, as Nees::rank
   /// {block}{scan} too few effective draws to be judged (SamplerScale), value NaN; empty where the
@@ -49,7 +49,7 @@ struct NeesRows {
   }
 };
 
-/// What one run says, scan by scan. Keeps its memory from run to run; one per thread.
+/// Errors and NEES of one run at every scan. Keeps its memory from run to run; one per thread.
 class RunMetrics {
  public:
   /// Reads `rows` of a complete run with `particles` (0: none); `times` [s] of the scans. Without
@@ -57,11 +57,11 @@ class RunMetrics {
   void measure(const RunRows& rows, std::size_t particles, std::span<const double> times);
 
   const NeesRows& nees(Moments moments) const { return nees_[static_cast<std::size_t>(moments)]; }
-  /// By the first of kMoments that is there; nullptr where none is.
+  /// NEES by the first of kMoments that is stored; nullptr if none is.
   const NeesRows* leading_nees() const;
-  /// Errors in units of the covariance by the moments that lead, in the frame of the true vehicle,
-  /// or in the convention of imported estimates. Where poses were drawn each is on the scale of the
-  /// normal law (SamplerScale). Of dimension 0 where there is no covariance.
+  /// Errors in units of the covariance of the leading moments, in the frame of the true vehicle, or
+  /// in the convention of imported estimates. Errors of drawn poses are on the scale of the normal
+  /// law (SamplerScale). Dimension 0 if there is no covariance.
   const WhitenedRun& whitened() const { return whitened_; }
   /// [m^2] {scan}, of the mean of estimate_of().
   const std::vector<double>& squared_position() const { return squared_position_; }
@@ -72,7 +72,7 @@ class RunMetrics {
   const std::vector<Eigen::Vector3d>& errors() const { return errors_; }
   /// {scan} covariance of estimate_of() in the same frame; empty where none is stored.
   const std::vector<Eigen::Matrix3d>& covariances() const { return covariances_; }
-  /// nullptr where there are no ancestors, as lineages().
+  /// nullptr if no ancestry is stored; likewise lineages().
   const Diversity* diversity() const { return diversity_; }
   const Lineages* lineages() const { return lineages_ ? &*lineages_ : nullptr; }
 
@@ -95,18 +95,18 @@ class RunMetrics {
   std::optional<Lineages> lineages_;
 };
 
-/// What a run is measured by whose drive is its own.
+/// Criteria for a run on a drive of its own.
 struct DriveCriteria {
   std::span<const double> times;          ///< [s] of the scans
   std::vector<PathAtFixes> references;    ///< as many as those of RunCriteria
   std::vector<PathAtFixes> judged_fixes;  ///< likewise
 };
 
-/// What runs are measured by, common to all cells of a file, which must outlive it.
+/// Criteria for runs, common to all cells of a file, which must outlive them.
 struct RunCriteria {
   std::span<const double> times;  ///< [s] of the scans
   double level = 0.95;            ///< of NEES bounds
-  double within = kUsualMargin;   ///< what counts as consistent (judge())
+  double within = kUsualMargin;   ///< margin of the verdict (judge())
   std::vector<PathAtFixes> references;
   std::vector<Eigen::Vector2d> beacons;        ///< [m]
   MapCriteria map;                             ///< of a simulation
@@ -117,8 +117,8 @@ struct RunCriteria {
   std::vector<std::uint64_t> looks = {};
   /// Components of the errors that are judged.
   std::vector<std::string> components = {};
-  /// {run of the study} Where every run is a drive of its own; then times are those of the longest
-  /// one, references and judged_fixes those of the first.
+  /// {run of the study} Empty if all runs process one drive. Otherwise `times` are those of the
+  /// longest drive, and references and judged_fixes those of the first.
   std::vector<DriveCriteria> drives = {};
 
   /// Level of a verdict on so many runs, so that all interim analyses together have `level`.
@@ -141,7 +141,7 @@ struct MeasuredRun {
   RunPits pits;                         ///< of errors and NEES
   ProperScores proper;                  ///< of a known truth
 
-  /// Of `rows` of a complete run.
+  /// Measures `rows` of a complete run.
   void measure(const RunCriteria& criteria, std::size_t particles);
 };
 

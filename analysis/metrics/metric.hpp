@@ -22,8 +22,8 @@ class MetricSums {
  public:
   virtual ~MetricSums() = default;
   virtual void add(const MeasuredRun& run) = 0;
-  /// Puts what the runs say into the cell, which has failures, scores (without intervals), series
-  /// and what the metrics before put.
+  /// Puts the result into the cell, which already has failures, scores (without intervals), series
+  /// and the results of the metrics before this one.
   virtual void put(CellAnalysis& cell) = 0;
 };
 
@@ -39,33 +39,33 @@ std::unique_ptr<MetricSums> make_sums(const RunCriteria& criteria) {
   return std::make_unique<Sums>(criteria);
 }
 
-/// What a metric contributes; what it has nothing of stays empty.
+/// Contributions of a metric; members that it does not need stay empty.
 struct Metric {
   std::span<const Score> scores = {};            ///< of a run
   std::span<const ScanSeries> scan_series = {};  ///< of every scan of a run
-  /// Whether means of the scores are numbers of every cell, in cells.csv and HDF5.
+  /// Whether the means of the scores are written for every cell to cells.csv and HDF5.
   bool scores_are_numbers = true;
-  /// For more than means of scores, e.g. make_sums<MySums>; `criteria` outlive the sums.
+  /// Sums for results beyond means of scores, e.g. make_sums<MySums>; `criteria` outlive the sums.
   std::unique_ptr<MetricSums> (*sums)(const RunCriteria& criteria) = nullptr;
-  /// Adds single numbers: the same names for every cell, NaN where one does not apply.
+  /// Adds single numbers: the same names for every cell, NaN where a number does not apply.
   void (*add_numbers)(const CellAnalysis& cell, std::vector<NamedNumber>& all) = nullptr;
-  /// Adds numbers of every scan; what does not apply is absent.
+  /// Adds series over scans; those that do not apply are absent.
   void (*add_series)(const CellAnalysis& cell, std::vector<NamedSeries>& all) = nullptr;
-  /// Its parts of a report, tables with notes.
+  /// Sections of the report, with tables and notes.
   std::vector<Section> (*sections)(const StudyAnalysis& study) = nullptr;
-  /// Those without data are left out.
+  /// Figures; those without data are left out.
   std::vector<Figure> (*figures)(const StudyAnalysis& study) = nullptr;
   std::vector<TableFile> files = {};
 };
 
-/// All, in the order of files: a new one is a line in registry.cpp.
+/// All metrics in the order of files; registry.cpp lists them.
 std::span<const Metric> all_metrics();
 
-/// Everything a cell says in single numbers but its NEES tests.
+/// All single numbers of a cell except those of its NEES tests.
 std::vector<NamedNumber> numbers_of(const CellAnalysis& cell);
-/// Everything a cell has over scans.
+/// All series of a cell.
 std::vector<NamedSeries> series_of(const CellAnalysis& cell);
-/// The parts of a report that metrics have.
+/// All sections of the metrics.
 std::vector<Section> sections_of(const StudyAnalysis& study);
 std::vector<Figure> figures_of(const StudyAnalysis& study);
 

@@ -64,7 +64,7 @@ constexpr std::array kPalette = {Colour{0x43, 0x93, 0xc3}, Colour{0xa6, 0xcf, 0x
                                  Colour{0xf7, 0xf7, 0xf7}, Colour{0xf6, 0xb7, 0x99},
                                  Colour{0xd6, 0x60, 0x4d}};
 
-/// Of the palette at `at`, from -1 to 1.
+/// The colour of the palette at `at`, from -1 to 1.
 std::string colour_at(double at) { return colour_within(kPalette, 0.5 * (at + 1.0)); }
 
 FigureData data_of(const MismatchGrid& grid) {

@@ -12,8 +12,8 @@ namespace montecarta::analysis {
 
 struct StudyAnalysis;
 
-/// How far a cell's filter is told other noise than the study's belief: factors on its standard
-/// deviations.
+/// Factors on the standard deviations of the study's belief, for a filter that is given wrong
+/// noise.
 struct Mismatch {
   double motion_noise = 1.0;
   double sensor_noise = 1.0;

@@ -44,8 +44,8 @@ using Mat = Eigen::Matrix<double, D, D>;
 
 double capped(double nees) { return nees <= kLargestNees ? nees : kLargestNees; }
 
-/// L^-1 e with P = L L', by Cholesky of the correlation matrix, whose pivots do not depend on
-/// units; nullopt if P is singular.
+/// L^-1 e with P = L L', by Cholesky of the correlation matrix, so that the pivots are independent
+/// of units; nullopt if P is singular.
 template <int D>
 std::optional<Vec<D>> whitened(const Vec<D>& error, const Mat<D>& covariance,
                                const Vec<D>& least_variance) {
@@ -83,7 +83,7 @@ std::optional<double> quadratic_form(const Vec<D>& error, const Mat<D>& covarian
 
 constexpr Nees kUnusableSample = {kNaN, Nees::kUnusable};
 
-/// The components of an error by what P says of them.
+/// Components of an error, sorted by their variances.
 struct Components {
   std::vector<Eigen::Index> open;  ///< of a variance above the least
   bool is_excluded = false;        ///< one that is known exactly has an error of more than rounding
@@ -109,9 +109,9 @@ std::optional<Components> open_components(const Eigen::VectorXd& error, const Ei
   return found;
 }
 
-/// The same in the range of a singular P. An error that P excludes has the largest NEES: of a
-/// component that is known exactly if it is more than rounding, of others if it is farther outside
-/// the range than second-order effects take it.
+/// NEES in the range of a singular P. An error that P excludes has the largest NEES: if a component
+/// that is known exactly has an error of more than rounding, or if the error is farther outside the
+/// range than second-order effects explain.
 Nees nees_in_range(const Eigen::VectorXd& error, const Eigen::MatrixXd& P,
                    const Eigen::VectorXd& least_variance) {
   const std::optional<Components> components = open_components(error, P, least_variance);

@@ -20,9 +20,9 @@ enum class Moments {
   spread      ///< of the weighted drawn particles; of the Gaussian for a Kalman filter
 };
 
-/// In the order in which they lead the verdict, where they are there: a consistent filter's NEES by
-/// the one that leads is chi-square, whatever the filter. Errors are those of the mixture's mean
-/// where there is one.
+/// All moments in the order of precedence: the first that is stored leads the verdict. The NEES of
+/// a consistent filter by the leading moments is chi-square for every filter. Errors are those of
+/// the mixture's mean if there is one.
 inline constexpr std::array kMoments = {Moments::corrected, Moments::mixture, Moments::spread};
 
 /// Which components of the pose error are judged.
@@ -40,17 +40,16 @@ constexpr std::size_t dimension_of(ErrorBlock block) {
   return block == ErrorBlock::pose ? 3 : block == ErrorBlock::position ? 2 : 1;
 }
 
-/// Whether the spread at scan `s` is of poses that this scan drew. Where a filter with a mixture
-/// did not draw, both have the same covariance, each particle's own included. `rows` of a particle
-/// filter.
+/// Whether scan `s` of a particle filter drew poses, which the spread then describes. If a filter
+/// with a mixture did not draw, spread and mixture have the same covariance.
 bool is_drawn(const RunRows& rows, std::size_t s);
 
-/// How many draws the weighted particles at scan `s` are worth; all of them where no effective
+/// Number of draws that the weighted particles at scan `s` are worth; all of them if no effective
 /// sample size is stored.
 EffectiveDraws draws_at(const RunRows& rows, std::size_t particles, std::size_t s);
 
-/// A larger NEES counts as this one, so that an error too large for a double is judged like any
-/// other that its covariance does not explain, and sums over runs stay finite.
+/// A larger NEES is replaced by this one, so that an error too large for a double is judged like
+/// any other large error, and sums over runs stay finite.
 inline constexpr double kLargestNees = 1e60;
 
 /// Normalised estimation error squared of one sample (STATISTICS 2).
@@ -77,27 +76,26 @@ Nees nees(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, int f
 Nees imported_nees(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance);
 
 /// Writes the error in units of its covariance (STATISTICS 5): L^-1 e with P = L L', and each
-/// component divided by its own deviation, cut to 1e30 deviations. Components whose deviation is at
-/// most `least_deviation` are known exactly and NaN; all are NaN if the rest of P is singular, or
-/// anything is not finite. Returns the number of components that are not NaN.
+/// component divided by its own deviation, cut to 1e30 deviations. Components with a deviation of
+/// at most `least_deviation` are known exactly and become NaN; all become NaN if the rest of P is
+/// singular or not finite. Returns the number of components that are not NaN.
 std::size_t whiten(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance,
                    const Eigen::VectorXd& least_deviation, std::span<double> whitened_error,
                    std::span<double> standardised);
 
-/// The same of a pose, whose components count as exact as in nees().
+/// The same for a pose; components count as exact under the conditions of nees().
 std::size_t whiten_pose(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance,
                         std::span<double> whitened_error, std::span<double> standardised);
 
-/// Puts the NEES of a covariance of lower rank on the scale of `dimension` components: it becomes
-/// the value that is as probable under the chi-square law of `dimension` degrees of freedom. What a
-/// consistent filter exceeds once in a million samples grows in proportion from there on. The value
-/// itself if the rank is full, NaN if nothing can be judged.
+/// Converts the NEES of a covariance of lower rank to the scale of `dimension` components: the
+/// value of equal probability under the chi-square law of `dimension` degrees of freedom. Beyond
+/// the value that a consistent filter exceeds once in a million samples, the scale is linear. The
+/// value itself if the rank is full; NaN if the sample cannot be judged.
 double on_full_scale(const Nees& sample, std::size_t dimension);
 
-/// What the NEES of `dimension` components is on the average if a filter is perfect but its
-/// covariance is the spread, with 1 / particles, of so many independent draws (Hotelling;
-/// STATISTICS 4): d (M + 1) / (M - d - 2), infinite where there are too few. Weights and common
-/// ancestors make it larger.
+/// Expected NEES of `dimension` components of a perfect filter, if its covariance is the spread,
+/// with 1 / particles, of so many independent draws (Hotelling; STATISTICS 4): d (M + 1) / (M - d -
+/// 2), infinite for too few draws. Weights and common ancestors make it larger.
 double ideal_spread_nees(std::size_t dimension, std::size_t particles);
 
 extern template Nees nees<1>(const Eigen::Vector3d&, const Eigen::Matrix3d&, int);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// NEES of the pose and its parts: what the verdict is made of.
+// NEES of the pose and its parts, and the sections and figures of the verdict.
 #include "analysis/metrics/nees_accumulator.hpp"
 
 #include "analysis/metrics/cell_panels.hpp"
@@ -215,7 +215,7 @@ Panel nees_panel(const StudyAnalysis& study, ErrorBlock block) {
   return panel;
 }
 
-/// The NEES by what it should be, of a cell over time.
+/// The ratio of the NEES to its expectation, over time, for a cell.
 StripRow strip_of(const CellAnalysis& cell, const NeesResult& nees) {
   const auto dimension = static_cast<double>(nees.series.dimension);
   StripRow row{

@@ -15,8 +15,8 @@ namespace montecarta::analysis {
 std::vector<std::pair<std::size_t, std::size_t>> common_places(
     std::span<const std::uint64_t> left, std::span<const std::uint64_t> right);
 
-/// Runs of two cells in the same worlds. A cell has no value in a run that failed or whose score is
-/// not a finite number; it then loses to one that has.
+/// Runs of two cells in the same worlds. A cell has no value in a run that failed or that has no
+/// finite score; it then loses to a cell that has a value.
 struct PairedRuns {
   std::vector<double> left, right;  ///< of each run in which both have a value, in order
   std::size_t left_alone = 0;       ///< runs in which only `left` has a value: it wins
@@ -34,8 +34,8 @@ PairedRuns paired_runs(const CellAnalysis& left, const CellAnalysis& right, cons
 /// Whether any run of the cell has a finite value.
 bool has_score(const CellAnalysis& cell, const Score& score);
 
-/// Whether the cell can be judged by the score: not EKF-SLAM by its effective particles, but a cell
-/// whose every run failed by anything.
+/// Whether the score applies to the cell: whether a run has a finite value, or all runs failed.
+/// EKF-SLAM, for instance, has no effective particles.
 bool is_judged_by(const CellAnalysis& cell, const Score& score);
 
 }  // namespace montecarta::analysis

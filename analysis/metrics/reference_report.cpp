@@ -38,7 +38,7 @@ std::string of_text(std::size_t k, std::size_t n) {
   return std::to_string(k) + " of " + std::to_string(n);
 }
 
-/// Runs that can be judged: failed ones are lost and beat nothing.
+/// Runs that can be judged, failed ones included.
 std::size_t judged_runs(const CellAnalysis& cell, const ReferenceAnalysis& against) {
   return against.with_fixes() + cell.failures.size();
 }

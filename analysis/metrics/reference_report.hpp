@@ -13,45 +13,42 @@
 
 namespace montecarta::analysis {
 
-/// One row a cell and reference: how far its runs are from the fixes, and how many lost the map.
+/// One row for each cell and reference: distances to the fixes, and runs that lost the map.
 TextTable reference_table(const StudyAnalysis& study);
 
-/// One row a cell: its final map, beacons it found, particles that count, and what a run costs.
+/// One row for each cell: its final map, beacons found, effective particles and cost of a run.
 TextTable map_table(const StudyAnalysis& study);
 
-/// One row a cell: in how many runs of how many it lost the map, and in how many it was nearer to
-/// the leading reference than EKF-SLAM is on the average. Without rows where there is no reference.
+/// One row for each cell: runs that lost the map, and runs that were nearer to the leading
+/// reference than EKF-SLAM is on average. No rows if there is no reference.
 TextTable baseline_table(const StudyAnalysis& study);
 
 /// Why a recorded drive has no verdict on consistency.
 std::string no_truth_sentence(const StudyAnalysis& study);
 
-/// How to read the tables, a sentence each.
+/// Notes on the tables.
 std::vector<std::string> reference_notes(const StudyAnalysis& study);
 
-/// The cell that others are asked to beat, the first of the filter ekf_slam with complete runs;
-/// nullptr where there is none.
+/// The baseline: the first cell of the filter ekf_slam with complete runs; nullptr if there is
+/// none.
 const CellAnalysis* baseline_of(const StudyAnalysis& study);
 
-/// What a cell says against one reference, under the names it has in files: each number over runs
-/// as mean, standard error, median, least and greatest; and of its maps.
+/// Numbers of a cell for one reference, named as in files: each over runs as mean, standard error,
+/// median, least and greatest; and the numbers of its maps.
 std::vector<NamedNumber> reference_numbers(const CellAnalysis& cell, std::size_t reference);
 
-/// One row a cell and reference.
+/// One row for each cell and reference.
 void write_references(const StudyAnalysis& study, const std::filesystem::path& path);
-/// One row a fix of the leading reference, one column a cell: RMS distance over runs.
+/// One row for each fix of the leading reference, one column for each cell: RMS distance over runs.
 void write_reference_errors(const StudyAnalysis& study, const std::filesystem::path& path);
 
-/// RMS over runs of the raw distance to the leading reference at each of its fixes, one curve a
-/// cell; logarithmic where it spans more than two decades.
+/// RMS over runs of the raw distance to the leading reference at each fix, one curve for each cell;
+/// logarithmic if it spans more than two decades.
 Figure reference_error_figure(const StudyAnalysis& study);
-/// Raw and aligned RMS to the leading reference against the number of particles, one curve a
-/// filter, with the least and the greatest run as bars; only where a filter has two numbers or
-/// more.
-/// Landmarks in the map over time, one curve a cell; of a drive without truth.
+/// Landmarks in the map over time, one curve for each cell.
 Figure map_size_figure(const StudyAnalysis& study);
 
-/// All of the above that have something to show.
+/// The figures above that have data.
 std::vector<Figure> reference_figures(const StudyAnalysis& study);
 
 }  // namespace montecarta::analysis

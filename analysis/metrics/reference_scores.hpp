@@ -14,7 +14,7 @@
 
 namespace montecarta::analysis {
 
-/// A turn of the plane and then a shift: neither stretches nor mirrors.
+/// A rotation of the plane followed by a translation.
 struct RigidMotion {
   double angle = 0.0;                               ///< [rad] counter-clockwise
   Eigen::Vector2d shift = Eigen::Vector2d::Zero();  ///< [m]
@@ -22,22 +22,23 @@ struct RigidMotion {
   Eigen::Vector2d operator()(const Eigen::Vector2d& point) const;
 };
 
-/// The rigid motion that brings the points `from` [m] nearest to the points `onto` [m], pair by
-/// pair, in the sum of squared distances: in the plane in closed form (Umeyama 1991 without scale).
-/// One point is only shifted, none stays where it is.
+/// The rigid motion that minimises the sum of squared distances between pairs of the points `from`
+/// [m] and `onto` [m], in closed form (Umeyama 1991 without scale). One point is only shifted;
+/// without points it is the identity.
 RigidMotion rigid_alignment(std::span<const Eigen::Vector2d> from,
                             std::span<const Eigen::Vector2d> onto);
 
-/// A fix counts for gated numbers where its error is at most so many times the run's own median
-/// error: a GPS fix may be 136 m off. To be read with the share: a filter that leaves the path half
-/// way keeps few fixes.
+/// Gated numbers use the fixes with an error of at most so many times the run's own median error,
+/// since a GPS fix may be 136 m off. Read them with the share of fixes kept: a filter that leaves
+/// the path half way keeps few.
 inline constexpr double kReferenceGate = 4.0;
-/// A run has lost the map where the median of its aligned errors is larger [m].
+/// A run has lost the map if the median of its aligned errors is larger than this [m].
 inline constexpr double kLostBeyond = 10.0;
 
-/// How far the estimate of one run is from the fixes of a reference (STATISTICS 16). The
-/// distances are raw, or aligned: after the rigid motion that brings the estimate nearest to all
-/// fixes, which takes away what nobody knows of the start's position and heading. NaN of no fixes.
+/// Distances between the estimate of one run and the fixes of a reference (STATISTICS 16), raw or
+/// aligned. Aligned distances are taken after the rigid motion that brings the estimate nearest to
+/// all fixes, which removes the unknown error of the start's position and heading. NaN without
+/// fixes.
 struct ReferenceScores {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -51,7 +52,7 @@ struct ReferenceScores {
   double aligned_gated_share = kNone;  ///< [1]
   double heading_rmse = kNone;         ///< [rad] raw; NaN where the reference has no heading
 
-  /// Also where estimates are no numbers: of those 0 are within the gate.
+  /// True even if estimates are not finite: gated_share is then 0.
   bool has_fixes() const { return !std::isnan(rms) || !std::isnan(gated_share); }
   bool lost() const { return !(aligned_median <= kLostBeyond); }
 };
@@ -63,7 +64,7 @@ struct ReferenceRun {
   RigidMotion alignment;              ///< of the path onto the fixes
 };
 
-/// `path` {row, 3} [m, m, rad] over the rows that `fixes` were made for.
+/// Compares a path {row, 3} [m, m, rad] with `fixes`, which were made for its rows.
 ReferenceRun measure_against(const PathAtFixes& fixes, std::span<const double> path);
 
 /// The complete runs of a cell against one reference.
@@ -72,13 +73,13 @@ struct ReferenceAnalysis {
   /// [m] {fix} raw distance, RMS over runs; empty where runs are drives of their own.
   std::vector<double> error_over_time;
 
-  /// Of the runs with fixes.
+  /// A score over the runs with fixes.
   Spread over_runs(double ReferenceScores::*score) const;
-  /// How many runs have fixes: drives of their own may have none.
+  /// Number of runs with fixes; a drive of a run's own may have none.
   std::size_t with_fixes() const;
-  /// Runs that lost the map.
+  /// Number of runs that lost the map.
   std::size_t lost() const;
-  /// Runs whose `score` is below `baseline` [m].
+  /// Number of runs with a `score` below `baseline` [m].
   std::size_t better_than(double baseline, double ReferenceScores::*score) const;
 };
 
@@ -89,7 +90,8 @@ using ReferenceAnalyses = std::vector<ReferenceAnalysis>;
 /// by a few numbers with every run.
 class ReferenceAccumulator {
  public:
-  /// `fixes`: of runs that all met the same; else their errors are not added up fix by fix.
+  /// `same`: all runs have the same fixes, and errors are added up fix by fix; `own`: they have
+  /// not.
   enum class Fixes { same, own };
   explicit ReferenceAccumulator(Fixes fixes = Fixes::same) : fixes_(fixes) {}
   void add(const ReferenceRun& run);

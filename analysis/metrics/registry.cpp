@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The list of metrics, and what is made of all of them.
+// The list of metrics, and the numbers, sections and figures of all of them.
 #include "analysis/metrics/cell_analysis.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "engine/errors.hpp"

@@ -11,11 +11,11 @@ namespace montecarta::analysis {
 
 struct MeasuredRun;
 
-/// Which of two values of a score is the better one; neither: `compare` says in how many runs it is
-/// lower, and calls none better.
+/// Which of two values of a score is better. For `neither`, `compare` says in how many runs a value
+/// is lower and calls none better.
 enum class Better : std::uint8_t { lower, higher, neither };
 
-/// A number that a run has one of: what is averaged over runs, and compared run by run.
+/// A number of each run, which is averaged over runs and compared run by run.
 struct Score {
   const char* name;                  ///< as files and studies call it, e.g. "position_rmse"
   const char* units;                 ///< UDUNITS style, "1" where there is none
@@ -25,13 +25,13 @@ struct Score {
   bool has_ratio = true;  ///< whether two values may be divided: their zero is not arbitrary
 };
 
-/// A number that every scan of a run has one of; averaged over runs.
+/// A number of every scan of a run, averaged over runs.
 struct ScanSeries {
   const char* name;
   const char* units;
-  /// {scan} nothing where it does not apply; NaN at a scan of one run leaves a gap in the mean.
+  /// {scan} Empty if it does not apply; NaN at a scan of one run leaves a gap in the mean.
   std::vector<double> (*of)(const MeasuredRun&);
-  bool is_square = false;  ///< the root of its mean is what is shown
+  bool is_square = false;  ///< the root of the mean is shown
 };
 
 // All of them, in the order of metrics (all_metrics()).

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each cell beside the study's cell of full smoothing: what it loses by linearising once.
+// Efficiency of each cell against the study's cell of full smoothing.
 #include "analysis/metrics/cell_range.hpp"
 #include "analysis/metrics/metric.hpp"
 #include "analysis/metrics/paired_runs.hpp"
@@ -36,7 +36,7 @@ double paired_efficiency(const PairedRuns& runs) {
   return below > 0.0 && above > 0.0 ? std::sqrt(above / below) : kNaN;
 }
 
-/// Of the runs that both completed, with its interval (STATISTICS 21).
+/// The efficiency over the runs that both completed, with its interval (STATISTICS 21).
 std::string efficiency_text(const CellAnalysis& cell, const CellAnalysis& smoother,
                             const char* mean_square, double level) {
   const PairedRuns runs = runs_beside(cell, smoother, mean_square);

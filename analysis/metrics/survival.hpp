@@ -17,8 +17,8 @@ inline constexpr std::size_t kLastingScans = 25;
 /// Index at which the first `length` consecutive true values begin; nullopt if there are none.
 std::optional<std::size_t> first_lasting(const std::vector<bool>& above, std::size_t length);
 
-/// How many runs are still right, each judged by itself: until its own NEES stays above the band of
-/// one run for kLastingScans, or until it fails.
+/// Share of the runs that are not lost yet: a run is lost when its own NEES stays above the band of
+/// a single run for kLastingScans, or when it fails.
 struct Survival {
   std::size_t runs = 0;            ///< complete and failed
   std::size_t lost = 0;            ///< of them: by the end

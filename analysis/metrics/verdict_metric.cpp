@@ -56,7 +56,7 @@ void verdict_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
   }
 }
 
-/// Where the ratio of every scan lies, all tests together; NaN where a scan is not judged.
+/// Simultaneous interval of the ratio of every scan; NaN if a scan is not judged.
 void verdict_series(const CellAnalysis& cell, std::vector<NamedSeries>& all) {
   const FamilyTest* scans = cell.verdict.find(Family::scan);
   if (scans == nullptr) return;

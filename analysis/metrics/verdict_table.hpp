@@ -12,13 +12,13 @@
 
 namespace montecarta::analysis {
 
-/// One row a cell: what became of its runs, the verdict, and the numbers behind it.
+/// One row for each cell: its runs, the verdict, and the numbers behind it.
 TextTable verdict_table(const StudyAnalysis& study);
 
-/// One row a cell: errors, particles that count, and what a run costs.
+/// One row for each cell: errors, effective particles and cost of a run.
 TextTable accuracy_table(const StudyAnalysis& study);
 
-/// One row a cell and definition of covariance and error: the average NEES.
+/// One row for each cell and definition of covariance and error: the average NEES.
 TextTable consistency_table(const StudyAnalysis& study);
 /// How to read it.
 std::vector<std::string> consistency_notes();
@@ -31,11 +31,11 @@ std::vector<NamedSeries> family_columns(const FamilyTest& test);
 /// One row for each failed run: cell, run, step, reason.
 TextTable failure_table(const StudyAnalysis& study);
 
-/// What the NEES ratio of a cell is.
+/// Explains the NEES ratio.
 std::string ratio_note(const StudyAnalysis& study);
-/// Which answers a verdict has, and when each is given.
+/// Explains the answers of a verdict.
 std::string answers_note(const StudyAnalysis& study);
-/// How to read the verdict table, a sentence each, for someone who never heard of chi-square.
+/// Notes on the verdict table, for readers who do not know the chi-square distribution.
 std::vector<std::string> verdict_notes(const StudyAnalysis& study);
 
 /// At most a sentence each on runs, scans and covariances that the verdict judges in part or not at
@@ -60,8 +60,9 @@ struct MeanText {
   std::string text() const;
 };
 
-/// The mean with the interval of the cell. No interval holds the mean of a heavy tail: then the
-/// median follows with an interval at `level`. All times `factor`.
+/// The mean with the interval of the cell. If the values have a heavy tail, no interval of the mean
+/// is valid: the median then follows with an interval at `level`. All numbers are multiplied by
+/// `factor`.
 MeanText score_text(const CellAnalysis& cell, std::string_view score, double level,
                     double factor = 1.0);
 

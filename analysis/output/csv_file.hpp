@@ -17,7 +17,7 @@ class CsvFile {
 
   void row(const std::vector<std::string>& fields);
   void row(const std::vector<double>& numbers);
-  /// Call last: tells when the disk was full.
+  /// Must be called last: throws if the disk was full.
   void close();
 
  private:
@@ -27,11 +27,11 @@ class CsvFile {
   std::ofstream out_;
 };
 
-/// Makes a directory and those above it. Throws RunError where it cannot.
+/// Makes a directory and those above it. Throws RunError if that fails.
 void make_directory(const std::filesystem::path& directory);
 
-/// Writes a whole file, binary or text: under its name there is all of it or what was there before.
-/// Throws RunError naming it.
+/// Writes a whole file, binary or text. If it fails, the old file is unchanged, and it throws
+/// RunError with the name of the file.
 void write_text(const std::filesystem::path& path, const std::string& text);
 
 /// One number under the name it has in files.

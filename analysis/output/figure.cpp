@@ -57,7 +57,7 @@ std::array<double, 2> extremes(std::span<const double> values) {
   return found;
 }
 
-/// Common to all figures. What is black here takes the colour of the text where the page is dark.
+/// Settings common to all figures. The page gives black parts the colour of the text.
 constexpr const char* kStyle = R"(set encoding utf8
 set datafile separator comma
 set datafile columnheaders
@@ -142,8 +142,8 @@ struct Range {
   double greatest = 0.0;
 };
 
-/// Of all positive values of a panel, bands included; near the bands where there are some. A decade
-/// from 1 where there are none.
+/// Range of all positive values of a panel, bands included; limited to the surroundings of the
+/// bands if there are any. A decade from 1 without positive values.
 Range range_of(const Panel& panel) {
   Range range;
   const auto include = [&](double value) {

@@ -13,15 +13,16 @@
 
 namespace montecarta::analysis {
 
-/// In place of the number of a curve: of what is no cell, such as a bound; dashed, in the colour of
-/// the text.
+/// Style of reference curves that belong to no cell, such as a bound: dashed, in the colour of the
+/// text.
 inline constexpr std::size_t kReferenceStyle = static_cast<std::size_t>(-1);
-/// Of the truth, below what filters think of it.
+/// Style of the truth, drawn below the estimates.
 inline constexpr std::size_t kTruthStyle = static_cast<std::size_t>(-2);
 
-/// Line colour of curve `i`, "#0072B2": told apart by the colour-blind (Okabe and Ito).
+/// Line colour of curve `i`, "#0072B2", from a palette for colour-blind readers (Okabe and Ito).
 std::string line_colour(std::size_t i);
-/// How curve `i` is dashed, from 1, a full line: from the seventh on curves differ by that.
+/// Dash pattern of curve `i`; 1 is a full line. From the seventh curve on, colours repeat with
+/// another pattern.
 std::size_t line_dashes(std::size_t i);
 
 /// Red, green and blue, from 0 to 255.
@@ -31,9 +32,9 @@ using Colour = std::array<int, 3>;
 /// colours, of which there are two at least.
 std::string colour_within(std::span<const Colour> palette, double share);
 
-/// A horizontal band, e.g. where a consistent filter stays. It keeps the vertical axis near: from
-/// 0.3 times its lower end to 100 000 times its upper one at most, so that it is seen beside a
-/// filter that is off by many powers of ten.
+/// A horizontal band, e.g. of a consistent filter. It limits the vertical axis to the range from
+/// 0.3 times its lower end to 100 000 times its upper one, so that it stays visible beside a filter
+/// that is off by many powers of ten.
 struct Band {
   std::string legend;
   double lower = 0.0;
@@ -47,8 +48,8 @@ struct ChartAxis {
   double high = 0.0;  ///< at the top; NaN: as far as the curves reach
 };
 
-/// What is drawn at places of its own rather than over the panel's common x. The pointer is told
-/// the facts of the nearest.
+/// Marks at coordinates of their own rather than at the panel's common x. The page shows the facts
+/// of the mark nearest to the pointer.
 struct ChartMarks {
   enum class Shape { line, points, crosses, ellipses, boxes };
   /// One value for each place.
@@ -56,7 +57,7 @@ struct ChartMarks {
     std::string label;  ///< with unit
     std::vector<double> values;
   };
-  std::string name;       ///< what such a mark is
+  std::string name;       ///< kind of the mark
   std::string cell;       ///< hidden with it; empty: always shown
   std::size_t style = 0;  ///< for line_colour()
   Shape shape = Shape::line;
@@ -66,11 +67,10 @@ struct ChartMarks {
   std::vector<double> angle;          ///< [deg] of ellipses
   std::vector<std::string> fill;      ///< colour of each box
   std::vector<std::string> text;      ///< within each box, beside each point; empty: none
-  std::vector<Fact> facts;            ///< none: the pointer passes over them
+  std::vector<Fact> facts;            ///< empty: the page shows none
 };
 
-/// Rows of colours that say how many times too large or too small something is, from top to bottom
-/// (strips.hpp).
+/// Rows of colours for ratios of errors to their expectation, from top to bottom (strips.hpp).
 struct ChartStrips {
   static constexpr int kNoLevel = -1;
   struct Row {
@@ -80,7 +80,7 @@ struct ChartStrips {
     std::string note;            ///< at the right end
   };
   std::vector<Row> rows;
-  std::string inside;  ///< what the grey of a ratio inside its band means
+  std::string inside;  ///< meaning of grey
   std::string notes;   ///< heading of the notes
 };
 
@@ -106,7 +106,7 @@ struct ChartPanel {
   ChartStrips strips = {};
 };
 
-/// What a figure shows: gnuplot draws it for print, the page to be zoomed into and asked. All
+/// Contents of a figure, drawn by gnuplot for print and by the page's script for the screen. All
 /// panels have one horizontal axis.
 struct Chart {
   std::string x_label = "time [s]";
@@ -114,13 +114,13 @@ struct Chart {
   std::vector<ChartPanel> panels;
   bool x_logarithmic = false;
   std::vector<double> x_ticks = {};  ///< in print; empty: round numbers
-  /// Where it begins before it is zoomed; NaN: at x_from.
+  /// Left end of the view before the reader zooms; NaN: x_from.
   double x_first = std::numeric_limits<double>::quiet_NaN();
   std::size_t columns = 1;  ///< side by side, where there is room; else one above the other
-  std::size_t least = 0;    ///< [px] the width of a panel
+  std::size_t least = 0;    ///< [px] least width of a panel
   double aspect = 0.0;      ///< height of a panel by its width; 0: the usual
   double height = 0.0;      ///< [px] of a panel in print, where it has no aspect; 0: the usual
-  bool is_map = false;      ///< one scale in both directions, whatever is zoomed
+  bool is_map = false;      ///< one scale in both directions, at any zoom
 };
 
 /// Series over one common time, short enough to draw.
@@ -146,8 +146,8 @@ struct FigureData {
 struct Figure {
   std::string name;                   ///< of its files, e.g. "anees"
   std::string title;                  ///< a heading on the page
-  std::string sentence;               ///< what it means, for someone who never saw such a figure
-  std::vector<FigureData> data = {};  ///< its numbers; none: it is left out
+  std::string sentence;               ///< explanation for readers who are new to such a figure
+  std::vector<FigureData> data = {};  ///< its numbers; empty: the figure is left out
   Chart chart = {};
   std::size_t width = 900;  ///< [px] 18 cm in print: the text width of a journal's page
 };
@@ -155,7 +155,7 @@ struct Figure {
 /// Writes figures/<name>.gp and data/ below `directory` and draws figures/<name>.svg and .pdf.
 void draw(const Figure& figure, const std::filesystem::path& directory);
 
-/// The data file of curves over what `heading` says.
+/// The data file of curves over a first column called `heading`.
 FigureData data_of(const std::string& name, const std::string& heading,
                    const ThinnedSeries& thinned);
 
@@ -185,11 +185,11 @@ struct Panel {
   std::vector<Curve> curves;
   std::vector<Band> bands;
   Scale scale = Scale::from_zero;
-  double least = 0.0;  ///< a logarithmic axis begins here at the earliest
+  double least = 0.0;  ///< lower limit of a logarithmic axis
 };
 
-/// Adds panels one above the other, with one horizontal axis and one legend, to a figure; nothing
-/// where the first has no curves. The axis is called as the figure's chart says.
+/// Adds panels, one above the other, with one horizontal axis and one legend, to a figure; nothing
+/// if the first has no curves. The figure's chart has the label of the axis.
 void add_panels(const std::vector<Panel>& panels, const std::vector<double>& places,
                 Figure& figure);
 

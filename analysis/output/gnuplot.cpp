@@ -94,7 +94,7 @@ PrintLayout print_layout(const Chart& chart, double width, double legend_height)
 
 namespace {
 
-/// Where a process begins: its folder, and where its words go.
+/// Working directory and log file of a process that is started.
 class SpawnActions {
  public:
   SpawnActions(const std::filesystem::path& directory, const std::filesystem::path& log) {
@@ -171,7 +171,7 @@ using Columns = std::vector<const std::vector<double>*>;
 
 constexpr double kBeyondAnyAxis = 1e100;  // gnuplot knows no infinity
 
-/// A data block; a row whose first number is NaN interrupts a line.
+/// A data block. A row that begins with NaN interrupts a line.
 std::string block(const std::string& name, const Columns& columns) {
   std::string text = name + " << EOD\n";
   for (std::size_t c = 0; c < columns.size(); ++c) text += c == 0 ? "x" : ",y";
@@ -248,7 +248,7 @@ class PanelWriter {
                  " notitle";
   }
 
-  /// None so small that it cannot be seen.
+  /// Adds ellipses, enlarged where they are too small to be seen.
   void add_ellipses(const ChartMarks& marks) {
     const double least = 0.012 * (chart_.x_to - chart_.x_from);
     std::vector<double> width = marks.width, height = marks.height;
@@ -354,7 +354,7 @@ std::string ticks_at(const std::vector<double>& places) {
   return "set xtics nomirror (" + at + ")\n";
 }
 
-/// Of a logarithmic axis: 1, 2 and 5 of each decade, 1 alone of many.
+/// Ticks of a logarithmic axis: 1, 2 and 5 of each decade, or only 1 of many decades.
 std::string logarithmic_ticks(double from, double to) {
   expect(from > 0.0 && to < 1e200, "a logarithmic axis has positive ends");
   const bool is_long = to > 2000.0 * from;
@@ -387,7 +387,7 @@ std::string common_label(const Chart& chart, const PrintLayout& layout) {
          readable(10.0 / layout.height, 4) + " center\n";
 }
 
-/// As far as curves and bands reach, where the axis does not say.
+/// The range of curves and bands, unless the axis gives one.
 double upper_end(const ChartPanel& panel) {
   if (!std::isnan(panel.axis.high)) return panel.axis.high;
   double greatest = panel.axis.low;
@@ -487,7 +487,7 @@ struct LegendEntry {
   std::string how, words;
 };
 
-/// Bands, then cells that no heading names or, on maps, what is drawn.
+/// Legend: bands, then cells that no heading names or, on maps, the kinds of marks.
 std::vector<LegendEntry> legend_of(const Chart& chart) {
   std::vector<LegendEntry> entries;
   const auto add = [&](const std::string& how, const std::string& words) {

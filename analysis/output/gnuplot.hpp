@@ -13,7 +13,7 @@ namespace montecarta::analysis {
 /// [px] the width of most characters, in either font.
 inline constexpr double kCharacter = 7.8;
 
-/// Where a panel lies in a printed chart [px], from the upper left corner.
+/// Position of a panel in a printed chart [px], from the upper left corner.
 struct PanelBox {
   double left = 0.0, right = 0.0, top = 0.0, bottom = 0.0;
   bool is_lowest = true;  ///< of its column: has the numbers of the horizontal axis
@@ -33,15 +33,15 @@ struct PrintLayout {
 PrintLayout print_layout(const Chart& chart, double width, double legend_height);
 
 /// Runs gnuplot on the script `name` in `directory`, which is its working directory. Throws
-/// StudyError where gnuplot is not installed and RunError, with what it says, where it fails.
-/// `program` is looked up in PATH.
+/// StudyError if gnuplot is not installed, and RunError with its message if it fails. `program` is
+/// looked up in PATH.
 void run_gnuplot(const std::filesystem::path& directory, const std::string& name,
                  const std::string& program = "gnuplot");
 
 /// A text constant of gnuplot: quoted, printed as it stands.
 std::string gnuplot_quoted(const std::string& text);
 
-/// How a panel's bands, curves and marks are plotted.
+/// Data and plot commands of a panel's bands, curves and marks.
 struct PanelPlots {
   std::string numbers;   ///< data blocks
   std::string commands;  ///< behind "plot"
@@ -49,7 +49,7 @@ struct PanelPlots {
 
 PanelPlots panel_plots(const Chart& chart, std::size_t panel);
 
-/// How gnuplot draws each, behind "with": for plots and legends.
+/// Styles for plots and legends, behind "with".
 std::string band_style();
 std::string curve_style(std::size_t style);
 std::string mark_style(const ChartMarks& marks);
@@ -57,8 +57,8 @@ std::string mark_style(const ChartMarks& marks);
 /// [px] of strip_key().
 inline constexpr std::size_t kStripKeyHeight = 42;
 
-/// Commands that draw what the colours of strips mean, above them in place of a legend. It begins
-/// where the strips in `box` do if there is room for it in a drawing of this size [px].
+/// Commands that draw the colour scale of strips, above them in place of a legend. It is aligned
+/// with the strips in `box` if there is room in a drawing of this size [px].
 std::string strip_key(const ChartStrips& strips, const PanelBox& box, double width, double height);
 
 /// A chart as gnuplot draws it.

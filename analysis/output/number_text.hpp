@@ -7,18 +7,17 @@
 
 namespace montecarta::analysis {
 
-/// A number for reading: `digits` significant, "-" where it is not a number. No exponent up to a
-/// million.
+/// A number for reading: `digits` significant digits, "-" for NaN. No exponent up to a million.
 std::string readable(double value, int digits = 3);
 
-/// As readable(), but from ten thousand on in powers of ten, "2.73e5": only the power matters.
+/// A number for reading like readable(), but in powers of ten from ten thousand on, "2.73e5".
 std::string compact(double value);
 
-/// A mean with its standard error, "3.58 +- 0.10": both to the second significant digit of the
-/// error. "-" where there is none; without error where it is of one run.
+/// A mean with its standard error, "3.58 +- 0.10", both to the second significant digit of the
+/// error. "-" for NaN; without error if there is one run.
 std::string with_error(double mean, double standard_error);
 
-/// As with_error() with a fixed number of decimals, for numbers that are not known any better.
+/// A mean with its error like with_error(), but with a fixed number of decimals.
 std::string with_error_to(int decimals, double mean, double standard_error);
 
 /// "[3.38, 3.79]"; "-" where there is no interval.

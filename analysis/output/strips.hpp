@@ -11,8 +11,8 @@
 
 namespace montecarta::analysis {
 
-/// A figure of ratios over time has curves for as many cells as this, and strips, which do not hide
-/// each other, for more.
+/// The largest number of cells for which a figure of ratios over time has curves. For more cells it
+/// has strips, which do not hide each other.
 inline constexpr std::size_t kMostRatioCurves = 6;
 
 /// Colours of all levels, as "#b2182b": of ratios from 1/10 to 1000 on a logarithmic scale, blue
@@ -23,7 +23,7 @@ const std::vector<std::string>& strip_colours();
 /// NaN. A ratio beyond an end of the scale has the colour of that end.
 int strip_level(double ratio, const Interval& band);
 
-/// What the numbers of the scale say.
+/// Label of the scale.
 inline constexpr const char* kStripScale = "times too large";
 
 /// A number of the scale: at the lower end of a level, or at the end of the scale.
@@ -33,7 +33,7 @@ struct StripTick {
 };
 const std::vector<StripTick>& strip_ticks();
 
-/// A row of strips: how many times too large or too small something is over time.
+/// A row of strips: the ratio of errors to their expectation over time.
 struct StripRow {
   std::string name;            ///< of the cell
   std::vector<double> ratios;  ///< one for each place on the common axis; NaN: none
@@ -45,14 +45,14 @@ struct StripRow {
 struct StripPanel {
   std::string name;    ///< of its data file
   std::string label;   ///< its heading
-  std::string inside;  ///< what grey means
+  std::string inside;  ///< meaning of grey
   std::string notes;   ///< heading of the notes
   std::vector<StripRow> rows;
 };
 
-/// Adds panels of strips one above the other to a figure; nothing where the first has no rows. Of
-/// long series, places that share a column show the ratio that is farthest from 1, as a factor,
-/// among those outside their band, or among all where none is outside: no excursion is lost.
+/// Adds panels of strips, one above the other, to a figure; nothing if the first has no rows. If
+/// several places of a long series share a column, it shows the ratio farthest from 1, as a factor,
+/// among those outside their band, or among all if none is outside, so that no excursion is lost.
 void add_strips(const std::vector<StripPanel>& panels, const std::vector<double>& places,
                 Figure& figure);
 

@@ -14,7 +14,7 @@ enum class Align { left, right };
 
 using TableRow = std::vector<std::string>;
 
-/// A table in words, whatever it is set in.
+/// A table of texts, for every output format.
 struct TextTable {
   struct Heading {
     std::string text;
@@ -22,7 +22,7 @@ struct TextTable {
   };
   std::vector<Heading> headings = {};
   std::vector<TableRow> rows = {};
-  std::size_t keys = 1;  ///< first columns, which say what a row is of
+  std::size_t keys = 1;  ///< number of first columns that identify a row
 };
 
 /// Rows with their columns below each other, `gap` spaces between, each line indented by `indent`.
@@ -34,7 +34,8 @@ std::string aligned(const std::vector<TableRow>& rows, std::size_t indent = 2,
 /// broken between words; if that is not enough, columns continue below, beside the keys again.
 void print_table(std::ostream& out, const TextTable& table, std::size_t width);
 
-/// A part of a report: tables and sentences, then figures. A page leaves out what has no content.
+/// A part of a report: tables and sentences, then figures. A page leaves out a section without
+/// content.
 struct Section {
   enum class Shown { folded, open };
 
@@ -43,15 +44,15 @@ struct Section {
     std::string name;
     TextTable table;
   };
-  /// A sentence or more, for someone who never saw such a table.
+  /// Notes for readers who are new to such a table.
   struct Note {
     std::string text;
   };
-  /// A sentence that says the result, before all tables; a page has it on the cards of cells.
+  /// The result as a sentence before all tables; a page has it on the cards of cells.
   struct Lead {
     std::string text;
   };
-  /// Of the page alone.
+  /// HTML for the page alone.
   struct Html {
     std::string text;
   };
@@ -66,10 +67,10 @@ struct Section {
   std::string summary = {};          ///< one line beside the heading: the result in short
   Shown shown = Shown::folded;       ///< on a page, before the reader opens it
 
-  /// Whether there is more than notes on what is not there.
+  /// Whether there is anything except notes on missing data.
   bool has_content() const;
 
-  /// Nothing where it has no rows.
+  /// Adds a table; nothing if it has no rows.
   void add(const std::string& table_name, const TextTable& table);
   void add(const std::vector<std::string>& notes);
   void add_html(const std::string& html);

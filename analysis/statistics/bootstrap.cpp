@@ -18,7 +18,7 @@ constexpr std::size_t kMostDraws = 20'000'000;
 
 double normal_share(double z) { return boost::math::cdf(boost::math::normal(), z); }
 
-/// How far out, in normal deviates, the tails of Student's t lie for so many runs.
+/// Student's quantile for so many runs, by which the tails of the normal law are widened.
 double widened_deviate(std::size_t runs, double level) {
   const auto n = static_cast<double>(runs);
   return std::sqrt(n / (n - 1.0)) * t_quantile(runs, level);

@@ -10,28 +10,28 @@
 
 namespace montecarta::analysis {
 
-/// Mean of a sample, and skewness divided by 6 sqrt(n): how fast the spread of a mean changes with
-/// the mean.
+/// Mean of a sample, and skewness divided by 6 sqrt(n), the rate at which the spread of a mean
+/// changes with the mean.
 struct SampleShape {
   double mean = 0.0;
   double acceleration = 0.0;
 };
 
-/// Of finite values; the acceleration of BCa (STATISTICS 6), 0 where all are equal.
+/// Mean and acceleration of BCa (STATISTICS 6) of finite values; the acceleration is 0 if all are
+/// equal.
 SampleShape shape_of(std::span<const double> values);
 
 /// Replicates of a bootstrap over `runs`: 2000, and fewer where there are so many runs that
 /// replicates hardly differ.
 std::size_t bootstrap_replicates(std::size_t runs);
 
-/// The runs that replicate `b` draws with replacement, `runs` of them as indices: the same for
-/// whoever asks.
+/// The runs that replicate `b` draws with replacement, as `runs` indices: the same in every call.
 void draw_runs(std::size_t runs, std::size_t b, std::vector<std::uint32_t>& drawn);
 
-/// Where the mean over infinitely many runs lies with probability `level`, given one value a run.
-/// Bootstrap over runs, bias-corrected and accelerated (BCa; Efron 1987), with the tails widened as
+/// Interval of the mean over infinitely many runs at `level`, given one value for each run.
+/// Bootstrap over runs, bias-corrected and accelerated (BCa; Efron 1987), with tails widened as
 /// Student's t is wider than the normal (Hesterberg 2015), so that it holds from ten runs on. NaN
-/// where a value is not finite or there are fewer than two.
+/// if a value is not finite or there are fewer than two.
 Interval bootstrap_mean(std::span<const double> values, double level);
 
 /// The same for several columns {run} of equal length, which share their draws.

@@ -37,7 +37,7 @@ Cumulants cumulants_at(std::span<const WeightedSquares> terms, double t) {
   return sums;
 }
 
-/// Where the first derivative, which increases, is `x`.
+/// The `t` at which the first derivative, which increases, is `x`.
 double saddlepoint(std::span<const WeightedSquares> terms, double x) {
   const double mean = cumulants_at(terms, 0.0).first;
   double below = 0.0, above = 0.0;
@@ -60,9 +60,8 @@ constexpr double kFarthestRatio = 1e9;  // beyond, an interval has no upper end
 constexpr double kMostEffective = 1e9;
 constexpr double kEndAccuracy = 1e-4;  // of the end of an interval, relative
 
-/// Squares of n correlated samples of one component, divided by n, as a sum of independent ones.
-/// `semivariance` {lag} is the component's; its variance is `variance`, its correlation whatever
-/// the semivariance leaves of that.
+/// Mean square of n correlated samples of one component, as a sum of independent squares. Samples
+/// have the `semivariance` {lag}; their covariance at a lag is `variance` minus it.
 class ComponentLaw {
  public:
   ComponentLaw(const std::vector<double>& semivariance, double variance) : variance_(variance) {
@@ -77,7 +76,7 @@ class ComponentLaw {
             .eigenvalues()
             .cwiseMax(0.0);
     for (const double weight : slow) terms.push_back({weight / dimension, 1.0});
-    // What is left varies within the blocks: equal weights with its sum and sum of squares.
+    // The rest varies within the blocks: equal weights with its sum and sum of squares.
     const auto n = static_cast<double>(covariance_.size());
     const double rest = variance_ - slow.sum();
     if (rest <= 1e-12 * variance_) return;
@@ -86,7 +85,7 @@ class ComponentLaw {
   }
 
  private:
-  /// Of all eigenvalues of the covariance of the samples, divided by n.
+  /// Sum of the squares of all eigenvalues of the covariance of the samples, divided by n.
   double sum_of_squares() const {
     const auto n = static_cast<double>(covariance_.size());
     double sum = covariance_.front() * covariance_.front();
@@ -128,8 +127,8 @@ class ComponentLaw {
   std::vector<double> covariance_;  ///< {lag}
 };
 
-/// Probability that drives whose expected ratio is `ratio` have a mean of averages of at most
-/// `mean`, if what their variograms do not show are errors that last for all of a drive.
+/// Probability that drives with an expected ratio of `ratio` have a mean of averages of at most
+/// `mean`, if the part that their variograms do not show is errors that last for a whole drive.
 double probability_of_less(const std::vector<VectorSeries>& variograms, double mean, double ratio) {
   std::vector<WeightedSquares> terms;
   for (const VectorSeries& variogram : variograms) {
@@ -181,14 +180,14 @@ SquareMoments moments_of_nees(const VectorSeries& errors) {
   return {mean, mean > 0.0 ? squares / count / (mean * mean) : 0.0};
 }
 
-/// Squares of errors that are not Gaussian, a few wild ones say, vary more than 2 / d.
+/// Squares of errors that are not Gaussian, for instance with a few outliers, vary more than 2 / d.
 double effective_samples_of(const VectorSeries& errors, const SquareMoments& nees) {
   const auto d = static_cast<double>(errors.size());
   const double gaussian = nees.variation > 2.0 / d ? 2.0 / d / nees.variation : 1.0;
   return std::max(effective_samples(squared_correlations(errors)) * gaussian, 1.0);
 }
 
-/// As chi-square bounds: the interval of a series with so many independent samples, expected 1.
+/// Interval by chi-square bounds for a series with so many independent samples; 1 is expected.
 double end_ratio(double samples, double d, double tail) {
   const auto probability = [&](double ratio) {
     const std::array<WeightedSquares, 2> terms = {

@@ -21,7 +21,7 @@ struct WeightedSquares {
 /// above 0.
 double probability_below(std::span<const WeightedSquares> terms, double x);
 
-/// What the NEES along one drive says (STATISTICS 20).
+/// Test of the NEES along one drive (STATISTICS 20).
 struct CorrelatedAverage {
   double mean = 0.0;               ///< average NEES divided by the components: 1 is expected
   double effective_samples = 0.0;  ///< independent ones with an average that varies as much
@@ -29,20 +29,19 @@ struct CorrelatedAverage {
                                    ///< the components
 };
 
-/// Of `errors` in units of the covariance, {component}{sample} in the order of time: an error of
-/// covariance P times the inverse of the Cholesky factor of P, so that their squares add up to the
-/// NEES. If the filter is consistent they are Gaussian with mean zero and covariance one, and go
-/// together for any time, up to all of the drive. The interval then excludes 1 in at most 1 -
-/// `level` of all drives. Throws StudyError where level is not inside (0, 1); there must be a
-/// component and a sample.
+/// Tests whitened `errors` {component}{sample} in the order of time: the inverse of the Cholesky
+/// factor of the covariance times the error, so that the sum of squares is the NEES. For a
+/// consistent filter they are Gaussian with mean zero and covariance one, and correlated for any
+/// time up to the whole drive. The interval then excludes 1 in at most 1 - `level` of all drives.
+/// Throws StudyError if level is not inside (0, 1); there must be a component and a sample.
 CorrelatedAverage correlated_average(const VectorSeries& errors, double level);
 
-/// Of several independent drives of as many components, at least one: the average over drives of
-/// their averages, whatever their lengths. Of one drive as above.
+/// Tests the mean over one or more independent drives, with equal numbers of components, of their
+/// averages; drives of all lengths count alike.
 CorrelatedAverage correlated_average(std::span<const VectorSeries> drives, double level);
 
-/// How many effective samples make that interval so short that its ends have a ratio of at most
-/// `within`, so that it excludes 1 or is inside [1 / within, within]; infinite where more than 1e9.
+/// Number of effective samples that make the interval so short that the ratio of its ends is at
+/// most `within`, so that it excludes 1 or lies in [1 / within, within]; infinite if more than 1e9.
 double samples_that_decide(std::size_t dimension, double level, double within);
 
 }  // namespace montecarta::analysis

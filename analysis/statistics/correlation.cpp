@@ -52,7 +52,7 @@ std::vector<double> squared_correlations(const VectorSeries& series) {
     return std::min(sum / unit, 1.0);
   });
   squares.front() = 1.0;
-  // By chance alone the square of a correlation between two components has this mean at lag 0.
+  // Mean at lag 0 of the squared correlation between two components that are independent.
   const double by_chance = unit / d / effective_samples(squares);
   const std::vector<double> between = at_all_lags(n, [&](std::size_t lag) {
     const double least =

@@ -20,10 +20,10 @@ std::vector<double> squared_correlations(const VectorSeries& series);
 /// apart. {component}{lag}
 VectorSeries semivariances(const VectorSeries& series);
 
-/// How many independent samples have an average of squares that varies as much, if the components
-/// are Gaussian with mean zero: n / (1 + 2 sum (1 - lag / n) squared correlation), summed up to the
-/// first lag beyond five times the sum (A. Sokal: Monte Carlo methods in statistical mechanics,
-/// 1997). In [1, n].
+/// Number of independent samples with the same variance of the average of squares, if the
+/// components are Gaussian with mean zero: n / (1 + 2 sum (1 - lag / n) squared correlation),
+/// summed up to the first lag beyond five times the sum (A. Sokal: Monte Carlo methods in
+/// statistical mechanics, 1997). In [1, n].
 double effective_samples(std::span<const double> squared_correlations);
 
 }  // namespace montecarta::analysis

@@ -11,10 +11,10 @@ namespace montecarta::analysis {
 /// of O'Brien and Fleming (Lan and DeMets 1983).
 double spent(double alpha, double information);
 
-/// Level of the interim analysis of `runs` runs, where `looks` are the numbers of runs at which a
-/// study is analysed, increasing: what is spent since the look before is its own error probability,
-/// so that all looks together reject with 1 - level at most, whatever they have to do with each
-/// other. Between two looks it is that of the next one. `level` itself without looks.
+/// Level of the interim analysis of `runs` runs, where `looks` are the increasing numbers of runs
+/// of all interim analyses. Each has the error probability that is spent since the one before, so
+/// that together they reject with a probability of at most 1 - level, for any dependence between
+/// them. Between two looks it is the level of the next one. Without looks it is `level`.
 double level_of_look(double level, std::span<const std::uint64_t> looks, std::uint64_t runs);
 
 }  // namespace montecarta::analysis

@@ -41,7 +41,7 @@ double distance_in_digits(const Quoted& quoted, const Interval& exact) {
                   std::abs(quoted.ends.upper - exact.upper) / quoted.half_digits.upper);
 }
 
-/// The fewest runs whose interval is no wider than `width`: it narrows as runs grow.
+/// The fewest runs with an interval no wider than `width`; it narrows as runs grow.
 std::uint64_t runs_of_width(double width, std::uint64_t dimension, double level) {
   std::uint64_t low = 1, high = kMostRuns;
   while (low < high) {

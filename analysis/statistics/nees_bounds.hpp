@@ -16,10 +16,10 @@ struct Interval {
 /// One end of each: `&Interval::lower` or `&Interval::upper`.
 std::vector<double> ends_of(const std::vector<Interval>& intervals, double Interval::*end);
 
-/// Where the average NEES over `runs` independent runs of an error of `dimension` components lies
-/// with probability `level`, if the filter is consistent: (runs x average) is chi-square with (runs
-/// x dimension) degrees of freedom, and both tails are equal (STATISTICS 3). Throws StudyError
-/// where runs or dimension is 0 or level is not inside (0, 1).
+/// Interval that holds, with probability `level`, the average NEES of a consistent filter over
+/// `runs` independent runs of an error of `dimension` components: (runs x average) is chi-square
+/// with (runs x dimension) degrees of freedom, and both tails are equal (STATISTICS 3). Throws
+/// StudyError if runs or dimension is 0 or level is not inside (0, 1).
 Interval nees_bounds(std::uint64_t runs, std::uint64_t dimension, double level);
 
 /// A test that a quoted interval may belong to.
@@ -27,7 +27,7 @@ struct IntervalMatch {
   std::uint64_t runs = 0;
   std::uint64_t dimension = 0;
   double level = 0.0;
-  Interval exact;              ///< what that test's interval is
+  Interval exact;              ///< the interval of that test
   double deviation = 0.0;      ///< largest distance of a quoted end from the exact one
   bool within_digits = false;  ///< the exact ends round to the digits that were quoted
 };

@@ -44,7 +44,7 @@ struct PlannedSum {
                                : boost::math::gamma_p(0.5 * freedom(), 0.5 * freedom() * ratio);
   }
 
-  /// Probability that the interval of a filter whose ratio is 1 is not within the margin.
+  /// Probability that the interval of a filter with a ratio of 1 exceeds the margin.
   double not_shown(double within, double level) const {
     const Interval unit = law().interval(1.0, level);
     const double lowest = 1.0 / (within * unit.lower), highest = within / unit.upper;
@@ -88,7 +88,7 @@ void expect_margin(double within) {
 
 NeesPlan::NeesPlan(const NeesTest& test) : test_(test) {
   expect_scans_of_a_run(test);
-  nees_bounds(1, test.dimension, test.level);  // refuses what is no dimension or level
+  nees_bounds(1, test.dimension, test.level);  // refuses a wrong dimension or level
 }
 
 double NeesPlan::found(double ratio, std::uint64_t runs) const {

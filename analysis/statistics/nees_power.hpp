@@ -6,15 +6,15 @@
 
 namespace montecarta::analysis {
 
-/// Which study is planned for the verdict (STATISTICS 17).
+/// The planned study (STATISTICS 17).
 struct NeesTest {
   std::uint64_t dimension = 3;  ///< of the error
   double level = 0.95;          ///< probability that a consistent filter is not rejected
   std::uint64_t scans = 1;      ///< independent ones in a run; 1: errors never change within a run
 };
 
-/// What so many runs will say of a filter whose squared errors are off by one factor at all scans
-/// and in all components. Both probabilities are bounds: at least so large.
+/// Power of a study with so many runs, for a filter with squared errors off by one factor at all
+/// scans and in all components. Both probabilities are lower bounds.
 class NeesPlan {
  public:
   /// Throws StudyError where `test` has no meaning: up to 100,000 scans.

@@ -19,7 +19,7 @@ std::vector<std::size_t> sorted_indices(std::span<const double> values, Key key)
   return order;
 }
 
-/// Sum of t^3 - t over groups of t equal sizes: what ties take from the variance of the rank sum.
+/// Sum of t^3 - t over groups of t equal sizes, by which ties reduce the variance of the rank sum.
 double add_ranks(std::span<const double> differences, SignedRank& test) {
   const auto size = [](double value) { return std::abs(value); };
   const auto order = sorted_indices(differences, size);
@@ -37,7 +37,8 @@ double add_ranks(std::span<const double> differences, SignedRank& test) {
   return ties;
 }
 
-/// Of all 2^n signs of ranks 1 ... n, the share whose sum of positive ranks is at most `sum`.
+/// Share of the 2^n assignments of signs to the ranks 1 ... n with a sum of positive ranks of at
+/// most `sum`.
 double share_up_to(std::size_t n, double sum) {
   std::vector<double> ways(n * (n + 1) / 2 + 1);  // whole numbers below 2^50: exact
   ways[0] = 1.0;

@@ -6,24 +6,23 @@
 
 namespace montecarta::analysis {
 
-/// How many independent draws of equal weight a weighted cloud is worth.
+/// Number of independent draws of equal weight that a weighted cloud is worth.
 struct EffectiveDraws {
   double of_mean = 0.0;      ///< for its mean: the effective sample size, 1 / sum w^2
   double of_variance = 0.0;  ///< for its covariance: degrees of freedom + 1 (Satterthwaite 1946)
 };
 
-/// Of `particles` whose weights do not depend on where they were drawn and have the effective
-/// sample size `ess`, in [1, particles]; the sum of their cubes is taken as log-normal weights have
-/// it (STATISTICS 4). Of equal weights both are `particles`.
+/// Effective draws of `particles` with the effective sample size `ess` in [1, particles], if
+/// weights do not depend on positions. The sum of cubed weights is that of log-normal weights
+/// (STATISTICS 4). For equal weights both are `particles`.
 EffectiveDraws effective_draws(std::size_t particles, double ess);
 
-/// Puts the NEES by the spread of particles on the scale of the chi-square. If the particles are
-/// independent draws from the distribution that the truth was drawn from, that NEES is a multiple
-/// of an F variable (Hotelling; STATISTICS 4), far larger than a chi-square where draws are few.
-/// What is as probable under the F as some value under the chi-square becomes that value: of such
-/// an ideal sampler the result is chi-square. What an ideal sampler exceeds once in a million
-/// samples grows in proportion from there on, so that a NEES a thousand times too large is that on
-/// this scale as well.
+/// Converts the NEES by the spread of particles to the scale of the chi-square. If the particles
+/// are independent draws from the distribution of the truth, that NEES is a multiple of an F
+/// variable (Hotelling; STATISTICS 4), far larger than a chi-square for few draws. Each value
+/// becomes the value of equal probability under the chi-square, so the result is chi-square for
+/// such an ideal sampler. Beyond the value that it exceeds once in a million samples, the scale is
+/// linear, so that a NEES a thousand times too large stays a thousand times too large.
 class SamplerScale {
  public:
   explicit SamplerScale(std::size_t dimension);

@@ -17,7 +17,7 @@ bool is_nan(double value) { return std::isnan(value); }
 // said to have a heavy tail and have an interval that misses the mean.
 constexpr double kMostAcceleration = 0.05, kMostLopsided = 4.0, kOuterShare = 0.1;
 
-/// Between its neighbours, the extreme ones at 0 and 1.
+/// Interpolated quantile of sorted values: p = 0 is the least one, p = 1 the greatest.
 double quantile_between(const std::vector<double>& sorted, double p) {
   const double place = p * static_cast<double>(sorted.size() - 1);
   const auto low = static_cast<std::size_t>(place);

@@ -11,10 +11,10 @@
 
 namespace montecarta::analysis {
 
-/// Where there is no number.
+/// Stands for a missing number.
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// In index order; NaN of none.
+/// Sum in index order; NaN without values.
 template <class Values>
 double sum_of(const Values& values) {
   if (values.empty()) return kNaN;
@@ -38,13 +38,13 @@ inline double mean_of_finite(std::span<const double> values) {
   return sum / n;
 }
 
-/// A number that every run has one of, over runs.
+/// A number of every run, over runs.
 struct Summary {
   std::size_t n = 0;
   double mean = std::numeric_limits<double>::quiet_NaN();
   double sd = std::numeric_limits<double>::quiet_NaN();  ///< of one run, with n - 1
 
-  /// Of the mean.
+  /// Standard error of the mean.
   double standard_error() const { return sd / std::sqrt(static_cast<double>(n)); }
 };
 
@@ -71,8 +71,8 @@ class SummaryOf {
   double squares_ = 0.0;
 };
 
-/// A number of every run, over runs, where few runs may lie far from the others: of a recorded
-/// drive runs differ by the filter's randomness alone, and one that loses the map spoils the mean.
+/// A number of every run, over runs, if few runs may lie far from the others: runs on a recorded
+/// drive differ by the filter's randomness alone, and one that loses the map spoils the mean.
 struct Spread {
   Summary summary;
   double median = std::numeric_limits<double>::quiet_NaN();
@@ -83,20 +83,21 @@ struct Spread {
 /// The middle value, the mean of the middle two of an even number; NaN of none or of any NaN.
 double median_of(std::vector<double> values);
 
-/// The two of `sorted`, one or more values, between which the median over infinitely many lies with
-/// probability `level` at least, by order statistics: no distribution is assumed.
+/// Interval between two of the `sorted` values that holds the median over infinitely many with a
+/// probability of at least `level`, by order statistics: no distribution is assumed.
 Interval median_interval(const std::vector<double>& sorted, double level);
 
-/// `values` in the order of the runs. NaN, all but their number, where one of them is NaN.
+/// Spread of `values` in the order of the runs. NaN, except their number, if one of them is NaN.
 Spread spread_of(std::span<const double> values);
 
 /// Two-sided quantile of Student's t with n - 1 degrees of freedom, n > 1.
 double t_quantile(std::size_t n, double level);
 
-/// Whether no interval of the mean of such values is to be trusted (STATISTICS 6): a single value
-/// may decide the mean, or values of that size may lie where none was drawn yet. Of a log-normal
-/// with a deviation of 1.5 nearly always, of an exponential in half of samples of 20 and in 7 % of
-/// samples of 100; never of fewer than three values, of equal ones or where one is not finite.
+/// Whether the values have such a heavy tail that no interval of their mean is valid (STATISTICS
+/// 6): a single value may decide the mean, or values of that size may not have been drawn yet. True
+/// for nearly all samples of a log-normal with a deviation of 1.5, for half of the samples of 20
+/// and 7 % of the samples of 100 of an exponential; never for fewer than three values, for equal
+/// ones, or if one is not finite.
 bool is_heavy_tailed(std::span<const double> values);
 
 }  // namespace montecarta::analysis

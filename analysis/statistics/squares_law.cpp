@@ -133,7 +133,7 @@ Traces traces_of_constant_errors(double terms, double largest) {
 
 namespace {
 
-/// The normal score whose upper or lower tail, whichever is smaller, is given.
+/// The normal score with the given probability of its upper or lower tail, whichever is smaller.
 double score_of_tails(double lower, double upper) {
   const boost::math::normal normal;
   const double tail = std::min(lower, upper);

@@ -10,8 +10,8 @@
 
 namespace montecarta::analysis {
 
-/// Traces of R, R^2 and R^3, where R is the correlation matrix of the errors that a sum of squares
-/// adds up. They are its cumulants but for factors, whatever the errors have to do with each other
+/// Traces of R, R^2 and R^3, where R is the correlation matrix of the errors in a sum of squares.
+/// Up to factors they are the cumulants of the sum, for any correlations between the errors
 /// (STATISTICS 5).
 struct Traces {
   double first = 0.0;

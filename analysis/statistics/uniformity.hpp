@@ -18,10 +18,10 @@ constexpr double ecdf_point(std::size_t j) {
   return static_cast<double>(j) / static_cast<double>(kEcdfSteps);
 }
 
-/// {point} How many values are at or below it.
+/// {point} Number of values at or below it.
 using EcdfCounts = std::array<std::size_t, kEcdfSteps + 1>;
 
-/// What probability integral transforms say of a filter.
+/// Verdict on the probability integral transforms of a filter.
 enum class Calibration {
   untested,     ///< fewer than kLeastValues
   calibrated,   ///< the ECDF stays within its band
@@ -31,7 +31,7 @@ enum class Calibration {
   wrong_shape,  ///< squared errors of the right size on average, of another distribution
 };
 
-/// The quantity that is transformed. It decides what a departure from the uniform law means.
+/// The transformed quantity, which decides the meaning of a departure from the uniform law.
 enum class PitOf {
   error,         ///< a signed error: ends are too narrow, the middle is too wide
   squared_error  ///< a NEES: large values are too narrow, small ones are too wide

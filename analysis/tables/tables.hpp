@@ -17,7 +17,7 @@ std::string latex_escape(const std::string& text);
 /// A tabular in booktabs style, without float or caption.
 std::string latex_tabular(const TextTable& table);
 
-/// The same below a comment that says which study it is of.
+/// The same below a comment with the name of its study.
 std::string latex_table(const StudyAnalysis& study, const TextTable& table);
 
 /// The verdict on each cell in a sentence. This and the following are for a terminal of `width`
@@ -45,8 +45,8 @@ void write_csv(const StudyAnalysis& study, const std::filesystem::path& director
 /// Names of the files that write_csv() makes of cells with these labels.
 std::vector<std::string> csv_names(const std::vector<std::string>& labels);
 
-/// Writes everything as HDF5: one group a cell below /cells, series over the scale `time`. Replaces
-/// `path` when all is written. Throws RunError where it cannot, and leaves what was there.
+/// Writes everything as HDF5: one group for each cell below /cells, series over the scale `time`.
+/// Replaces `path` when all is written. Throws RunError if that fails, and leaves the old file.
 void write_analysis_file(const StudyAnalysis& study, const std::filesystem::path& path);
 
 }  // namespace montecarta::analysis

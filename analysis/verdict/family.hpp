@@ -10,7 +10,7 @@
 
 namespace montecarta::analysis {
 
-/// What a family of tests compares with what a filter claims (STATISTICS 5).
+/// Subject of a family of tests (STATISTICS 5).
 enum class Family {
   size,         ///< squared errors of all components at all scans
   component,    ///< squared errors of one component at all scans
@@ -55,12 +55,12 @@ struct FamilyTest {
   Family family = Family::size;
   std::vector<Member> members = {};
   double p = 1.0;           ///< of the family: Bonferroni over members, Holm over families
-  double member_limit = 0;  ///< members whose p is at most this are shown to be off
+  double member_limit = 0;  ///< largest p of a member that is shown to be off
   bool is_rejected = false;
 
   /// The member of the least p-value.
   const Member& strongest() const;
-  /// Whether `member` is shown to differ from what it should be.
+  /// Whether `member` is shown to differ from its expectation.
   bool is_shown(const Member& member) const { return is_rejected && member.p <= member_limit; }
 };
 

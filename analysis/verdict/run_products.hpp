@@ -16,19 +16,19 @@ struct Aspect {
   std::size_t first_component, end_component;
 };
 
-/// What the products of the errors of different runs say of an aspect (STATISTICS 5).
+/// Statistics of an aspect by the products of the errors of different runs (STATISTICS 5).
 struct AspectProducts {
   explicit AspectProducts(std::size_t runs) : products(runs), terms_of_run(runs) {}
 
   /// Adds an aspect that has no error in common with this one.
   void add(const AspectProducts& other);
-  /// Errors of a run, on the average.
+  /// Mean number of errors of a run.
   double terms() const;
   /// Share of its errors that a run has in common with another one.
   double share() const { return common_terms / terms(); }
   Traces traces() const;
-  /// How much more the sums of squares vary between runs than the products of different runs say:
-  /// the variance of the scales that runs have of their own, which is 0 if they have none. Its
+  /// Variance of the scales of single runs: the part of the variance of sums of squares between
+  /// runs that the products of different runs do not explain; 0 if there are no such scales. Its
   /// standard error follows from the pseudo-values of the jackknife.
   Summary variance_of_scales() const;
 

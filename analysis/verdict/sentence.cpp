@@ -32,8 +32,8 @@ std::vector<const Member*> shown_in(const FamilyTest* test, Direction direction)
   return all;
 }
 
-/// The member that speaks for a direction: the size if it is shown, else the component or stretch
-/// of the least p-value, else the scan.
+/// The leading member for a direction: the size if it is shown, else the component or stretch of
+/// the least p-value, else the scan.
 std::optional<Shown> leading(const Verdict& verdict, Direction direction) {
   std::optional<Shown> best;
   for (const FamilyTest& test : verdict.families) {
@@ -124,7 +124,7 @@ std::string ratio_words(const Verdict& verdict, Direction direction) {
   return "NEES " + factor_text(*shown, direction) + too_large(direction) + place_of(*shown);
 }
 
-/// The finding of the families that are no ratios, by the least p-value.
+/// The shown deviation with the least p-value among the families that are no ratios.
 std::string other_words(const Verdict& verdict) {
   std::optional<Shown> best;
   for (const FamilyTest& test : verdict.families) {
@@ -149,7 +149,7 @@ std::string other_words(const Verdict& verdict) {
   }
 }
 
-/// When the size is off, if its ratio alone would not say why it is.
+/// Times at which the size is off, if the size alone leads the verdict.
 std::string time_words(const Verdict& verdict, Direction direction) {
   const auto shown = leading(verdict, direction);
   if (!shown || shown->test->family != Family::size) return "";

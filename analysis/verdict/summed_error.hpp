@@ -14,7 +14,7 @@ namespace montecarta::analysis {
 /// Stretches of a drive that are judged by themselves, where there are scans for twice as many.
 inline constexpr std::size_t kStretches = 8;
 
-/// A member of a family whose intervals are yet to be computed.
+/// A member of a family with a function for its intervals.
 struct MemberTest {
   Family family = Family::size;
   Member member;
@@ -28,7 +28,7 @@ MemberTest ratio_test(Family family, Member member, const SquaresLaw& law);
 std::vector<FamilyTest> judge_tests(std::span<const MemberTest> tests, double level);
 
 /// Adds up the NEES of every scan over runs, and tests the sums of single scans, which are exactly
-/// chi-square whatever the errors of a run have to do with each other (STATISTICS 5).
+/// chi-square for any correlations between the errors of a run (STATISTICS 5).
 class SummedError {
  public:
   explicit SummedError(std::size_t scans) : scans_(scans) {}

@@ -17,7 +17,7 @@ bool is_outside(const Interval& interval, const Interval& margin) {
   return interval.lower > margin.upper || interval.upper < margin.lower;
 }
 
-/// What counts as negligible in members of a family, by the margin of ratios.
+/// The range of negligible deviations of members of a family, for a margin of ratios.
 Interval margin_of(Family family, double within) {
   if (is_ratio(family)) return {1.0 / within, within};
   const double most = family == Family::bias ? std::sqrt(within - 1.0) : within - 1.0;
@@ -59,8 +59,8 @@ Answer answer_of(const Verdict& verdict) {
   return is_rejected ? Answer::inconsistent : Answer::undecided;
 }
 
-/// By which factor runs must grow for the interval of a member that is not within the margin to be
-/// so short that it either is or shows a deviation among all tests.
+/// Factor by which the number of runs must grow until the interval of a member that exceeds the
+/// margin is so short that it lies within the margin or shows a deviation among all tests.
 double growth_needed(Family family, const Member& member, double within) {
   if (family == Family::scan || family == Family::between_runs) return 1.0;
   const Interval margin = margin_of(family, within), found = member.simultaneous;

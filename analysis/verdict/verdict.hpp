@@ -24,7 +24,7 @@ enum class Answer {
 /// "consistent", ...
 std::string name_of(Answer answer);
 
-/// What the errors of a cell say of its covariances (STATISTICS 5).
+/// Verdict on the covariances of a cell (STATISTICS 5).
 struct Verdict {
   Answer answer = Answer::untested;
   double level = 0.95;           ///< of all tests together
@@ -34,7 +34,7 @@ struct Verdict {
   std::uint64_t failed = 0;    ///< of them
   std::uint64_t samples = 0;   ///< of the complete runs, one a scan
   std::uint64_t unusable = 0;  ///< of them: no finite error or no covariance matrix
-  std::optional<std::uint64_t> more_runs = {};  ///< that would decide what is undecided, if known
+  std::optional<std::uint64_t> more_runs = {};  ///< needed for a decision, if known
 
   /// nullptr where the family does not apply.
   const FamilyTest* find(Family family) const;
@@ -54,10 +54,10 @@ std::string in_words(const Verdict& verdict);
 /// One sentence on the cell `label`, with when and in which component.
 std::string sentence(const std::string& label, const Verdict& verdict);
 
-/// What a script does with a filter: let it pass, stop it, or wait for more runs.
+/// Decision of a script on a filter: accept it, reject it, or wait for more runs.
 enum class GateAnswer : std::uint8_t { consistent, inconsistent, undecided };
 
-/// What a gate lets pass. More than these are inconsistent whatever the errors are.
+/// Numbers that a gate tolerates. More than these are inconsistent for any errors.
 struct Allowance {
   std::uint64_t failed = 0;    ///< runs
   std::uint64_t unusable = 0;  ///< samples

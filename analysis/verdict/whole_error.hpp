@@ -14,8 +14,8 @@ namespace montecarta::analysis {
 /// The spread between runs is judged from so many runs on.
 inline constexpr std::size_t kFewestRunsOfSpread = 50;
 
-/// Errors of one run in units of the covariance that its filter reported, {scan, component}. What
-/// cannot be judged by its components is NaN.
+/// Errors of one run in units of the covariance that its filter reported, {scan, component}.
+/// Samples that cannot be judged by component are NaN.
 struct WhitenedRun {
   std::size_t dimension = 0;
   std::vector<double> whitened;      ///< L^-1 e, where the covariance is L L'
@@ -48,7 +48,7 @@ class WholeError {
     void add(double error);
     void end_run();
     double ratio() const { return squares / terms; }
-    /// Runs of equal numbers of terms whose mean varies as much.
+    /// Number of runs with equal numbers of terms that give a mean of the same variance.
     double runs() const { return terms * terms / squared_terms; }
   };
 
