@@ -272,17 +272,6 @@ std::vector<std::string> row_of(const CellComparison& row, double level) {
           pairs_text(row)};
 }
 
-/// "40 of 200 runs" of failures in words; nothing where there are none.
-void note_failures(const StudyAnalysis& study, std::vector<std::string>& notes) {
-  for (const CellAnalysis& cell : study.cells) {
-    if (cell.failures.empty()) continue;
-    notes.push_back(cell.label + " FAILED in " + std::to_string(cell.failures.size()) +
-                    " runs: each counts as lost in its win shares and sign tests, and is left out "
-                    "of differences, ratios and signed-rank tests, which look at the " +
-                    std::to_string(cell.complete) + " complete runs alone.");
-  }
-}
-
 }  // namespace
 
 TextTable comparison_table(const Comparisons& comparisons) {
@@ -320,38 +309,24 @@ TextTable win_table(const WinMatrix& matrix, double level) {
 
 std::vector<std::string> comparison_notes(const StudyAnalysis& study,
                                           const Comparisons& comparisons) {
-  const std::string level = level_text(comparisons.level);
-  std::vector<std::string> notes = {
-      "Each cell against " + comparisons.baseline +
-          ", run by run in the same world with the same noise: 'difference' is the mean of what "
-          "the cell has more than " +
-          comparisons.baseline +
-          ", with the interval in which it would lie over infinitely many "
-          "runs with probability " +
-          level +
-          " (bootstrap over runs), 'ratio' the quotient of the "
-          "means, 'runs won' how often the cell was the better one: the lower one, of a "
-          "number that is not better high or low.",
-      "'better' and 'worse' are said where chance alone would hardly show it: where the runs won "
-      "and lost are more uneven than a fair coin's ('p sign', exact sign test), or the differences "
-      "lean to one side ('p rank', Wilcoxon's signed-rank test). Both p are adjusted for all " +
-          std::to_string(2 * comparisons.rows.size()) +
-          " tests of the table (Holm): the probability of one false word in all of it is at most " +
-          level_text(1.0 - comparisons.level) +
-          ". Both look at runs, not at the mean: where the interval of the mean difference holds 0 "
-          "the word is 'in most runs', and 'mixed' where it lies on the other side. 'heavy tail' "
-          "stands where a few runs decide the mean difference, so that no interval can be given."};
-  note_failures(study, notes);
+  std::vector<std::string> notes =
+      paragraphs("comparison", "notes",
+                 {{"baseline", comparisons.baseline},
+                  {"level", level_text(comparisons.level)},
+                  {"tests", std::to_string(2 * comparisons.rows.size())},
+                  {"error", level_text(1.0 - comparisons.level)}});
+  for (const CellAnalysis& cell : study.cells) {
+    if (cell.failures.empty()) continue;
+    notes.push_back(prose("comparison", "failures",
+                          {{"cell", cell.label},
+                           {"failed", std::to_string(cell.failures.size())},
+                           {"complete", std::to_string(cell.complete)}}));
+  }
   return notes;
 }
 
 std::string win_note(double level) {
-  return "Share of runs in which the cell of the row beats the one of the column, in the same "
-         "world "
-         "with the same noise; a run that failed in one cell is won by the other. With * one of "
-         "the "
-         "two wins more often than chance would have it (exact sign test at " +
-         level_text(1.0 - level) + " for the whole matrix, by Holm's correction).";
+  return prose("comparison", "wins", {{"error", level_text(1.0 - level)}});
 }
 
 }  // namespace montecarta::analysis

@@ -225,15 +225,10 @@ double begin_of_resolved(const DrawnTree& cell) {
 }  // namespace
 
 Figure ancestry_figure(const ResultFile& file, std::optional<std::uint64_t> run) {
-  Figure figure{"ancestry", "Whose story do the particles tell?", ""};
   const auto run_index = chosen_run(file, run);
   const auto cells = run_index ? drawn_trees(file, *run_index) : std::vector<DrawnTree>{};
-  if (cells.empty()) return figure;
-  figure.sentence =
-      "Run " + std::to_string(file.runs()[*run_index]) +
-      ": the lines of descent of the particles at the end of the run (right edge); lines meet in "
-      "a common ancestor, and to the left of the last meeting all particles share one past: what "
-      "the filter got wrong there it cannot doubt any more.";
+  if (cells.empty()) return {};
+  Figure figure = figure_of("ancestry", {{"run", std::to_string(file.runs()[*run_index])}});
   const double end = cells.front().end;
   figure.chart.x_to = figure.chart.x_first = end;
   figure.chart.height = 150.0;
@@ -244,7 +239,7 @@ Figure ancestry_figure(const ResultFile& file, std::optional<std::uint64_t> run)
     figure.chart.x_first = std::min(figure.chart.x_first, begin_of_resolved(cell));
   }
   if (figure.chart.x_first < end) {
-    figure.sentence += " The end of the run, since the earliest of these meetings, is enlarged.";
+    figure.sentence += " " + prose("ancestry", "enlarged");
   } else {
     figure.chart.x_first = 0.0;
   }

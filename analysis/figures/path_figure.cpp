@@ -342,23 +342,13 @@ std::vector<DrawnPath> drawn_cells(const ResultFile& file, std::size_t run_index
 }
 
 std::string sentence_of(const ResultFile& file, std::size_t run_index, std::size_t cells) {
-  const std::string run = "Run " + std::to_string(file.runs()[run_index]);
+  const std::string run = std::to_string(file.runs()[run_index]);
   if (file.has_truth()) {
-    return run +
-           ": the true path in grey, the filter's in colour. Ellipses hold two standard deviations "
-           "of the pose, at " +
-           std::to_string(kPoseEllipses) +
-           " moments, and of landmarks at the end: where the filter is consistent, the truth is "
-           "seldom "
-           "outside.";
+    return prose("paths", "simulated", {{"run", run}, {"moments", std::to_string(kPoseEllipses)}});
   }
-  return run +
-         ", as it stands, not aligned: the filter's path in colour over the fixes of the reference "
-         "as grey dots, with the landmarks of its map at the end. The panels reach no farther than "
-         "a quarter beyond the fixes: a filter that lost the map may leave them." +
-         (cells == kMostRecordedPanels
-              ? " The first " + std::to_string(cells) + " cells that completed the run."
-              : "");
+  const std::string sentence = prose("paths", "recorded", {{"run", run}});
+  if (cells != kMostRecordedPanels) return sentence;
+  return sentence + " " + prose("paths", "first cells", {{"cells", std::to_string(cells)}});
 }
 
 }  // namespace
@@ -377,10 +367,10 @@ Chart path_chart(const std::vector<DrawnPath>& cells, const FigureData& landmark
 }
 
 Figure path_figure(const ResultFile& file, std::optional<std::uint64_t> run) {
-  Figure figure{"paths", "Where did the filter think it was?", ""};
   const auto run_index = chosen_run(file, run);
   const auto cells = run_index ? drawn_cells(file, *run_index) : std::vector<DrawnPath>{};
-  if (cells.empty()) return figure;
+  if (cells.empty()) return {};
+  Figure figure = figure_of("paths");
   figure.sentence = sentence_of(file, *run_index, cells.size());
   for (const DrawnPath& cell : cells) {
     figure.data.insert(figure.data.end(), {cell.path, cell.map});

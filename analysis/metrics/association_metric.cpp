@@ -63,24 +63,13 @@ TextTable association_table(const StudyAnalysis& study) {
   return table;
 }
 
-std::vector<std::string> association_notes() {
-  return {
-      "Detections of landmarks in a run, counted against the identities that come with them, as "
-      "the "
-      "filter's weighted particles took them: 'correct' went to their own landmark or were "
-      "rightly made new, 'wrong' to another one, 'new again' were made new although the map had "
-      "theirs, 'left out' were not used; 'false accepted' are false alarms in a run that were "
-      "used."};
-}
-
 std::vector<Section> association_sections(const StudyAnalysis& study) {
   const TextTable table = association_table(study);
   if (table.rows.empty()) return {};
-  Section section{"association", "Association"};
-  section.summary = "given to a wrong landmark: " + range_over_cells(study, wrong_share, percent) +
-                    " of detections";
+  Section section =
+      section_of("association", {{"wrong", range_over_cells(study, wrong_share, percent)}});
   section.add("association", table);
-  section.add(association_notes());
+  section.add_notes("notes");
   return {section};
 }
 

@@ -300,41 +300,20 @@ TextTable calibration_table(const StudyAnalysis& study) {
   return table;
 }
 
-/// Tells how to read the table; no notes without a table.
-std::vector<std::string> calibration_notes(const StudyAnalysis& study) {
-  std::vector<std::string> notes;
-  if (has_test(study, is_of_error)) {
-    notes.emplace_back(
-        "The probability integral transform (PIT) of an error is the probability of a value below "
-        "the truth, in the Gaussian of the filter or among its weighted particles. Over runs it is "
-        "uniform if the filter is calibrated. 'too narrow': values near 0 and 1 are too frequent; "
-        "'too wide': values near 1/2 are; 'shifted': values on one side are. Every run gives one "
-        "landmark, another one from run to run.");
-  }
-  if (has_test(study, is_of_nees)) {
-    notes.emplace_back(
-        "The PIT of the NEES is the probability of a smaller value under the chi-square law. 'too "
-        "narrow': the NEES is too large; 'too wide': it is too small; 'wrong shape': it is neither "
-        "on average, but has another distribution.");
-  }
-  if (notes.empty()) return {};
-  notes.emplace_back(
-      "Columns are verdicts at the end of the run; the last one counts faults at the end of each "
-      "quarter. A fault is an empirical distribution function outside its simultaneous band. A "
-      "calibrated filter stays within the bands of all tests of its cell with a probability of at "
-      "least " +
-      level_text(study.level) + ". Fewer than " + std::to_string(kLeastValues) +
-      " runs are not judged. A filter in which these tests find no fault need not be consistent: "
-      "they test four moments, the verdict tests all scans together.");
+/// Adds how to read the table; nothing without a table.
+void add_calibration_notes(const StudyAnalysis& study, Section& section) {
+  const bool has_errors = has_test(study, is_of_error), has_nees = has_test(study, is_of_nees);
+  if (has_errors) section.add_notes("errors");
+  if (has_nees) section.add_notes("squared errors");
+  if (!has_errors && !has_nees) return;
+  section.add_notes("tests",
+                    {{"level", level_text(study.level)}, {"fewest", std::to_string(kLeastValues)}});
   for (const CellAnalysis& cell : study.cells) {
     std::size_t undefined = 0;
     for (const JudgedPits& one : cell.get<Calibrations>()) undefined += one.undefined;
     if (undefined == 0) continue;
-    notes.push_back(cell.label + ": " + std::to_string(undefined) +
-                    " values are left out (no positive variance, no landmark, or a NEES of too few "
-                    "draws or without a usable covariance).");
+    section.add_notes("undefined", {{"cell", cell.label}, {"values", std::to_string(undefined)}});
   }
-  return notes;
 }
 
 /// One row for each test. The p-value is that of the test alone.
@@ -394,7 +373,7 @@ std::vector<Panel> panels_like(const StudyAnalysis& study, const JudgedPits& lik
 }
 
 /// A panel for each quantity and time that is chosen. No data if nothing is judged.
-Figure figure_of(const StudyAnalysis& study, const Chosen& chosen, Figure figure) {
+Figure pit_figure(const StudyAnalysis& study, const Chosen& chosen, Figure figure) {
   std::vector<const JudgedPits*> drawn;
   for (const CellAnalysis& cell : study.cells) {
     for (const JudgedPits* one : tests_of(cell, chosen)) {
@@ -421,34 +400,16 @@ Figure figure_of(const StudyAnalysis& study, const Chosen& chosen, Figure figure
 /// ECDFs at the end of the run by the Gaussian and by the particles where they are stored, and of
 /// the NEES at the end of each quarter.
 std::vector<Figure> calibration_figures(const StudyAnalysis& study) {
-  const std::string share = "Share of runs whose PIT is at most the value on the axis, minus it, ";
-  const std::string band =
-      " The curve of a calibrated filter stays within the dashed band, which is that of the cell "
-      "with most runs. ";
-  const std::string of_errors = band +
-                                "Above zero on the left and below on the right: overconfident; the "
-                                "other way round: conservative; an arc on one side: shifted.";
   const auto is_last = [&](const JudgedPits& one, const char* by) {
     return is_of_error(one) && one.by == by && one.time == study.times.back();
   };
-  return {figure_of(study, is_of_nees,
-                    {"nees_quantiles", "Is the NEES distributed as chi-square?",
-                     share +
-                         "at the end of each quarter of the run. The PIT is the probability of "
-                         "a smaller NEES under the chi-square law." +
-                         band + "Below zero: overconfident; above zero: conservative."}),
-          figure_of(study, [&](const JudgedPits& one) { return is_last(one, "Gaussian"); },
-                    {"calibration", "Does the truth lie where the filter says?",
-                     share +
-                         "at the end of the run. The PIT is the probability, by the Gaussian "
-                         "of the filter, of a value below the truth." +
-                         of_errors}),
-          figure_of(study, [&](const JudgedPits& one) { return is_last(one, "particles"); },
-                    {"ranks", "Does the truth lie among the particles?",
-                     share +
-                         "at the end of the run. The PIT is the share of the weighted "
-                         "particles below the truth." +
-                         of_errors})};
+  return {pit_figure(study, is_of_nees, figure_of("nees_quantiles")),
+          pit_figure(
+              study, [&](const JudgedPits& one) { return is_last(one, "Gaussian"); },
+              figure_of("calibration")),
+          pit_figure(
+              study, [&](const JudgedPits& one) { return is_last(one, "particles"); },
+              figure_of("ranks"))};
 }
 
 std::vector<Section> calibration_sections(const StudyAnalysis& study) {
@@ -458,11 +419,10 @@ std::vector<Section> calibration_sections(const StudyAnalysis& study) {
     std::ranges::move(tests_of(cell, [](const JudgedPits&) { return true; }),
                       std::back_inserter(all));
   }
-  Section section{"calibration", "Are errors distributed as the filters say?"};
-  section.summary = faults_text(all) + " tests find a fault";
+  Section section = section_of("calibration", {{"faults", faults_text(all)}});
   section.is_for_terminal = false;
   section.add("calibration", calibration_table(study));
-  section.add(calibration_notes(study));
+  add_calibration_notes(study, section);
   return {section};
 }
 

@@ -408,12 +408,6 @@ void bound_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
   all.push_back({"map_efficiency", "1", cell.get<Efficiency>().map});
 }
 
-std::string paths_of(const CramerRaoBound& bound) {
-  return bound.runs == 1 ? "of the path"
-                         : "of " + std::to_string(bound.runs) +
-                               " worlds (root of the mean of their squares, each given its world)";
-}
-
 /// One row a scan: the Cramer-Rao bound of position and heading.
 void write_bound(const StudyAnalysis& study, const std::filesystem::path& path) {
   CsvFile file(path);
@@ -427,22 +421,12 @@ void write_bound(const StudyAnalysis& study, const std::filesystem::path& path) 
 }  // namespace
 
 std::vector<std::string> bound_notes(const CramerRaoBound& bound) {
-  if (bound.empty()) {
-    return {"There is no Cramer-Rao bound and no efficiency, since " + bound.missing + "."};
-  }
-  if (!bound.is_bound) {
-    return {
-        "There is no efficiency: noise moves the vehicle, so that every run has a path of its "
-        "own, and a filter that knows the law of the paths may have smaller errors than the "
-        "recursion along each of them. The linearised reference is that recursion (a Kalman "
-        "filter with all Jacobians at the truth), root of the mean of squares over " +
-        std::to_string(bound.runs) + " paths; it is no bound."};
-  }
-  return {"Efficiency is the Cramer-Rao bound " + paths_of(bound) +
-          ", the least error that any filter without bias can have that knows which landmark is "
-          "which, divided by the error of the filter (root mean squares over all scans; of the "
-          "position, in the table of maps of the landmarks): 100 % is as good as can be. A filter "
-          "with a bias may come out above."};
+  if (bound.empty()) return {prose("bound", "missing", {{"reason", bound.missing}})};
+  const std::string runs = std::to_string(bound.runs);
+  if (!bound.is_bound) return {prose("bound", "reference", {{"runs", runs}})};
+  const std::string paths = bound.runs == 1 ? prose("bound", "one path")
+                                            : prose("bound", "many worlds", {{"runs", runs}});
+  return {prose("bound", "efficiency", {{"paths", paths}})};
 }
 
 Metric bound_metric() {

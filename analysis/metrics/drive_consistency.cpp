@@ -267,28 +267,16 @@ TextTable drive_table(const StudyAnalysis& study) {
 std::vector<std::string> warnings_of(const CellAnalysis& cell, const JudgedReference& reference,
                                      const DriveConsistency& drive) {
   std::vector<std::string> warnings;
-  if (drive.mean.is_below_reference) {
-    warnings.emplace_back(
-        "errors are smaller than the fixes' own: their sigmas are too large, or the reference fed "
-        "the filter");
-  }
-  if (reference.has_start) {
-    warnings.emplace_back(
-        "the drive starts at a fix of this reference: the error of that fix is in all estimates "
-        "and in no covariance");
-  }
-  if (cell.filter == "external") {
-    warnings.emplace_back("a program: only its author knows whether it read the reference");
-  }
-  if (drive.mean.in_gaps > 0) {
-    warnings.push_back(std::to_string(drive.mean.in_gaps) +
-                       " fixes left out: the scans around lie more than " +
-                       readable(kLongestScanGap, 1) + " s apart");
-  }
-  if (drive.mean.undefined > 0) {
-    warnings.push_back(std::to_string(drive.mean.undefined) +
-                       " fixes left out: no finite covariance there, or too few draws");
-  }
+  const auto add = [&](bool applies, const char* key, const Values& values = {}) {
+    if (applies) warnings.push_back(prose("drive", key, values));
+  };
+  const auto count = [](std::size_t n) { return std::to_string(n); };
+  add(drive.mean.is_below_reference, "below reference");
+  add(reference.has_start, "starts at fix");
+  add(cell.filter == "external", "external");
+  add(drive.mean.in_gaps > 0, "in gaps",
+      {{"fixes", count(drive.mean.in_gaps)}, {"gap", readable(kLongestScanGap, 1)}});
+  add(drive.mean.undefined > 0, "undefined", {{"fixes", count(drive.mean.undefined)}});
   return warnings;
 }
 
@@ -304,45 +292,19 @@ TextTable warning_table(const StudyAnalysis& study) {
   return table;
 }
 
-std::string independence_note(const StudyAnalysis& study) {
-  const std::string fixes =
-      "Errors of neighbouring fixes are correlated: 'effective' is how many independent fixes vary "
-      "as much. ";
-  if (study.own_drives == 0) {
-    return "All runs met the same drive, so many runs say no more of it than one. " + fixes +
-           "Where an error may last for the whole drive there is hardly more than one, and the "
-           "drive cannot tell.";
-  }
-  return "Every run met a drive of its own: the verdict is of the mean over drives of their "
-         "averages. " +
-         fixes +
-         "An error that lasts for a whole drive counts once for each. What all drives have in "
-         "common, a calibration that is off say, is no independent error: it needs other drives.";
-}
-
-std::vector<std::string> drive_notes(const StudyAnalysis& study) {
-  return {
-      "The NEES at a fix is the squared error in units of the filter's covariance plus that of the "
-      "fix, both as they stand, without alignment; divided by the components it is 1 on the "
-      "average of a consistent filter.",
-      independence_note(study),
-      "The minutes are those of a drive on which errors are correlated for as long as on this one, "
-      "that would show the filter to be consistent within the margin, or to be off.",
-      "An outlier among the fixes makes the average large and leaves the median; the verdict is by "
-      "the average."};
-}
-
 std::vector<Section> drive_sections(const StudyAnalysis& study) {
   const TextTable table = drive_table(study);
   if (table.rows.empty()) return {};
-  Section section{"drive", "Does the covariance cover the errors along the drive?"};
+  Section section = section_of("drive");
   for_each_drive(study, [&](const auto& cell, const auto& reference, const auto& drive) {
     section.blocks.emplace_back(
         Section::Lead{cell.label + " by " + reference.name + ": " + in_words(drive) + "."});
   });
   section.add("drive", table);
   section.add("drive_warnings", warning_table(study));
-  section.add(drive_notes(study));
+  section.add_notes(
+      "notes",
+      {{"independence", prose("drive", study.own_drives == 0 ? "same drive" : "own drives")}});
   return {section};
 }
 

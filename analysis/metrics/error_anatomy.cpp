@@ -139,16 +139,6 @@ TextTable why_table(const StudyAnalysis& study) {
   return table;
 }
 
-std::vector<std::string> why_notes() {
-  return {
-      "'bias' is the part of ANEES that comes from the error that all runs share; the rest is "
-      "scatter. In an optimistic filter bias calls for a better model, scatter for a noise model "
-      "that matches.",
-      "'Monte Carlo share' is the part of the squared position error that comes from the particles "
-      "being few, by how far their families differ; it needs record.columns with ancestry and "
-      "particles."};
-}
-
 /// The error of one component with its envelope; angles in degrees.
 Panel envelope_panel(const CellAnalysis& cell, std::size_t style, std::size_t component) {
   const ErrorTrace& trace = *cell.find<ErrorTrace>();
@@ -168,13 +158,7 @@ Panel envelope_panel(const CellAnalysis& cell, std::size_t style, std::size_t co
 
 /// A row of panels, forward, left and heading, for each of the first cells.
 Figure envelope_figure(const StudyAnalysis& study) {
-  Figure figure{"error_envelopes", "Do errors stay within what the filter believes?", ""};
-  figure.sentence =
-      "Errors of the first complete run of each cell (at most six cells), seen from the true "
-      "vehicle, and around zero three standard deviations as the filter believes them. The errors "
-      "of a consistent filter are inside nearly always (99.7 % of scans if they are Gaussian) and "
-      "use the room they have: errors that leave the envelope belong to an optimistic filter, "
-      "errors that never leave its middle to a conservative one.";
+  Figure figure = figure_of("error_envelopes");
   std::vector<Panel> panels;
   std::vector<std::string> cells;
   for (std::size_t i = 0; i < study.cells.size() && cells.size() < kMostEnvelopeRows; ++i) {
@@ -193,9 +177,7 @@ Figure envelope_figure(const StudyAnalysis& study) {
 }
 
 Figure bias_figure(const StudyAnalysis& study) {
-  Figure figure{"bias", "Do all runs make the same error?", ""};
-  figure.sentence =
-      "How much of ANEES comes from the error that all runs share (bias); the rest is scatter.";
+  Figure figure = figure_of("bias");
   const CellValues bias = [](const CellAnalysis& cell) {
     return scaled(cell.get<ErrorAnatomy>().bias_share, 100.0);
   };
@@ -207,15 +189,13 @@ Figure bias_figure(const StudyAnalysis& study) {
 std::vector<Section> error_anatomy_sections(const StudyAnalysis& study) {
   const TextTable table = why_table(study);
   if (table.rows.empty()) return {};
-  Section section{"error_anatomy", "Where does the NEES come from?"};
   const CellNumber bias = [](const CellAnalysis& cell) {
     const ErrorAnatomy* anatomy = cell.find<ErrorAnatomy>();
     return anatomy == nullptr ? kNaN : anatomy->mean_bias_share;
   };
-  section.summary = "bias, which all runs share, makes " + range_over_cells(study, bias, percent) +
-                    " of the NEES";
+  Section section = section_of("error_anatomy", {{"bias", range_over_cells(study, bias, percent)}});
   section.add("why", table);
-  section.add(why_notes());
+  section.add_notes("notes");
   return {section};
 }
 

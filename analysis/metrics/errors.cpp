@@ -61,10 +61,7 @@ Panel error_panel(const StudyAnalysis& study, const std::string& name, const std
 }
 
 Figure rmse_figure(const StudyAnalysis& study) {
-  Figure figure{"rmse", "How large are the errors?", ""};
-  figure.sentence =
-      "Root mean square error over runs at each scan: lower is better. It grows while the vehicle "
-      "explores and falls where it meets landmarks it knows.";
+  Figure figure = figure_of("rmse");
   const CellValues position = [](const CellAnalysis& cell) {
     return cell.over_time("position_rmse");
   };
@@ -72,12 +69,7 @@ Figure rmse_figure(const StudyAnalysis& study) {
     return scaled(cell.over_time("heading_rmse"), 180.0 / kPi);
   };
   if (!study.bound.empty()) {
-    figure.sentence +=
-        study.bound.is_bound
-            ? " The dashed line is the Cramer-Rao bound: no filter without bias can stay below it, "
-              "so the gap is what a better filter could gain."
-            : " The dashed line is what a linearised filter with Jacobians at the truth reports, a "
-              "reference and no bound: a filter may stay below it.";
+    figure.sentence += " " + prose("errors", study.bound.is_bound ? "bound" : "reference");
   }
   add_panels(
       {error_panel(study, "rmse_position", "position RMSE [m]", position, study.bound.position),

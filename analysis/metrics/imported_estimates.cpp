@@ -78,7 +78,6 @@ TextTable component_table(const StudyAnalysis& study) {
 
 std::vector<Section> imported_sections(const StudyAnalysis& study) {
   if (!study.imported.is_imported()) return {};
-  Section section{"components", "Which component is off?"};
   const CellNumber largest = [](const CellAnalysis& cell) {
     const ComponentErrors& found = cell.get<ComponentErrors>();
     double ratio = kNaN;
@@ -87,14 +86,9 @@ std::vector<Section> imported_sections(const StudyAnalysis& study) {
     }
     return ratio;
   };
-  section.summary =
-      "largest ratio of an error to what is claimed of it: " + range_over_cells(study, largest) +
-      ", near 1 is right";
+  Section section = section_of("components", {{"ratio", range_over_cells(study, largest)}});
   section.add("components", component_table(study));
-  section.add(std::vector<std::string>{
-      "The error in the stated convention (" + study.imported.convention +
-      "), root mean square over runs and scans, beside the deviation that the covariance claims: "
-      "of a consistent estimator their ratio is near 1."});
+  section.add_notes("notes", {{"convention", study.imported.convention}});
   return {section};
 }
 
@@ -139,23 +133,25 @@ std::string components_text(const StudyAnalysis& study) {
 
 std::vector<std::string> imported_notes(const StudyAnalysis& study) {
   if (!study.imported.is_imported()) return {};
-  std::vector<std::string> notes = {
-      "Imported estimates of another program, error " + study.imported.convention + " (" +
-      sentence_on(study.imported.convention) + "), components " + components_text(study) + "."};
+  const std::string& convention = study.imported.convention;
+  std::vector<std::string> notes = {prose("components", "imported",
+                                          {{"convention", convention},
+                                           {"meaning", sentence_on(convention)},
+                                           {"components", components_text(study)}})};
   for (const CellAnalysis& cell : study.cells) {
-    const std::string hint =
-        in_words(cell.get<ConventionHint>(), cell.label, study.imported.convention);
-    if (!hint.empty()) notes.push_back("Hint, no verdict: " + hint + ".");
+    const std::string hint = in_words(cell.get<ConventionHint>(), cell.label, convention);
+    if (!hint.empty()) notes.push_back(prose("components", "hint", {{"hint", hint}}));
   }
   for (const CellAnalysis& cell : study.cells) {
     const NeesResult* all = cell.find_nees(ErrorBlock::pose, cell.leading);
     if (all == nullptr || all->series.unusable == 0) continue;
     const double share =
         static_cast<double>(all->series.unusable) / static_cast<double>(all->series.samples);
-    notes.push_back(cell.label + ": " + std::to_string(all->series.unusable) + " of " +
-                    std::to_string(all->series.samples) + " samples (" + percent(share) +
-                    ") are unusable: error or covariance is not finite, or the covariance is not "
-                    "symmetric and positive semidefinite. ANEES is of the other samples alone.");
+    notes.push_back(prose("components", "unusable",
+                          {{"cell", cell.label},
+                           {"unusable", std::to_string(all->series.unusable)},
+                           {"samples", std::to_string(all->series.samples)},
+                           {"share", percent(share)}}));
   }
   return notes;
 }

@@ -106,17 +106,6 @@ TextTable innovation_table(const StudyAnalysis& study) {
   return table;
 }
 
-std::vector<std::string> innovation_notes() {
-  return {
-      "The NIS compares innovations (measurements minus predicted measurements) with their "
-      "predicted covariance and needs no truth. 1 per component is right; more means that the "
-      "filter predicts its measurements less well than it claims. Innovations of a consistent "
-      "filter are white: the correlation between scans up to " +
-      std::to_string(kInnovationLags) +
-      " apart stays below its bound. A filter can pass this test and still be wrong about its "
-      "pose."};
-}
-
 /// Where white innovations stay: one band for each number of pairs of scans; where there are none
 /// so far apart, no band.
 std::vector<Band> white_bands(const StudyAnalysis& study) {
@@ -134,11 +123,7 @@ std::vector<Band> white_bands(const StudyAnalysis& study) {
 }
 
 Figure innovation_figure(const StudyAnalysis& study) {
-  Figure figure{"nis", "Does the filter predict its measurements?", ""};
-  figure.sentence =
-      "Normalised innovation squared (NIS) per component, mean over runs. Near 1 the filter "
-      "predicts its measurements as well as it claims, above 1 less well. This test needs no "
-      "truth, and a filter that is lost may still pass it.";
+  Figure figure = figure_of("nis");
   const CellValues nis = [](const CellAnalysis& cell) { return cell.get<Innovations>().average; };
   add_panels(
       cell_panels(study, {"nis_per_component", "NIS per component", {}, {}, Scale::automatic}, nis),
@@ -147,11 +132,7 @@ Figure innovation_figure(const StudyAnalysis& study) {
 }
 
 Figure whiteness_figure(const StudyAnalysis& study) {
-  Figure figure{"whiteness", "Are the innovations white?", ""};
-  figure.sentence =
-      "Correlation of the NIS between scans that lie so many scans apart, mean over runs. "
-      "Innovations are white if it is in the grey band at every lag. A curve above the band "
-      "belongs to a filter that makes the same mistake scan after scan.";
+  Figure figure = figure_of("whiteness");
   const CellValues correlation = [](const CellAnalysis& cell) {
     return cell.get<Innovations>().autocorrelation;
   };
@@ -168,14 +149,13 @@ Figure whiteness_figure(const StudyAnalysis& study) {
 std::vector<Section> innovations_sections(const StudyAnalysis& study) {
   const TextTable table = innovation_table(study);
   if (table.rows.empty()) return {};
-  Section section{"innovations", "Does the filter predict its measurements?"};
   const CellNumber nis = [](const CellAnalysis& cell) {
     const Innovations* found = cell.find<Innovations>();
     return found == nullptr ? kNaN : found->verdict.ratio_estimate();
   };
-  section.summary = "NIS per component " + range_over_cells(study, nis) + ", 1 is expected";
+  Section section = section_of("innovations", {{"nis", range_over_cells(study, nis)}});
   section.add("innovation", table);
-  section.add(innovation_notes());
+  section.add_notes("notes", {{"lags", std::to_string(kInnovationLags)}});
   return {section};
 }
 

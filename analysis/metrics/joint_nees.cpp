@@ -205,30 +205,22 @@ TextTable joint_table(const StudyAnalysis& study) {
   return table;
 }
 
-/// How to read it, a sentence each, or why there are no numbers; nothing where none are stored.
-std::vector<std::string> joint_notes(const StudyAnalysis& study) {
-  std::vector<std::string> notes;
+/// Adds how to read the table, or why there are no numbers; nothing where none are stored.
+void add_joint_notes(const StudyAnalysis& study, Section& section) {
   if (has_joint_nees(study)) {
-    notes.push_back(
-        "Pose and map together: the squared error of the vehicle and of all landmarks at once, "
-        "measured by the covariance that the filter has of them all, for each component (1 is "
-        "expected, more is overconfident). It also sees wrong correlations, which no part by "
-        "itself shows. 'Expected within' is where a consistent filter stays at all " +
-        std::to_string(study.joint_times.size()) + " stored scans with a probability of " +
-        percent(study.level) + " at least.");
+    section.add_notes("notes", {{"scans", std::to_string(study.joint_times.size())},
+                                {"level", percent(study.level)}});
   }
   for (const CellAnalysis& cell : study.cells) {
     const JointConsistency& joint = cell.get<JointConsistency>();
     if (!joint.missing.empty()) {
-      notes.push_back(cell.label + ": pose and map together are not judged, since " +
-                      joint.missing + ".");
+      section.add_notes("missing", {{"cell", cell.label}, {"reason", joint.missing}});
     } else if (joint.undefined > 0) {
-      notes.push_back(cell.label + ": of " + std::to_string(joint.samples) + " joint covariances " +
-                      std::to_string(joint.undefined) +
-                      " were not a number or not positive definite (left out of the average).");
+      section.add_notes("undefined", {{"cell", cell.label},
+                                      {"undefined", std::to_string(joint.undefined)},
+                                      {"samples", std::to_string(joint.samples)}});
     }
   }
-  return notes;
 }
 
 /// One row a cell and stored scan: joint NEES per component with its bounds.
@@ -280,23 +272,14 @@ StripPanel joint_strips(const StudyAnalysis& study) {
 /// NEES of pose and map together at the scans at which joint estimates are stored, with the band of
 /// a consistent filter. Without data where no cell was judged by them.
 Figure joint_figure(const StudyAnalysis& study) {
-  Figure figure{"joint_nees", "Is the filter right about pose and map together?", ""};
+  Figure figure = figure_of("joint_nees");
   const StripPanel strips = joint_strips(study);
   if (strips.rows.size() > kMostRatioCurves) {
-    figure.sentence =
-        "Normalised error squared of the vehicle and all landmarks at once, for each component, "
-        "around the scans at which it is stored: a row for each filter, its mean at the right. A "
-        "strip that is grey all along belongs to a filter whose covariance, with all its "
-        "correlations, fits its errors; red errors are too large for it, blue ones too small. It "
-        "shows an inconsistency sooner than the pose alone, since every landmark contributes.";
+    figure.sentence = prose("joint_nees", "strips");
     add_strips({strips}, study.joint_times, figure);
     return figure;
   }
-  figure.sentence =
-      "Normalised error squared of the vehicle and all landmarks at once, for each component: 1 is "
-      "right, and a curve between the dashed lines at every stored scan belongs to a filter whose "
-      "covariance, with all its correlations, fits its errors. It finds fault with a filter sooner "
-      "than the pose alone, since every landmark is a witness.";
+  figure.sentence = prose("joint_nees", "curves");
   Panel panel{"joint_nees", "joint NEES per component", {}, {}, Scale::automatic};
   std::set<std::vector<std::uint32_t>> runs;
   for (std::size_t i = 0; i < study.cells.size(); ++i) {
@@ -311,13 +294,12 @@ Figure joint_figure(const StudyAnalysis& study) {
 }
 
 std::vector<Section> joint_nees_sections(const StudyAnalysis& study) {
-  Section section{"joint_nees", "Pose and map together"};
   const CellNumber ratio = [](const CellAnalysis& cell) {
     return is_judged(cell) ? cell.get<JointConsistency>().verdict.ratio_estimate() : kNaN;
   };
-  section.summary = "joint NEES per component " + range_over_cells(study, ratio) + ", 1 is right";
+  Section section = section_of("joint_nees", {{"ratios", range_over_cells(study, ratio)}});
   section.add("joint_nees", joint_table(study));
-  section.add(joint_notes(study));
+  add_joint_notes(study, section);
   return {section};
 }
 

@@ -164,41 +164,24 @@ TextTable map_error_table(const StudyAnalysis& study) {
   return table;
 }
 
-/// How to read it, a sentence each, or why there are no numbers.
-std::vector<std::string> map_error_notes(const StudyAnalysis& study) {
-  std::vector<std::string> notes;
+/// Adds how to read the table, or why there are no numbers.
+void add_map_notes(const StudyAnalysis& study, Section& section) {
   if (has_map_errors(study)) {
-    notes.push_back(
-        "The map after the last scan: landmark RMSE is how far landmarks are from where they "
-        "stand; "
-        "landmark NEES compares that with what the filter expected (2 is expected, more is "
-        "overconfident "
-        "of "
-        "itself), and 'landmarks inside' is the share of landmarks whose NEES over runs is in "
-        "its " +
-        level_text(study.level) +
-        " band, each by itself: the errors of neighbours are correlated. All three need to know "
-        "which "
-        "landmark is which.");
-    notes.push_back(
-        "GOSPA pairs the map with the true landmarks that came into view, whoever is who: the root "
-        "of the squared errors of the pairs plus " +
-        readable(0.5 * kGospaCutoff * kGospaCutoff) +
-        " m2 for each landmark missed or spurious (farther than " + readable(kGospaCutoff, 1) +
-        " m from any partner).");
+    section.add_notes("notes", {{"level", level_text(study.level)},
+                                {"penalty", readable(0.5 * kGospaCutoff * kGospaCutoff)},
+                                {"cutoff", readable(kGospaCutoff, 1)}});
   }
   if (study.has_truth && study.beacons > 0) {
     for (const auto& [reason, cells] : cells_without_map_errors(study)) {
-      notes.push_back(cells + ": no map errors, since " + reason + ".");
+      section.add_notes("missing", {{"cells", cells}, {"reason", reason}});
     }
   }
   for (const CellAnalysis& cell : study.cells) {
-    if (cell.get<MapErrors>().undefined == 0) continue;
-    notes.push_back(cell.label + ": the NEES of " +
-                    std::to_string(cell.get<MapErrors>().undefined) +
-                    " landmarks was not a number (left out of the average).");
+    const std::uint64_t undefined = cell.get<MapErrors>().undefined;
+    if (undefined == 0) continue;
+    section.add_notes("undefined",
+                      {{"cell", cell.label}, {"landmarks", std::to_string(undefined)}});
   }
-  return notes;
 }
 
 /// One row a cell and landmark: error and NEES over runs, with the bounds of that NEES.
@@ -232,12 +215,11 @@ std::string map_summary(const StudyAnalysis& study) {
 }
 
 std::vector<Section> map_sections(const StudyAnalysis& study) {
-  const std::vector<std::string> notes = map_error_notes(study);
-  if (notes.empty()) return {};
-  Section section{"map_errors", "Map"};
-  section.summary = map_summary(study);
+  Section section = section_of("map_errors");
   section.add("map_errors", map_error_table(study));
-  section.add(notes);
+  add_map_notes(study, section);
+  if (section.blocks.empty()) return {};
+  section.summary = map_summary(study);
   return {section};
 }
 

@@ -128,13 +128,7 @@ Chart chart_of(const std::vector<MismatchGrid>& grids, const std::vector<FigureD
 }
 
 Figure mismatch_figure(const StudyAnalysis& study) {
-  Figure figure{"mismatch", "What if the filter is given wrong noise?", ""};
-  figure.sentence =
-      "Each square is one filter that believes the noise of motion (to the right) and of the "
-      "sensor "
-      "(upwards) to be so many times what the study tells; its number is ANEES by components, mean "
-      "over scans. 1 is white: the filter knows how wrong it is. Red, above 1: overconfident; "
-      "blue, below 1: conservative. Colours end at a tenth and at ten times.";
+  Figure figure = figure_of("mismatch");
   const std::vector<MismatchGrid> grids = mismatch_grids(study);
   if (grids.empty()) return figure;
   for (const MismatchGrid& grid : grids) figure.data.push_back(data_of(grid));
@@ -175,9 +169,7 @@ namespace {
 /// The heading of the figure.
 std::vector<Section> mismatch_sections(const StudyAnalysis& study) {
   const CellNumber ratio = [](const CellAnalysis& cell) { return cell.verdict.ratio_estimate(); };
-  Section section{"mismatch", "What if the filter is given wrong noise?"};
-  section.summary = "NEES ratio " + range_over_cells(study, ratio) + ", 1 is right";
-  return {section};
+  return {section_of("mismatch", {{"ratios", range_over_cells(study, ratio)}})};
 }
 
 std::vector<Figure> mismatch_figures(const StudyAnalysis& study) {

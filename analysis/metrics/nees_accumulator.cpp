@@ -238,15 +238,6 @@ StripPanel nees_strips(const StudyAnalysis& study, ErrorBlock block) {
   return panel;
 }
 
-std::string how_strips_are_read(double level) {
-  return "A row for each filter, its mean at the right. Grey: inside the band, where a "
-         "consistent filter is at " +
-         level_text(level) +
-         " of the scans. Red: squared errors are larger than claimed, and the filter is "
-         "overconfident. Blue: they are smaller. A column shows the scan farthest from 1 among its "
-         "neighbours. A row is empty where there is no value.";
-}
-
 /// Strips for more than kMostRatioCurves cells, else curves.
 Figure nees_figure(const StudyAnalysis& study, const std::vector<ErrorBlock>& blocks,
                    const std::string& of_strips, const std::string& of_curves, Figure figure) {
@@ -257,7 +248,8 @@ Figure nees_figure(const StudyAnalysis& study, const std::vector<ErrorBlock>& bl
     panels.push_back(nees_panel(study, block));
   }
   if (strips.front().rows.size() > kMostRatioCurves) {
-    figure.sentence = of_strips + " " + how_strips_are_read(study.level);
+    figure.sentence =
+        of_strips + " " + prose("anees", "strips", {{"level", level_text(study.level)}});
     add_strips(strips, study.times, figure);
   } else {
     figure.sentence = of_curves;
@@ -267,24 +259,15 @@ Figure nees_figure(const StudyAnalysis& study, const std::vector<ErrorBlock>& bl
 }
 
 Figure anees_figure(const StudyAnalysis& study) {
-  return nees_figure(
-      study, {ErrorBlock::pose},
-      "How many times larger the squared errors of the pose are than the filter claims, over time.",
-      "Average NEES of the pose over time, divided by its expectation: 1 is right. A consistent "
-      "filter is in the grey band at " +
-          level_text(study.level) +
-          " of the scans. A filter above the band trusts a wrong answer. The axis ends at 100 000 "
-          "times the band; the files below the figure have every value.",
-      {"anees", "Is the filter right about its own errors?", ""});
+  return nees_figure(study, {ErrorBlock::pose}, prose("anees", "strips of pose"),
+                     prose("anees", "curves of pose", {{"level", level_text(study.level)}}),
+                     figure_of("anees"));
 }
 
 Figure anees_parts_figure(const StudyAnalysis& study) {
   return nees_figure(study, {ErrorBlock::position, ErrorBlock::heading},
-                     "The same for position alone and heading alone: the strip that turns red "
-                     "first shows where the inconsistency begins.",
-                     "The same for position alone and heading alone. The curve that leaves its "
-                     "band first shows where the inconsistency begins.",
-                     {"anees_parts", "Position or heading: which one goes wrong?", ""});
+                     prose("anees", "strips of parts"), prose("anees", "curves of parts"),
+                     figure_of("anees_parts"));
 }
 
 /// "2 of 3 cells are optimistic, 1 is undecided", in the order of the cells.
@@ -303,8 +286,7 @@ std::string answers_text(const StudyAnalysis& study) {
 }
 
 Section verdict_section(const StudyAnalysis& study) {
-  Section section{"verdict", "Verdict and accuracy"};
-  section.summary = answers_text(study);
+  Section section = section_of("verdict", {{"answers", answers_text(study)}});
   for (const CellAnalysis& cell : study.cells) {
     section.blocks.emplace_back(Section::Lead{sentence(cell.label, cell.verdict)});
   }
@@ -319,17 +301,17 @@ Section verdict_section(const StudyAnalysis& study) {
 }
 
 Section consistency_section(const StudyAnalysis& study) {
-  Section section{"consistency", "NEES of pose, position and heading"};
   const CellNumber inside = [](const CellAnalysis& cell) {
     const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
     return pose == nullptr || !pose->is_tested() ? kNaN : pose->share_inside();
   };
-  section.summary = "scans inside the " + level_text(study.level) +
-                    " band: " + range_over_cells(study, inside, percent);
+  Section section = section_of(
+      "consistency",
+      {{"level", level_text(study.level)}, {"inside", range_over_cells(study, inside, percent)}});
   section.is_for_terminal = false;
   const TextTable table = consistency_table(study);
   section.add("consistency", table);
-  if (!table.rows.empty()) section.add(consistency_notes());
+  if (!table.rows.empty()) section.add_notes("notes");
   return section;
 }
 

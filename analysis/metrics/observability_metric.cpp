@@ -48,28 +48,18 @@ TextTable observability_table(const StudyAnalysis& study) {
 std::vector<Section> observability_sections(const StudyAnalysis& study) {
   const TextTable table = observability_table(study);
   if (table.rows.empty()) return {};
-  Section section{"observability", "Information about an unobservable heading"};
   const CellNumber information = [](const CellAnalysis& cell) {
     return cell.over_runs("rotation_information").mean;
   };
-  section.summary = range_over_cells(study, information) + " per rad^2, 0 is right";
+  Section section =
+      section_of("observability", {{"information", range_over_cells(study, information)}});
   section.add("observability", table);
-  section.add(std::vector<std::string>{
-      "Detections measure where landmarks are relative to the vehicle. They contain no information "
-      "about a rotation of path and map as a whole. Linearisation can add such information by "
-      "mistake, and the filter becomes overconfident. The table has the information about that "
-      "rotation from all detections of a run (mean over runs; 0 is right), and the standard "
-      "deviation of a heading that is known from it alone."});
+  section.add_notes("notes");
   return {section};
 }
 
 std::vector<Figure> observability_figures(const StudyAnalysis& study) {
-  Figure figure{"observability", "Does the filter gain information about an unobservable heading?",
-                ""};
-  figure.sentence =
-      "Information about a rotation of path and map as a whole in the filter's linearised "
-      "detections, mean over runs. 0 is right: where a curve rises, the filter becomes sure of a "
-      "heading that no detection has measured.";
+  Figure figure = figure_of("observability");
   const CellValues values = [](const CellAnalysis& cell) {
     return cell.over_time("rotation_information");
   };

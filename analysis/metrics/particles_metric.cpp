@@ -82,15 +82,6 @@ TextTable diversity_table(const StudyAnalysis& study) {
   return table;
 }
 
-std::vector<std::string> diversity_notes() {
-  return {
-      "The table has the effective number of particles, the share of scans that end with a "
-      "resampling, and the number of distinct ancestors that all particles have some time ago. "
-      "'common ancestor' is the time back to a single ancestor of all particles, and the last "
-      "column the share of scans that have one. All particles share their history before it, so "
-      "the filter can neither correct that part of the path nor know how wrong it is."};
-}
-
 /// A panel of distinct ancestors.
 Panel ancestor_panel(const StudyAnalysis& study, const std::string& series,
                      const std::string& label) {
@@ -99,11 +90,7 @@ Panel ancestor_panel(const StudyAnalysis& study, const std::string& series,
 }
 
 Figure diversity_figure(const StudyAnalysis& study) {
-  Figure figure{"diversity", "How many different histories survive?", ""};
-  figure.sentence =
-      "Distinct ancestors of the particles, mean over runs: parents in the last resampling, "
-      "ancestors 10 s ago, and ancestors at the start. When few are left, the particles are "
-      "copies of one history, and the filter cannot know how wrong that history is.";
+  Figure figure = figure_of("diversity");
   add_panels({ancestor_panel(study, "ancestors_last_resampling", "parents, last resampling"),
               ancestor_panel(study, "ancestors_10_s_ago", "ancestors, 10 s ago"),
               ancestor_panel(study, "ancestors_at_start", "ancestors at the start")},
@@ -112,10 +99,7 @@ Figure diversity_figure(const StudyAnalysis& study) {
 }
 
 Figure ess_figure(const StudyAnalysis& study) {
-  Figure figure{"ess", "How many particles still count?", ""};
-  figure.sentence =
-      "Effective sample size as a share of all particles, mean over runs: near 100 % all particles "
-      "explain the measurements about equally well; a low share means that few carry all weight.";
+  Figure figure = figure_of("ess");
   const CellValues share = [](const CellAnalysis& cell) {
     return scaled(cell.over_time("ess"), 100.0 / static_cast<double>(cell.particles));
   };
@@ -138,11 +122,11 @@ std::string diversity_summary(const StudyAnalysis& study) {
 }
 
 std::vector<Section> particles_sections(const StudyAnalysis& study) {
-  Section section{"diversity", "How many histories survive?"};
+  Section section = section_of("diversity");
   const TextTable table = diversity_table(study);
   section.add("diversity", table);
   section.summary = diversity_summary(study);
-  if (!table.rows.empty()) section.add(diversity_notes());
+  if (!table.rows.empty()) section.add_notes("notes");
   return {section};
 }
 

@@ -107,18 +107,12 @@ TextTable proper_scores_table(const StudyAnalysis& study) {
 std::vector<Section> proper_scores_sections(const StudyAnalysis& study) {
   const TextTable table = proper_scores_table(study);
   if (table.rows.empty()) return {};
-  Section section{"proper_scores", "Which filter describes its errors best?"};
   const CellNumber log_score = [](const CellAnalysis& cell) {
     return cell.known_over_runs("log_score").summary.mean;
   };
-  section.summary = "log score " + range_over_cells(study, log_score) + ", lower is better";
+  Section section = section_of("proper_scores", {{"scores", range_over_cells(study, log_score)}});
   section.add("proper_scores", table);
-  section.add(std::vector<std::string>{
-      "Lower is better. Both scores rate error and covariance together: a filter that reports more "
-      "or less uncertainty than it has gets a higher score than a consistent one with the same "
-      "errors. A log score that is lower by 0.7 means twice the density at the true pose. The "
-      "energy score compares the stored particles with the true position; it is a distance, and "
-      "less sensitive to single runs that diverge."});
+  section.add_notes("notes");
   return {section};
 }
 

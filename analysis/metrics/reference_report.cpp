@@ -177,93 +177,55 @@ std::string drives_in_words(const StudyAnalysis& study, const JudgedReference& r
   return std::to_string(reference.drives) + " of " + std::to_string(study.own_drives) + " drives";
 }
 
-std::string fixes_note(const StudyAnalysis& study) {
-  std::string sentence =
-      "Estimates are compared with each reference at its fixes only, interpolated linearly in time "
-      "between the poses that are stored:";
+std::string fixes_text(const StudyAnalysis& study) {
+  std::string text;
   for (const JudgedReference& reference : study.references) {
-    sentence += " " + reference.name + " has " + std::to_string(reference.fixes) +
-                " fixes within " + drives_in_words(study, reference) +
-                (&reference == &study.references.back() ? "." : ",");
+    text += (text.empty() ? "" : ", ") + reference.name + " has " +
+            std::to_string(reference.fixes) + " fixes within " + drives_in_words(study, reference);
   }
-  return sentence;
+  return text;
 }
 
 std::string baseline_note(const StudyAnalysis& study) {
-  if (study.references.front().fixes == 0) {
-    return "No fix of " + study.references.front().name + " lies within " +
-           (study.own_drives == 0 ? "the drive" : "any drive") + ", so nothing can be said by it.";
+  const JudgedReference& reference = study.references.front();
+  if (reference.fixes == 0) {
+    return prose("references", "no fix",
+                 {{"reference", reference.name},
+                  {"drive", study.own_drives == 0 ? "the drive" : "any drive"}});
   }
   const CellAnalysis* baseline = baseline_of(study);
-  if (baseline == nullptr) return "No cell runs EKF-SLAM, so there is no baseline to beat.";
-  const JudgedReference& reference = study.references.front();
+  if (baseline == nullptr) return prose("references", "no baseline");
   const Spread compared = baseline->get<ReferenceAnalyses>().front().over_runs(
       reference.compares_raw() ? &ReferenceScores::rms : &ReferenceScores::aligned_rms);
-  return std::string("A run beats EKF-SLAM where its ") + reference.compared() + " RMS to " +
-         reference.name + " is below the mean of " + baseline->label + ", " +
-         readable(compared.summary.mean) + " m; failed runs beat nothing." +
-         (reference.compares_raw() ? " It is compared as it stands, since the errors of the "
-                                     "reference are known."
-                                   : "");
-}
-
-std::vector<std::string> distance_notes(const StudyAnalysis& study) {
-  return {
-      "'raw' compares as it stands; 'aligned' first turns and shifts the estimated path as a whole "
-      "(no stretching, no mirroring) to where it fits all fixes best, since nobody knows exactly "
-      "where the drive began and which way the vehicle looked.",
-      "The median is the middle fix and is hardly moved by outliers; 'gated' is the aligned RMS "
-      "over the "
-      "fixes within " +
-          readable(kReferenceGate, 1) +
-          " times the run's own median error, with the share kept: a single fix may be more than a "
-          "hundred metres off. A filter that leaves the path half way keeps few fixes: read it "
-          "with the "
-          "share.",
-      std::string(study.own_drives > 0
-                      ? "Every run met a drive of its own, and those without a fix are left out"
-                      : "Runs see the same drive and differ by the filter's own randomness alone") +
-          ": numbers are means over runs +- their standard error; 'middle run' is the median over "
-          "runs of the aligned RMS, with the best and the worst run.",
-      "A run lost the map where it failed or the median of its aligned errors exceeds " +
-          readable(kLostBeyond, 2) + " m."};
+  return prose("references", reference.compares_raw() ? "raw baseline" : "aligned baseline",
+               {{"reference", reference.name},
+                {"baseline", baseline->label},
+                {"rms", readable(compared.summary.mean)}});
 }
 
 }  // namespace
 
 std::string no_truth_sentence(const StudyAnalysis& study) {
-  if (std::ranges::any_of(study.references, &JudgedReference::has_errors)) {
-    return "This drive was recorded: nobody knows its true path. References whose own errors are "
-           "stated take its place: the NEES at their fixes is by the covariance of both.";
-  }
-  return "This drive was recorded: nobody knows its true path, so there is no verdict on "
-         "consistency (NEES) and no true error; estimates are judged by independent measurements "
-         "of the path.";
+  const bool has_errors = std::ranges::any_of(study.references, &JudgedReference::has_errors);
+  return prose("references", has_errors ? "known errors" : "no truth");
 }
 
 std::vector<std::string> reference_notes(const StudyAnalysis& study) {
   std::vector<std::string> notes;
+  const auto add = [&](const char* key, const Values& values = {}) {
+    std::ranges::move(paragraphs("references", key, values), std::back_inserter(notes));
+  };
   if (!study.references.empty()) {
-    notes = distance_notes(study);
-    notes.insert(notes.begin(), fixes_note(study));
+    add("fixes", {{"fixes", fixes_text(study)}});
+    const char* runs = study.own_drives > 0 ? "own drives" : "same drive";
+    add("distances", {{"gate", readable(kReferenceGate, 1)},
+                      {"runs", prose("references", runs)},
+                      {"lost", readable(kLostBeyond, 2)}});
     notes.push_back(baseline_note(study));
   }
-  if (study.beacons > 0) {
-    notes.push_back(
-        "A surveyed beacon is found where the final map, aligned like the path, has a landmark "
-        "within " +
-        readable(kFoundWithin, 1) +
-        " m of it; its error is the RMS over the beacons found, as the map stands and aligned.");
-  }
-  if (study.own_drives > 0) {
-    notes.emplace_back(
-        "Every drive has scan times of its own, so no mean over runs is taken scan by scan: there "
-        "are no series and no figures over time.");
-  }
-  notes.emplace_back(
-      "Landmarks are those in the map after the last scan; ESS is the effective number of "
-      "particles, ancestors how many first particles still have descendants at the end, CPU the "
-      "filter's own time in a run; all of complete runs only.");
+  if (study.beacons > 0) add("beacons", {{"distance", readable(kFoundWithin, 1)}});
+  if (study.own_drives > 0) add("no series");
+  add("map");
   return notes;
 }
 
@@ -367,20 +329,16 @@ Scale scale_of(const std::vector<Panel>& panels) {
 
 /// Adds panels to a figure, which says so where there are several.
 void add(const std::vector<Panel>& panels, const std::vector<double>& times, Figure& figure) {
-  if (panels.size() > 1) figure.sentence += " One panel for each number of particles M.";
+  if (panels.size() > 1) figure.sentence += " " + prose("references", "panels");
   add_panels(panels, times, figure);
 }
 
 }  // namespace
 
 Figure reference_error_figure(const StudyAnalysis& study) {
-  Figure figure{"reference_error", "How far from the reference over time?", ""};
-  if (study.references.empty() || study.own_drives > 0) return figure;
+  if (study.references.empty() || study.own_drives > 0) return {};
   const JudgedReference& reference = study.references.front();
-  figure.sentence = "Distance between the estimate as it stands and each fix of " + reference.name +
-                    ", root mean square over runs: lower is better, but no curve can be nearer "
-                    "than the reference itself is right. Peaks that all filters have are wild "
-                    "fixes; a curve that climbs and stays belongs to a filter that lost the map.";
+  Figure figure = figure_of("reference_error", {{"reference", reference.name}});
   const Panel blank{"reference_error", "distance to " + reference.name + " [m]", {}, {}, {},
                     kLeastError};
   std::vector<Panel> panels = cell_panels(study, blank, [](const CellAnalysis& cell) {
@@ -395,11 +353,7 @@ Figure reference_error_figure(const StudyAnalysis& study) {
 }
 
 Figure map_size_figure(const StudyAnalysis& study) {
-  Figure figure{"map_size", "How does the map grow?", ""};
-  figure.sentence =
-      "Landmarks in the map, mean over runs (of a particle filter: over its weighted particles). "
-      "It should level off where the vehicle meets known ground: a map that goes on growing there "
-      "takes known landmarks for new ones.";
+  Figure figure = figure_of("map_size");
   const std::vector<Panel> panels =
       cell_panels(study, {"map_size", "landmarks", {}, {}, Scale::from_zero},
                   [](const CellAnalysis& cell) { return cell.over_time("map_landmarks"); });
@@ -459,7 +413,7 @@ class ReferencesOverRuns final : public MetricSums {
 
 std::vector<Section> references_sections(const StudyAnalysis& study) {
   if (study.has_truth && study.references.empty()) return {};
-  Section section{"references", "Judged by references"};
+  Section section = section_of("references");
   if (!study.has_truth) section.add_html("<p>" + no_truth_sentence(study) + "</p>\n");
   section.add("reference", reference_table(study));
   section.add("baseline", baseline_table(study));

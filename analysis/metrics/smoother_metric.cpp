@@ -81,20 +81,14 @@ std::vector<Section> smoother_sections(const StudyAnalysis& study) {
   for (const CellAnalysis& cell : study.cells) {
     if (&cell != smoother) table.rows.push_back(row_beside(cell, *smoother, study.level));
   }
-  Section section{"smoother", "Against full smoothing"};
   const CellNumber efficiency = [&](const CellAnalysis& cell) {
     return &cell == smoother ? kNaN
                              : paired_efficiency(runs_beside(cell, *smoother, "position_mse"));
   };
-  section.summary = "position RMSE of " + smoother->label +
-                    " / that of the cell: " + range_over_cells(study, efficiency) +
-                    ", 1 is as good";
+  Section section = section_of("smoother", {{"smoother", smoother->label},
+                                            {"efficiency", range_over_cells(study, efficiency)}});
   section.add("smoother", table);
-  section.add(
-      {"Efficiency against " + smoother->label +
-       ": its root mean square error by that of the cell, of the runs that both completed; "
-       "1 is as good as what linearises everything again and again. What is missing to 1 is "
-       "what the filter loses by linearising once, or by its particles."});
+  section.add_notes("notes", {{"smoother", smoother->label}});
   return {section};
 }
 

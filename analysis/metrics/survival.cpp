@@ -106,11 +106,7 @@ void survival_series(const CellAnalysis& cell, std::vector<NamedSeries>& all) {
 }
 
 Figure survival_figure(const StudyAnalysis& study) {
-  Figure figure{"survival", "How long does a run stay right?", ""};
-  figure.sentence =
-      "Share of the runs that still know how wrong they are, each judged by its own NEES: a run is "
-      "lost where that stays above the band of a single run for 5 s at 5 Hz, or where it fails. A "
-      "consistent filter loses a few runs by chance.";
+  Figure figure = figure_of("survival", {{"lasting", std::to_string(kLastingScans)}});
   const CellValues share = [](const CellAnalysis& cell) {
     return scaled(cell.get<Survival>().share, 100.0);
   };
@@ -129,10 +125,7 @@ std::vector<Section> survival_sections(const StudyAnalysis& study) {
   const NumberText time = [](double seconds) {
     return std::isinf(seconds) ? "never" : fixed_seconds(seconds);
   };
-  Section section{"survival", "How long does a run stay right?"};
-  section.summary =
-      "time until half of the runs are lost: " + range_over_cells(study, median, time);
-  return {section};
+  return {section_of("survival", {{"time", range_over_cells(study, median, time)}})};
 }
 
 std::vector<Figure> survival_figures(const StudyAnalysis& study) {

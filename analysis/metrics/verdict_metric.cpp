@@ -106,18 +106,11 @@ std::vector<Section> verdict_sections(const StudyAnalysis& study) {
     tests += cell.verdict.families.size();
     rejected += std::ranges::count_if(cell.verdict.families, &FamilyTest::is_rejected);
   }
-  Section section{"families", "All tests of the verdict"};
-  section.summary = std::to_string(rejected) + " of " + std::to_string(tests) +
-                    " families of tests show a deviation";
+  Section section = section_of(
+      "families", {{"rejected", std::to_string(rejected)}, {"tests", std::to_string(tests)}});
   section.is_for_terminal = false;
   section.add("families", family_table(study));
-  section.add(std::vector<std::string>{
-      "Seven families of tests make the verdict. Size, component, stretch and scan compare squared "
-      "errors with the expected ones, where 1 is right: all together, by component, by eighth of "
-      "the drive, by scan. Bias is the mean error in standard deviations, correlation what errors "
-      "have in common beyond what the filter reports, and between runs the standard deviation of "
-      "scales that runs have of their own: 0 is right. p-values are corrected for the number of "
-      "tests of all families."});
+  section.add_notes("notes");
   return {section};
 }
 

@@ -234,75 +234,27 @@ TextTable failure_table(const StudyAnalysis& study) {
 }
 
 std::string ratio_note(const StudyAnalysis& study) {
-  return "The NEES ratio compares squared errors with what the filter's covariance says of them (" +
-         components_text(study) +
-         "), averaged over runs and scans: 1 is right, more is optimistic (overconfident), less is "
-         "conservative. The brackets hold the ratio of infinitely many runs in at least " +
-         level_text(study.level) + " of studies.";
+  return prose("verdict", "ratio",
+               {{"components", components_text(study)}, {"level", level_text(study.level)}});
 }
 
 std::string answers_note(const StudyAnalysis& study) {
-  const std::string margin = exact_text(study.within);
-  return "A cell is consistent within " + margin +
-         " if this ratio, that of every component and that of every eighth of the drive are shown "
-         "to lie between 1/" +
-         margin + " and " + margin +
-         ", and if bias and correlations are shown to be negligible. It is optimistic or "
-         "conservative if squared errors are shown to be too large or too small, inconsistent if "
-         "both are shown in different parts, or bias, correlation or a spread between runs alone. "
-         "A consistent filter is called one of these in at most " +
-         level_text(1.0 - study.level) +
-         " of studies, for any number of scans and any memory of its errors. If nothing is shown "
-         "the verdict is undecided, and says about how many more runs would decide.";
+  return prose("verdict", "answers",
+               {{"margin", exact_text(study.within)}, {"error", level_text(1.0 - study.level)}});
 }
-
-namespace {
-
-std::string looks_note(const StudyAnalysis& study) {
-  return "A cell of this study stops when its verdict is known, which is looked at after up to " +
-         std::to_string(study.looks.size()) + " numbers of runs, " +
-         std::to_string(study.looks[0]) +
-         " first. The error probability is spent over the looks, little at the first ones "
-         "(O'Brien and Fleming), so that all of them together reject a consistent filter in at "
-         "most " +
-         level_text(1.0 - study.level) + " of studies. Intervals of other numbers are not widened.";
-}
-
-}  // namespace
 
 std::vector<std::string> verdict_notes(const StudyAnalysis& study) {
-  std::vector<std::string> notes = {
-      ratio_note(study), answers_note(study),
-      "Particle filters are judged by the spread of the poses that a scan drew, corrected for the "
-      "number of effective draws, so that all rows are on one scale.",
-      "'scans in band' is the share of scans whose average NEES lies in the " +
-          level_text(study.level) +
-          " band of a single scan; a consistent filter has that share. A run is lost when its own "
-          "NEES stays above its band for " +
-          std::to_string(kLastingScans) + " scans in a row, or when it fails.",
-      "RMSE is the mean over runs, with a confidence interval. ESS is the effective number of "
-      "particles. 'ancestors' is the number of first particles that still have descendants at the "
-      "end. CPU is the time of the filter alone in a run. All are of complete runs only."};
-  if (study.looks.size() > 1) notes.push_back(looks_note(study));
+  std::vector<std::string> notes = {ratio_note(study), answers_note(study)};
+  const auto add = [&](const char* key, const Values& values) {
+    std::ranges::move(paragraphs("verdict", key, values), std::back_inserter(notes));
+  };
+  add("notes", {{"level", level_text(study.level)}, {"lasting", std::to_string(kLastingScans)}});
+  if (study.looks.size() > 1) {
+    add("looks", {{"looks", std::to_string(study.looks.size())},
+                  {"first", std::to_string(study.looks[0])},
+                  {"error", level_text(1.0 - study.level)}});
+  }
   return notes;
-}
-
-std::vector<std::string> consistency_notes() {
-  return {
-      "Each row is the average NEES of the pose, of the position or of the heading, by one "
-      "covariance. The verdict uses the first covariance of a cell, which is the only one of a "
-      "Kalman filter and the corrected one of a particle filter. Only these are on one scale.",
-      "The spread of few particles is too small by construction, and so is the mixture. 'ideal' is "
-      "the ANEES of a perfect filter with as many particles. The corrected NEES is mapped to a "
-      "scale on which a perfect filter has the number of components again (from Hotelling's "
-      "distribution with the effective number of draws to the chi-square distribution), so that a "
-      "small number of draws makes no filter optimistic. If a scan drew no poses, it is the NEES "
-      "by the mixture.",
-      "'singular' counts singular covariances, which are judged by the components that they leave. "
-      "'unusable' counts samples that are left out because the error or the covariance is not "
-      "finite, or because the covariance is not positive semidefinite. 'too few draws' counts "
-      "covariances of at most two effective draws more than components. 'unjudged runs' counts "
-      "complete runs in which no scan is left."};
 }
 
 std::vector<std::string> cautions(std::span<const CellAnalysis> cells,
@@ -328,16 +280,12 @@ std::vector<std::string> cautions(std::span<const CellAnalysis> cells,
     if (lower >= kLeastShare && !imported.is_imported()) list(singular, cell, percent(lower));
   }
   std::vector<std::string> sentences;
-  if (!runs.empty()) sentences.push_back("Runs without a scan that can be judged: " + runs + ".");
-  if (!draws.empty()) {
-    sentences.push_back(
-        "Scans not judged, since at most 5 effective draws (ESS) give no covariance: " + draws +
-        ".");
-  }
-  if (!singular.empty()) {
-    sentences.push_back(
-        "Singular covariances, judged by the components that they leave: " + singular + ".");
-  }
+  const auto add = [&](const char* key, const std::string& affected) {
+    if (!affected.empty()) sentences.push_back(prose("verdict", key, {{"cells", affected}}));
+  };
+  add("unjudged", runs);
+  add("draws", draws);
+  add("singular", singular);
   return sentences;
 }
 

@@ -20,8 +20,6 @@ TextTable accuracy_table(const StudyAnalysis& study);
 
 /// One row for each cell and definition of covariance and error: the average NEES.
 TextTable consistency_table(const StudyAnalysis& study);
-/// How to read it.
-std::vector<std::string> consistency_notes();
 /// One average NEES in single numbers. The band is that of all complete runs.
 std::vector<NamedNumber> numbers_of(const CellAnalysis& cell, const NeesResult& nees, double level);
 

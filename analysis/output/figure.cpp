@@ -230,4 +230,10 @@ void add_panels(const std::vector<Panel>& panels, const std::vector<double>& pla
   figure.chart.x_to = places.back();
 }
 
+Figure figure_of(std::string_view name, const Values& values) {
+  const std::string key = "figure " + std::string(name);
+  const std::vector<std::string> texts = paragraphs(file_of_prose(key), key, values);
+  return {std::string(name), texts.front(), texts.size() > 1 ? texts[1] : ""};
+}
+
 }  // namespace montecarta::analysis

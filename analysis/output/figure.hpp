@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/output/csv_file.hpp"
+#include "analysis/output/prose.hpp"
 
 #include <array>
 #include <cstddef>
@@ -9,6 +10,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace montecarta::analysis {
@@ -151,6 +153,10 @@ struct Figure {
   Chart chart = {};
   std::size_t width = 900;  ///< [px] 18 cm in print: the text width of a journal's page
 };
+
+/// A figure without data and with the texts below `## figure name` in a file of prose: the title
+/// and, unless the caller sets it, the sentence.
+Figure figure_of(std::string_view name, const Values& values = {});
 
 /// Writes figures/<name>.gp and data/ below `directory` and draws figures/<name>.svg and .pdf.
 void draw(const Figure& figure, const std::filesystem::path& directory);

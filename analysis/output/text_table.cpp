@@ -177,6 +177,17 @@ void Section::add(const std::vector<std::string>& notes) {
   for (const std::string& note : notes) blocks.emplace_back(Note{note});
 }
 
+void Section::add_notes(std::string_view key, const Values& values) {
+  add(paragraphs(name, key, values));
+}
+
 void Section::add_html(const std::string& html) { blocks.emplace_back(Html{html}); }
+
+Section section_of(std::string_view name, const Values& values) {
+  const std::vector<std::string> texts = paragraphs(name, "section", values);
+  Section section{std::string(name), texts.front()};
+  if (texts.size() > 1) section.summary = texts[1];
+  return section;
+}
 
 }  // namespace montecarta::analysis

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "analysis/output/figure.hpp"
+#include "analysis/output/prose.hpp"
 
 #include <iosfwd>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -73,7 +75,13 @@ struct Section {
   /// Adds a table; nothing if it has no rows.
   void add(const std::string& table_name, const TextTable& table);
   void add(const std::vector<std::string>& notes);
+  /// Each paragraph below `## key` in the file of prose that is called as the section.
+  void add_notes(std::string_view key, const Values& values = {});
   void add_html(const std::string& html);
 };
+
+/// A section with the texts below `## section` in the file of prose `name`: the title and, unless
+/// the caller sets it, the summary.
+Section section_of(std::string_view name, const Values& values = {});
 
 }  // namespace montecarta::analysis

@@ -215,7 +215,7 @@ TEST(Report, JudgesARecordedDriveByItsReferences) {
   EXPECT_EQ(section_in(page, "cards"), "");
   EXPECT_THAT(page, HasSubstr("class=\"replay-data\">{\"run\":"));
   EXPECT_THAT(page, HasSubstr("record.full_runs = 1"));
-  EXPECT_THAT(page, HasSubstr("nobody knows its true path"));
+  EXPECT_THAT(page, HasSubstr("its true path is unknown"));
   for (const char* name :
        {"figures/paths.svg", "figures/reference_error.svg", "figures/map_size.svg",
         "tables/reference.tex", "tables/baseline.tex", "tables/map.tex", "tables/references.csv"}) {

@@ -120,8 +120,8 @@ TEST_F(SeveralDrives, AnalysisJudgesThemAsIndependent) {
   ASSERT_EQ(run("out.h5").code, 0);
   const Called called = call({"analyze", "out.h5", "--table", "drive", "--csv", "tables"});
   EXPECT_EQ(called.code, 0) << called.err;
-  EXPECT_THAT(called.out, HasSubstr("Every run met a drive of its own"));
-  EXPECT_THAT(called.out, Not(HasSubstr("met the same drive")));
+  EXPECT_THAT(called.out, HasSubstr("Every run processes a drive of its own"));
+  EXPECT_THAT(called.out, Not(HasSubstr("process the same drive")));
   EXPECT_THAT(text_of("tables/drive.csv"), HasSubstr("drives"));
   EXPECT_FALSE(exists("tables/reference_errors.csv")) << "fixes of three drives have no mean";
   EXPECT_THAT(call({"analyze", "out.h5", "--table", "reference"}).out,
