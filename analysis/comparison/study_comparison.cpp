@@ -259,36 +259,25 @@ std::string pairs_text(const CellComparison& row) {
   return text;
 }
 
-std::vector<std::string> row_of(const CellComparison& row, double level) {
-  return {heading(row.score->name, row.score->units),
-          row.cell,
-          row.verdict(level),
-          readable(row.difference),
-          row.has_heavy_tail ? "heavy tail" : interval_text(row.interval),
-          readable(row.ratio),
-          percent(row.wins.share()),
-          readable(row.wins.p_holm, 2),
-          readable(row.rank_p_holm, 2),
-          pairs_text(row)};
+std::vector<TextTable::Entry> row_of(const CellComparison& row, double level) {
+  return {{"what", heading(row.score->name, row.score->units), Align::left},
+          {"cell", row.cell, Align::left},
+          {"verdict", row.verdict(level), Align::left},
+          {"difference", readable(row.difference)},
+          {level_text(level) + " interval",
+           row.has_heavy_tail ? "heavy tail" : interval_text(row.interval)},
+          {"ratio", readable(row.ratio)},
+          {"runs won", percent(row.wins.share())},
+          {"p sign", readable(row.wins.p_holm, 2)},
+          {"p rank", readable(row.rank_p_holm, 2)},
+          {"runs", pairs_text(row), Align::left}};
 }
 
 }  // namespace
 
 TextTable comparison_table(const Comparisons& comparisons) {
   TextTable table{.keys = 2};
-  table.headings = {{"what", Align::left},
-                    {"cell", Align::left},
-                    {"verdict", Align::left},
-                    {"difference"},
-                    {level_text(comparisons.level) + " interval"},
-                    {"ratio"},
-                    {"runs won"},
-                    {"p sign"},
-                    {"p rank"},
-                    {"runs", Align::left}};
-  for (const CellComparison& row : comparisons.rows) {
-    table.rows.push_back(row_of(row, comparisons.level));
-  }
+  for (const CellComparison& row : comparisons.rows) table.add(row_of(row, comparisons.level));
   return table;
 }
 

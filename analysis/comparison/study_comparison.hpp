@@ -92,9 +92,9 @@ StudyComparison compare_study(const StudyAnalysis& study, const std::string& bas
 /// Names of the files that write_comparison_csv() makes.
 std::vector<std::string> comparison_csv_names();
 
-/// Writes comparison.csv (one row a cell and score) and wins.csv (one row a score and ordered pair
-/// of cells) into `directory`, which is made where it is missing. Throws RunError naming the file
-/// that cannot be written.
+/// Writes comparison.csv (one row for each cell and score) and wins.csv (one row for each score and
+/// ordered pair of cells) into `directory`, which is made if it is missing. Throws RunError naming
+/// the file that cannot be written.
 void write_comparison_csv(const StudyComparison& comparison,
                           const std::filesystem::path& directory);
 

@@ -274,7 +274,7 @@ ChartMarks ellipses_of(const FigureData& data, const std::string& name, std::siz
   return marks;
 }
 
-/// (time, true x, true y, x, y) or, where nobody knows the truth, (time, x, y).
+/// (time, true x, true y, x, y); (time, x, y) without a known truth.
 void add_paths(const DrawnPath& cell, ChartPanel& panel) {
   const bool has_truth = cell.path.headings.size() == 5;
   const std::size_t x = has_truth ? 3 : 1;

@@ -28,18 +28,18 @@ constexpr Score kAssociationScores[] = {
     {"association_clutter", "1", "false alarms accepted", sum_of_counts<&AssociationRows::clutter>},
 };
 
-std::vector<std::string> association_row(const CellAnalysis& cell) {
+std::vector<TextTable::Entry> association_row(const CellAnalysis& cell) {
   const auto mean = [&](std::string_view score) { return cell.over_runs(score).mean; };
   const double correct = mean("association_correct"), wrong = mean("association_wrong"),
                new_again = mean("association_new_again"), missed = mean("association_missed"),
                all = correct + wrong + new_again + missed;
-  return {cell.label,
-          readable(all, 4),
-          percent(correct / all),
-          percent(wrong / all),
-          percent(new_again / all),
-          percent(missed / all),
-          readable(mean("association_clutter"))};
+  return {{"cell", cell.label, Align::left},
+          {"detections", readable(all, 4)},
+          {"correct", percent(correct / all)},
+          {"wrong", percent(wrong / all)},
+          {"new again", percent(new_again / all)},
+          {"left out", percent(missed / all)},
+          {"false accepted", readable(mean("association_clutter"))}};
 }
 
 /// Share of the detections that went to a wrong landmark.
@@ -54,11 +54,8 @@ double wrong_share(const CellAnalysis& cell) {
 
 TextTable association_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {{"cell", Align::left}, {"detections"}, {"correct"},       {"wrong"},
-                    {"new again"},         {"left out"},   {"false accepted"}};
   for (const CellAnalysis& cell : study.cells) {
-    if (!std::isnan(cell.over_runs("association_correct").mean))
-      table.rows.push_back(association_row(cell));
+    if (!std::isnan(cell.over_runs("association_correct").mean)) table.add(association_row(cell));
   }
   return table;
 }

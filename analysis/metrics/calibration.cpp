@@ -268,17 +268,17 @@ std::string faults_text(const std::vector<const JudgedPits*>& tests) {
 }
 
 /// The verdicts at the end of the run; "-" if a quantity is not judged.
-std::vector<std::string> row_of(const CellAnalysis& cell, const std::string& by,
-                                const std::vector<std::string>& quantities) {
-  std::vector<std::string> row = {cell.label, by};
+std::vector<TextTable::Entry> row_of(const CellAnalysis& cell, const std::string& by,
+                                     const std::vector<std::string>& quantities) {
+  std::vector<TextTable::Entry> row = {{"cell", cell.label, Align::left}, {"by", by, Align::left}};
   const auto tests = tests_of(cell, [&](const JudgedPits& one) { return one.by == by; });
   for (const std::string& quantity : quantities) {
-    row.emplace_back("-");
+    row.push_back({quantity, "-", Align::left});
     for (const JudgedPits* one : tests) {
-      if (one->quantity == quantity) row.back() = in_words(one->test.verdict);
+      if (one->quantity == quantity) row.back().text = in_words(one->test.verdict);
     }
   }
-  row.push_back(faults_text(tests));
+  row.push_back({"faults at all moments", faults_text(tests)});
   return row;
 }
 
@@ -287,14 +287,11 @@ std::vector<std::string> row_of(const CellAnalysis& cell, const std::string& by,
 TextTable calibration_table(const StudyAnalysis& study) {
   TextTable table;
   const std::vector<std::string> quantities = quantities_of(study);
-  table.headings = {{"cell", Align::left}, {"by", Align::left}};
-  for (const std::string& name : quantities) table.headings.push_back({name, Align::left});
-  table.headings.push_back({"faults at all moments"});
   for (const CellAnalysis& cell : study.cells) {
     for (const char* by : {"Gaussian", "particles"}) {
       const bool is_judged =
           !tests_of(cell, [&](const JudgedPits& one) { return one.by == by; }).empty();
-      if (is_judged) table.rows.push_back(row_of(cell, by, quantities));
+      if (is_judged) table.add(row_of(cell, by, quantities));
     }
   }
   return table;

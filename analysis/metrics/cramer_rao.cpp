@@ -408,7 +408,7 @@ void bound_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
   all.push_back({"map_efficiency", "1", cell.get<Efficiency>().map});
 }
 
-/// One row a scan: the Cramer-Rao bound of position and heading.
+/// One row for each scan: the Cramer-Rao bound of position and heading.
 void write_bound(const StudyAnalysis& study, const std::filesystem::path& path) {
   CsvFile file(path);
   file.row(std::vector<std::string>{"time [s]", "position_bound [m]", "heading_bound [rad]"});

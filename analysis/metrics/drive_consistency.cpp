@@ -225,41 +225,32 @@ std::string block_text(const DriveConsistency& drive, ErrorBlock block) {
          compact(found.ratio.upper) + "]";
 }
 
-std::vector<std::string> drive_row(const CellAnalysis& cell, const JudgedReference& reference,
-                                   const DriveConsistency& drive) {
+std::vector<TextTable::Entry> drive_row(const CellAnalysis& cell, const JudgedReference& reference,
+                                        const DriveConsistency& drive, const std::string& level) {
   const Innovations* innovations = cell.find<Innovations>();
   const bool is_judged = drive.answer != Answer::untested;
-  return {cell.label,
-          reference.name,
-          runs_in_words(cell),
-          in_words(drive),
-          is_judged ? block_text(drive, drive.mean.leading) : "-",
-          is_judged ? readable(drive.mean.median) : "-",
-          is_judged ? block_text(drive, ErrorBlock::position) : "-",
-          is_judged ? block_text(drive, ErrorBlock::heading) : "-",
-          std::to_string(drive.mean.fixes),
-          is_judged ? readable(drive.mean.leads().effective_samples) : "-",
-          innovations == nullptr ? "-" : readable(innovations->verdict.ratio_estimate()),
-          innovations == nullptr ? "-" : whiteness_in_words(*innovations)};
+  const auto judged = [&](const std::string& text) { return is_judged ? text : "-"; };
+  return {{"cell", cell.label, Align::left},
+          {"reference", reference.name, Align::left},
+          {"runs", runs_in_words(cell), Align::left},
+          {"verdict", in_words(drive), Align::left},
+          {"NEES / expected" + level, judged(block_text(drive, drive.mean.leading))},
+          {"median / expected", judged(readable(drive.mean.median))},
+          {"position" + level, judged(block_text(drive, ErrorBlock::position))},
+          {"heading" + level, judged(block_text(drive, ErrorBlock::heading))},
+          {"fixes", std::to_string(drive.mean.fixes)},
+          {"effective", judged(readable(drive.mean.leads().effective_samples))},
+          {"NIS per component",
+           innovations == nullptr ? "-" : readable(innovations->verdict.ratio_estimate())},
+          {"innovations", innovations == nullptr ? "-" : whiteness_in_words(*innovations),
+           Align::left}};
 }
 
 TextTable drive_table(const StudyAnalysis& study) {
   const std::string level = " [" + level_text(study.level) + "]";
   TextTable table{.keys = 2};
-  table.headings = {{"cell", Align::left},
-                    {"reference", Align::left},
-                    {"runs", Align::left},
-                    {"verdict", Align::left},
-                    {"NEES / expected" + level},
-                    {"median / expected"},
-                    {"position" + level},
-                    {"heading" + level},
-                    {"fixes"},
-                    {"effective"},
-                    {"NIS per component"},
-                    {"innovations", Align::left}};
   for_each_drive(study, [&](const auto& cell, const auto& reference, const auto& drive) {
-    table.rows.push_back(drive_row(cell, reference, drive));
+    table.add(drive_row(cell, reference, drive, level));
   });
   return table;
 }
@@ -282,11 +273,11 @@ std::vector<std::string> warnings_of(const CellAnalysis& cell, const JudgedRefer
 
 TextTable warning_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {
-      {"cell", Align::left}, {"reference", Align::left}, {"to be considered", Align::left}};
   for_each_drive(study, [&](const auto& cell, const auto& reference, const auto& drive) {
     for (const std::string& warning : warnings_of(cell, reference, drive)) {
-      table.rows.push_back({cell.label, reference.name, warning});
+      table.add({{"cell", cell.label, Align::left},
+                 {"reference", reference.name, Align::left},
+                 {"to be considered", warning, Align::left}});
     }
   });
   return table;

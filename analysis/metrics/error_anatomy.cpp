@@ -129,12 +129,13 @@ void error_anatomy_series(const CellAnalysis& cell, std::vector<NamedSeries>& al
 
 TextTable why_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {{"cell", Align::left}, {"bias"}, {"Monte Carlo share"}};
   for (const CellAnalysis& cell : study.cells) {
     const ErrorAnatomy* anatomy = cell.find<ErrorAnatomy>();
     if (anatomy == nullptr) continue;
     const double share = cell.get<LineageSummary>().monte_carlo_share;
-    table.rows.push_back({cell.label, percent(anatomy->mean_bias_share), percent(share)});
+    table.add({{"cell", cell.label, Align::left},
+               {"bias", percent(anatomy->mean_bias_share)},
+               {"Monte Carlo share", percent(share)}});
   }
   return table;
 }

@@ -60,17 +60,17 @@ class ComponentsOverRuns final : public MetricSums {
 
 TextTable component_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {{"cell", Align::left}, {"component", Align::left},
-                    {"unit", Align::left}, {"RMS error"},
-                    {"RMS sigma"},         {"ratio"}};
   for (const CellAnalysis& cell : study.cells) {
     const ComponentErrors& found = cell.get<ComponentErrors>();
     const std::size_t named =
         std::min(study.imported.components.size(), study.imported.units.size());
     for (std::size_t c = 0; c < std::min(found.error.size(), named); ++c) {
-      table.rows.push_back({cell.label, study.imported.components[c], study.imported.units[c],
-                            readable(found.error[c]), readable(found.deviation[c]),
-                            readable(found.error[c] / found.deviation[c])});
+      table.add({{"cell", cell.label, Align::left},
+                 {"component", study.imported.components[c], Align::left},
+                 {"unit", study.imported.units[c], Align::left},
+                 {"RMS error", readable(found.error[c])},
+                 {"RMS sigma", readable(found.deviation[c])},
+                 {"ratio", readable(found.error[c] / found.deviation[c])}});
     }
   }
   return table;

@@ -80,28 +80,26 @@ void innovations_series(const CellAnalysis& cell, std::vector<NamedSeries>& all)
   all.push_back({"nis_upper", "1", ends_of(innovations->bounds, &Interval::upper)});
 }
 
-std::vector<std::string> innovation_row(const CellAnalysis& cell) {
-  const Innovations& found = *cell.find<Innovations>();
+std::vector<TextTable::Entry> innovation_row(const CellAnalysis& cell, const Innovations& found,
+                                             double level) {
   const std::size_t lag = found.worst_lag;
-  return {
-      cell.label,
-      with_interval(found.verdict.ratio_estimate(), found.verdict.ratio()),
-      percent(found.share_inside),
-      readable(found.autocorrelation.front()),
-      lag == 0 ? "-" : readable(found.autocorrelation[lag - 1]) + " at lag " + std::to_string(lag),
-      lag == 0 ? "-" : readable(found.white_bound[lag - 1]),
-      whiteness_in_words(found)};
+  return {{"cell", cell.label, Align::left},
+          {"NIS per component [" + level_text(level) + "]",
+           with_interval(found.verdict.ratio_estimate(), found.verdict.ratio())},
+          {"scans in band", percent(found.share_inside)},
+          {"correlation at lag 1", readable(found.autocorrelation.front())},
+          {"largest correlation",
+           lag == 0 ? "-"
+                    : readable(found.autocorrelation[lag - 1]) + " at lag " + std::to_string(lag)},
+          {"its bound", lag == 0 ? "-" : readable(found.white_bound[lag - 1])},
+          {"innovations", whiteness_in_words(found), Align::left}};
 }
 
 TextTable innovation_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {
-      {"cell", Align::left},       {"NIS per component [" + level_text(study.level) + "]"},
-      {"scans in band"},           {"correlation at lag 1"},
-      {"largest correlation"},     {"its bound"},
-      {"innovations", Align::left}};
   for (const CellAnalysis& cell : study.cells) {
-    if (cell.find<Innovations>()) table.rows.push_back(innovation_row(cell));
+    const Innovations* found = cell.find<Innovations>();
+    if (found != nullptr) table.add(innovation_row(cell, *found, study.level));
   }
   return table;
 }

@@ -175,15 +175,16 @@ std::size_t worst_row(const JointConsistency& joint) {
                                   joint.average.begin());
 }
 
-std::vector<std::string> row_of(const CellAnalysis& cell, const std::vector<double>& times) {
+std::vector<TextTable::Entry> row_of(const CellAnalysis& cell, const std::vector<double>& times) {
   const JointConsistency& joint = cell.get<JointConsistency>();
   const std::size_t worst = worst_row(joint);
-  return {cell.label,
-          readable(joint.dimension.back()),
-          readable(joint.average.back()),
-          interval_text(joint.bounds.back()),
-          readable(joint.average[worst]) + " at " + readable(times[worst]) + " s",
-          in_words(joint.verdict)};
+  return {
+      {"cell", cell.label, Align::left},
+      {"components at the end", readable(joint.dimension.back())},
+      {"NEES / component", readable(joint.average.back())},
+      {"band", interval_text(joint.bounds.back())},
+      {"farthest from 1", readable(joint.average[worst]) + " at " + readable(times[worst]) + " s"},
+      {"verdict", in_words(joint.verdict)}};
 }
 
 /// Whether any cell was judged by its joint estimates.
@@ -191,16 +192,11 @@ bool has_joint_nees(const StudyAnalysis& study) {
   return std::ranges::any_of(study.cells, is_judged);
 }
 
-/// One row a cell that has joint estimates: is it consistent in pose and map together? Without rows
-/// where none has.
+/// One row for each cell with joint estimates; no rows if there are none.
 TextTable joint_table(const StudyAnalysis& study) {
   TextTable table;
-  if (!has_joint_nees(study)) return table;
-  table.headings = {{"cell", Align::left}, {"components at the end"},
-                    {"NEES / component"},  {"band"},
-                    {"farthest from 1"},   {"verdict"}};
   for (const CellAnalysis& cell : study.cells) {
-    if (is_judged(cell)) table.rows.push_back(row_of(cell, study.joint_times));
+    if (is_judged(cell)) table.add(row_of(cell, study.joint_times));
   }
   return table;
 }
@@ -223,7 +219,7 @@ void add_joint_notes(const StudyAnalysis& study, Section& section) {
   }
 }
 
-/// One row a cell and stored scan: joint NEES per component with its bounds.
+/// One row for each cell and stored scan: joint NEES per component with its bounds.
 void write_joint_nees(const StudyAnalysis& study, const std::filesystem::path& path) {
   NamedRows file(path);
   for (const CellAnalysis& cell : study.cells) {

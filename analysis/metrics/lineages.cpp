@@ -105,7 +105,7 @@ void LineageWalker::walk_from(std::size_t s, const RunRows& rows, std::span<cons
     }
   }
   sums.coalesced.add(set_.size() == 1 ? 1.0 : 0.0);
-  // Once all lines have met, one ancestor is left at every longer lag that the run has.
+  // If one ancestor is left, it is left at every longer lag of the run too.
   for (; lag < kLineageLags.size() && times[s] + kSameTime >= kLineageLags[lag]; ++lag) {
     sums.ancestors[lag].add(static_cast<double>(set_.size()));
   }

@@ -122,16 +122,16 @@ std::string text_of(const CellAnalysis& cell, std::string_view score) {
   return with_error(summary.mean, summary.standard_error());
 }
 
-std::vector<std::string> row_of(const CellAnalysis& cell) {
-  return {cell.label,
-          text_of(cell, "landmark_rms"),
-          percent(cell.get<Efficiency>().map),
-          text_of(cell, "landmark_nees"),
-          percent(cell.get<MapErrors>().share_inside()),
-          text_of(cell, "gospa"),
-          text_of(cell, "gospa_localisation"),
-          text_of(cell, "landmarks_missed"),
-          text_of(cell, "landmarks_spurious")};
+std::vector<TextTable::Entry> row_of(const CellAnalysis& cell) {
+  return {{"cell", cell.label, Align::left},
+          {"landmark RMSE [m]", text_of(cell, "landmark_rms")},
+          {"efficiency", percent(cell.get<Efficiency>().map)},
+          {"landmark NEES", text_of(cell, "landmark_nees")},
+          {"landmarks inside", percent(cell.get<MapErrors>().share_inside())},
+          {"GOSPA [m]", text_of(cell, "gospa")},
+          {"of it errors [m]", text_of(cell, "gospa_localisation")},
+          {"missed", text_of(cell, "landmarks_missed")},
+          {"spurious", text_of(cell, "landmarks_spurious")}};
 }
 
 /// Reason, and the labels of the cells it is true of: "a, b".
@@ -151,16 +151,11 @@ bool has_map_errors(const StudyAnalysis& study) {
       study.cells, [](const CellAnalysis& cell) { return cell.get<MapErrors>().missing.empty(); });
 }
 
-/// One row a cell: how far its final maps are from the true landmarks. Without rows where no cell
-/// has a map.
+/// One row for each cell; no rows if no cell has a map.
 TextTable map_error_table(const StudyAnalysis& study) {
   TextTable table;
   if (!has_map_errors(study)) return table;
-  table.headings = {
-      {"cell", Align::left}, {"landmark RMSE [m]"}, {"efficiency"},       {"landmark NEES"},
-      {"landmarks inside"},  {"GOSPA [m]"},         {"of it errors [m]"}, {"missed"},
-      {"spurious"}};
-  for (const CellAnalysis& cell : study.cells) table.rows.push_back(row_of(cell));
+  for (const CellAnalysis& cell : study.cells) table.add(row_of(cell));
   return table;
 }
 
@@ -184,7 +179,7 @@ void add_map_notes(const StudyAnalysis& study, Section& section) {
   }
 }
 
-/// One row a cell and landmark: error and NEES over runs, with the bounds of that NEES.
+/// One row for each cell and landmark: error and NEES over runs, with the bounds of that NEES.
 void write_landmarks(const StudyAnalysis& study, const std::filesystem::path& path) {
   NamedRows file(path);
   for (const CellAnalysis& cell : study.cells) {
@@ -202,7 +197,7 @@ void write_landmarks(const StudyAnalysis& study, const std::filesystem::path& pa
   file.close();
 }
 
-/// How far off landmarks are; where nobody knows which is which, the map as a whole.
+/// Range of the landmark errors or, with unknown identities, of GOSPA.
 std::string map_summary(const StudyAnalysis& study) {
   const NumberText metres = [](double value) { return readable(value) + " m"; };
   const auto range_of = [&](const char* score) {

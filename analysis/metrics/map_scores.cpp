@@ -43,7 +43,7 @@ struct Assignment {
   std::vector<Eigen::Index> column_of, row_of;
 };
 
-/// Every row takes its cheapest column where nobody has it.
+/// Assigns to every row its cheapest column if that is free.
 void assign_cheapest(Assignment& assignment) {
   for (Eigen::Index row = 0; row < assignment.cost->rows(); ++row) {
     Eigen::Index column = 0;

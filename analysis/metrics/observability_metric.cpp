@@ -27,7 +27,7 @@ constexpr ScanSeries kObservabilitySeries[] = {
      [](const MeasuredRun& run) { return run.rows.rotation_information; }},
 };
 
-/// Beyond a full turn a standard deviation says nothing.
+/// Standard deviation [deg]; beyond a full turn it has no meaning.
 std::string heading_of(double information) {
   const double degrees = 180.0 / kPi / std::sqrt(information);
   return degrees > 360.0 ? "nothing" : readable(degrees);
@@ -35,12 +35,12 @@ std::string heading_of(double information) {
 
 TextTable observability_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {
-      {"cell", Align::left}, {"information [1/rad^2]"}, {"equivalent heading sigma [deg]"}};
   for (const CellAnalysis& cell : study.cells) {
     const double information = cell.over_runs("rotation_information").mean;
     if (std::isnan(information)) continue;
-    table.rows.push_back({cell.label, readable(information), heading_of(information)});
+    table.add({{"cell", cell.label, Align::left},
+               {"information [1/rad^2]", readable(information)},
+               {"equivalent heading sigma [deg]", heading_of(information)}});
   }
   return table;
 }

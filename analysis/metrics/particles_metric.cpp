@@ -55,29 +55,27 @@ constexpr ScanSeries kParticlesSeries[] = {
     {"ancestors_at_start", "1", counts_over_time<&Diversity::root>},
 };
 
-std::vector<std::string> diversity_row(const CellAnalysis& cell) {
-  std::vector<std::string> row = {cell.label, readable(cell.over_runs("ess").mean),
-                                  percent(cell.over_runs("resampling_rate").mean)};
+std::vector<TextTable::Entry> diversity_row(const CellAnalysis& cell) {
   const LineageSummary* lineages = cell.find<LineageSummary>();
-  if (lineages == nullptr) {
-    row.resize(8, "-");
-    return row;
-  }
-  for (const std::size_t lag : {0u, 3u, 6u}) row.push_back(readable(lineages->ancestors[lag]));
-  const bool has_met = std::isfinite(lineages->coalescence);
-  row.push_back(has_met ? readable(lineages->coalescence) + " s" : "-");
-  row.push_back(percent(lineages->coalesced_share));
-  return row;
+  const auto number = [&](double value) { return lineages == nullptr ? "-" : readable(value); };
+  const LineageSummary& found = cell.get<LineageSummary>();
+  return {{"cell", cell.label, Align::left},
+          {"ESS", readable(cell.over_runs("ess").mean)},
+          {"resampled", percent(cell.over_runs("resampling_rate").mean)},
+          {"ancestors, 1 s ago", number(found.ancestors[0])},
+          {"10 s ago", number(found.ancestors[3])},
+          {"100 s ago", number(found.ancestors[6])},
+          {"common ancestor", lineages != nullptr && std::isfinite(found.coalescence)
+                                  ? readable(found.coalescence) + " s"
+                                  : "-"},
+          {"scans with one", lineages == nullptr ? "-" : percent(found.coalesced_share)}};
 }
 
 TextTable diversity_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {{"cell", Align::left},  {"ESS"},           {"resampled"},
-                    {"ancestors, 1 s ago"}, {"10 s ago"},      {"100 s ago"},
-                    {"common ancestor"},    {"scans with one"}};
   for (const CellAnalysis& cell : study.cells) {
     const bool has_ess = study.own_drives > 0 ? cell.complete > 0 : !cell.over_time("ess").empty();
-    if (has_ess) table.rows.push_back(diversity_row(cell));
+    if (has_ess) table.add(diversity_row(cell));
   }
   return table;
 }

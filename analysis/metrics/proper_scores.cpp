@@ -94,12 +94,12 @@ constexpr Score kProperScores[] = {
 
 TextTable proper_scores_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {{"cell", Align::left}, {"log score"}, {"energy score [m]"}};
   for (const CellAnalysis& cell : study.cells) {
     const Spread log_scores = cell.known_over_runs("log_score");
     if (log_scores.summary.n == 0) continue;
-    table.rows.push_back({cell.label, readable(log_scores.summary.mean),
-                          readable(cell.known_over_runs("energy_score").summary.mean)});
+    table.add({{"cell", cell.label, Align::left},
+               {"log score", readable(log_scores.summary.mean)},
+               {"energy score [m]", readable(cell.known_over_runs("energy_score").summary.mean)}});
   }
   return table;
 }

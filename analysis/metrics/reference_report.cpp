@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace montecarta::analysis {
@@ -51,43 +52,45 @@ bool any_heading(const StudyAnalysis& study) {
   return std::ranges::any_of(study.references, &JudgedReference::has_heading);
 }
 
-std::vector<std::string> reference_row(const StudyAnalysis& study, const CellAnalysis& cell,
-                                       std::size_t r) {
+std::vector<TextTable::Entry> reference_row(const StudyAnalysis& study, const CellAnalysis& cell,
+                                            std::size_t r) {
   const ReferenceAnalysis& against = cell.get<ReferenceAnalyses>()[r];
-  const auto text = [&](double ReferenceScores::*score) {
-    return mean_text(against.over_runs(score));
+  const auto text = [&](double ReferenceScores::*score, double factor = 1.0) {
+    return mean_text(against.over_runs(score), factor);
   };
   const double kept = against.over_runs(&ReferenceScores::aligned_gated_share).summary.mean;
-  std::vector<std::string> row = {
-      cell.label,
-      study.references[r].name,
-      runs_in_words(cell),
-      study.references[r].fixes == 0 ? "-" : lost_text(cell, against),
-      text(&ReferenceScores::rms),
-      text(&ReferenceScores::median),
-      text(&ReferenceScores::aligned_rms),
-      runs_text(against.over_runs(&ReferenceScores::aligned_rms)),
-      text(&ReferenceScores::aligned_median),
-      text(&ReferenceScores::aligned_gated_rms) + " (" + percent(kept) + ")"};
+  std::vector<TextTable::Entry> row = {
+      {"cell", cell.label, Align::left},
+      {"reference", study.references[r].name, Align::left},
+      {"runs", runs_in_words(cell), Align::left},
+      {"lost", study.references[r].fixes == 0 ? "-" : lost_text(cell, against)},
+      {"raw RMS [m]", text(&ReferenceScores::rms)},
+      {"raw median [m]", text(&ReferenceScores::median)},
+      {"aligned RMS [m]", text(&ReferenceScores::aligned_rms)},
+      {"middle run [ends]", runs_text(against.over_runs(&ReferenceScores::aligned_rms))},
+      {"aligned median [m]", text(&ReferenceScores::aligned_median)},
+      {"gated [m] (kept)", text(&ReferenceScores::aligned_gated_rms) + " (" + percent(kept) + ")"}};
   if (any_heading(study)) {
-    row.push_back(mean_text(against.over_runs(&ReferenceScores::heading_rmse), 180.0 / kPi));
+    row.push_back({"heading RMSE [deg]", text(&ReferenceScores::heading_rmse, 180.0 / kPi)});
   }
   return row;
 }
 
-std::vector<std::string> map_row(const StudyAnalysis& study, const CellAnalysis& cell) {
+std::vector<TextTable::Entry> map_row(const StudyAnalysis& study, const CellAnalysis& cell) {
   const auto text = [&](std::string_view score) { return mean_text(cell.known_over_runs(score)); };
   const Spread found = cell.known_over_runs("beacons_found");
-  std::vector<std::string> row = {cell.label, count_text(cell.known_over_runs("map_landmarks"))};
+  const std::string beacons = " of " + std::to_string(study.beacons);
+  std::vector<TextTable::Entry> row = {
+      {"cell", cell.label, Align::left},
+      {"landmarks", count_text(cell.known_over_runs("map_landmarks"))}};
   if (study.beacons > 0) {
-    row.push_back(
-        found.summary.n == 0 ? "-" : count_text(found) + " of " + std::to_string(study.beacons));
-    row.push_back(text("beacon_rms"));
-    row.push_back(text("beacon_aligned_rms"));
+    row.push_back({"beacons found", found.summary.n == 0 ? "-" : count_text(found) + beacons});
+    row.push_back({"beacon error [m]", text("beacon_rms")});
+    row.push_back({"beacon error, aligned [m]", text("beacon_aligned_rms")});
   }
-  row.push_back(readable(cell.over_runs("ess").mean));
-  row.push_back(readable(cell.over_runs("ancestors_at_start_at_the_end").mean));
-  row.push_back(readable(cell.over_runs("cpu_seconds").mean));
+  row.push_back({"ESS", readable(cell.over_runs("ess").mean)});
+  row.push_back({"ancestors", readable(cell.over_runs("ancestors_at_start_at_the_end").mean)});
+  row.push_back({"CPU [s]", readable(cell.over_runs("cpu_seconds").mean)});
   return row;
 }
 
@@ -100,20 +103,20 @@ std::string against_baseline(std::size_t better, std::size_t runs) {
                              : "worse in most runs";
 }
 
-std::vector<std::string> baseline_row(const CellAnalysis& cell, const CellAnalysis* baseline,
-                                      const JudgedReference& reference) {
+std::vector<TextTable::Entry> baseline_row(const CellAnalysis& cell, const CellAnalysis* baseline,
+                                           const JudgedReference& reference) {
   const ReferenceAnalysis& leading = cell.get<ReferenceAnalyses>().front();
-  std::vector<std::string> row = {cell.label, lost_text(cell, leading)};
+  std::vector<TextTable::Entry> row = {{"cell", cell.label, Align::left},
+                                       {"loses the map", lost_text(cell, leading)}};
   if (baseline == nullptr) return row;
-  if (&cell == baseline) {
-    row.insert(row.end(), {"-", "is the baseline"});
-    return row;
-  }
   const auto score =
       reference.compares_raw() ? &ReferenceScores::rms : &ReferenceScores::aligned_rms;
   const double mean = baseline->get<ReferenceAnalyses>().front().over_runs(score).summary.mean;
   const std::size_t better = leading.better_than(mean, score), runs = judged_runs(cell, leading);
-  row.insert(row.end(), {of_text(better, runs), against_baseline(better, runs)});
+  const bool is_baseline = &cell == baseline;
+  row.push_back({"beats " + baseline->label, is_baseline ? "-" : of_text(better, runs)});
+  row.push_back({"against EKF-SLAM",
+                 is_baseline ? "is the baseline" : against_baseline(better, runs), Align::left});
   return row;
 }
 
@@ -128,15 +131,9 @@ const CellAnalysis* baseline_of(const StudyAnalysis& study) {
 
 TextTable reference_table(const StudyAnalysis& study) {
   TextTable table{.keys = 2};
-  table.headings = {{"cell", Align::left},  {"reference", Align::left},
-                    {"runs", Align::left},  {"lost"},
-                    {"raw RMS [m]"},        {"raw median [m]"},
-                    {"aligned RMS [m]"},    {"middle run [ends]"},
-                    {"aligned median [m]"}, {"gated [m] (kept)"}};
-  if (any_heading(study)) table.headings.push_back({"heading RMSE [deg]"});
   for (const CellAnalysis& cell : study.cells) {
     for (std::size_t r = 0; r < cell.get<ReferenceAnalyses>().size(); ++r) {
-      table.rows.push_back(reference_row(study, cell, r));
+      table.add(reference_row(study, cell, r));
     }
   }
   return table;
@@ -144,13 +141,7 @@ TextTable reference_table(const StudyAnalysis& study) {
 
 TextTable map_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {{"cell", Align::left}, {"landmarks"}};
-  if (study.beacons > 0) {
-    table.headings.insert(table.headings.end(),
-                          {{"beacons found"}, {"beacon error [m]"}, {"beacon error, aligned [m]"}});
-  }
-  table.headings.insert(table.headings.end(), {{"ESS"}, {"ancestors"}, {"CPU [s]"}});
-  for (const CellAnalysis& cell : study.cells) table.rows.push_back(map_row(study, cell));
+  for (const CellAnalysis& cell : study.cells) table.add(map_row(study, cell));
   return table;
 }
 
@@ -158,13 +149,8 @@ TextTable baseline_table(const StudyAnalysis& study) {
   TextTable table;
   if (study.references.empty() || study.references.front().fixes == 0) return table;
   const CellAnalysis* baseline = baseline_of(study);
-  table.headings = {{"cell", Align::left}, {"loses the map"}};
-  if (baseline != nullptr) {
-    table.headings.push_back({"beats " + baseline->label});
-    table.headings.push_back({"against EKF-SLAM", Align::left});
-  }
   for (const CellAnalysis& cell : study.cells) {
-    table.rows.push_back(baseline_row(cell, baseline, study.references.front()));
+    table.add(baseline_row(cell, baseline, study.references.front()));
   }
   return table;
 }

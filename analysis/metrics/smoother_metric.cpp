@@ -55,31 +55,27 @@ std::string efficiency_text(const CellAnalysis& cell, const CellAnalysis& smooth
                        {efficiency * std::exp(-half_width), efficiency * std::exp(half_width)});
 }
 
-std::vector<std::string> row_beside(const CellAnalysis& cell, const CellAnalysis& smoother,
-                                    double level) {
+std::vector<TextTable::Entry> row_beside(const CellAnalysis& cell, const CellAnalysis& smoother,
+                                         double level) {
   const auto cpu = [](const CellAnalysis& of) { return of.over_runs("cpu_seconds").mean; };
   const auto is_judged = [](const CellAnalysis& of) {
     return of.verdict.answer != Answer::untested;
   };
-  return {cell.label, efficiency_text(cell, smoother, "position_mse", level),
-          efficiency_text(cell, smoother, "heading_mse", level),
-          is_judged(cell) && is_judged(smoother)
-              ? compact(cell.verdict.ratio_estimate() / smoother.verdict.ratio_estimate())
-              : "-",
-          readable(cpu(cell) / cpu(smoother))};
+  const bool are_judged = is_judged(cell) && is_judged(smoother);
+  const double ratio = cell.verdict.ratio_estimate() / smoother.verdict.ratio_estimate();
+  return {{"cell", cell.label, Align::left},
+          {"position efficiency", efficiency_text(cell, smoother, "position_mse", level)},
+          {"heading efficiency", efficiency_text(cell, smoother, "heading_mse", level)},
+          {"ANEES / smoother's", are_judged ? compact(ratio) : "-"},
+          {"CPU / smoother's", readable(cpu(cell) / cpu(smoother))}};
 }
 
 std::vector<Section> smoother_sections(const StudyAnalysis& study) {
   const CellAnalysis* smoother = smoother_of(study);
   if (smoother == nullptr || !study.has_truth) return {};
   TextTable table;
-  table.headings = {{"cell", Align::left},
-                    {"position efficiency"},
-                    {"heading efficiency"},
-                    {"ANEES / smoother's"},
-                    {"CPU / smoother's"}};
   for (const CellAnalysis& cell : study.cells) {
-    if (&cell != smoother) table.rows.push_back(row_beside(cell, *smoother, study.level));
+    if (&cell != smoother) table.add(row_beside(cell, *smoother, study.level));
   }
   const CellNumber efficiency = [&](const CellAnalysis& cell) {
     return &cell == smoother ? kNaN

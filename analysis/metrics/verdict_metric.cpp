@@ -81,18 +81,16 @@ bool has_families(const StudyAnalysis& study) {
 
 TextTable family_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {{"cell", Align::left},
-                    {"family", Align::left},
-                    {"p"},
-                    {"farthest from right", Align::left},
-                    {"estimate [" + level_text(study.level) + "]"},
-                    {"shown", Align::left}};
   for (const CellAnalysis& cell : study.cells) {
     for (const FamilyTest& test : cell.verdict.families) {
       const Member& member = test.strongest();
-      table.rows.push_back({cell.label, name_of(test.family), readable(test.p, 2), name_of(member),
-                            with_interval(member.estimate, member.interval),
-                            test.is_rejected ? "yes" : "no"});
+      table.add({{"cell", cell.label, Align::left},
+                 {"family", name_of(test.family), Align::left},
+                 {"p", readable(test.p, 2)},
+                 {"farthest from right", name_of(member), Align::left},
+                 {"estimate [" + level_text(study.level) + "]",
+                  with_interval(member.estimate, member.interval)},
+                 {"shown", test.is_rejected ? "yes" : "no", Align::left}});
     }
   }
   return table;

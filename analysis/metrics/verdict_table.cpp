@@ -10,7 +10,7 @@
 #include "engine/numbers/angle.hpp"
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 
 namespace montecarta::analysis {
 namespace {
@@ -27,25 +27,25 @@ std::string median_exit_text(const CellAnalysis& cell) {
   return time_with_interval(survival.median, survival.median_interval);
 }
 
-std::vector<std::string> verdict_row(const CellAnalysis& cell) {
+std::vector<TextTable::Entry> verdict_row(const CellAnalysis& cell, double level) {
   const NeesResult* pose = cell.find_nees(ErrorBlock::pose, cell.leading);
   const bool is_tested = pose != nullptr && pose->is_tested();
-  return {cell.label,
-          runs_in_words(cell),
-          in_words(cell.verdict),
-          ratio_text(cell),
-          is_tested ? percent(pose->share_inside()) : "-",
-          median_exit_text(cell)};
+  return {{"cell", cell.label, Align::left},
+          {"runs", runs_in_words(cell), Align::left},
+          {"verdict", in_words(cell.verdict), Align::left},
+          {"NEES ratio [" + level_text(level) + "]", ratio_text(cell)},
+          {"scans in band", is_tested ? percent(pose->share_inside()) : "-"},
+          {"median time of loss", median_exit_text(cell)}};
 }
 
-std::vector<std::string> accuracy_row(const CellAnalysis& cell, double level) {
-  return {cell.label,
-          score_text(cell, "position_rmse", level).text(),
-          score_text(cell, "heading_rmse", level, 180.0 / kPi).text(),
-          percent(cell.get<Efficiency>().position),
-          readable(cell.over_runs("ess").mean),
-          readable(cell.over_runs("ancestors_at_start_at_the_end").mean),
-          readable(cell.over_runs("cpu_seconds").mean)};
+std::vector<TextTable::Entry> accuracy_row(const CellAnalysis& cell, double level) {
+  return {{"cell", cell.label, Align::left},
+          {"position RMSE [m]", score_text(cell, "position_rmse", level).text()},
+          {"heading RMSE [deg]", score_text(cell, "heading_rmse", level, 180.0 / kPi).text()},
+          {"efficiency", percent(cell.get<Efficiency>().position)},
+          {"ESS", readable(cell.over_runs("ess").mean)},
+          {"ancestors", readable(cell.over_runs("ancestors_at_start_at_the_end").mean)},
+          {"CPU [s]", readable(cell.over_runs("cpu_seconds").mean)}};
 }
 
 /// The average of an ideal filter with these moments.
@@ -55,24 +55,26 @@ double ideal_nees(const CellAnalysis& cell, const NeesResult& nees) {
   return drawn ? ideal_spread_nees(d, cell.particles) : static_cast<double>(d);
 }
 
-std::vector<std::string> consistency_row(const CellAnalysis& cell, const NeesResult& nees,
-                                         double level) {
+std::vector<TextTable::Entry> consistency_row(const CellAnalysis& cell, const NeesResult& nees,
+                                              double level) {
   const auto d = static_cast<double>(nees.series.dimension);
   const Interval& average = nees.average_interval;
-  return {cell.label,
-          name_of(nees.block),
-          name_of(nees.moments),
-          compact(nees.mean),
-          with_interval(nees.mean / d, {average.lower / d, average.upper / d}),
-          readable(ideal_nees(cell, nees)),
-          band_text(cell, nees.series.dimension, level),
-          percent(nees.share_inside()),
-          percent(nees.share_above),
-          percent(nees.share_below),
-          std::to_string(nees.series.lower_rank),
-          std::to_string(nees.series.unusable),
-          std::to_string(nees.series.too_few),
-          std::to_string(nees.series.unjudged_runs)};
+  const std::string of_level = level_text(level);
+  return {{"cell", cell.label, Align::left},
+          {"error", name_of(nees.block), Align::left},
+          {"covariance", name_of(nees.moments), Align::left},
+          {"ANEES", compact(nees.mean)},
+          {"NEES ratio [" + of_level + "]",
+           with_interval(nees.mean / d, {average.lower / d, average.upper / d})},
+          {"ideal", readable(ideal_nees(cell, nees))},
+          {of_level + " band", band_text(cell, nees.series.dimension, level)},
+          {"inside", percent(nees.share_inside())},
+          {"above", percent(nees.share_above)},
+          {"below", percent(nees.share_below)},
+          {"singular", std::to_string(nees.series.lower_rank)},
+          {"unusable", std::to_string(nees.series.unusable)},
+          {"too few draws", std::to_string(nees.series.too_few)},
+          {"unjudged runs", std::to_string(nees.series.unjudged_runs)}};
 }
 
 }  // namespace
@@ -149,74 +151,41 @@ std::string runs_in_words(const CellAnalysis& cell) {
 
 TextTable verdict_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {{"cell", Align::left},    {"runs", Align::left},
-                    {"verdict", Align::left}, {"NEES ratio [" + level_text(study.level) + "]"},
-                    {"scans in band"},        {"median time of loss"}};
-  for (const CellAnalysis& cell : study.cells) table.rows.push_back(verdict_row(cell));
+  for (const CellAnalysis& cell : study.cells) table.add(verdict_row(cell, study.level));
   return table;
 }
 
 TextTable accuracy_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {{"cell", Align::left},
-                    {"position RMSE [m]"},
-                    {"heading RMSE [deg]"},
-                    {"efficiency"},
-                    {"ESS"},
-                    {"ancestors"},
-                    {"CPU [s]"}};
-  for (const CellAnalysis& cell : study.cells)
-    table.rows.push_back(accuracy_row(cell, study.level));
+  for (const CellAnalysis& cell : study.cells) table.add(accuracy_row(cell, study.level));
   return table;
 }
 
 TextTable consistency_table(const StudyAnalysis& study) {
   TextTable table{.keys = 3};
-  table.headings = {{"cell", Align::left},
-                    {"error", Align::left},
-                    {"covariance", Align::left},
-                    {"ANEES"},
-                    {"NEES ratio [" + level_text(study.level) + "]"},
-                    {"ideal"},
-                    {level_text(study.level) + " band"},
-                    {"inside"},
-                    {"above"},
-                    {"below"},
-                    {"singular"},
-                    {"unusable"},
-                    {"too few draws"},
-                    {"unjudged runs"}};
   for (const CellAnalysis& cell : study.cells) {
-    for (const NeesResult& nees : cell.nees) {
-      table.rows.push_back(consistency_row(cell, nees, study.level));
-    }
+    for (const NeesResult& nees : cell.nees) table.add(consistency_row(cell, nees, study.level));
   }
   return table;
 }
 
 std::vector<NamedSeries> family_columns(const FamilyTest& test) {
-  std::vector<NamedSeries> columns = {{"from", "s", {}},
-                                      {"to", "s", {}},
-                                      {"estimate", "1", {}},
-                                      {"lower", "1", {}},
-                                      {"upper", "1", {}},
-                                      {"simultaneous_lower", "1", {}},
-                                      {"simultaneous_upper", "1", {}},
-                                      {"p", "1", {}},
-                                      {"family_p", "1", {}},
-                                      {"shown", "1", {}}};
+  std::vector<NamedSeries> columns;
   for (const Member& member : test.members) {
-    const std::array<double, 10> row = {member.from,
-                                        member.to,
-                                        member.estimate,
-                                        member.interval.lower,
-                                        member.interval.upper,
-                                        member.simultaneous.lower,
-                                        member.simultaneous.upper,
-                                        member.p,
-                                        test.p,
-                                        test.is_shown(member) ? 1.0 : 0.0};
-    for (std::size_t c = 0; c < row.size(); ++c) columns[c].values.push_back(row[c]);
+    const std::vector<NamedNumber> row = {{"from", "s", member.from},
+                                          {"to", "s", member.to},
+                                          {"estimate", "1", member.estimate},
+                                          {"lower", "1", member.interval.lower},
+                                          {"upper", "1", member.interval.upper},
+                                          {"simultaneous_lower", "1", member.simultaneous.lower},
+                                          {"simultaneous_upper", "1", member.simultaneous.upper},
+                                          {"p", "1", member.p},
+                                          {"family_p", "1", test.p},
+                                          {"shown", "1", test.is_shown(member) ? 1.0 : 0.0}};
+    if (columns.empty()) {
+      for (const NamedNumber& one : row) columns.push_back({one.name, one.units, {}});
+    }
+    for (std::size_t c = 0; c < row.size(); ++c) columns[c].values.push_back(row[c].value);
   }
   return columns;
 }

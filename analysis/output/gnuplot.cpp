@@ -114,7 +114,7 @@ class SpawnActions {
   posix_spawn_file_actions_t actions_{};
 };
 
-/// The last line that says something.
+/// The last line that is not empty.
 std::string last_lines(const std::filesystem::path& log) {
   std::ifstream file(log);
   std::string last;
@@ -325,7 +325,7 @@ set tics nomirror out scale 0.6
 set grid linecolor rgb '#bbbbbb' linewidth 0.4 dashtype (2,4)
 )";
 
-/// On any axis: gnuplot knows no infinity.
+/// An axis limit; gnuplot has no infinity.
 double on_axis(double value) {
   constexpr double kLargest = 1e300;
   return std::isnan(value) ? 0.0 : std::clamp(value, -kLargest, kLargest);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "analysis/output/text_table.hpp"
 
+#include "engine/errors.hpp"
 #include "engine/wrapped_text.hpp"
 
 #include <algorithm>
@@ -162,6 +163,16 @@ void print_table(std::ostream& out, const TextTable& table, std::size_t width) {
     out << (is_first ? "" : "\n") << aligned(rows, 0, alignment, layout.gap);
     is_first = false;
   }
+}
+
+void TextTable::add(const std::vector<Entry>& row) {
+  TableRow texts;
+  for (const Entry& entry : row) {
+    if (rows.empty()) headings.push_back({entry.heading, entry.align});
+    texts.push_back(entry.text);
+  }
+  expect(texts.size() == headings.size(), "all rows of a table have the same columns");
+  rows.push_back(std::move(texts));
 }
 
 bool Section::has_content() const {

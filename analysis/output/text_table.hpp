@@ -22,9 +22,18 @@ struct TextTable {
     std::string text;
     Align align = Align::right;
   };
+  /// One column of a row.
+  struct Entry {
+    std::string heading;
+    std::string text;
+    Align align = Align::right;
+  };
   std::vector<Heading> headings = {};
   std::vector<TableRow> rows = {};
   std::size_t keys = 1;  ///< number of first columns that identify a row
+
+  /// Adds a row. All rows have the same headings, which the table has from its first row.
+  void add(const std::vector<Entry>& row);
 };
 
 /// Rows with their columns below each other, `gap` spaces between, each line indented by `indent`.

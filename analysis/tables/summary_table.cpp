@@ -26,15 +26,15 @@ std::string ancestors_text(const CellAnalysis& cell) {
   return count == "-" ? count : count + " of " + std::to_string(cell.particles);
 }
 
-TableRow summary_row(const CellAnalysis& cell) {
-  return {cell.label,
-          complete_runs(cell),
-          name_of(cell.verdict.answer),
-          ratio_text(cell),
-          readable(cell.over_runs("position_rmse").mean),
-          readable(180.0 / kPi * cell.over_runs("heading_rmse").mean),
-          ancestors_text(cell),
-          readable(cell.over_runs("cpu_seconds").mean, 2)};
+std::vector<TextTable::Entry> summary_row(const CellAnalysis& cell, double level) {
+  return {{"cell", cell.label, Align::left},
+          {"complete", complete_runs(cell)},
+          {"verdict", name_of(cell.verdict.answer), Align::left},
+          {"NEES ratio [" + level_text(level) + "]", ratio_text(cell)},
+          {"RMSE [m]", readable(cell.over_runs("position_rmse").mean)},
+          {"RMSE [deg]", readable(180.0 / kPi * cell.over_runs("heading_rmse").mean)},
+          {"ancestors", ancestors_text(cell)},
+          {"CPU/run [s]", readable(cell.over_runs("cpu_seconds").mean, 2)}};
 }
 
 /// Leaves out column `c` if all cells say `text` in it.
@@ -49,15 +49,7 @@ void leave_out(std::size_t c, const std::string& text, TextTable& table) {
 
 TextTable summary_table(const StudyAnalysis& study) {
   TextTable table;
-  table.headings = {{"cell", Align::left},
-                    {"complete"},
-                    {"verdict", Align::left},
-                    {"NEES ratio [" + level_text(study.level) + "]"},
-                    {"RMSE [m]"},
-                    {"RMSE [deg]"},
-                    {"ancestors"},
-                    {"CPU/run [s]"}};
-  for (const CellAnalysis& cell : study.cells) table.rows.push_back(summary_row(cell));
+  for (const CellAnalysis& cell : study.cells) table.add(summary_row(cell, study.level));
   for (std::size_t c = table.headings.size() - 1; c > kComplete; --c) leave_out(c, "-", table);
   leave_out(kComplete, std::to_string(study.runs_here), table);
   return table;

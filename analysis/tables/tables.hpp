@@ -24,8 +24,8 @@ std::string latex_table(const StudyAnalysis& study, const TextTable& table);
 /// columns.
 void print_sentences(std::ostream& out, const StudyAnalysis& study, std::size_t width);
 
-/// Failed runs, sentences and one table: one row a cell with its verdict. For a recorded drive
-/// without a true path, the tables of its references.
+/// Failed runs, sentences and one table with a row for each cell and its verdict. For a recorded
+/// drive without a true path, the tables of its references.
 void print_summary(std::ostream& out, const StudyAnalysis& study, std::size_t width);
 
 /// Failed runs, sentences and all tables.
@@ -35,11 +35,11 @@ void print_all(std::ostream& out, const StudyAnalysis& study, std::size_t width)
 void print_named(std::ostream& out, const StudyAnalysis& study, const std::string& name,
                  std::size_t width);
 
-/// Writes failures.csv, cells.csv (one row a cell), consistency.csv (one row a cell and definition
-/// of error and covariance), runs.csv (the scores of every complete run), the files of metrics that
-/// apply (Metric::files)
-/// and, for each cell, series_<label>.csv (one row a scan) into `directory`, which is made where it
-/// is missing. Throws RunError naming the file that cannot be written.
+/// Writes failures.csv, cells.csv (one row for each cell), consistency.csv (one row for each cell
+/// and definition of error and covariance), runs.csv (the scores of every complete run), the files
+/// of metrics that apply (Metric::files) and, for each cell, series_<label>.csv (one row for each
+/// scan) into `directory`, which is made if it is missing. Throws RunError naming the file that
+/// cannot be written.
 void write_csv(const StudyAnalysis& study, const std::filesystem::path& directory);
 
 /// Names of the files that write_csv() makes of cells with these labels.

@@ -161,7 +161,7 @@ std::vector<MemberTest> WholeError::variances(const ErrorNames& names,
                            SquaresLaw(size.traces(), size_.runs())));
   add_components(names, all);
   std::ranges::move(stretches, std::back_inserter(all));
-  // Runs that lack samples vary more between each other than products of two of them say.
+  // Runs without all samples vary more between each other than the products of two of them show.
   const bool are_alike = size.share() > kLeastShareOfSpread;
   if (are_alike && whitened.runs() >= kFewestRunsOfSpread) {
     spread = spread_test(size.variance_of_scales());

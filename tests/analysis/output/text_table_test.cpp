@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <sstream>
+#include <stdexcept>
 
 namespace montecarta::analysis {
 namespace {
@@ -54,6 +55,18 @@ TEST(PrintTable, ContinuesBelowBesideTheKeys) {
             "cell of   bbbbbbbb\n"
             "---- ---- --------\n"
             "ekf  pose        2\n");
+}
+
+TEST(TextTable, HasTheHeadingsOfItsFirstRow) {
+  TextTable table;
+  table.add({{"cell", "ekf", Align::left}, {"NEES", "3"}});
+  table.add({{"cell", "ukf", Align::left}, {"NEES", "4"}});
+  EXPECT_EQ(printed(table, 80),
+            "cell  NEES\n"
+            "----  ----\n"
+            "ekf      3\n"
+            "ukf      4\n");
+  EXPECT_THROW(table.add({{"cell", "srcd", Align::left}}), std::logic_error);
 }
 
 TEST(PrintTable, PrintsNothingWithoutColumns) { EXPECT_EQ(printed({}, 80), ""); }
