@@ -24,47 +24,36 @@ std::size_t RunReader::scans_of(std::size_t i) const {
   return drive_met_by(*file_, file_->runs()[i]).scan_times.size();
 }
 
-void RunReader::keep_scans(std::span<const double> all, std::size_t width, std::size_t scans,
-                           std::vector<double>& out) const {
-  out.clear();
-  for (const std::size_t row : std::span(file_->scan_rows()).first(scans)) {
-    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(row * width);
-    out.insert(out.end(), begin, begin + static_cast<std::ptrdiff_t>(width));
+void RunReader::keep_scans(std::size_t width, std::size_t i, std::vector<double>& rows) const {
+  const auto scan_rows = std::span(file_->scan_rows()).first(scans_of(i));
+  for (std::size_t s = 0; s < scan_rows.size(); ++s) {
+    if (scan_rows[s] == s) continue;
+    std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(scan_rows[s] * width), width,
+                rows.begin() + static_cast<std::ptrdiff_t>(s * width));
   }
+  rows.resize(scan_rows.size() * width);
 }
 
-void RunReader::read_truth(std::size_t i, std::vector<double>& out, Scratch& scratch) const {
-  out.clear();
-  if (!file_->has_truth()) return;
-  scratch.resize(file_->times().size() * 3);
-  {
-    const std::lock_guard lock(reading_);
-    file_->read_truth(i, scratch);
-  }
-  keep_scans(scratch, 3, scans_of(i), out);
+void RunReader::read_truth(std::size_t i, std::vector<double>& out) const {
+  if (!file_->has_truth()) return out.clear();
+  out.resize(file_->times().size() * 3);
+  file_->read_truth(i, out);
+  keep_scans(3, i, out);
 }
 
 void RunReader::read_at_scans(std::string_view column, std::size_t width, std::size_t i,
-                              std::vector<double>& out, Scratch& scratch) const {
-  out.clear();
-  if (!has(column, i)) return;
-  scratch.resize(file_->times().size() * width);
-  {
-    const std::lock_guard lock(reading_);
-    file_->read(*cell_, column, i, std::span(scratch));
-  }
-  keep_scans(scratch, width, scans_of(i), out);
+                              std::vector<double>& out) const {
+  if (!has(column, i)) return out.clear();
+  out.resize(file_->times().size() * width);
+  file_->read(*cell_, column, i, std::span(out));
+  keep_scans(width, i, out);
 }
 
 void RunReader::read_path(std::size_t i, std::vector<double>& out) const {
-  out.clear();
-  if (drive_met_by(*file_, file_->runs()[i]).references.empty()) return;
+  if (drive_met_by(*file_, file_->runs()[i]).references.empty()) return out.clear();
   out.resize(file_->times().size() * 3);
   const bool mixture = has("pose_mean_mixture", i);
-  {
-    const std::lock_guard lock(reading_);
-    file_->read(*cell_, mixture ? "pose_mean_mixture" : "pose_mean", i, std::span(out));
-  }
+  file_->read(*cell_, mixture ? "pose_mean_mixture" : "pose_mean", i, std::span(out));
   if (!file_->description().drives.empty()) out.resize(scans_of(i) * 3);  // rows are scans
 }
 
@@ -95,11 +84,9 @@ void RunReader::read_final_map(std::size_t i, RunRows& rows, Scratch& scratch) c
 }
 
 void RunReader::read_whole(std::string_view column, std::size_t i, std::vector<double>& out) const {
-  out.clear();
   const auto found = std::ranges::find(cell_->columns, column, &Column::name);
-  if (found == cell_->columns.end()) return;
+  if (found == cell_->columns.end()) return out.clear();
   out.resize(found->elements());
-  const std::lock_guard lock(reading_);
   file_->read(*cell_, column, i, std::span(out));
 }
 
@@ -110,10 +97,7 @@ void RunReader::read_cloud(std::size_t i, CloudRows& out, Scratch& scratch) cons
   const std::size_t scans = file_->scan_times().size();
   const auto keep = [&](const char* column, std::size_t width, std::vector<double>& kept) {
     scratch.resize(scans * width);
-    {
-      const std::lock_guard lock(reading_);
-      file_->read(*cell_, column, i, std::span(scratch));
-    }
+    file_->read(*cell_, column, i, std::span(scratch));
     for (const std::size_t scan : calibration_scans(scans)) {
       const auto row = std::span<const double>(scratch).subspan(scan * width, width);
       kept.insert(kept.end(), row.begin(), row.end());
@@ -126,13 +110,9 @@ void RunReader::read_cloud(std::size_t i, CloudRows& out, Scratch& scratch) cons
 template <class Number>
 void RunReader::read_scans(std::string_view column, std::size_t width, std::size_t i,
                            std::vector<Number>& out) const {
-  out.clear();
-  if (!has(column, i)) return;
+  if (!has(column, i)) return out.clear();
   out.resize(file_->scan_times().size() * width);
-  {
-    const std::lock_guard lock(reading_);
-    file_->read(*cell_, column, i, std::span(out));
-  }
+  file_->read(*cell_, column, i, std::span(out));
   out.resize(scans_of(i) * width);
 }
 
@@ -146,12 +126,14 @@ void RunReader::expect_particles(const RunRows& rows) const {
 }
 
 void RunReader::read_particles(std::size_t i, RunRows& rows) const {
-  rows.ess.clear();
-  rows.resampled.clear();
-  rows.ancestor.clear();
-  rows.particle_pose.clear();
-  rows.log_weight.clear();
-  if (cell_->particles == 0) return;
+  if (cell_->particles == 0) {
+    rows.ess.clear();
+    rows.resampled.clear();
+    rows.ancestor.clear();
+    rows.particle_pose.clear();
+    rows.log_weight.clear();
+    return;
+  }
   read_scans("ess", 1, i, rows.ess);
   read_scans("resampled", 1, i, rows.resampled);
   read_scans("ancestor", cell_->particles, i, rows.ancestor);
@@ -162,11 +144,11 @@ void RunReader::read_particles(std::size_t i, RunRows& rows) const {
 
 void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
   file_->expect_whole(*cell_, i);
-  read_truth(i, rows.truth, scratch);
-  read_at_scans("pose_mean", 3, i, rows.spread.mean, scratch);
-  read_at_scans("pose_covariance", 9, i, rows.spread.covariance, scratch);
-  read_at_scans("pose_mean_mixture", 3, i, rows.mixture.mean, scratch);
-  read_at_scans("pose_covariance_mixture", 9, i, rows.mixture.covariance, scratch);
+  read_truth(i, rows.truth);
+  read_at_scans("pose_mean", 3, i, rows.spread.mean);
+  read_at_scans("pose_covariance", 9, i, rows.spread.covariance);
+  read_at_scans("pose_mean_mixture", 3, i, rows.mixture.mean);
+  read_at_scans("pose_covariance_mixture", 9, i, rows.mixture.covariance);
   read_scans("numerical_faults", 1, i, rows.numerical_faults);
   read_scans("association_correct", 1, i, rows.association.correct);
   read_scans("association_wrong", 1, i, rows.association.wrong);
@@ -188,10 +170,7 @@ void RunReader::read(std::size_t i, RunRows& rows, Scratch& scratch) const {
     read_whole(kErrorConventions[k].column, i, rows.error.nees_by[k]);
   }
   rows.run = file_->runs()[i];
-  {
-    const std::lock_guard lock(reading_);
-    rows.landmarks = file_->landmarks_of(i);
-  }
+  rows.landmarks = file_->landmarks_of(i);
   rows.cpu_seconds = cpu_seconds_[i];
   read_particles(i, rows);
 }

@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <mutex>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -38,7 +37,7 @@ class RunReader {
  public:
   RunReader(const ResultFile& file, const StoredCell& cell, Reach reach = Reach::every_run);
 
-  /// Memory for the rows between scans.
+  /// Memory for what is read and not kept.
   using Scratch = std::vector<double>;
 
   /// Fills `rows` with run index `i` (0-based in the file), which is complete. Throws StudyError if
@@ -48,13 +47,13 @@ class RunReader {
  private:
   /// Whether run index `i` has the column, and is to give it.
   bool has(std::string_view column, std::size_t i) const;
-  void read_truth(std::size_t i, std::vector<double>& out, Scratch& scratch) const;
+  void read_truth(std::size_t i, std::vector<double>& out) const;
   void read_path(std::size_t i, std::vector<double>& out) const;
   /// The map after the last scan, also of columns that hold every one.
   void read_final_map(std::size_t i, RunRows& rows, Scratch& scratch) const;
   /// A column over time, of which scans are kept; `width` numbers a row. Empty where not stored.
   void read_at_scans(std::string_view column, std::size_t width, std::size_t i,
-                     std::vector<double>& out, Scratch& scratch) const;
+                     std::vector<double>& out) const;
   /// All of a column, as far as it is stored.
   void read_whole(std::string_view column, std::size_t i, std::vector<double>& out) const;
   void read_cloud(std::size_t i, CloudRows& out, Scratch& scratch) const;
@@ -67,14 +66,13 @@ class RunReader {
                   std::vector<Number>& out) const;
   /// Of run index `i`: a shorter drive than others has fewer than the file.
   std::size_t scans_of(std::size_t i) const;
-  void keep_scans(std::span<const double> all, std::size_t width, std::size_t scans,
-                  std::vector<double>& out) const;
+  /// Leaves of rows of `width` numbers those at the scans of run index `i`.
+  void keep_scans(std::size_t width, std::size_t i, std::vector<double>& rows) const;
 
   const ResultFile* file_;
   const StoredCell* cell_;
   Reach reach_;
   std::vector<double> cpu_seconds_;
-  static inline std::mutex reading_;  ///< an HDF5 library may be built for one thread
 };
 
 /// One run alone, index `i`, with what is stored only of runs in full.

@@ -5,6 +5,7 @@
 #include "engine/records/h5.hpp"
 #include "engine/records/posix_file.hpp"
 #include "engine/records/result_layout.hpp"
+#include "engine/records/run_dataset.hpp"
 #include "engine/records/seal.hpp"
 #include "engine/visible_text.hpp"
 
@@ -13,47 +14,44 @@
 #include <optional>
 
 namespace montecarta::engine {
-
 struct ResultFile::Contents {
   std::filesystem::path path;
   Seal seal;
   h5::Handle file;
+  PosixFile bytes;
   ResultDescription description;
-  std::optional<h5::Handle> truth, own_landmarks;
+  std::optional<RunDataset> truth, own_landmarks;
   /// Every column of every cell, opened once.
-  std::map<std::string, std::map<std::string, h5::Handle, std::less<>>, std::less<>> columns;
-
-  /// The bytes of the runs of a sealed file.
-  struct Bytes {
-    PosixFile file;
-    ResultSlabs slabs;
-  };
-  std::optional<Bytes> bytes;  ///< nullopt if the file has no seal
+  std::map<std::string, std::map<std::string, RunDataset, std::less<>>, std::less<>> columns;
+  std::optional<ResultSlabs> slabs;  ///< nullopt if the file has no seal
 
   explicit Contents(const std::filesystem::path& given)
       : path(given),
         seal(check_seal(path)),
         file(h5::open_file(path)),
+        bytes(path, PosixFile::Mode::read),
         description(read_description(file, path)) {
-    if (description.has_truth) truth = h5::open_dataset(file, "truth/pose");
-    if (description.own_landmarks) own_landmarks = h5::open_dataset(file, "truth/landmarks");
+    if (description.has_truth) truth = open("truth/pose");
+    if (description.own_landmarks) own_landmarks = open("truth/landmarks");
     for (const StoredCell& cell : description.cells) {
       open_columns(cell, "", cell.columns);
       open_columns(cell, std::string(format::kFull) + "/", cell.full_columns);
     }
-    if (seal == Seal::holds) {
-      bytes.emplace(Bytes{PosixFile(path, PosixFile::Mode::read), find_slabs(path, description)});
-    }
+    if (seal == Seal::holds) slabs = find_slabs(path, description);
+  }
+
+  RunDataset open(const std::string& name) const {
+    return RunDataset(h5::open_dataset(file, name), bytes);
   }
 
   void open_columns(const StoredCell& cell, const std::string& group,
                     const std::vector<Column>& all) {
     const std::string place = "cells/" + cell.label + "/" + group;
     for (const Column& column : all)
-      columns[cell.label].emplace(column.name, h5::open_dataset(file, place + column.name));
+      columns[cell.label].emplace(column.name, open(place + column.name));
   }
 
-  const h5::Handle& column(const StoredCell& cell, std::string_view name) const {
+  const RunDataset& column(const StoredCell& cell, std::string_view name) const {
     const auto of_cell = columns.find(cell.label);
     if (of_cell != columns.end()) {
       const auto found = of_cell->second.find(name);
@@ -127,14 +125,14 @@ std::vector<RunStatus> ResultFile::status(const StoredCell& cell) const {
 }
 
 void ResultFile::expect_whole(const StoredCell& cell, std::size_t i) const {
-  const std::optional<Contents::Bytes>& bytes = contents_->bytes;
-  if (!bytes) return;
+  const PosixFile& bytes = contents_->bytes;
+  if (!contents_->slabs) return;
   const auto c = static_cast<std::size_t>(&cell - cells().data());
   thread_local std::vector<std::byte> buffer;
-  const CellSlabs& slabs = bytes->slabs.cells.at(c);
-  if (run_is_whole(bytes->file, slabs, i, buffer) &&
-      (!is_stored(status_of(bytes->file, slabs, i)) ||
-       truth_is_whole(bytes->file, bytes->slabs, i, buffer))) {
+  const CellSlabs& slabs = contents_->slabs->cells.at(c);
+  if (run_is_whole(bytes, slabs, i, buffer) &&
+      (!is_stored(status_of(bytes, slabs, i)) ||
+       truth_is_whole(bytes, *contents_->slabs, i, buffer))) {
     return;
   }
   throw StudyError(
@@ -175,17 +173,17 @@ bool ResultFile::holds(const StoredCell& cell, std::string_view column, std::siz
 
 void ResultFile::read(const StoredCell& cell, std::string_view column, std::size_t i,
                       std::span<double> out) const {
-  h5::read_row(contents_->column(cell, column), i, Element::f64, std::as_writable_bytes(out));
+  contents_->column(cell, column).read(i, out);
 }
 
 void ResultFile::read(const StoredCell& cell, std::string_view column, std::size_t i,
                       std::span<std::uint32_t> out) const {
-  h5::read_row(contents_->column(cell, column), i, Element::u32, std::as_writable_bytes(out));
+  contents_->column(cell, column).read(i, out);
 }
 
 void ResultFile::read_truth(std::size_t i, std::span<double> out) const {
   expect(contents_->truth.has_value(), "the truth was asked for where nobody knows it");
-  h5::read_row(*contents_->truth, i, Element::f64, std::as_writable_bytes(out));
+  contents_->truth->read(i, out);
 }
 
 bool ResultFile::has_own_landmarks() const { return description().own_landmarks; }
@@ -194,8 +192,11 @@ std::vector<Eigen::Vector2d> ResultFile::landmarks_of(std::size_t i) const {
   std::vector<Eigen::Vector2d> points;
   for (const auto& [x, y] : landmarks()) points.emplace_back(x, y);
   if (!has_own_landmarks()) return points;
-  h5::read_row(*contents_->own_landmarks, i, Element::f64,
-               std::as_writable_bytes(std::span(points)));
+  std::vector<double> coordinates(2 * points.size());
+  contents_->own_landmarks->read(i, std::span(coordinates));
+  for (std::size_t l = 0; l < points.size(); ++l) {
+    points[l] = {coordinates[2 * l], coordinates[2 * l + 1]};
+  }
   return points;
 }
 

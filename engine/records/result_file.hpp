@@ -16,10 +16,9 @@
 namespace montecarta::engine {
 
 /// A result file that is opened for reading, the input of all analyses. Runs are read one by one,
-/// so that no more memory than the caller's buffer is needed. Two threads may read from one object
-/// if the HDF5 library is built thread-safe, as that of Debian is. Opens finished files and
-/// unfinished work (OUT.h5.part). Every member throws StudyError with file and dataset if the file
-/// cannot be read.
+/// so that no more memory than the caller's buffer is needed. Any number of threads may call the
+/// members that take the index of a run. Opens finished files and unfinished work (OUT.h5.part).
+/// Every member throws StudyError with file and dataset if the file cannot be read.
 class ResultFile {
  public:
   /// Throws StudyError if `path` does not exist, is no HDF5 file, or is no montecarta result of a
@@ -55,7 +54,7 @@ class ResultFile {
   std::vector<RunStatus> status(const StoredCell& cell) const;  ///< one per run in this file
   /// Throws StudyError if the bytes of run index `i` of `cell`, including its status and true path,
   /// do not match the stored fingerprints. A file without a seal is not checked, because another
-  /// program may have rewritten it. May be called by any number of threads.
+  /// program may have rewritten it.
   void expect_whole(const StoredCell& cell, std::size_t i) const;
   std::vector<std::string> failure_reasons(const StoredCell& cell) const;
   std::vector<std::uint32_t> failure_steps(const StoredCell& cell) const;

@@ -6,7 +6,9 @@
 #include "analysis/metrics/study_analysis.hpp"
 #include "analysis/page/replay/replay.hpp"
 #include "analysis/tables/tables.hpp"
+#include "engine/threads/parallel.hpp"
 #include "tests/analysis/synthetic_result.hpp"
+#include "tests/doubles/reader_program.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 
 #include <gmock/gmock.h>
@@ -62,6 +64,27 @@ TEST_F(RunsInFull, GiveAFigureOfOneRunAllThatIsThere) {
   EXPECT_THAT(ancestry_figure(file, 2).data, IsEmpty());
   EXPECT_THAT(read_replay(file, 1).cells[0].particles.frames, Not(IsEmpty()));
   EXPECT_THAT(read_replay(file, 2).cells[0].particles.frames, IsEmpty());
+}
+
+/// HDF5 unpacks what lies in one piece here.
+TEST_F(RunsInFull, AreTheSameInAFileThatAnotherProgramPacked) {
+  if (!installed("h5repack")) GTEST_SKIP() << "h5repack (hdf5-tools) is not installed";
+  const auto packed = folder / "packed.h5";
+  const std::string names = (folder / "out.h5").string() + " " + packed.string();
+  ASSERT_EQ(run_program("h5repack -f GZIP=1 " + names).status, 0);
+  const ResultFile other(packed);
+  const RunRows wanted = read_run(file, file.cells()[0], 1);
+  const RunReader reader(other, other.cells()[0], Reach::full_run);
+  Parallel(Backend::tbb, 3).for_each(6, [&](std::size_t) {
+    RunRows found;
+    RunReader::Scratch scratch;
+    reader.read(1, found, scratch);
+    EXPECT_EQ(found.truth, wanted.truth);
+    EXPECT_EQ(found.spread.covariance, wanted.spread.covariance);
+    EXPECT_EQ(found.resampled, wanted.resampled);
+    EXPECT_EQ(found.ancestor, wanted.ancestor);
+    EXPECT_EQ(found.particle_pose, wanted.particle_pose);
+  });
 }
 
 TEST_F(RunsInFull, ChangeNoTableOfTheStudy) {
