@@ -208,13 +208,14 @@ std::vector<JudgedPits> CalibrationSums::result(std::span<const double> times, d
 
 namespace {
 
-class CalibrationOverRuns final : public MetricSums {
+class CalibrationOverRuns final : public MergedSums<CalibrationOverRuns> {
  public:
   explicit CalibrationOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
   void add(const MeasuredRun& run) override { calibration_.add(run.pits); }
   void put(CellAnalysis& cell) override {
     cell.findings.put(calibration_.result(criteria_->times, criteria_->level));
   }
+  static constexpr auto parts() { return std::tuple(added(&CalibrationOverRuns::calibration_)); }
 
  private:
   const RunCriteria* criteria_;

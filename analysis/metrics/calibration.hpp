@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/data/run_rows.hpp"
+#include "analysis/statistics/merging.hpp"
 #include "analysis/statistics/uniformity.hpp"
 
 #include <Eigen/Core>
@@ -63,6 +64,7 @@ class CalibrationSums {
   /// at least. The order is pose by moments, ranks, landmarks, NEES; quantities that are not stored
   /// are absent.
   Calibrations result(std::span<const double> times, double level) const;
+  static constexpr auto parts() { return std::tuple(appended(&CalibrationSums::runs_)); }
 
  private:
   std::vector<RunPits> runs_;

@@ -2,11 +2,14 @@
 #include "analysis/metrics/cell_sums.hpp"
 
 #include "analysis/statistics/bootstrap.hpp"
+#include "analysis/statistics/merging.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "engine/threads/in_order.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace montecarta::analysis {
 namespace {
@@ -53,21 +56,19 @@ CellSums::CellSums(const RunCriteria& criteria)
   }
 }
 
-void CellSums::add(std::span<const MeasuredRun> runs, const Parallel& parallel) {
-  parallel.for_each(metrics_.size() + 2, [&](std::size_t part) {
-    for (const MeasuredRun& run : runs) {
-      if (part < metrics_.size()) metrics_[part]->add(run);
-      if (part == metrics_.size()) scores_.add(run);
-      if (part > metrics_.size()) add_to_series(run);
-    }
-  });
-}
-
-void CellSums::add_to_series(const MeasuredRun& run) {
+void CellSums::add(const MeasuredRun& run) {
+  scores_.add(run);
+  for (const auto& metric : metrics_) metric->add(run);
   for (std::size_t k = 0; k < over_time_.size(); ++k) {
     const std::vector<double> values = all_scan_series()[k].of(run);
     if (!values.empty()) over_time_[k].add(values);
   }
+}
+
+void CellSums::merge(const CellSums& next) {
+  merge_into(scores_, next.scores_);
+  merge_into(over_time_, next.over_time_);
+  for (std::size_t k = 0; k < metrics_.size(); ++k) metrics_[k]->merge(*next.metrics_[k]);
 }
 
 void CellSums::put_series(CellAnalysis& cell) const {
@@ -90,20 +91,49 @@ void CellSums::put(CellAnalysis& cell) {
   put_score_intervals(cell, level_);
 }
 
-void add_runs(const RunReader& reader, std::span<const std::size_t> runs, std::size_t particles,
-              const RunCriteria& criteria, const Parallel& parallel, std::size_t cells,
-              CellSums& sums) {
-  const auto threads = static_cast<std::size_t>(parallel.threads());
-  const std::size_t at_once = threads == 1 ? 1 : (4 * threads + cells - 1) / cells;
-  std::vector<MeasuredRun> slots(std::min(at_once, runs.size()));
-  for (std::size_t first = 0; first < runs.size(); first += slots.size()) {
-    const std::size_t here = std::min(slots.size(), runs.size() - first);
-    parallel.for_each(here, [&](std::size_t k) {
-      reader.read(runs[first + k], slots[k].rows, slots[k].scratch);
-      slots[k].measure(criteria, particles);
-    });
-    sums.add(std::span(slots).first(here), parallel);
+namespace {
+
+struct RunBlock {
+  std::size_t cell;
+  std::span<const std::size_t> runs;
+};
+
+std::vector<RunBlock> run_blocks_of(std::span<const CellRuns> cells) {
+  std::vector<RunBlock> blocks;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    for (auto left = cells[c].runs; !left.empty();) {
+      const std::size_t runs = std::min(kRunsOfABlock, left.size());
+      blocks.push_back({c, left.first(runs)});
+      left = left.subspan(runs);
+    }
   }
+  return blocks;
+}
+
+CellSums sums_of_block(const CellRuns& cell, std::span<const std::size_t> runs,
+                       const RunCriteria& criteria) {
+  CellSums sums(criteria);
+  MeasuredRun run;
+  for (const std::size_t i : runs) {
+    cell.reader->read(i, run.rows, run.scratch);
+    run.measure(criteria, cell.particles);
+    sums.add(run);
+  }
+  return sums;
+}
+
+}  // namespace
+
+std::vector<CellSums> sums_of(std::span<const CellRuns> cells, const RunCriteria& criteria,
+                              const Parallel& parallel) {
+  const std::vector<RunBlock> blocks = run_blocks_of(cells);
+  std::vector<CellSums> sums;
+  for (std::size_t c = 0; c < cells.size(); ++c) sums.emplace_back(criteria);
+  for_each_in_order(
+      parallel, blocks.size(),
+      [&](std::size_t b) { return sums_of_block(cells[blocks[b].cell], blocks[b].runs, criteria); },
+      [&](std::size_t b, const CellSums& block) { sums[blocks[b].cell].merge(block); });
+  return sums;
 }
 
 std::vector<double> first_values(const ResultFile& file, const StoredCell& cell, const Score& score,
@@ -114,9 +144,9 @@ std::vector<double> first_values(const ResultFile& file, const StoredCell& cell,
     if (status[i] == RunStatus::complete) complete.push_back(i);
   }
   const RunCriteria criteria = criteria_of(file, 0.95);
-  CellSums sums(criteria);
-  add_runs(RunReader(file, cell), complete, cell.particles, criteria, parallel, 1, sums);
-  return sums.scores().column(score.name);
+  const RunReader reader(file, cell);
+  const CellRuns all{&reader, complete, cell.particles};
+  return sums_of({&all, 1}, criteria, parallel).front().scores().column(score.name);
 }
 
 double half_width(const std::vector<double>& values, double level) {

@@ -22,28 +22,31 @@ class MeanOverTime {
   void add(const std::vector<double>& values);
   bool empty() const { return sum_.empty(); }
   std::vector<double> mean() const;
+  static constexpr auto parts() {
+    return std::tuple(added(&MeanOverTime::sum_, &MeanOverTime::runs_));
+  }
 
  private:
   std::vector<double> sum_;
   double runs_ = 0.0;
 };
 
-/// Adds up complete runs of one cell in the order of the calls. Memory depends on scans, and grows
-/// by a few numbers with every run.
+/// Adds up complete runs of one cell, or of a block of them, in the order of the calls. Memory
+/// depends on scans, and grows by a few numbers with every run.
 class CellSums {
  public:
   /// `criteria` must outlive it.
   explicit CellSums(const RunCriteria& criteria);
 
-  /// Metrics are added up at once, each by one thread in the order of the runs.
-  void add(std::span<const MeasuredRun> runs, const Parallel& parallel = Parallel::serial());
+  void add(const MeasuredRun& run);
+  /// Adds the sums over the runs behind these.
+  void merge(const CellSums& next);
   /// Of the runs so far.
   const ScoreTable& scores() const { return scores_; }
   /// Fills all that complete runs say; label, failures and missing runs are there already.
   void put(CellAnalysis& cell);
 
  private:
-  void add_to_series(const MeasuredRun& run);
   void put_series(CellAnalysis& cell) const;
 
   double level_;
@@ -53,11 +56,22 @@ class CellSums {
   std::vector<std::unique_ptr<MetricSums>> metrics_;  ///< those that have any
 };
 
-/// Measures `runs` of one cell, some at once, and adds them up in their order. `cells` is how many
-/// cells are added up at once: together they hold about four runs for each thread.
-void add_runs(const RunReader& reader, std::span<const std::size_t> runs, std::size_t particles,
-              const RunCriteria& criteria, const Parallel& parallel, std::size_t cells,
-              CellSums& sums);
+/// So many complete runs, one behind the other, are a block: one thread reads, measures and adds
+/// them up, and blocks are merged in their order. So sums have the same bits on any number of
+/// threads.
+inline constexpr std::size_t kRunsOfABlock = 64;
+
+/// Complete runs of one cell, by their index in the file.
+struct CellRuns {
+  const RunReader* reader;
+  std::span<const std::size_t> runs;
+  std::size_t particles;
+};
+
+/// {cell} The sums over the runs of each cell. There are never more than two blocks in memory for
+/// each thread.
+std::vector<CellSums> sums_of(std::span<const CellRuns> cells, const RunCriteria& criteria,
+                              const Parallel& parallel);
 
 /// A score of each complete run among the first `runs` that a file holds of a cell, in their order;
 /// the file may be unfinished. The same for any number of threads.

@@ -23,7 +23,7 @@ std::string comma_joined(const std::vector<std::string>& parts) {
   return all;
 }
 
-class HintsOverRuns final : public MetricSums {
+class HintsOverRuns final : public MergedSums<HintsOverRuns> {
  public:
   explicit HintsOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
   void add(const MeasuredRun& run) override {
@@ -37,6 +37,7 @@ class HintsOverRuns final : public MetricSums {
     const double level = criteria_->verdict_level(cell.complete + cell.failures.size());
     cell.findings.put(hints_->result(criteria_->times, level, criteria_->within));
   }
+  static constexpr auto parts() { return std::tuple(added(&HintsOverRuns::hints_)); }
 
  private:
   const RunCriteria* criteria_;

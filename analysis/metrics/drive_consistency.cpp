@@ -178,7 +178,7 @@ namespace {
 /// {reference with known errors}
 using DriveConsistencies = std::vector<DriveConsistency>;
 
-class DrivesOverRuns final : public MetricSums {
+class DrivesOverRuns final : public MergedSums<DrivesOverRuns> {
  public:
   explicit DrivesOverRuns(const RunCriteria& criteria)
       : level_(criteria.level),
@@ -196,6 +196,7 @@ class DrivesOverRuns final : public MetricSums {
     }
     if (!all.empty()) cell.findings.put(all);
   }
+  static constexpr auto parts() { return std::tuple(appended(&DrivesOverRuns::runs_)); }
 
  private:
   double level_, within_;

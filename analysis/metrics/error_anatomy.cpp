@@ -89,7 +89,7 @@ ErrorAnatomy ErrorMoments::result() const {
 
 namespace {
 
-class ErrorAnatomyOverRuns final : public MetricSums {
+class ErrorAnatomyOverRuns final : public MergedSums<ErrorAnatomyOverRuns> {
  public:
   explicit ErrorAnatomyOverRuns(const RunCriteria& criteria) : moments_(criteria.times.size()) {}
   void add(const MeasuredRun& run) override {
@@ -102,6 +102,10 @@ class ErrorAnatomyOverRuns final : public MetricSums {
     if (!first_) return;
     cell.findings.put(moments_.result());
     cell.findings.put(*first_);
+  }
+  static constexpr auto parts() {
+    return std::tuple(added(&ErrorAnatomyOverRuns::moments_),
+                      of_first_run(&ErrorAnatomyOverRuns::first_));
   }
 
  private:

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/statistics/merging.hpp"
+
 #include <Eigen/Core>
 
 #include <array>
@@ -45,6 +47,7 @@ class ErrorMoments {
   /// covariance that is not finite are left out.
   void add(std::span<const Eigen::Vector3d> errors, std::span<const Eigen::Matrix3d> covariances);
   ErrorAnatomy result() const;
+  static constexpr auto parts() { return std::tuple(added(&ErrorMoments::scans_)); }
 
  private:
   struct Sums {
@@ -52,6 +55,9 @@ class ErrorMoments {
     Eigen::Vector3d error = Eigen::Vector3d::Zero();
     Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    static constexpr auto parts() {
+      return std::tuple(added(&Sums::n, &Sums::error, &Sums::squares, &Sums::covariance));
+    }
   };
   std::vector<Sums> scans_;
 };

@@ -21,7 +21,7 @@ struct ComponentErrors {
   std::vector<double> deviation;  ///< {component} as the other program believes
 };
 
-class ComponentsOverRuns final : public MetricSums {
+class ComponentsOverRuns final : public MergedSums<ComponentsOverRuns> {
  public:
   explicit ComponentsOverRuns(const RunCriteria& /*criteria*/) {}
   void add(const MeasuredRun& run) override {
@@ -42,6 +42,10 @@ class ComponentsOverRuns final : public MetricSums {
     std::ranges::transform(squares_, std::back_inserter(found.error), root);
     std::ranges::transform(variances_, std::back_inserter(found.deviation), root);
     cell.findings.put(std::move(found));
+  }
+  static constexpr auto parts() {
+    using Sums = ComponentsOverRuns;
+    return std::tuple(added(&Sums::squares_, &Sums::variances_, &Sums::samples_));
   }
 
  private:

@@ -41,6 +41,9 @@ class ConventionHints {
   void add(const std::array<std::vector<double>, kErrorConventions.size()>& nees);
   /// Judged by size and scans at `level`; `times` [s] of the scans.
   ConventionHint result(std::span<const double> times, double level, double within) const;
+  static constexpr auto parts() {
+    return std::tuple(added(&ConventionHints::runs_, &ConventionHints::nees_));
+  }
 
  private:
   double components_;

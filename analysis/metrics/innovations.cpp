@@ -33,7 +33,7 @@ double widest_bound(const Innovations& found) {
   return widest;
 }
 
-class InnovationsOverRuns final : public MetricSums {
+class InnovationsOverRuns final : public MergedSums<InnovationsOverRuns> {
  public:
   explicit InnovationsOverRuns(const RunCriteria& criteria)
       : criteria_(&criteria),
@@ -51,6 +51,7 @@ class InnovationsOverRuns final : public MetricSums {
     }
     cell.findings.put(std::move(found));
   }
+  static constexpr auto parts() { return std::tuple(added(&InnovationsOverRuns::innovations_)); }
 
  private:
   const RunCriteria* criteria_;

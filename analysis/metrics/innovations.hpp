@@ -44,6 +44,10 @@ class InnovationSums {
   bool empty() const { return runs_ == 0; }
   /// `times` [s] of the scans; `level` of the whiteness and of bounds, `within` the margin.
   Innovations result(std::span<const double> times, double level, double within) const;
+  static constexpr auto parts() {
+    using Sums = InnovationSums;
+    return std::tuple(added(&Sums::nis_, &Sums::runs_, &Sums::products_));
+  }
 
  private:
   SummedError nis_;         ///< {scan}
@@ -54,6 +58,9 @@ class InnovationSums {
     double both = 0.0;     ///< sum of all members, two of each pair
     double product = 0.0;  ///< sum of the products
     double mean_product(double mean) const { return product / n - mean * both / n + mean * mean; }
+    static constexpr auto parts() {
+      return std::tuple(added(&Products::n, &Products::both, &Products::product));
+    }
   };
   std::vector<Products> products_;  ///< {lag} from 0
   std::vector<double> deviations_;  ///< {scan} of the run at hand; NaN without detections

@@ -137,7 +137,7 @@ std::vector<double> times_of(const RunCriteria& criteria) {
   return times;
 }
 
-class JointNeesOverRuns final : public MetricSums {
+class JointNeesOverRuns final : public MergedSums<JointNeesOverRuns> {
  public:
   explicit JointNeesOverRuns(const RunCriteria& criteria)
       : criteria_(&criteria), joint_(times_of(criteria)) {}
@@ -146,6 +146,7 @@ class JointNeesOverRuns final : public MetricSums {
     const double level = criteria_->verdict_level(cell.complete + cell.failures.size());
     cell.findings.put(joint_.result(level, criteria_->map.identities_known, criteria_->within));
   }
+  static constexpr auto parts() { return std::tuple(added(&JointNeesOverRuns::joint_)); }
 
  private:
   const RunCriteria* criteria_;

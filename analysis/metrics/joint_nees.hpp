@@ -55,6 +55,10 @@ class JointNeesSums {
   void add(std::span<const JointScore> run);
   /// `identities_known`: whether landmarks of map and truth are matched by identity.
   JointConsistency result(double level, bool identities_known, double within = kUsualMargin) const;
+  static constexpr auto parts() {
+    using Sums = JointNeesSums;
+    return std::tuple(added(&Sums::nees_, &Sums::all_dimensions_, &Sums::n_runs_));
+  }
 
  private:
   std::vector<double> times_;

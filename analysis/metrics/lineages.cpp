@@ -30,7 +30,7 @@ constexpr Score kLineagesScores[] = {
      of_lineages<&Lineages::monte_carlo_variance>},
 };
 
-class LineagesOverRuns final : public MetricSums {
+class LineagesOverRuns final : public MergedSums<LineagesOverRuns> {
  public:
   explicit LineagesOverRuns(const RunCriteria& /*criteria*/) {}
   void add(const MeasuredRun& run) override {
@@ -39,6 +39,7 @@ class LineagesOverRuns final : public MetricSums {
   void put(CellAnalysis& cell) override {
     if (!lineages_.empty()) cell.findings.put(lineages_.result());
   }
+  static constexpr auto parts() { return std::tuple(added(&LineagesOverRuns::lineages_)); }
 
  private:
   LineageSums lineages_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/data/run_rows.hpp"
+#include "analysis/statistics/merging.hpp"
 
 #include <algorithm>
 #include <array>
@@ -107,12 +108,18 @@ class LineageSums {
   void add(const Lineages& lineages);
   bool empty() const { return runs_ == 0; }
   LineageSummary result() const;
+  static constexpr auto parts() {
+    using Sums = LineageSums;
+    return std::tuple(added(&Sums::runs_, &Sums::ancestors_, &Sums::coalescence_, &Sums::coalesced_,
+                            &Sums::variance_, &Sums::squared_error_));
+  }
 
  private:
   struct Mean {
     double sum = 0.0, n = 0.0;
     void add(double value);
     double value() const { return sum / n; }
+    static constexpr auto parts() { return std::tuple(added(&Mean::sum, &Mean::n)); }
   };
   std::size_t runs_ = 0;
   std::array<Mean, kLineageLags.size()> ancestors_;

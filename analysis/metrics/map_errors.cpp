@@ -100,13 +100,14 @@ constexpr Score kMapScores[] = {
     {"landmarks_spurious", "1", "spurious landmarks of the final map", of_map<&Gospa::spurious>},
 };
 
-class MapOverRuns final : public MetricSums {
+class MapOverRuns final : public MergedSums<MapOverRuns> {
  public:
   explicit MapOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
   void add(const MeasuredRun& run) override { map_.add(run.map); }
   void put(CellAnalysis& cell) override {
     cell.findings.put(map_.result(criteria_->level, criteria_->map.known));
   }
+  static constexpr auto parts() { return std::tuple(added(&MapOverRuns::map_)); }
 
  private:
   const RunCriteria* criteria_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/metrics/map_scores.hpp"
+#include "analysis/statistics/merging.hpp"
 #include "analysis/statistics/nees_bounds.hpp"
 
 #include <cstddef>
@@ -39,11 +40,18 @@ class MapErrorSums {
   void add(const std::optional<MapScores>& run);
   /// `known`: whether the true positions of the landmarks are known.
   MapErrors result(double level, bool known) const;
+  static constexpr auto parts() {
+    return std::tuple(added(&MapErrorSums::landmarks_, &MapErrorSums::n_runs_,
+                            &MapErrorSums::n_maps_, &MapErrorSums::undefined_));
+  }
 
  private:
   struct Sums {
     double squares = 0.0, nees = 0.0;
     std::uint32_t runs = 0, valid = 0;
+    static constexpr auto parts() {
+      return std::tuple(added(&Sums::squares, &Sums::nees, &Sums::runs, &Sums::valid));
+    }
   };
   std::string reason(bool known) const;
 

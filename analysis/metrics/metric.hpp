@@ -4,6 +4,7 @@
 #include "analysis/metrics/score.hpp"
 #include "analysis/output/csv_file.hpp"
 #include "analysis/output/text_table.hpp"
+#include "analysis/statistics/merging.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -17,14 +18,25 @@ struct MeasuredRun;
 struct StudyAnalysis;
 struct RunCriteria;
 
-/// Adds up the complete runs of one cell in the order of the calls.
+/// Adds up the complete runs of one cell, or of a block of them, in the order of the calls.
 class MetricSums {
  public:
   virtual ~MetricSums() = default;
   virtual void add(const MeasuredRun& run) = 0;
+  /// Adds the sums of the same metric over the runs that follow these.
+  virtual void merge(const MetricSums& next) = 0;
   /// Puts the result into the cell, which already has failures, scores (without intervals), series
   /// and the results of the metrics before this one.
   virtual void put(CellAnalysis& cell) = 0;
+};
+
+/// The base class of `Sums`, which has parts() (merging.hpp).
+template <class Sums>
+class MergedSums : public MetricSums {
+ public:
+  void merge(const MetricSums& next) final {
+    merge_into(static_cast<Sums&>(*this), static_cast<const Sums&>(next));
+  }
 };
 
 /// A CSV file of a study.

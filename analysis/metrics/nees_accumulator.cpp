@@ -135,12 +135,11 @@ constexpr Score kNeesScores[] = {
      [](const MeasuredRun& run) { return mean_nees(run, ErrorBlock::position); }, Better::neither},
 };
 
-class NeesOverRuns final : public MetricSums {
+class NeesOverRuns final : public MergedSums<NeesOverRuns> {
  public:
   explicit NeesOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
   void add(const MeasuredRun& run) override {
-    if (is_first_) begin(run.metrics);
-    is_first_ = false;
+    if (nees_.empty()) begin(run.metrics);
     for (NeesAccumulator& nees : nees_) nees.add(run.metrics);
   }
   void put(CellAnalysis& cell) override {
@@ -149,6 +148,7 @@ class NeesOverRuns final : public MetricSums {
       cell.nees.push_back(nees.result(criteria_->level));
     }
   }
+  static constexpr auto parts() { return std::tuple(added(&NeesOverRuns::nees_)); }
 
  private:
   /// All runs of a cell have the same moments.
@@ -165,7 +165,6 @@ class NeesOverRuns final : public MetricSums {
   }
 
   const RunCriteria* criteria_;
-  bool is_first_ = true;
   std::vector<NeesAccumulator> nees_;  ///< leading first
 };
 

@@ -3,6 +3,7 @@
 
 #include "analysis/metrics/cell_analysis.hpp"
 #include "analysis/metrics/measured_run.hpp"
+#include "analysis/statistics/merging.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -25,6 +26,12 @@ class NeesAccumulator {
            std::span<const std::uint8_t> too_few = {});
   /// `level` of the bounds.
   NeesResult result(double level) const;
+  static constexpr auto parts() {
+    using Sums = NeesAccumulator;
+    return std::tuple(added(&Sums::sum_, &Sums::runs_, &Sums::samples_, &Sums::lower_rank_,
+                            &Sums::unusable_, &Sums::too_few_, &Sums::unjudged_runs_),
+                      appended(&Sums::run_averages_));
+  }
 
  private:
   NeesSeries series(double level) const;

@@ -377,7 +377,7 @@ constexpr Score kReferencesScores[] = {
      of_reference<&ReferenceScores::heading_rmse>},
 };
 
-class ReferencesOverRuns final : public MetricSums {
+class ReferencesOverRuns final : public MergedSums<ReferencesOverRuns> {
  public:
   explicit ReferencesOverRuns(const RunCriteria& criteria)
       : references_(
@@ -392,6 +392,7 @@ class ReferencesOverRuns final : public MetricSums {
     for (const ReferenceAccumulator& sums : references_) all.push_back(sums.result());
     cell.findings.put(all);
   }
+  static constexpr auto parts() { return std::tuple(added(&ReferencesOverRuns::references_)); }
 
  private:
   std::vector<ReferenceAccumulator> references_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/metrics/drive_scores.hpp"
+#include "analysis/statistics/merging.hpp"
 #include "analysis/statistics/spread.hpp"
 
 #include <Eigen/Core>
@@ -96,6 +97,10 @@ class ReferenceAccumulator {
   explicit ReferenceAccumulator(Fixes fixes = Fixes::same) : fixes_(fixes) {}
   void add(const ReferenceRun& run);
   ReferenceAnalysis result() const;
+  static constexpr auto parts() {
+    return std::tuple(added(&ReferenceAccumulator::squared_),
+                      appended(&ReferenceAccumulator::runs_));
+  }
 
  private:
   Fixes fixes_;

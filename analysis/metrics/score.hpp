@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/statistics/merging.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -49,6 +51,9 @@ class ScoreTable {
   std::size_t runs() const { return runs_; }
   /// {run}; `name` must be that of a score.
   const std::vector<double>& column(std::string_view name) const;
+  static constexpr auto parts() {
+    return std::tuple(added(&ScoreTable::runs_), appended(&ScoreTable::columns_));
+  }
 
   /// A row that has these scores only.
   struct Value {

@@ -9,7 +9,6 @@
 #include "engine/runs/monte_carlo.hpp"
 
 #include <algorithm>
-#include <exception>
 
 namespace montecarta::analysis {
 namespace {
@@ -81,9 +80,7 @@ struct CellTask {
     complete = complete_runs(file, stored, runs, cell);
   }
 
-  void add_up(const RunCriteria& criteria, const Parallel& parallel, std::size_t cells) {
-    CellSums sums(criteria);
-    add_runs(reader, complete, cell.particles, criteria, parallel, cells, sums);
+  void put(CellSums& sums) {
     sums.put(cell);
     cell.verdict.runs = cell.complete + cell.failures.size();
     cell.verdict.failed = cell.failures.size();
@@ -94,21 +91,13 @@ struct CellTask {
   std::vector<std::size_t> complete;
 };
 
-/// All tasks at once, but with OpenMP, whose inner loops would stay on one thread. If several fail,
-/// the exception of the first one is thrown, for any number of threads.
 void add_up(std::vector<CellTask>& tasks, const RunCriteria& criteria, const Parallel& parallel) {
-  const bool is_nested = parallel.backend() == Backend::tbb;
-  std::vector<std::exception_ptr> failures(tasks.size());
-  (is_nested ? parallel : Parallel::serial()).for_each(tasks.size(), [&](std::size_t k) {
-    try {
-      tasks[k].add_up(criteria, parallel, is_nested ? tasks.size() : 1);
-    } catch (...) {
-      failures[k] = std::current_exception();
-    }
-  });
-  for (const std::exception_ptr& failure : failures) {
-    if (failure) std::rethrow_exception(failure);
+  std::vector<CellRuns> runs;
+  for (const CellTask& task : tasks) {
+    runs.push_back({&task.reader, task.complete, task.cell.particles});
   }
+  std::vector<CellSums> sums = sums_of(runs, criteria, parallel);
+  parallel.for_each(tasks.size(), [&](std::size_t k) { tasks[k].put(sums[k]); });
 }
 
 /// What the study in the file says, by a function of its text.
@@ -212,9 +201,10 @@ CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& cell, double
                           std::optional<double> within) {
   expect_scans(file);
   const RunCriteria criteria = criteria_of(file, level, margin_of(file, within));
-  CellTask task(file, cell, runs);
-  task.add_up(criteria, parallel, 1);
-  return std::move(task.cell);
+  std::vector<CellTask> tasks;
+  tasks.emplace_back(file, cell, runs);
+  add_up(tasks, criteria, parallel);
+  return std::move(tasks.front().cell);
 }
 
 }  // namespace montecarta::analysis

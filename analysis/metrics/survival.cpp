@@ -59,7 +59,7 @@ Survival survival_of(std::span<const double> ends, std::span<const double> times
 
 namespace {
 
-class SurvivalOverRuns final : public MetricSums {
+class SurvivalOverRuns final : public MergedSums<SurvivalOverRuns> {
  public:
   explicit SurvivalOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
   void add(const MeasuredRun& run) override {
@@ -80,6 +80,7 @@ class SurvivalOverRuns final : public MetricSums {
     for (const FailedRun& failure : cell.failures) ends.push_back(failure.time);
     cell.findings.put(survival_of(ends, criteria_->times, criteria_->level));
   }
+  static constexpr auto parts() { return std::tuple(appended(&SurvivalOverRuns::run_exits_)); }
 
  private:
   const RunCriteria* criteria_;

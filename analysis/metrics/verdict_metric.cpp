@@ -13,7 +13,7 @@
 namespace montecarta::analysis {
 namespace {
 
-class VerdictOverRuns final : public MetricSums {
+class VerdictOverRuns final : public MergedSums<VerdictOverRuns> {
  public:
   explicit VerdictOverRuns(const RunCriteria& criteria) : criteria_(&criteria) {}
   void add(const MeasuredRun& run) override {
@@ -36,6 +36,7 @@ class VerdictOverRuns final : public MetricSums {
     const bool has_samples = !series.run_averages.empty();
     if (cell.verdict.families.empty() && has_samples) cell.verdict.answer = Answer::undecided;
   }
+  static constexpr auto parts() { return std::tuple(added(&VerdictOverRuns::sums_)); }
 
  private:
   const RunCriteria* criteria_;

@@ -57,6 +57,15 @@ class SummaryOf {
     mean_ += before / static_cast<double>(n_);
     squares_ += before * (value - mean_);
   }
+  /// Adds the sums over values behind these (Chan, Golub and LeVeque 1979).
+  void merge(const SummaryOf& next) {
+    if (next.n_ == 0) return;
+    const auto n = static_cast<double>(n_), more = static_cast<double>(next.n_);
+    const double difference = next.mean_ - mean_;
+    n_ += next.n_;
+    mean_ += difference * (more / (n + more));
+    squares_ += next.squares_ + difference * difference * (n * more / (n + more));
+  }
   Summary result() const {
     Summary summary;
     summary.n = n_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "analysis/statistics/merging.hpp"
 #include "analysis/statistics/squares_law.hpp"
 #include "analysis/verdict/family.hpp"
 
@@ -39,6 +40,9 @@ class SummedError {
   struct Scan {
     double nees = 0.0, dimensions = 0.0, runs = 0.0;
     double ratio() const { return nees / dimensions; }
+    static constexpr auto parts() {
+      return std::tuple(added(&Scan::nees, &Scan::dimensions, &Scan::runs));
+    }
   };
   const std::vector<Scan>& scans() const { return scans_; }
 
@@ -54,6 +58,7 @@ class SummedError {
   /// Size, stretches and scans of errors that are independent from scan to scan, as the innovations
   /// of a consistent filter are: all of these sums are exactly chi-square.
   std::vector<FamilyTest> white_families(double level, std::span<const double> times) const;
+  static constexpr auto parts() { return std::tuple(added(&SummedError::scans_)); }
 
  private:
   /// The sum over scans [first, end).

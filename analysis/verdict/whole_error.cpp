@@ -82,12 +82,15 @@ void WholeError::add(const WhitenedRun& run, std::span<const double> nees) {
   ++runs_;
   add_squares(run);
   add_means(run);
-  const std::size_t length = std::max<std::size_t>(run.whitened.size(), 1);
-  const std::size_t limit =
-      std::clamp(kMostKeptErrors / length, kFewestRunsOfSpread, kMostKeptRuns);
-  if (runs_ > limit) return;
+  if (whitened_.size() == most_kept_errors()) return;
   whitened_.insert(whitened_.end(), run.whitened.begin(), run.whitened.end());
   standardised_.insert(standardised_.end(), run.standardised.begin(), run.standardised.end());
+}
+
+/// Those of the first runs.
+std::size_t WholeError::most_kept_errors() const {
+  const std::size_t length = std::max<std::size_t>(scans_ * dimension_, 1);
+  return length * std::clamp(kMostKeptErrors / length, kFewestRunsOfSpread, kMostKeptRuns);
 }
 
 void WholeError::add_squares(const WhitenedRun& run) {

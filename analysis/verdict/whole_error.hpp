@@ -40,6 +40,13 @@ class WholeError {
   void add(const WhitenedRun& run, std::span<const double> nees);
   /// The families that apply, judged together at `level`; none of fewer than kFewestJudgedRuns.
   std::vector<FamilyTest> families(double level, const ErrorNames& names) const;
+  static constexpr auto parts() {
+    using Sums = WholeError;
+    return std::tuple(
+        added(&Sums::runs_, &Sums::whole_samples_, &Sums::size_, &Sums::component_, &Sums::stretch_,
+              &Sums::nees_, &Sums::bias_, &Sums::correlation_),
+        appended_up_to(&Sums::most_kept_errors, &Sums::whitened_, &Sums::standardised_));
+  }
 
  private:
   struct Sum {
@@ -50,9 +57,13 @@ class WholeError {
     double ratio() const { return squares / terms; }
     /// Number of runs with equal numbers of terms that give a mean of the same variance.
     double runs() const { return terms * terms / squared_terms; }
+    static constexpr auto parts() {
+      return std::tuple(added(&Sum::squares, &Sum::terms, &Sum::squared_terms));
+    }
   };
 
   std::size_t first_scan(std::size_t stretch) const { return stretch * scans_ / stretches_; }
+  std::size_t most_kept_errors() const;
   void add_squares(const WhitenedRun& run);
   void add_means(const WhitenedRun& run);
   bool are_most_samples_whole() const;

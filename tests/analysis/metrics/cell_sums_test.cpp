@@ -24,7 +24,7 @@ class Sums {
   void add(const RunRows& rows, std::size_t particles = 0) {
     run_.rows = rows;
     run_.measure(criteria_, particles);
-    sums_.add({&run_, 1});
+    sums_.add(run_);
   }
   CellAnalysis result() {
     CellAnalysis cell;

@@ -142,7 +142,7 @@ TEST_F(Drive10, ItsTableHasARowForACellAndSaysWhatToConsider) {
   measured.rows = run(5.0, 0.3);
   measured.rows.path = measured.rows.spread.mean;
   measured.measure(criteria, 0);
-  sums.add({&measured, 1});
+  sums.add(measured);
   StudyAnalysis study;
   study.has_truth = false;
   study.times = times_;
@@ -237,7 +237,7 @@ TEST(OwnDrives, HaveNoMeanOverTime) {
   run.rows.nis_dof = {2, 2};
   const auto analysed = [&] {
     CellSums sums(criteria);
-    sums.add({&run, 1});
+    sums.add(run);
     CellAnalysis cell;
     sums.put(cell);
     return cell;

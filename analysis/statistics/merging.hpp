@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+/// How the sums over two blocks of runs become one. A class of sums names its members once, by what
+/// they are:
+///
+///     static constexpr auto parts() {
+///       return std::tuple(added(&Sums::squares_, &Sums::runs_), appended(&Sums::values_));
+///     }
+///
+/// A member that is named nowhere is not merged: a setting, or memory for one run.
+namespace montecarta::analysis {
+
+/// Merges `next`, the sums over the runs that come behind those of `sums`: by the parts or the
+/// merge() of a class, arrays element by element, numbers by addition. What only one of them has
+/// stays as it is.
+template <class T>
+void merge_into(T& sums, const T& next);
+template <class T>
+void merge_into(std::vector<T>& sums, const std::vector<T>& next);
+template <class T, std::size_t N>
+void merge_into(std::array<T, N>& sums, const std::array<T, N>& next);
+template <class T>
+void merge_into(std::optional<T>& sums, const std::optional<T>& next);
+
+/// Sums, which are merged themselves.
+template <class... Members>
+constexpr auto added(Members... members) {
+  return [=](auto& sums, const auto& next) { (merge_into(sums.*members, next.*members), ...); };
+}
+
+/// Puts the values of `next` behind those of `values`.
+template <class T>
+void append(std::vector<T>& values, const std::vector<T>& next) {
+  values.insert(values.end(), next.begin(), next.end());
+}
+template <class T>
+void append(std::vector<std::vector<T>>& lists, const std::vector<std::vector<T>>& next) {
+  for (std::size_t k = 0; k < lists.size(); ++k) append(lists[k], next[k]);
+}
+
+/// Values of each run, or several lists of them.
+template <class... Members>
+constexpr auto appended(Members... members) {
+  return [=](auto& sums, const auto& next) { (append(sums.*members, next.*members), ...); };
+}
+
+/// Values of the first runs, as many numbers as the member function `most` says.
+template <class Most, class... Members>
+constexpr auto appended_up_to(Most most, Members... members) {
+  return [=](auto& sums, const auto& next) {
+    const auto append_some = [&](auto& values, const auto& more) {
+      const std::size_t room = (sums.*most)() - values.size();
+      const auto count = static_cast<std::ptrdiff_t>(std::min(room, more.size()));
+      values.insert(values.end(), more.begin(), more.begin() + count);
+    };
+    (append_some(sums.*members, next.*members), ...);
+  };
+}
+
+/// What the first run says that has it: an optional.
+template <class... Members>
+constexpr auto of_first_run(Members... members) {
+  return [=](auto& sums, const auto& next) {
+    ((sums.*members ? void() : void(sums.*members = next.*members)), ...);
+  };
+}
+
+template <class T>
+void merge_into(T& sums, const T& next) {
+  if constexpr (requires { T::parts(); }) {
+    std::apply([&](const auto&... merge_part) { (merge_part(sums, next), ...); }, T::parts());
+  } else if constexpr (requires { sums.merge(next); }) {
+    sums.merge(next);
+  } else {
+    sums += next;
+  }
+}
+
+template <class T>
+void merge_into(std::vector<T>& sums, const std::vector<T>& next) {
+  const std::size_t common = std::min(sums.size(), next.size());
+  for (std::size_t k = 0; k < common; ++k) merge_into(sums[k], next[k]);
+  sums.insert(sums.end(), next.begin() + static_cast<std::ptrdiff_t>(common), next.end());
+}
+
+template <class T, std::size_t N>
+void merge_into(std::array<T, N>& sums, const std::array<T, N>& next) {
+  for (std::size_t k = 0; k < N; ++k) merge_into(sums[k], next[k]);
+}
+
+template <class T>
+void merge_into(std::optional<T>& sums, const std::optional<T>& next) {
+  if (sums && next) merge_into(*sums, *next);
+  if (!sums) sums = next;
+}
+
+}  // namespace montecarta::analysis
