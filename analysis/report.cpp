@@ -93,6 +93,16 @@ std::vector<Section> all_sections(const ResultFile& file, const StudyAnalysis& s
   return page;
 }
 
+/// One process a figure, which takes longer than all else.
+void draw_figures(const std::vector<Section>& sections, const fs::path& directory,
+                  const Parallel& parallel) {
+  std::vector<const Figure*> figures;
+  for (const Section& section : sections) {
+    for (const Figure& figure : section.figures) figures.push_back(&figure);
+  }
+  parallel.for_each(figures.size(), [&](std::size_t i) { draw(*figures[i], directory); });
+}
+
 }  // namespace
 
 void write_report(const ResultFile& file, const fs::path& directory, const ReportOptions& options) {
@@ -104,6 +114,7 @@ void write_report(const ResultFile& file, const fs::path& directory, const Repor
   const std::vector<Section> sections = all_sections(file, study, comparison, replay, options);
   write_csv(study, directory / "tables");
   write_comparison_csv(comparison, directory / "tables");
+  draw_figures(sections, directory, *options.parallel);
   write_page(study, sections, directory);
   if (!replay.cells.empty()) {
     write_text(directory / "figures" / "replay.svg", replay_still(replay));

@@ -375,21 +375,25 @@ CramerRaoBound squared_bound(const SimulatedWorld& world, const TruePath& path) 
   return bound;
 }
 
-CramerRaoBound cramer_rao_bound(const ResultFile& file, const Parallel& parallel) {
-  const auto world = simulated_world_of(file);
-  if (!world) return none_for("the file does not describe a simulated vehicle and its sensor");
-  if (!(world->sigma_observation.minCoeff() > 0.0)) return none_for("the sensor has no noise");
-  const bool same = world->same_path && !file.has_own_landmarks();
-  std::vector<TruePath> paths;
-  for (const std::size_t run : first_runs(file, same ? 1 : kBoundRuns)) {
-    read_rows(file, run, paths.emplace_back(steps_of(file)));
+BoundOfStudy::BoundOfStudy(const ResultFile& file) : world_(simulated_world_of(file)) {
+  if (!world_) {
+    missing_ = "the file does not describe a simulated vehicle and its sensor";
+  } else if (!(world_->sigma_observation.minCoeff() > 0.0)) {
+    missing_ = "the sensor has no noise";
+  } else {
+    const bool same = world_->same_path && !file.has_own_landmarks();
+    for (const std::size_t run : first_runs(file, same ? 1 : kBoundRuns)) {
+      read_rows(file, run, paths_.emplace_back(steps_of(file)));
+    }
+    if (paths_.empty()) missing_ = "no run is complete";
   }
-  if (paths.empty()) return none_for("no run is complete");
-  std::vector<CramerRaoBound> squares(paths.size());
-  parallel.for_each(paths.size(),
-                    [&](std::size_t i) { squares[i] = squared_bound(*world, paths[i]); });
-  CramerRaoBound bound = root_mean(squares);
-  bound.is_bound = world->same_path;
+  squares_.resize(paths_.size());
+}
+
+CramerRaoBound BoundOfStudy::result() const {
+  if (!missing_.empty()) return none_for(missing_);
+  CramerRaoBound bound = root_mean(squares_);
+  bound.is_bound = world_->same_path;
   return bound;
 }
 

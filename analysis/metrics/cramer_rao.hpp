@@ -4,7 +4,6 @@
 #include "engine/core/drive.hpp"
 #include "engine/core/pose.hpp"
 #include "engine/records/result_file.hpp"
-#include "engine/threads/parallel.hpp"
 #include "filters/models/field_of_view.hpp"
 #include "filters/models/range_bearing.hpp"
 #include "filters/models/sensor.hpp"
@@ -103,12 +102,6 @@ struct CramerRaoBound {
   bool operator==(const CramerRaoBound&) const = default;
 };
 
-/// The bound of a result file. Where noise is on the controls that filters are given, the path is
-/// the same in all runs, and so is the bound. Where noise moves the vehicle, it is a linearised
-/// reference, the average over the paths of the first kBoundRuns runs with a complete cell.
-CramerRaoBound cramer_rao_bound(const ResultFile& file,
-                                const Parallel& parallel = Parallel::serial());
-
 /// A true path as rows of poses, with the rows at which the scans are.
 struct TruePath {
   Pose start;
@@ -122,6 +115,26 @@ struct TruePath {
 /// Squares of the bound along one path [m^2], [rad^2], [m^2]. All control steps between two rows
 /// turn and advance alike. `missing` says why it cannot be computed.
 CramerRaoBound squared_bound(const SimulatedWorld& world, const TruePath& path);
+
+/// The bound of a result file. Where noise is on the controls that filters are given, the path is
+/// the same in all runs, and so is the bound. Where noise moves the vehicle, it is a linearised
+/// reference, the average over the paths of the first kBoundRuns runs with a complete cell.
+class BoundOfStudy {
+ public:
+  explicit BoundOfStudy(const ResultFile& file);
+
+  std::size_t paths() const { return paths_.size(); }
+  /// Computes the bound along path `i`. Any number of threads may do so, each along its own.
+  void follow(std::size_t i) { squares_[i] = squared_bound(*world_, paths_[i]); }
+  /// Once every path has been followed.
+  CramerRaoBound result() const;
+
+ private:
+  std::optional<SimulatedWorld> world_;
+  std::vector<TruePath> paths_;
+  std::vector<CramerRaoBound> squares_;  ///< {path}
+  std::string missing_;                  ///< why there is no path
+};
 
 struct CellAnalysis;
 

@@ -91,13 +91,13 @@ struct CellTask {
   std::vector<std::size_t> complete;
 };
 
-void add_up(std::vector<CellTask>& tasks, const RunCriteria& criteria, const Parallel& parallel) {
+std::vector<CellSums> sums_of_tasks(const std::vector<CellTask>& tasks, const RunCriteria& criteria,
+                                    const Parallel& parallel) {
   std::vector<CellRuns> runs;
   for (const CellTask& task : tasks) {
     runs.push_back({&task.reader, task.complete, task.cell.particles});
   }
-  std::vector<CellSums> sums = sums_of(runs, criteria, parallel);
-  parallel.for_each(tasks.size(), [&](std::size_t k) { tasks[k].put(sums[k]); });
+  return sums_of(runs, criteria, parallel);
 }
 
 /// What the study in the file says, by a function of its text.
@@ -187,9 +187,17 @@ StudyAnalysis analyze(const ResultFile& file, double level, const Parallel& para
   study.references = judged_references(criteria);
   std::vector<CellTask> tasks;
   for (const StoredCell& cell : file.cells()) tasks.emplace_back(file, cell, file.runs().size());
-  add_up(tasks, criteria, parallel);
+  std::vector<CellSums> sums = sums_of_tasks(tasks, criteria, parallel);
+  BoundOfStudy bound(file);
+  parallel.for_each(tasks.size() + bound.paths(), [&](std::size_t k) {
+    if (k < tasks.size()) {
+      tasks[k].put(sums[k]);
+    } else {
+      bound.follow(k - tasks.size());
+    }
+  });
   for (CellTask& task : tasks) study.cells.push_back(std::move(task.cell));
-  study.bound = cramer_rao_bound(file, parallel);
+  study.bound = bound.result();
   for (CellAnalysis& cell : study.cells) {
     cell.findings.put(efficiency_of(cell, study.bound));
   }
@@ -201,10 +209,10 @@ CellAnalysis analyze_cell(const ResultFile& file, const StoredCell& cell, double
                           std::optional<double> within) {
   expect_scans(file);
   const RunCriteria criteria = criteria_of(file, level, margin_of(file, within));
-  std::vector<CellTask> tasks;
-  tasks.emplace_back(file, cell, runs);
-  add_up(tasks, criteria, parallel);
-  return std::move(tasks.front().cell);
+  CellTask task(file, cell, runs);
+  const CellRuns all{&task.reader, task.complete, task.cell.particles};
+  task.put(sums_of(std::span(&all, 1), criteria, parallel).front());
+  return std::move(task.cell);
 }
 
 }  // namespace montecarta::analysis

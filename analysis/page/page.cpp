@@ -58,7 +58,6 @@ std::string links_of(const Figure& figure) {
 
 /// The drawing, and the numbers from which the script makes a drawing that can be asked.
 std::string html_drawing(const Figure& figure, const fs::path& directory) {
-  draw(figure, directory);
   const std::string svg = read_text(directory / "figures" / (figure.name + ".svg"));
   const std::string chart =
       figure.chart.panels.empty() ? "" : html_data("chart-data", chart_json(figure.chart));

@@ -31,8 +31,8 @@ Section missing_section(const std::vector<Section>& sections);
 /// Study, scenario and provenance.
 Section origin_section(const ResultFile& file, const StudyAnalysis& study);
 
-/// Writes index.html with these sections in their order, folded or open, their figures below
-/// figures/ and data/ and their tables below tables/ into `directory`.
+/// Writes index.html with these sections in their order, folded or open, and their tables below
+/// tables/ into `directory`, below which their figures are drawn already (draw()).
 void write_page(const StudyAnalysis& study, const std::vector<Section>& sections,
                 const std::filesystem::path& directory);
 
