@@ -117,8 +117,9 @@ void RunReader::read_scans(std::string_view column, std::size_t width, std::size
 }
 
 void RunReader::expect_particles(const RunRows& rows) const {
-  const auto is_none = [&](std::uint32_t parent) { return parent >= cell_->particles; };
-  if (std::ranges::none_of(rows.ancestor, is_none)) return;
+  std::uint32_t largest = 0;
+  for (const std::uint32_t parent : rows.ancestor) largest = std::max(largest, parent);
+  if (rows.ancestor.empty() || largest < cell_->particles) return;
   throw StudyError(file_->path().string() + ": cell '" + cell_->label + "', run " +
                    std::to_string(rows.run) +
                    ": an ancestor is none of the particles (the file is damaged): run the study "

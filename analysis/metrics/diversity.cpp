@@ -4,36 +4,8 @@
 #include "engine/errors.hpp"
 
 #include <numeric>
-#include <string>
 
 namespace montecarta::analysis {
-namespace {
-
-/// Throws RunError where a parent does not exist.
-bool is_identity(std::span<const std::uint32_t> parents) {
-  bool identity = true;
-  for (std::size_t i = 0; i < parents.size(); ++i) {
-    if (parents[i] >= parents.size()) {
-      throw RunError("ancestor: parent " + std::to_string(parents[i]) + " of " +
-                     std::to_string(parents.size()) +
-                     " particles (the column is damaged): run the study again");
-    }
-    identity = identity && parents[i] == i;
-  }
-  return identity;
-}
-
-}  // namespace
-
-void DiversityCounter::find_resamplings(std::size_t scans) {
-  resampled_.resize(scans);
-  std::size_t latest = 0;
-  for (std::size_t s = 0; s < scans; ++s) {
-    if (!is_identity(parents(s))) latest = s + 1;
-    resampled_[s] = latest;
-  }
-}
-
 /// Walks from resampling to resampling; between them everyone is their own parent.
 std::uint32_t DiversityCounter::ancestors_before(std::size_t first, std::size_t s) {
   set_.start(particles_);
@@ -91,7 +63,7 @@ const Diversity& DiversityCounter::count(Row ancestor, std::size_t particles,
   for (auto* column : {&result_.last_resampling, &result_.lag, &result_.root}) {
     column->assign(times.size(), static_cast<std::uint32_t>(particles));
   }
-  find_resamplings(times.size());
+  find_resamplings(ancestor, particles, resampled_);
   count_last_resampling();
   count_lag(times);
   count_root();

@@ -32,7 +32,6 @@ class DiversityCounter {
   using Row = std::span<const std::uint32_t>;
   /// Parents of all particles of scan `s`.
   Row parents(std::size_t s) const { return ancestor_.subspan(s * particles_, particles_); }
-  void find_resamplings(std::size_t scans);
   void count_last_resampling();
   void count_lag(std::span<const double> times);
   void count_root();
@@ -42,7 +41,7 @@ class DiversityCounter {
   Row ancestor_;
   std::size_t particles_ = 0;
   Diversity result_;
-  std::vector<std::size_t> resampled_;   ///< {scan} 1 + latest scan with a resampling; 0: none
+  std::vector<std::size_t> resampled_;   ///< find_resamplings()
   AncestorSet set_;                      ///< being walked back
   std::vector<std::uint32_t> root_;      ///< {particle} ancestor at the start
   std::vector<std::uint32_t> previous_;  ///< root_ one resampling earlier

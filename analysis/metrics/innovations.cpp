@@ -179,14 +179,14 @@ void InnovationSums::add(std::span<const double> nis, std::span<const std::uint3
   }
   if (!has_any) return;
   ++runs_;
-  for (std::size_t lag = 0; lag < products_.size(); ++lag) {
-    Products& sums = products_[lag];
-    for (std::size_t s = lag; s < deviations_.size(); ++s) {
-      const double product = deviations_[s] * deviations_[s - lag];
-      if (std::isnan(product)) continue;
-      sums.n += 1.0;
-      sums.both += deviations_[s] + deviations_[s - lag];
-      sums.product += product;
+  for (std::size_t s = 0; s < deviations_.size(); ++s) {
+    if (std::isnan(deviations_[s])) continue;
+    for (std::size_t lag = 0; lag < std::min(products_.size(), s + 1); ++lag) {
+      const double earlier = deviations_[s - lag];
+      if (std::isnan(earlier)) continue;
+      products_[lag].n += 1.0;
+      products_[lag].both += deviations_[s] + earlier;
+      products_[lag].product += deviations_[s] * earlier;
     }
   }
 }

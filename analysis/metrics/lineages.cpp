@@ -8,8 +8,11 @@
 #include "analysis/metrics/metric.hpp"
 #include "analysis/output/number_text.hpp"
 #include "analysis/statistics/spread.hpp"
+#include "engine/errors.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace montecarta::analysis {
 namespace {
@@ -59,6 +62,35 @@ void lineages_numbers(const CellAnalysis& cell, std::vector<NamedNumber>& all) {
 
 }  // namespace
 
+namespace {
+
+/// Whether everyone is their own parent. Throws RunError where a parent does not exist.
+bool is_identity(std::span<const std::uint32_t> parents) {
+  std::uint32_t differences = 0, largest = 0;
+  for (std::uint32_t i = 0; i < parents.size(); ++i) {
+    differences |= parents[i] ^ i;
+    largest = std::max(largest, parents[i]);
+  }
+  if (largest >= parents.size()) {
+    throw RunError("ancestor: parent " + std::to_string(largest) + " of " +
+                   std::to_string(parents.size()) +
+                   " particles (the column is damaged): run the study again");
+  }
+  return differences == 0;
+}
+
+}  // namespace
+
+void find_resamplings(std::span<const std::uint32_t> ancestor, std::size_t particles,
+                      std::vector<std::size_t>& resampled) {
+  resampled.resize(particles == 0 ? 0 : ancestor.size() / particles);
+  std::size_t latest = 0;
+  for (std::size_t s = 0; s < resampled.size(); ++s) {
+    if (!is_identity(ancestor.subspan(s * particles, particles))) latest = s + 1;
+    resampled[s] = latest;
+  }
+}
+
 struct LineageWalker::Sums {
   std::array<SummaryOf, kLineageLags.size()> ancestors;
   SummaryOf coalescence, coalesced, variance, squared_error;
@@ -83,39 +115,44 @@ double LineageWalker::family_variance(const RunRows& rows, std::size_t s) {
   return std::inner_product(families_.begin(), families_.end(), families_.begin(), 0.0);
 }
 
+/// Walks from resampling to resampling; between them everyone is their own parent.
 void LineageWalker::walk_from(std::size_t s, const RunRows& rows, std::span<const double> times,
                               Sums& sums) {
   const std::size_t particles = ancestor_.size();
-  const bool has_poses = !rows.particle_pose.empty();
+  bool is_before_family_lag = !rows.particle_pose.empty();
   set_.start(particles);
   std::iota(ancestor_.begin(), ancestor_.end(), 0u);
   std::size_t lag = 0;
-  bool is_family_lag = false;
-  for (std::size_t scan = s + 1; scan-- > 0 && set_.size() > 1;) {
-    const std::span parents(rows.ancestor.data() + particles * scan, particles);
-    const double back = times[s] - (scan == 0 ? 0.0 : times[scan - 1]) + kSameTime;
-    set_.step_back(parents);
-    if (set_.size() == 1) sums.coalescence.add(back);
-    if (has_poses && !is_family_lag) {
-      for (std::uint32_t& ancestor : ancestor_) ancestor = parents[ancestor];
-      is_family_lag = back >= kDiversityLag;
-      if (is_family_lag && set_.size() > 1) sums.variance.add(family_variance(rows, s));
-    }
+  const auto count_until = [&](double back) {
     for (; lag < kLineageLags.size() && back >= kLineageLags[lag]; ++lag) {
       sums.ancestors[lag].add(static_cast<double>(set_.size()));
     }
+    if (!is_before_family_lag || back < kDiversityLag) return;
+    is_before_family_lag = false;
+    if (set_.size() > 1) sums.variance.add(family_variance(rows, s));
+  };
+  for (std::size_t next = resampled_[s]; next > 0 && set_.size() > 1;) {
+    const std::size_t scan = next - 1;
+    count_until(times[s] - times[scan] + kSameTime);
+    const std::span parents(rows.ancestor.data() + particles * scan, particles);
+    set_.step_back(parents);
+    if (is_before_family_lag) {
+      for (std::uint32_t& ancestor : ancestor_) ancestor = parents[ancestor];
+    }
+    next = scan > 0 ? resampled_[scan - 1] : 0;
+    if (set_.size() > 1) continue;
+    sums.coalescence.add(times[s] - (scan == 0 ? 0.0 : times[scan - 1]) + kSameTime);
   }
   sums.coalesced.add(set_.size() == 1 ? 1.0 : 0.0);
   // If one ancestor is left, it is left at every longer lag of the run too.
-  for (; lag < kLineageLags.size() && times[s] + kSameTime >= kLineageLags[lag]; ++lag) {
-    sums.ancestors[lag].add(static_cast<double>(set_.size()));
-  }
+  count_until(times[s] + kSameTime);
 }
 
 Lineages LineageWalker::walk(const RunRows& rows, std::size_t particles,
                              std::span<const double> times,
                              std::span<const double> squared_position) {
   ancestor_.resize(particles);
+  find_resamplings(rows.ancestor, particles, resampled_);
   Sums sums;
   const std::size_t every = (times.size() + kMostScansOfLineages - 1) / kMostScansOfLineages;
   for (std::size_t s = every - 1; s < times.size(); s += every) {

@@ -27,32 +27,34 @@ class AncestorSet {
   }
   /// `indices` below the number of particles of the last start(), each once.
   void assign(std::span<const std::uint32_t> indices) {
-    members_.assign(indices.begin(), indices.end());
-    make_distinct();
+    start(indices.size());
+    step_back(indices);
   }
-  /// Replaces all members by their parents, {particle}.
+  /// Replaces all members by their parents, {particle}. There is no branch that the processor would
+  /// have to predict.
   void step_back(std::span<const std::uint32_t> parents) {
-    for (std::uint32_t& member : members_) member = parents[member];
-    make_distinct();
+    ++now_;
+    std::size_t kept = 0;
+    for (const std::uint32_t child : members_) {
+      const std::uint32_t parent = parents[child];
+      members_[kept] = parent;
+      kept += stamp_[parent] != now_ ? 1 : 0;
+      stamp_[parent] = now_;
+    }
+    members_.resize(kept);
   }
   std::size_t size() const { return members_.size(); }
 
  private:
-  void make_distinct() {
-    ++now_;
-    std::size_t kept = 0;
-    for (const std::uint32_t member : members_) {
-      if (stamp_[member] == now_) continue;
-      stamp_[member] = now_;
-      members_[kept++] = member;
-    }
-    members_.resize(kept);
-  }
-
   std::vector<std::uint32_t> members_;
   std::vector<std::uint64_t> stamp_;  ///< {index} number of the last set that it was in
   std::uint64_t now_ = 0;             ///< stamp of the set being made
 };
+
+/// {scan} 1 + the latest scan until then in which a particle had another parent than itself; 0 if
+/// there is none. `ancestor` {scan, particle}. Throws RunError if a parent does not exist.
+void find_resamplings(std::span<const std::uint32_t> ancestor, std::size_t particles,
+                      std::vector<std::size_t>& resampled);
 
 /// Ages [s] at which distinct ancestors are counted.
 inline constexpr std::array kLineageLags = {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0};
@@ -88,6 +90,7 @@ class LineageWalker {
   double family_variance(const RunRows& rows, std::size_t s);
 
   AncestorSet set_;
+  std::vector<std::size_t> resampled_;   ///< find_resamplings()
   std::vector<std::uint32_t> ancestor_;  ///< {particle} of the scan where the walk began
   std::vector<double> families_;         ///< {ancestor, 2} weighted deviation of its descendants
 };

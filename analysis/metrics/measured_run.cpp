@@ -31,9 +31,8 @@ void measure_nees(const std::vector<double>& truth, const MomentRows& moments, N
   for (std::size_t s = 0; s < scans; ++s) {
     const Eigen::Vector3d error = boxminus(pose_of(moments.mean, s), pose_of(truth, s));
     const Eigen::Matrix3d P = Eigen::Map<const RowMajor3>(moments.covariance.data() + 9 * s);
-    rows.set(0, s, nees<3>(error, P));
-    rows.set(1, s, nees<2>(error, P));
-    rows.set(2, s, nees<1>(error, P, 2));
+    const auto found = pose_nees(error, P);
+    for (std::size_t b = 0; b < found.size(); ++b) rows.set(b, s, found[b]);
   }
 }
 
@@ -81,7 +80,9 @@ void put_on_full_scale(NeesRows& rows) {
   for (std::size_t b = 0; b < rows.value.size(); ++b) {
     for (std::size_t s = 0; s < rows.value[b].size(); ++s) {
       double& value = rows.value[b][s];
-      if (!std::isnan(value)) value = on_full_scale({value, rows.rank[b][s]}, rows.dimension[b]);
+      const int rank = rows.rank[b][s];
+      if (std::isnan(value) || static_cast<std::size_t>(rank) == rows.dimension[b]) continue;
+      value = on_full_scale({value, rank}, rows.dimension[b]);
     }
   }
 }
@@ -107,8 +108,10 @@ void RunMetrics::measure_errors(const RunRows& rows, std::size_t scans) {
 
 void RunMetrics::turn_into_vehicle(const RunRows& rows) {
   const std::vector<double>& covariance = estimate_of(rows).covariance;
+  turns_.clear();
   for (std::size_t s = 0; s < errors_.size(); ++s) {
-    const Eigen::Matrix3d turn = vehicle_from_map(pose_of(rows.truth, s).heading);
+    const Eigen::Matrix3d& turn =
+        turns_.emplace_back(vehicle_from_map(pose_of(rows.truth, s).heading));
     errors_[s] = turn * errors_[s];
     if (covariance.empty()) continue;
     const Eigen::Matrix3d P = Eigen::Map<const RowMajor3>(covariance.data() + 9 * s);
@@ -122,9 +125,17 @@ const NeesRows* RunMetrics::leading_nees() const {
   return found == nees_.end() ? nullptr : &*found;
 }
 
+void RunMetrics::find_draws(const RunRows& rows, std::size_t particles) {
+  draws_.assign(rows.spread.covariance.size() / 9, std::nullopt);
+  if (particles == 0) return;
+  for (std::size_t s = 0; s < draws_.size(); ++s) {
+    if (is_drawn(rows, s)) draws_[s] = draws_at(rows, particles, s);
+  }
+}
+
 /// Poses that a scan drew are judged as so many draws. Where none were drawn the covariance has
 /// each particle's own in it, and is judged as it is.
-void RunMetrics::correct_spread(const RunRows& rows, std::size_t particles) {
+void RunMetrics::correct_spread(std::size_t particles) {
   NeesRows& corrected = nees_[static_cast<std::size_t>(Moments::corrected)];
   corrected = particles > 0 ? nees(Moments::spread) : NeesRows{};
   const NeesRows& mixture = nees(Moments::mixture);
@@ -134,11 +145,11 @@ void RunMetrics::correct_spread(const RunRows& rows, std::size_t particles) {
     std::vector<int>& rank = corrected.rank[b];
     corrected.too_few[b].assign(value.size(), 0);
     for (std::size_t s = 0; s < value.size(); ++s) {
-      if (!is_drawn(rows, s)) {
+      if (!draws_[s]) {
         corrected.set(b, s, {mixture.value[b][s], mixture.rank[b][s]});
         continue;
       }
-      const EffectiveDraws draws = draws_at(rows, particles, s);
+      const EffectiveDraws& draws = *draws_[s];
       corrected.too_few[b][s] = whole.can_judge(draws) ? 0 : 1;
       if (!whole.can_judge(draws)) {
         value[s] = kNaN;
@@ -150,20 +161,24 @@ void RunMetrics::correct_spread(const RunRows& rows, std::size_t particles) {
 }
 
 /// Writes one scan of a pose by the moments that lead there.
-void RunMetrics::whiten_pose(const RunRows& rows, std::size_t particles, std::size_t s) {
-  const bool is_drawn_here = particles > 0 && is_drawn(rows, s);
-  const MomentRows& moments =
-      is_drawn_here || rows.mixture.covariance.empty() ? rows.spread : rows.mixture;
-  const Eigen::Matrix3d turn = vehicle_from_map(pose_of(rows.truth, s).heading);
-  const Eigen::Vector3d error = turn * boxminus(pose_of(moments.mean, s), pose_of(rows.truth, s));
-  const Eigen::Matrix3d P = Eigen::Map<const RowMajor3>(moments.covariance.data() + 9 * s);
+void RunMetrics::whiten_pose(const RunRows& rows, std::size_t s) {
+  const std::optional<EffectiveDraws>& draws = draws_[s];
+  const MomentRows& moments = draws || rows.mixture.covariance.empty() ? rows.spread : rows.mixture;
   const auto u = std::span(whitened_.whitened).subspan(3 * s, 3);
   const auto z = std::span(whitened_.standardised).subspan(3 * s, 3);
-  const std::size_t rank = analysis::whiten_pose(error, turn * P * turn.transpose(), u, z);
-  if (is_drawn_here && rank > 0) put_on_normal_scale(draws_at(rows, particles, s), rank, u, z);
+  std::size_t rank = 0;
+  if (&moments == &estimate_of(rows)) {
+    rank = analysis::whiten_pose(errors_[s], covariances_[s], u, z);
+  } else {
+    const Eigen::Matrix3d& turn = turns_[s];
+    const Eigen::Vector3d error = boxminus(pose_of(moments.mean, s), pose_of(rows.truth, s));
+    const Eigen::Matrix3d P = Eigen::Map<const RowMajor3>(moments.covariance.data() + 9 * s);
+    rank = analysis::whiten_pose(turn * error, turn * P * turn.transpose(), u, z);
+  }
+  if (draws && rank > 0) put_on_normal_scale(*draws, rank, u, z);
 }
 
-void RunMetrics::whiten_errors(const RunRows& rows, std::size_t particles) {
+void RunMetrics::whiten_errors(const RunRows& rows) {
   const NeesRows* leading = leading_nees();
   whitened_.dimension = leading == nullptr ? 0 : leading->dimension[0];
   const std::size_t d = whitened_.dimension, scans = d == 0 ? 0 : leading->value[0].size();
@@ -173,7 +188,7 @@ void RunMetrics::whiten_errors(const RunRows& rows, std::size_t particles) {
   for (std::size_t s = 0; s < scans; ++s) {
     if (std::isnan(leading->value[0][s])) continue;
     if (rows.error.components() == 0) {
-      whiten_pose(rows, particles, s);
+      whiten_pose(rows, s);
       continue;
     }
     whiten(rows.error.error(s), rows.error.covariance_of(s), exact,
@@ -192,9 +207,10 @@ void RunMetrics::measure(const RunRows& rows, std::size_t particles,
     measure_nees(rows.truth, rows.spread, spread);
   }
   measure_nees(rows.truth, rows.mixture, nees_[static_cast<std::size_t>(Moments::mixture)]);
-  correct_spread(rows, particles);
+  find_draws(rows, particles);
+  correct_spread(particles);
   for (NeesRows& all : nees_) put_on_full_scale(all);
-  whiten_errors(rows, particles);
+  whiten_errors(rows);
   diversity_ = nullptr;
   lineages_.reset();
   if (rows.ancestor.empty()) return;

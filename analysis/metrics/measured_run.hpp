@@ -80,15 +80,18 @@ class RunMetrics {
   void measure_errors(const RunRows& rows, std::size_t scans);
   void turn_into_vehicle(const RunRows& rows);
 
-  void correct_spread(const RunRows& rows, std::size_t particles);
-  void whiten_pose(const RunRows& rows, std::size_t particles, std::size_t s);
-  void whiten_errors(const RunRows& rows, std::size_t particles);
+  void find_draws(const RunRows& rows, std::size_t particles);
+  void correct_spread(std::size_t particles);
+  void whiten_pose(const RunRows& rows, std::size_t s);
+  void whiten_errors(const RunRows& rows);
 
   std::array<NeesRows, kMoments.size()> nees_;  ///< {Moments}
   WhitenedRun whitened_;
   std::vector<double> squared_position_, squared_heading_;
   std::vector<Eigen::Vector3d> errors_;
   std::vector<Eigen::Matrix3d> covariances_;
+  std::vector<Eigen::Matrix3d> turns_;                ///< {scan} from the map to the vehicle
+  std::vector<std::optional<EffectiveDraws>> draws_;  ///< {scan} nullopt where none were drawn
   DiversityCounter counter_;
   const Diversity* diversity_ = nullptr;
   LineageWalker walker_;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -45,10 +46,10 @@ using Mat = Eigen::Matrix<double, D, D>;
 double capped(double nees) { return nees <= kLargestNees ? nees : kLargestNees; }
 
 /// L^-1 e with P = L L', by Cholesky of the correlation matrix, so that the pivots are independent
-/// of units; nullopt if P is singular.
+/// of units; nullopt if P is singular. Writes the determinant of P if `determinant` is given.
 template <int D>
 std::optional<Vec<D>> whitened(const Vec<D>& error, const Mat<D>& covariance,
-                               const Vec<D>& least_variance) {
+                               const Vec<D>& least_variance, double* determinant = nullptr) {
   if (!(covariance.diagonal().array() > least_variance.array()).all()) return std::nullopt;
   const Vec<D> scale = covariance.diagonal().cwiseSqrt().cwiseInverse();
   Mat<D> L = Mat<D>::Zero(error.size(), error.size());
@@ -64,8 +65,11 @@ std::optional<Vec<D>> whitened(const Vec<D>& error, const Mat<D>& covariance,
       rest -= L(i, j) * y(j);
     }
     if (!(pivot > kLeastPivot)) return std::nullopt;
-    L(i, i) = std::sqrt(pivot);
+    L(i, i) = i == 0 ? 1.0 : std::sqrt(pivot);
     y(i) = rest / L(i, i);
+  }
+  if (determinant != nullptr) {
+    *determinant = covariance.diagonal().prod() * L.diagonal().cwiseAbs2().prod();
   }
   return y;
 }
@@ -152,6 +156,26 @@ Nees nees(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, int f
     return {capped(*value), Dimension};
   }
   return nees_in_range(e, P, least);
+}
+
+std::array<Nees, kErrorBlocks.size()> pose_nees(const Eigen::Vector3d& error,
+                                                const Eigen::Matrix3d& covariance) {
+  const Nees heading = nees<1>(error, covariance, 2);
+  const bool is_finite = error.allFinite() && covariance.allFinite();
+  const auto y =
+      is_finite ? whitened<3>(error, covariance, kLeastDeviation.cwiseAbs2()) : std::nullopt;
+  if (!y) return {nees<3>(error, covariance), nees<2>(error, covariance), heading};
+  const double position = (*y)(0) * (*y)(0) + (*y)(1) * (*y)(1);
+  return {Nees{capped(position + (*y)(2) * (*y)(2)), 3}, Nees{capped(position), 2}, heading};
+}
+
+double negative_log_density(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
+  if (!error.allFinite() || !covariance.allFinite()) return kNaN;
+  double determinant = 0.0;
+  const auto y = whitened<3>(error, covariance, kLeastDeviation.cwiseAbs2(), &determinant);
+  if (!y) return kNaN;
+  return 0.5 * (3.0 * std::log(2.0 * std::numbers::pi) + std::log(determinant) +
+                capped((*y)(0) * (*y)(0) + (*y)(1) * (*y)(1) + (*y)(2) * (*y)(2)));
 }
 
 Nees imported_nees(const Eigen::VectorXd& error, const Eigen::MatrixXd& P) {

@@ -71,6 +71,13 @@ struct Nees {
 template <int Dimension>
 Nees nees(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, int first = 0);
 
+/// NEES of the {kErrorBlocks} of a pose error, which take one factorisation.
+std::array<Nees, kErrorBlocks.size()> pose_nees(const Eigen::Vector3d& error,
+                                                const Eigen::Matrix3d& covariance);
+
+/// -log N(error; 0, covariance) of a pose; NaN if the covariance is singular or unusable.
+double negative_log_density(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance);
+
 /// NEES of an imported estimate: `error` {d} with `covariance` {d, d}, which is also unusable if it
 /// is not symmetric (to 1e-6 of the standard deviations).
 Nees imported_nees(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance);

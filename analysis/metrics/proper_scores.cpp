@@ -11,24 +11,12 @@
 #include "analysis/statistics/spread.hpp"
 #include "engine/numbers/real.hpp"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 namespace montecarta::analysis {
 namespace {
-
-/// -log N(e; 0, P); NaN if the covariance is singular or unusable.
-double negative_log_density(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
-  const Nees sample = nees<3>(error, covariance);
-  if (sample.rank < 3) return kNaN;
-  const Eigen::Matrix3d L = covariance.llt().matrixL();
-  const double log_determinant = 2.0 * L.diagonal().array().log().sum();
-  return 0.5 * (3.0 * std::log(2.0 * std::numbers::pi) + log_determinant + sample.value);
-}
 
 /// The last scan of each of at most kMostEnergyScans equal parts of a run.
 std::vector<std::size_t> energy_scans(std::size_t scans) {

@@ -25,33 +25,34 @@ double widened_deviate(std::size_t runs, double level) {
 }
 
 /// Share of the replicates below the mean, in normal deviates; ties count half.
-double bias_deviate(const std::vector<double>& sorted, double mean) {
-  const auto [first, last] = std::equal_range(sorted.begin(), sorted.end(), mean);
-  const auto below = static_cast<double>(first - sorted.begin());
-  const auto equal = static_cast<double>(last - first);
-  const auto n = static_cast<double>(sorted.size());
-  return normal_quantile(std::clamp((below + 0.5 * equal) / n, 0.5 / n, 1.0 - 0.5 / n));
+double bias_deviate(const std::vector<double>& means, double mean) {
+  double below = 0.0;
+  for (const double one : means) below += one < mean ? 1.0 : one == mean ? 0.5 : 0.0;
+  const auto n = static_cast<double>(means.size());
+  return normal_quantile(std::clamp(below / n, 0.5 / n, 1.0 - 0.5 / n));
 }
 
-/// The value below which a share `p` of the replicates lies, between its neighbours.
-double quantile_of(const std::vector<double>& sorted, double p) {
-  const auto last = static_cast<double>(sorted.size() - 1);
+/// The value below which a share `p` of the replicates lies, between its neighbours. Sorts `means`
+/// as far as that needs.
+double quantile_of(std::vector<double>& means, double p) {
+  const auto last = static_cast<double>(means.size() - 1);
   const double place = std::clamp(p * (last + 1.0) - 0.5, 0.0, last);
-  const auto low = static_cast<std::size_t>(place);
-  const std::size_t high = std::min(low + 1, sorted.size() - 1);
-  return std::lerp(sorted[low], sorted[high], place - std::floor(place));
+  const auto low = means.begin() + static_cast<std::ptrdiff_t>(place);
+  std::ranges::nth_element(means, low);
+  const auto high = low + 1 == means.end() ? low : std::min_element(low + 1, means.end());
+  return std::lerp(*low, *high, place - std::floor(place));
 }
 
 Interval accelerated_interval(std::vector<double>& means, const SampleShape& shape,
                               double deviate) {
   if (!std::isfinite(shape.mean) || !std::isfinite(shape.acceleration)) return {kNaN, kNaN};
-  std::ranges::sort(means);
   const double bias = bias_deviate(means, shape.mean);
   const auto end = [&](double z) {
     const double shifted = bias + z;
     return quantile_of(means, normal_share(bias + shifted / (1.0 - shape.acceleration * shifted)));
   };
-  return {end(-deviate), end(deviate)};
+  const double lower = end(-deviate);
+  return {lower, end(deviate)};
 }
 
 bool all_finite(std::span<const double> values) {
@@ -99,19 +100,26 @@ std::vector<Interval> bootstrap_means(std::span<const std::vector<double>> colum
     expect(columns[c].size() == runs, "columns of a bootstrap have a value a run");
     if (all_finite(columns[c])) known.push_back(c);
   }
-  std::vector<std::vector<double>> means(columns.size(), std::vector<double>(replicates));
+  std::vector<double> rows;  // {run, known column}: all sums of a replicate grow at once
+  for (std::size_t i = 0; i < runs; ++i) {
+    for (const std::size_t c : known) rows.push_back(columns[c][i]);
+  }
+  std::vector<std::vector<double>> means(known.size(), std::vector<double>(replicates));
   std::vector<std::uint32_t> drawn;
+  std::vector<double> sums(known.size());
   for (std::size_t b = 0; b < replicates; ++b) {
     draw_runs(runs, b, drawn);
-    for (const std::size_t c : known) {
-      double sum = 0.0;
-      for (const std::uint32_t i : drawn) sum += columns[c][i];
-      means[c][b] = sum / static_cast<double>(runs);
+    std::ranges::fill(sums, 0.0);
+    for (const std::uint32_t i : drawn) {
+      const double* const row = rows.data() + i * known.size();
+      for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += row[k];
     }
+    for (std::size_t k = 0; k < sums.size(); ++k) means[k][b] = sums[k] / static_cast<double>(runs);
   }
   const double deviate = widened_deviate(runs, level);
-  for (const std::size_t c : known) {
-    intervals[c] = accelerated_interval(means[c], shape_of(columns[c]), deviate);
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    const std::vector<double>& column = columns[known[k]];
+    intervals[known[k]] = accelerated_interval(means[k], shape_of(column), deviate);
   }
   return intervals;
 }

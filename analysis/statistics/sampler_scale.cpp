@@ -14,9 +14,12 @@ namespace montecarta::analysis {
 namespace {
 
 constexpr double kFirstOctave = -16.0, kStepsPerOctave = 8.0;  // of the chi-square
-constexpr std::size_t kFreedoms = 128;  // steps of 1 / freedom from 0 to kMostInverse
-constexpr double kMostInverse = 0.5;
-constexpr double kLastTail = 1e-6;  // beyond, an ideal sampler hardly ever is
+constexpr double kMostInverse = 0.5;  // of 1 / freedom, whose steps begin at 0
+constexpr double kLastTail = 1e-6;    // beyond, an ideal sampler hardly ever is
+
+double octave_of(std::size_t column) {
+  return kFirstOctave + static_cast<double>(column) / kStepsPerOctave;
+}
 
 /// d F / chi-square of the same probability, F with d and 1 / `inverse` degrees of freedom.
 double f_ratio(double chi_square, double d, double inverse) {
@@ -36,7 +39,8 @@ EffectiveDraws effective_draws(std::size_t particles, double ess) {
   const double E = std::clamp(ess, 1.0, M);
   if (E <= 1.0 || E >= M) return {E, E};
   const double cubes = std::min(M / (E * E * E), 1.0 / (E * std::sqrt(E)));
-  const double freedom = std::pow(1.0 - 1.0 / E, 2) / (1.0 / E - 2.0 * cubes + 1.0 / (E * E));
+  const double rest = 1.0 - 1.0 / E;
+  const double freedom = rest * rest / (1.0 / E - 2.0 * cubes + 1.0 / (E * E));
   return {E, std::min(freedom + 1.0, M)};
 }
 
@@ -44,21 +48,25 @@ SamplerScale::SamplerScale(std::size_t dimension) : dimension_(static_cast<doubl
   const double last = boost::math::quantile(
       boost::math::complement(boost::math::chi_squared(dimension_), kLastTail));
   columns_ = static_cast<std::size_t>((std::log2(last) - kFirstOctave) * kStepsPerOctave) + 1;
-  for (std::size_t row = 0; row <= kFreedoms; ++row) {
-    const double inverse = kMostInverse * static_cast<double>(row) / kFreedoms;
-    for (std::size_t column = 0; column < columns_; ++column) {
-      const double octave = kFirstOctave + static_cast<double>(column) / kStepsPerOctave;
-      log_ratios_.push_back(std::log2(f_ratio(std::exp2(octave), dimension_, inverse)));
-    }
+  log_f_.resize((kFreedoms + 1) * columns_);
+}
+
+const double* SamplerScale::row(std::size_t step) const {
+  double* const first = log_f_.data() + step * columns_;
+  if (is_made_[step].load(std::memory_order_acquire)) return first;
+  const std::lock_guard lock(making_);
+  if (is_made_[step].load(std::memory_order_relaxed)) return first;
+  const double inverse = kMostInverse * static_cast<double>(step) / kFreedoms;
+  for (std::size_t column = 0; column < columns_; ++column) {
+    const double octave = octave_of(column);
+    first[column] = octave + std::log2(f_ratio(std::exp2(octave), dimension_, inverse));
   }
+  is_made_[step].store(true, std::memory_order_release);
+  return first;
 }
 
 bool SamplerScale::can_judge(const EffectiveDraws& draws) const {
   return draws.of_mean > dimension_ + 2.0;
-}
-
-double SamplerScale::entry(std::size_t row, std::size_t column) const {
-  return log_ratios_[row * columns_ + column];
 }
 
 double SamplerScale::operator()(double nees, const EffectiveDraws& draws) const {
@@ -67,24 +75,23 @@ double SamplerScale::operator()(double nees, const EffectiveDraws& draws) const 
   const double E = draws.of_mean, freedom = draws.of_variance - dimension_;  // second of the F
   const double f = nees * (E - 1.0) / (E + 1.0) * freedom / (draws.of_variance - 1.0);  // times d
   const double place = std::min(1.0 / (freedom * kMostInverse), 1.0) * kFreedoms;
-  const auto row = std::min(static_cast<std::size_t>(place), kFreedoms - 1);
-  const double part = place - static_cast<double>(row);
-  const auto ratio = [&](std::size_t column) {
-    return std::lerp(entry(row, column), entry(row + 1, column), part);
-  };
-  const auto octave = [](std::size_t column) {
-    return kFirstOctave + static_cast<double>(column) / kStepsPerOctave;
+  const auto step = std::min(static_cast<std::size_t>(place), kFreedoms - 1);
+  const double part = place - static_cast<double>(step);
+  const double *const lower = row(step), *const upper = row(step + 1);
+  const auto log_f_at = [&](std::size_t column) {
+    return lower[column] + part * (upper[column] - lower[column]);
   };
   const double log_f = std::log2(f);
-  std::size_t below = 0, above = columns_ - 1;  // columns between which f lies
-  if (log_f <= octave(below) + ratio(below)) return f * std::exp2(-ratio(below));
-  if (log_f >= octave(above) + ratio(above)) return f * std::exp2(-ratio(above));
-  while (above - below > 1) {
-    const std::size_t middle = (below + above) / 2;
-    (octave(middle) + ratio(middle) <= log_f ? below : above) = middle;
-  }
-  const double first = octave(below) + ratio(below), second = octave(above) + ratio(above);
-  return std::exp2(octave(below) + (log_f - first) / ((second - first) * kStepsPerOctave));
+  const std::size_t last = columns_ - 1;
+  if (log_f <= log_f_at(0)) return f * std::exp2(octave_of(0) - log_f_at(0));
+  if (log_f >= log_f_at(last)) return f * std::exp2(octave_of(last) - log_f_at(last));
+  // Where f would lie if the ratio were 1 is near where it lies.
+  const double near = std::max((log_f - kFirstOctave) * kStepsPerOctave, 0.0);
+  std::size_t below = std::min(static_cast<std::size_t>(near), last - 1);
+  while (log_f_at(below) > log_f) --below;
+  while (log_f_at(below + 1) <= log_f) ++below;
+  const double first = log_f_at(below), second = log_f_at(below + 1);
+  return std::exp2(octave_of(below) + (log_f - first) / ((second - first) * kStepsPerOctave));
 }
 
 const SamplerScale& sampler_scale(std::size_t dimension) {

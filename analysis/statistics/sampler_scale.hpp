@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <atomic>
 #include <cstddef>
+#include <mutex>
 #include <vector>
 
 namespace montecarta::analysis {
@@ -34,14 +37,21 @@ class SamplerScale {
   double operator()(double nees, const EffectiveDraws& draws) const;
 
  private:
-  double entry(std::size_t row, std::size_t column) const;
+  static constexpr std::size_t kFreedoms = 128;  // steps of 1 / freedom
+
+  /// {chi-square} log2 of d F, for a step of 1 / freedom.
+  const double* row(std::size_t step) const;
 
   double dimension_;
-  std::size_t columns_;             ///< values of the chi-square, at equal steps of their logarithm
-  std::vector<double> log_ratios_;  ///< {1 / freedom, chi-square} log2 of d F / chi-square
+  std::size_t columns_;  ///< values of the chi-square, at equal steps of their logarithm
+  /// {1 / freedom, chi-square} Rows are made when they are first needed, by any thread: studies
+  /// need few of them.
+  mutable std::vector<double> log_f_;
+  mutable std::array<std::atomic<bool>, kFreedoms + 1> is_made_{};
+  mutable std::mutex making_;
 };
 
-/// The table of 1 to 3 components, made once and read by all threads.
+/// The table of 1 to 3 components, used by all threads.
 const SamplerScale& sampler_scale(std::size_t dimension);
 
 }  // namespace montecarta::analysis

@@ -54,26 +54,31 @@ DividedErrors::DividedErrors(std::vector<double> errors, std::size_t scans, std:
       errors_(std::move(errors)),
       is_there_(errors_.size(), 1),
       counts_(scans * dimension) {
-  for (std::size_t place = 0; place < counts_.size(); ++place) divide(place);
-}
-
-void DividedErrors::divide(std::size_t place) {
-  double squares = 0.0, n = 0.0;
-  for (std::size_t i = place; i < errors_.size(); i += counts_.size()) {
-    if (std::isnan(errors_[i])) {
-      errors_[i] = 0.0;
-      is_there_[i] = 0;
+  const std::size_t places = counts_.size();
+  std::vector<double> squares(places), scale(places);
+  const auto for_each_error = [&](const auto& visit) {  // run by run, as they lie in memory
+    for (std::size_t first = 0; first < errors_.size(); first += places) {
+      for (std::size_t k = 0; k < places; ++k) visit(errors_[first + k], is_there_[first + k], k);
     }
-    squares += errors_[i] * errors_[i];
-    n += is_there_[i];
+  };
+  for_each_error([&](double& error, char& is_there, std::size_t place) {
+    if (std::isnan(error)) {
+      error = 0.0;
+      is_there = 0;
+    }
+    squares[place] += error * error;
+    counts_[place] += is_there;
+  });
+  for (std::size_t place = 0; place < places; ++place) {
+    const double n = counts_[place];
+    const bool is_usable = n >= kFewestErrors && squares[place] > 0.0;
+    if (is_usable) scale[place] = 1.0 / std::sqrt(squares[place] / n);
+    if (!is_usable) counts_[place] = 0.0;
   }
-  const bool is_usable = n >= kFewestErrors && squares > 0.0;
-  counts_[place] = is_usable ? n : 0.0;
-  const double scale = is_usable ? 1.0 / std::sqrt(squares / n) : 0.0;
-  for (std::size_t i = place; i < errors_.size(); i += counts_.size()) {
-    errors_[i] *= scale;
-    if (!is_usable) is_there_[i] = 0;
-  }
+  for_each_error([&](double& error, char& is_there, std::size_t place) {
+    error *= scale[place];
+    if (counts_[place] == 0.0) is_there = 0;
+  });
 }
 
 AspectProducts DividedErrors::products(const Aspect& aspect) const {

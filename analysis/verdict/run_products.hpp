@@ -51,8 +51,6 @@ class DividedErrors {
   AspectProducts products(const Aspect& aspect) const;
 
  private:
-  void divide(std::size_t place);
-
   std::size_t dimension_;
   std::vector<double> errors_;  ///< {run, scan, component}, 0 where there is none
   std::vector<char> is_there_;  ///< {run, scan, component}

@@ -71,9 +71,10 @@ class SlabFinder {
 
 void add_run(const PosixFile& file, const Slab& slab, std::size_t run_index,
              std::vector<std::byte>& buffer, Fingerprint& fingerprint) {
-  buffer.resize(slab.run_bytes);
-  file.read_at(slab.at(run_index), buffer);
-  fingerprint.add(buffer);
+  if (buffer.size() < slab.run_bytes) buffer.resize(slab.run_bytes);
+  const auto bytes = std::span(buffer).first(slab.run_bytes);
+  file.read_at(slab.at(run_index), bytes);
+  fingerprint.add(bytes);
 }
 
 std::uint64_t stored_fingerprint(const PosixFile& file, const Slab& slab, std::size_t run_index) {

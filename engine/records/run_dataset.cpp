@@ -23,9 +23,10 @@ std::optional<Slab> rows_of(const h5::Handle& dataset, std::uint64_t file_bytes)
 
 template <class Stored, class Number>
 void read_as(const PosixFile& file, std::uint64_t offset, std::span<Number> out) {
-  thread_local std::vector<Stored> row;
-  row.resize(out.size());
-  file.read_at(offset, std::as_writable_bytes(std::span(row)));
+  thread_local std::vector<Stored> longest;
+  if (longest.size() < out.size()) longest.resize(out.size());
+  const auto row = std::span(longest).first(out.size());
+  file.read_at(offset, std::as_writable_bytes(row));
   std::ranges::copy(row, out.begin());
 }
 
