@@ -14,7 +14,7 @@ namespace montecarta::sources {
 
 namespace fs = std::filesystem;
 using Lines = std::vector<std::string>;
-using Tree = std::map<std::string, Lines>;  // path from the top, with '/', and what stands there
+using Tree = std::map<std::string, Lines>;  // {path from the top, with '/'}
 
 inline const std::vector<std::string> kFolders = {"analysis",    "cluster", "engine",
                                                   "experiments", "filters", "tests"};
@@ -47,7 +47,7 @@ inline bool is_source(const std::string& path, const Lines& lines) {
                              ends);
 }
 
-/// Of UTF-8, in which one may have several bytes.
+/// Counts characters of UTF-8, which may have several bytes.
 inline std::ptrdiff_t characters_in(const std::string& line) {
   return std::ranges::count_if(line, [](char byte) { return (byte & 0xC0) != 0x80; });
 }
@@ -71,7 +71,7 @@ inline const Tree& sources() {
   return tree;
 }
 
-/// What a file includes, as written between the quotes or angle brackets.
+/// The included files as written between the quotes or angle brackets.
 inline std::vector<std::string> includes_of(const Lines& lines) {
   static const std::regex include(R"rx(^\s*#\s*include\s*[<"]([^>"]+)[>"])rx");
   std::vector<std::string> names;

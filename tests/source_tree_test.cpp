@@ -2,8 +2,7 @@
 // Rules that a compiler does not enforce: who may include whom, sizes, licence lines.
 #include "tests/source_tree.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/doubles/matchers.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -15,13 +14,7 @@
 namespace montecarta::sources {
 namespace {
 
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::StartsWith;
-
-/// "path:line: what" for every line of C++ outside tests that `broken` finds fault with.
+/// "path:line: what" for every line of C++ outside tests that is `broken`.
 std::vector<std::string> faults(const Tree& tree, const std::string& what,
                                 const std::function<bool(const std::string&)>& broken) {
   std::vector<std::string> found;
@@ -58,8 +51,9 @@ std::vector<std::string> forbidden_includes(const Tree& tree) {
 
 std::string folder_of(const std::string& path) { return fs::path(path).parent_path().string(); }
 
-/// Folders outside tests that lie on a cycle of includes, of any length, or between two cycles:
-/// what is left when those that use none that is left, and those that none uses, are taken away.
+/// Folders outside tests that lie on a cycle of includes, of any length, or between two cycles.
+/// They are left when all folders are removed, one after the other, that use none or are used by
+/// none.
 std::set<std::string> include_cycles(const Tree& tree) {
   std::set<std::pair<std::string, std::string>> uses;
   std::set<std::string> left;
@@ -130,7 +124,7 @@ std::vector<std::string> without_licence(const Tree& tree) {
   return found;
 }
 
-/// What lies at the top and belongs neither there nor to a build or a result of the user's.
+/// Files at the top that belong neither there nor to a build or a result of the user.
 std::vector<std::string> strays(const std::vector<std::string>& names) {
   static const std::regex belongs(
       R"(CMakeLists\.txt|CMakePresets\.json|CMakeUserPresets\.json|LICENSE|CITATION\.cff|\..*)"
@@ -264,7 +258,7 @@ TEST(SourceTree, BrokenRulesAreFound) {
   EXPECT_THAT(faults(broken, "not ours", uses_rand), ElementsAre("engine/a.cpp:3: not ours"));
 }
 
-// Analysis may know how a vehicle moves and what a sensor sees, but no filter.
+// Analysis may use the models of vehicles and sensors, but no filter.
 TEST(SourceTree, TheModelsAreALibraryOfTheirOwn) {
   const Lines model = {"#include \"filters/models/vehicle.hpp\""};
   const Lines filter = {"#include \"filters/factory.hpp\""};

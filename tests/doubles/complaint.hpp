@@ -7,11 +7,12 @@
 
 namespace montecarta::engine {
 
-/// What the user is told when `act` is tried; "nothing" where it succeeds.
+/// The message of the error that `act` throws; "nothing" if it succeeds.
+template <class Error = StudyError>
 std::string complaint_of(const auto& act) {
   try {
     act();
-  } catch (const StudyError& error) {
+  } catch (const Error& error) {
     return error.what();
   }
   return "nothing";

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "engine/records/posix_file.hpp"
+
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <filesystem>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -54,6 +58,15 @@ inline std::uint64_t extreme_word(Dice& dice) {
   const std::size_t which = dice.below(std::size(words) + std::size(numbers));
   return which < std::size(words) ? words[which]
                                   : std::bit_cast<std::uint64_t>(numbers[which - std::size(words)]);
+}
+
+/// Flips one bit of a file; a second call restores it.
+inline void flip_bit(const std::filesystem::path& path, std::uint64_t at) {
+  const PosixFile file(path, PosixFile::Mode::write);
+  std::byte stored{};
+  file.read_at(at, std::span(&stored, 1));
+  stored ^= std::byte{2};  // turns the status "complete" into "spared"
+  file.write_at(at, std::span(&stored, 1));
 }
 
 inline void set_word(std::string& bytes, std::size_t at, std::uint64_t word) {

@@ -7,7 +7,7 @@
 
 namespace montecarta::engine {
 
-/// What a program said, standard error included, and how it ended (0: well).
+/// The output of a program, standard error included, and its status (0: success).
 struct ProgramOutcome {
   int status = -1;
   std::string output;

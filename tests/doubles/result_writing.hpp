@@ -2,15 +2,16 @@
 #pragma once
 
 #include "engine/records/result_writer.hpp"
+#include "tests/doubles/complaint.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 #include "tests/doubles/scripted_result.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
+#include <vector>
 
 namespace montecarta::engine {
 
@@ -26,9 +27,18 @@ class ResultWriting : public ::testing::Test {
     store_run(writer, plan_, 0);
   }
   ResultWriter resume() const { return ResultWriter::resume(path_, plan_, {}); }
-  std::string bytes_of(const std::filesystem::path& path) const {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
+  StudyPlan other_study() const {
+    StudyPlan other = plan_;
+    other.resolved_text += "seed = 8\n";
+    return other;
+  }
+  /// Names of the files in the folder, sorted.
+  std::vector<std::string> names() const {
+    std::vector<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+      found.push_back(entry.path().filename().string());
+    std::ranges::sort(found);
+    return found;
   }
 
   ScratchFolder folder_;
@@ -36,17 +46,5 @@ class ResultWriting : public ::testing::Test {
   std::filesystem::path part_ = folder_ / "out.h5.part";
   StudyPlan plan_ = small_result_plan();
 };
-
-/// What an error of the given kind says; a failure of the test where there is none.
-template <class Error, class Action>
-std::string message(const Action& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "nothing of that kind was thrown";
-  return {};
-}
 
 }  // namespace montecarta::engine

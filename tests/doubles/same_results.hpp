@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstring>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,11 +19,12 @@ inline std::vector<double> values_of(const ResultFile& file, const StoredCell& c
   return values;
 }
 
-inline bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+/// Compares bit by bit, so that NaN equals NaN.
+inline bool same_bits(std::span<const double> a, std::span<const double> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
 }
 
-/// What differs between the outcomes of run index `i` of `a` and `j` of `b`; empty if nothing.
+/// Names a difference between the outcomes of run index `i` of `a` and `j` of `b`; empty if equal.
 inline std::string difference_of_outcome(const ResultFile& a, const StoredCell& left, std::size_t i,
                                          const ResultFile& b, const StoredCell& right,
                                          std::size_t j) {
@@ -33,8 +35,8 @@ inline std::string difference_of_outcome(const ResultFile& a, const StoredCell& 
   return "";
 }
 
-/// What differs between run index `i` of `a` and `j` of `b` under /cells and /truth; empty if
-/// nothing.
+/// Names a difference between run index `i` of `a` and `j` of `b` under /cells and /truth; empty if
+/// they are equal.
 inline std::string difference_of_run(const ResultFile& a, std::size_t i, const ResultFile& b,
                                      std::size_t j) {
   for (std::size_t c = 0; c < a.cells().size(); ++c) {
@@ -60,7 +62,7 @@ inline std::string difference_of_run(const ResultFile& a, std::size_t i, const R
   return same_bits(truth_a, truth_b) ? "" : "truth";
 }
 
-/// What differs between two files of the same runs; empty if nothing.
+/// Names a difference between two files of the same runs; empty if they are equal.
 inline std::string difference(const ResultFile& a, const ResultFile& b) {
   if (a.runs() != b.runs()) return "runs";
   if (a.cells().size() != b.cells().size()) return "cells";

@@ -33,7 +33,7 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-/// What a file holds; nothing where it cannot be read.
+/// Content of a file; empty if it cannot be read.
 inline std::string text_in(const std::filesystem::path& path) {
   std::ostringstream text;
   text << std::ifstream(path).rdbuf();

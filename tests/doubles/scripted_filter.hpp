@@ -15,7 +15,7 @@
 
 namespace montecarta::engine {
 
-/// What goes wrong with a scripted filter, in one run or in every run, at one step.
+/// A fault of a scripted filter at one step, in one run or in every run.
 struct Mishap {
   enum class Kind { throws, pose_is_nan, covariance_is_infinite };
   Kind kind = Kind::throws;

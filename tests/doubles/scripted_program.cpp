@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A program for cells `external`: `scripted_program MODE [N [TEXT]]` answers every message with the
-// same estimate, and at message N (from 0, of the process) does what MODE says.
+// same estimate. At message N (from 0, of the process) it misbehaves as MODE names.
 #include <csignal>
 #include <cstdlib>
 #include <dirent.h>

@@ -24,6 +24,10 @@ inline StudyPlan part_of_plan(StudyPlan plan, std::uint64_t first, std::uint64_t
   return plan;
 }
 
+inline RecordLayout layout_of(const StudyPlan& plan) {
+  return {plan.cells[0], plan.columns, plan.drives->itinerary()};
+}
+
 /// Takes the filter of a cell through one run; every record of (cell, run) is the same.
 inline void fill_record(const StudyPlan& plan, std::size_t cell, std::uint64_t run,
                         const Drive& drive, RunRecord& record) {

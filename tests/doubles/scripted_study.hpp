@@ -11,7 +11,7 @@
 
 namespace montecarta::engine {
 
-/// A cell whose filter follows a script.
+/// A cell with a filter that follows a script.
 inline Cell scripted_cell(std::string label, const ScriptedFilter::Script& script) {
   Cell cell;
   cell.label = std::move(label);

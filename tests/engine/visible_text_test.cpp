@@ -6,12 +6,9 @@
 namespace montecarta::engine {
 namespace {
 
-TEST(VisibleText, KeepsWhatCanBeRead) {
+TEST(VisibleText, WritesOutTerminalCommandsAndBytesThatAreNoText) {
   EXPECT_EQ(visible("a map, 5 m\xC2\xB2, \xE2\x82\xAC, \xF0\x9F\x97\xBA"),
             "a map, 5 m\xC2\xB2, \xE2\x82\xAC, \xF0\x9F\x97\xBA");
-}
-
-TEST(VisibleText, WritesOutWhatCommandsATerminal) {
   EXPECT_EQ(visible("\x1b[2J"), "\\x1b[2J");
   EXPECT_EQ(visible("a\nb\tc\r"), "a\\nb\\tc\\x0d");
   EXPECT_EQ(visible("a\nb\tc", "\n\t"), "a\nb\tc");
@@ -21,9 +18,6 @@ TEST(VisibleText, WritesOutWhatCommandsATerminal) {
       << "a control character of two bytes";
   EXPECT_EQ(visible(std::string("\0", 1)), "\\x00");
   EXPECT_EQ(visible("\x7f"), "\\x7f");
-}
-
-TEST(VisibleText, WritesOutBytesThatAreNoText) {
   EXPECT_EQ(visible("\xff\xfe"), "\\xff\\xfe");
   EXPECT_EQ(visible("\xE2\x82"), "\\xe2\\x82") << "cut short";
   EXPECT_EQ(visible("\xC0\xAF"), "\\xc0\\xaf") << "overlong";

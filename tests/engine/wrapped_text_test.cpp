@@ -10,24 +10,15 @@
 namespace montecarta::engine {
 namespace {
 
-TEST(WrappedText, BreaksBetweenWordsAndIndentsWhatFollows) {
+TEST(WrappedText, BreaksBetweenWordsAndKeepsEmptyLinesAndLongWords) {
   EXPECT_EQ(wrapped("one two three four", 9), "one two\nthree\nfour\n");
   EXPECT_EQ(wrapped("one two three four", 9, 2), "one two\n  three\n  four\n");
   EXPECT_EQ(wrapped("  one two\nthree", 7, 1), "  one\n   two\nthree\n");
-}
-
-TEST(WrappedText, KeepsEmptyLinesAndLongWords) {
   EXPECT_EQ(wrapped("a\n\nb", 40), "a\n\nb\n");
   EXPECT_EQ(wrapped("a  table", 8), "a  table\n") << "what fits stays as it is";
   EXPECT_EQ(wrapped("/a/long/path b", 6), "/a/long/path\nb\n");
   EXPECT_EQ(wrapped("", 40), "");
-}
-
-TEST(WrappedText, KeepsANumberWithItsPercentSign) {
   EXPECT_EQ(wrapped("in 95 % of", 6), "in\n95 %\nof\n");
-}
-
-TEST(WrappedText, CountsCharactersNotBytes) {
   EXPECT_EQ(wrapped("\u00b1\u03c3 \u00b1\u03c3", 5), "\u00b1\u03c3 \u00b1\u03c3\n");
 }
 

@@ -38,15 +38,11 @@ void for_random_lanes(double scale, Check check) {
   return a * b - c * d;
 }
 
-// What is fused with what would depend on what is inlined where: one formula, two last bits.
-TEST(Arithmetic, RoundsEveryOperationByItself) {
-  const double a = 1.0 + 0x1p-30;
+// Fusing would depend on inlining, so that one formula would have two last bits.
+TEST(Arithmetic, RoundsEveryOperationByItselfAndFusesWhereItIsToldTo) {
+  const double a = 1.0 + 0x1p-30, square = 1.0 + 0x1p-29;
   EXPECT_EQ(difference_of_products(a, a, a, a), 0.0);
   EXPECT_EQ(difference_of_products(Lanes(a), Lanes(a), Lanes(a), Lanes(a)).get(0), 0.0);
-}
-
-TEST(Arithmetic, FusesWhereItIsToldTo) {
-  const double a = 1.0 + 0x1p-30, square = 1.0 + 0x1p-29;
   EXPECT_EQ(fma(a, a, -square), 0x1p-60);
   EXPECT_EQ(fma(Lanes(a), Lanes(a), Lanes(-square)).get(0), 0x1p-60);
 }
@@ -207,7 +203,7 @@ TEST(Directions, AreThoseOfEachAngleWhateverTheOthersAre) {
   expect_directions<8>();
 }
 
-// What a number becomes does not depend on how many others share its register.
+// A result does not depend on how many other numbers share the register.
 
 std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
 
@@ -244,8 +240,8 @@ TYPED_TEST(Registers, HaveTheSameBitsAtEveryWidth) {
   }
 }
 
-/// Numbers at which instruction sets may differ: zeros, what does not count, what hardly counts,
-/// halves between whole numbers.
+/// Numbers at which instruction sets may differ: zeros, denormal and tiny numbers, halves between
+/// whole numbers.
 std::vector<double> corners() {
   using Limits = std::numeric_limits<double>;
   std::vector<double> all = {

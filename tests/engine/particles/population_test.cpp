@@ -95,7 +95,7 @@ TEST(Blocks, GatherCopiesEveryField) {
 
 TEST(Weights, NormaliseReturnsTheEvidenceAndLeavesDeadLanesOut) {
   Weights<Lanes> weights(5);
-  weights.multiply(0, Lanes(-1000.0));  // far below what exp can hold
+  weights.multiply(0, Lanes(-1000.0));  // far below the range of exp
   EXPECT_NEAR(weights.normalise(step(0)), -1000.0, 1e-12);
   EXPECT_NEAR(weights.effective(), 5.0, 1e-12);
   Lanes increment(0.0);

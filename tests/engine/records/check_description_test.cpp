@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files without a seal whose numbers contradict each other: refused when they are opened.
+// Files without a seal and with contradictory numbers are refused when they are opened.
 #include "engine/errors.hpp"
 #include "engine/records/merge.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/records/result_layout.hpp"
 #include "engine/records/seal.hpp"
 #include "tests/doubles/damage.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/reader_program.hpp"
 #include "tests/doubles/recorded_drives.hpp"
 #include "tests/doubles/result_writing.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,10 +20,6 @@
 
 namespace montecarta::engine {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 class CheckDescription : public ResultWriting {
  protected:
@@ -39,7 +33,7 @@ class CheckDescription : public ResultWriting {
       ResultDescription description = describe(plan_, {});
       change(description);
       lay_out(path_, description);
-      EXPECT_THAT(message<StudyError>([&] { ResultFile{path_}; }),
+      EXPECT_THAT(complaint_of([&] { ResultFile{path_}; }),
                   AllOf(HasSubstr(path_.string()), HasSubstr(words)));
     }
   }
@@ -76,7 +70,7 @@ TEST_F(CheckDescription, RefusesRunsAndTimesThatAreNone) {
   plan_.columns.joint = plan_.cells[0].reports.joint = true;
   ResultDescription description = describe(plan_, {});
   description.joint_scans.back() = 4000;
-  EXPECT_THAT(message<StudyError>([&] { check_description(description, path_); }),
+  EXPECT_THAT(complaint_of([&] { check_description(description, path_); }),
               HasSubstr("joint_scan"));
 }
 
@@ -138,7 +132,7 @@ TEST_F(CheckDescription, RefusesReferencesThatAreNone) {
   });
 }
 
-/// Whatever one number is: the file is refused, or can be read.
+/// For any value of one number the file is refused, or can be read.
 TEST_F(CheckDescription, FindsEveryOddNumber) {
   for (std::uint64_t seed = 0; seed < damaged_files(200); ++seed) {
     Dice dice(seed);
@@ -178,7 +172,7 @@ class SealOfResult : public ResultWriting {
     return written_later(find_slabs(path, description));
   }
   std::string refusal(const std::filesystem::path& path) const {
-    return message<StudyError>([&] { check_seal(path); });
+    return complaint_of([&] { check_seal(path); });
   }
 };
 
@@ -222,7 +216,7 @@ TEST_F(SealOfResult, HoldsWithLandmarksOfRunsAndWithoutTruth) {
 
 TEST_F(SealOfResult, LeavesOpenWhatIsWrittenLaterAndNothingElse) {
   write_result(path_, plan_);
-  const std::string good = bytes_of(path_);
+  const std::string good = text_in(path_);
   const std::vector<ByteRange> ranges = open_ranges(path_);
   const auto is_open = [&](std::size_t at) {
     return std::ranges::any_of(
@@ -254,7 +248,7 @@ TEST_F(SealOfResult, LeavesOpenWhatIsWrittenLaterAndNothingElse) {
 
 TEST_F(SealOfResult, TellsAFileThatWasCutShort) {
   write_result(path_, plan_);
-  const std::string good = bytes_of(path_);
+  const std::string good = text_in(path_);
   const auto cut = folder_ / "cut.h5";
   for (std::size_t length = 0; length < good.size(); length += 1 + length / 3) {
     put(cut, good.substr(0, length));
@@ -291,7 +285,7 @@ TEST_F(SealOfResult, RefusesWhatIsNoHdf5) {
 /// No few bytes make a sealed file count as one without a seal.
 TEST_F(SealOfResult, IsNotLostByDamage) {
   write_result(path_, plan_);
-  const std::string good = bytes_of(path_);
+  const std::string good = text_in(path_);
   const auto spoilt = folder_ / "spoilt.h5";
   std::size_t refused = 0;
   for (std::uint64_t seed = 0; seed < damaged_files(500); ++seed) {

@@ -8,17 +8,13 @@
 #include "engine/records/result_layout.hpp"
 #include "engine/runs/monte_carlo.hpp"
 #include "engine/runs/recompute.hpp"
+#include "tests/doubles/damage.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/result_writing.hpp"
 #include "tests/doubles/same_results.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 namespace montecarta::engine {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 std::vector<std::string> names_of(const std::vector<Column>& columns) {
   std::vector<std::string> names;
@@ -72,8 +68,7 @@ TEST_F(FullRuns, AreHandedBackBitByBitAndOthersAreNot) {
       file.read(cell, column.name, run, read);
       if (column.element != Element::f64) continue;
       const auto stored = filled.column<double>(column.name);
-      EXPECT_TRUE(same_bits(read, std::vector<double>(stored.begin(), stored.end())))
-          << column.name << run;
+      EXPECT_TRUE(same_bits(read, stored)) << column.name << run;
     }
   }
 }
@@ -102,30 +97,21 @@ TEST_F(FullRuns, HaveAFingerprintOfTheirOwn) {
     std::vector<std::byte> buffer;
     return run_is_whole(PosixFile(path_, PosixFile::Mode::read), cell, run, buffer);
   };
-  const PosixFile file(path_, PosixFile::Mode::write);
   for (const Slab& slab : {cell.columns.back(), cell.full_fingerprint}) {
     ASSERT_EQ(slab.runs, 2U);
     EXPECT_TRUE(is_whole(1));
-    std::byte stored{};
-    file.read_at(slab.at(1), std::span(&stored, 1));
-    const std::byte changed = stored ^ std::byte{1};
-    file.write_at(slab.at(1), std::span(&changed, 1));
+    flip_bit(path_, slab.at(1));
     EXPECT_FALSE(is_whole(1));
     EXPECT_TRUE(is_whole(0));
     EXPECT_TRUE(is_whole(2));
-    file.write_at(slab.at(1), std::span(&stored, 1));
+    flip_bit(path_, slab.at(1));
   }
 }
 
 TEST_F(FullRuns, AreResumedWhereTheyWereTorn) {
   write_result(folder_ / "whole.h5", plan_);
   begin();
-  {
-    const CellSlabs cell = find_slabs(part_, describe(plan_, {})).cells[0];
-    const PosixFile file(part_, PosixFile::Mode::write);
-    const std::byte wrong{1};
-    file.write_at(cell.columns.back().at(0), std::span(&wrong, 1));
-  }
+  flip_bit(part_, find_slabs(part_, describe(plan_, {})).cells[0].columns.back().at(0));
   {
     ResultWriter writer = resume();
     EXPECT_EQ(writer.status(0, 0), RunStatus::missing);
@@ -172,10 +158,7 @@ TEST_F(FullRuns, AreTheSameOnAnyNumberOfThreadsAndWhenComputedAgain) {
   for (std::size_t run = 0; run < 5; ++run) {
     EXPECT_EQ(again.difference({0, run}), std::nullopt) << run;
   }
-  const CellSlabs cell = find_slabs(one.path(), one.description()).cells[0];
-  const PosixFile file(one.path(), PosixFile::Mode::write);
-  const std::byte wrong{99};
-  file.write_at(cell.columns.back().at(2), std::span(&wrong, 1));
+  flip_bit(one.path(), find_slabs(one.path(), one.description()).cells[0].columns.back().at(2));
   EXPECT_THAT(again.difference({0, 2}).value_or(""), HasSubstr("map_seen differs in 1 of"));
 }
 

@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/records/recorder.hpp"
 
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scripted_result.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 
 namespace montecarta::engine {
 namespace {
-
-using testing::Each;
-using testing::ElementsAre;
-using testing::ElementsAreArray;
-using testing::IsEmpty;
-using testing::IsNan;
 
 std::vector<std::string> names(const RecordLayout& layout) {
   std::vector<std::string> names;
@@ -23,32 +15,28 @@ std::vector<std::string> names(const RecordLayout& layout) {
   return names;
 }
 
-TEST(RecordLayout, HoldsWhatWasAskedFor) {
+TEST(RecordLayout, HoldsWhatWasAskedForAndWidensAncestorsWhereNecessary) {
   StudyPlan plan = small_result_plan();
   plan.columns = {.covariance = false, .ancestry = false};
-  const RecordLayout least(plan.cells[0], plan.columns, plan.drives->itinerary());
+  const RecordLayout least = layout_of(plan);
   EXPECT_THAT(names(least), ElementsAre("pose_mean", "ess", "resampled", "log_likelihood", "nis",
                                         "nis_dof", "numerical_faults", "map_size"));
   plan.columns = {};
   plan.cells[0].reports.mixture = false;
-  const RecordLayout usual(plan.cells[0], plan.columns, plan.drives->itinerary());
+  const RecordLayout usual = layout_of(plan);
   EXPECT_FALSE(usual.find("pose_mean_mixture"));
   EXPECT_TRUE(usual.find("ancestor"));
-}
-
-TEST(RecordLayout, WidensAncestorsWhereSixteenBitsDoNotReach) {
-  StudyPlan plan = small_result_plan();
   for (auto [particles, element] :
        {std::pair(65535U, Element::u16), std::pair(65536U, Element::u32)}) {
     plan.cells[0].particles = particles;
-    const RecordLayout layout(plan.cells[0], plan.columns, plan.drives->itinerary());
+    const RecordLayout layout = layout_of(plan);
     EXPECT_EQ(layout.columns()[*layout.find("ancestor")].element, element) << particles;
   }
 }
 
 TEST(RecordLayout, ColumnsDoNotOverlap) {
   const StudyPlan plan = small_result_plan();
-  const RecordLayout layout(plan.cells[0], plan.columns, plan.drives->itinerary());
+  const RecordLayout layout = layout_of(plan);
   for (std::size_t c = 0; c + 1 < layout.columns().size(); ++c) {
     EXPECT_EQ(layout.offset(c) % 64, 0U);
     EXPECT_GE(layout.offset(c + 1), layout.offset(c) + layout.columns()[c].bytes());
@@ -102,8 +90,7 @@ TEST(Recorder, StoresTheLastMapWithoutThoseBefore) {
 
 TEST(Recorder, StoresAssociationsWhereTheyAreAskedFor) {
   StudyPlan plan = small_result_plan();
-  EXPECT_FALSE(RecordLayout(plan.cells[0], plan.columns, plan.drives->itinerary())
-                   .find("association_wrong"));
+  EXPECT_FALSE(layout_of(plan).find("association_wrong"));
   plan.columns.association = true;
   FilledRecord filled(plan, 0, 0);
   for (std::size_t s = 0; s < plan.drives->itinerary().scans(); ++s) {
@@ -120,9 +107,7 @@ TEST(Recorder, StoresJointEstimatesAtTheEndOfEachPartOfTheRun) {
   StudyPlan plan = small_result_plan();  // of six scans
   plan.columns.joint = true;
   plan.columns.joint_scans = 3;
-  EXPECT_FALSE(
-      RecordLayout(plan.cells[0], plan.columns, plan.drives->itinerary()).find("joint_mean"))
-      << "of a filter that has none";
+  EXPECT_FALSE(layout_of(plan).find("joint_mean")) << "of a filter that has none";
   plan.cells[0].reports.joint = true;
   FilledRecord filled(plan, 0, 2);
   EXPECT_THAT(filled.layout.joint_scans(), ElementsAre(1, 3, 5));

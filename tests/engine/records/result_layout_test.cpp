@@ -6,11 +6,9 @@
 #include "engine/records/h5.hpp"
 #include "engine/records/provenance.hpp"
 #include "tests/doubles/complaint.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 #include "tests/doubles/scripted_result.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
@@ -24,8 +22,6 @@
 
 namespace montecarta::engine {
 namespace {
-
-using testing::HasSubstr;
 
 std::string type_name(const h5::Handle& dataset) {
   const auto element = h5::element(dataset);
@@ -156,7 +152,7 @@ TEST(ColumnTable, IsThatOfTheFormat) {
   }
 }
 
-/// What is said of an HDF5 file of this type and version that holds nothing else.
+/// The complaint about an HDF5 file of this type and version that holds nothing else.
 std::string said_of(const std::string& filetype, std::uint64_t major) {
   const ScratchFolder folder;
   const h5::Handle file = h5::create_file(folder / "some.h5");

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Law: the readers that people have open a result file. Run with the real programs from Debian.
 #include "engine/records/result_file.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/reader_program.hpp"
-#include "tests/doubles/scratch_folder.hpp"
-#include "tests/doubles/scripted_result.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/doubles/result_writing.hpp"
 
 #include <fstream>
 #include <sstream>
@@ -14,24 +11,19 @@
 namespace montecarta::engine {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-
-class ResultReaders : public ::testing::Test {
+class ResultReaders : public ResultWriting {
  protected:
   void SetUp() override {
     ResultWriter writer =
         ResultWriter::create(path_, plan_, {{"host", "nowhere"}}, Existing::refuse);
     store_run(writer, plan_, 0);
-    const RecordLayout layout(plan_.cells[0], plan_.columns, plan_.drives->itinerary());
+    const RecordLayout layout = layout_of(plan_);
     RunRecord record(layout);
     record.mark_failed(17, "weights vanished", 0.5);
     writer.write(0, 1, record);
   }
-  /// One run is missing: the file is work in progress, which must open as well.
-  std::string file() const { return path_.string() + ".part"; }
   std::string mean_x() const {
-    const ResultFile result(file());
+    const ResultFile result(part_);
     std::vector<double> mean(24 * 3);
     result.read(result.cells()[0], "pose_mean", 0, mean);
     std::ostringstream text;
@@ -45,14 +37,13 @@ class ResultReaders : public ::testing::Test {
                        (folder_ / "script.py").string());
   }
 
-  ScratchFolder folder_;
-  std::filesystem::path path_ = folder_ / "out.h5";
-  StudyPlan plan_ = small_result_plan();
+  /// One run is missing: the file is work in progress, which must open as well.
+  const std::string file_ = part_.string();
 };
 
 TEST_F(ResultReaders, H5py) {
   if (!python_has("h5py")) GTEST_SKIP() << "h5py (python3-h5py) is not installed";
-  const auto outcome = python("import h5py\nf = h5py.File('" + file() + R"(', 'r')
+  const auto outcome = python("import h5py\nf = h5py.File('" + file_ + R"(', 'r')
 c = f['cells/scripted_m4']
 assert f.attrs['filetype'] == 'montecarta-results'
 assert f.attrs['format_version'][0] == 1
@@ -69,7 +60,7 @@ assert abs(c['pose_mean'][0, -1, 0] - )" +
 
 TEST_F(ResultReaders, Ncdump) {
   if (!installed("ncdump")) GTEST_SKIP() << "ncdump (netcdf-bin) is not installed";
-  const auto outcome = run_program("ncdump " + file());  // data too, not only the header
+  const auto outcome = run_program("ncdump " + file_);  // data too, not only the header
   EXPECT_EQ(outcome.status, 0);
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("double pose_mean(run, time, component)"),
                                     HasSubstr("status = 1, 2, 0")));

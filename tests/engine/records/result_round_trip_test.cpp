@@ -2,40 +2,24 @@
 #include "engine/errors.hpp"
 #include "engine/records/h5.hpp"
 #include "engine/records/merge.hpp"
-#include "engine/records/posix_file.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/records/result_layout.hpp"
+#include "tests/doubles/damage.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/result_writing.hpp"
 #include "tests/doubles/same_results.hpp"
-#include "tests/doubles/scratch_folder.hpp"
-#include "tests/doubles/scripted_result.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cstring>
 
 namespace montecarta::engine {
 namespace {
 
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
-
-/// Bit by bit, so that NaN equals NaN.
-bool same_bits(std::span<const double> a, std::span<const double> b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
-}
-
-class ResultRoundTrip : public ::testing::Test {
+class ResultRoundTrip : public ResultWriting {
  protected:
   void SetUp() override { write_result(path_, plan_); }
-  ScratchFolder folder_;
-  std::filesystem::path path_ = folder_ / "out.h5";
-  StudyPlan plan_ = small_result_plan();
 };
 
-TEST_F(ResultRoundTrip, HandsBackWhatTheStudyIs) {
+TEST_F(ResultRoundTrip, HandsBackTheStudyAndItsCellsInTheirOrder) {
   const ResultFile file(path_);
   EXPECT_EQ(file.study_name(), plan_.name);
   EXPECT_EQ(file.title(), plan_.title);
@@ -51,10 +35,6 @@ TEST_F(ResultRoundTrip, HandsBackWhatTheStudyIs) {
   EXPECT_THAT(file.waypoints(), ElementsAre(std::pair(0.0, 0.0), std::pair(10.0, 0.0)));
   EXPECT_THAT(file.provenance(),
               ElementsAre(std::pair<std::string, std::string>("host", "nowhere")));
-}
-
-TEST_F(ResultRoundTrip, HandsBackTheCellsInTheirOrder) {
-  const ResultFile file(path_);
   ASSERT_EQ(file.cells().size(), 2U);
   EXPECT_EQ(file.cells()[0].label, "scripted_m4");
   EXPECT_EQ(file.cells()[1].label, "scripted_m3");
@@ -94,17 +74,13 @@ TEST_F(ResultRoundTrip, ConvertsSmallNumbers) {
   EXPECT_TRUE(std::ranges::equal(as_double, stored));
 }
 
-TEST_F(ResultRoundTrip, HandsBackTheTruePath) {
+TEST_F(ResultRoundTrip, HandsBackTheTruePathAndNamesAColumnThatIsNotThere) {
   const ResultFile file(path_);
   Drive drive;
   plan_.drives->generate(1, drive);
   std::vector<double> truth(3 * drive.truth.size());
   file.read_truth(1, truth);
   EXPECT_EQ(std::memcmp(truth.data(), drive.truth.data(), truth.size() * sizeof(double)), 0);
-}
-
-TEST_F(ResultRoundTrip, NamesAColumnThatIsNotThere) {
-  const ResultFile file(path_);
   std::vector<double> out(1);
   EXPECT_THAT([&] { file.read(file.cells()[0], "pose_meen", 0, out); },
               ::testing::ThrowsMessage<std::runtime_error>(HasSubstr("pose_meen")));
@@ -201,7 +177,7 @@ TEST_F(RecordedResult, ResumesAndMergesLikeAnyOther) {
   EXPECT_EQ(difference(whole, ResultFile(folder_ / "merged.h5")), "");
 }
 
-// One bit in what is stored of a run: a number, the true path, the status, the fingerprint.
+// One bit of a stored run changes: in a number, the true path, the status or the fingerprint.
 TEST_F(RecordedResult, ExpectsEveryRunToFitItsFingerprint) {
   plan_ = small_result_plan();
   write_result(path_, plan_);
@@ -217,17 +193,13 @@ TEST_F(RecordedResult, ExpectsEveryRunToFitItsFingerprint) {
     }
   };
   for (std::size_t run = 0; run < plan_.runs; ++run) EXPECT_TRUE(is_whole(0, run)) << run;
-  const PosixFile file(path_, PosixFile::Mode::write);
   for (const Slab& slab : {slabs.cells[0].columns[0], slabs.cells[0].columns[1], slabs.truth->pose,
                            slabs.truth->fingerprint, slabs.cells[0].fingerprint,
                            slabs.cells[0].status, slabs.cells[0].failure_step}) {
-    std::byte stored{};
-    file.read_at(slab.at(1), std::span(&stored, 1));
-    const std::byte changed = stored ^ std::byte{2};  // of the status: complete becomes spared
-    file.write_at(slab.at(1), std::span(&changed, 1));
+    flip_bit(path_, slab.at(1));
     EXPECT_FALSE(is_whole(0, 1)) << slab.offset;
     EXPECT_TRUE(is_whole(0, 2)) << slab.offset;
-    file.write_at(slab.at(1), std::span(&stored, 1));
+    flip_bit(path_, slab.at(1));
   }
   EXPECT_TRUE(is_whole(0, 1));
 }
@@ -235,13 +207,9 @@ TEST_F(RecordedResult, ExpectsEveryRunToFitItsFingerprint) {
 TEST_F(RecordedResult, DamageIsFoundWithoutATruthToo) {
   write_result(folder_ / "a.h5", part_of_plan(plan_, 0, 2));
   write_result(folder_ / "b.h5", part_of_plan(plan_, 2, 3));
-  {
-    const PosixFile file(folder_ / "a.h5", PosixFile::Mode::write);
-    const auto slabs = find_slabs(folder_ / "a.h5", describe(part_of_plan(plan_, 0, 2), {}));
-    const std::byte wrong{1};
-    file.write_at(slabs.cells[0].columns[0].at(1), std::span(&wrong, 1));
-  }
-  const std::string said = message<StudyError>([&] {
+  const auto slabs = find_slabs(folder_ / "a.h5", describe(part_of_plan(plan_, 0, 2), {}));
+  flip_bit(folder_ / "a.h5", slabs.cells[0].columns[0].at(1));
+  const std::string said = complaint_of([&] {
     merge_results(folder_ / "merged.h5", {folder_ / "a.h5", folder_ / "b.h5"}, Existing::refuse);
   });
   EXPECT_THAT(said, HasSubstr("run 1 is damaged"));

@@ -4,7 +4,6 @@
 #include "tests/doubles/scratch_folder.hpp"
 #include "tests/doubles/scripted_result.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <csignal>

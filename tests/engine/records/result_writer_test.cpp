@@ -3,33 +3,22 @@
 
 #include "engine/errors.hpp"
 #include "engine/records/result_file.hpp"
-#include "tests/doubles/complaint.hpp"
-#include "tests/doubles/reader_program.hpp"
+#include "engine/records/result_layout.hpp"
+#include "tests/doubles/damage.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/result_writing.hpp"
 #include "tests/doubles/same_results.hpp"
-#include "tests/doubles/scratch_folder.hpp"
-#include "tests/doubles/scripted_result.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <fstream>
 
 namespace montecarta::engine {
 namespace {
 
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-
 class ResultWriterTest : public ResultWriting {};
 
 TEST_F(ResultWriterTest, LeavesOnlyTheFinalNameWhenFinished) {
   write_result(path_, plan_);
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
-    names.push_back(entry.path().filename());
-  EXPECT_THAT(names, ElementsAre("out.h5"));
+  EXPECT_THAT(names(), ElementsAre("out.h5"));
 }
 
 TEST_F(ResultWriterTest, KeepsWorkInProgressReadable) {
@@ -42,10 +31,10 @@ TEST_F(ResultWriterTest, KeepsWorkInProgressReadable) {
 }
 
 TEST_F(ResultWriterTest, PutsTheStatusBehindAllData) {
-  // Law: a run whose status is set is whole. With the record gone wrong before status, it stays
+  // Law: a run with a status is whole. If the record fails before the status is set, the run stays
   // missing.
   ResultWriter writer = create();
-  const RecordLayout layout(plan_.cells[0], plan_.columns, plan_.drives->itinerary());
+  const RecordLayout layout = layout_of(plan_);
   RunRecord record(layout);
   EXPECT_THROW(writer.write(0, 0, record), std::logic_error);  // neither complete nor failed
   EXPECT_EQ(writer.status(0, 0), RunStatus::missing);
@@ -57,7 +46,7 @@ TEST_F(ResultWriterTest, PutsTheStatusBehindAllData) {
 
 TEST_F(ResultWriterTest, StoresAFailedRunWithStepAndReason) {
   ResultWriter writer = create();
-  const RecordLayout layout(plan_.cells[0], plan_.columns, plan_.drives->itinerary());
+  const RecordLayout layout = layout_of(plan_);
   RunRecord record(layout);
   record.mark_failed(17, "weights vanished", 0.5);
   writer.write(0, 1, record);
@@ -97,12 +86,12 @@ TEST_F(ResultWriterTest, BeginsWhereThereIsNothingToResume) {
 
 TEST_F(ResultWriterTest, ResumingAFinishedResultFindsNothingToDo) {
   write_result(path_, plan_);
-  const std::string before = bytes_of(path_);
+  const std::string before = text_in(path_);
   ResultWriter writer = resume();
   EXPECT_EQ(writer.status(1, 2), RunStatus::complete);
   writer.note_wall_seconds(1.0);
   writer.finish();
-  EXPECT_EQ(bytes_of(path_), before);
+  EXPECT_EQ(text_in(path_), before);
 }
 
 TEST_F(ResultWriterTest, ComputesTornRunsAgain) {
@@ -110,17 +99,7 @@ TEST_F(ResultWriterTest, ComputesTornRunsAgain) {
     ResultWriter writer = create();
     for (std::uint64_t run = 0; run < 3; ++run) store_run(writer, plan_, run);
   }
-  std::fstream file(part_, std::ios::binary | std::ios::in | std::ios::out);
-  std::string content = bytes_of(part_);
-  // A power cut that lost one page: flip the first mean of run 1 of the first cell.
-  const FilledRecord filled(plan_, 0, 1);
-  const auto mean = filled.record.bytes(*filled.layout.find("pose_mean"));
-  const auto at =
-      content.find(std::string(reinterpret_cast<const char*>(mean.data()), mean.size()));
-  ASSERT_NE(at, std::string::npos);
-  file.seekp(static_cast<std::streamoff>(at));
-  file.write("torn", 4);
-  file.close();
+  flip_bit(part_, find_slabs(part_, describe(plan_, {})).cells[0].columns[0].at(1));
   ResultWriter writer = resume();
   EXPECT_EQ(writer.status(0, 0), RunStatus::complete);
   EXPECT_EQ(writer.status(0, 1), RunStatus::missing);
@@ -130,68 +109,56 @@ TEST_F(ResultWriterTest, ComputesTornRunsAgain) {
 
 TEST_F(ResultWriterTest, RefusesWhatIsThereUnlessForced) {
   write_result(path_, plan_);
-  EXPECT_THAT(message<StudyError>([&] { create(); }), HasSubstr("out.h5: exists"));
-  const std::string before = bytes_of(path_);
+  EXPECT_THAT(complaint_of([&] { create(); }), HasSubstr("out.h5: exists"));
+  const std::string before = text_in(path_);
   {
     ResultWriter writer = create(Existing::replace);
-    EXPECT_EQ(bytes_of(path_), before) << "the old result goes only when the new one is complete";
+    EXPECT_EQ(text_in(path_), before) << "the old result goes only when the new one is complete";
   }
-  EXPECT_THAT(message<StudyError>([&] { create(); }), HasSubstr("--force"));
+  EXPECT_THAT(complaint_of([&] { create(); }), HasSubstr("--force"));
 }
 
 TEST_F(ResultWriterTest, RefusesUnfinishedWorkUnlessForced) {
-  {
-    ResultWriter writer = create();
-    store_run(writer, plan_, 0);
-  }
-  EXPECT_THAT(message<StudyError>([&] { create(); }), HasSubstr(".part"));
+  begin();
+  EXPECT_THAT(complaint_of([&] { create(); }), HasSubstr(".part"));
   EXPECT_EQ(create(Existing::replace).status(0, 0), RunStatus::missing);
 }
 
 TEST_F(ResultWriterTest, RefusesAnotherStudyAndOtherRuns) {
-  {
-    ResultWriter writer = create();
-    store_run(writer, plan_, 0);
-  }
-  const std::string before = bytes_of(part_);
-  StudyPlan other = plan_;
-  other.resolved_text += "seed = 8\n";
-  EXPECT_THAT(message<StudyError>([&] { ResultWriter::resume(path_, other, {}); }),
+  begin();
+  const std::string before = text_in(part_);
+  EXPECT_THAT(complaint_of([&] { ResultWriter::resume(path_, other_study(), {}); }),
               AllOf(HasSubstr("another study"), HasSubstr("SHA-256")));
-  EXPECT_THAT(
-      message<StudyError>([&] { ResultWriter::resume(path_, part_of_plan(plan_, 1, 3), {}); }),
-      AllOf(HasSubstr("holds runs 0:3"), HasSubstr("asked for: 1:3")));
-  EXPECT_EQ(bytes_of(part_), before);
+  EXPECT_THAT(complaint_of([&] { ResultWriter::resume(path_, part_of_plan(plan_, 1, 3), {}); }),
+              AllOf(HasSubstr("holds runs 0:3"), HasSubstr("asked for: 1:3")));
+  EXPECT_EQ(text_in(part_), before);
 }
 
 TEST_F(ResultWriterTest, RefusesAFileThatAnotherProcessWrites) {
   ResultWriter writer = create();
-  EXPECT_THAT(message<StudyError>([&] { resume(); }), HasSubstr("another montecarta process"));
-  EXPECT_THAT(message<StudyError>([&] { create(Existing::replace); }),
+  EXPECT_THAT(complaint_of([&] { resume(); }), HasSubstr("another montecarta process"));
+  EXPECT_THAT(complaint_of([&] { create(Existing::replace); }),
               HasSubstr("another montecarta process"));
 }
 
 TEST_F(ResultWriterTest, RefusesACutFile) {
-  {
-    ResultWriter writer = create();
-    store_run(writer, plan_, 0);
-  }
+  begin();
   std::filesystem::resize_file(part_, std::filesystem::file_size(part_) / 2);
-  EXPECT_THAT(message<StudyError>([&] { resume(); }), HasSubstr("cannot be resumed"));
+  EXPECT_THAT(complaint_of([&] { resume(); }), HasSubstr("cannot be resumed"));
 }
 
 TEST_F(ResultWriterTest, NamesAPathThatCannotBeWritten) {
   path_ = folder_ / "nowhere" / "out.h5";
-  EXPECT_THAT(message<StudyError>([&] { create(); }), HasSubstr("nowhere"));
+  EXPECT_THAT(complaint_of([&] { create(); }), HasSubstr("nowhere"));
   path_ = folder_.path();
-  EXPECT_THAT(message<StudyError>([&] { create(); }), HasSubstr("is a folder"));
+  EXPECT_THAT(complaint_of([&] { create(); }), HasSubstr("is a folder"));
 }
 
 TEST_F(ResultWriterTest, RefusesMoreThanTheDiskHoldsAndMoreRunsThanAFile) {
   plan_ = small_result_plan(9'000'000, 40'000);
-  EXPECT_THAT(message<RunError>([&] { create(); }), HasSubstr("are needed"));
+  EXPECT_THAT(complaint_of<RunError>([&] { create(); }), HasSubstr("are needed"));
   plan_ = small_result_plan(1'000'000'000'000);
-  EXPECT_THAT(message<StudyError>([&] { create(); }), HasSubstr("--shard"));
+  EXPECT_THAT(complaint_of([&] { create(); }), HasSubstr("--shard"));
   EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }
 
@@ -202,35 +169,31 @@ TEST_F(ResultWriterTest, LogsAResumptionByAnotherBuild) {
   }
   const ResultWriter writer = ResultWriter::resume(path_, plan_, {{"git", "def"}, {"host", "a"}});
   EXPECT_THAT(writer.notes(), ElementsAre(AllOf(HasSubstr("abc"), HasSubstr("def"))));
-  EXPECT_THAT(bytes_of(part_), HasSubstr("git=def\n"));
+  EXPECT_THAT(text_in(part_), HasSubstr("git=def\n"));
 }
 
 class ResumeResult : public ResultWriting {};
 
 TEST_F(ResumeResult, ResumesBesideAnOlderResultOnlyWhereItIsOfTheSameStudyAndRuns) {
   begin();
-  StudyPlan other = plan_;
-  other.resolved_text += "seed = 8\n";
   const auto older = folder_ / "older.h5";
-  write_result(older, other);
+  write_result(older, other_study());
   std::filesystem::rename(older, path_);
-  const std::string before = bytes_of(path_);
-  EXPECT_THAT(message<StudyError>([&] { resume(); }), HasSubstr("out.h5: exists"));
-  EXPECT_EQ(bytes_of(path_), before);
+  const std::string before = text_in(path_);
+  EXPECT_THAT(complaint_of([&] { resume(); }), HasSubstr("out.h5: exists"));
+  EXPECT_EQ(text_in(path_), before);
   write_result(older, part_of_plan(plan_, 1, 3));
   std::filesystem::rename(older, path_);
-  EXPECT_THAT(message<StudyError>([&] { resume(); }), HasSubstr("out.h5: exists"));
+  EXPECT_THAT(complaint_of([&] { resume(); }), HasSubstr("out.h5: exists"));
   std::ofstream(path_) << "no result at all";
-  EXPECT_THAT(message<StudyError>([&] { resume(); }), HasSubstr("out.h5: exists"));
+  EXPECT_THAT(complaint_of([&] { resume(); }), HasSubstr("out.h5: exists"));
   write_result(older, plan_);
   std::filesystem::rename(older, path_);
   EXPECT_EQ(resume().status(0, 0), RunStatus::complete);
 }
 
 TEST_F(ResumeResult, ReplacesAnotherResultAfterAResumptionWhereTheStartWasForced) {
-  StudyPlan other = plan_;
-  other.resolved_text += "seed = 8\n";
-  write_result(path_, other);
+  write_result(path_, other_study());
   begin(Existing::replace);
   ResultWriter writer = resume();
   store_run(writer, plan_, 1);
@@ -242,7 +205,7 @@ TEST_F(ResumeResult, ReplacesAnotherResultAfterAResumptionWhereTheStartWasForced
 TEST_F(ResumeResult, TellsUnfinishedWorkUnderAFinalNameFromAResult) {
   begin();
   std::filesystem::rename(part_, path_);
-  EXPECT_THAT(message<StudyError>([&] { resume(); }), HasSubstr("4 of 6 runs are missing"));
+  EXPECT_THAT(complaint_of([&] { resume(); }), HasSubstr("4 of 6 runs are missing"));
 }
 
 // Several attempts at one result, one after the other and at the same time.
@@ -255,13 +218,6 @@ class Attempt : public ResultWriting {
     for (std::uint64_t run = 0; run < plan_.runs; ++run) {
       if (writer.status(0, run) == RunStatus::missing) store_run(writer, plan_, run);
     }
-  }
-  std::vector<std::string> names() const {
-    std::vector<std::string> found;
-    for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
-      found.push_back(entry.path().filename().string());
-    std::ranges::sort(found);
-    return found;
   }
   void expect_the_whole_and_nothing_else() const {
     EXPECT_THAT(names(), ElementsAre("out.h5"));
@@ -336,9 +292,7 @@ TEST_F(Attempt, DamagedRunsAndCutFilesAreNotTakenOver) {
 
 TEST_F(Attempt, OtherStudiesAndOtherRunsAreRefusedAndKept) {
   begin().suspend();
-  StudyPlan other = plan_;
-  other.resolved_text += "seed = 8\n";
-  EXPECT_THAT(complaint_of([&] { ResultWriter::attempt(path_, other, {}); }),
+  EXPECT_THAT(complaint_of([&] { ResultWriter::attempt(path_, other_study(), {}); }),
               HasSubstr("another study"));
   EXPECT_THAT(complaint_of([&] { ResultWriter::attempt(path_, part_of_plan(plan_, 1, 3), {}); }),
               HasSubstr("other runs"));

@@ -11,16 +11,13 @@
 namespace montecarta::engine {
 namespace {
 
-TEST(Interruption, NotesTheFirstSignal) {
+TEST(Interruption, NotesTheFirstSignalAndBeginsAfresh) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const Interruption interruption;
     EXPECT_EQ(interruption.signal(), 0);
     raise(signal);
     EXPECT_EQ(interruption.signal(), signal);
   }
-}
-
-TEST(Interruption, BeginsAfresh) {
   {
     const Interruption first;
     raise(SIGINT);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the engine itself costs: a scripted study of about a lap's arithmetic, and one of almost
-// none.
+// Cost of the engine itself: a scripted study with about the arithmetic of a lap, and one with
+// almost none.
 #include "engine/runs/monte_carlo.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 #include "tests/doubles/scripted_study.hpp"
@@ -41,7 +41,7 @@ BENCHMARK(study_of_laps)
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond);
 
-/// Four steps of one particle: what is left is the price of a task, file included.
+/// Four steps of one particle, so that the price of a task remains, file included.
 void price_of_a_task(benchmark::State& state) {
   const ScratchFolder folder;
   const StudyPlan plan = study(20000, 4, 1);

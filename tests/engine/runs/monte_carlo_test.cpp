@@ -4,12 +4,10 @@
 #include "engine/errors.hpp"
 #include "engine/records/merge.hpp"
 #include "engine/threads/parallel.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/same_results.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 #include "tests/doubles/scripted_study.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <atomic>
@@ -19,11 +17,6 @@
 
 namespace montecarta::engine {
 namespace {
-
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::ThrowsMessage;
 
 class MonteCarlo : public testing::Test {
  protected:

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/runs/progress.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/doubles/matchers.hpp"
 
 #include <algorithm>
 #include <array>
@@ -19,10 +18,6 @@
 namespace montecarta::engine {
 namespace {
 
-using testing::EndsWith;
-using testing::HasSubstr;
-using testing::StartsWith;
-
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 std::string text_of(std::FILE* file) {
@@ -31,7 +26,7 @@ std::string text_of(std::FILE* file) {
   return {text.data(), std::fread(text.data(), 1, text.size(), file)};
 }
 
-/// What a study of `total` runs, all of which end one by one, shows in a file.
+/// The progress that a study of `total` runs, which end one by one, writes to a file.
 std::string shown_of(ProgressStyle style, std::uint64_t total) {
   const File file(std::tmpfile(), std::fclose);
   Progress progress(style, {.total = total}, file.get());
@@ -43,13 +38,12 @@ std::string shown_of(ProgressStyle style, std::uint64_t total) {
   return text_of(file.get());
 }
 
-TEST(Progress, WritesAtMostOnePlainLineAMinute) {
+TEST(Progress, WritesAtMostOnePlainLineAMinuteOrNone) {
   EXPECT_EQ(shown_of(ProgressStyle::automatic, 100), "") << "all within the first minute";
   EXPECT_EQ(plain_interval(0.0), 60.0);
   EXPECT_EQ(plain_interval(36'000.0), 720.0) << "more rarely in a long study";
+  EXPECT_EQ(shown_of(ProgressStyle::none, 100), "");
 }
-
-TEST(Progress, IsSilentWhenNobodyWantsIt) { EXPECT_EQ(shown_of(ProgressStyle::none, 100), ""); }
 
 TEST(Progress, CountsFromManyThreads) {
   Progress progress(ProgressStyle::none, {.done = 5, .failed = 1, .total = 4006, .earlier = 6});
@@ -139,14 +133,11 @@ TEST(ProgressLine, TellsCountsRateAndTime) {
   EXPECT_EQ(progress_words({.done = 1, .total = 2}, 600.0), "1/2 runs, 6/h, 10:00 min left");
 }
 
-TEST(ProgressLine, DrawsABarWhereItFits) {
+TEST(ProgressLine, DrawsABarWhereItFitsAndNeverExceedsTheWidth) {
   const RunCounts half{.done = 150, .total = 300};
   EXPECT_EQ(progress_bar(half, 10.0, 200),
             "[####################....................]  50 %  150/300 runs, 15/s, 10 s left");
   EXPECT_EQ(progress_bar(half, 10.0, 40), " 50 %  150/300 runs, 15/s, 10 s left");
-}
-
-TEST(ProgressLine, NeverExceedsTheWidthAndReachesAHundredPercentOnlyAtTheEnd) {
   for (std::size_t width = 0; width < 120; ++width)
     EXPECT_LE(progress_bar({.done = 123, .failed = 7, .total = 1000}, 3.0, width).size(), width);
   EXPECT_EQ(progress_bar({.done = 9999, .total = 10000}, 1.0, 12), " 99 %  9999/");

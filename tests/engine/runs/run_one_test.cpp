@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine/runs/worker.hpp"
 #include "tests/doubles/allocation_count.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scripted_study.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace montecarta::engine {
 namespace {
-
-using testing::Each;
-using testing::IsNan;
-using testing::Not;
 
 constexpr std::size_t kSteps = 40;
 
@@ -87,7 +81,8 @@ TEST(RunOne, GivesTheSameBitsOnSpareThreads) {
     }
 }
 
-void expect_failed_at_17(Bench& bench, std::string_view reason) {
+void expect_failed_at_17(Mishap::Kind kind, std::string_view reason) {
+  Bench bench({.mishap = Mishap{.kind = kind}}, {.covariance = false});
   EXPECT_EQ(bench.run(0), RunEnd::recorded);
   EXPECT_EQ(bench.record.status(), RunStatus::failed);
   EXPECT_EQ(bench.record.failure_step(), 17U);
@@ -98,20 +93,12 @@ void expect_failed_at_17(Bench& bench, std::string_view reason) {
   EXPECT_THAT(bench.column("ess").subspan(4), Each(IsNan()));
 }
 
-TEST(RunOne, StoresWhatAFilterThrew) {
-  Bench bench({.mishap = Mishap{.kind = Mishap::Kind::throws}});
-  expect_failed_at_17(bench, "scripted mishap of run 0");
-}
-
-TEST(RunOne, FailsARunWhosePoseIsNotFinite) {
-  Bench bench({.mishap = Mishap{.kind = Mishap::Kind::pose_is_nan}});
-  expect_failed_at_17(bench, "estimated pose is not finite");
-}
-
-TEST(RunOne, FailsARunWhoseCovarianceIsNotFiniteThoughNobodyAskedForIt) {
-  Bench bench({.mishap = Mishap{.kind = Mishap::Kind::covariance_is_infinite}},
-              {.covariance = false});
-  expect_failed_at_17(bench, "pose covariance is not finite");
+// The covariance is checked although it is not recorded.
+TEST(RunOne, FailsWithStepAndReason) {
+  using enum Mishap::Kind;
+  expect_failed_at_17(throws, "scripted mishap of run 0");
+  expect_failed_at_17(pose_is_nan, "estimated pose is not finite");
+  expect_failed_at_17(covariance_is_infinite, "pose covariance is not finite");
 }
 
 TEST(RunOne, NoticesAFailureAtTheNextScanWhereRowsAreScans) {

@@ -2,7 +2,6 @@
 #include "engine/threads/parallel.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <atomic>
 #include <barrier>
@@ -73,15 +72,12 @@ TEST_P(EveryParallel, NeverUsesMoreThreadsThanItsOwn) {
   EXPECT_LE(most, parallel.threads());
 }
 
-TEST_P(EveryParallel, RethrowsWhatABodyThrew) {
+TEST_P(EveryParallel, RethrowsWhatABodyThrewInAnInnerLoopToo) {
   const auto throws_at_3 = [](std::size_t i) {
     if (i == 3) throw std::runtime_error("body 3");
   };
   EXPECT_THAT([&] { parallel.for_each(100, throws_at_3); },
               testing::ThrowsMessage<std::runtime_error>("body 3"));
-}
-
-TEST_P(EveryParallel, RethrowsFromAnInnerLoop) {
   const auto outer = [&](std::size_t) {
     parallel.for_each(10, [](std::size_t) { throw std::runtime_error("inner"); });
   };
@@ -110,12 +106,11 @@ TEST(Parallel, WorkersMeetAtABarrier) {
   }
 }
 
-TEST(Parallel, SerialHasOneThread) {
+TEST(Parallel, HasOneThreadAtLeast) {
   EXPECT_EQ(Parallel(Backend::serial, 8).threads(), 1);
   EXPECT_EQ(Parallel::serial().threads(), 1);
+  EXPECT_THROW(Parallel(Backend::tbb, 0), std::logic_error);
 }
-
-TEST(Parallel, RefusesNoThreadsAtAll) { EXPECT_THROW(Parallel(Backend::tbb, 0), std::logic_error); }
 
 }  // namespace
 }  // namespace montecarta::engine

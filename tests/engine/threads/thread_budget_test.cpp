@@ -3,10 +3,8 @@
 
 #include "engine/errors.hpp"
 #include "engine/threads/parallel.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <fstream>
 #include <map>
@@ -14,10 +12,6 @@
 
 namespace montecarta::engine {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::ThrowsMessage;
 
 /// The budget of a process on 6 processors with these variables set.
 ThreadBudget budget(std::map<std::string, std::string> variables,
@@ -36,7 +30,7 @@ void expect_budget(const ThreadBudget& actual, int threads, const std::string& s
   EXPECT_EQ(actual.source, source);
 }
 
-TEST(ThreadBudget, TakesTheFirstThatIsSet) {
+TEST(ThreadBudget, TakesTheFirstThatIsSetWithinTheQuota) {
   std::map<std::string, std::string> variables{
       {"MONTECARTA_THREADS", "3"}, {"SLURM_CPUS_PER_TASK", "4"}, {"OMP_NUM_THREADS", "5,2"}};
   expect_budget(budget(variables, "2"), 2, "--threads");
@@ -46,14 +40,8 @@ TEST(ThreadBudget, TakesTheFirstThatIsSet) {
   variables.erase("SLURM_CPUS_PER_TASK");
   expect_budget(budget(variables), 5, "OMP_NUM_THREADS");
   expect_budget(budget({}), 6, "CPU affinity");
-}
-
-TEST(ThreadBudget, CountsAnEmptyVariableAsUnset) {
   expect_budget(budget({{"MONTECARTA_THREADS", ""}, {"OMP_NUM_THREADS", "2"}}), 2,
                 "OMP_NUM_THREADS");
-}
-
-TEST(ThreadBudget, ObeysTheQuotaRoundedUp) {
   expect_budget(budget({}, std::nullopt, 1.5), 2, "cgroup CPU quota");
   expect_budget(budget({}, std::nullopt, 0.1), 1, "cgroup CPU quota");
   expect_budget(budget({}, std::nullopt, 16.0), 6, "CPU affinity");
@@ -122,11 +110,8 @@ TEST(SpareThreads, AreLentOnceAWorkerHasNothingToDo) {
   EXPECT_EQ(&spare.lend(1000), &Parallel::serial());
   spare.gain_one();
   EXPECT_EQ(&spare.lend(1000), &parallel);
-}
-
-TEST(SpareThreads, AreLentFromTheStartWhereRunsAreFewer) {
-  const Parallel parallel(Backend::tbb, 4);
-  EXPECT_EQ(&SpareThreads(parallel, 3).lend(1000), &parallel);
+  const Parallel four(Backend::tbb, 4);
+  EXPECT_EQ(&SpareThreads(four, 3).lend(1000), &four) << "fewer runs than threads";
 }
 
 TEST(SpareThreads, DoNotPayForFewParticles) {
