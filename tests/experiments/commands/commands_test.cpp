@@ -3,20 +3,12 @@
 
 #include "engine/errors.hpp"
 #include "experiments/commands/arguments.hpp"
+#include "tests/doubles/complaint.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/experiments/commands/program.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace montecarta::experiments {
 namespace {
-
-using testing::AllOf;
-using testing::ContainsRegex;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::StartsWith;
 
 class Commands : public BlinkProgram {
  protected:
@@ -182,15 +174,12 @@ TEST_F(Commands, CheckRunsNothing) {
       << "the text alone, to be put into a file";
 }
 
-TEST_F(Commands, BoundsAreExact) {
+TEST_F(Commands, BoundsAreExactAndPlanSaysHowManyRuns) {
   EXPECT_THAT(call({"bounds", "--runs", "30", "--dim", "3"}).out, testing::StartsWith("[2.188"));
   EXPECT_THAT(call({"bounds", "--match", "1.3", "2.79"}).out, testing::ContainsRegex("20 +2 +0.9"));
   EXPECT_EQ(call({"bounds", "--match", "2.79"}).code, 2);
   expect_wrong({"bounds", "--runs", "30", "--dim", "3", "--match", "1.3", "2.79"},
                "--match and --runs");
-}
-
-TEST_F(Commands, PlanSaysHowManyRuns) {
   const std::string out = call({"plan", "--dim", "3", "--ratio", "1.2", "--scans", "100"}).out;
   EXPECT_THAT(out, testing::ContainsRegex("constant +314 +3686\n"));
   EXPECT_THAT(out, testing::ContainsRegex("100 independent scans +20 +124\n"));
@@ -198,16 +187,13 @@ TEST_F(Commands, PlanSaysHowManyRuns) {
   expect_wrong({"plan", "--dim", "3", "--ratio", "1.2", "--within", "1"}, "--within");
 }
 
-TEST_F(Commands, ListsSayWhatThereIs) {
+TEST_F(Commands, ListsSayWhatThereIsAndAllAboutOne) {
   EXPECT_THAT(call({"list", "filters"}).out, HasSubstr("fastslam2"));
   EXPECT_THAT(call({"list", "worlds"}).out, HasSubstr("web_loop"));
   EXPECT_THAT(call({"list", "studies"}).out, HasSubstr("first_study"));
   EXPECT_THAT(call({"list", "metrics"}).out, HasSubstr("position_rmse"));
   EXPECT_THAT(call({"list", "columns"}).out, HasSubstr("ancestry"));
   EXPECT_THAT(call({"list", "settings"}).out, HasSubstr("field_of_view_deg"));
-}
-
-TEST_F(Commands, ListsSayAllAboutOne) {
   const auto lists = [&](const char* what, const char* name, std::vector<std::string> words) {
     const Called called = call({"list", what, name});
     EXPECT_EQ(called.code, 0) << called.err;
@@ -272,7 +258,7 @@ TEST_F(Commands, AnalyzeOnAFullDiskLeavesWhatWasThere) {
   EXPECT_THAT(text_of("metrics.h5"), testing::Not(testing::HasSubstr("mine")));
 }
 
-TEST_F(Commands, TablesAndReportsAreNotOverwrittenUnasked) {
+TEST_F(Commands, TablesAndReportsAreNotOverwrittenUnaskedNorBegunWithoutGnuplot) {
   ASSERT_EQ(call({"run", "blink.ini", "-o", "out.h5", "--quiet"}).code, 0);
   std::filesystem::create_directories(folder_ / "csv");
   write("csv/series_ekf_slam.csv", "mine");
@@ -283,14 +269,10 @@ TEST_F(Commands, TablesAndReportsAreNotOverwrittenUnasked) {
   EXPECT_THAT(text_of("csv/series_ekf_slam.csv"), testing::StartsWith("time"));
   std::filesystem::create_directories(folder_ / "report/tables");
   expect_refused({"report", "out.h5", "-o", "report"}, "report/tables: is there already");
-}
-
-TEST_F(Commands, ReportWithoutGnuplotWritesNothing) {
-  ASSERT_EQ(call({"run", "blink.ini", "-o", "out.h5", "--quiet"}).code, 0);
-  const Called called = call({"report", "out.h5", "-o", "report"}, "PATH=/nowhere ");
+  const Called called = call({"report", "out.h5", "-o", "other"}, "PATH=/nowhere ");
   EXPECT_EQ(called.code, 2);
   EXPECT_THAT(called.err, HasSubstr("gnuplot: not found"));
-  EXPECT_FALSE(exists("report"));
+  EXPECT_FALSE(exists("other"));
 }
 
 TEST_F(Commands, AnalyzeOfManyFilesNamesEachAndRefusesAStranger) {
@@ -308,7 +290,7 @@ TEST_F(Commands, FullStandardOutputIsAFailure) {
   EXPECT_EQ(call({"list", "settings"}, "exec > /dev/full; ").code, 1);
 }
 
-// What the scripts of cluster/ call: run --attempt, and status --each.
+// The scripts of cluster/ call run --attempt and status --each.
 
 class AttemptCommand : public BlinkProgram {
  protected:
@@ -361,12 +343,7 @@ const CommandSpec kSpec{.name = "bake",
                         .details = {}};
 
 std::string complaint_about(const std::vector<std::string>& words) {
-  try {
-    const Arguments arguments(kSpec, words);
-  } catch (const StudyError& error) {
-    return error.what();
-  }
-  return "nothing";
+  return engine::complaint_of([&] { Arguments(kSpec, words); });
 }
 
 TEST(Arguments, AreOptionsAndOperandsInAnyOrder) {

@@ -4,19 +4,13 @@
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
 #include "experiments/study/make_drives.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/experiments/commands/program.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <bit>
 
 namespace montecarta::experiments {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
 
 std::vector<std::uint64_t> bits_of(const Itinerary& itinerary, const Drive& drive) {
   std::vector<std::uint64_t> bits;
@@ -37,7 +31,7 @@ class Export : public BlinkProgram {
   Called run_export(const std::vector<std::string>& more = {}) const {
     return call_with({"export", "blink.ini", "-o", "drives"}, more);
   }
-  /// The drive of a run as its exported log has it, truth added to what an estimator sees.
+  /// The drive of a run in its exported log, with the truth beside the data for an estimator.
   RecordedDrive exported(const std::string& run) const {
     for (const auto& file : std::filesystem::directory_iterator(folder_ / "drives/truth" / run))
       std::filesystem::copy(file.path(), folder_ / "drives/runs" / run);

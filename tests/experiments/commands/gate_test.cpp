@@ -3,19 +3,14 @@
 #include "analysis/statistics/nees_bounds.hpp"
 #include "engine/random/stream.hpp"
 #include "engine/records/result_file.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/experiments/commands/program.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <functional>
 #include <sstream>
 
 namespace montecarta::experiments {
 namespace {
-
-using testing::ContainsRegex;
-using testing::HasSubstr;
 
 /// The world that filters assume: one filter of the right noise, one that believes half of it.
 const std::string kMatchedBlink = R"([study]
@@ -101,7 +96,7 @@ struct Sample {
   double error, variance;
 };
 
-/// Estimates of a heading-free pose whose true value is 0, judged by the program.
+/// Estimates of one component with the true value 0, judged by the program.
 class GateOfEstimates : public Program {
  protected:
   Called gate(const std::function<Sample(int run, double normal)>& sample,
@@ -135,7 +130,7 @@ TEST_F(GateOfEstimates, LetsARightCovariancePass) {
   EXPECT_EQ(call({"analyze", "mine.h5"}).code, 0);
 }
 
-// An error whose square a double cannot hold is no invalid covariance.
+// An error with a square that no double holds is no invalid covariance.
 TEST_F(GateOfEstimates, StopsDivergenceBeyondTheRangeOfDoubles) {
   const Called called = gate(
       [](int run, double n) {

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Text of studies, tables and other programs that is not what it should be.
+// Malformed text of studies, tables and other programs.
+#include "tests/doubles/matchers.hpp"
 #include "tests/experiments/commands/program.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <filesystem>
 
 namespace montecarta::experiments {
 namespace {
-
-using testing::AllOf;
-using testing::ContainsRegex;
-using testing::HasSubstr;
-using testing::Not;
 
 class HostileText : public BlinkProgram {
  protected:
@@ -23,9 +16,8 @@ class HostileText : public BlinkProgram {
   }
 };
 
-TEST_F(HostileText, AByteOrderMarkIsNoFault) { EXPECT_EQ(run("\xEF\xBB\xBF" + kBlink).code, 0); }
-
-TEST_F(HostileText, Utf16AndNulBytesAreNamed) {
+TEST_F(HostileText, Utf16AndNulBytesAreNamedAndAByteOrderMarkIsNoFault) {
+  EXPECT_EQ(run("\xEF\xBB\xBF" + kBlink).code, 0);
   std::string wide = "\xFF\xFE";
   for (const char c : kBlink) (wide += c) += '\0';
   EXPECT_EQ(run(wide).code, 2);
@@ -80,7 +72,7 @@ TEST_F(HostileText, AVectorHasOneConvention) {
   EXPECT_EQ(call({"judge", "e_0.csv", "--truth", "truth.csv", "-o", "mine.h5"}).code, 0);
 }
 
-// What is no regular file is refused: a pipe would be waited for.
+// Only regular files are read: the program would wait for a pipe.
 class SpecialFiles : public BlinkProgram {
  protected:
   void expect_refused(const std::vector<std::string>& words) const {
@@ -101,7 +93,7 @@ TEST_F(SpecialFiles, AreNoResults) {
 }
 
 // --force replaces a result, and nothing else: the pipe is still one afterwards.
-TEST_F(SpecialFiles, AreNotReplaced) {
+TEST_F(SpecialFiles, AreNotReplacedAndAreNoTables) {
   ASSERT_EQ(call({"run", "blink.ini", "-o", "whole.h5", "--quiet"}).code, 0);
   write("e_0.csv", "time_s,a_m,cov_0_0\n1,0.5,1\n");
   write("truth.csv", "time_s,a_m\n1,0\n");
@@ -123,10 +115,6 @@ TEST_F(SpecialFiles, AreNotReplaced) {
       EXPECT_TRUE(std::filesystem::is_fifo(folder_ / "pipe.h5")) << words.front();
     }
   }
-}
-
-TEST_F(SpecialFiles, AreNoTables) {
-  ASSERT_EQ(call({"run", "blink.ini", "-o", "whole.h5", "--quiet"}).code, 0);
   const Called called = call({"analyze", "whole.h5", "--csv", ".", "--force"},
                              "mkfifo -m 600 cells.csv; timeout 20 ");
   EXPECT_EQ(called.code, 2) << called.err;

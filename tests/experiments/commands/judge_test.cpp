@@ -4,18 +4,13 @@
 #include "analysis/metrics/study_analysis.hpp"
 #include "engine/records/result_file.hpp"
 #include "experiments/text/words.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/experiments/commands/program.hpp"
-
-#include <gmock/gmock.h>
 
 #include <algorithm>
 
 namespace montecarta::experiments {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 const std::string kHeader =
     "time_s,x_m,y_m,heading_rad,cov_0_0,cov_0_1,cov_0_2,cov_1_0,cov_1_1,cov_1_2,cov_2_0,cov_2_1,"
@@ -29,8 +24,8 @@ std::string row_of(std::span<const double> numbers) {
 
 class Judge : public BlinkProgram {
  protected:
-  /// Runs the study of two filters and writes what they estimated, as another program would, beside
-  /// the drives that `export` writes: drives/CELL/run_000N.csv.
+  /// Runs the study of two filters and writes their estimates, as another program would, beside the
+  /// drives that `export` writes: drives/CELL/run_000N.csv.
   void write_own_estimates() const {
     ASSERT_EQ(call({"run", "blink.ini", "-o", "own.h5", "--quiet"}).code, 0);
     ASSERT_EQ(call({"export", "blink.ini", "-o", "drives"}).code, 0);
@@ -77,13 +72,13 @@ class Judge : public BlinkProgram {
 };
 
 // Law: the verdict on our own filter's estimates is that on the filter.
-TEST_F(Judge, OwnEstimatesHaveTheVerdictOfTheirFilter) {
+TEST_F(Judge, OwnEstimatesHaveTheVerdictOfTheirFilterAndEveryCommandReadsThem) {
   write_own_estimates();
   std::vector<std::string> files = estimates("ekf_slam");
-  const Called called = judge(files, {"--truth", "drives", "--error", "world", "-o", "mine.h5"});
+  const Called called = judge(files, {"--truth", "drives", "--error", "world", "-o", "ekf.h5"});
   ASSERT_EQ(called.code, 0) << called.err;
   EXPECT_THAT(called.out, AllOf(HasSubstr("ekf_slam"), HasSubstr("Imported estimates")));
-  const auto own = analyzed("own.h5").cells[0], mine = analyzed("mine.h5").cells[0];
+  const auto own = analyzed("own.h5").cells[0], mine = analyzed("ekf.h5").cells[0];
   ASSERT_EQ(mine.nees.size(), 3U);
   for (std::size_t b = 0; b < 3; ++b) {
     EXPECT_EQ(own.nees[b].series.lower_rank, 0U);
@@ -93,11 +88,6 @@ TEST_F(Judge, OwnEstimatesHaveTheVerdictOfTheirFilter) {
   EXPECT_EQ(mine.verdict.answer, own.verdict.answer);
   EXPECT_NEAR(mine.verdict.ratio().lower, own.verdict.ratio().lower, 1e-9);
   EXPECT_DOUBLE_EQ(mine.over_runs("position_rmse").mean, own.over_runs("position_rmse").mean);
-}
-
-TEST_F(Judge, AnalyzeReportAndCompareReadTheResult) {
-  write_own_estimates();
-  std::vector<std::string> files = estimates("ekf_slam");
   for (const std::string& name : estimates("fastslam2_m10")) files.push_back(name);
   ASSERT_EQ(judge(files, {"--truth", "drives", "--error", "body", "-o", "mine.h5"}).code, 0);
   for (const auto& words : std::vector<std::vector<std::string>>{
@@ -105,9 +95,9 @@ TEST_F(Judge, AnalyzeReportAndCompareReadTheResult) {
            {"report", "mine.h5", "-o", "page"},
            {"compare", "mine.h5", "--baseline", "ekf_slam"},
            {"info", "mine.h5"}}) {
-    const Called called = call(words);
-    EXPECT_EQ(called.code, 0) << words[0] << called.err;
-    EXPECT_THAT(called.out + called.err, Not(HasSubstr("damaged"))) << words[0];
+    const Called read = call(words);
+    EXPECT_EQ(read.code, 0) << words[0] << read.err;
+    EXPECT_THAT(read.out + read.err, Not(HasSubstr("damaged"))) << words[0];
   }
   EXPECT_THAT(text_of("page/index.html"), HasSubstr("Imported estimates of another program"));
   EXPECT_THAT(call({"verify", "mine.h5"}).err, HasSubstr("another program computed"));
@@ -240,7 +230,7 @@ TEST_F(Judge, RunsThatAreNotAlikeAreNamed) {
   EXPECT_FALSE(exists("mine.h5"));
 }
 
-// What 'montecarta judge' reads besides one CSV file a run, and what the file keeps of it.
+// Other input of 'montecarta judge' than one CSV file a run, and its part in the result.
 class JudgeLayouts : public Judge {
  protected:
   Called judge_by(const std::string& error, const std::vector<std::string>& files,

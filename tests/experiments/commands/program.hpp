@@ -4,7 +4,6 @@
 #include "experiments/commands/arguments.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <array>
 #include <cstdio>
@@ -19,7 +18,7 @@
 
 namespace montecarta::experiments {
 
-/// What a call of the real executable left behind.
+/// Exit code and output of a call of the real executable.
 struct Called {
   int code = -1;
   std::string out;  ///< standard output

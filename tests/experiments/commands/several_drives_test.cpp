@@ -2,18 +2,12 @@
 // Several recorded drives of one scenario, each a run, through every command.
 #include "engine/records/result_file.hpp"
 #include "experiments/recordings/log_csv.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/same_results.hpp"
 #include "tests/experiments/commands/program.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 namespace montecarta::experiments {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
 
 const std::string kDrives = R"([study]
 name = drives
@@ -64,7 +58,7 @@ class SeveralDrives : public BlinkProgram {
   }
 };
 
-TEST_F(SeveralDrives, EachIsARunAndOneThatEndsEarlierIsComplete) {
+TEST_F(SeveralDrives, EachIsARunThatIsCompleteAndJudgedAsIndependent) {
   const Called called = run("out.h5");
   ASSERT_EQ(called.code, 0) << called.err;
   const ResultFile file(folder_ / "out.h5");
@@ -84,9 +78,22 @@ TEST_F(SeveralDrives, EachIsARunAndOneThatEndsEarlierIsComplete) {
     file.read(cell, "final_map_seen", 1, std::span(seen));
     EXPECT_GT(std::ranges::count(seen, 1.0), 0) << "the map is that after its own last scan";
   }
+  const Called judged = call({"analyze", "out.h5", "--table", "drive", "--csv", "tables"});
+  EXPECT_EQ(judged.code, 0) << judged.err;
+  EXPECT_THAT(judged.out, HasSubstr("Every run met a drive of its own"));
+  EXPECT_THAT(judged.out, Not(HasSubstr("met the same drive")));
+  EXPECT_THAT(text_of("tables/drive.csv"), HasSubstr("drives"));
+  EXPECT_FALSE(exists("tables/reference_errors.csv")) << "fixes of three drives have no mean";
+  EXPECT_THAT(call({"analyze", "out.h5", "--table", "reference"}).out,
+              HasSubstr("no figures over time"));
+  EXPECT_EQ(text_of("tables/series_ekf_slam.csv"), "time [s]\n") << "nor have their scans";
+  EXPECT_EQ(call({"report", "out.h5", "-o", "page"}).code, 0);
+  EXPECT_FALSE(exists("page/figures/map_size.svg"));
+  EXPECT_EQ(call({"compare", "out.h5", "--baseline", "ekf_slam"}).code, 0);
+  EXPECT_EQ(call({"check", "drives.ini"}).code, 0);
 }
 
-TEST_F(SeveralDrives, ShardsThreadsAndResumptionGiveTheSameBits) {
+TEST_F(SeveralDrives, ShardsThreadsResumptionVerifyAndReplayGiveTheSameBits) {
   ASSERT_EQ(run("out.h5", {"--threads", "1"}).code, 0);
   ASSERT_EQ(run("a.h5", {"--runs", "0:1"}).code, 0);
   ASSERT_EQ(run("b.h5", {"--runs", "1:3", "--threads", "2"}).code, 0);
@@ -94,10 +101,6 @@ TEST_F(SeveralDrives, ShardsThreadsAndResumptionGiveTheSameBits) {
   EXPECT_EQ(engine::difference(ResultFile(folder_ / "out.h5"), ResultFile(folder_ / "merged.h5")),
             "");
   EXPECT_EQ(run("out.h5", {"--resume"}).code, 0);
-}
-
-TEST_F(SeveralDrives, VerifyAndReplayFindThemByTheirFolders) {
-  ASSERT_EQ(run("out.h5").code, 0);
   const std::vector<std::string> verify = {"verify", "out.h5", "--sample", "6"};
   std::vector<std::string> words = verify;
   words.insert(words.end(), {"--data", "long,short,middle"});
@@ -114,23 +117,6 @@ TEST_F(SeveralDrives, VerifyAndReplayFindThemByTheirFolders) {
   const Called replay = call({"replay", "out.h5", "--cell", "ekf_slam", "--run", "1", "-o",
                               "again.h5", "--data", "long,short,middle"});
   EXPECT_EQ(replay.code, 0) << replay.err;
-}
-
-TEST_F(SeveralDrives, AnalysisJudgesThemAsIndependent) {
-  ASSERT_EQ(run("out.h5").code, 0);
-  const Called called = call({"analyze", "out.h5", "--table", "drive", "--csv", "tables"});
-  EXPECT_EQ(called.code, 0) << called.err;
-  EXPECT_THAT(called.out, HasSubstr("Every run processes a drive of its own"));
-  EXPECT_THAT(called.out, Not(HasSubstr("process the same drive")));
-  EXPECT_THAT(text_of("tables/drive.csv"), HasSubstr("drives"));
-  EXPECT_FALSE(exists("tables/reference_errors.csv")) << "fixes of three drives have no mean";
-  EXPECT_THAT(call({"analyze", "out.h5", "--table", "reference"}).out,
-              HasSubstr("no figures over time"));
-  EXPECT_EQ(text_of("tables/series_ekf_slam.csv"), "time [s]\n") << "nor have their scans";
-  EXPECT_EQ(call({"report", "out.h5", "-o", "page"}).code, 0);
-  EXPECT_FALSE(exists("page/figures/map_size.svg"));
-  EXPECT_EQ(call({"compare", "out.h5", "--baseline", "ekf_slam"}).code, 0);
-  EXPECT_EQ(call({"check", "drives.ini"}).code, 0);
 }
 
 TEST_F(SeveralDrives, SayWhatDoesNotFitTogether) {
@@ -173,7 +159,7 @@ class RecordedLog : public Program {
     write("yard/odometry.csv", "time_s,speed_mps,yaw_rate_radps\n0,1,0\n1,1,0.1\n2,1,0\n");
     write("yard/reference.csv", "time_s,x_m,y_m\n0.5,0.5,0\n1.5,1.5,0\n");
   }
-  /// What the study in full says of the association.
+  /// The kind of association in the resolved study.
   std::string association(const std::vector<std::string>& more = {}) const {
     const Called called = call_with({"check", "yard.ini", "--text"}, more);
     EXPECT_EQ(called.code, 0) << called.err;

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/text/words.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/same_results.hpp"
 #include "tests/experiments/commands/program.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +10,6 @@
 
 namespace montecarta::experiments {
 namespace {
-
-using testing::ContainsRegex;
-using testing::HasSubstr;
 
 /// log(nees_ratio_upper / nees_ratio_lower) of the first row of a cells.csv.
 double ratio_width(const std::string& csv) {
@@ -83,12 +78,6 @@ TEST_F(UntilPrecise, IsShownWhereverRunsAreCounted) {
 TEST_F(UntilPrecise, GivesTheSameBitsOnAnyThreadsKilledAndResumed) {
   expect_same_bits_however_run({"0.05", "0.2"});
   EXPECT_THAT(call({"status", "one.h5"}).out, ContainsRegex(" (64|128) +0 +0 +200 +(136|72)\n"));
-}
-
-TEST_F(UntilPrecise, IsNothingForPartOfTheRuns) {
-  expect_refused({"run", "blink.ini", "-o", "out.h5", "--shard", "0/2"}, "--set study.until=");
-  expect_refused({"run", "blink.ini", "-o", "out.h5", "--runs", "0:100"}, "--set study.until=");
-  EXPECT_FALSE(exists("out.h5.part"));
 }
 
 /// The same study in the world that its filters assume: dead reckoning as it is, and one that

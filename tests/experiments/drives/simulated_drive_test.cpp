@@ -5,13 +5,12 @@
 #include "experiments/worlds/world.hpp"
 #include "filters/models/ackermann.hpp"
 #include "tests/doubles/complaint.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/published_data.hpp"
 #include "tests/doubles/reader_program.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 
 #include <Eigen/Geometry>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,24 +20,24 @@
 namespace montecarta::experiments {
 namespace {
 
-using testing::HasSubstr;
-
 Drive drive_of(const SimulatedDrive& source, std::uint64_t run) {
   Drive drive;
   source.generate(run, drive);
   return drive;
 }
 
+bool same_controls(const Drive& a, const Drive& b) {
+  return std::ranges::equal(a.controls, b.controls, [](const Control& x, const Control& y) {
+    return x[0] == y[0] && x[1] == y[1];
+  });
+}
+
 bool same_numbers(const Drive& a, const Drive& b) {
   const auto same_detection = [](const Detection& x, const Detection& y) {
     return x[0] == y[0] && x[1] == y[1] && x.identity == y.identity;
   };
-  const auto same_control = [](const Control& x, const Control& y) {
-    return x[0] == y[0] && x[1] == y[1];
-  };
   const auto same_pose = [](const Pose& x, const Pose& y) { return boxminus(x, y).isZero(0.0); };
-  return std::ranges::equal(a.detections, b.detections, same_detection) &&
-         std::ranges::equal(a.controls, b.controls, same_control) &&
+  return std::ranges::equal(a.detections, b.detections, same_detection) && same_controls(a, b) &&
          std::ranges::equal(a.truth, b.truth, same_pose) && a.scan_begin == b.scan_begin;
 }
 
@@ -147,17 +146,12 @@ TEST(SimulatedDrive, OpenLoopControlsTellNothingOfTheTruth) {
                             .sigma_range = 0.0};
     return drive_of(SimulatedDrive(find_world("web_loop"), scenario, 9), run);
   };
-  const auto has_controls_of = [](const Drive& a, const Drive& b) {
-    return std::ranges::equal(a.controls, b.controls, [](const Control& x, const Control& y) {
-      return x[0] == y[0] && x[1] == y[1];
-    });
-  };
   const Drive nominal = drive_with(Pilot::closed_loop, 0.0, 0);
   const Drive first = drive_with(Pilot::open_loop, 0.05, 0);
   const Drive second = drive_with(Pilot::open_loop, 0.05, 1);
-  EXPECT_TRUE(has_controls_of(first, nominal));
-  EXPECT_TRUE(has_controls_of(second, nominal));
-  EXPECT_FALSE(has_controls_of(drive_with(Pilot::closed_loop, 0.05, 0), nominal));
+  EXPECT_TRUE(same_controls(first, nominal));
+  EXPECT_TRUE(same_controls(second, nominal));
+  EXPECT_FALSE(same_controls(drive_with(Pilot::closed_loop, 0.05, 0), nominal));
   EXPECT_GT(boxminus(first.truth.back(), second.truth.back()).norm(), 0.1);
 }
 

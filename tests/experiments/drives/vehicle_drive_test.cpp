@@ -5,19 +5,14 @@
 #include "experiments/worlds/world.hpp"
 #include "filters/models/ackermann.hpp"
 #include "tests/doubles/complaint.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/filters/some_models.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace montecarta::experiments {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
 
 /// A narrow way there and back: at both ends the next way-point is behind.
 World there_and_back() {
@@ -66,7 +61,7 @@ TEST(VehicleDrive, ADifferentialDriveTurnsOnTheSpotAndThatIsNoStanding) {
   for (const Control& control : drive.controls) EXPECT_FALSE(control.stands(2));
 }
 
-/// Sum of squares of each component of what the filter is given less what the vehicle obeys.
+/// Mean square of the difference between given and obeyed controls, by component.
 Eigen::Array2d noise_of(const SimulatedDrive& noisy, const SimulatedDrive& exact) {
   Drive a, b;
   noisy.generate(0, a), exact.generate(0, b);
@@ -121,17 +116,7 @@ TEST(ControlNoise, CountsBothComponentsOfAVelocity) {
 }
 
 TEST(Omnidirectional, DrivesStraightToTheWayPointWhileItTurns) {
-  World world;
-  world.name = "there_and_back";
-  world.landmarks = {{5.0, 3.0}};
-  world.waypoints = {{20.0, 0.0}, {0.0, 0.0}};
-  const SimulatedDrive source(world,
-                              {.noise = NoiseMode::matched,
-                               .vehicle = Omnidirectional{},
-                               .speed = 1.0,
-                               .control = {.sigma = {0.1, 0.05, 0.05}},
-                               .waypoint_radius = 0.3},
-                              1);
+  const SimulatedDrive source(there_and_back(), scenario_of(Omnidirectional{}), 1);
   EXPECT_EQ(source.itinerary().moving_controls, 3U);
   Drive drive;
   source.generate(0, drive);
@@ -193,21 +178,20 @@ TEST(SimulatedSensor, SeesFromWhereItIsMountedWhatItMeasures) {
   scenario.sigma_forward = scenario.sigma_left = scenario.sigma_range = 0.0;
   scenario.sensor = {PositionSensor(), {.forward = 1.0, .left = 2.0, .turn = kPi / 2}};
   const std::vector<Eigen::Vector2d> landmarks = {{-2, 7}, {1, 3}, {20, 7}};
-  const StreamIdentity place{.seed = 3, .run = 1, .step = 0};
-  std::vector<Detection> detections;
-  const SimulatedSensor sensor(scenario);
-  sensor.see(Pose{}, landmarks,
-             [&](const VisibleLandmark& one) { sensor.detect(one, place, detections); });
-  ASSERT_EQ(detections.size(), 1U) << "one is too near, one too far";
-  EXPECT_NEAR(detections[0][0], 5.0, 1e-12);
-  EXPECT_NEAR(detections[0][1], 3.0, 1e-12);
+  const auto only_detection = [&] {
+    std::vector<Detection> detections;
+    const SimulatedSensor sensor(scenario);
+    sensor.see(Pose{}, landmarks, [&](const VisibleLandmark& one) {
+      sensor.detect(one, {.seed = 3, .run = 1, .step = 0}, detections);
+    });
+    EXPECT_EQ(detections.size(), 1U) << "one is too near, one too far";
+    return detections.at(0);
+  };
+  EXPECT_NEAR(only_detection()[0], 5.0, 1e-12);
+  EXPECT_NEAR(only_detection()[1], 3.0, 1e-12);
   scenario.sensor.kind = RangeSensor();
-  detections.clear();
-  SimulatedSensor(scenario).see(Pose{}, landmarks, [&](const VisibleLandmark& one) {
-    SimulatedSensor(scenario).detect(one, place, detections);
-  });
-  EXPECT_NEAR(detections[0][0], std::hypot(5.0, 3.0), 1e-12);
-  EXPECT_EQ(detections[0][1], 0.0);
+  EXPECT_NEAR(only_detection()[0], std::hypot(5.0, 3.0), 1e-12);
+  EXPECT_EQ(only_detection()[1], 0.0);
 }
 
 // Rates within 5 standard errors.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells that are programs: what goes wrong with one is a failed run, with step and reason.
+// Cells that are programs: a fault of one is a failed run, with step and reason.
 #include "engine/errors.hpp"
 #include "engine/records/result_file.hpp"
 #include "engine/runs/monte_carlo.hpp"
@@ -7,11 +7,10 @@
 #include "experiments/text/words.hpp"
 #include "tests/analysis/studied_result.hpp"
 #include "tests/doubles/complaint.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/reader_program.hpp"
 #include "tests/doubles/same_results.hpp"
 #include "tests/doubles/scratch_folder.hpp"
-
-#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -25,12 +24,7 @@
 namespace montecarta::experiments {
 namespace {
 
-using testing::AllOf;
-using testing::Each;
-using testing::HasSubstr;
-using testing::StartsWith;
-
-/// Studies of the tiny loop whose cell is a program.
+/// Studies of the tiny loop with a cell that is a program.
 class ExternalStudy : public testing::Test {
  protected:
   /// The line of a cell that runs the scripted program (tests/doubles/scripted_program.cpp).
@@ -130,7 +124,7 @@ TEST_F(External, ProcessesLeaveNoZombieAndInheritNoFile) {
   EXPECT_EQ(errno, ECHILD);
 }
 
-TEST_F(External, ADeadProgramIsReportedWithItsLastWords) {
+TEST_F(External, ADeadProgramIsReportedWithItsLastWordsAndADeafOneIsNotDead) {
   const Failure failure = first_failure("exit 3");
   EXPECT_EQ(failure.status, RunStatus::failed);
   EXPECT_EQ(failure.step, 5U);
@@ -138,9 +132,6 @@ TEST_F(External, ADeadProgramIsReportedWithItsLastWords) {
   EXPECT_EQ(first_failure("kill 2").reason, "program was killed by signal 9 (Killed)");
   EXPECT_EQ(first_failure("close 2").reason, "program closed its standard input or output");
   EXPECT_EQ(first_failure("exit 0").step, 0U);
-}
-
-TEST_F(External, APipeThatNobodyReadsIsNoDeath) {
   EXPECT_EQ(first_failure("deaf 2").reason, "program closed its standard input or output");
   EXPECT_EQ(first_failure("deaf 2").step, 5U);
 }
@@ -178,13 +169,10 @@ TEST_F(External, WhatIsSaidBetweenTwoRunsSpoilsNeither) {
   EXPECT_EQ(difference(file, quiet), "");
 }
 
-TEST_F(External, AProgramMayEndAfterEachRun) {
+TEST_F(External, AProgramMayEndAfterEachRunAndWriteMuchToStandardError) {
   EXPECT_EQ(
       difference(result_of(scripted("runs 1"), {kAtScans}), result_of(scripted(""), {kAtScans})),
       "");
-}
-
-TEST_F(External, StandardErrorNeverBlocks) {
   EXPECT_EQ(first_failure("scream 1").status, RunStatus::complete);
 }
 

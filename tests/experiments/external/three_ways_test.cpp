@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Law: one estimator has one ANEES, whether its estimates are judged, it is a cell, or it is a cell
-// on recorded drives whose reference is the truth.
+// Law: one estimator has one ANEES if its estimates are judged, if it is a cell, and if it is a
+// cell on recorded drives with the truth as reference.
 #include "analysis/metrics/study_analysis.hpp"
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/text/words.hpp"
@@ -21,46 +21,9 @@ sigma_range = 0.1
 sigma_bearing_deg = 1
 )";
 
-/// Takes a program that is a cell through exported drives, without montecarta.
-const std::string kOutside = R"(import csv, json, math, shlex, subprocess, sys
-program = subprocess.Popen(shlex.split(sys.argv[1]), stdin=subprocess.PIPE,
-                           stdout=subprocess.PIPE, text=True)
-said = 0
-def ask(**message):
-    global said
-    said += 1
-    print(json.dumps(dict(message, id=said)), file=program.stdin, flush=True)
-    return json.loads(program.stdout.readline())
-def rows(folder, name):
-    return [[float(x) if x else None for x in row]
-            for row in list(csv.reader(open(f"{folder}/{name}.csv")))[1:]]
-settings = {"vehicle": "front_axle", "wheelbase": 4, "wheel_left": 0, "sensor_ahead": 0,
-            "sensor_left": 0, "sigma_speed": 0.3, "sigma_steer": 3 / 180 * math.pi,
-            "sigma_range": 0.1, "sigma_bearing": 1 / 180 * math.pi, "association": "known",
-            "gate": 5.99, "new_gate": 25, "landmarks": 2}
-for folder in sys.argv[3:]:
-    ask(type="start", run=0, seed=1, start=rows(folder, "start")[0][1:], settings=settings)
-    odometry, detections = rows(folder, "odometry"), rows(folder, "detections")
-    with open(f"{folder}/{sys.argv[2]}.csv", "w") as out:
-        print("time_s,x_m,y_m,heading_rad",
-              *(f"cov_{i}_{j}" for i in range(3) for j in range(3)), sep=",", file=out)
-        for time in sorted({row[0] for row in detections}):
-            controls = []
-            while odometry[0][0] < time:
-                controls.append(odometry[0][1:] + [odometry[1][0] - odometry[0][0]])
-                odometry = odometry[1:]
-            seen = [[r, b, int(i)] for t, r, b, i in detections if t == time and r is not None]
-            answer = ask(type="scan", controls=controls, detections=seen)
-            P = [value for row in answer["covariance"] for value in row]
-            print(*map(repr, map(float, [time, *answer["mean"], *P])), sep=",", file=out)
-)";
-
 class SlowThreeWays : public Program {
  protected:
-  SlowThreeWays() {
-    write("blink.csv", kBlinkWorld);
-    write("outside.py", kOutside);
-  }
+  SlowThreeWays() { write("blink.csv", kBlinkWorld); }
 
   /// The study of a cell, simulated or on logs.
   std::string study(const std::string& scenario, const std::string& cell) const {
@@ -68,7 +31,7 @@ class SlowThreeWays : public Program {
            "[association]\nkind = known\n[record]\nrate = scan\ncolumns = pose, covariance\n" +
            "[cells]\ncell = " + cell + "\n";
   }
-  /// Exported drives become logs whose fixes are the truth, at the scans.
+  /// Exported drives become logs with fixes at the scans that are the truth.
   void make_logs() const {
     for (const std::string run : {"run_0000", "run_0001", "run_0002"}) {
       const std::filesystem::path from = folder_ / "drives/runs" / run;
@@ -94,7 +57,7 @@ class SlowThreeWays : public Program {
   double anees_in(const std::string& file) const {
     return analysis::analyze(ResultFile(folder_ / file)).cells.front().nees.front().mean;
   }
-  /// By the table of drives, over the three components.
+  /// The ANEES in the table of drives, over the three components.
   double anees_of_drives(const std::string& file) const {
     EXPECT_EQ(call({"analyze", file, "--csv", "tables", "--force"}).code, 0);
     const auto rows = engine::read_csv(folder_ / "tables/drive.csv");
@@ -119,7 +82,8 @@ TEST_F(SlowThreeWays, AnEstimatorInPython) {
   const double as_cell = anees_in("cell.h5");
   EXPECT_GT(as_cell, 0.1);
 
-  const Called outside = call({"help"}, "/usr/bin/python3 outside.py '" + command +
+  const std::string outside_py = MONTECARTA_SOURCE_DIR "/tests/experiments/external/outside.py";
+  const Called outside = call({"help"}, "/usr/bin/python3 -B " + outside_py + " '" + command +
                                             "' estimate drives/runs/run_000[0-2] && ");
   ASSERT_EQ(outside.code, 0) << outside.err;
   const Called judged =

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr const char* kWorld =
     "# a yard\nkind,x,y\nwaypoint,10,0\nwaypoint,20,1\nlandmark,15,5\nlandmark,25,-4.5\n";
 
-/// Damages a file `cases` times; returns how often it was refused, with `name` in what was said.
+/// Damages a file `cases` times; returns how often it was refused, with `name` in the message.
 std::size_t refused(const fs::path& path, const std::string& name, std::uint64_t cases,
                     const std::function<void()>& read) {
   const std::string good = engine::text_in(path);
@@ -83,7 +83,7 @@ TEST(InputsFuzz, Study) {
                   [](const fs::path& path) { resolved_text(read_study(path)); });
 }
 
-// The reader gives a log that passes its check, or says what is wrong.
+// The reader returns a log that passes its check, or names the fault.
 TEST(ReadersFuzz, CsvLogs) {
   const ScratchFolder folder;
   write_log_csv(full_log(), folder / "log");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Same study, same bits: what every filter computes, on every processor, as stored with the
-// sources.
+// Same study, same bits: every filter computes the bits that are stored with the sources, on every
+// processor.
 #include "engine/records/h5.hpp"
 #include "engine/records/provenance.hpp"
 #include "engine/records/result_file.hpp"

@@ -6,11 +6,11 @@
 #include "engine/numbers/angle.hpp"
 #include "engine/random/stream.hpp"
 #include "tests/analysis/verdict_studies.hpp"
+#include "tests/doubles/matchers.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <gmock/gmock.h>
 
 #include <array>
 #include <cmath>
@@ -21,7 +21,6 @@ namespace {
 
 using analysis::ConventionHint;
 using analysis::ConventionHints;
-using testing::HasSubstr;
 
 StateShape plane_shape() {
   return {StateKind::pose, {"x_m", "y_m", "heading_rad"}, {"x", "y", "heading"}, {"m", "m", "rad"}};
@@ -50,8 +49,8 @@ struct Exponential {
   }
 };
 
-/// The mean whose error from `truth`, by a convention, is `error`: written down from the
-/// convention's definition, apart from the code under test.
+/// The mean that has the error `error` from `truth` by a convention, computed from the definition
+/// of the convention and not with the code under test.
 Eigen::VectorXd mean_with_error(const StateShape& shape, ErrorConvention convention,
                                 const Eigen::VectorXd& truth, const Eigen::VectorXd& error) {
   const bool plane = shape.kind == StateKind::pose;
@@ -178,7 +177,7 @@ TEST(ErrorConvention, IsExplained) {
 
 constexpr std::uint64_t kRuns = 20, kScans = 10;
 
-/// Errors whose covariance is right by one convention, judged by all.
+/// Errors with a covariance that is right by one convention, judged by all.
 ConventionHint hint_of(const StateShape& shape, ErrorConvention right, std::uint64_t study) {
   const Eigen::MatrixXd P = some_covariance(shape);
   ConventionHints hints(shape.dimension(), kScans);
@@ -200,7 +199,7 @@ ConventionHint hint_of(const StateShape& shape, ErrorConvention right, std::uint
   return hints.result(times, 0.95, 1.1);
 }
 
-/// Of how many studies the right convention fits, and a wrong one does.
+/// Numbers of studies in which the right convention fits, and a wrong one.
 struct Fitting {
   double right = 0.0, wrong = 0.0, named = 0.0;
 };

@@ -3,19 +3,14 @@
 #include "experiments/judging/run_files.hpp"
 #include "experiments/judging/state_columns.hpp"
 #include "tests/doubles/complaint.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
-
-#include <gmock/gmock.h>
 
 #include <cmath>
 #include <fstream>
 
 namespace montecarta::experiments {
 namespace {
-
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 class StateFiles : public testing::Test {
  protected:

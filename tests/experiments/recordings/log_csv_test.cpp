@@ -4,11 +4,9 @@
 #include "experiments/recordings/drive_log.hpp"
 #include "experiments/recordings/recorded_drive.hpp"
 #include "tests/doubles/complaint.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 #include "tests/experiments/recordings/small_drives.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <array>
 #include <bit>
@@ -20,9 +18,6 @@
 
 namespace montecarta::experiments {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
 
 /// Every number of a log by its bits, with the counts that tell where each part ends.
 std::vector<std::uint64_t> bits_of(const DriveLog& log) {
@@ -65,7 +60,7 @@ class LogCsv : public testing::Test {
     write_text(folder_ / name, text);
   }
   DriveLog read() const { return read_log_csv(folder_.path()); }
-  /// What is said where one file holds `text`.
+  /// The complaint if one file holds `text`.
   std::string complaint(const std::string& name, const std::string& text) const {
     write(name, text);
     return complaint_of([this] { read(); });
@@ -172,7 +167,7 @@ TEST_F(LogCsv, NamesMistakesOfOtherFiles) {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// A change to a good log, and what is said of the log then; "nothing" where it may be so.
+/// A change to a good log, and the complaint about it; "nothing" if it is allowed.
 struct ChangedLog {
   std::function<void(DriveLog&)> change;
   std::string words;
@@ -305,7 +300,7 @@ TEST_F(ReferenceCsv, ReadsBackWhatItWrote) {
   EXPECT_EQ(csv_of(read(place)), place);
 }
 
-TEST_F(ReferenceCsv, RefusesErrorsThatNoFixHas) {
+TEST_F(ReferenceCsv, RefusesErrorsThatNoFixHasAndAHeadingWithoutASigma) {
   EXPECT_THAT(complaint(kSigmas + "0,1,2,0.5,3,4,0.5\n1,1,2,0.5,3,-4,0.5\n"),
               AllOf(HasSubstr("reference.csv:3"), HasSubstr("standard deviation -4")));
   EXPECT_THAT(complaint(kSigmas + "0,1,2,0.5,3,0,0.5\n"), HasSubstr("at least 1e-9"));
@@ -314,9 +309,6 @@ TEST_F(ReferenceCsv, RefusesErrorsThatNoFixHas) {
   EXPECT_THAT(complaint(kCovariance + "0,1,2,4,6,9\n"), HasSubstr("reference.csv:2"));
   EXPECT_THAT(complaint(kCovariance + "0,1,2,4,0,-9\n"), HasSubstr("not positive definite"));
   EXPECT_THAT(complaint(kWhole + "0,1,2,0.5,1,0.9,1,0.9,-0.9,1\n"), HasSubstr("not positive"));
-}
-
-TEST_F(ReferenceCsv, AHeadingWithoutASigmaIsNamedWithTheHeaderThatHasIt) {
   EXPECT_THAT(complaint("time_s,x_m,y_m,heading_rad,sigma_x_m,sigma_y_m\n0,1,2,0.5,1,1\n"),
               AllOf(HasSubstr("reference.csv:1"), HasSubstr("is not the header"),
                     HasSubstr("sigma_x_m,sigma_y_m,sigma_heading_rad")));

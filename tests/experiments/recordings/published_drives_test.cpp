@@ -15,7 +15,7 @@
 namespace montecarta::experiments {
 namespace {
 
-/// One filter driven once along a published drive: its path, its map, and what they are judged by.
+/// One filter driven once along a published drive: path, map and the references that judge them.
 struct Journey {
   std::vector<double> times, path;  ///< {step}, {step, 3}
   Itinerary itinerary;

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/recordings/recorded_drive.hpp"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/doubles/matchers.hpp"
 
 namespace montecarta::experiments {
 namespace {
-
-using ::testing::ElementsAre;
 
 std::vector<Detection> one_at(double range) { return {{range, 0.1, Detection::kUnidentified}}; }
 

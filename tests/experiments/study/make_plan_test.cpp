@@ -10,21 +10,15 @@
 #include "experiments/study/study.hpp"
 #include "experiments/text/words.hpp"
 #include "tests/doubles/complaint.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 #include "tests/experiments/recordings/small_drives.hpp"
 #include "tests/experiments/study/study_text.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 
 namespace montecarta::experiments {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 std::string plan_complaint(const std::string& text) {
   return engine::complaint_of([&] { make_plan(parsed(text)); });
@@ -174,7 +168,11 @@ TEST(Until, IsPartOfTheStudyInOneSpelling) {
   EXPECT_EQ(text_of(*study.until), "position_rmse < 0.02");
   EXPECT_THAT(resolved_text(study), HasSubstr("until = position_rmse < 0.02\n"));
   EXPECT_TRUE(make_plan(study).is_enough);
-  EXPECT_THROW(make_plan(study, RunRange{0, 10}), StudyError) << "all runs are needed";
+  EXPECT_THAT(engine::complaint_of([&] {
+                make_plan(study, RunRange{0, 10});
+              }),
+              HasSubstr("--set study.until="))
+      << "all runs are needed";
   const Study again = parse_study(resolved_text(study), "again.ini", ".");
   EXPECT_EQ(resolved_text(again), resolved_text(study));
 }
@@ -226,7 +224,7 @@ sigma_bearing_deg = 1
 cell = ekf_slam
 )";
 
-/// A folder with a small drive in `drive`, whose detections nobody identified.
+/// A folder with a small drive in `drive` that has no identities.
 class RecordedStudy : public ::testing::Test {
  protected:
   RecordedStudy() {
@@ -320,7 +318,7 @@ TEST_F(RecordedStudy, JudgesByTheReferenceThatItNames) {
       << "the drive is the same";
 }
 
-TEST_F(RecordedStudy, AsksForTheVehicleAndNoiseOfADriveOfTheUsersOwn) {
+TEST_F(RecordedStudy, AsksForVehicleAndNoiseAndTakesIdentitiesOfTheLog) {
   for (const char* key : {"wheelbase", "sigma_speed", "sigma_bearing_deg"}) {
     std::string text = kStudy;
     const std::size_t begin = text.find(key);
@@ -328,9 +326,6 @@ TEST_F(RecordedStudy, AsksForTheVehicleAndNoiseOfADriveOfTheUsersOwn) {
     EXPECT_THAT(engine::complaint_of([&] { read(text); }),
                 HasSubstr("belief." + std::string(key) + " is missing"));
   }
-}
-
-TEST_F(RecordedStudy, TakesKnownIdentitiesWhereTheLogHasThem) {
   std::filesystem::remove_all(folder_ / "drive");
   write_log_csv(full_log(), folder_ / "drive");
   EXPECT_EQ(complaint({"association.kind=known"}), "nothing");

@@ -3,17 +3,11 @@
 
 #include "engine/errors.hpp"
 #include "experiments/study/cell_spec.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/experiments/study/study_text.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace montecarta::experiments {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 struct BadStudy {
   const char* name;
@@ -108,7 +102,7 @@ TEST(Study, BelievesTheScenarioUnlessToldOtherwise) {
   EXPECT_EQ(study.settings.number("belief", "sigma_speed"), 1.0);
 }
 
-TEST(Study, IsOverriddenBySetOptions) {
+TEST(Study, IsOverriddenBySetOptionsAndRefusesAMissingFile) {
   const Study study = parsed(kGoodStudy, {"study.runs=7", "scenario.loops = 2"});
   EXPECT_EQ(study.settings.count("study", "runs"), 7U);
   EXPECT_EQ(study.settings.count("scenario", "loops"), 2U);
@@ -118,14 +112,11 @@ TEST(Study, IsOverriddenBySetOptions) {
   EXPECT_THAT(complaint(kGoodStudy, {"runs"}), HasSubstr("section.key=value"));
   EXPECT_THAT(complaint(kGoodStudy, {"study.runs=7", "study.runs=8"}), HasSubstr("given twice"));
   EXPECT_THAT(complaint(kGoodStudy, {"study.title=no # 1"}), HasSubstr("#"));
-}
-
-TEST(Study, MissingFileIsTheUsersToMend) {
   EXPECT_THROW(read_study("no/such/study.ini"), StudyError);
   EXPECT_THROW(read_study("/"), StudyError);
 }
 
-TEST(ResolvedText, IsAFixedPoint) {
+TEST(ResolvedText, IsAFixedPointThatDoesNotDependOnSpelling) {
   const std::string studies[] = {kGoodStudy,
                                  with("[cells]",
                                       "sigma_range = 0.10000000000000002\nnoise = matched\nstart_x "
@@ -135,9 +126,6 @@ TEST(ResolvedText, IsAFixedPoint) {
     const std::string once = resolved_text(parsed(text));
     EXPECT_EQ(resolved_text(parsed(once)), once);
   }
-}
-
-TEST(ResolvedText, DoesNotDependOnSpelling) {
   const std::string other =
       "[cells]\ncell =  ekf_slam\n[scenario]\nworld=web_loop\nspeed=3.0\nsigma_speed = "
       "3e-1\n[study]\nruns=20\nname=trial\n";
@@ -205,7 +193,7 @@ TEST(Cells, TakeAnotherDefaultWhereControlsAreMeasured) {
   EXPECT_EQ(value_of(name + " " + option.key + "=" + *option.fallback, true), *option.fallback);
 }
 
-TEST(Cells, AreLabelledByWhatDistinguishesThem) {
+TEST(Cells, AreTheProductOfTheirListsLabelledByWhatDistinguishesThem) {
   EXPECT_THAT(labels_of({"bold particles=100", "plain"}), ElementsAre("bold_m100", "plain"));
   EXPECT_THAT(labels_of({"bold particles=30,100"}), ElementsAre("bold_m30", "bold_m100"));
   EXPECT_THAT(labels_of({"bold weight=ratio"}), ElementsAre("bold_m100"));
@@ -216,9 +204,6 @@ TEST(Cells, AreLabelledByWhatDistinguishesThem) {
   EXPECT_THAT(labels_of({"bold weight=closed,as_printed"}),
               ElementsAre("bold_m100_weight_closed", "bold_m100_weight_as_printed"));
   EXPECT_THAT(labels_of({"bold label=mine", "bold particles=3"}), ElementsAre("mine", "bold_m3"));
-}
-
-TEST(Cells, AreTheProductOfTheirLists) {
   EXPECT_THAT(labels_of({"bold particles=1,2 weight=closed,ratio"}),
               ElementsAre("bold_m1_weight_closed", "bold_m1_weight_ratio", "bold_m2_weight_closed",
                           "bold_m2_weight_ratio"));

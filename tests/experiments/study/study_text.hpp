@@ -28,7 +28,7 @@ inline Study parsed(const std::string& text, const std::vector<std::string>& ove
   return parse_study(text, "trial.ini", ".", overrides);
 }
 
-/// What parsing complains of; "nothing" where it does not.
+/// The complaint of the parser; "nothing" if it has none.
 inline std::string complaint(const std::string& text,
                              const std::vector<std::string>& overrides = {}) {
   return engine::complaint_of([&] { parsed(text, overrides); });

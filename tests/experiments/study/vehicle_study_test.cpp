@@ -1,24 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a study may say of vehicles and sensors.
+// Settings of vehicles and sensors in a study.
 #include "experiments/recordings/log_csv.hpp"
 #include "experiments/study/make_drives.hpp"
 #include "experiments/study/make_plan.hpp"
 #include "tests/doubles/complaint.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 #include "tests/experiments/recordings/small_drives.hpp"
 #include "tests/experiments/study/study_text.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>
-#include <gmock/gmock.h>
 
 #include <cmath>
 
 namespace montecarta::experiments {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 const std::string kRobot =
     with("world = web_loop ", "world = web_loop\nvehicle = differential_drive ");
@@ -56,14 +52,11 @@ TEST(VehicleStudy, SettingsReachTheVehicleAndItsNoise) {
   EXPECT_EQ(control_noise_of(study.settings, "belief").alpha[3], 0.0);
 }
 
-TEST(VehicleStudy, WhatIsOfAnotherVehicleIsRefused) {
+TEST(VehicleStudy, WhatIsOfAnotherVehicleOrNoiseIsRefused) {
   EXPECT_THAT(complaint(kRobot, {"scenario.wheelbase=2"}),
               HasSubstr("scenario.wheelbase does not apply"));
   EXPECT_THAT(complaint(kRobot, {"belief.sigma_steer_deg=2"}),
               HasSubstr("belief.sigma_steer_deg does not apply to a vehicle differential_drive"));
-}
-
-TEST(VehicleStudy, ThePilotIsOfMatchedNoise) {
   EXPECT_THAT(complaint(kRobot, {"scenario.noise=measured-control", "scenario.pilot=open_loop"}),
               HasSubstr("scenario.pilot does not apply to a noise measured-control"));
   EXPECT_THAT(resolved_text(parsed(kRobot, {"scenario.noise=matched", "scenario.pilot=open_loop"})),

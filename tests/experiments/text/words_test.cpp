@@ -6,16 +6,10 @@
 #include "engine/random/stream.hpp"
 #include "engine/records/posix_file.hpp"
 #include "tests/doubles/complaint.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/doubles/matchers.hpp"
 
 namespace montecarta::experiments {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 TEST(Words, AreCutAndJoined) {
   EXPECT_THAT(split(" a, b ,,c", ','), ElementsAre("a", "b", "", "c"));
@@ -37,21 +31,18 @@ TEST(NearestSpelling, IsOfferedOnlyWhereItIsNear) {
   EXPECT_EQ(nearest_spelling("wheelbase", known), "known: runs, seed");
 }
 
-TEST(Numbers, AreWholeTextsAndFinite) {
+TEST(Numbers, AreWholeTextsAndFiniteAndReadBackAsWritten) {
   EXPECT_EQ(to_number("+1.5e2"), 150.0);
   for (const char* bad : {"", "1.5 ", "1,5", "nan", "inf", "-inf", "1e999", "0x10", "five"})
     EXPECT_FALSE(to_number(bad)) << bad;
   EXPECT_EQ(to_count("18446744073709551615"), 18446744073709551615U);
   for (const char* bad : {"", "-1", "1.0", "1e3", "18446744073709551616"})
     EXPECT_FALSE(to_count(bad)) << bad;
-}
-
-TEST(Numbers, ReadBackAsWritten) {
   for (const double value : {0.1, 1.0 / 3.0, 1e-300, -123456.789, 5e-324})
     EXPECT_EQ(to_number(to_text(value)), value);
 }
 
-TEST(QuotedWords, QuotesHoldAWordTogether) {
+TEST(QuotedWords, QuotesHoldAWordTogetherAndMustBeClosed) {
   EXPECT_THAT(quoted_words("  a  b\tc "), ElementsAre("a", "b", "c"));
   EXPECT_THAT(quoted_words(R"(key="a b,c" d)"), ElementsAre("key=a b,c", "d"));
   EXPECT_THAT(quoted_words(R"(python3 'my filter.py' --name="x y" '')"),
@@ -59,9 +50,6 @@ TEST(QuotedWords, QuotesHoldAWordTogether) {
   EXPECT_THAT(quoted_words(R"("a \"b\" \\ 'c'" '\n' \n)"),
               ElementsAre(R"(a "b" \ 'c')", R"(\n)", R"(\n)"));
   EXPECT_THAT(quoted_words(""), IsEmpty());
-}
-
-TEST(QuotedWords, AnOpenQuoteIsAMistake) {
   for (const char* text : {"\"", "a 'b", "a \"b\\\"", "'\""}) {
     EXPECT_THAT(complaint_of([&] { quoted_words(text); }), HasSubstr("is not closed")) << text;
   }
@@ -78,12 +66,9 @@ TEST(QuotedWords, WhateverIsQuotedReadsBack) {
   }
 }
 
-TEST(Table, AlignsColumnsAndLeavesNoTrailingSpace) {
+TEST(Table, AlignsColumnsAndWritesSizesAndTimesAsPeopleDo) {
   EXPECT_EQ(aligned({{"a", "bb", "c"}, {"ddd", "e"}}), "  a    bb  c\n  ddd  e\n");
   EXPECT_EQ(aligned({{"a", ""}}, 0), "a\n");
-}
-
-TEST(Table, WritesSizesAndTimesAsPeopleDo) {
   EXPECT_EQ(bytes_text(17), "17 B");
   EXPECT_EQ(bytes_text(999.7), "1.0 kB");
   EXPECT_EQ(bytes_text(3'760'000), "3.8 MB");

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/worlds/world.hpp"
 #include "tests/doubles/complaint.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <fstream>
 #include <string>
@@ -12,15 +10,13 @@
 namespace montecarta::experiments {
 namespace {
 
-using testing::HasSubstr;
-
 class WorldFile : public testing::Test {
  protected:
   std::filesystem::path write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name) << text;
     return folder_ / name;
   }
-  /// What reading `text` as a CSV world complains of.
+  /// The complaint about `text` as a CSV world.
   std::string complaint(const std::string& text) const {
     return complaint_of([&] { read_world_file(write("bad.csv", text)); });
   }
@@ -57,15 +53,12 @@ TEST_F(WorldFile, NamesFileLineReasonAndRemedy) {
   EXPECT_THAT(complaint(""), HasSubstr("empty (the first row names the columns)"));
 }
 
-TEST_F(WorldFile, SaysWhatThereIsWhereAWorldIsMissing) {
+TEST_F(WorldFile, LooksInTheStudysFolderFirstAndSaysWhatThereIs) {
   EXPECT_THROW(read_world_file(folder_ / "absent.csv"), StudyError);
   const auto folder = write("map.mat", "MATLAB 5.0").parent_path();
   EXPECT_THAT(complaint_of([&] { find_world("map.mat", {folder}); }),
               HasSubstr("convert/world.py"));
   EXPECT_THAT(complaint_of([] { find_world("web_lop"); }), HasSubstr("did you mean web_loop?"));
-}
-
-TEST_F(WorldFile, LooksInTheStudysFolderFirst) {
   write("mine.csv", "kind,x,y\nwaypoint,1,2\nwaypoint,3,4\nlandmark,7,8\n");
   EXPECT_EQ(find_world("mine.csv", {folder_.path()}).landmarks[0], Eigen::Vector2d(7, 8));
 }
