@@ -21,7 +21,7 @@ struct RecordedCell {
   std::size_t particles;
   double radius;          ///< [m] of run 0; every run is 2 % worse than the one before
   double shift;           ///< [m] along x
-  std::ptrdiff_t lost;    ///< run whose circles are 40 m wide; -1: none
+  std::ptrdiff_t lost;    ///< run with circles of 40 m; -1: none
   std::ptrdiff_t failed;  ///< run that fails at step 5; -1: none
 };
 
@@ -80,7 +80,7 @@ inline void put_map(const RecordedDrives& drives, const RecordedCell& cell, RunR
     mean[2 * l + 1] = place.y();
     seen[l] = 1;
   }
-  mean[10] = beacons[3].x() + cell.shift;  // not in the map, whatever stands here
+  mean[10] = beacons[3].x() + cell.shift;  // not in the map
   mean[11] = beacons[3].y();
   for (std::size_t s = 0; s < size.size(); ++s) {
     size[s] = std::min(20.0, std::floor(static_cast<double>(s) / 10.0));

@@ -9,10 +9,8 @@
 #include "engine/errors.hpp"
 #include "tests/analysis/recorded_result.hpp"
 #include "tests/analysis/synthetic_result.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <fstream>
@@ -21,9 +19,6 @@
 
 namespace montecarta::analysis {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 TEST(Report, HoldsEverySectionAndNeedsNothingElse) {
   const ScratchFolder folder;

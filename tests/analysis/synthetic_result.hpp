@@ -40,8 +40,8 @@ inline void perturb(const Drive& drive, std::uint64_t run, double inflation, Run
   }
 }
 
-/// What filters do at their worst, in rows 80 to 199 of the first cell: a covariance of nothing in
-/// run 2, a mean that is no number in run 3, an infinite covariance in run 4.
+/// The worst results of filters, in rows 80 to 199 of the first cell: a covariance of zero in run
+/// 2, a mean that is no number in run 3, an infinite covariance in run 4.
 inline void spoil_estimates(std::size_t cell, std::uint64_t run, RunRecord& record) {
   if (cell != 0) return;
   const auto rows = [&](const std::string& name, std::size_t width) {
@@ -66,9 +66,9 @@ inline void fail_at(std::uint32_t step, const std::string& reason, RunRecord& re
   record.mark_failed(step, reason, 1);
 }
 
-/// A result with a perfect cell ("scripted_m4") and an overconfident one ("scripted_m3"), whose
-/// last run failed at step 5. `spoil` may change the record of a (cell, run) before it is stored,
-/// `change` the plan.
+/// A result with a perfect cell ("scripted_m4") and an overconfident one ("scripted_m3"); the last
+/// run of this one failed at step 5. `spoil` may change the record of a (cell, run) before it is
+/// stored, `change` the plan.
 inline void write_synthetic_result(
     const std::filesystem::path& path, std::uint64_t runs = 12, std::size_t steps = 400,
     const std::function<void(std::size_t, std::uint64_t, RunRecord&)>& spoil = {},

@@ -33,7 +33,7 @@ inline RunCriteria criteria_of_scans(std::span<const double> times) {
           .components = {"forward", "left", "heading"}};
 }
 
-/// Runs whose errors are drawn, independently at each scan, from a known Gaussian.
+/// Runs with errors that are drawn, independently at each scan, from a known Gaussian.
 struct SyntheticStudy {
   std::size_t scans = 400;
   double scan_period = 0.2;                        ///< [s]
@@ -41,7 +41,7 @@ struct SyntheticStudy {
   double inflation = 1.0;                          ///< of the errors' deviations
   std::uint64_t seed = 1;
 
-  /// What the filter believes [m, m, rad]^2.
+  /// The covariance that the filter reports [m, m, rad]^2.
   static Eigen::Matrix3d covariance() {
     Eigen::Matrix3d P;
     P << 0.04, 0.01, 0.002, 0.01, 0.09, -0.003, 0.002, -0.003, 0.0025;

@@ -19,10 +19,18 @@ inline bool is_table_wanted() { return std::getenv("MONTECARTA_STUDIES") != null
 
 inline constexpr const char* kHowToGetTheTable = "of the whole table: set MONTECARTA_STUDIES=2000";
 
-/// How many studies a line is simulated from: `usual`, or what MONTECARTA_STUDIES says.
+/// Number of studies that a line is simulated from: `usual`, or the value of MONTECARTA_STUDIES.
 inline std::uint64_t studies_of_a_line(std::uint64_t usual) {
   const char* const text = std::getenv("MONTECARTA_STUDIES");
   return text == nullptr ? usual : std::stoull(text);
+}
+
+/// Share of `studies` for which `is_so(study)` holds.
+template <class Predicate>
+double share_of_studies(std::uint64_t studies, const Predicate& is_so) {
+  double n = 0.0;
+  for (std::uint64_t study = 0; study < studies; ++study) n += is_so(study) ? 1.0 : 0.0;
+  return n / static_cast<double>(studies);
 }
 
 /// `deviations` standard errors of a share of so many studies.
@@ -53,8 +61,8 @@ inline const char* name_of(Memory memory) {
   return kNames[static_cast<std::size_t>(memory)];
 }
 
-/// Studies of a filter whose errors are Gaussian with the reported covariance, but for what is
-/// planted: ratios of the variance by component, run and scan, a bias, and a correlation.
+/// Studies of a filter with Gaussian errors of the reported covariance but for the planted faults:
+/// ratios of the variance by component, run and scan, a bias, and a correlation.
 struct PlantedLaw {
   std::size_t dimension = 3;
   Memory memory = Memory::white;
@@ -155,7 +163,7 @@ inline Verdict verdict_of(const PlantedLaw& law, std::uint64_t study, std::uint6
   return verdict_of(sums, law.dimension, scans, runs, within);
 }
 
-/// Whether some family rejects, whatever the margin.
+/// Whether some family rejects, without regard to the margin.
 inline bool is_rejected(const Verdict& verdict) {
   return std::ranges::any_of(verdict.families, &FamilyTest::is_rejected);
 }

@@ -6,9 +6,7 @@
 #include "analysis/statistics/bootstrap.hpp"
 #include "engine/errors.hpp"
 #include "engine/random/stream.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/doubles/matchers.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -19,8 +17,6 @@
 namespace montecarta::analysis {
 namespace {
 
-using testing::ElementsAre;
-using testing::IsEmpty;
 using testing::Pair;
 
 /// A cell whose runs 0, 1, ... have these position RMSEs and as many seconds of CPU time; a
@@ -42,6 +38,18 @@ CellAnalysis compared_cell(const std::string& label, const std::vector<double>& 
   return cell;
 }
 
+/// A cell of 20 complete runs with these scores, which depend on the run.
+template <class ScoresOf>
+CellAnalysis scored_cell(const std::string& label, const ScoresOf& scores_of) {
+  CellAnalysis cell = compared_cell(label, std::vector<double>(20, 1.0));
+  cell.scores = {};
+  for (std::size_t i = 0; i < 20; ++i) {
+    const std::vector<ScoreTable::Value> scores = scores_of(0.01 * static_cast<double>(i));
+    cell.scores.add(scores);
+  }
+  return cell;
+}
+
 StudyAnalysis compared_study(std::vector<CellAnalysis> cells) {
   StudyAnalysis study;
   study.file = "study.h5";
@@ -55,7 +63,7 @@ std::vector<const Score*> scores(const std::vector<std::string>& names) {
   return found;
 }
 
-/// Runs whose errors have the worlds' share, common to all cells, and the cell's own.
+/// Errors of runs: one part is common to all cells, the other part is the cell's own.
 std::vector<double> errors(std::size_t runs, double mean, std::uint64_t cell) {
   RngStream world({.seed = 1, .purpose = Draw::test}),
       own({.seed = 2 + cell, .purpose = Draw::test});
@@ -101,15 +109,13 @@ TEST(CompareCells, CountsFailuresAsLostAndLeavesThemOutOfDifferences) {
 }
 
 TEST(CompareCells, GivesNoRatioOfAScoreWithoutANaturalZero) {
-  CellAnalysis base = compared_cell("base", std::vector<double>(20, 1.0));
-  base.scores = {};
-  CellAnalysis worse = base;
-  worse.label = "worse";
-  for (std::size_t i = 0; i < 20; ++i) {
-    const double value = 0.01 * static_cast<double>(i);
-    base.scores.add(std::vector<ScoreTable::Value>{{"log_score", value}});
-    worse.scores.add(std::vector<ScoreTable::Value>{{"log_score", value + 1.0}});
-  }
+  using Scores = std::vector<ScoreTable::Value>;
+  const CellAnalysis base = scored_cell("base", [](double value) {
+    return Scores{{"log_score", value}};
+  });
+  const CellAnalysis worse = scored_cell("worse", [](double value) {
+    return Scores{{"log_score", value + 1.0}};
+  });
   const Comparisons found =
       compare_cells(compared_study({base, worse}), "base", scores({"log_score"}));
   EXPECT_TRUE(std::isnan(found.rows.at(0).ratio));
@@ -118,15 +124,13 @@ TEST(CompareCells, GivesNoRatioOfAScoreWithoutANaturalZero) {
 }
 
 TEST(CompareCells, KnowsWhichSideIsBetter) {
-  CellAnalysis few = compared_cell("few", std::vector<double>(20, 1.0));
-  few.scores = {};
-  CellAnalysis many = few;
-  many.label = "many";
-  for (std::size_t i = 0; i < 20; ++i) {
-    const double value = 5.0 + 0.01 * static_cast<double>(i);
-    few.scores.add(std::vector<ScoreTable::Value>{{"ess", value}, {"nees", value}});
-    many.scores.add(std::vector<ScoreTable::Value>{{"ess", 50.0}, {"nees", 50.0}});
-  }
+  using Scores = std::vector<ScoreTable::Value>;
+  const CellAnalysis few = scored_cell("few", [](double value) {
+    return Scores{{"ess", 5.0 + value}, {"nees", 5.0 + value}};
+  });
+  const CellAnalysis many = scored_cell("many", [](double) {
+    return Scores{{"ess", 50.0}, {"nees", 50.0}};
+  });
   const Comparisons found =
       compare_cells(compared_study({few, many}), "few", scores({"ess", "nees"}));
   EXPECT_EQ(found.rows.at(0).verdict(0.95), "better");

@@ -8,19 +8,14 @@
 #include "analysis/tables/tables.hpp"
 #include "engine/threads/parallel.hpp"
 #include "tests/analysis/synthetic_result.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/reader_program.hpp"
 #include "tests/doubles/scratch_folder.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <sstream>
 
 namespace montecarta::analysis {
 namespace {
-
-using testing::IsEmpty;
-using testing::Not;
 
 /// Poses of six runs, and all of the first two.
 class RunsInFull : public testing::Test {

@@ -2,19 +2,14 @@
 #include "analysis/figures/ancestry_figure.hpp"
 #include "analysis/figures/path_figure.hpp"
 #include "tests/analysis/synthetic_result.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <string>
 
 namespace montecarta::analysis {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 const FigureData kLandmarks{"landmarks.csv", {"x [m]", "y [m]"}, {{1.0, 2.0}}};
 

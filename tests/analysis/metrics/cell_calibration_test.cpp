@@ -2,9 +2,7 @@
 #include "analysis/metrics/calibration.hpp"
 #include "tests/analysis/reported.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/doubles/matchers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +10,6 @@
 
 namespace montecarta::analysis {
 namespace {
-
-using testing::ElementsAre;
 
 std::vector<JudgedPits> judged(const SyntheticStudy& study, std::size_t runs,
                                const std::vector<RunRows>& extra = {}) {
@@ -119,8 +115,8 @@ double faulted(std::size_t M, double weight_sigma) {
   return faults / tests;
 }
 
-// 24 tests in each of 60 studies: five standard errors of 5 % are 2.9 %. By the Gaussian of
-// its moments a perfect sampler of ten draws would be at fault in a third of them.
+// There are 24 tests in each of 60 studies: five standard errors of 5 % are 2.9 %. The Gaussian of
+// the moments would find fault with a perfect sampler of ten draws in a third of them.
 TEST(CellCalibration, DoesNotHoldFewDrawsAgainstAPerfectSampler) {
   EXPECT_LT(faulted(10, 0.0), 0.05 + 0.029);
   EXPECT_LT(faulted(30, 0.0), 0.05 + 0.029);
@@ -166,7 +162,7 @@ TEST(CellCalibration, TakesOneLandmarkOfEveryRun) {
   EXPECT_EQ(found[13].test.verdict, Calibration::too_narrow);
 }
 
-TEST(CellCalibration, CountsWhatHasNoValue) {
+TEST(CellCalibration, IsTestedAtTheEndOfEachQuarterAndCountsWhatHasNoValue) {
   const SyntheticStudy study{.scans = 8};
   CalibrationSums sums;
   for (std::uint64_t run = 0; run < 50; ++run) {
@@ -177,14 +173,11 @@ TEST(CellCalibration, CountsWhatHasNoValue) {
   const auto found = sums.result(study.times(), 0.95);
   EXPECT_EQ(found[0].undefined, 3u);
   EXPECT_TRUE(CalibrationSums().result(study.times(), 0.95).empty());
-}
-
-TEST(CellCalibration, IsTestedAtTheEndOfEachQuarter) {
   EXPECT_THAT(calibration_scans(100), ElementsAre(24, 49, 74, 99));
   EXPECT_THAT(calibration_scans(1), ElementsAre(0, 0, 0, 0));
 }
 
-/// Tests of the NEES of runs whose NEES of `dimension` components is `inflation` times chi-square.
+/// Tests of a NEES of `dimension` components that is `inflation` times chi-square.
 std::vector<JudgedPits> judged_nees(std::size_t dimension, double inflation, std::size_t runs) {
   RngStream draw({.seed = 21, .index = static_cast<std::uint32_t>(dimension)});
   CalibrationSums sums;
@@ -228,7 +221,7 @@ StudyAnalysis with_nees(std::size_t runs) {
   return study;
 }
 
-TEST(CalibrationFigures, DrawTheEcdfWithItsBand) {
+TEST(CalibrationFigures, DrawTheEcdfWithItsBandOfWhatIsJudged) {
   const StudyAnalysis study = with_nees(200);
   const Figure figure = reported_figure(study, "nees_quantiles");
   ASSERT_EQ(figure.data.size(), 4u) << "a panel for each quarter";
@@ -245,9 +238,6 @@ TEST(CalibrationFigures, DrawTheEcdfWithItsBand) {
                             from_point(test.band.lower[j])));
   }
   EXPECT_TRUE(reported_figure(study, "ranks").data.empty()) << "no particles are stored";
-}
-
-TEST(CalibrationFigures, LeaveOutWhatIsNotJudged) {
   EXPECT_TRUE(reported_figure(with_nees(kLeastValues - 1), "nees_quantiles").data.empty());
 }
 

@@ -163,7 +163,7 @@ TEST(CellSums, LetsTheMixtureLeadAndKeepsTheSpread) {
               4.0 * nees_of(cell, ErrorBlock::pose, Moments::mixture).mean, 1e-9);
 }
 
-// Run 2 has no scan with a number: what is known of the cell is that of the other runs.
+// Run 2 has no scan with a number: the cell has the results of the other runs.
 TEST(CellSums, LeavesOutAndCountsARunWithoutAJudgedScan) {
   SyntheticStudy study;
   study.scans = 30;

@@ -10,21 +10,13 @@
 #include "engine/random/stream.hpp"
 #include "tests/analysis/reported.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/doubles/matchers.hpp"
 
 #include <cmath>
 #include <limits>
 
 namespace montecarta::analysis {
 namespace {
-
-using testing::DoubleNear;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::StartsWith;
 
 /// One after the other: arguments of a call have no order.
 Eigen::Vector3d three_normals(RngStream& draw) {
@@ -48,8 +40,8 @@ class Drive10 : public ::testing::Test {
     }
   }
 
-  /// A run whose errors have `ratio` times the covariance 1, 1, 0.01 that it reports, and forget
-  /// by `keep` a second.
+  /// A run with errors of `ratio` times the covariance 1, 1, 0.01 that it reports; the errors of
+  /// neighbouring scans, a second apart, have the correlation `keep`.
   RunRows run(double ratio, double keep, std::uint64_t number = 0) const {
     RngStream draw({.seed = 4, .run = number, .purpose = Draw::test});
     RunRows rows;
@@ -76,16 +68,13 @@ class Drive10 : public ::testing::Test {
   ReferencePath reference_{"reference", {}, {}, {}};
 };
 
-TEST_F(Drive10, AFilterThatForgetsIsJudgedByTheDrive) {
+TEST_F(Drive10, AFilterThatForgetsIsJudgedByTheDriveAndOneWithLastingErrorsIsNot) {
   EXPECT_THAT(in_words(judged(run(5.0, 0.3))), StartsWith("optimistic: NEES "));
   EXPECT_EQ(in_words(judged(run(1.0, 0.3), 3.0)), "consistent within 3");
   const DriveConsistency right = judged(run(1.0, 0.3));
   EXPECT_THAT(in_words(right), StartsWith("this drive cannot tell: it would need "));
   EXPECT_GT(right.minutes, 10.0);
   EXPECT_GT(right.mean.leads().effective_samples, 300.0);
-}
-
-TEST_F(Drive10, AFilterWhoseErrorsLastIsNot) {
   const DriveConsistency found = judged(run(1.0, 1.0 - 1e-9));
   EXPECT_EQ(found.answer, Answer::undecided);
   EXPECT_LT(found.mean.leads().ratio.lower, 0.7);
@@ -172,7 +161,7 @@ TEST_F(Drive10, ItsTableHasARowForACellAndSaysWhatToConsider) {
 
 // Runs that each met a drive of its own.
 
-/// A drive of `fixes` with one error for all of it, whose square is `ratio` times the covariance.
+/// A drive of `fixes` with one error; its square is `ratio` times the covariance.
 DriveScores lasting_errors(std::size_t fixes, double ratio) {
   DriveScores scores;
   scores.median = 1.0;

@@ -54,7 +54,7 @@ TEST(ErrorAnatomy, TellsBiasFromScatter) {
   EXPECT_NEAR(found.bias[1][0], 2.0, 5.0 / std::sqrt(200.0));
 }
 
-/// Of one scan; an error a run.
+/// One scan, with an error for each run.
 ErrorAnatomy anatomy_of_scan(const std::vector<Eigen::Vector3d>& errors,
                              const Eigen::Vector3d& variances) {
   ErrorMoments moments(1);
@@ -65,8 +65,8 @@ ErrorAnatomy anatomy_of_scan(const std::vector<Eigen::Vector3d>& errors,
   return moments.result();
 }
 
-// Errors of 3, 1, 3, 1: NEES 5, of which 4 are the mean's square; a mean of four errors whose
-// scatter is 1 has 1 / 3 by chance.
+// Errors of 3, 1, 3, 1 have the NEES 5, of which the square of the mean is 4. By chance the mean of
+// four errors with a scatter of 1 has 1 / 3.
 TEST(ErrorAnatomy, FreesTheBiasOfWhatAMeanHasByChance) {
   const std::vector<Eigen::Vector3d> errors = {{3, 0, 0}, {1, 0, 0}, {3, 0, 0}, {1, 0, 0}};
   EXPECT_NEAR(anatomy_of_scan(errors, {1, 1, 1}).bias_share[0], (4.0 - 1.0 / 3.0) / 5.0, 1e-12);

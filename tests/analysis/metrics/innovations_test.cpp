@@ -24,8 +24,8 @@ Innovations judged(const InnovationSums& sums, std::size_t scans) {
   return sums.result(scan_times(scans), 0.95, 1.1);
 }
 
-/// NIS of four degrees of freedom, `scale` times what they should be; each innovation is `memory`
-/// times the one before, plus news.
+/// NIS of four degrees of freedom, times `scale`; each innovation is `memory` times the one before,
+/// plus noise.
 Innovations innovations_of(double scale, double memory, std::uint64_t seed = 23) {
   InnovationSums sums(kInnovationScans);
   for (std::uint64_t run = 0; run < 40; ++run) {
@@ -73,7 +73,7 @@ TEST(Innovations, ThatAreTooLargeLeaveTheBand) {
   EXPECT_EQ(whiteness_in_words(found), "white, optimistic");
 }
 
-/// Of one run.
+/// The innovations of one run.
 Innovations innovations_of_run(const std::vector<double>& nis,
                                const std::vector<std::uint32_t>& dof) {
   InnovationSums sums(nis.size());
@@ -176,9 +176,8 @@ TEST(SlowWhiteness, OfARightFilterIsRejectedAtItsLevel) {
         WhiteStudy{100, 200, 10}, WhiteStudy{1000, 1, 2}, WhiteStudy{1000, 20, 1},
         WhiteStudy{1000, 20, 2}, WhiteStudy{1000, 200, 2}}) {
     if (!is_table_wanted() && study.scans * study.runs > 20'000) continue;
-    double rejected = 0.0;
-    for (std::uint64_t k = 0; k < studies; ++k) rejected += is_called_white(study, 1 + k) ? 0 : 1;
-    const double rate = rejected / static_cast<double>(studies);
+    const double rate =
+        share_of_studies(studies, [&](std::uint64_t k) { return !is_called_white(study, 1 + k); });
     const double error = std::sqrt(0.05 * 0.95 / static_cast<double>(studies));
     std::printf("%5zu  %4zu  %10u  %.1f +- %.1f\n", study.scans, study.runs, study.dof,
                 100.0 * rate, 100.0 * error);
@@ -187,5 +186,4 @@ TEST(SlowWhiteness, OfARightFilterIsRejectedAtItsLevel) {
 }
 
 }  // namespace
-
 }  // namespace montecarta::analysis

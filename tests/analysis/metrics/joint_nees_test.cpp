@@ -8,12 +8,11 @@
 #include "tests/analysis/reported.hpp"
 #include "tests/analysis/synthetic_runs.hpp"
 #include "tests/doubles/csv_table.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
@@ -21,11 +20,6 @@
 
 namespace montecarta::analysis {
 namespace {
-
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 constexpr Eigen::Index kStates = 7;  // two landmarks
 const std::vector<Eigen::Vector2d> kJointWorld = {{5, 1}, {2, -3}};
@@ -135,8 +129,8 @@ TEST(JointConsistency, FindsTheScaleOfACovariance) {
   EXPECT_THAT(cautious.dimension, Each(7.0));
 }
 
-// By the law of errors that never change, of 7 components: 2.24 deviations of sqrt(2 / (7 N)), for
-// one of two families, are half of log 1.1 after 632 runs.
+// The law of errors that never change applies, with 7 components: 2.24 deviations of
+// sqrt(2 / (7 N)), for one of two families, are half of log 1.1 after 632 runs.
 TEST(JointConsistency, IsConsistentWhereTheSizeIsShownToBeWithinTheMargin) {
   const JointConsistency few = study_of(60, covariance(), covariance(), 1);
   EXPECT_EQ(few.verdict.answer, Answer::undecided);

@@ -8,27 +8,25 @@
 #include "analysis/statistics/spread.hpp"
 #include "engine/numbers/angle.hpp"
 #include "engine/random/stream.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/doubles/matchers.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <vector>
 
 namespace montecarta::analysis {
 namespace {
 
-using testing::HasSubstr;
-using testing::IsEmpty;
+using Points = std::vector<Eigen::Vector2d>;
 
-const std::vector<Eigen::Vector2d> kWorld = {{0, 0}, {10, 0}, {20, 0}};
+const Points kWorld = {{0, 0}, {10, 0}, {20, 0}};
 const std::vector<double> kPath = {0, 0, 0};
 const MapCriteria kCriteria{true, {}, true};
 
-FinalMap map_of(std::vector<std::uint32_t> seen, std::vector<Eigen::Vector2d> mean) {
+FinalMap map_of(std::vector<std::uint32_t> seen, Points mean) {
   const std::vector<Eigen::Matrix2d> covariance(seen.size(), 0.25 * Eigen::Matrix2d::Identity());
   return {std::move(seen), std::move(mean), covariance};
 }
@@ -67,7 +65,7 @@ TEST(MapScores, CountACovarianceThatIsNoNumber) {
   EXPECT_EQ(scores.rms, 0.0);
 }
 
-/// Runs whose maps are wrong by `inflation` times what they say.
+/// Runs with map errors of `inflation` times the reported deviations.
 struct WrongMaps {
   MapErrorSums sums;
   SummaryOf nees, rms;
@@ -75,7 +73,7 @@ struct WrongMaps {
   WrongMaps(std::uint64_t runs, double inflation) {
     RngStream draw({.seed = 9});
     for (std::uint64_t run = 0; run < runs; ++run) {
-      std::vector<Eigen::Vector2d> mean = kWorld;
+      Points mean = kWorld;
       for (Eigen::Vector2d& at : mean) {
         at += 0.5 * inflation * Eigen::Vector2d(draw.normal(), draw.normal());
       }
@@ -121,8 +119,6 @@ TEST(MapErrors, GiveEveryRunItsScores) {
   EXPECT_EQ(scores.column("landmark_rms")[1], 0.0);
 }
 
-using Points = std::vector<Eigen::Vector2d>;
-
 Points drawn(std::size_t n, double size, RngStream& draw) {
   Points points;
   for (std::size_t i = 0; i < n; ++i) {
@@ -131,21 +127,52 @@ Points drawn(std::size_t n, double size, RngStream& draw) {
   return points;
 }
 
-/// The definition: over all ways to pair points of the smaller set with different points of the
-/// larger one, where a pair farther than the cutoff is no pair.
-double by_trying_all(Points few, Points many, double cutoff) {
-  if (few.size() > many.size()) std::swap(few, many);
-  std::vector<std::size_t> order(many.size());
+double cost_of(const Eigen::MatrixXd& cost, const std::vector<std::size_t>& columns) {
+  double sum = 0.0;
+  for (Eigen::Index r = 0; r < cost.rows(); ++r) {
+    sum += cost(r, static_cast<Eigen::Index>(columns[static_cast<std::size_t>(r)]));
+  }
+  return sum;
+}
+
+/// The least cost of all ways to give each row a column of its own.
+double least_of_all(const Eigen::MatrixXd& cost) {
+  std::vector<std::size_t> order(static_cast<std::size_t>(cost.cols()));
   std::iota(order.begin(), order.end(), 0);
-  double best = std::numeric_limits<double>::infinity();
-  do {
-    double sum = 0.5 * cutoff * cutoff * static_cast<double>(many.size() - few.size());
-    for (std::size_t i = 0; i < few.size(); ++i) {
-      sum += std::min((few[i] - many[order[i]]).squaredNorm(), cutoff * cutoff);
+  double least = cost_of(cost, order);
+  while (std::next_permutation(order.begin(), order.end())) {
+    least = std::min(least, cost_of(cost, order));
+  }
+  return least;
+}
+
+TEST(Assignment, IsTheCheapestOfAll) {
+  RngStream draw({.seed = 3});
+  for (int trial = 0; trial < 300; ++trial) {
+    const Eigen::Index rows = 1 + draw.below(6), columns = rows + draw.below(2);
+    Eigen::MatrixXd cost(rows, columns);
+    // Whole numbers, so that many costs are equal.
+    for (double& one : cost.reshaped()) one = static_cast<double>(draw.below(8)) - 2.0;
+    const auto found = cheapest_assignment(cost);
+    EXPECT_EQ(std::set(found.begin(), found.end()).size(), found.size()) << "each column once";
+    EXPECT_DOUBLE_EQ(cost_of(cost, found), least_of_all(cost)) << trial;
+  }
+  EXPECT_TRUE(cheapest_assignment(Eigen::MatrixXd(0, 3)).empty());
+}
+
+/// The definition: a pair that is farther apart than the cutoff is no pair.
+double by_trying_all(const Points& few, const Points& many) {
+  if (few.size() > many.size()) return by_trying_all(many, few);
+  constexpr double kSquare = kGospaCutoff * kGospaCutoff;
+  Eigen::MatrixXd cost(few.size(), many.size());
+  for (Eigen::Index r = 0; r < cost.rows(); ++r) {
+    for (Eigen::Index c = 0; c < cost.cols(); ++c) {
+      const auto from = static_cast<std::size_t>(r), to = static_cast<std::size_t>(c);
+      cost(r, c) = std::min((few[from] - many[to]).squaredNorm(), kSquare);
     }
-    best = std::min(best, sum);
-  } while (std::next_permutation(order.begin(), order.end()));
-  return std::sqrt(best);
+  }
+  const double unpaired = static_cast<double>(many.size() - few.size());
+  return std::sqrt(0.5 * kSquare * unpaired + least_of_all(cost));
 }
 
 TEST(Gospa, EqualsTheBestOfAllAssignments) {
@@ -153,7 +180,7 @@ TEST(Gospa, EqualsTheBestOfAllAssignments) {
   for (int trial = 0; trial < 200; ++trial) {
     const Points map = drawn(draw.below(7), 15.0, draw), truth = drawn(draw.below(7), 15.0, draw);
     const Gospa found = gospa(map, truth);
-    EXPECT_NEAR(found.distance, by_trying_all(map, truth, kGospaCutoff), 1e-12) << trial;
+    EXPECT_NEAR(found.distance, by_trying_all(map, truth), 1e-12) << trial;
     EXPECT_NEAR(found.distance * found.distance,
                 found.localisation * found.localisation + 12.5 * (found.missed + found.spurious),
                 1e-9);
@@ -184,12 +211,6 @@ TEST(Gospa, LooksAtTheWholeAndNotAtTheNearestPair) {
   const Gospa found = gospa(Points{{0, 0}, {2, 0}}, Points{{2, 0}, {4, 0}});
   EXPECT_DOUBLE_EQ(found.distance, std::sqrt(8.0));
 }
-
-TEST(Assignment, OfNothingIsNothing) {
-  EXPECT_TRUE(cheapest_assignment(Eigen::MatrixXd(0, 3)).empty());
-}
-
-using Points = std::vector<Eigen::Vector2d>;
 
 const Points kBeacons = {{0.0, 0.0}, {10.0, 0.0}, {10.0, 10.0}};
 
@@ -223,8 +244,6 @@ TEST(BeaconScores, FindsNothingInAnEmptyMap) {
   EXPECT_EQ(scores.found, 0.0);
   EXPECT_TRUE(std::isnan(scores.rms));
 }
-
-using Points = std::vector<Eigen::Vector2d>;
 
 Points random_points(RngStream& draw, std::size_t n) {
   Points points;

@@ -6,10 +6,8 @@
 #include "analysis/statistics/spread.hpp"
 #include "tests/analysis/reported.hpp"
 #include "tests/analysis/studied_result.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
@@ -17,10 +15,6 @@
 
 namespace montecarta::analysis {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 StudyAnalysis study_of(CellAnalysis cell) {
   StudyAnalysis study;

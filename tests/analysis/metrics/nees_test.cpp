@@ -34,7 +34,7 @@ TEST(Nees, EqualsTheQuadraticFormOfEachBlock) {
   }
 }
 
-// Law: of any dimension, and nothing of what is no covariance.
+// Law: it holds in any dimension, and a matrix that is no covariance has no NEES.
 TEST(ImportedNees, EqualsTheQuadraticFormOrIsUnusable) {
   RngStream draw({6, 0, 0, 0, Draw::test});
   for (const Eigen::Index d : {1, 2, 6, 15}) {
@@ -128,7 +128,7 @@ TEST(Nees, IsUnusableWhereACovarianceIsIndefinite) {
 }
 
 // STATISTICS 4: even a perfect filter of M particles has d (M + 1) / (M - d - 2) by the spread;
-// SamplerScale.MakesTheNeesOfIdealSamplersChiSquare draws them.
+// SamplerScale.SlowMakesTheNeesOfIdealSamplersChiSquare draws them.
 TEST(Nees, OfAParticleCloudHasHotellingsMean) {
   EXPECT_DOUBLE_EQ(ideal_spread_nees(3, 10), 6.6);  // STATISTICS 4
   EXPECT_TRUE(std::isinf(ideal_spread_nees(3, 5)));
@@ -214,11 +214,9 @@ JudgedSampler judged_sampler(const Sampler& sampler, std::uint64_t study, std::u
 
 /// Share of studies of 30 runs in which some family finds a fault.
 double share_rejected(const Sampler& sampler, std::uint64_t studies) {
-  double n = 0.0;
-  for (std::uint64_t study = 0; study < studies; ++study) {
-    n += is_rejected(judged_sampler(sampler, study, 30).verdict) ? 1.0 : 0.0;
-  }
-  return n / static_cast<double>(studies);
+  return share_of_studies(studies, [&](std::uint64_t study) {
+    return is_rejected(judged_sampler(sampler, study, 30).verdict);
+  });
 }
 
 void PrintTo(const Sampler& sampler, std::ostream* out) {
@@ -244,7 +242,7 @@ INSTANTIATE_TEST_SUITE_P(Of, SlowSamplerLevel,
                                          Sampler{30, 0.0}, Sampler{30, 0.1}, Sampler{30, 1.0},
                                          Sampler{100, 0.0}, Sampler{100, 0.1}, Sampler{100, 1.0}));
 
-// What leads instead of it: a mixture with a tenth of its covariance within the particles.
+// The corrected spread leads instead of a mixture with a tenth of its covariance in the particles.
 TEST(SamplerLevel, IsNotThatOfTheMixtureAsItIs) {
   for (const std::size_t draws : {10u, 30u}) {
     const JudgedSampler found =

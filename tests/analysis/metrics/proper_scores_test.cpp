@@ -22,20 +22,16 @@ double log_score_of(const Eigen::Vector3d& error, const Eigen::Matrix3d& covaria
   return log_score(std::vector{error}, std::vector{covariance});
 }
 
-TEST(LogScore, IsTheNegativeLogarithmOfTheDensity) {
+TEST(LogScore, IsTheNegativeLogarithmOfTheDensityWhereThereIsOne) {
   const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
   EXPECT_NEAR(log_score_of({0, 0, 0}, one), 1.5 * kLogTwoPi, 1e-14);
-  // Of one dimension with deviation 2, an error of 2 has log(2 sqrt(2 pi)) + 1 / 2.
+  // In one dimension with deviation 2, an error of 2 has log(2 sqrt(2 pi)) + 1 / 2.
   const Eigen::Matrix3d wide = Eigen::Vector3d(4, 1, 1).asDiagonal();
   EXPECT_NEAR(log_score_of({2, 0, 0}, wide), std::log(2.0) + 0.5 + 1.5 * kLogTwoPi, 1e-14);
   Eigen::Matrix3d correlated = one;
   correlated.topLeftCorner<2, 2>() << 2, 1, 1, 2;  // determinant 3
   EXPECT_NEAR(log_score_of({1, 1, 0}, correlated),
               0.5 * std::log(3.0) + 1.0 / 3.0 + 1.5 * kLogTwoPi, 1e-14);
-}
-
-TEST(LogScore, LeavesOutScansWithoutADensity) {
-  const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d singular = Eigen::Vector3d(1, 1, 0).asDiagonal();
   const Eigen::Matrix3d indefinite = Eigen::Vector3d(1, 1, -1).asDiagonal();
   const Eigen::Vector3d none = Eigen::Vector3d::Zero();

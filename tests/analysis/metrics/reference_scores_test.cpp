@@ -7,7 +7,6 @@
 #include "tests/analysis/synthetic_runs.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 
@@ -113,7 +112,7 @@ TEST(ReferenceScores, AreUnknownWithoutFixesOrHeadings) {
   EXPECT_TRUE(std::isnan(measured(fixes).scores.rms));
 }
 
-/// A run whose aligned RMS and median are `aligned` [m] and whose raw errors are `errors` [m].
+/// A run with this aligned RMS and median [m] and these raw errors [m].
 ReferenceRun run_with(double aligned, const std::vector<double>& errors) {
   ReferenceRun run;
   run.scores.rms = errors.front();
@@ -131,14 +130,11 @@ ReferenceAnalysis four_runs() {
   return sums.result();
 }
 
-TEST(ReferenceAnalysis, CountsRunsThatLoseTheMapOrBeatABaseline) {
+TEST(ReferenceAnalysis, CountsRunsThatLoseTheMapAndGivesMeanMiddleAndExtremes) {
   const ReferenceAnalysis cell = four_runs();
   EXPECT_EQ(cell.lost(), 1u);  // ten metres are not yet lost
   EXPECT_EQ(cell.better_than(2.0, &ReferenceScores::aligned_rms), 1u);
   EXPECT_EQ(cell.better_than(2.1, &ReferenceScores::aligned_rms), 2u);
-}
-
-TEST(ReferenceAnalysis, GivesMeanMiddleAndExtremesOverRuns) {
   const Spread rms = four_runs().over_runs(&ReferenceScores::aligned_rms);
   EXPECT_DOUBLE_EQ(rms.summary.mean, 6.0);
   EXPECT_NEAR(rms.summary.standard_error(), std::sqrt((25.0 + 16.0 + 16.0 + 25.0) / 3.0 / 4.0),

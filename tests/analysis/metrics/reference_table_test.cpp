@@ -8,7 +8,6 @@
 #include "tests/doubles/scratch_folder.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 
@@ -26,7 +25,7 @@ using testing::StartsWith;
 const StudyAnalysis& recorded_study() {
   static const StudyAnalysis study = [] {
     const ScratchFolder folder;
-    // Of so many fixes the wild one cannot turn the alignment away.
+    // With so many fixes the wild one cannot turn the alignment away.
     write_recorded_result(folder / "out.h5", 4, 1200);
     return analyze(ResultFile(folder / "out.h5"));
   }();
@@ -39,7 +38,7 @@ std::vector<std::string> texts_of(const TextTable& table) {
   return texts;
 }
 
-/// A filter whose path is where it should be against one that is shifted as a whole.
+/// A filter with the right path against one with a path that is shifted as a whole.
 StudyAnalysis shifted_study(bool has_errors) {
   StudyAnalysis study;
   study.references.push_back({.name = "gps", .times = {1.0}, .fixes = 1, .drives = 1});
@@ -71,7 +70,7 @@ TEST(ReferenceTable, HasOneRowACellAndReference) {
   EXPECT_EQ(table.rows[2][1], "gps");
   EXPECT_EQ(table.rows[3][1], "coarse");
   EXPECT_EQ(table.rows[0][3], "0 of 4");
-  EXPECT_EQ(table.rows[2][3], "1 of 4");  // whose run 1 is 40 m off
+  EXPECT_EQ(table.rows[2][3], "1 of 4");  // run 1 is 40 m off
   EXPECT_EQ(table.rows[6][2], "1 FAILED, 3 complete");
   EXPECT_EQ(table.rows[6][3], "1 of 4");
   EXPECT_THAT(table.rows[0][9], HasSubstr("(99.7 %)"));
@@ -134,7 +133,7 @@ TEST(MapTable, CountsLandmarksAndBeacons) {
   EXPECT_EQ(table.rows[1][3], "3.30 +- 0.00");
 }
 
-/// A cell of two runs whose raw and aligned RMS are `rms` and 1.5 times that [m].
+/// A cell of two runs with the raw and aligned RMS `rms` and 1.5 times that [m].
 CellAnalysis cell_of(const std::string& label, const std::string& filter, std::size_t particles,
                      double rms) {
   CellAnalysis cell;

@@ -18,7 +18,6 @@
 #include "tests/doubles/scratch_folder.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstring>
@@ -88,15 +87,10 @@ TEST_F(StudyAnalysisOfAFile, GivesTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-class ARecordedDrive : public ::testing::Test {
- protected:
-  void SetUp() override { write_recorded_result(path_); }
-  ScratchFolder folder_;
-  std::filesystem::path path_ = folder_ / "out.h5";
-};
-
-TEST_F(ARecordedDrive, HasReferencesAndNoVerdict) {
-  const StudyAnalysis study = analyze(ResultFile(path_));
+TEST(ARecordedDrive, IsJudgedByItsReferencesWithoutAVerdict) {
+  const ScratchFolder folder;
+  write_recorded_result(folder / "out.h5");
+  const StudyAnalysis study = analyze(ResultFile(folder / "out.h5"));
   EXPECT_FALSE(study.has_truth);
   EXPECT_EQ(study.beacons, 4u);
   ASSERT_EQ(study.references.size(), 2u);
@@ -111,10 +105,6 @@ TEST_F(ARecordedDrive, HasReferencesAndNoVerdict) {
     EXPECT_TRUE(cell.over_time("position_rmse").empty());
     EXPECT_EQ(cell.get<ReferenceAnalyses>().size(), 2u);
   }
-}
-
-TEST_F(ARecordedDrive, IsJudgedByItsFixes) {
-  const StudyAnalysis study = analyze(ResultFile(path_));
   const ReferenceAnalysis& gps =
       study.cells[2].get<ReferenceAnalyses>()[0];  // 0.5 m circles, 3 m aside
   const Spread median = gps.over_runs(&ReferenceScores::median);
@@ -131,10 +121,6 @@ TEST_F(ARecordedDrive, IsJudgedByItsFixes) {
               std::sqrt(0.5 + 0.515 * 0.515), 0.05);
   EXPECT_TRUE(std::isnan(coarse.over_runs(&ReferenceScores::heading_rmse).summary.mean));
   EXPECT_EQ(gps.error_over_time.size(), study.references[0].times.size());
-}
-
-TEST_F(ARecordedDrive, GivesStudiesTheirScoresByName) {
-  const StudyAnalysis study = analyze(ResultFile(path_));
   const CellAnalysis& cell = study.cells[1];
   for (std::size_t i = 0; i < cell.complete; ++i) {
     EXPECT_EQ(cell.scores.column("reference_rms")[i], cell.get<ReferenceAnalyses>()[0].runs[i].rms);

@@ -6,10 +6,8 @@
 #include "analysis/statistics/spread.hpp"
 #include "engine/errors.hpp"
 #include "engine/random/stream.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,9 +16,6 @@
 
 namespace montecarta::analysis {
 namespace {
-
-using testing::ContainsRegex;
-using testing::HasSubstr;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
@@ -55,11 +50,8 @@ TEST(GnuplotChart, HasOneLegendOfAllThatAnyPanelHolds) {
   EXPECT_THAT(commands, HasSubstr("set xlabel 'time [s]'"));
 }
 
-TEST(GnuplotChart, DrawsABandThatHasNoEndAbove) {
+TEST(GnuplotChart, DrawsABandThatHasNoEndAboveAndAnEnvelopeAroundZero) {
   EXPECT_THAT(gnuplot_chart(two_panels(), 900).numbers, HasSubstr("\n0,1,1e+100\n"));
-}
-
-TEST(GnuplotChart, DrawsAnEnvelopeAroundZero) {
   Chart chart = two_panels();
   chart.panels[0].curves[0].envelope = {3.0, 4.0};
   EXPECT_THAT(gnuplot_chart(chart, 900).numbers, HasSubstr("\n1,-3,3\n2,-4,4\n"));

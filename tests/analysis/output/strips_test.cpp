@@ -4,19 +4,14 @@
 #include "analysis/output/gnuplot.hpp"
 #include "analysis/statistics/spread.hpp"
 #include "engine/namespaces.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numeric>
 
 namespace montecarta::analysis {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 constexpr int kGrey = 32, kNone = ChartStrips::kNoLevel;
 constexpr Interval kBand = {0.9, 1.08};
@@ -39,13 +34,10 @@ const ChartStrips::Row& first_row(const Figure& figure) {
   return figure.chart.panels.front().strips.rows.front();
 }
 
-TEST(StripLevel, IsGreyInsideTheBandEndsIncluded) {
+TEST(StripLevel, IsGreyInsideTheBandAndElseOfALogarithmicScaleWithTwoEnds) {
   for (const double ratio : {0.9, 1.0, 1.08}) EXPECT_EQ(strip_level(ratio, kBand), kGrey) << ratio;
   EXPECT_EQ(strip_colours()[kGrey], "#e9e9e9");
   EXPECT_EQ(strip_colours().size(), kGrey + 1u);
-}
-
-TEST(StripLevel, IsOfALogarithmicScaleWithTwoEnds) {
   const std::vector<std::pair<double, int>> levels = {
       {0.0, 0},    {0.05, 0},  {0.11, 0},   {0.8, 7},    {1.09, 8},  {1.4, 9},
       {10.01, 16}, {99.9, 23}, {101.0, 24}, {999.0, 31}, {1e30, 31}, {kNaN, kNone}};

@@ -22,14 +22,11 @@ std::string printed(const TextTable& table, std::size_t width) {
   return out.str();
 }
 
-TEST(PrintTable, IsOneLineForARowThatFits) {
+TEST(PrintTable, BreaksHeadingsFirstThenTextsWhereARowDoesNotFit) {
   EXPECT_EQ(printed(errors_of_a_cell(), 80),
             "cell  position RMSE  verdict\n"
             "----  -------------  ----------------------------------------\n"
             "ekf             4.5  optimistic from the beginning to the end\n");
-}
-
-TEST(PrintTable, BreaksHeadingsFirstThenTexts) {
   EXPECT_EQ(printed(errors_of_a_cell(), 60),
             "      position\n"
             "cell      RMSE  verdict\n"
@@ -55,6 +52,7 @@ TEST(PrintTable, ContinuesBelowBesideTheKeys) {
             "cell of   bbbbbbbb\n"
             "---- ---- --------\n"
             "ekf  pose        2\n");
+  EXPECT_EQ(printed({}, 80), "");
 }
 
 TEST(TextTable, HasTheHeadingsOfItsFirstRow) {
@@ -68,8 +66,6 @@ TEST(TextTable, HasTheHeadingsOfItsFirstRow) {
             "ukf      4\n");
   EXPECT_THROW(table.add({{"cell", "srcd", Align::left}}), std::logic_error);
 }
-
-TEST(PrintTable, PrintsNothingWithoutColumns) { EXPECT_EQ(printed({}, 80), ""); }
 
 }  // namespace
 }  // namespace montecarta::analysis

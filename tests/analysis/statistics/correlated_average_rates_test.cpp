@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the verdict on one drive (300 s, a fix a second) and on several drives (60 to 300 fixes)
-// promises. `MONTECARTA_STUDIES=4000 build/analysis_tests --gtest_filter='*SlowDrive*:*Several*'`
+// Promises of the verdict on one drive (300 s, a fix a second) and on several drives (60 to 300
+// fixes). `MONTECARTA_STUDIES=4000 build/analysis_tests --gtest_filter='*SlowDrive*:*Several*'`
 // prints the whole tables; without the variable it is a few lines.
 #include "analysis/statistics/correlated_average.hpp"
 #include "engine/random/stream.hpp"
@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(OfShapesAndComponents, SlowDriveRates,
 
 class SlowDrivePower : public ::testing::TestWithParam<std::size_t> {};
 
-// A drive is not silent either: what is far off is found while errors forget within seconds.
+// A drive is not silent either: a ratio far from 1 is found while errors forget within seconds.
 TEST_P(SlowDrivePower, FindsWhatIsFarOff) {
   const std::size_t dimension = GetParam();
   const std::uint64_t drives = studies_of_a_line(1000) / 4;
@@ -227,5 +227,4 @@ TEST(SlowSeveralDrivesPower, ManyDrivesFindWhatOneCannot) {
 }
 
 }  // namespace
-
 }  // namespace montecarta::analysis

@@ -26,17 +26,14 @@ VectorSeries constant(std::size_t dimension, std::size_t samples, double value) 
   return {dimension, std::vector<double>(samples, value)};
 }
 
-TEST(LagSums, KnowWhiteAndConstantSeries) {
+TEST(LagSums, KnowWhiteAndConstantSeriesAndOneComponentThatFollowsAnother) {
   EXPECT_NEAR(squared_correlations(white(3, 3000))[1], 0.0, 0.01);
   EXPECT_NEAR(semivariances(white(1, 3000))[0][7], 1.0, 0.1);
   EXPECT_GT(effective_samples(squared_correlations(white(3, 3000))), 2700.0);
   EXPECT_NEAR(squared_correlations(constant(2, 300, 0.7))[299], 1.0, 1e-9);
   EXPECT_EQ(semivariances(constant(1, 300, 0.7))[0][299], 0.0);
   EXPECT_NEAR(effective_samples(squared_correlations(constant(1, 300, 0.7))), 1.0, 1e-9);
-}
-
-// u_b(t) = u_a(t - 5): no component goes together with itself.
-TEST(LagSums, SeeOneComponentFollowAnother) {
+  // u_b(t) = u_a(t - 5): no component goes together with itself.
   VectorSeries series = white(1, 3005);
   series.push_back(series.front());
   series[0].erase(series[0].begin(), series[0].begin() + 5);
@@ -82,7 +79,7 @@ TEST(SamplesThatDecide, GrowAsTheMarginShrinks) {
   const double wide = samples_that_decide(3, 0.95, 3.0), narrow = samples_that_decide(3, 0.95, 1.5);
   EXPECT_GT(wide, 20.0);
   EXPECT_LT(wide, narrow);
-  // Of one component an error that lasts is small too often: 1.1 is beyond any drive.
+  // A lasting error of one component is small too often: 1.1 is beyond any drive.
   EXPECT_GT(samples_that_decide(1, 0.95, 1.1), 1e7);
 }
 

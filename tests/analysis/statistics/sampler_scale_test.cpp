@@ -50,7 +50,7 @@ TEST(SamplerScale, MakesTheNeesOfIdealSamplersChiSquare) {
   }
 }
 
-/// What is as probable under the chi-square as `nees` under Hotelling's F, without a table.
+/// The chi-square value that is as probable as `nees` is under Hotelling's F, without a table.
 double exactly(double nees, double d, double M) {
   const boost::math::fisher_f ideal(d, M - d);
   const double above =

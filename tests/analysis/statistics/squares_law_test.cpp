@@ -149,8 +149,8 @@ std::vector<double> autoregression(std::size_t runs, std::size_t scans, double c
   return errors;
 }
 
-// tr R^2 is sum_ij r^(2 |i - j|), whatever the scale of the errors, and whether or not some of them
-// are missing.
+// tr R^2 is sum_ij r^(2 |i - j|) for any scale of the errors, and whether or not some of them are
+// missing.
 TEST(Traces, AreThoseOfTheCorrelationMatrix) {
   constexpr std::size_t kScans = 60;
   double second = 0.0;

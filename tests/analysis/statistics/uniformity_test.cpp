@@ -16,8 +16,7 @@
 namespace montecarta::analysis {
 namespace {
 
-/// PIT values of a filter whose errors are `inflation` times what it reports, and `bias` standard
-/// deviations off.
+/// PIT values of a filter with errors of `inflation` times the reported deviations and a bias.
 std::vector<double> pits(std::size_t n, double inflation, double bias, std::uint64_t study) {
   RngStream draw({.seed = 77, .run = study});
   const boost::math::normal standard;

@@ -7,10 +7,8 @@
 #include "analysis/tables/summary_table.hpp"
 #include "engine/errors.hpp"
 #include "engine/records/h5.hpp"
+#include "tests/doubles/matchers.hpp"
 #include "tests/doubles/scratch_folder.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <fstream>
 #include <limits>
@@ -18,9 +16,6 @@
 
 namespace montecarta::analysis {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 CellAnalysis consistent_cell() {
   CellAnalysis cell;
@@ -153,24 +148,18 @@ TEST(WriteCsv, NamesTheFileItCannotWrite) {
   EXPECT_THROW(write_text("/dev/full", std::string(100'000, 'x')), RunError);
 }
 
-TEST(Latex, EscapesWhatLatexWouldTakeForItself) {
+TEST(Latex, EscapesTextAndHasOneRowACell) {
   EXPECT_EQ(latex_escape("fastslam2_m30 & 5 % #1 $x$ {y}"),
             "fastslam2\\_m30 \\& 5 \\% \\#1 \\$x\\$ \\{y\\}");
   EXPECT_EQ(latex_escape("~^\\<>"),
             "\\textasciitilde{}\\textasciicircum{}\\textbackslash{}\\textless{}\\textgreater{}");
   EXPECT_EQ(latex_escape("3.58 +- 0.10"), "3.58 $\\pm$ 0.10");
-}
-
-TEST(Latex, HasOneRowACellAndAsManyColumnsAsHeadings) {
   TextTable table;
   table.headings = {{"", Align::left}, {"RMSE [m]"}};
   table.rows = {{"a_b", "1 +- 2"}, {"", "3"}};
   EXPECT_EQ(latex_tabular(table),
             "\\begin{tabular}{lr}\n\\toprule\n & RMSE [m] \\\\\n\\midrule\n"
             "a\\_b & 1 $\\pm$ 2 \\\\\n & 3 \\\\\n\\bottomrule\n\\end{tabular}\n");
-}
-
-TEST(Latex, ACommentStaysOnItsLine) {
   StudyAnalysis study = small_study();
   study.study_name = "a\n\\input{/etc/passwd}";
   const std::string latex = latex_table(study, {});

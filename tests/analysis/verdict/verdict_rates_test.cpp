@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the verdict promises, by simulated studies. `MONTECARTA_STUDIES=2000 build/analysis_tests
+// Promises of the verdict, checked by simulated studies. `MONTECARTA_STUDIES=2000
+// build/analysis_tests
 // --gtest_filter='*SlowVerdict*'` prints the tables of STATISTICS 5 and 18; without the variable a
 // sample of their lines.
 #include "analysis/statistics/group_sequential.hpp"
@@ -9,8 +10,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <map>
-#include <string>
 
 namespace montecarta::analysis {
 namespace {
@@ -35,11 +34,9 @@ TEST_P(SlowVerdictRates, RejectAConsistentFilterInAtMostFivePercent) {
   const std::uint64_t studies = studies_of_a_line(500);
   for (const Memory memory : kMemories) {
     const PlantedLaw law{.dimension = setting.dimension, .memory = memory};
-    double rejected = 0.0;
-    for (std::uint64_t study = 0; study < studies; ++study) {
-      const Verdict found = verdict_of(law, study, setting.runs, setting.scans);
-      rejected += is_rejected(found) ? 1.0 / static_cast<double>(studies) : 0.0;
-    }
+    const double rejected = share_of_studies(studies, [&](std::uint64_t study) {
+      return is_rejected(verdict_of(law, study, setting.runs, setting.scans));
+    });
     std::printf("%4d runs  %4zu scans  %zu components  %-18s  %5.2f %%\n",
                 static_cast<int>(setting.runs), setting.scans, setting.dimension, name_of(memory),
                 100.0 * rejected);
@@ -137,12 +134,9 @@ TEST(SlowVerdictPower, CallsAConsistentFilterConsistent) {
   const std::uint64_t studies = studies_of_a_line(40);
   for (const Memory memory : {Memory::white, Memory::ar95}) {
     EXPECT_EQ(verdict_of({.memory = memory}, 1, 300, 64, 1.3).answer, Answer::consistent);
-    double consistent = 0.0;
-    for (std::uint64_t study = 0; study < studies; ++study) {
-      const Verdict found = verdict_of({.memory = memory}, study, 500, 64, 1.2);
-      consistent += found.answer == Answer::consistent ? 1.0 : 0.0;
-    }
-    const double share = consistent / static_cast<double>(studies);
+    const double share = share_of_studies(studies, [&](std::uint64_t study) {
+      return verdict_of({.memory = memory}, study, 500, 64, 1.2).answer == Answer::consistent;
+    });
     std::printf("within 1.2, 500 runs, %s: %.1f %%\n", name_of(memory), 100.0 * share);
     EXPECT_GE(share, 0.95 - share_errors(0.95, studies)) << name_of(memory);
   }

@@ -3,9 +3,7 @@
 
 #include "analysis/data/study_settings.hpp"
 #include "engine/errors.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/doubles/matchers.hpp"
 
 #include <cmath>
 #include <string>
@@ -14,10 +12,6 @@
 
 namespace montecarta::analysis {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 /// A member with one interval for everything; its p-value follows from whether that holds 1 or 0.
 Member member(Family family, const std::string& name, const Interval& interval) {
@@ -91,12 +85,9 @@ TEST(Judge, AllowsWhatIsNotShownToBeBeyondTheMargin) {
   EXPECT_EQ(with_spread({0.15, 0.3}), Answer::inconsistent);
 }
 
-TEST(Judge, NeedsTheSizeForConsistency) {
+TEST(Judge, NeedsTheSizeForConsistencyAndTellsTheDirection) {
   EXPECT_EQ(judged({family(Family::scan, {{"at 1 s", kRight}})}).answer, Answer::undecided);
   EXPECT_EQ(judged({}).answer, Answer::untested);
-}
-
-TEST(Judge, TellsTheDirection) {
   const auto components = [](const Interval& one, const Interval& other) {
     return judged({size({0.8, 1.3}), family(Family::component, {{"a", one}, {"b", other}})});
   };
@@ -182,17 +173,11 @@ TEST(Words, SaySlightDeviationsAndWhatIsNotExcluded) {
   EXPECT_EQ(in_words(Verdict{}), "not tested");
 }
 
-TEST(Words, SayNothingOfSingleScansWithinTheMargin) {
+TEST(Words, SayWhatFailedAndKnowErrorsOfZero) {
   EXPECT_EQ(in_words(judged({size(kRight), family(Family::scan, {{"at 1 s", {1.05, 1.5}}})})),
             "consistent within 1.1");
-}
-
-TEST(Words, KnowErrorsOfZero) {
   EXPECT_EQ(in_words(judged({size({0.0, 0.0})})),
             "conservative: NEES infinitely many times too small");
-}
-
-TEST(Words, SayWhatFailed) {
   Verdict found = judged({size(kRight)});
   found.failed = 3;
   found.samples = 600;
@@ -227,26 +212,20 @@ TEST(Gate, StopsAFilterThatFailsOrWhoseSamplesAreUnusable) {
   EXPECT_EQ(gate(none), GateAnswer::inconsistent);
 }
 
-TEST(Margin, IsThatOfTheStudyInTheFile) {
+TEST(Margin, IsThatOfTheStudyInTheFileOrRefused) {
   EXPECT_EQ(margin_in(""), kUsualMargin);
   EXPECT_EQ(margin_in("[study]\nname = a\n[record]\nwithin = 3\n"), kUsualMargin);
   EXPECT_EQ(margin_in("[study]\nname = a\nwithin = 1.25\n[scenario]\n"), 1.25);
-}
-
-TEST(Margin, RefusesWhatIsNone) {
   for (const char* text : {"1", "0.9", "nan", "1.2x", "", "1e9"}) {
     EXPECT_THROW(margin_in(std::string("[study]\nwithin = ") + text), StudyError) << text;
   }
 }
 
-TEST(Looks, AreTheRoundsOfAStudyThatStopsByVerdict) {
+TEST(Looks, AreTheRoundsOfAStudyThatStopsByVerdictOnly) {
   const std::string text = "[study]\nname = a\nuntil = verdict\n[scenario]\n";
   EXPECT_THAT(looks_in(text, 200), ElementsAre(32, 64, 128, 200));
   EXPECT_THAT(looks_in(text, 20), ElementsAre(20));
   EXPECT_THAT(looks_in("[study]\nuntil = verdict, 100 runs\n", 64), ElementsAre(32, 64));
-}
-
-TEST(Looks, AreNoneOfAnyOtherStudy) {
   EXPECT_THAT(looks_in("", 200), IsEmpty());
   EXPECT_THAT(looks_in("[study]\nuntil = position_rmse < 1\n", 200), IsEmpty());
   EXPECT_THAT(looks_in("[study]\nname = a\n[record]\nuntil = verdict\n", 200), IsEmpty());

@@ -80,8 +80,8 @@ TEST_F(SeveralDrives, EachIsARunThatIsCompleteAndJudgedAsIndependent) {
   }
   const Called judged = call({"analyze", "out.h5", "--table", "drive", "--csv", "tables"});
   EXPECT_EQ(judged.code, 0) << judged.err;
-  EXPECT_THAT(judged.out, HasSubstr("Every run met a drive of its own"));
-  EXPECT_THAT(judged.out, Not(HasSubstr("met the same drive")));
+  EXPECT_THAT(judged.out, HasSubstr("Every run processes a drive of its own"));
+  EXPECT_THAT(judged.out, Not(HasSubstr("process the same drive")));
   EXPECT_THAT(text_of("tables/drive.csv"), HasSubstr("drives"));
   EXPECT_FALSE(exists("tables/reference_errors.csv")) << "fixes of three drives have no mean";
   EXPECT_THAT(call({"analyze", "out.h5", "--table", "reference"}).out,
