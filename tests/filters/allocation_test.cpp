@@ -6,8 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,16 +13,7 @@
 namespace montecarta::filters {
 namespace {
 
-std::unique_ptr<SlamFilter> make(
-    const FilterKind& kind, Association association,
-    const std::map<std::string, std::string, std::less<>>& options = {}) {
-  return kind.make({.belief = {},
-                    .association = {.kind = association},
-                    .options = default_options(kind, options),
-                    .landmarks = SmallWorldSettings().landmarks});
-}
-
-/// Where a recorder puts what a filter tells.
+/// Buffers for the results of a filter, as a recorder has them.
 class Listener {
  public:
   explicit Listener(const FilterKind& kind) {
@@ -52,7 +41,7 @@ TEST(Allocation, NoFilterAllocatesInASecondRun) {
   for (const FilterKind& kind : filter_kinds()) {
     if (kind.name.starts_with("plain_")) continue;  // written to be read, not to be fast
     for (const auto association : {Association::known, Association::nearest}) {
-      const auto filter = make(kind, association);
+      const auto filter = make_filter(kind, {}, {}, association);
       Listener listener(kind);
       const auto after_scan = [&](std::size_t) { listener.listen(*filter); };
       drive_through(*filter, world, Pose(), after_scan);
@@ -63,14 +52,14 @@ TEST(Allocation, NoFilterAllocatesInASecondRun) {
   }
 }
 
-/// Of a filter of which not every way is the one that is usual.
+/// Runs a filter with one option that is not the default.
 void expect_no_allocation(const char* name, const char* option, const char* value) {
   const SmallWorld world = small_world({.scans = 60});
   const auto kind = std::ranges::find(filter_kinds(), name, &FilterKind::name);
-  const auto filter = make(*kind, Association::known, {{option, value}});
-  drive_through(*filter, world, Pose(), [](std::size_t) {});
+  const auto filter = make_filter(*kind, {}, {{option, value}});
+  drive_through(*filter, world);
   const std::size_t before = n_allocations;
-  drive_through(*filter, world, Pose(), [](std::size_t) {});
+  drive_through(*filter, world);
   EXPECT_EQ(n_allocations, before) << value;
 }
 
@@ -86,14 +75,11 @@ TEST(Allocation, DelayedInitialisationInParticlesAllocatesNothingInASecondRun) {
     const SmallWorld world = small_world(settings);
     for (const char* name : {"fastslam1", "fastslam2", "ufastslam"}) {
       const auto filter = std::ranges::find(filter_kinds(), name, &FilterKind::name);
-      const auto made = filter->make({.belief = settings.noise,
-                                      .association = {},
-                                      .options = default_options(*filter),
-                                      .landmarks = settings.landmarks});
-      drive_through(*made, world, Pose(), [](std::size_t) {});
+      const auto made = make_filter(*filter, settings);
+      drive_through(*made, world);
       EXPECT_GT(made->report().map_size, 1.0);
       const std::size_t before = n_allocations;
-      drive_through(*made, world, Pose(), [](std::size_t) {});
+      drive_through(*made, world);
       EXPECT_EQ(n_allocations, before) << name;
     }
   }

@@ -24,13 +24,13 @@ inline testing::AssertionResult is_consistent(double anees, std::uint64_t runs) 
          << " to " << analysis::readable(band.upper) << " over " << runs << " runs)";
 }
 
-/// Of the poses at the end of some runs.
+/// Errors of the poses at the end of some runs.
 struct FinalErrors {
   double squared = 0.0;  ///< mean of squared distances [m^2]
   double anees = 0.0;    ///< mean NEES
 };
 
-/// Of runs whose seeds count up from that of `settings`.
+/// The seeds of the runs count up from that of `settings`.
 inline FinalErrors final_errors(SlamFilter& filter, SmallWorldSettings settings,
                                 std::uint64_t runs) {
   FinalErrors mean;

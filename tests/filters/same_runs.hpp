@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-/// What it means that two makes of one filter are equal.
+/// Comparisons of two implementations of one filter.
 namespace montecarta::filters {
 
 inline void expect_near(const PoseMoments& a, const PoseMoments& b, double tolerance) {

@@ -12,15 +12,17 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace montecarta::filters {
 
+using OptionTexts = std::map<std::string, std::string, std::less<>>;
+
 /// A filter's options as a newcomer gets them, but for those of `others`.
-inline FilterOptions default_options(
-    const FilterKind& kind, const std::map<std::string, std::string, std::less<>>& others = {}) {
-  std::map<std::string, std::string, std::less<>> values = others;
+inline FilterOptions default_options(const FilterKind& kind, const OptionTexts& others = {}) {
+  OptionTexts values = others;
   for (const Parameter& option : kind.options) values.emplace(option.key, *option.fallback);
   return FilterOptions(values);
 }
@@ -52,6 +54,22 @@ struct SmallWorldSettings {
   /// From scan to scan in turn.
   std::vector<Control> controls = std::vector<Control>(1, Control{3.0, 0.15});
 };
+
+/// The setup of a filter for a world of these settings; options not in `others` are the defaults.
+inline FilterSetup setup_for(const FilterKind& kind, const SmallWorldSettings& world,
+                             const OptionTexts& others = {},
+                             Association association = Association::known) {
+  return {.belief = world.noise,
+          .association = {.kind = association},
+          .options = default_options(kind, others),
+          .landmarks = world.landmarks};
+}
+inline std::unique_ptr<SlamFilter> make_filter(const FilterKind& kind,
+                                               const SmallWorldSettings& world,
+                                               const OptionTexts& others = {},
+                                               Association association = Association::known) {
+  return kind.make(setup_for(kind, world, others, association));
+}
 
 inline void place_landmarks(const SmallWorldSettings& settings, SmallWorld& world) {
   for (std::uint32_t k = 0; k < settings.landmarks; ++k) {
@@ -144,6 +162,19 @@ void drive_through(Filter& filter, const SmallWorld& world, const Pose& start,
     filter.update(context, world.drive.scan(scan));
     after_scan(scan++);
   }
+}
+template <class Filter>
+void drive_through(Filter& filter, const SmallWorld& world, const Pose& start = {}) {
+  drive_through(filter, world, start, [](std::size_t) {});
+}
+
+/// The estimates of a filter after every scan.
+inline std::vector<PoseMoments> estimates_of(SlamFilter& filter, const SmallWorld& world,
+                                             const Pose& start = {}) {
+  std::vector<PoseMoments> estimates;
+  drive_through(filter, world, start,
+                [&](std::size_t) { estimates.push_back(filter.estimate().spread); });
+  return estimates;
 }
 
 }  // namespace montecarta::filters

@@ -9,8 +9,8 @@ namespace montecarta::filters {
 
 inline SmallWorldSettings settings_of_two_scans() { return {.seed = 77, .landmarks = 40}; }
 
-/// Two scans with a short drive between: from where the filter knows to stand, then again. It is
-/// told to drive at 3 m/s, steering by 0.15 rad; what the vehicle does is `driven`.
+/// Two scans with a short drive between, the first one from the known start. The filter is given a
+/// speed of 3 m/s and a steering angle of 0.15 rad; the vehicle is driven by `driven`.
 inline SmallWorld drive_of_two_scans(const SmallWorldSettings& settings = settings_of_two_scans(),
                                      const Control& driven = {3.0, 0.15}) {
   SmallWorld world{.itinerary = {}, .drive = {}, .seed = settings.seed};
@@ -23,7 +23,7 @@ inline SmallWorld drive_of_two_scans(const SmallWorldSettings& settings = settin
   return world;
 }
 
-/// What a filter believes after both.
+/// The estimate of a filter after both.
 inline PoseEstimate after_two_scans(SlamFilter& filter, const SmallWorld& world) {
   filter.start({});
   filter.update(StepContext(77, 0, 0, Parallel::serial()), world.drive.scan(0));

@@ -9,8 +9,6 @@
 
 #include <array>
 #include <cmath>
-#include <map>
-#include <string>
 #include <vector>
 
 namespace montecarta::filters {
@@ -42,7 +40,7 @@ TEST(Nearest, ChoosesTheNearestInsideTheGate) {
 }
 
 TEST(Nearest, ASureLandmarkBeatsANearerVagueOne) {
-  // D^2 alone favours what knows least; log det S takes that advantage away.
+  // D^2 alone favours the most uncertain landmark; log det S makes up for that.
   EXPECT_EQ(judged({{1.0, 4.0}, {2.0, -4.0}}).landmark, 1u);
 }
 
@@ -203,14 +201,10 @@ TEST(AssociationCounts, AddUpToTheDetectionsInEveryFilter) {
   SmallWorldSettings settings{.seed = 3, .landmarks = 60, .scans = 30};
   settings.noise.control.sigma[1] = 0.3;  // so that some go wrong
   const SmallWorld world = small_world(settings);
-  const std::map<std::string, std::string, std::less<>> few{{"particles", "24"}};
   for (const FilterKind& kind : filter_kinds()) {
     if (!kind.reports.map) continue;  // associates nothing
     for (const Association association : {Association::known, Association::nearest}) {
-      const auto filter = kind.make({.belief = settings.noise,
-                                     .association = {.kind = association},
-                                     .options = default_options(kind, few),
-                                     .landmarks = settings.landmarks});
+      const auto filter = make_filter(kind, settings, {{"particles", "24"}}, association);
       AssociationCounts sum;
       drive_through(*filter, world, {}, [&](std::size_t s) {
         const AssociationCounts& counts = filter->report().association;

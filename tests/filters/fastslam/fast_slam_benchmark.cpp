@@ -38,7 +38,7 @@ std::vector<Detection> look(const Pose& truth) {
   return scan;
 }
 
-/// As users get it, by name, with options other than the usual ones.
+/// The filter that users get by this name, with some options that are not the defaults.
 std::unique_ptr<SlamFilter> production(
     const std::string& name, std::size_t particles,
     const std::map<std::string, std::string, std::less<>>& options = {}) {
@@ -54,7 +54,7 @@ std::unique_ptr<SlamFilter> production(
                     .landmarks = kSeen});
 }
 
-/// What timing nothing takes [s]: reading the clock is a system call.
+/// Seconds that reading the clock takes, which is a system call.
 double price_of_clock() {
   double sum = 0.0;
   for (int i = 0; i < 10000; ++i) sum += CpuClock().seconds();
@@ -129,7 +129,7 @@ void DeSrcd(benchmark::State& state, const char* mode, Part part) {
   measure_part(state, *filter, part);
 }
 
-/// Of scans only a part of the time is measured: the least time is of that part.
+/// Only a part of the time of a scan is measured; the least time is of that part.
 void scans(benchmark::internal::Benchmark* benchmark) {
   benchmark->Arg(30)->Arg(100)->Arg(1000)->UseManualTime()->MinTime(0.05);
 }

@@ -8,7 +8,7 @@
 namespace montecarta::filters {
 namespace {
 
-/// Two particles; what the first one believes is true.
+/// Two particles, of which the first one is at the true pose.
 class TwoParticles : public testing::Test {
  protected:
   static constexpr double kBeside = 0.5;  ///< [m] how far the second one stands to the left

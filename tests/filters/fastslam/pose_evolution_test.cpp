@@ -59,8 +59,8 @@ TEST(PackedCandidates, TakeAsFewRegistersAsTheyFill) {
   EXPECT_EQ((PackedCandidates<double>(1, kMembers).patterns()), 1U);
 }
 
-/// What the particles of one block take a scan for: a landmark and a detection of their own each,
-/// and the second landmark known to every other particle only.
+/// The matches of the particles of one block: each has a landmark and a detection of its own, and
+/// every other particle knows the second landmark.
 struct Matches {
   std::size_t matches() const { return 2; }
   auto match(std::size_t /*b*/, std::size_t k) const {

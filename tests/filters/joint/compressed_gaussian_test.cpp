@@ -15,14 +15,14 @@
 namespace montecarta::filters {
 namespace {
 
-/// What the two forms are compared in.
+/// A setting in which the two forms are compared.
 struct Setting {
   Retraction retraction;
   int iterations;
 };
 
 constexpr std::size_t kLandmarks = 150;
-/// What a form may differ by, in relation to the covariance: rounding.
+/// Largest relative difference of the covariances, which is due to rounding.
 constexpr double kRounding = 1e-9;
 
 /// A vehicle that goes round a map twice, of which it sees a twentieth at a time.
@@ -30,7 +30,7 @@ SmallWorld large_world(std::size_t scans = 570) {
   return small_world({.seed = 31, .landmarks = kLandmarks, .scans = scans, .max_range = 11.0});
 }
 
-/// A Gaussian and what drives it as a belief does, with known association.
+/// A Gaussian that is driven as a belief drives it, with known association.
 template <class Gaussian>
 class Driven {
  public:

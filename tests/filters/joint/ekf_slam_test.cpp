@@ -10,88 +10,38 @@
 namespace montecarta::filters {
 namespace {
 
-FilterSetup setup_for(std::size_t landmarks, Association kind = Association::known) {
-  FilterSetup setup{.belief = {},
-                    .association = {},
-                    .options = default_options(ekf_slam_kind()),
-                    .landmarks = landmarks};
-  setup.association.kind = kind;
-  return setup;
-}
-
-double nees(const PoseMoments& moments, const Pose& truth) {
-  const Eigen::Vector3d error = boxminus(truth, moments.mean);
-  return error.dot(moments.covariance.ldlt().solve(error));
-}
-
-Pose turned(const Pose& pose, double turn) {
-  const Direction<double> u = direction_of(turn);
-  return {pose.x * u.cosine - pose.y * u.sine + 11.0, pose.x * u.sine + pose.y * u.cosine - 7.0,
-          wrap(pose.heading + turn)};
-}
-
-TEST(EkfSlam, TurningAndShiftingTheWorldLeavesNeesUnchanged) {
-  const SmallWorld world = small_world({.seed = 6, .scans = 120});
-  const double turn = 2.5;
-  std::vector<PoseMoments> there;
-  const auto filter = make_ekf_slam(setup_for(20));
-  drive_through(*filter, world, turned({}, turn),
-                [&](std::size_t) { there.push_back(filter->estimate().spread); });
-  drive_through(*filter, world, {}, [&](std::size_t s) {
-    const PoseMoments here = filter->estimate().spread;
-    const Pose& truth = world.drive.truth[world.itinerary.scan_step[s]];
-    EXPECT_LT(boxminus(there[s].mean, turned(here.mean, turn)).norm(), 1e-9) << "scan " << s;
-    EXPECT_NEAR(nees(there[s], turned(truth, turn)), nees(here, truth), 1e-9 * nees(here, truth));
-  });
-}
-
-TEST(EkfSlam, ARestartLeavesNothingBehind) {
-  const SmallWorld world = small_world({.seed = 7});
-  const SmallWorld other = small_world({.seed = 8});
-  const auto filter = make_ekf_slam(setup_for(20));
-  std::vector<PoseMoments> first;
-  drive_through(*filter, world, {},
-                [&](std::size_t) { first.push_back(filter->estimate().spread); });
-  drive_through(*filter, other, {1.0, 2.0, 3.0}, [](std::size_t) {});
-  drive_through(*filter, world, {}, [&](std::size_t s) {
-    const PoseMoments again = filter->estimate().spread;
-    EXPECT_EQ(boxminus(again.mean, first[s].mean).norm(), 0.0) << "scan " << s;
-    EXPECT_EQ(again.covariance, first[s].covariance) << "scan " << s;
-  });
+FilterSetup ekf_setup(std::size_t landmarks, Association kind = Association::known) {
+  return setup_for(ekf_slam_kind(), {.landmarks = landmarks}, {}, kind);
 }
 
 TEST(EkfSlam, RoomForLandmarksIsNoLimit) {
   const SmallWorld world = small_world({.seed = 9, .landmarks = 37});
-  const auto roomy = make_ekf_slam(setup_for(37));
-  const auto tight = make_ekf_slam(setup_for(1));
-  std::vector<Pose> poses;
-  drive_through(*roomy, world, {},
-                [&](std::size_t) { poses.push_back(roomy->estimate().spread.mean); });
-  drive_through(*tight, world, {}, [&](std::size_t s) {
-    EXPECT_EQ(boxminus(tight->estimate().spread.mean, poses[s]).norm(), 0.0) << "scan " << s;
-  });
+  const auto roomy = make_ekf_slam(ekf_setup(37));
+  const auto tight = make_ekf_slam(ekf_setup(1));
+  const auto expected = estimates_of(*roomy, world), found = estimates_of(*tight, world);
+  for (std::size_t s = 0; s < expected.size(); ++s) {
+    EXPECT_EQ(boxminus(found[s].mean, expected[s].mean).norm(), 0.0) << "scan " << s;
+  }
 }
 
 TEST(EkfSlam, NearestNeighbourFindsTheTrueLandmarksWhereTheyStandApart) {
   SmallWorldSettings settings{.seed = 10, .landmarks = 8, .scans = 200};
   settings.noise.control.sigma[1] = 0.01;
   const SmallWorld world = small_world(settings);
-  FilterSetup setup = setup_for(8, Association::nearest);
+  FilterSetup setup = ekf_setup(8, Association::nearest);
   setup.belief.control.sigma[1] = 0.01;
   setup.association.gate = 25.0;  // nothing true is beyond it
   const auto nearest = make_ekf_slam(setup);
   setup.association.kind = Association::known;
   const auto known = make_ekf_slam(setup);
-  std::vector<Pose> poses;
-  drive_through(*known, world, {},
-                [&](std::size_t) { poses.push_back(known->estimate().spread.mean); });
-  drive_through(*nearest, world, {}, [&](std::size_t s) {
-    EXPECT_LT(boxminus(nearest->estimate().spread.mean, poses[s]).norm(), 1e-12) << "scan " << s;
-  });
+  const auto expected = estimates_of(*known, world), found = estimates_of(*nearest, world);
+  for (std::size_t s = 0; s < expected.size(); ++s) {
+    EXPECT_LT(boxminus(found[s].mean, expected[s].mean).norm(), 1e-12) << "scan " << s;
+  }
 }
 
 TEST(EkfSlam, TwoDetectionsNeverShareALandmark) {
-  const auto filter = make_ekf_slam(setup_for(1, Association::nearest));
+  const auto filter = make_ekf_slam(ekf_setup(1, Association::nearest));
   const StepContext context(1, 0, 0, Parallel::serial());
   const Detection alone{10.0, 0.3, 0};
   const std::vector<Detection> rivals{{10.2, 0.3, 0}, {10.1, 0.3, 0}};
@@ -103,7 +53,7 @@ TEST(EkfSlam, TwoDetectionsNeverShareALandmark) {
 }
 
 TEST(EkfSlam, AMapThatRunsAwayFailsTheRun) {
-  FilterSetup setup = setup_for(1, Association::nearest);
+  FilterSetup setup = ekf_setup(1, Association::nearest);
   setup.association.most_landmarks = 1;
   const auto filter = make_ekf_slam(setup);
   const StepContext context(1, 0, 0, Parallel::serial());
@@ -114,7 +64,7 @@ TEST(EkfSlam, AMapThatRunsAwayFailsTheRun) {
 
 TEST(EkfSlam, ReportsWhatItMatched) {
   const SmallWorld world = small_world({.seed = 11});
-  const auto filter = make_ekf_slam(setup_for(20));
+  const auto filter = make_ekf_slam(ekf_setup(20));
   double nis = 0.0;
   std::uint32_t dof = 0;
   drive_through(*filter, world, {}, [&](std::size_t s) {
@@ -131,7 +81,7 @@ TEST(EkfSlam, ReportsWhatItMatched) {
 }
 
 TEST(EkfSlam, LikelihoodIsTheGaussianOfTheInnovation) {
-  const auto filter = make_ekf_slam(setup_for(1));
+  const auto filter = make_ekf_slam(ekf_setup(1));
   const StepContext context(1, 0, 0, Parallel::serial());
   const Detection first{10.0, 0.3, 0};
   const Detection second{10.1, 0.31, 0};
@@ -149,7 +99,7 @@ TEST(EkfSlam, LikelihoodIsTheGaussianOfTheInnovation) {
 }
 
 TEST(EkfSlam, LeavesOutClutterAndLandmarksTooNearForABearing) {
-  const auto filter = make_ekf_slam(setup_for(2));
+  const auto filter = make_ekf_slam(ekf_setup(2));
   const StepContext context(1, 0, 0, Parallel::serial());
   const std::vector<Detection> scan{{0.0, 0.0, 0}, {5.0, 0.1, Detection::kClutter}};
   filter->start({});
@@ -164,7 +114,7 @@ TEST(EkfSlam, LeavesOutClutterAndLandmarksTooNearForABearing) {
 }
 
 TEST(EkfSlam, CountsAnInnovationThatIsNotPositiveDefinite) {
-  FilterSetup setup = setup_for(1);
+  FilterSetup setup = ekf_setup(1);
   setup.belief.sigma_range = setup.belief.sigma_bearing = 0.0;
   const auto filter = make_ekf_slam(setup);
   const StepContext context(1, 0, 0, Parallel::serial());
@@ -177,7 +127,7 @@ TEST(EkfSlam, CountsAnInnovationThatIsNotPositiveDefinite) {
 }
 
 TEST(JointBelief, CountsAnInnovationThatIsNotPositiveDefiniteInAnIteration) {
-  FilterSetup setup = setup_for(1);
+  FilterSetup setup = ekf_setup(1);
   setup.belief.sigma_range = 0.0;
   JointBelief belief(setup, Retraction::additive, 3);
   const Detection first{10.0, 0.3, 0}, absurd{1e200, 0.3, 0};  // its square is no number

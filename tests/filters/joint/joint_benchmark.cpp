@@ -86,7 +86,7 @@ struct RingRoad {
 };
 
 /// Drives `filter` along the road by `way` [m] between scans, `scans` times. Scans are taken ahead
-/// of time, so that what `around` does about each step is the filter's time.
+/// of time, so that only the filter is timed; `around` says whether to go on.
 template <class Around>
 void drive(SlamFilter& filter, const RingRoad& road, double way, std::size_t scans, Pose& pose,
            const Around& around) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Law: what a filter says of pose and map together has, as its parts, what it says of each. Not so
-// full smoothing with pushed moments, whose joint is of a solution of its own.
+// Law: the joint estimate has the pose and the landmarks of the filter as its parts. Full smoothing
+// with pushed moments is an exception: its joint is of a solution of its own.
 #include "filters/joint/joint_filter.hpp"
 #include "filters/relative/relative_ekf_slam.hpp"
 #include "filters/smoothing/smoother.hpp"
@@ -10,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,15 +17,7 @@
 namespace montecarta::filters {
 namespace {
 
-constexpr std::size_t kLandmarks = 20;
-
-FilterSetup setup_of(const FilterKind& kind, Association association,
-                     const std::map<std::string, std::string, std::less<>>& options) {
-  return {.belief = {},
-          .association = {.kind = association},
-          .options = default_options(kind, options),
-          .landmarks = kLandmarks};
-}
+const std::size_t kLandmarks = SmallWorldSettings().landmarks;
 
 /// Checks after every scan; returns how many landmarks there were in all.
 int expect_parts(SlamFilter& filter, const SmallWorld& world) {
@@ -68,7 +59,7 @@ TEST(JointEstimate, OfOneGaussianHasItsParts) {
       for (const char* moments : {"map", "pushed"}) {
         const bool is_one = kind.name == "ekf_slam" || kind.name == "riekf_slam";
         if (!is_one && moments == std::string("pushed")) continue;
-        const auto filter = kind.make(setup_of(kind, association, {{"moments", moments}}));
+        const auto filter = make_filter(kind, {}, {{"moments", moments}}, association);
         EXPECT_GT(expect_parts(*filter, world), 100);
         const Eigen::Matrix3d P = filter->estimate().spread.covariance;
         const Eigen::MatrixXd joint = filter->joint(kLandmarks)->covariance;
@@ -82,7 +73,7 @@ TEST(JointEstimate, OfOneGaussianHasItsParts) {
 TEST(JointEstimate, OfFullSmoothingIsNearItsMap) {
   const SmallWorld world = small_world({.seed = 33, .scans = 60});
   for (const auto association : {Association::known, Association::nearest}) {
-    const auto smoother = smoother_kind().make(setup_of(smoother_kind(), association, {}));
+    const auto smoother = make_filter(smoother_kind(), {}, {}, association);
     int seen = 0;
     drive_through(*smoother, world, {}, [&](std::size_t scan) {
       const auto joint = smoother->joint(kLandmarks);

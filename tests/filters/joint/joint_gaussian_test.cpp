@@ -87,7 +87,7 @@ TEST(JointGaussian, AnIteratedDetectionEndsAtTheTopOfThePosterior) {
 
 TEST(JointGaussian, AnIteratedDetectionPassesTheBackwardDirection) {
   // On its way the estimate passes the landmark, so that the bearing turns by more than half a turn
-  // in all: wrapped may be only what is left to explain.
+  // in all: only the rest of the bearing may be wrapped.
   const Belief belief{.vehicle = {},
                       .control = {.sigma = {1.0, 0.2}},
                       .sigma_range = 0.1,
@@ -121,7 +121,8 @@ TEST(Regression, OfAMotionHasTheMomentsOfATurnedWay) {
   gaussian.move(MotionIncrement(Pose{}, {.hh = sigma * sigma}));
   const MotionIncrement way(Pose{4.0, 0.0, 0.0}, {});
   const PoseMoments moved = gaussian.pose_after(gaussian.regressed(way));
-  // Of (4 cos a, 4 sin a), a ~ N(0, sigma^2); the sigma points err by sigma^6 of relative size.
+  // The way is (4 cos a, 4 sin a), a ~ N(0, sigma^2); the sigma points err by sigma^6 of relative
+  // size.
   EXPECT_NEAR(moved.mean.x, 4.0 * kept, 1e-4);
   EXPECT_NEAR(moved.covariance(1, 2), 4.0 * kept * sigma * sigma, 2e-3);
   EXPECT_NEAR(moved.covariance(1, 1), 8.0 * (1.0 - std::pow(kept, 4)), 0.02);

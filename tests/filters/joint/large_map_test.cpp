@@ -8,9 +8,7 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <map>
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace montecarta::filters {
@@ -19,18 +17,8 @@ namespace {
 constexpr std::size_t kLandmarks = 300;
 
 /// A vehicle that goes round once and a half, of which it sees a twentieth at a time.
-SmallWorld large_world(const Belief& noise = {}) {
-  return small_world(
-      {.seed = 41, .landmarks = kLandmarks, .scans = 430, .max_range = 11.0, .noise = noise});
-}
-
-FilterSetup setup_of(const FilterKind& kind,
-                     const std::map<std::string, std::string, std::less<>>& options,
-                     const Belief& belief = {}, Association association = Association::known) {
-  return {.belief = belief,
-          .association = {.kind = association},
-          .options = default_options(kind, options),
-          .landmarks = kLandmarks};
+SmallWorldSettings large_world(const Belief& noise = {}) {
+  return {.seed = 41, .landmarks = kLandmarks, .scans = 430, .max_range = 11.0, .noise = noise};
 }
 
 /// EKF-SLAM with known association on one JointGaussian that is never compressed.
@@ -67,12 +55,12 @@ struct Plain {
 };
 
 TEST(LargeMap, OfEkfSlamEqualsThatOfOnePlainGaussian) {
-  const SmallWorld world = large_world();
+  const SmallWorld world = small_world(large_world());
   Plain plain;
   std::vector<PoseMoments> poses;
   drive_through(plain, world, {}, [&](std::size_t) { poses.push_back(plain.gaussian.pose()); });
   ASSERT_GT(plain.identities.size(), 190u);
-  const auto filter = make_ekf_slam(setup_of(ekf_slam_kind(), {}));
+  const auto filter = make_filter(ekf_slam_kind(), large_world());
   std::optional<JointEstimate> joint;
   drive_through(*filter, world, {}, [&](std::size_t s) {
     const PoseMoments pose = filter->estimate().spread;
@@ -98,16 +86,15 @@ TEST(LargeMap, OfEkfSlamEqualsThatOfOnePlainGaussian) {
 }
 
 TEST(LargeMap, IsSearchedAsIfNobodyHadCompressedIt) {
-  const SmallWorld world = large_world(fine());
-  const auto knowing = make_ekf_slam(setup_of(ekf_slam_kind(), {}, fine()));
-  std::vector<Pose> poses;
-  drive_through(*knowing, world, {},
-                [&](std::size_t) { poses.push_back(knowing->estimate().spread.mean); });
-  const auto searching = make_ekf_slam(setup_of(ekf_slam_kind(), {}, fine(), Association::nearest));
+  const SmallWorldSettings settings = large_world(fine());
+  const SmallWorld world = small_world(settings);
+  const auto knowing = make_filter(ekf_slam_kind(), settings);
+  const auto expected = estimates_of(*knowing, world);
+  const auto searching = make_filter(ekf_slam_kind(), settings, {}, Association::nearest);
   double wrong = 0.0;
   drive_through(*searching, world, {}, [&](std::size_t s) {
     wrong += searching->report().association.wrong + searching->report().association.new_again;
-    EXPECT_LT(boxminus(searching->estimate().spread.mean, poses[s]).norm(), 0.01)
+    EXPECT_LT(boxminus(searching->estimate().spread.mean, expected[s].mean).norm(), 0.01)
         << "scan " << s << ": one detection in twenty lies outside the gate";
   });
   EXPECT_EQ(wrong, 0.0) << "landmarks lie far apart in this noise";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What no detection can tell: how path and map are turned as a whole.
+// No detection is informative about the turn of path and map as a whole.
 #include "filters/joint/joint_filter.hpp"
 #include "tests/filters/consistent_anees.hpp"
 #include "tests/filters/small_world.hpp"
@@ -24,11 +24,7 @@ double information_of(const Case& one) {
   SmallWorldSettings settings{.seed = 5, .landmarks = 21, .scans = 250};
   settings.noise.sigma_bearing = 0.1;
   settings.noise.sensor.kind = one.sensor;
-  const auto filter =
-      one.kind.make({.belief = settings.noise,
-                     .association = {},
-                     .options = default_options(one.kind, {{"iterations", one.iterations}}),
-                     .landmarks = settings.landmarks});
+  const auto filter = make_filter(one.kind, settings, {{"iterations", one.iterations}});
   double before = 0.0, dof = 0.0;
   drive_through(*filter, small_world(settings), {4.0, -3.0, 0.5}, [&](std::size_t scan) {
     const double now = filter->report().rotation_information;
@@ -60,31 +56,19 @@ TEST(RotationInformation, EkfSlamTakesDetectionsForSomeOfIt) {
 }
 
 TEST(RotationInformation, IsNotToldOfASensorThatDoesNotFixLandmarks) {
-  Belief belief;
-  belief.sensor.kind = BearingSensor();
-  const auto filter = make_ekf_slam({.belief = belief,
-                                     .association = {},
-                                     .options = default_options(ekf_slam_kind()),
-                                     .landmarks = 1});
+  SmallWorldSettings settings{.landmarks = 1};
+  settings.noise.sensor.kind = BearingSensor();
+  const auto filter = make_filter(ekf_slam_kind(), settings);
   const Detection one{.values = {0.3}, .identity = 0};
   filter->start({});
   filter->update(StepContext(1, 0, 0, Parallel::serial()), Scan(&one, 1));
   EXPECT_TRUE(std::isnan(filter->report().rotation_information));
 }
 
-using Make = std::unique_ptr<SlamFilter> (*)(const FilterSetup&);
-
-FilterSetup setup_for(std::size_t landmarks, const Belief& belief = {}) {
-  return {.belief = belief,
-          .association = {},
-          .options = default_options(ekf_slam_kind()),
-          .landmarks = landmarks};
-}
-
 TEST(RiekfSlam, IsEkfSlamUntilALandmarkIsSeenAgain) {
   const SmallWorld world = small_world({.seed = 6, .scans = 3});
-  const auto plain = make_ekf_slam(setup_for(20));
-  const auto invariant = make_riekf_slam(setup_for(20));
+  const auto plain = make_filter(ekf_slam_kind(), {});
+  const auto invariant = make_filter(riekf_slam_kind(), {});
   const auto advance = [&](SlamFilter& filter, std::uint32_t step) {
     filter.predict(StepContext(6, 0, step, Parallel::serial()), world.drive.controls[step], 0.025);
     return filter.estimate().spread;
@@ -108,8 +92,8 @@ Belief rough() { return {.control = {.sigma = {0.3, 0.1}}, .sigma_bearing = 0.05
 
 /// How much of the heading's variance is left to a vehicle that drove blindly, stood, and looked a
 /// hundred times at landmarks it had never seen before: nothing of that tells where x points.
-double heading_variance_left(Make make) {
-  const auto filter = make(setup_for(3, rough()));
+double heading_variance_left(const FilterKind& kind) {
+  const auto filter = make_filter(kind, {.landmarks = 3, .noise = rough()});
   filter->start({5.0, 2.0, 1.0});
   RngStream draw({.seed = 12, .purpose = Draw::test});
   const StepContext context(12, 0, 0, Parallel::serial());
@@ -127,19 +111,18 @@ double heading_variance_left(Make make) {
 }
 
 TEST(RiekfSlam, AStandingVehicleLearnsNothingOfItsHeadingFromNewLandmarks) {
-  EXPECT_NEAR(heading_variance_left(make_riekf_slam), 1.0, 1e-12);
-  EXPECT_LT(heading_variance_left(make_ekf_slam), 0.7);  // takes the jitter of its map for news
+  EXPECT_NEAR(heading_variance_left(riekf_slam_kind()), 1.0, 1e-12);
+  EXPECT_LT(heading_variance_left(ekf_slam_kind()), 0.7);  // takes the jitter of its map for news
 }
 
 TEST(RiekfSlam, StaysConsistentWhereEkfSlamDoesNot) {
   constexpr std::uint64_t kRuns = 200;
   const SmallWorldSettings settings{.seed = 900, .scans = 150, .noise = rough()};
-  const auto anees = [&](Make make) {
-    return final_errors(*make(setup_for(settings.landmarks, settings.noise)), settings, kRuns)
-        .anees;
+  const auto anees = [&](const FilterKind& kind) {
+    return final_errors(*make_filter(kind, settings), settings, kRuns).anees;
   };
-  EXPECT_TRUE(is_consistent(anees(make_riekf_slam), kRuns));
-  EXPECT_GT(anees(make_ekf_slam), 5.9);  // half as much again as the end of the band
+  EXPECT_TRUE(is_consistent(anees(riekf_slam_kind()), kRuns));
+  EXPECT_GT(anees(ekf_slam_kind()), 5.9);  // half as much again as the end of the band
 }
 
 }  // namespace

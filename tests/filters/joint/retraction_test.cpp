@@ -65,7 +65,8 @@ struct Moments7 {
   Matrix7 covariance;
 };
 
-/// By 2000 nodes of the turn and, given it, exactly: the points are linear in the rest of xi.
+/// It sums over 2000 nodes of the turn and is exact given the turn: the points are linear in the
+/// rest of xi.
 Moments7 by_many_nodes(const Vector7& mean, const Matrix7& P, const Eigen::Vector2d& origin) {
   Matrix7 T = Matrix7::Identity();  // xi = T e: EQUATIONS (15.3) about the origin
   for (const Eigen::Index row : kPointRows) {

@@ -13,7 +13,7 @@
 namespace montecarta::filters {
 namespace {
 
-/// Of Ankishan et al., Simulation I.
+/// The noise of Ankishan et al., Simulation I.
 const Belief kLargeNoise{.vehicle = {},
                          .control = {.sigma = {1.0, 10.0 * kPi / 180.0}},
                          .sigma_range = 1.2,

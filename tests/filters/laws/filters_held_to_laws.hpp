@@ -23,7 +23,7 @@ inline std::vector<FilterKind> filters_held_to_laws() {
   return {kinds.begin(), kinds.end()};
 }
 
-/// Returns when all threads are awake, so that what comes next is shared out among them.
+/// Returns when all threads are awake, so that they share the next loop.
 inline void rouse(const Parallel& parallel) {
   std::barrier together(parallel.threads());
   parallel.for_each(static_cast<std::size_t>(parallel.threads()),

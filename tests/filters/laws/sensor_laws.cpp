@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What holds for every filter with every sensor that it takes, on some vehicles.
+// The laws of every filter with every sensor that it takes, on some vehicles.
 #include "filters/factory.hpp"
 #include "tests/filters/consistent_anees.hpp"
 #include "tests/filters/laws/filters_held_to_laws.hpp"
@@ -70,12 +70,7 @@ class EveryFilterAndSensor : public testing::TestWithParam<Offered> {
   }
   std::unique_ptr<SlamFilter> make(std::size_t n = kParticles) const { return made(kind(), n); }
   std::unique_ptr<SlamFilter> made(const FilterKind& of, std::size_t n) const {
-    std::map<std::string, std::string, std::less<>> special;
-    if (of.reports.particles) special["particles"] = std::to_string(n);
-    return of.make({.belief = settings(1, 1).noise,
-                    .association = {},
-                    .options = default_options(of, special),
-                    .landmarks = 25});
+    return make_filter(of, settings(1, 1), {{"particles", std::to_string(n)}});
   }
 };
 
@@ -123,7 +118,8 @@ TEST_P(EveryFilterAndSensor, BuildsAMapNearTheTruthAndCountsItsInnovations) {
   EXPECT_NEAR(nis / dof, 1.0, 5.0 * std::sqrt(2.0 / dof));
 }
 
-/// Of joint filters: particles run out of diversity. Bands of five standard errors.
+/// The law is of joint filters, since particles run out of diversity. The band has five standard
+/// errors.
 TEST_P(EveryFilterAndSensor, IsConsistentOnAnEasyWorld) {
   if (kind().reports.particles) GTEST_SKIP() << "no joint covariance";
   constexpr std::uint64_t kRuns = 60;

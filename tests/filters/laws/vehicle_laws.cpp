@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What holds for every filter with every vehicle. The path turns on the spot again and again.
+// The laws of every filter with every vehicle. The path turns on the spot again and again.
 #include "filters/factory.hpp"
 #include "tests/filters/laws/filters_held_to_laws.hpp"
 #include "tests/filters/small_world.hpp"
@@ -27,12 +27,7 @@ class EveryFilterAndVehicle : public testing::TestWithParam<std::tuple<FilterKin
             .controls = {some.typical, some.typical, some.typical, some.on_spot}};
   }
   std::unique_ptr<SlamFilter> make() const {
-    std::map<std::string, std::string, std::less<>> special;
-    if (kind().reports.particles) special["particles"] = std::to_string(kParticles);
-    return kind().make({.belief = settings().noise,
-                        .association = {},
-                        .options = default_options(kind(), special),
-                        .landmarks = settings().landmarks});
+    return make_filter(kind(), settings(), {{"particles", std::to_string(kParticles)}});
   }
 };
 

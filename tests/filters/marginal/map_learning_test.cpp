@@ -13,7 +13,7 @@ constexpr SensorNoise kNoise{0.01, 0.0004};
 const StepContext kContext(1, 0, 0, Parallel::serial());
 const Point kTruth{8.0, 6.0};
 
-/// Weighted poses around the origin, and what one of them sees of the landmark.
+/// Weighted poses around the origin, and the detection of the landmark from one of them.
 template <class Real>
 struct Cloud {
   std::vector<BasicPose<Real>> poses;
@@ -92,7 +92,7 @@ TEST(MapLearning, RecursiveMapsAverageWhatTheySaw) {
   EXPECT_LT(landmark.covariance().xx, 0.04 / 400.0 * 1.5);
 }
 
-// EQUATIONS 14: what (25) calls Bellman's principle forgets all scans but the last.
+// EQUATIONS 14: the principle that (25) attributes to Bellman forgets all scans but the last.
 TEST(MapLearning, OneStepMapsForgetWhateverWasBefore) {
   const Cloud<Lanes> cloud(0.0);
   const MapSettings settings{.mode = MapMode::onestep_converged};

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two sums over kernels that share the exponential: nanoseconds per pair of target and kernel, by
 // method and number of particles, for thin clouds (as wide as a kernel) and wide ones (30 times);
-// the plain Eigen loop in the same run is what the ratio is quoted against.
+// the ratio is relative to the plain Eigen loop in the same run.
 // build/benchmarks --benchmark_filter=KernelSums
-// What a landmark's candidate costs for each particle, and the plain Eigen loop in the same run.
+// The cost of a landmark's candidate for each particle, and the plain Eigen loop in the same run.
 // build/benchmarks --benchmark_filter=MapFitness
 #include "filters/marginal/kernel_sums.hpp"
 #include "filters/marginal/map_learning.hpp"

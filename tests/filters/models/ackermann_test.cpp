@@ -179,5 +179,4 @@ TEST(ControlNoise, GrowsWithTheMotion) {
 }
 
 }  // namespace
-
 }  // namespace montecarta::models

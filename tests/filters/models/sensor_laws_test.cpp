@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What holds for every sensor, wherever it is mounted.
+// The laws of every sensor, wherever it is mounted.
 #include "engine/random/stream.hpp"
 #include "filters/models/eigen_jacobians.hpp"
 #include "filters/models/field_of_view.hpp"
@@ -182,5 +182,4 @@ TEST(Triangulation, CirclesCutOnBothSides) {
 }
 
 }  // namespace
-
 }  // namespace montecarta::models

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What holds for every vehicle that there is.
+// The laws of every vehicle.
 #include "engine/random/stream.hpp"
 #include "filters/models/ackermann.hpp"
 #include "filters/models/eigen_jacobians.hpp"
@@ -79,7 +79,7 @@ TEST_P(EveryVehicle, MovesInLanesAsAlone) {
   }
 }
 
-// Whatever a control does, the same is done by the control that is found from it.
+// The control that is found from a step makes the same step.
 TEST_P(EveryVehicle, FindsTheControlOfAStep) {
   for (int n = 0; n < 200; ++n) {
     const Control control = GetParam().any_control(draw_, 1.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What sigma points make of a detection, against the papers' formulas.
+// Updates by sigma points, compared with the papers' formulas.
 #include "filters/moments/sigma_points.hpp"
 
 #include "filters/plain/sigma_points.hpp"
@@ -20,7 +20,7 @@ using plain::Vector;
 
 const double kInterval = std::sqrt(3.0);
 
-/// By `rule` in every stage; `noise` sets the rays of a new landmark.
+/// Uses `rule` in every stage; `noise` sets the rays of a new landmark.
 SigmaPoints points_by(const SigmaRule& rule, const SensorNoise& noise,
                       MapUncertainty map_uncertainty = MapUncertainty::on) {
   Belief belief;

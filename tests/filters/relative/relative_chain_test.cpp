@@ -163,5 +163,4 @@ TEST(VehicleInFrames, ProductsAreThoseWithTheDifferenceQuotients) {
 }
 
 }  // namespace
-
 }  // namespace montecarta::filters

@@ -11,24 +11,6 @@
 namespace montecarta::filters {
 namespace {
 
-using Others = std::map<std::string, std::string, std::less<>>;
-
-std::unique_ptr<SlamFilter> make(const FilterKind& kind, const SmallWorldSettings& settings,
-                                 const Others& others = {},
-                                 Association association = Association::known) {
-  return kind.make({.belief = settings.noise,
-                    .association = {.kind = association},
-                    .options = default_options(kind, others),
-                    .landmarks = settings.landmarks});
-}
-
-std::vector<PoseMoments> estimates_of(SlamFilter& filter, const SmallWorld& world) {
-  std::vector<PoseMoments> estimates;
-  drive_through(filter, world, {},
-                [&](std::size_t) { estimates.push_back(filter.estimate().spread); });
-  return estimates;
-}
-
 void expect_close(const std::vector<PoseMoments>& these, const std::vector<PoseMoments>& those,
                   double deviations, double share) {
   ASSERT_EQ(these.size(), those.size());
@@ -46,8 +28,8 @@ TEST(RelativeEkfSlam, IsTheKalmanFilterOnALinearModel) {
   settings.noise = fine();
   const SmallWorld world = small_world(settings);
   for (const auto association : {Association::known, Association::nearest}) {
-    const auto kalman = make(ekf_slam_kind(), settings, {}, association);
-    const auto filter = make(relative_ekf_slam_kind(), settings, {}, association);
+    const auto kalman = make_filter(ekf_slam_kind(), settings, {}, association);
+    const auto filter = make_filter(relative_ekf_slam_kind(), settings, {}, association);
     expect_close(estimates_of(*filter, world), estimates_of(*kalman, world), 0.02, 1e-3);
   }
 }
@@ -56,21 +38,21 @@ TEST(RelativeEkfSlam, IsThatAlsoWhereEveryLandmarkIsInitialisedAgain) {
   SmallWorldSettings settings{.seed = 47, .scans = 60};
   settings.noise = fine();
   const SmallWorld world = small_world(settings);
-  const auto expected = estimates_of(*make(ekf_slam_kind(), settings), world);
+  const auto expected = estimates_of(*make_filter(ekf_slam_kind(), settings), world);
   for (const char* lag : {"0", "3"}) {
-    const auto filter =
-        make(relative_ekf_slam_kind(), settings, {{"bend", "0"}, {"lag", lag}, {"frames", "8"}});
+    const auto filter = make_filter(relative_ekf_slam_kind(), settings,
+                                    {{"bend", "0"}, {"lag", lag}, {"frames", "8"}});
     expect_close(estimates_of(*filter, world), expected, 0.02, 2e-3);
   }
 }
 
-// What is seen of them is used by the reports alone.
+// Only the reports use their detections.
 TEST(RelativeEkfSlam, LandmarksBehindABentWayWait) {
   SmallWorldSettings settings{.seed = 48, .scans = 2};
   settings.noise = fine();
   const SmallWorld world = small_world(settings);
-  const auto waiting = make(relative_ekf_slam_kind(), settings, {{"bend", "0"}});
-  const auto using_all = make(relative_ekf_slam_kind(), settings, {{"bend", "1e9"}});
+  const auto waiting = make_filter(relative_ekf_slam_kind(), settings, {{"bend", "0"}});
+  const auto using_all = make_filter(relative_ekf_slam_kind(), settings, {{"bend", "1e9"}});
   expect_close(estimates_of(*waiting, world), estimates_of(*using_all, world), 0.01, 1e-3);
   EXPECT_EQ(waiting->report().nis_dof, 0U);
   EXPECT_GT(using_all->report().nis_dof, 4U);
@@ -88,8 +70,9 @@ SmallWorldSettings rough() {
 /// The farthest [standard deviations] that its estimates are from those of full smoothing.
 double farthest_from_smoothing(const char* bend, const SmallWorldSettings& settings) {
   const SmallWorld world = small_world(settings);
-  const auto expected = estimates_of(*make(smoother_kind(), settings), world);
-  const auto now = estimates_of(*make(relative_ekf_slam_kind(), settings, {{"bend", bend}}), world);
+  const auto expected = estimates_of(*make_filter(smoother_kind(), settings), world);
+  const auto now =
+      estimates_of(*make_filter(relative_ekf_slam_kind(), settings, {{"bend", bend}}), world);
   double farthest = 0.0;
   for (std::size_t scan = 0; scan < now.size(); ++scan) {
     const Eigen::LLT<Eigen::Matrix3d> L(expected[scan].covariance);
@@ -105,12 +88,12 @@ TEST(RelativeEkfSlam, IsNearFullSmoothingBehindALoop) {
   EXPECT_LT(farthest_from_smoothing("0.3", rough()), 0.3);
 }
 
-// Between two scans it is predicted, from what the scan before told.
+// Between two scans the estimate is predicted from that of the scan before.
 TEST(RelativeEkfSlam, EstimatesBetweenScans) {
   const SmallWorldSettings settings;
   const SmallWorld world = small_world(settings);
-  const auto filter = make(relative_ekf_slam_kind(), settings);
-  drive_through(*filter, world, {}, [](std::size_t) {});
+  const auto filter = make_filter(relative_ekf_slam_kind(), settings);
+  drive_through(*filter, world);
   const StepContext context(1, 0, 999, Parallel::serial());
   const PoseMoments before = filter->estimate().spread;
   filter->predict(context, {3.0, 0.0}, 0.2);

@@ -30,7 +30,7 @@ RelativeGaussian gaussian_of(const SensorNoise& noise, double scale) {
   return gaussian;
 }
 
-/// What the vehicle expects of all landmarks, range and bearing, as a function of the components.
+/// The expected ranges and bearings of all landmarks, as a function of the components.
 Eigen::VectorXd expected_of(const RelativeGaussian& gaussian, const Eigen::VectorXd& x) {
   const RelativeChain& chain = gaussian.chain();
   VehicleInFrames vehicle;

@@ -77,8 +77,8 @@ TEST(RelativeLaplace, HoldsLandmarksInFewerFramesWhereThereAreTooMany) {
   EXPECT_LT(difference(solved), 1e-3);
 }
 
-// The vehicle drives straight on, over the first of three landmarks at the pose whose frame that is
-// in: as polar coordinates there, its covariance would be no number.
+// The vehicle drives straight over the first of three landmarks, at the pose that is the frame of
+// that landmark: its covariance in polar coordinates of this frame would be no number.
 TEST(RelativeLaplace, KeepsALandmarkNearAFrameInCartesianCoordinates) {
   const Belief belief{
       .control = {.sigma = {0.01, 0.001}}, .sigma_range = 0.01, .sigma_bearing = 0.2 * kPi / 180.0};

@@ -68,7 +68,7 @@ TEST(FullSmoothing, FindsTheMinimumBehindALoopFromDeadReckoningAsFromTheTruth) {
   EXPECT_LT(largest_distance(reckoned.estimate, true_path.estimate), 1e-3);
 }
 
-// One control step a scan: its covariance has rank two, and what no noise can do never happens.
+// One control step a scan has a covariance of rank two: the third direction has no noise.
 TEST(FullSmoothing, TakesMotionsThatAreCertainInADirection) {
   const SmallWorldSettings settings{.seed = 43, .scans = 40, .steps_per_scan = 1};
   SmallGraph small = small_graph(small_world(settings), settings.noise, Beginning::truth);
@@ -99,31 +99,22 @@ TEST(FullSmoothing, TakesMotionsThatAreCertainInADirection) {
   }
 }
 
-using Others = std::map<std::string, std::string, std::less<>>;
-
-std::unique_ptr<SlamFilter> make(const FilterKind& kind, const SmallWorldSettings& settings,
-                                 const Others& others = {}) {
-  return kind.make({.belief = settings.noise,
-                    .association = {},
-                    .options = default_options(kind, others),
-                    .landmarks = settings.landmarks});
-}
-
 TEST(Smoother, IsTheIteratedInvariantFilterWhereItNeverLinearisesAgain) {
   const SmallWorldSettings settings{.seed = 44, .scans = 120};
   const SmallWorld world = small_world(settings);
   const auto smoother =
-      make(smoother_kind(), settings, {{"relinearise", "1e9"}, {"moments", "map"}});
+      make_filter(smoother_kind(), settings, {{"relinearise", "1e9"}, {"moments", "map"}});
   const auto filter =
-      make(riekf_slam_kind(), settings, {{"iterations", "5"}, {"motion", "quadrature"}});
+      make_filter(riekf_slam_kind(), settings, {{"iterations", "5"}, {"motion", "quadrature"}});
   expect_same_run(*smoother, *filter, world, 1e-12);
 }
 
 TEST(Smoother, LinearisingAtEveryScanIsTheBatchEstimate) {
   const SmallWorldSettings settings{.seed = 45, .scans = 80};
   const SmallWorld world = small_world(settings);
-  const auto smoother = make(smoother_kind(), settings, {{"relinearise", "0"}, {"moments", "map"}});
-  drive_through(*smoother, world, {}, [](std::size_t) {});
+  const auto smoother =
+      make_filter(smoother_kind(), settings, {{"relinearise", "0"}, {"moments", "map"}});
+  drive_through(*smoother, world);
   SmallGraph batch = small_graph(world, settings.noise, Beginning::truth);
   GaussNewton solver(SensorNoise::of(settings.noise));
   ASSERT_TRUE(solver.solve(batch.graph, 1e-12, batch.estimate));
@@ -139,14 +130,14 @@ TEST(Smoother, LinearisingAtEveryScanIsTheBatchEstimate) {
   }
 }
 
-// The joint is of a solution of its own, whatever the filter linearised before.
+// The joint is of a solution of its own, which no earlier linearisation affects.
 TEST(Smoother, JointDoesNotDependOnWhenAllWasLinearisedAgain) {
   const SmallWorldSettings settings{.seed = 47, .scans = 120};
   const SmallWorld world = small_world(settings);
-  const auto always = make(smoother_kind(), settings, {{"relinearise", "0"}});
-  const auto never = make(smoother_kind(), settings, {{"relinearise", "1e9"}});
-  drive_through(*always, world, {}, [](std::size_t) {});
-  drive_through(*never, world, {}, [](std::size_t) {});
+  const auto always = make_filter(smoother_kind(), settings, {{"relinearise", "0"}});
+  const auto never = make_filter(smoother_kind(), settings, {{"relinearise", "1e9"}});
+  drive_through(*always, world);
+  drive_through(*never, world);
   const JointEstimate a = *always->joint(settings.landmarks);
   const JointEstimate b = *never->joint(settings.landmarks);
   EXPECT_EQ(b.covariance.topLeftCorner(3, 3), b.covariance.topLeftCorner(3, 3).transpose());
@@ -165,10 +156,10 @@ TEST(Smoother, JointOfTheCarriedBeliefInsteadOfASolutionIsANumericalFault) {
   SmallWorldSettings settings{.seed = 48, .scans = 3};
   const SmallWorld world = small_world(settings);
   settings.noise.sigma_range = 1e-200;
-  const auto pushed = make(smoother_kind(), settings);
-  const auto carried = make(smoother_kind(), settings, {{"moments", "map"}});
-  drive_through(*pushed, world, {}, [](std::size_t) {});
-  drive_through(*carried, world, {}, [](std::size_t) {});
+  const auto pushed = make_filter(smoother_kind(), settings);
+  const auto carried = make_filter(smoother_kind(), settings, {{"moments", "map"}});
+  drive_through(*pushed, world);
+  drive_through(*carried, world);
   const JointEstimate held = *carried->joint(settings.landmarks);
   EXPECT_EQ(held.numerical_faults, 0u);
   EXPECT_TRUE(held.mean.head(3).allFinite());
@@ -180,11 +171,9 @@ TEST(Smoother, IsTheKalmanFilterOnALinearModel) {
   SmallWorldSettings settings{.seed = 46, .scans = 60};
   settings.noise = fine();
   const SmallWorld world = small_world(settings);
-  const auto smoother = make(smoother_kind(), settings, {{"relinearise", "0"}});
-  const auto kalman = make(ekf_slam_kind(), settings);
-  std::vector<PoseMoments> expected;
-  drive_through(*kalman, world, {},
-                [&](std::size_t) { expected.push_back(kalman->estimate().spread); });
+  const auto smoother = make_filter(smoother_kind(), settings, {{"relinearise", "0"}});
+  const auto kalman = make_filter(ekf_slam_kind(), settings);
+  const auto expected = estimates_of(*kalman, world);
   drive_through(*smoother, world, {}, [&](std::size_t scan) {
     const PoseMoments now = smoother->estimate().spread;
     const Eigen::LLT<Eigen::Matrix3d> L(expected[scan].covariance);
